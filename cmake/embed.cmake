@@ -1,0 +1,17 @@
+# Writes OUTPUT: one `constexpr std::string_view kName` per file ("0001_first.sql" -> k0001_first_sql), and
+# kEmbeddedFiles, an array of {name, text} in the order given. Raw string pieces stay below the compiler's limit.
+set(text "#pragma once\n#include <array>\n#include <string_view>\n#include <utility>\nnamespace ${NAMESPACE} {\n")
+set(table "")
+list(LENGTH FILES count)
+foreach(path ${FILES})
+  get_filename_component(name ${path} NAME)
+  string(MAKE_C_IDENTIFIER "k${name}" symbol)
+  file(READ ${path} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${hex}")
+  string(REGEX REPLACE "((........){24})" "\\1\n" bytes "${bytes}")
+  string(APPEND text "inline constexpr char ${symbol}_bytes[] = {${bytes}'\\0'};\n")
+  string(APPEND text "inline constexpr std::string_view ${symbol}(${symbol}_bytes, sizeof(${symbol}_bytes) - 1);\n")
+  string(APPEND table "  {\"${name}\", ${symbol}},\n")
+endforeach()
+string(APPEND text "inline constexpr std::array<std::pair<std::string_view, std::string_view>, ${count}> kEmbeddedFiles = {{\n${table}}};\n}\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,72 @@
+# rigcal_library(NAME SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])
+# rigcal_program(NAME SOURCES ... DEPS ...)
+# rigcal_test(NAME SOURCES ... DEPS ... [LABELS ...])     one GoogleTest program, one ctest per case
+# rigcal_embed(TARGET NAMESPACE ns FILES ...)             files as string_view constants: "<ns>/embedded.h"
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE} CACHE STRING "" FORCE)
+endif()
+
+set(RIGCAL_WARNINGS -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
+    -Wnull-dereference -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # False positives of GCC 12 inside the standard library and Eigen at -O2 and above.
+  list(APPEND RIGCAL_WARNINGS -Wno-error=maybe-uninitialized -Wno-error=null-dereference -Wno-error=array-bounds
+       -Wno-error=stringop-overflow -Wno-error=stringop-overread -Wno-error=restrict)
+endif()
+
+if(RIGCAL_SANITIZE)
+  add_compile_options(-fsanitize=${RIGCAL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=${RIGCAL_SANITIZE})
+endif()
+
+function(rigcal_settings target)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${RIGCAL_WARNINGS}>)
+  if(RIGCAL_TIDY)
+    set_target_properties(${target} PROPERTIES CXX_CLANG_TIDY "clang-tidy;--quiet")
+  endif()
+endfunction()
+
+function(rigcal_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;PCH" ${ARGN})
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_link_libraries(${name} PUBLIC ${arg_DEPS})
+  rigcal_settings(${name})
+  if(arg_PCH AND NOT RIGCAL_TIDY)
+    target_precompile_headers(${name} PRIVATE ${arg_PCH})
+  endif()
+endfunction()
+
+function(rigcal_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_DEPS})
+  rigcal_settings(${name})
+endfunction()
+
+function(rigcal_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_DEPS} GTest::gmock_main)
+  rigcal_settings(${name})
+  target_compile_definitions(${name} PRIVATE RIGCAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS "${arg_LABELS}")
+endfunction()
+
+function(rigcal_embed target)
+  cmake_parse_arguments(arg "" "NAMESPACE;OUTPUT" "FILES" ${ARGN})
+  set(header ${CMAKE_CURRENT_BINARY_DIR}/embedded/${arg_OUTPUT})
+  set(paths "")
+  foreach(file ${arg_FILES})
+    list(APPEND paths ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  endforeach()
+  add_custom_command(OUTPUT ${header}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${header} -DNAMESPACE=${arg_NAMESPACE} "-DFILES=${paths}"
+            -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+    DEPENDS ${paths} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake VERBATIM)
+  target_sources(${target} PRIVATE ${header})
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/embedded)
+endfunction()

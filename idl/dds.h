@@ -1,0 +1,146 @@
+// Typed RAII over Cyclone's C API: participant, readers, writers, waitset. Values out, Result on failure, no exceptions.
+// Used by server/dds and client. T is a generated C struct (rigcal_wire_Chunk, ...). Threads: a Writer may be used from
+// several threads; a Reader and a WaitSet from one.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rigcal.h"
+#include "server/base/ids.h"
+#include "server/base/result.h"
+
+namespace rigcal::wire {
+
+// Partition names: "robot/<id>" and "operator".
+[[nodiscard]] std::string RobotPartition(const RobotId& robot);
+inline constexpr const char* kOperatorPartition = "operator";
+inline constexpr const char* kAllRobotsPartition = "robot/*";
+
+// Owns a DDS entity handle (participant, reader, ...): deleted once, movable.
+class Entity {
+ public:
+  Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  ~Entity();
+  Entity(Entity&& other) noexcept;
+  Entity& operator=(Entity&& other) noexcept;
+  [[nodiscard]] dds_entity_t get() const { return handle_; }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+struct ParticipantOptions {
+  int domain = 0;          // RIGCAL_DOMAIN overrides in Open if set
+  std::string tag;         // Discovery/Tag: isolates tests; RIGCAL_DDS_TAG overrides if set
+  // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
+};
+
+// One per process.
+class Participant {
+ public:
+  [[nodiscard]] static Result<Participant> Open(const ParticipantOptions& options);
+  [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
+
+ private:
+  explicit Participant(Entity domain, Entity entity);
+  Entity domain_, entity_;
+};
+
+// Topic name, descriptor and QoS of each type live in one table: idl/topics.cc.
+struct TopicInfo {
+  const char* name;
+  const dds_topic_descriptor_t* descriptor;
+  bool transient_local;   // late joiners get the newest sample of each key (Receipt, Calibration, RobotStatus)
+  int history_depth;      // 0: keep all
+};
+template <typename T>
+[[nodiscard]] const TopicInfo& InfoOf();  // specialised in topics.cc for every type of rigcal.idl
+
+// What came with a sample.
+struct SampleOrigin {
+  dds_instance_handle_t publication = 0;
+  std::vector<std::string> partitions;  // of the writer, from discovery (not from the sample): who it may speak for
+  dds_instance_handle_t participant = 0;
+};
+
+namespace internal {
+Result<Entity> OpenReader(const Participant&, const TopicInfo&, const std::vector<std::string>& partitions);
+Result<Entity> OpenWriter(const Participant&, const TopicInfo&, const std::vector<std::string>& partitions);
+Status WriteSample(dds_entity_t writer, const void* sample, const char* topic);
+// Takes up to `max` samples; calls body for each valid one.
+Result<int> TakeSamples(dds_entity_t reader, int max, const std::function<void(const void*, const dds_sample_info_t&)>&);
+SampleOrigin OriginOf(dds_entity_t reader, dds_instance_handle_t publication);
+int MatchedCount(dds_entity_t endpoint, bool is_writer);
+Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::milliseconds timeout);
+}  // namespace internal
+
+template <typename T>
+class Writer {
+ public:
+  [[nodiscard]] static Result<Writer> Open(const Participant& participant, const std::vector<std::string>& partitions) {
+    RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, InfoOf<T>(), partitions));
+    return Writer(std::move(entity));
+  }
+  // kBusy if a reader did not take within the writer's blocking time: nothing was written, try again.
+  [[nodiscard]] Status Write(const T& sample) { return internal::WriteSample(entity_.get(), &sample, InfoOf<T>().name); }
+  [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(entity_.get(), true); }
+  // Waits for at least one matched reader; kUnreachable after the timeout.
+  [[nodiscard]] Status WaitForReader(std::chrono::milliseconds timeout) const {
+    return internal::WaitForMatch(entity_.get(), true, timeout);
+  }
+  [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
+
+ private:
+  explicit Writer(Entity entity) : entity_(std::move(entity)) {}
+  Entity entity_;
+};
+
+template <typename T>
+class Reader {
+ public:
+  [[nodiscard]] static Result<Reader> Open(const Participant& participant, const std::vector<std::string>& partitions) {
+    RIGCAL_ASSIGN(Entity entity, internal::OpenReader(participant, InfoOf<T>(), partitions));
+    return Reader(std::move(entity));
+  }
+  // Takes up to `max` samples and calls body(const T&, const SampleOrigin&) for each valid one, while the loan is held.
+  template <typename Body>
+  [[nodiscard]] Result<int> Take(int max, Body&& body) {
+    return internal::TakeSamples(entity_.get(), max, [&](const void* sample, const dds_sample_info_t& info) {
+      body(*static_cast<const T*>(sample), internal::OriginOf(entity_.get(), info.publication_handle));
+    });
+  }
+  [[nodiscard]] int MatchedWriters() const { return internal::MatchedCount(entity_.get(), false); }
+  [[nodiscard]] Status WaitForWriter(std::chrono::milliseconds timeout) const {
+    return internal::WaitForMatch(entity_.get(), false, timeout);
+  }
+  [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
+
+ private:
+  explicit Reader(Entity entity) : entity_(std::move(entity)) {}
+  Entity entity_;
+};
+
+// Wakes when any attached reader has data, when a match changed, or when Wake() is called from any thread.
+class WaitSet {
+ public:
+  [[nodiscard]] static Result<WaitSet> Open(const Participant& participant);
+  [[nodiscard]] Status Attach(dds_entity_t reader_or_writer);
+  // True: something to do. False: the timeout passed.
+  [[nodiscard]] Result<bool> Wait(std::chrono::milliseconds timeout);
+  void Wake();
+
+ private:
+  WaitSet(Entity waitset, Entity guard);
+  std::vector<Entity> conditions_;
+  Entity waitset_, guard_;
+};
+
+}  // namespace rigcal::wire

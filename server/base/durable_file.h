@@ -1,0 +1,20 @@
+// Files that survive power loss: temp file, fsync, rename, fsync of the folder.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "server/base/result.h"
+
+namespace rigcal {
+
+[[nodiscard]] Status SyncFile(const std::filesystem::path& path);
+[[nodiscard]] Status SyncFolder(const std::filesystem::path& folder);
+// Replaces `path` atomically with `bytes`; durable when it returns.
+[[nodiscard]] Status WriteDurably(const std::filesystem::path& path, std::string_view bytes);
+// The whole file; refuses more than `bytes_max`. The error names the file.
+[[nodiscard]] Result<std::string> ReadFile(const std::filesystem::path& path, std::size_t bytes_max);
+
+}  // namespace rigcal

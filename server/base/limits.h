@@ -1,0 +1,28 @@
+// Every named limit of Rigcal, with its default. What is beyond a limit is refused by name, never cut.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace rigcal::limits {
+
+constexpr std::size_t kNameMax = 64;                              // characters of an id that a person gives
+constexpr std::int64_t kManifestBytesMax = 16LL << 20;            // a session's canonical manifest
+constexpr std::size_t kPayloadsPerSessionMax = 100'000;
+constexpr std::int64_t kPayloadBytesMax = 2LL << 30;              // one picture or cloud
+constexpr std::int64_t kSessionBytesMax = 256LL << 30;
+constexpr std::size_t kChunkBytesMax = 1 << 20;                   // one DDS chunk
+constexpr std::int64_t kWindowBytes = 24LL << 20;                 // taken but not yet written, per session
+constexpr std::int64_t kIntakeBytesMax = 64LL << 20;              // the same, all sessions together
+constexpr std::size_t kEdgesPerBatchMax = 1'000'000;
+constexpr std::size_t kSensorsPerRobotMax = 100'000;
+constexpr std::size_t kTargetsPerSessionMax = 64;
+constexpr std::size_t kSessionYamlBytesMax = 1 << 20;
+constexpr std::size_t kRequestBytesMax = 64 << 10;
+constexpr std::size_t kReplyPartBytes = 512 << 10;                // longer replies travel in parts
+constexpr std::int64_t kImagePixelsMax = 200'000'000;
+constexpr std::size_t kOpenSessionsMax = 256;                     // being received at once
+constexpr std::size_t kHttpConnectionsMax = 64;
+constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;
+
+}  // namespace rigcal::limits

@@ -1,0 +1,12 @@
+// Parallel loop on oneTBB. Body(i) must write only to its own slot: then the result does not depend on threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace rigcal {
+
+// Calls body(0..count-1), in any order, on as many threads as the machine has. Exceptions of a body propagate.
+void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
+
+}  // namespace rigcal

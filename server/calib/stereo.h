@@ -1,0 +1,50 @@
+// Overlapping cameras: intrinsics, board poses and T_a_b from checkerboard views (Zhang 2000), own joint refinement,
+// jackknife over captures with everything re-estimated.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "server/model/edge.h"
+#include "server/model/features.h"
+#include "server/model/session.h"
+
+namespace rigcal::calib {
+
+// One capture as both cameras saw it. A view may be not found; captures are sorted by id.
+struct StereoCapture {
+  CaptureId capture;
+  std::optional<BoardView> a, b;
+};
+
+struct StereoProblem {
+  Sensor camera_a, camera_b;              // intrinsics given or absent
+  Checkerboard board;
+  std::vector<StereoCapture> captures;
+};
+
+struct StereoEstimate {
+  PinholeRadtan intrinsics_a, intrinsics_b;
+  Se3 T_a_b;                                // pose of camera b in camera a
+  std::map<CaptureId, Se3> T_a_board;       // per capture used
+  double rms_px = 0;                        // sqrt(sum of squared distances / number of points), both views (OpenCV's)
+  double rms_a_px = 0, rms_b_px = 0;
+  Matrix6d C_model = Matrix6d::Zero();      // s^2 H^-1 of the joint problem, right tangent at b
+  std::vector<CaptureResidual> residuals;   // per capture
+  int iterations = 0;
+};
+
+// Is it solvable? Empty: yes. Otherwise why not: too few captures with both views, board not found in ..., all boards
+// parallel to the image (no tilt), one camera's intrinsics not observable, ...
+[[nodiscard]] std::vector<Diagnosis> Observability(const StereoProblem& problem);
+// Pure; deterministic for any thread count. `start` warm-starts the refinement (jackknife).
+[[nodiscard]] Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start = nullptr);
+// Leave one capture out, warm start, in parallel; block vectors in capture order. Adds the contribution of the board's
+// size (square_sigma_m) and of given intrinsics (intrinsics_sigma). Below 8 captures the source is the model.
+[[nodiscard]] Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate);
+
+// The three above as the finished edge; a failed one carries the diagnoses. Fills figures (rms_px, captures_used, ...).
+[[nodiscard]] Edge EstimateEdge(const StereoProblem& problem);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,58 @@
+// The whole DDS edge of rigcald: readers, recorder, requests, writers. Owns its threads:
+//   D takes everything at once (a reader that stops taking stalls every topic of the process) and never waits;
+//   W records: files, one transaction per batch, then receipts;   Q answers requests.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "idl/dds.h"
+#include "server/base/stamp.h"
+#include "server/model/graph.h"
+
+namespace rigcal::dds {
+
+struct Options {
+  wire::ParticipantOptions participant;
+  std::filesystem::path folder;  // of the store: the service opens its own connections
+  const Clock* clock = nullptr;
+};
+
+struct Callbacks {
+  // Answers one request with the /api/v1 document of (verb, json). Called from thread Q.
+  std::function<Result<std::string>(const std::string& verb, const std::string& json)> answer;
+  // Something durable arrived that may mean work (session closed, edges stored). Called from thread W; must not block.
+  std::function<void(const RobotId&)> work_arrived;
+};
+
+// What the pipeline announces; sent in the robot's partition.
+struct Announcement {
+  RobotId robot;
+  std::string kind;        // Event::kind
+  std::string subject_id;
+  Stamp at;
+  std::string json;
+};
+
+class Service {
+ public:
+  [[nodiscard]] static Result<Service> Start(const Options& options, Callbacks callbacks);
+  ~Service();  // stops and joins the threads; what was receipted is on disk
+  Service(Service&&) noexcept;
+  Service& operator=(Service&&) noexcept;
+
+  void Announce(const Announcement& announcement);
+  // The newest numbered revision's poses and the robot's one-line status.
+  void Publish(const RobotId& robot, int revision, const SensorId& reference, const std::vector<SensorPose>& poses,
+               const Verdict& verdict, std::int64_t edges, std::int64_t jobs_waiting, Stamp at);
+
+ private:
+  struct Impl;
+  explicit Service(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rigcal::dds

@@ -1,0 +1,29 @@
+// Judges a robot's revision: verdict with one plain sentence why and one what to do; and who is overdue.
+#pragma once
+
+#include <vector>
+
+#include "server/model/graph.h"
+
+namespace rigcal::fleet {
+
+struct Policy {
+  double sigma_max_m = 0.005;     // a sensor less certain than this (any axis, 1 sigma) is a warning
+  double sigma_max_rad = 0.005;
+  double residual_probability = 0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
+};
+
+// Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph means
+// that nothing checks the result: warn. Unknown sensors: unknown, by name. Failed edges: warn, by name.
+[[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {});
+
+// "statistic / limit" of one edge's residual against the covariance of that residual (edge covariance minus what the
+// solution explains is not used: conservative). limit is 0 where it cannot be judged.
+struct EdgeTest {
+  double statistic = 0.0;
+  double limit = 0.0;
+};
+[[nodiscard]] EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_t edge_count,
+                                    const Policy& policy = {});
+
+}  // namespace rigcal::fleet

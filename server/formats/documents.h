@@ -1,0 +1,42 @@
+// The one JSON of everything: the same text goes over DDS, HTTP, into reports, the CLI's --json and golden tests.
+// Writers are canonical: keys sorted, shortest round-trip numbers, no NaN or infinity ever (an absent value is null).
+// Poses: {"frame_a", "frame_b", "T_a_b": {"p_m": [3], "q_xyzw": [4]}}; matrices: 6 rows of 6, order [x y z rx ry rz].
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/model/edge.h"
+#include "server/model/graph.h"
+#include "server/model/session.h"
+
+namespace rigcal::formats {
+
+// The session's manifest. SessionId = sha256 of WriteManifest's text.
+[[nodiscard]] std::string WriteManifest(const Manifest& manifest);
+[[nodiscard]] Result<Manifest> ReadManifest(std::string_view text);  // bounded, validated
+
+// An edge, whole.
+[[nodiscard]] std::string WriteEdge(const Edge& edge);
+[[nodiscard]] Result<Edge> ReadEdge(std::string_view text);
+
+// A file of finished edges for `rigcal push-edges` (docs/edges-format.md):
+// {"format": 1, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?, "dof"?, ...}]}.
+// Ids are assigned (AssignPushedIds). The error names the edge by its position and field.
+[[nodiscard]] Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& robot);
+
+// A revision's canonical document: sensors, edges, residuals, verdict; neither number nor time, and the same bytes
+// for the same edges whatever the order in which they arrived.
+struct RevisionInput {
+  RobotId robot;
+  SensorId reference;
+  std::vector<Edge> edges;      // good and failed, sorted by id
+  GraphSolution solution;
+  Verdict verdict;
+};
+[[nodiscard]] std::string WriteRevisionDocument(const RevisionInput& input);
+// Back to values; edges without block vectors, evidence included.
+[[nodiscard]] Result<RevisionInput> ReadRevisionDocument(std::string_view text);
+
+}  // namespace rigcal::formats

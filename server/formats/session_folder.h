@@ -1,0 +1,21 @@
+// A session folder on disk -> Manifest (docs/session-format.md). Errors name file, sensor and line.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "server/model/session.h"
+
+namespace rigcal::formats {
+
+// session.yaml alone; `name` is used in errors ("session.yaml line 7: ...").
+[[nodiscard]] Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& name);
+
+// Reads session.yaml, lists the payloads, hashes them (in parallel). Refuses symbolic links out of the folder, files of
+// unknown sensors, unknown suffixes, empty files, two files for the same capture and sensor, no payloads at all.
+// `progress` (bytes hashed, bytes in all) may be empty.
+[[nodiscard]] Result<Manifest> ReadSessionFolder(const std::filesystem::path& folder,
+                                                 const std::function<void(std::int64_t, std::int64_t)>& progress);
+
+}  // namespace rigcal::formats

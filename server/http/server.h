@@ -1,0 +1,42 @@
+// Serves a folder and a JSON query function over HTTP (civetweb): GET and HEAD only, loopback by default.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/base/result.h"
+
+namespace rigcal::http {
+
+struct Options {
+  std::string host = "127.0.0.1";
+  int port = 0;                      // 0: any free port
+  std::filesystem::path folder;      // published reports: served below /robots/
+};
+
+// What dynamic paths answer: body and content type, or an error (kNotFound -> 404, kInvalidInput -> 400, else 503).
+struct Page {
+  std::string body;
+  std::string content_type;
+};
+// `path` is decoded and normalised ("/", "/robots/x/", "/api/v1/robots", "/metrics", "/healthz"), `query` the raw query string.
+// Called from server threads, several at once.
+using Answer = std::function<Result<Page>(const std::string& path, const std::string& query)>;
+
+class Server {
+ public:
+  [[nodiscard]] static Result<Server> Start(const Options& options, Answer answer);
+  ~Server();
+  Server(Server&&) noexcept;
+  Server& operator=(Server&&) noexcept;
+  [[nodiscard]] int port() const;
+
+ private:
+  struct Impl;
+  explicit Server(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rigcal::http

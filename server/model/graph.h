@@ -1,0 +1,76 @@
+// The sensor graph as a value, its solution, and a revision of it.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/base/stamp.h"
+#include "server/model/diagnosis.h"
+#include "server/model/edge.h"
+
+namespace rigcal {
+
+// One measurement of the graph: the part of an Edge that solving needs.
+struct GraphEdge {
+  EdgeId id;
+  SensorId frame_a, frame_b;
+  Se3 T_a_b;
+  Matrix6d Omega = Matrix6d::Zero();
+  int rank = 6;
+  int dof = 0;            // of the uncertainty's estimate; 0: known
+  SessionId session;      // edges of one session share captures; empty: none
+};
+
+struct Graph {
+  SensorId reference;              // has the identity pose
+  std::vector<SensorId> sensors;   // sorted; includes the reference and sensors without any edge
+  std::vector<GraphEdge> edges;    // any order; Solve sorts by id
+};
+
+struct SensorPose {
+  SensorId sensor;
+  bool known = false;              // false: not connected to the reference, or not observable; then no numbers
+  Se3 T_ref_sensor;
+  Matrix6d covariance = Matrix6d::Zero();  // marginal, right tangent at the sensor; zero for the reference
+};
+
+struct EdgeResidual {
+  EdgeId edge;
+  bool in_solution = false;        // false: its part of the graph is not connected to the reference
+  Vector6d e = Vector6d::Zero();   // Log(T_ij_measured^-1 T_i^-1 T_j), at the solution
+  double weighted = 0.0;           // e^T Omega e
+};
+
+// (1/N_E) sum |e|^2 and its two parts (paper, eq. for E_global).
+struct GlobalError {
+  double total = 0.0;
+  double translation_m2 = 0.0;
+  double rotation_rad2 = 0.0;
+};
+
+struct GraphSolution {
+  bool converged = false;
+  std::vector<SensorPose> poses;       // in the order of Graph::sensors
+  std::vector<EdgeResidual> residuals; // sorted by edge id
+  GlobalError before, after;           // before: at the spanning-tree start
+  double cost = 0.0;                   // sum e^T Omega e
+  int dof = 0;                         // sum rank(Omega_e) - rank(H)
+  int iterations = 0;
+  std::vector<Diagnosis> diagnoses;    // unconnected sensors, weak directions, no convergence
+};
+
+// A numbered, stored, solved state. `document` is canonical JSON: same edges, same bytes; it holds neither number nor time.
+struct Revision {
+  RobotId robot;
+  int number = 0;
+  Stamp created_at;
+  Verdict verdict;
+  std::string document;
+  Digest digest;           // of document
+  std::int64_t edge_watermark = 0;  // the store's row number of the newest edge that it contains
+};
+
+}  // namespace rigcal

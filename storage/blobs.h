@@ -1,0 +1,27 @@
+// Content-addressed files: BlobFolder()/ab/abcdef.... A blob is durable and complete, or absent.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/sha256.h"
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+[[nodiscard]] std::filesystem::path BlobPath(const std::filesystem::path& blob_folder, const Digest& digest);
+[[nodiscard]] bool HasBlob(const std::filesystem::path& blob_folder, const Digest& digest);
+// Writes bytes as a durable blob; a no-op if it is there.
+[[nodiscard]] Result<Digest> AppendBlob(const std::filesystem::path& blob_folder, std::string_view bytes);
+// Moves complete, already fsynced files (same file system) to their places, then fsyncs each touched folder once.
+struct FinishedFile {
+  std::filesystem::path path;
+  Digest digest;
+};
+[[nodiscard]] Status AdoptBlobs(const std::filesystem::path& blob_folder, const std::vector<FinishedFile>& files);
+// The whole blob; refuses more than bytes_max.
+[[nodiscard]] Result<std::string> LoadBlob(const std::filesystem::path& blob_folder, const Digest& digest,
+                                           std::size_t bytes_max);
+
+}  // namespace rigcal::storage

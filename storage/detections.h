@@ -1,0 +1,20 @@
+// Features by content: a picture is searched once, ever.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/model/features.h"
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+struct StoredView {
+  BoardView view;
+  Digest picture;  // annotated picture in the blob store; empty if there is none
+};
+// `detector` names algorithm, its version and the target's geometry.
+[[nodiscard]] Result<std::optional<StoredView>> LoadView(Store& store, const Digest& image, const std::string& detector);
+[[nodiscard]] Status AppendView(Store& store, const Digest& image, const std::string& detector, const StoredView& view);
+
+}  // namespace rigcal::storage

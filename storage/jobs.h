@@ -1,0 +1,27 @@
+// Work that a stored session or edge still asks for. Unfinished jobs are found again after a crash.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "server/model/session.h"
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+struct JobRow {
+  std::int64_t number = 0;
+  RobotId robot;
+  SessionId session;
+  SensorPair pair;
+};
+
+// The oldest unfinished job of a robot that is not in `busy_robots` (one writer per robot at a time).
+[[nodiscard]] Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots);
+[[nodiscard]] Result<std::int64_t> CountJobs(Store& store, const RobotId& robot);
+// Unfinished and all jobs of one session.
+struct JobCount { std::int64_t waiting = 0, total = 0; };
+[[nodiscard]] Result<JobCount> CountJobs(Store& store, const SessionId& session);
+[[nodiscard]] Status FinishJob(Store& store, std::int64_t number, Stamp now);  // call inside Write with the edge
+
+}  // namespace rigcal::storage

@@ -1,0 +1,49 @@
+// Sessions, their payloads, and the receipts given for them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/model/session.h"
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+struct SessionRow {
+  RobotId robot;
+  SessionId id;
+  bool closed = false;
+  std::int64_t payloads = 0, payloads_held = 0;
+  std::int64_t bytes = 0;
+  Stamp captured_at, opened_at, closed_at;
+  std::string operator_name;
+};
+
+// Stores robot, session and its payload list from the canonical manifest text. A no-op if the session exists.
+[[nodiscard]] Status AppendSession(Store& store, const SessionId& id, const std::string& manifest_json,
+                                   const Manifest& manifest, Stamp now);
+[[nodiscard]] Result<std::optional<SessionRow>> LoadSession(Store& store, const SessionId& id);
+[[nodiscard]] Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id);
+// All of one robot, or of all robots if `robot` is empty; newest first.
+[[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
+
+// held[i]: payload i of the manifest is durable.
+[[nodiscard]] Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id);
+// Marks payloads as durable. A no-op for those already marked.
+[[nodiscard]] Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint32_t>& payload_idx,
+                                Stamp now);
+// Digests that are held by any session: what need not be sent again.
+[[nodiscard]] Result<bool> IsHeld(Store& store, const Digest& digest);
+// Closes the session (immutable from now on) and queues one job per pair. A no-op if closed.
+[[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
+
+struct RobotRow {
+  RobotId robot;
+  Stamp first_seen_at;
+  std::int64_t sessions = 0, edges = 0;
+};
+[[nodiscard]] Status AppendRobot(Store& store, const RobotId& robot, Stamp now);
+[[nodiscard]] Result<std::vector<RobotRow>> LoadRobots(Store& store);
+
+}  // namespace rigcal::storage

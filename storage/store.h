@@ -1,0 +1,46 @@
+// The database file and the blob folder of one rigcald. One Store is one connection: give each thread its own (WAL lets
+// readers go on while one writes). All SQL lives in storage/.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "server/base/result.h"
+
+namespace SQLite {
+class Database;
+}
+
+namespace rigcal::storage {
+
+class Store {
+ public:
+  // Opens or creates `folder`/rigcal.db, migrates forward; refuses a store of a newer version by name (kUnsupported).
+  // Sets WAL, synchronous FULL, foreign keys, a busy timeout.
+  [[nodiscard]] static Result<Store> Open(const std::filesystem::path& folder);
+  ~Store();
+  Store(Store&&) noexcept;
+  Store& operator=(Store&&) noexcept;
+
+  [[nodiscard]] const std::filesystem::path& folder() const;
+  [[nodiscard]] std::filesystem::path BlobFolder() const;    // folder/blobs
+  [[nodiscard]] std::filesystem::path IntakeFolder() const;  // folder/intake: files not yet receipted
+  [[nodiscard]] std::filesystem::path ReportFolder() const;  // folder/reports
+
+  // Runs `body` in one immediate transaction: committed and durable when it returns good, rolled back on any error.
+  // Does not nest. SQLite exceptions become kStorage errors.
+  [[nodiscard]] Status Write(const std::function<Status()>& body);
+  // Runs `body` in one read snapshot.
+  [[nodiscard]] Status Read(const std::function<Status()>& body);
+
+  [[nodiscard]] SQLite::Database& database();  // for storage/*.cc only
+  [[nodiscard]] int SchemaVersion() const;
+
+ private:
+  struct Impl;
+  explicit Store(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rigcal::storage
