@@ -1,8 +1,10 @@
-// Model values <-> generated C structs. Pure. From*: everything is checked (sizes, finite, unit quaternion, ids, limits);
-// the error names the field. To*: the sample borrows from an owner that must outlive it, so it is wrapped with it.
+// Model values <-> generated C structs. Pure. From*: everything is checked (sizes, finite, unit quaternion, ids,
+// limits); the error names the field. To*: the sample borrows from an owner that must outlive it, so it is wrapped with
+// it.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +40,10 @@ struct Receipt {
   ReceiptState state = ReceiptState::kNeedManifest;
   std::uint64_t incarnation = 0, sequence_number = 0, window_bytes = 0, written_bytes = 0;
   std::vector<bool> held;
-  struct ChunkAt { std::uint32_t payload_idx = 0; std::uint64_t offset_bytes = 0; };
+  struct ChunkAt {
+    std::uint32_t payload_idx = 0;
+    std::uint64_t offset_bytes = 0;
+  };
   std::vector<ChunkAt> busy;
   std::optional<Error> error;
 };

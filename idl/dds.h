@@ -1,6 +1,6 @@
-// Typed RAII over Cyclone's C API: participant, readers, writers, waitset. Values out, Result on failure, no exceptions.
-// Used by server/dds and client. T is a generated C struct (rigcal_wire_Chunk, ...). Threads: a Writer may be used from
-// several threads; a Reader and a WaitSet from one.
+// Typed RAII over Cyclone's C API: participant, readers, writers, waitset. Values out, Result on failure, no
+// exceptions. Used by server/dds and client. T is a generated C struct (rigcal_wire_Chunk, ...). Threads: a Writer may
+// be used from several threads; a Reader and a WaitSet from one.
 #pragma once
 
 #include <dds/dds.h>
@@ -9,7 +9,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "rigcal.h"
@@ -38,28 +41,40 @@ class Entity {
 };
 
 struct ParticipantOptions {
-  int domain = 0;          // RIGCAL_DOMAIN overrides in Open if set
-  std::string tag;         // Discovery/Tag: isolates tests; RIGCAL_DDS_TAG overrides if set
+  int domain = 0;   // RIGCAL_DOMAIN overrides in Open if set
+  std::string tag;  // Discovery/Tag: isolates tests; RIGCAL_DDS_TAG overrides if set
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
 };
 
-// One per process.
+struct TopicInfo;
+
+// One per process; tests open several. Those of one domain in one process share its configuration, so a second tag in
+// the same domain is refused (kConflict) while a participant of the first lives. Thread-safe.
 class Participant {
  public:
   [[nodiscard]] static Result<Participant> Open(const ParticipantOptions& options);
   [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
+  // Created at the first call, then shared by all readers and writers of the type.
+  [[nodiscard]] Result<dds_entity_t> Topic(const TopicInfo& info) const;
 
  private:
-  explicit Participant(Entity domain, Entity entity);
-  Entity domain_, entity_;
+  struct Topics {
+    std::mutex mutex;
+    std::unordered_map<std::string, dds_entity_t> by_name;
+  };
+  Participant(std::shared_ptr<void> domain, Entity entity);
+  std::shared_ptr<void> domain_;  // outlives entity_
+  Entity entity_;
+  std::unique_ptr<Topics> topics_ = std::make_unique<Topics>();
 };
 
 // Topic name, descriptor and QoS of each type live in one table: idl/topics.cc.
 struct TopicInfo {
   const char* name;
   const dds_topic_descriptor_t* descriptor;
-  bool transient_local;   // late joiners get the newest sample of each key (Receipt, Calibration, RobotStatus)
-  int history_depth;      // 0: keep all
+  bool transient_local;    // late joiners get the newest sample of each key (Receipt, Calibration, RobotStatus)
+  int history_depth;       // 0: keep all
+  int reader_samples_max;  // a reader holds at most so many untaken samples (bounds memory); 0: no limit
 };
 template <typename T>
 [[nodiscard]] const TopicInfo& InfoOf();  // specialised in topics.cc for every type of rigcal.idl
@@ -76,8 +91,18 @@ Result<Entity> OpenReader(const Participant&, const TopicInfo&, const std::vecto
 Result<Entity> OpenWriter(const Participant&, const TopicInfo&, const std::vector<std::string>& partitions);
 Status WriteSample(dds_entity_t writer, const void* sample, const char* topic);
 // Takes up to `max` samples; calls body for each valid one.
-Result<int> TakeSamples(dds_entity_t reader, int max, const std::function<void(const void*, const dds_sample_info_t&)>&);
-SampleOrigin OriginOf(dds_entity_t reader, dds_instance_handle_t publication);
+Result<int> TakeSamples(dds_entity_t reader, int max,
+                        const std::function<void(const void*, const dds_sample_info_t&)>&);
+// Who writes to one reader. Asks discovery once per publication, then remembers it. A publication that is gone already
+// has no partitions, so it may speak for nobody.
+class Origins {
+ public:
+  [[nodiscard]] const SampleOrigin& Of(dds_entity_t reader, dds_instance_handle_t publication);
+
+ private:
+  std::unordered_map<dds_instance_handle_t, SampleOrigin> by_publication_;
+};
+bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant);
 int MatchedCount(dds_entity_t endpoint, bool is_writer);
 Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::milliseconds timeout);
 }  // namespace internal
@@ -90,8 +115,14 @@ class Writer {
     return Writer(std::move(entity));
   }
   // kBusy if a reader did not take within the writer's blocking time: nothing was written, try again.
-  [[nodiscard]] Status Write(const T& sample) { return internal::WriteSample(entity_.get(), &sample, InfoOf<T>().name); }
+  [[nodiscard]] Status Write(const T& sample) {
+    return internal::WriteSample(entity_.get(), &sample, InfoOf<T>().name);
+  }
   [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(entity_.get(), true); }
+  // True if a reader of that participant (SampleOrigin::participant) matched: what is written now reaches it.
+  [[nodiscard]] bool HasReaderOf(dds_instance_handle_t participant) const {
+    return internal::HasReaderOf(entity_.get(), participant);
+  }
   // Waits for at least one matched reader; kUnreachable after the timeout.
   [[nodiscard]] Status WaitForReader(std::chrono::milliseconds timeout) const {
     return internal::WaitForMatch(entity_.get(), true, timeout);
@@ -114,7 +145,7 @@ class Reader {
   template <typename Body>
   [[nodiscard]] Result<int> Take(int max, Body&& body) {
     return internal::TakeSamples(entity_.get(), max, [&](const void* sample, const dds_sample_info_t& info) {
-      body(*static_cast<const T*>(sample), internal::OriginOf(entity_.get(), info.publication_handle));
+      body(*static_cast<const T*>(sample), origins_.Of(entity_.get(), info.publication_handle));
     });
   }
   [[nodiscard]] int MatchedWriters() const { return internal::MatchedCount(entity_.get(), false); }
@@ -126,6 +157,7 @@ class Reader {
  private:
   explicit Reader(Entity entity) : entity_(std::move(entity)) {}
   Entity entity_;
+  internal::Origins origins_;
 };
 
 // Wakes when any attached reader has data, when a match changed, or when Wake() is called from any thread.
@@ -138,9 +170,10 @@ class WaitSet {
   void Wake();
 
  private:
-  WaitSet(Entity waitset, Entity guard);
+  WaitSet(Entity guard, Entity waitset);
+  Entity guard_;
   std::vector<Entity> conditions_;
-  Entity waitset_, guard_;
+  Entity waitset_;  // deleted before what is attached to it
 };
 
 }  // namespace rigcal::wire

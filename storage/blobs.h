@@ -10,6 +10,8 @@
 
 namespace rigcal::storage {
 
+// blob_folder/ab for shard 0xab, 0 to 255. Store::Open makes them all, so that a push need not.
+[[nodiscard]] std::filesystem::path ShardFolder(const std::filesystem::path& blob_folder, int shard);
 [[nodiscard]] std::filesystem::path BlobPath(const std::filesystem::path& blob_folder, const Digest& digest);
 [[nodiscard]] bool HasBlob(const std::filesystem::path& blob_folder, const Digest& digest);
 // Writes bytes as a durable blob; a no-op if it is there.

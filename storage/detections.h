@@ -14,7 +14,8 @@ struct StoredView {
   Digest picture;  // annotated picture in the blob store; empty if there is none
 };
 // `detector` names algorithm, its version and the target's geometry.
-[[nodiscard]] Result<std::optional<StoredView>> LoadView(Store& store, const Digest& image, const std::string& detector);
+[[nodiscard]] Result<std::optional<StoredView>> LoadView(Store& store, const Digest& image,
+                                                         const std::string& detector);
 [[nodiscard]] Status AppendView(Store& store, const Digest& image, const std::string& detector, const StoredView& view);
 
 }  // namespace rigcal::storage

@@ -9,8 +9,9 @@
 
 namespace rigcal::storage {
 
-// Appends edge, uncertainty, block vectors, diagnoses, figures, captures, evidence. A no-op if the id exists.
-// Call inside Write.
+// Appends edge, uncertainty, block vectors, diagnoses, figures, captures, evidence. A no-op if the id exists. Its robot
+// becomes known; its session, if it names one, must be stored. Refuses what is not finite. Of a failed edge pose and
+// uncertainty are not kept. All numbers come back bit for bit, but SQLite gives -0.0 in pose and blocks back as 0.0.
 [[nodiscard]] Status AppendEdge(Store& store, const Edge& edge, Stamp now);
 [[nodiscard]] Result<std::optional<Edge>> LoadEdge(Store& store, const EdgeId& id);
 // All edges of a robot, good and failed, sorted by id. With `blocks` false the block vectors are left out.
@@ -20,12 +21,16 @@ namespace rigcal::storage {
 // Row number of the newest edge of the robot; 0 if none. It only grows.
 [[nodiscard]] Result<std::int64_t> LoadEdgeWatermark(Store& store, const RobotId& robot);
 
-// A batch of finished edges: item i was edge id. AppendBatchItem is a no-op if it exists. Call inside Write.
-[[nodiscard]] Status AppendBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count, Stamp now);
+// A batch of finished edges: item i was edge id. Both are no-ops for what exists; kConflict if it exists otherwise
+// (another count, another edge). Append the edge first. Call AppendBatch in every Write that appends items: `now` is
+// their stamp.
+[[nodiscard]] Status AppendBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count,
+                                 Stamp now);
 [[nodiscard]] Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const EdgeId& edge);
 // held[i]: item i is durable; nullopt if the batch is unknown.
 [[nodiscard]] Result<std::optional<std::vector<bool>>> LoadBatchHeld(Store& store, const BatchId& batch);
-// Stamp of the newest item of an incomplete batch of the robot; nullopt if all batches are complete.
+// Stamp of the newest item of an incomplete batch of the robot (of the batch, if it has none); nullopt if all batches
+// are complete.
 [[nodiscard]] Result<std::optional<Stamp>> LoadOpenBatch(Store& store, const RobotId& robot);
 
 }  // namespace rigcal::storage

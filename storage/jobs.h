@@ -20,7 +20,9 @@ struct JobRow {
 [[nodiscard]] Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots);
 [[nodiscard]] Result<std::int64_t> CountJobs(Store& store, const RobotId& robot);
 // Unfinished and all jobs of one session.
-struct JobCount { std::int64_t waiting = 0, total = 0; };
+struct JobCount {
+  std::int64_t waiting = 0, total = 0;
+};
 [[nodiscard]] Result<JobCount> CountJobs(Store& store, const SessionId& session);
 [[nodiscard]] Status FinishJob(Store& store, std::int64_t number, Stamp now);  // call inside Write with the edge
 

@@ -18,7 +18,10 @@ namespace rigcal::storage {
 // Robots whose newest edge is not in their newest revision (or who have edges and no revision).
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);
 
-struct RevisionKey { RobotId robot; int number = 0; };
+struct RevisionKey {
+  RobotId robot;
+  int number = 0;
+};
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
 [[nodiscard]] Status AppendPublication(Store& store, const RevisionKey& key, Stamp now);
 

@@ -2,6 +2,7 @@
 // readers go on while one writes). All SQL lives in storage/.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,10 +15,12 @@ class Database;
 
 namespace rigcal::storage {
 
+class Connection;
+
 class Store {
  public:
-  // Opens or creates `folder`/rigcal.db, migrates forward; refuses a store of a newer version by name (kUnsupported).
-  // Sets WAL, synchronous FULL, foreign keys, a busy timeout.
+  // Opens or creates `folder`/rigcal.db and its subfolders, migrates forward; refuses a store of a newer version by
+  // name (kUnsupported) and leaves it as it is. Sets WAL, synchronous FULL, foreign keys, a busy timeout.
   [[nodiscard]] static Result<Store> Open(const std::filesystem::path& folder);
   ~Store();
   Store(Store&&) noexcept;
@@ -29,12 +32,15 @@ class Store {
   [[nodiscard]] std::filesystem::path ReportFolder() const;  // folder/reports
 
   // Runs `body` in one immediate transaction: committed and durable when it returns good, rolled back on any error.
-  // Does not nest. SQLite exceptions become kStorage errors.
+  // Does not nest. SQLite exceptions become errors, kStorage for those of disk and file, kBusy if another process held
+  // the database for 10 s; a failure of SQLite inside `body` fails the whole Write even if `body` returns good. Every
+  // Append... of storage/*.h may be called inside a Write, or alone: then it is a transaction of its own.
   [[nodiscard]] Status Write(const std::function<Status()>& body);
-  // Runs `body` in one read snapshot.
+  // Runs `body` in one read snapshot; inside another Read or a Write it sees that one's.
   [[nodiscard]] Status Read(const std::function<Status()>& body);
 
   [[nodiscard]] SQLite::Database& database();  // for storage/*.cc only
+  [[nodiscard]] Connection& connection();      // likewise
   [[nodiscard]] int SchemaVersion() const;
 
  private:

@@ -16,6 +16,7 @@ constexpr std::int64_t kWindowBytes = 24LL << 20;                 // taken but n
 constexpr std::int64_t kIntakeBytesMax = 64LL << 20;              // the same, all sessions together
 constexpr std::size_t kEdgesPerBatchMax = 1'000'000;
 constexpr std::size_t kSensorsPerRobotMax = 100'000;
+constexpr std::size_t kSensorsPerSessionMax = 1024;               // its pairs are tried, so the square must stay small
 constexpr std::size_t kTargetsPerSessionMax = 64;
 constexpr std::size_t kSessionYamlBytesMax = 1 << 20;
 constexpr std::size_t kRequestBytesMax = 64 << 10;

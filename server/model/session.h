@@ -21,6 +21,7 @@ struct PinholeRadtan {
 
 enum class SensorKind { kCamera, kLidar, kTracker, kPoseStream };  // "camera" | "lidar" | "tracker" | "pose_stream"
 [[nodiscard]] std::string NameOf(SensorKind kind);
+[[nodiscard]] Result<SensorKind> SensorKindOf(const std::string& name);
 
 struct Sensor {
   SensorId id;
@@ -66,6 +67,10 @@ struct Manifest {
   std::vector<Payload> payloads;
 };
 
+// One sensor by itself: a camera (no other kind is accepted yet), intrinsics in range, nominal pose finite and unit.
+[[nodiscard]] Status Validate(const Sensor& sensor);
+// One target by itself: corner counts (one odd, one even) and sizes in range.
+[[nodiscard]] Status Validate(const Checkerboard& target);
 // Reference and targets exist, names unique, counts and sizes in range, payloads of known sensors. The error names
 // the sensor, target or file.
 [[nodiscard]] Status Validate(const SessionHeader& header);

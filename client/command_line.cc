@@ -1,0 +1,83 @@
+#include "client/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
+
+#include "client/verbs.h"
+#include "server/base/version.h"
+
+namespace rigcal::client {
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused.\n"
+    "Examples:\n"
+    "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
+    "  rigcal lookup mapper-01 front_left lidar  the pose of the lidar in the front left camera\n"
+    "  rigcal doctor                            what is in the way between here and the server\n";
+
+struct GlobalOptions {
+  double timeout_s = 5.0;
+  std::string domain, tag;
+};
+
+void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
+  app.add_flag("--json", context.json, "Print JSON: the server's document of docs/api.md, or the verb's own");
+  app.add_option("--domain", options.domain, "DDS domain, 0..230 (default: RIGCAL_DOMAIN, else 0)")
+      ->type_name("N");
+  app.add_option("--tag", options.tag, "DDS discovery tag: sees only servers with the same one (default: RIGCAL_DDS_TAG)")
+      ->type_name("NAME");
+  app.add_option("--timeout", options.timeout_s, "Seconds to wait for an answer (default 5)")
+      ->type_name("S")
+      ->check(CLI::Range(0.01, 86'400.0));
+  app.set_version_flag("--version", "rigcal " + std::string(Version()) + ", protocol " + std::to_string(kWireProtocol));
+}
+
+// What is said on the command line wins over the environment, which the DDS layer reads.
+void Apply(const GlobalOptions& options, Context& context) {
+  if (!options.domain.empty()) setenv("RIGCAL_DOMAIN", options.domain.c_str(), 1);
+  if (!options.tag.empty()) setenv("RIGCAL_DDS_TAG", options.tag.c_str(), 1);
+  context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
+}
+
+void AddVerbs(CLI::App& app, Context& context) {
+  for (const auto add : {AddPush, AddPushEdges, AddRobots, AddSessions, AddEdges, AddShow, AddLookup, AddStatus,
+                         AddWatch, AddReport, AddDue, AddDoctor})
+    add(app, context);
+  app.require_subcommand(1);
+}
+
+int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
+  try {
+    app.parse(argc, argv);
+    return static_cast<int>(context.exit_code);
+  } catch (const CLI::Success& request) {  // --help, --version
+    return app.exit(request, context.out, context.err);
+  } catch (const CLI::ParseError& error) {
+    context.err << "rigcal: " << error.what() << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
+    return static_cast<int>(ExitCode::kUsage);
+  }
+}
+
+}  // namespace
+
+int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal) {
+  Context context{out, err};
+  context.err_is_terminal = err_is_terminal;
+  try {
+    GlobalOptions options;
+    CLI::App app("Calibrates robots: pushes sessions to rigcald and asks for what came out.", "rigcal");
+    app.fallthrough();  // global options may stand after the verb
+    app.footer(kFooter);
+    AddGlobalOptions(app, options, context);
+    app.parse_complete_callback([&] { Apply(options, context); });
+    AddVerbs(app, context);
+    return Parse(app, argc, argv, context);
+  } catch (const std::exception& error) {
+    err << "rigcal: a fault of its own: " << error.what() << ". Please report it with the command line." << std::endl;
+    return static_cast<int>(ExitCode::kRefused);
+  }
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,79 @@
+#include "client/edge_table.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "client/pose_text.h"
+#include "client/table.h"
+
+namespace rigcal::client {
+namespace {
+
+// Length of three entries of a residual e, from `first` on.
+std::optional<double> NormOf(const Document& e, std::size_t first) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + 3; ++i) {
+    const auto value = e[i].Number();
+    if (!value) return std::nullopt;
+    sum += *value * *value;
+  }
+  return std::sqrt(sum);
+}
+
+void AddRow(const Document& edge, Table& table) {
+  const Document e = edge["residual"]["e"];
+  table.Add({edge["frame_a"].Text("?"), edge["frame_b"].Text("?"), edge["method"].Text("-"),
+             Triple(edge["T_a_b"]["p_m"], kMmPerM, 2), RpyText(edge["T_a_b"], 3), Triple(edge["sigma_m"], kMmPerM, 3),
+             Triple(edge["sigma_rad"], kDegPerRad, 4), Scaled(NormOf(e, 0), kMmPerM, 3),
+             Scaled(NormOf(e, 3), kDegPerRad, 4)});
+}
+
+std::string PartsText(const Document& error) {
+  std::array<char, 96> text{};
+  const auto number = [&](const char* key) { return error[key].Number().value_or(0.0); };
+  std::snprintf(text.data(), text.size(), "%.4g (%.4g m^2 + %.4g rad^2)", number("total"), number("translation_m2"),
+                number("rotation_rad2"));
+  return text.data();
+}
+
+}  // namespace
+
+void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
+  for (const Document& item : diagnoses.Items())
+    out << "  " << Plain(Sentence({ErrorCode::kInvalidInput, item["what"].Text(), item["cure"].Text()})) << '\n';
+}
+
+void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
+  Table table({{"A"}, {"B"}, {"METHOD"}, {"p mm", Align::kRight}, {"rpy deg", Align::kRight},
+               {"sigma mm", Align::kRight}, {"sigma deg", Align::kRight}, {"|e| mm", Align::kRight},
+               {"|e| deg", Align::kRight}});
+  for (const Document& edge : edges)
+    if (edge["state"].Text() != "failed") AddRow(edge, table);
+  if (!table.empty()) table.Print(out);
+  for (const Document& edge : edges) {
+    const bool failed = edge["state"].Text() == "failed";
+    if (failed || edge["diagnoses"].size() > 0)
+      out << Plain(edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?")) << (failed ? ": FAILED" : ":") << '\n';
+    PrintDiagnoses(edge["diagnoses"], out);
+  }
+}
+
+std::string EdgeLine(const Document& edge) {
+  std::string line = edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?") + "  " + edge["method"].Text("-") +
+                     "  " + edge["state"].Text("?");
+  if (edge["sigma_m"].size() == 3)
+    line += "  sigma " + Triple(edge["sigma_m"], kMmPerM, 3) + " mm, " + Triple(edge["sigma_rad"], kDegPerRad, 4) + " deg";
+  for (const Document& item : edge["diagnoses"].Items())
+    line += "  " + Sentence({ErrorCode::kInvalidInput, item["what"].Text(), item["cure"].Text()});
+  return Plain(line);
+}
+
+void PrintGlobalError(const Document& e_global, std::ostream& out) {
+  if (e_global.IsNull()) return;
+  out << "E_global  before " << PartsText(e_global["before"]) << "  after " << PartsText(e_global["after"]) << '\n';
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,20 @@
+// Edges for people: the table of good ones, then each failed one with its reason and cure.
+#pragma once
+
+#include <ostream>
+#include <vector>
+
+#include "client/document.h"
+
+namespace rigcal::client {
+
+// Rows as in docs/api.md, edges.
+void PrintEdges(const std::vector<Document>& edges, std::ostream& out);
+// One line: "left - right  stereo  good  sigma 0.08 0.06 0.21 mm, 0.010 0.012 0.004 deg".
+[[nodiscard]] std::string EdgeLine(const Document& edge);
+// "  why. What to do." per diagnosis.
+void PrintDiagnoses(const Document& diagnoses, std::ostream& out);
+// "E_global  before ... -> after ..." of a revision's document.
+void PrintGlobalError(const Document& e_global, std::ostream& out);
+
+}  // namespace rigcal::client

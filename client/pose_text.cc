@@ -1,0 +1,67 @@
+#include "client/pose_text.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "client/table.h"
+
+namespace rigcal::client {
+namespace {
+
+constexpr double kGimbalCos = 1e-9;
+
+std::optional<Eigen::Vector4d> QuaternionOf(const Document& list) {
+  Eigen::Vector4d q_xyzw;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const auto value = list[static_cast<std::size_t>(i)].Number();
+    if (!value) return std::nullopt;
+    q_xyzw[i] = *value;
+  }
+  if (q_xyzw.norm() == 0.0) return std::nullopt;
+  return q_xyzw;
+}
+
+}  // namespace
+
+Eigen::Vector3d RollPitchYaw(const Eigen::Matrix3d& R) {
+  const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), cos_pitch);
+  if (cos_pitch < kGimbalCos) return {0.0, pitch, std::atan2(-R(0, 1), R(1, 1))};
+  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
+}
+
+Eigen::Vector3d RollPitchYaw(const Eigen::Vector4d& q_xyzw) {
+  return RollPitchYaw(Eigen::Quaterniond(q_xyzw).normalized().toRotationMatrix());
+}
+
+std::string Triple(const Document& list, double scale, int digits) {
+  if (list.size() != 3) return "-";
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i) text += (i > 0 ? " " : "") + Scaled(list[i].Number(), scale, digits);
+  return text;
+}
+
+std::string RpyText(const Document& pose, int digits) {
+  const auto q_xyzw = QuaternionOf(pose["q_xyzw"]);
+  if (!q_xyzw) return "-";
+  const Eigen::Vector3d rpy_deg = RollPitchYaw(*q_xyzw) * kDegPerRad;
+  return Fixed(rpy_deg[0], digits) + " " + Fixed(rpy_deg[1], digits) + " " + Fixed(rpy_deg[2], digits);
+}
+
+void PrintMatrix(const Document& rows, const std::string& indent, std::ostream& out) {
+  for (const Document& row : rows.Items()) {
+    out << indent;
+    for (const Document& value : row.Items()) {
+      std::array<char, 32> text{};
+      std::snprintf(text.data(), text.size(), " %12.4e", value.Number().value_or(0.0));
+      out << text.data();
+    }
+    out << '\n';
+  }
+}
+
+}  // namespace rigcal::client

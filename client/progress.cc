@@ -1,0 +1,72 @@
+#include "client/progress.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/table.h"
+
+namespace rigcal::client {
+namespace {
+constexpr std::int64_t kRedraw_ns = 100'000'000;
+constexpr std::int64_t kLineEvery_ns = 5'000'000'000;
+constexpr int kBarWidth = 24;
+
+std::string Bar(double ratio) {
+  const int filled = static_cast<int>(std::lround(std::clamp(ratio, 0.0, 1.0) * kBarWidth));
+  return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+         std::string(static_cast<std::size_t>(kBarWidth - filled), '.') + "]";
+}
+}  // namespace
+
+Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns)
+    : err_(err), is_terminal_(is_terminal), label_(std::move(label)), start_ns_(now_ns),
+      drawn_ns_(is_terminal ? now_ns - kRedraw_ns : now_ns) {}
+
+std::string Progress::LineOf(const ProgressState& state, std::int64_t now_ns) const {
+  const double ratio =
+      state.total_bytes > 0 ? static_cast<double>(state.done_bytes) / static_cast<double>(state.total_bytes) : 0.0;
+  const double elapsed_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
+  const double rate = elapsed_s > 0.2 ? static_cast<double>(state.done_bytes - skipped_bytes_) / elapsed_s : 0.0;
+  std::string line = label_ + " ";
+  if (is_terminal_) line += Bar(ratio) + " ";
+  line += Fixed(100.0 * ratio, 0) + " %  " + ByteText(static_cast<double>(state.done_bytes)) + " of " +
+          ByteText(static_cast<double>(state.total_bytes));
+  if (!state.detail.empty()) line += "  " + state.detail;
+  if (rate <= 0.0) return line;
+  line += "  " + ByteText(rate) + "/s";
+  const double left_s = static_cast<double>(state.total_bytes - state.done_bytes) / rate;
+  if (state.done_bytes < state.total_bytes) line += "  " + DurationText(left_s) + " left";
+  return line;
+}
+
+void Progress::Show(const ProgressState& state, std::int64_t now_ns) {
+  if (now_ns - drawn_ns_ < (is_terminal_ ? kRedraw_ns : kLineEvery_ns)) return;
+  drawn_ns_ = now_ns;
+  if (is_terminal_) {
+    err_ << "\r\x1b[K" << LineOf(state, now_ns) << std::flush;
+    bar_is_shown_ = true;
+  } else {
+    err_ << LineOf(state, now_ns) << std::endl;
+  }
+}
+
+void Progress::Say(const std::string& line) {
+  Clear();
+  err_ << Plain(line) << std::endl;
+}
+
+void Progress::Clear() {
+  if (bar_is_shown_) err_ << "\r\x1b[K" << std::flush;
+  bar_is_shown_ = false;
+}
+
+std::string DurationText(double seconds) {
+  if (!std::isfinite(seconds) || seconds > 360'000.0) return "> 100 h";
+  const auto total_s = static_cast<std::int64_t>(std::ceil(std::max(seconds, 0.0)));
+  if (total_s < 60) return std::to_string(total_s) + " s";
+  const auto two = [](std::int64_t n) { return (n < 10 ? "0" : "") + std::to_string(n); };
+  if (total_s < 3600) return std::to_string(total_s / 60) + " min " + two(total_s % 60) + " s";
+  return std::to_string(total_s / 3600) + " h " + two(total_s / 60 % 60) + " min";
+}
+
+}  // namespace rigcal::client

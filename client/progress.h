@@ -1,0 +1,43 @@
+// Progress for people, on standard error: a bar that redraws itself on a terminal, else a line every few seconds.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <ostream>
+#include <string>
+
+namespace rigcal::client {
+
+struct ProgressState {
+  std::int64_t done_bytes = 0, total_bytes = 0;
+  std::string detail;          // "12/40 captures"
+};
+
+class Progress {
+ public:
+  // Times are nanoseconds of a steady clock.
+  Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns);
+  // Draws if something is due; cheap to call often.
+  void Show(const ProgressState& state, std::int64_t now_ns);
+  // Bytes that were there before the work began: they don't count towards the rate.
+  void Skip(std::int64_t bytes) { skipped_bytes_ = bytes; }
+  // A whole line of its own, above the bar.
+  void Say(const std::string& line);
+  // Removes the bar.
+  void Clear();
+
+ private:
+  [[nodiscard]] std::string LineOf(const ProgressState& state, std::int64_t now_ns) const;
+
+  std::ostream& err_;
+  bool is_terminal_;
+  std::string label_;
+  std::int64_t start_ns_, drawn_ns_;
+  std::int64_t skipped_bytes_ = 0;
+  bool bar_is_shown_ = false;
+};
+
+// Seconds as "1 h 02 min", "3 min 20 s", "12 s".
+[[nodiscard]] std::string DurationText(double seconds);
+
+}  // namespace rigcal::client

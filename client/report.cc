@@ -1,0 +1,82 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/table.h"
+#include "client/verbs.h"
+
+namespace rigcal::client {
+namespace {
+
+struct Options {
+  std::string robot;
+  int revision = 0;
+};
+
+struct Place {
+  std::int64_t revision = 0;
+  std::string address, file;
+};
+
+Result<std::int64_t> KnownRevision(Connection& connection, const Context& context, const Options& options) {
+  RIGCAL_ASSIGN(const Document revisions,
+                connection.AskDocument("revisions", JsonObject({{"robot", options.robot}}), context.timeout));
+  std::int64_t newest = 0;
+  for (const Document& row : revisions["revisions"].Items()) {
+    const std::int64_t number = row["revision"].Integer().value_or(0);
+    if (number == options.revision) return number;
+    newest = std::max(newest, number);
+  }
+  if (options.revision == 0 && newest > 0) return newest;
+  const std::string which = options.revision > 0 ? "revision " + std::to_string(options.revision) : "revision yet";
+  return Fail(ErrorCode::kNotFound, "robot '" + options.robot + "' has no " + which,
+              "`rigcal robots` shows each robot's newest one");
+}
+
+Result<Place> Find(const Context& context, const Options& options) {
+  RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
+  RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
+  Place place;
+  RIGCAL_ASSIGN(place.revision, KnownRevision(connection, context, options));
+  RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", "{}", context.timeout));
+  place.address = ReportAddress(status, options.robot, place.revision);
+  place.file = "reports/" + options.robot + "/" + std::to_string(place.revision) + "/index.html";
+  return place;
+}
+
+ExitCode Run(const Context& context, const Options& options) {
+  const auto place = Find(context, options);
+  if (!place) return Report(place.error(), context.err);
+  if (context.json) {
+    context.out << JsonObject({{"address", place->address},
+                               {"file_in_data_folder", place->file},
+                               {"revision", place->revision},
+                               {"robot", options.robot}})
+                << std::endl;
+    return ExitCode::kGood;
+  }
+  if (place->address.empty())
+    context.out << "The server has no HTTP address (`rigcald --http HOST:PORT` gives it one).\n";
+  else
+    context.out << "address  " << place->address << '\n';
+  context.out << "file     " << place->file << "  (in the server's data folder; opens from disk)\n";
+  return ExitCode::kGood;
+}
+
+}  // namespace
+
+void AddReport(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("report", "Tell where a robot's report is: its address and its file");
+  auto options = std::make_shared<Options>();
+  verb->add_option("ROBOT", options->robot, "The robot's id")->required();
+  verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb->footer(
+      "Examples:\n"
+      "  rigcal report mapper-01\n"
+      "  rigcal report mapper-01 --revision 3\n"
+      "  xdg-open \"$(rigcal report mapper-01 --json | jq -r .address)\"\n");
+  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+}
+
+}  // namespace rigcal::client

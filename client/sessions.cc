@@ -1,0 +1,42 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/table.h"
+#include "client/verbs.h"
+
+namespace rigcal::client {
+namespace {
+
+void Print(const Document& document, std::ostream& out) {
+  if (document["sessions"].size() == 0) out << "No session is known yet. Send one with `rigcal push DIR`.\n";
+  if (document["sessions"].size() == 0) return;
+  Table table({{"SESSION"}, {"ROBOT"}, {"STATE"}, {"CAPTURED"}, {"FILES", Align::kRight}, {"BYTES", Align::kRight},
+               {"JOBS", Align::kRight}, {"OPERATOR"}});
+  for (const Document& row : document["sessions"].Items()) {
+    const auto done = row["jobs_total"].Integer().value_or(0) - row["jobs_waiting"].Integer().value_or(0);
+    table.Add({row["session"].Text("?").substr(0, 16), row["robot"].Text("?"), row["state"].Text("?"),
+               row["captured_at"].Text("-"), CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
+               ByteText(row["bytes"].Number().value_or(0.0)),
+               std::to_string(done) + "/" + CountOf(row["jobs_total"]), row["operator"].Text()});
+  }
+  table.Print(out);
+}
+
+}  // namespace
+
+void AddSessions(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("sessions", "List the capture sessions of all robots, or of one");
+  auto robot = std::make_shared<std::string>();
+  verb->add_option("ROBOT", *robot, "Only this robot's");
+  verb->footer(
+      "FILES: on the server's disk / in all. JOBS: sensor pairs done / in all. --json has the whole session ids.\n"
+      "Examples:\n"
+      "  rigcal sessions\n"
+      "  rigcal sessions mapper-01\n");
+  verb->callback([&context, robot] {
+    const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
+    context.exit_code = Answer(context, {"sessions", parameters, Print, {}});
+  });
+}
+
+}  // namespace rigcal::client

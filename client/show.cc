@@ -1,0 +1,68 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/edge_table.h"
+#include "client/pose_text.h"
+#include "client/table.h"
+#include "client/verbs.h"
+
+namespace rigcal::client {
+namespace {
+
+void PrintPoses(const Document& revision, std::ostream& out) {
+  out << "\nPoses in " << Plain(revision["reference"].Text("?")) << '\n';
+  Table table({{"SENSOR"}, {"p mm", Align::kRight}, {"rpy deg", Align::kRight}, {"sigma mm", Align::kRight},
+               {"sigma deg", Align::kRight}});
+  for (const Document& sensor : revision["sensors"].Items()) {
+    const Document pose = sensor["T_ref_sensor"];
+    const bool known = sensor["known"].Flag();
+    table.Add({sensor["id"].Text("?"), known ? Triple(pose["p_m"], kMmPerM, 2) : "unknown",
+               known ? RpyText(pose, 3) : "", known ? Triple(sensor["sigma_m"], kMmPerM, 3) : "",
+               known ? Triple(sensor["sigma_rad"], kDegPerRad, 4) : ""});
+  }
+  table.Print(out);
+}
+
+void Print(const Document& document, std::ostream& out) {
+  const Document revision = document["document"];
+  out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", "
+      << AgeOf(document["age_ns"]) << " old\n";
+  PrintVerdict(revision["verdict"], out);
+  PrintGlobalError(revision["e_global"], out);
+  PrintDiagnoses(revision["diagnoses"], out);
+  PrintPoses(revision, out);
+  out << "\nEdges\n";
+  PrintEdges(revision["edges"].Items(), out);
+}
+
+struct Options {
+  std::string robot;
+  int revision = 0;
+};
+
+ExitCode Run(const Context& context, const Options& options) {
+  std::vector<Field> parameters = {{"robot", options.robot}};
+  if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
+  return Answer(context, {"show", JsonObject(parameters), Print,
+                          [](const Document& document) { return Judge(document["document"]["verdict"]); }});
+}
+
+}  // namespace
+
+void AddShow(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, poses with sigma, edges");
+  auto options = std::make_shared<Options>();
+  verb->add_option("ROBOT", options->robot, "The robot's id")->required();
+  verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb->footer(
+      "Exit code 1 if the verdict is fail.\n"
+      "Examples:\n"
+      "  rigcal show mapper-01\n"
+      "  rigcal show mapper-01 --revision 3\n"
+      "  rigcal show mapper-01 --json > mapper-01.json\n");
+  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,46 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/table.h"
+#include "client/verbs.h"
+
+namespace rigcal::client {
+namespace {
+
+void PrintServer(const Document& document, std::ostream& out) {
+  out << "rigcald " << Plain(document["version"].Text("?")) << ", up " << AgeOf(document["uptime_ns"]) << ", "
+      << CountOf(document["jobs_waiting"]) << " jobs waiting";
+  const std::string address = Plain(document["http_address"].Text());
+  if (!address.empty()) out << ", reports at " << address << "/";
+  out << '\n';
+}
+
+void Print(const Document& document, std::ostream& out) {
+  PrintServer(document, out);
+  if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
+  if (document["robots"].size() == 0) return;
+  Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
+  for (const Document& row : document["robots"].Items())
+    table.Add({row["robot"].Text("?"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
+               VerdictText(row["verdict"])});
+  table.Print(out);
+}
+
+}  // namespace
+
+void AddStatus(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("status", "Show what the server is doing, and each robot's verdict in words");
+  auto robot = std::make_shared<std::string>();
+  verb->add_option("ROBOT", *robot, "Only this robot");
+  verb->footer(
+      "Examples:\n"
+      "  rigcal status\n"
+      "  rigcal status mapper-01\n"
+      "  rigcal status --timeout 1 && echo a server is there\n");
+  verb->callback([&context, robot] {
+    const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
+    context.exit_code = Answer(context, {"status", parameters, Print, {}});
+  });
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,50 @@
+// What every verb shares: the options that all have, and the way from a question to text or JSON.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <ostream>
+#include <string>
+
+#include "client/connection.h"
+#include "client/document.h"
+#include "client/exit_code.h"
+
+namespace rigcal::client {
+
+struct Context {
+  std::ostream& out;
+  std::ostream& err;
+  bool err_is_terminal = false;
+  bool json = false;
+  std::chrono::milliseconds timeout{5000};
+  wire::ParticipantOptions dds;
+  ExitCode exit_code = ExitCode::kGood;  // set by the verb that ran
+};
+
+// A verb that asks one question and prints the answer.
+struct Question {
+  std::string verb;
+  std::string parameters = "{}";
+  std::function<void(const Document&, std::ostream&)> print;   // for people
+  std::function<ExitCode(const Document&)> judge;              // empty: good
+};
+ExitCode Answer(const Context& context, const Question& question);
+// Asks; the error is left to the caller.
+[[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb, const std::string& parameters);
+
+// kVerdictFail if `verdict` (a verdict of docs/api.md) is "fail".
+[[nodiscard]] ExitCode Judge(const Document& verdict);
+// "pass" or "fail: why. What to do."
+void PrintVerdict(const Document& verdict, std::ostream& out);
+[[nodiscard]] std::string VerdictText(const Document& verdict);
+// "3 d 4 h", or "-".
+[[nodiscard]] std::string AgeOf(const Document& age_ns);
+// Text of a number, or "-".
+[[nodiscard]] std::string CountOf(const Document& number);
+// "<address>/robots/<robot>/revisions/<n>/", or empty where the server has no HTTP. `status`: its document.
+[[nodiscard]] std::string ReportAddress(const Document& status, const std::string& robot, std::int64_t revision);
+// The row of a robot in a document with "robots".
+[[nodiscard]] Document RobotRow(const Document& document, const std::string& robot);
+
+}  // namespace rigcal::client

@@ -1,0 +1,25 @@
+// The verbs of `rigcal`, one file each: Add...() declares its options, its help and what runs.
+#pragma once
+
+#include "client/verb.h"
+
+namespace CLI {
+class App;
+}
+
+namespace rigcal::client {
+
+void AddPush(CLI::App& app, Context& context);
+void AddPushEdges(CLI::App& app, Context& context);
+void AddRobots(CLI::App& app, Context& context);
+void AddSessions(CLI::App& app, Context& context);
+void AddEdges(CLI::App& app, Context& context);
+void AddShow(CLI::App& app, Context& context);
+void AddLookup(CLI::App& app, Context& context);
+void AddStatus(CLI::App& app, Context& context);
+void AddWatch(CLI::App& app, Context& context);
+void AddReport(CLI::App& app, Context& context);
+void AddDue(CLI::App& app, Context& context);
+void AddDoctor(CLI::App& app, Context& context);
+
+}  // namespace rigcal::client

@@ -1,0 +1,111 @@
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <memory>
+
+#include "client/edge_table.h"
+#include "client/table.h"
+#include "client/verbs.h"
+#include "server/base/stamp.h"
+
+namespace rigcal::client {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick(200);  // how long Ctrl-C may go unnoticed
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
+void OnInterrupt(int) { interrupted = true; }
+
+struct Options {
+  std::string robot;
+  int count = 0;
+  double duration_s = 0.0;
+};
+
+std::string TextOf(const std::string& kind, const Document& data) {
+  if (kind == "edge") {
+    const Document edge = data["edge"].IsNull() ? data : data["edge"];
+    return EdgeLine(edge) + (data["jobs_total"].IsNull() ? "" : "  (" + CountOf(data["jobs_waiting"]) + " of " +
+                                                                    CountOf(data["jobs_total"]) + " jobs waiting)");
+  }
+  if (kind == "session_closed") return "session " + data["session"].Text("?").substr(0, 16) + ", " +
+                                       CountOf(data["jobs_total"]) + " sensor pairs to calibrate";
+  if (kind == "graph_update") return CountOf(data["sensors_known"]) + " of " + CountOf(data["sensors"]) +
+                                     " sensors known, " + CountOf(data["edges"]) + " edges (provisional)";
+  if (kind == "revision") return "revision " + CountOf(data["revision"]) + ", " + VerdictText(data["verdict"]);
+  if (kind == "published") return "report of revision " + CountOf(data["revision"]) + " at " + data["path"].Text("?");
+  return data.Dump();
+}
+
+void Print(const Context& context, const rigcal_wire_Event& event) {
+  const auto data = Document::Parse(event.json ? event.json : "{}", "the event");
+  const std::string robot = event.robot_id, kind = event.kind;
+  if (context.json) {
+    std::string line = JsonObject({{"kind", kind}, {"robot", robot}, {"sequence_number", std::to_string(event.sequence_number)},
+                                   {"stamp", ToIso({event.stamp_ns})}, {"subject_id", event.subject_id}});
+    line.pop_back();
+    context.out << line << ",\"data\":" << (data ? data->Dump() : "null") << "}" << std::endl;
+    return;
+  }
+  const std::string text = data ? TextOf(kind, *data) : "(not readable)";
+  context.out << ToIso({event.stamp_ns}) << "  " << Plain(robot) << "  " << Plain(kind) << "  " << Plain(text)
+              << std::endl;
+}
+
+Status WatchLoop(const Context& context, const Options& options) {
+  RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
+  const std::string partition = options.robot.empty() ? wire::kAllRobotsPartition : "robot/" + options.robot;
+  RIGCAL_ASSIGN(auto events, wire::Reader<rigcal_wire_Event>::Open(participant, {partition}));
+  RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
+  RIGCAL_TRY(waitset.Attach(events.get()));
+  const auto start = SteadyClock::now();
+  const auto is_over = [&] {
+    return options.duration_s > 0.0 && SteadyClock::now() - start >= std::chrono::duration<double>(options.duration_s);
+  };
+  int seen = 0;
+  const auto is_enough = [&] { return options.count > 0 && seen >= options.count; };
+  while (!interrupted && !is_over() && !is_enough()) {
+    RIGCAL_TRY(waitset.Wait(kTick));
+    RIGCAL_TRY(events.Take(256, [&](const rigcal_wire_Event& event, const wire::SampleOrigin&) {
+      if (is_enough()) return;
+      Print(context, event);
+      ++seen;
+    }));
+  }
+  return {};
+}
+
+ExitCode Run(const Context& context, const Options& options) {
+  struct sigaction action {};
+  action.sa_handler = OnInterrupt;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  if (!options.robot.empty())
+    if (const auto robot = RobotId::Parse(options.robot); !robot) return Report(robot.error(), context.err);
+  const Status done = WatchLoop(context, options);
+  return done ? ExitCode::kGood : Report(done.error(), context.err);
+}
+
+}  // namespace
+
+void AddWatch(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("watch", "Print what happens as it happens, until Ctrl-C");
+  auto options = std::make_shared<Options>();
+  verb->add_option("ROBOT", options->robot, "Only this robot");
+  verb->add_option("--count", options->count, "End after so many events")->check(CLI::PositiveNumber)->type_name("N");
+  verb->add_option("--for", options->duration_s, "End after so many seconds")->check(CLI::PositiveNumber)->type_name("S");
+  verb->footer(
+      "With --json: one JSON object a line.\n"
+      "Examples:\n"
+      "  rigcal watch\n"
+      "  rigcal watch mapper-01 --count 10\n"
+      "  rigcal watch mapper-01 --for 60 --json\n");
+  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,56 @@
+"""Pose graphs of others, pushed as edges of one robot each over DDS, in file order and shuffled: our optimum by g2o's own
+cost, and the revision's bytes in every order."""
+import json
+import pathlib
+
+from .g2o_cost import g2o_cost
+from .measure import at_most, equal, info, skip
+from .server import Server
+
+# name: (optimum of g2o's cost, allowed relative excess) as data/README.md has them.
+FILES = {
+    "tinyGrid3D": (6.727882, 1e-4),
+    "smallGrid3D": (458.15378, 2e-4),
+    "parking-garage": (1.238691, 1e-6),
+    "sphere2500": (727.149667, 1e-6),
+}
+# Optima of the SE(3)-Log cost, and how many digits they are known to.
+LOG_COST = {"tinyGrid3D": 6.778920, "smallGrid3D": 464.145115, "sphere2500": 727.285111}
+SYNTHETIC = {"k4_4_6": 19.098197, "rig_12_59": 308.578341, "rand_100_600": 3129.009235}
+
+
+def pushed(server, path, robot, *extra):
+    done = server.rigcal("push-edges", path, "--robot", robot, "--json", *extra)
+    if done.returncode not in (0, 1):
+        raise RuntimeError("push-edges %s: exit %d: %s" % (path.name, done.returncode, done.stderr[-300:]))
+    return json.loads(server.rigcal("show", robot, "--json").stdout)
+
+
+def revisions_of(context, folder, path, name, orders):
+    """The newest revision after pushing into an empty store, once per order."""
+    for idx, extra in enumerate(orders):
+        with Server(context, folder / ("%s-%d" % (name, idx))) as server:
+            yield pushed(server, path, name, *extra)
+
+
+def run(context):
+    base = context.data / "posegraph_sesync"
+    synthetic = context.data / "posegraph_synthetic"
+    if not base.is_dir():
+        yield skip("posegraph_sesync", "no data")
+        return
+    orders = [[], ["--shuffle", "1"], ["--shuffle", "2"]]
+    with context.folder() as temporary:
+        folder = pathlib.Path(temporary)
+        for name, (optimum, excess) in FILES.items():
+            path = base / (name + ".g2o")
+            shown = list(revisions_of(context, folder, path, name, orders))
+            cost = g2o_cost(path, shown[0]["document"])
+            yield at_most(name + "_g2o_excess", cost / optimum - 1.0, excess)
+            if name in LOG_COST:
+                yield at_most(name + "_log_cost_error", abs(shown[0]["document"]["cost"] / LOG_COST[name] - 1.0), 1e-6)
+            yield equal(name + "_revisions_that_differ", len({one["digest"] for one in shown}) - 1, 0)
+        for name, optimum in SYNTHETIC.items():
+            result = context.run_json("graph_bench", "--g2o", synthetic / (name + ".g2o"))
+            yield at_most(name + "_log_cost_error", abs(result["cost"] / optimum - 1.0), 1e-6)
+            yield info(name + "_batch_median", result["median_us"], "us")

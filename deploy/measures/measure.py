@@ -1,0 +1,67 @@
+"""What a measure is, and where the binaries and the data are."""
+import json
+import pathlib
+import subprocess
+import tempfile
+
+
+class Measure:
+    def __init__(self, name, value, limit, state):
+        self.name, self.value, self.limit, self.state = name, value, limit, state
+
+    def row(self):
+        return {"name": self.name, "value": self.value, "limit": self.limit, "state": self.state}
+
+
+def shown(value):
+    return "%.6g" % value if isinstance(value, float) else str(value)
+
+
+def at_most(name, value, limit, unit=""):
+    return Measure(name, shown(value) + unit, "<=" + shown(limit) + unit, "ok" if value <= limit else "SHORT")
+
+
+def at_least(name, value, limit, unit=""):
+    return Measure(name, shown(value) + unit, ">=" + shown(limit) + unit, "ok" if value >= limit else "SHORT")
+
+
+def within(name, value, centre, half_width, unit=""):
+    limit = "%s+-%s%s" % (shown(centre), shown(half_width), unit)
+    return Measure(name, shown(value) + unit, limit, "ok" if abs(value - centre) <= half_width else "SHORT")
+
+
+def equal(name, value, wanted):
+    return Measure(name, shown(value), "==" + shown(wanted), "ok" if value == wanted else "SHORT")
+
+
+def info(name, value, unit=""):
+    """A figure that is asked for without a limit."""
+    return Measure(name, shown(value) + unit, "-", "ok")
+
+
+def skip(name, why):
+    return Measure(name, why.replace(" ", "_"), "-", "skip")
+
+
+class Context:
+    def __init__(self, full):
+        self.full = full
+        self.root = pathlib.Path(__file__).resolve().parent.parent.parent
+        self.bin = self.root / "build" / "release" / "bin"
+        self.data = self.root.parent / "shared" / "data"
+
+    def built(self):
+        return all((self.bin / name).exists() for name in ("rigcald", "rigcal", "graph_bench", "stereo_measure"))
+
+    def run_json(self, program, *arguments, timeout=600):
+        """Runs a binary of ours and reads the JSON that it prints."""
+        done = subprocess.run([str(self.bin / program), *map(str, arguments)], capture_output=True, text=True, timeout=timeout)
+        if done.returncode not in (0, 1):
+            raise RuntimeError("%s %s: exit %d: %s" % (program, " ".join(map(str, arguments)), done.returncode, done.stderr.strip()[-300:]))
+        return json.loads(done.stdout)
+
+    def folder(self):
+        """A temporary folder on the disk of the build, so that fsync is real."""
+        place = self.root / "build" / "measure"
+        place.mkdir(parents=True, exist_ok=True)
+        return tempfile.TemporaryDirectory(dir=place)

@@ -1,0 +1,63 @@
+"""A real rigcald in a process of its own, apart from every other by its discovery tag."""
+import os
+import pathlib
+import signal
+import subprocess
+import uuid
+
+
+class Server:
+    def __init__(self, context, data, tag=None):
+        self.context, self.data = context, pathlib.Path(data)
+        self.tag = tag or "measure-" + uuid.uuid4().hex[:12]
+        self.process = None
+
+    def environment(self):
+        return {**os.environ, "RIGCAL_DDS_TAG": self.tag}
+
+    def start(self):
+        self.log = open(str(self.data) + ".log", "a")
+        self.process = subprocess.Popen([str(self.context.bin / "rigcald"), "--data", str(self.data), "--http", "127.0.0.1:0"],
+                                        stdout=subprocess.PIPE, stderr=self.log, text=True, env=self.environment())
+        return self
+
+    def wait_ready(self):
+        line = self.process.stdout.readline()
+        if "ready" not in line:
+            raise RuntimeError("rigcald did not start: see %s.log" % self.data)
+        return self
+
+    def kill(self):
+        if self.process and self.process.poll() is None:
+            self.process.send_signal(signal.SIGKILL)
+        self.close()
+
+    def stop(self):
+        if self.process and self.process.poll() is None:
+            self.process.terminate()
+        self.close()
+
+    def close(self):
+        if self.process:
+            self.process.wait(timeout=30)
+            self.process.stdout.close()
+            self.log.close()
+            self.process = None
+
+    def peak_rss_mib(self):
+        for line in open("/proc/%d/status" % self.process.pid):
+            if line.startswith("VmHWM"):
+                return int(line.split()[1]) / 1024
+        raise RuntimeError("no VmHWM")
+
+    def client(self, *arguments):
+        return [str(self.context.bin / "rigcal"), *map(str, arguments)]
+
+    def rigcal(self, *arguments, timeout=300):
+        return subprocess.run(self.client(*arguments), capture_output=True, text=True, env=self.environment(), timeout=timeout)
+
+    def __enter__(self):
+        return self.start().wait_ready()
+
+    def __exit__(self, *_):
+        self.stop()

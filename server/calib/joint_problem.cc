@@ -1,0 +1,148 @@
+#include "server/calib/joint_problem.h"
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <limits>
+
+#include "server/calib/costs/reference_view.h"
+#include "server/calib/costs/second_view.h"
+#include "server/calib/pose_block.h"
+#include "server/calib/se3_manifold.h"
+
+namespace rigcal::calib {
+namespace {
+
+// All parameters in one array, boards last: Ceres orders the blocks of a group by address, so the order, and with it every
+// bit of the result, is that of the captures.
+class Parameters {
+ public:
+  explicit Parameters(const JointState& state) : values_(2 * kIntrinsicsCount + kPoseSize * (1 + state.T_a_board.size())) {
+    Eigen::Map<IntrinsicsVector>(a()) = state.intrinsics_a;
+    Eigen::Map<IntrinsicsVector>(b()) = state.intrinsics_b;
+    Eigen::Map<PoseBlock>(pair()) = BlockOf(state.T_a_b);
+    for (std::size_t k = 0; k < state.T_a_board.size(); ++k) Eigen::Map<PoseBlock>(board(k)) = BlockOf(state.T_a_board[k]);
+  }
+  double* a() { return values_.data(); }
+  double* b() { return a() + kIntrinsicsCount; }
+  double* pair() { return b() + kIntrinsicsCount; }
+  double* board(std::size_t k) { return pair() + kPoseSize * (1 + k); }
+
+  JointState State(std::size_t boards) {
+    JointState state;
+    state.intrinsics_a = Eigen::Map<IntrinsicsVector>(a());
+    state.intrinsics_b = Eigen::Map<IntrinsicsVector>(b());
+    state.T_a_b = PoseOf(pair()).Normalized();
+    for (std::size_t k = 0; k < boards; ++k) state.T_a_board.push_back(PoseOf(board(k)).Normalized());
+    return state;
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+void AddViews(const JointProblem& problem, std::size_t k, Parameters& parameters, ceres::Problem& ceres_problem) {
+  const JointCapture& capture = problem.captures[k];
+  if (!capture.a_px.empty())
+    ceres_problem.AddResidualBlock(MakeReferenceViewCost(problem.corners_board, capture.a_px).release(), nullptr,
+                                   parameters.a(), parameters.board(k));
+  if (!capture.b_px.empty())
+    ceres_problem.AddResidualBlock(MakeSecondViewCost(problem.corners_board, capture.b_px).release(), nullptr,
+                                   parameters.b(), parameters.pair(), parameters.board(k));
+  ceres_problem.SetManifold(parameters.board(k), MakeSe3Manifold().release());
+}
+
+void Hold(ceres::Problem& ceres_problem, double* block) {
+  if (ceres_problem.HasParameterBlock(block)) ceres_problem.SetParameterBlockConstant(block);
+}
+
+ceres::Solver::Options Options() {
+  ceres::Solver::Options options;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = 200;
+  // Far below the noise: what remains of the start must not show in the jackknife's small differences.
+  options.function_tolerance = 1e-15;
+  options.parameter_tolerance = 1e-13;
+  options.gradient_tolerance = 1e-12;
+  // Starts are near the minimum: begin with almost full Gauss-Newton steps.
+  options.initial_trust_region_radius = 1e6;
+  return options;
+}
+
+void EliminateBoardsFirst(ceres::Problem& ceres_problem, Parameters& parameters, std::size_t boards,
+                          ceres::Solver::Options& options) {
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  for (std::size_t k = 0; k < boards; ++k) ordering->AddElementToGroup(parameters.board(k), 0);
+  for (double* block : {parameters.a(), parameters.b(), parameters.pair()})
+    if (ceres_problem.HasParameterBlock(block)) ordering->AddElementToGroup(block, 1);
+  options.linear_solver_ordering = ordering;
+}
+
+double SumOfSquares(const ceres::CostFunction& cost, const std::vector<const double*>& blocks) {
+  Eigen::VectorXd residuals(cost.num_residuals());
+  if (!cost.Evaluate(blocks.data(), residuals.data(), nullptr)) return std::numeric_limits<double>::infinity();
+  return residuals.squaredNorm();
+}
+
+}  // namespace
+
+Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& start) {
+  const std::size_t boards = problem.captures.size();
+  Parameters parameters(start);
+  ceres::Problem ceres_problem;
+  for (std::size_t k = 0; k < boards; ++k) AddViews(problem, k, parameters, ceres_problem);
+  if (ceres_problem.HasParameterBlock(parameters.pair()))
+    ceres_problem.SetManifold(parameters.pair(), MakeSe3Manifold().release());
+  if (!problem.estimate_a) Hold(ceres_problem, parameters.a());
+  if (!problem.estimate_b) Hold(ceres_problem, parameters.b());
+
+  ceres::Solver::Options options = Options();
+  EliminateBoardsFirst(ceres_problem, parameters, boards, options);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres_problem, &summary);
+  if (summary.termination_type != ceres::CONVERGENCE)
+    return Fail(ErrorCode::kInvalidInput, "the joint refinement of both cameras did not converge",
+                "Check that the pictures of both cameras belong together and take more captures.");
+  return JointSolution{parameters.State(boards), static_cast<int>(summary.iterations.size())};
+}
+
+Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::size_t capture_idx, const Se3& T_a_board) {
+  const JointProblem one{problem.corners_board, {problem.captures[capture_idx]}, false, false};
+  Parameters parameters({state.intrinsics_a, state.intrinsics_b, state.T_a_b, {T_a_board}});
+  ceres::Problem ceres_problem;
+  AddViews(one, 0, parameters, ceres_problem);
+  for (double* block : {parameters.a(), parameters.b(), parameters.pair()}) Hold(ceres_problem, block);
+  ceres::Solver::Options options = Options();
+  options.linear_solver_type = ceres::DENSE_QR;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres_problem, &summary);
+  return PoseOf(parameters.board(0)).Normalized();
+}
+
+CaptureError ErrorOf(const JointProblem& problem, const JointState& state, std::size_t capture_idx) {
+  const JointCapture& capture = problem.captures[capture_idx];
+  const PoseBlock T_a_b = BlockOf(state.T_a_b), T_a_board = BlockOf(state.T_a_board[capture_idx]);
+  CaptureError error;
+  if (!capture.a_px.empty())
+    error.a_px2 = SumOfSquares(*MakeReferenceViewCost(problem.corners_board, capture.a_px),
+                               {state.intrinsics_a.data(), T_a_board.data()});
+  if (!capture.b_px.empty())
+    error.b_px2 = SumOfSquares(*MakeSecondViewCost(problem.corners_board, capture.b_px),
+                               {state.intrinsics_b.data(), T_a_b.data(), T_a_board.data()});
+  return error;
+}
+
+int ResidualCount(const JointProblem& problem) {
+  std::size_t corners = 0;
+  for (const JointCapture& capture : problem.captures) corners += capture.a_px.size() + capture.b_px.size();
+  return static_cast<int>(2 * corners);
+}
+
+int ParameterCount(const JointProblem& problem) {
+  const int intrinsics = kIntrinsicsCount * (static_cast<int>(problem.estimate_a) + static_cast<int>(problem.estimate_b));
+  return 6 + intrinsics + 6 * static_cast<int>(problem.captures.size());
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,17 @@
+// Searches the inner corners of a checkerboard.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "server/detect/grey_image.h"
+
+namespace rigcal::detect {
+
+// Row-major, sub-pixel, in an order that still needs Oriented(). Empty: no board of these counts was found.
+// Throws what OpenCV throws.
+[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int inner_cols,
+                                                                      int inner_rows);
+
+}  // namespace rigcal::detect

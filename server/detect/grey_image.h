@@ -1,0 +1,27 @@
+// A decoded picture: 8-bit grey, rows without gaps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace rigcal::detect {
+
+struct GreyImage {
+  int width_px = 0, height_px = 0;
+  std::vector<std::uint8_t> pixels;  // row-major, width_px * height_px
+
+  [[nodiscard]] std::uint8_t At(int x, int y) const {
+    return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x)];
+  }
+};
+
+// The pixel grid as stored: an orientation tag is ignored, because intrinsics belong to the sensor's grid. 16 bit is
+// stretched between its 0.1 % and 99.9 % quantiles. Fails in words; throws nothing.
+[[nodiscard]] Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded);
+
+}  // namespace rigcal::detect

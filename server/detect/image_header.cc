@@ -1,0 +1,90 @@
+#include "server/detect/image_header.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "server/base/limits.h"
+
+namespace rigcal::detect {
+namespace {
+
+constexpr std::array<std::uint8_t, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::array<std::uint8_t, 4> kIhdr = {'I', 'H', 'D', 'R'};
+
+using Bytes = std::span<const std::byte>;
+
+std::uint8_t At(Bytes bytes, std::size_t offset) { return std::to_integer<std::uint8_t>(bytes[offset]); }
+
+std::int64_t BigEndian(Bytes bytes, std::size_t offset, std::size_t count) {
+  std::int64_t value = 0;
+  for (std::size_t i = 0; i < count; ++i) value = value * 256 + At(bytes, offset + i);
+  return value;
+}
+
+template <std::size_t N>
+bool HasAt(Bytes bytes, std::size_t offset, const std::array<std::uint8_t, N>& wanted) {
+  if (bytes.size() < offset + N) return false;
+  for (std::size_t i = 0; i < N; ++i)
+    if (At(bytes, offset + i) != wanted[i]) return false;
+  return true;
+}
+
+tl::unexpected<Error> CutOff() {
+  return Fail(ErrorCode::kInvalidInput, "the picture's header is cut off", "save or copy the picture again");
+}
+
+Result<ImageSize> ReadPng(Bytes bytes) {
+  if (bytes.size() < 24 || !HasAt(bytes, 12, kIhdr)) return CutOff();
+  return ImageSize{BigEndian(bytes, 16, 4), BigEndian(bytes, 20, 4)};
+}
+
+// SOF0..SOF15 without DHT (C4), JPG (C8) and DAC (CC), which share the range.
+bool IsStartOfFrame(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+// Markers without a length: TEM and the restart markers.
+bool IsBare(std::uint8_t marker) { return marker == 0x01 || (marker >= 0xD0 && marker <= 0xD7); }
+
+Result<ImageSize> ReadJpeg(Bytes bytes) {
+  std::size_t offset = 2;
+  while (offset + 4 <= bytes.size() && At(bytes, offset) == 0xFF) {
+    const std::uint8_t marker = At(bytes, offset + 1);
+    if (marker == 0xFF) {  // fill byte
+      ++offset;
+    } else if (IsBare(marker)) {
+      offset += 2;
+    } else if (IsStartOfFrame(marker)) {
+      if (bytes.size() < offset + 9) return CutOff();
+      return ImageSize{BigEndian(bytes, offset + 7, 2), BigEndian(bytes, offset + 5, 2)};
+    } else {
+      offset += 2 + static_cast<std::size_t>(std::max<std::int64_t>(2, BigEndian(bytes, offset + 2, 2)));
+    }
+  }
+  return CutOff();
+}
+
+Result<ImageSize> ReadUnchecked(Bytes bytes) {
+  if (HasAt(bytes, 0, kPngSignature)) return ReadPng(bytes);
+  if (HasAt(bytes, 0, std::array<std::uint8_t, 3>{0xFF, 0xD8, 0xFF})) return ReadJpeg(bytes);
+  return Fail(ErrorCode::kInvalidInput, "the picture is neither PNG nor JPEG", "export it as PNG or JPEG");
+}
+
+}  // namespace
+
+Result<ImageSize> ReadImageSize(Bytes encoded) {
+  RIGCAL_ASSIGN(const ImageSize size, ReadUnchecked(encoded));
+  const std::string text = std::to_string(size.width_px) + " x " + std::to_string(size.height_px) + " pixels";
+  if (size.width_px == 0 || size.height_px == 0)
+    return Fail(ErrorCode::kInvalidInput, "the picture claims " + text, "save or copy the picture again");
+  // Both factors are below 2^32, so the division decides without overflow.
+  if (size.width_px > limits::kImagePixelsMax / size.height_px)
+    return Fail(ErrorCode::kInvalidInput,
+                "the picture claims " + text + ", more than the limit of " +
+                    std::to_string(limits::kImagePixelsMax) + " pixels",
+                "use smaller pictures");
+  return size;
+}
+
+}  // namespace rigcal::detect

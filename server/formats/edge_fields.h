@@ -1,0 +1,29 @@
+// An edge's members, in the groups of which the documents of edges are made.
+#pragma once
+
+#include <vector>
+
+#include "server/formats/json_field.h"
+#include "server/formats/json_writer.h"
+#include "server/model/edge.h"
+#include "server/model/graph.h"
+
+namespace rigcal::formats {
+
+// Of a row: ids, frames, state, pose, sigmas, figures, diagnoses.
+void WriteEdgeSummary(JsonWriter& out, const Edge& edge);
+// The rest, without block vectors: robot, information, covariance, contributions, captures, evidence.
+void WriteEdgeDetail(JsonWriter& out, const Edge& edge);
+void WriteBlocks(JsonWriter& out, const std::vector<BlockVector>& blocks);
+// {"e", "in_solution", "weighted"}, or null.
+void WriteResidual(JsonWriter& out, const EdgeResidual* residual);
+// Of `residuals`, sorted by edge id; null if the edge has none.
+[[nodiscard]] const EdgeResidual* ResidualOf(const std::vector<EdgeResidual>& residuals, const EdgeId& edge);
+
+// Both groups; not validated.
+[[nodiscard]] Edge ReadEdgeFields(const JsonField& field);
+[[nodiscard]] std::vector<BlockVector> ReadBlocks(const JsonField& field);
+[[nodiscard]] std::vector<Contribution> ReadContributions(const JsonField& field);
+[[nodiscard]] UncertaintySource ReadSource(const JsonField& field);
+
+}  // namespace rigcal::formats

@@ -1,0 +1,60 @@
+// Builds one JSON document and writes it canonically (docs/api.md, rules): keys sorted, compact, shortest numbers.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace rigcal::formats {
+
+// Calls with a key are for objects, calls without for lists and for the root. Numbers that are not finite become null;
+// text that is not UTF-8 gets U+FFFD in its place.
+class JsonWriter {
+ public:
+  JsonWriter();
+  ~JsonWriter();
+  JsonWriter(const JsonWriter&) = delete;
+  JsonWriter& operator=(const JsonWriter&) = delete;
+
+  template <typename Body>
+  void Object(const Body& body) { BeginObject(); body(); End(); }
+  template <typename Body>
+  void Object(std::string_view key, const Body& body) { Key(key); Object(body); }
+  template <typename Body>
+  void List(const Body& body) { BeginList(); body(); End(); }
+  template <typename Body>
+  void List(std::string_view key, const Body& body) { Key(key); List(body); }
+
+  void Number(double value);
+  void Number(std::string_view key, double value) { Key(key); Number(value); }
+  void Integer(std::int64_t value);
+  void Integer(std::string_view key, std::int64_t value) { Key(key); Integer(value); }
+  void Text(std::string_view value);
+  void Text(std::string_view key, std::string_view value) { Key(key); Text(value); }
+  void Flag(bool value);
+  void Flag(std::string_view key, bool value) { Key(key); Flag(value); }
+  void Null();
+  void Null(std::string_view key) { Key(key); Null(); }
+
+  [[nodiscard]] std::string Finish() const;
+
+ private:
+  void Key(std::string_view key);
+  void BeginObject();
+  void BeginList();
+  void End();
+
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The document of an object: Body fills it.
+template <typename Body>
+[[nodiscard]] std::string WriteObject(const Body& body) {
+  JsonWriter writer;
+  writer.Object([&] { body(writer); });
+  return writer.Finish();
+}
+
+}  // namespace rigcal::formats

@@ -1,0 +1,199 @@
+#include <algorithm>
+
+#include "server/base/limits.h"
+#include "server/formats/documents.h"
+#include "server/formats/json_values.h"
+#include "server/formats/payload_path.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kSensorsMax = 10'000;
+constexpr std::size_t kConditionsMax = 256;
+constexpr std::size_t kIntrinsicsCount = 9;
+
+JsonKind ManifestKind() {
+  return {"manifest", "Push the session again with a client of the server's version.",
+          static_cast<std::size_t>(limits::kManifestBytesMax)};
+}
+
+void WriteIntrinsics(JsonWriter& out, const Sensor& sensor) {
+  if (!sensor.intrinsics) return out.Null("intrinsics");
+  const PinholeRadtan& camera = *sensor.intrinsics;
+  out.Object("intrinsics", [&] {
+    out.Number("cx_px", camera.cx_px);
+    out.Number("cy_px", camera.cy_px);
+    out.List("distortion", [&] {
+      for (const double k : camera.distortion) out.Number(k);
+    });
+    out.Number("fx_px", camera.fx_px);
+    out.Number("fy_px", camera.fy_px);
+    out.Text("model", "pinhole_radtan");
+    if (!sensor.intrinsics_sigma) return out.Null("sigma");
+    out.List("sigma", [&] {
+      for (const double sigma : *sensor.intrinsics_sigma) out.Number(sigma);
+    });
+  });
+}
+
+void WriteSensor(JsonWriter& out, const Sensor& sensor) {
+  out.Object([&] {
+    sensor.T_ref_nominal ? WritePose(out, "T_ref_nominal", *sensor.T_ref_nominal) : out.Null("T_ref_nominal");
+    out.Text("id", sensor.id.str());
+    WriteIntrinsics(out, sensor);
+    sensor.sees ? out.Text("sees", sensor.sees->str()) : out.Null("sees");
+    out.Text("type", NameOf(sensor.kind));
+  });
+}
+
+void WriteTarget(JsonWriter& out, const Checkerboard& board) {
+  out.Object([&] {
+    out.Text("id", board.id.str());
+    out.List("inner_corners", [&] {
+      out.Integer(board.inner_cols);
+      out.Integer(board.inner_rows);
+    });
+    out.Text("serial", board.serial);
+    out.Number("square_size_m", board.square_m);
+    out.Number("square_size_sigma_m", board.square_sigma_m);
+    out.Text("type", "checkerboard");
+  });
+}
+
+void WriteHeader(JsonWriter& out, const SessionHeader& header) {
+  out.Text("captured_at", ToIso(header.captured_at));
+  out.Object("conditions", [&] {
+    for (const auto& [name, value] : header.conditions) out.Text(name, value);
+  });
+  out.Integer("format", header.format);
+  out.Text("operator", header.operator_name);
+  out.Text("reference", header.reference.str());
+  out.Text("rig_model", header.rig_model);
+  out.Text("robot", header.robot.str());
+  out.List("sensors", [&] {
+    for (const Sensor& sensor : header.sensors) WriteSensor(out, sensor);
+  });
+  out.List("targets", [&] {
+    for (const Checkerboard& board : header.targets) WriteTarget(out, board);
+  });
+}
+
+void ReadIntrinsics(const JsonField& field, Sensor& sensor) {
+  if (field.At("model").Text() != "pinhole_radtan") field.At("model").Refuse("must be \"pinhole_radtan\"");
+  PinholeRadtan camera;
+  camera.fx_px = field.At("fx_px").Number();
+  camera.fy_px = field.At("fy_px").Number();
+  camera.cx_px = field.At("cx_px").Number();
+  camera.cy_px = field.At("cy_px").Number();
+  field.At("distortion").Numbers(camera.distortion.data(), camera.distortion.size());
+  sensor.intrinsics = camera;
+  if (const auto sigma = field.Find("sigma")) {
+    sensor.intrinsics_sigma.emplace(kIntrinsicsCount);
+    sigma->Numbers(sensor.intrinsics_sigma->data(), kIntrinsicsCount);
+  }
+}
+
+SensorKind ReadKind(const JsonField& field) {
+  const std::string name = field.Text();
+  for (const SensorKind kind : {SensorKind::kCamera, SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream})
+    if (NameOf(kind) == name) return kind;
+  field.Refuse("is not a sensor type of this version");
+  return SensorKind::kCamera;
+}
+
+Sensor ReadSensor(const JsonField& field) {
+  Sensor sensor;
+  sensor.id = ReadId<SensorId>(field.At("id"));
+  sensor.kind = ReadKind(field.At("type"));
+  if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
+  if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
+  if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T, kUnitTolerance);
+  return sensor;
+}
+
+Checkerboard ReadTarget(const JsonField& field) {
+  if (field.At("type").Text() != "checkerboard") field.At("type").Refuse("must be \"checkerboard\"");
+  Checkerboard board;
+  board.id = ReadId<TargetId>(field.At("id"));
+  const std::vector<JsonField> corners = field.At("inner_corners").Items(2);
+  if (corners.size() == 2) {
+    board.inner_cols = static_cast<int>(corners[0].Integer(1, 10'000));
+    board.inner_rows = static_cast<int>(corners[1].Integer(1, 10'000));
+  } else {
+    field.At("inner_corners").Refuse("must be two integers: columns and rows");
+  }
+  board.square_m = field.At("square_size_m").Number();
+  board.square_sigma_m = field.At("square_size_sigma_m").Number();
+  board.serial = field.At("serial").Text();
+  return board;
+}
+
+SessionHeader ReadHeader(const JsonField& root) {
+  SessionHeader header;
+  header.format = static_cast<int>(root.At("format").Integer(1, 1));
+  header.robot = ReadId<RobotId>(root.At("robot"));
+  header.rig_model = root.At("rig_model").Text();
+  header.captured_at = ReadStamp(root.At("captured_at"));
+  header.operator_name = root.At("operator").Text();
+  header.reference = ReadId<SensorId>(root.At("reference"));
+  for (const JsonField& target : root.At("targets").Items(limits::kTargetsPerSessionMax))
+    header.targets.push_back(ReadTarget(target));
+  for (const JsonField& sensor : root.At("sensors").Items(kSensorsMax)) header.sensors.push_back(ReadSensor(sensor));
+  for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
+    header.conditions.emplace(name, value.Text());
+  return header;
+}
+
+// Sensor and capture are what the path says: two spellings of one fact could disagree.
+Payload ReadPayload(const JsonField& field) {
+  const JsonField path = field.At("path");
+  Payload payload;
+  if (Result<Payload> at = PayloadAt(path.Text())) {
+    payload = *std::move(at);
+  } else {
+    path.Refuse(at.error().what);
+  }
+  payload.digest = ReadId<Digest>(field.At("sha256"));
+  payload.size_bytes = field.At("size_bytes").Integer(1, limits::kPayloadBytesMax);
+  return payload;
+}
+
+Status CheckSorted(const std::vector<Payload>& payloads) {
+  const auto unsorted = std::adjacent_find(payloads.begin(), payloads.end(),
+                                           [](const Payload& a, const Payload& b) { return a.path >= b.path; });
+  if (unsorted == payloads.end()) return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "manifest: payloads[" + std::to_string(unsorted + 1 - payloads.begin()) + "].path: not sorted, or twice",
+              ManifestKind().cure);
+}
+
+}  // namespace
+
+std::string WriteManifest(const Manifest& manifest) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteHeader(out, manifest.header);
+    out.List("payloads", [&] {
+      for (const Payload& payload : manifest.payloads)
+        out.Object([&] {
+          out.Text("path", payload.path);
+          out.Text("sha256", payload.digest.str());
+          out.Integer("size_bytes", payload.size_bytes);
+        });
+    });
+  });
+}
+
+Result<Manifest> ReadManifest(std::string_view text) {
+  RIGCAL_ASSIGN(JsonDocument document, JsonDocument::Parse(text, ManifestKind()));
+  const JsonField root = document.Root();
+  Manifest manifest;
+  manifest.header = ReadHeader(root);
+  for (const JsonField& payload : root.At("payloads").Items(limits::kPayloadsPerSessionMax))
+    manifest.payloads.push_back(ReadPayload(payload));
+  RIGCAL_TRY(document.status());
+  RIGCAL_TRY(CheckSorted(manifest.payloads));
+  RIGCAL_TRY(Validate(manifest));
+  return manifest;
+}
+
+}  // namespace rigcal::formats

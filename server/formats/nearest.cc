@@ -1,0 +1,58 @@
+#include "server/formats/nearest.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kComparedMax = 64;
+
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replace, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string_view Nearest(std::string_view name, std::span<const std::string_view> known) {
+  name = name.substr(0, kComparedMax);
+  std::string_view best;
+  std::size_t best_distance = name.size();
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = EditDistance(name, candidate);
+    if (distance < best_distance && distance <= std::max<std::size_t>(2, candidate.size() / 2)) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+std::string Listed(std::span<const std::string_view> names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string DidYouMean(std::string_view name, std::span<const std::string_view> known) {
+  const std::string_view nearest = Nearest(name, known);
+  if (nearest.empty()) return "known here: " + Listed(known);
+  return "did you mean \"" + std::string(nearest) + "\"?";
+}
+
+}  // namespace rigcal::formats

@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <climits>
+
+#include "server/base/limits.h"
+#include "server/formats/documents.h"
+#include "server/formats/edge_fields.h"
+#include "server/formats/json_values.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kRevisionBytesMax = 1u << 30;
+
+void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
+  out.Object([&] {
+    out.Text("id", pose.sensor.str());
+    out.Flag("known", pose.known);
+    if (pose.known) {
+      WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
+      WriteMatrix(out, "covariance", pose.covariance);
+      WriteSigmas(out, pose.covariance);
+    } else {
+      for (const char* key : {"T_ref_sensor", "covariance"}) out.Null(key);
+      WriteNoSigmas(out);
+    }
+  });
+}
+
+SensorPose ReadSensorPose(const JsonField& field) {
+  SensorPose pose;
+  pose.sensor = ReadId<SensorId>(field.At("id"));
+  pose.known = field.At("known").Flag();
+  if (!pose.known) return pose;
+  pose.T_ref_sensor = ReadPose(field.At("T_ref_sensor"), kUnitTolerance);
+  pose.covariance = ReadMatrix(field.At("covariance"));
+  return pose;
+}
+
+// The document does not depend on the order in which edges are handed over.
+std::vector<const Edge*> SortedById(const std::vector<Edge>& edges) {
+  std::vector<const Edge*> sorted;
+  sorted.reserve(edges.size());
+  for (const Edge& edge : edges) sorted.push_back(&edge);
+  std::sort(sorted.begin(), sorted.end(), [](const Edge* a, const Edge* b) { return a->id < b->id; });
+  return sorted;
+}
+
+void WriteRevisionEdges(JsonWriter& out, const RevisionInput& input) {
+  std::vector<EdgeResidual> residuals = input.solution.residuals;
+  std::sort(residuals.begin(), residuals.end(),
+            [](const EdgeResidual& a, const EdgeResidual& b) { return a.edge < b.edge; });
+  out.List("edges", [&] {
+    for (const Edge* edge : SortedById(input.edges))
+      out.Object([&] {
+        WriteEdgeSummary(out, *edge);
+        WriteEdgeDetail(out, *edge);
+        WriteResidual(out, ResidualOf(residuals, edge->id));
+      });
+  });
+}
+
+void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
+  out.Flag("converged", solution.converged);
+  out.Integer("iterations", solution.iterations);
+  out.Number("cost", solution.cost);
+  out.Integer("dof", solution.dof);
+  WriteGlobalErrors(out, solution.before, solution.after);
+  WriteDiagnoses(out, "diagnoses", solution.diagnoses);
+  out.List("sensors", [&] {
+    for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose);
+  });
+}
+
+EdgeResidual ReadResidual(const JsonField& field, const EdgeId& edge) {
+  return {edge, field.At("in_solution").Flag(), ReadVector(field.At("e")), field.At("weighted").Number()};
+}
+
+GraphSolution ReadSolution(const JsonField& root) {
+  GraphSolution solution;
+  solution.converged = root.At("converged").Flag();
+  solution.iterations = static_cast<int>(root.At("iterations").Integer(0, INT_MAX));
+  solution.cost = root.At("cost").Number();
+  solution.dof = static_cast<int>(root.At("dof").Integer(INT_MIN, INT_MAX));
+  solution.before = ReadGlobalError(root.At("e_global").At("before"));
+  solution.after = ReadGlobalError(root.At("e_global").At("after"));
+  solution.diagnoses = ReadDiagnoses(root.At("diagnoses"));
+  for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
+    solution.poses.push_back(ReadSensorPose(sensor));
+  return solution;
+}
+
+}  // namespace
+
+std::string WriteRevisionDocument(const RevisionInput& input) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Integer("format", 1);
+    out.Text("robot", input.robot.str());
+    input.reference.empty() ? out.Null("reference") : out.Text("reference", input.reference.str());
+    WriteVerdict(out, "verdict", input.verdict);
+    WriteSolution(out, input.solution);
+    WriteRevisionEdges(out, input);
+  });
+}
+
+Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
+  const JsonKind kind = {"revision", "Ask for the revision again; docs/api.md describes the document.",
+                         kRevisionBytesMax};
+  RIGCAL_ASSIGN(JsonDocument document, JsonDocument::Parse(text, kind));
+  const JsonField root = document.Root();
+  RevisionInput input;
+  (void)root.At("format").Integer(1, 1);
+  input.robot = ReadId<RobotId>(root.At("robot"));
+  if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
+  input.verdict = ReadVerdict(root.At("verdict"));
+  input.solution = ReadSolution(root);
+  for (const JsonField& field : root.At("edges").Items(limits::kEdgesPerBatchMax)) {
+    input.edges.push_back(ReadEdgeFields(field));
+    if (const auto residual = field.Find("residual"))
+      input.solution.residuals.push_back(ReadResidual(*residual, input.edges.back().id));
+  }
+  RIGCAL_TRY(document.status());
+  return input;
+}
+
+}  // namespace rigcal::formats

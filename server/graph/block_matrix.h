@@ -1,0 +1,61 @@
+// Symmetric block-sparse matrices with square blocks of fixed size, in elimination order, and their Cholesky factors.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace rigcal::graph {
+
+struct BlockPosition {
+  int row = 0, col = 0;  // row > col
+  friend auto operator<=>(const BlockPosition&, const BlockPosition&) = default;
+};
+
+struct BlockPattern {
+  int block_count = 0;
+  std::vector<BlockPosition> off_diagonal;  // lower triangle, unique, sorted by (col, row)
+};
+
+// The lower triangle: diagonal blocks whole, off-diagonal blocks in the order of the pattern.
+template <int B>
+struct BlockMatrix {
+  using Block = Eigen::Matrix<double, B, B>;
+  std::vector<Block> diagonal, off_diagonal;
+
+  void Resize(const BlockPattern& pattern) {
+    diagonal.resize(static_cast<std::size_t>(pattern.block_count));
+    off_diagonal.resize(pattern.off_diagonal.size());
+  }
+  void SetZero() {
+    for (Block& block : diagonal) block.setZero();
+    for (Block& block : off_diagonal) block.setZero();
+  }
+};
+
+// Cholesky factor with the pattern analysed once: dense for small matrices, supernodal (CHOLMOD) for large ones.
+// Factor and Solve allocate nothing after the first call.
+template <int B>
+class BlockCholesky {
+ public:
+  using Block = Eigen::Matrix<double, B, B>;
+  virtual ~BlockCholesky() = default;
+  // Factors matrix + lambda * diag(matrix); false if that is not positive definite (then Solve must not be called).
+  [[nodiscard]] virtual bool Factor(const BlockMatrix<B>& matrix, double lambda) = 0;
+  // matrix^-1 rhs, in place; rhs has B * block_count rows.
+  virtual void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) = 0;
+  // The diagonal blocks of the inverse.
+  [[nodiscard]] virtual std::vector<Block> InverseDiagonal() = 0;
+};
+
+// `blocks_dense_max`: up to this many blocks the dense factor is used.
+constexpr int kBlocksDenseMax = 40;
+template <int B>
+[[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
+                                                             int blocks_dense_max = kBlocksDenseMax);
+
+// A fill-reducing order of the vertices of a graph: position p is taken by vertex order[p]. Natural for small graphs.
+[[nodiscard]] std::vector<int> EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links);
+
+}  // namespace rigcal::graph

@@ -1,0 +1,28 @@
+// Residuals, cost and normal equations of a Problem at given poses.
+#pragma once
+
+#include <vector>
+
+#include "server/graph/problem.h"
+
+namespace rigcal::graph {
+
+// Poses T_ref_vertex; [0] is the reference's identity.
+using Poses = std::vector<Se3>;
+
+// H dx = -g is the Gauss-Newton step of `cost` = sum e^T Omega e (H = J^T Omega J, g = J^T Omega e).
+struct NormalEquations {
+  BlockMatrix<6> H;
+  Eigen::VectorXd g;
+  double cost = 0.0;
+};
+
+// e = Log(T_i_j_measured^-1 T_i^-1 T_j).
+[[nodiscard]] Vector6d Residual(const Constraint& constraint, const Poses& T_ref);
+[[nodiscard]] double Cost(const Problem& problem, const Poses& T_ref);
+// Analytic, with the full inverse right Jacobian of SE(3). Allocates only on the first call with `equations`.
+void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equations);
+// T * Exp(step), vertex by vertex; the reference stays.
+void Retract(const Poses& T_ref, const Eigen::VectorXd& step, Poses& result);
+
+}  // namespace rigcal::graph

@@ -1,0 +1,164 @@
+#include "server/graph/observability.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "server/graph/union_find.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::graph {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr int kBodiesMax = 200;            // beyond: everything outside the reference's body counts as free
+constexpr double kToleranceMin = 1e-10;    // of eigenvalues, which are squared sines of angles between directions
+constexpr double kToleranceMax = 1e-2;
+constexpr double kNoiseFactor = 3.0;
+
+// Vertices tied by edges of full rank. Body 0 holds the reference. A body's motion is a twist of its first vertex.
+struct Bodies {
+  std::vector<int> body_of_vertex;
+  std::vector<int> first_vertex;
+};
+
+Bodies FindBodies(const Problem& problem) {
+  UnionFind sets(static_cast<std::size_t>(problem.vertex_count));
+  for (const Constraint& c : problem.constraints)
+    if (c.rank == 6) sets.Join(c.i, c.j);
+  Bodies bodies;
+  bodies.body_of_vertex.resize(static_cast<std::size_t>(problem.vertex_count));
+  for (int v = 0; v < problem.vertex_count; ++v) {
+    const int root = sets.Find(v);  // the smallest of the set: seen before its members
+    if (root == v) bodies.first_vertex.push_back(v);
+    bodies.body_of_vertex[static_cast<std::size_t>(v)] =
+        root == v ? static_cast<int>(bodies.first_vertex.size()) - 1
+                  : bodies.body_of_vertex[static_cast<std::size_t>(root)];
+  }
+  return bodies;
+}
+
+// A length that makes metres and radians comparable: the typical length of an edge.
+double TypicalLength_m(const Problem& problem) {
+  double sum_m2 = 0.0;
+  for (const Constraint& c : problem.constraints) sum_m2 += c.T_i_j.p_m.squaredNorm();
+  const double length_m = std::sqrt(sum_m2 / static_cast<double>(std::max<std::size_t>(problem.constraints.size(), 1)));
+  return length_m > 1e-6 ? length_m : 1.0;
+}
+
+Vector6d ScaleOf(double length_m) {
+  Vector6d scale;
+  scale << length_m, length_m, length_m, 1.0, 1.0, 1.0;
+  return scale;
+}
+
+// Rows: an orthonormal basis, in scaled units, of the directions of e that the edge sees.
+MatrixXd SeenDirections(const Matrix6d& Omega, const Vector6d& scale) {
+  const FreeBasis unseen = Observable(Omega).unobservable_basis;
+  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * unseen;
+  const Matrix6d Q = Eigen::HouseholderQR<MatrixXd>(scaled).householderQ() * MatrixXd::Identity(6, 6);
+  return Q.rightCols(6 - unseen.cols()).transpose() * scale.cwiseInverse().asDiagonal();
+}
+
+// What body twists the deficient edges see: one row per direction, columns in scaled body twists (body 0 is fixed).
+MatrixXd GeometryMatrix(const Problem& problem, const Poses& T_ref, const Bodies& bodies, const Vector6d& scale) {
+  const auto columns = 6 * (static_cast<Eigen::Index>(bodies.first_vertex.size()) - 1);
+  MatrixXd G = MatrixXd::Zero(columns, columns);
+  for (const Constraint& c : problem.constraints) {
+    const int a = bodies.body_of_vertex[static_cast<std::size_t>(c.i)], b = bodies.body_of_vertex[static_cast<std::size_t>(c.j)];
+    if (a == b) continue;
+    const MatrixXd seen = SeenDirections(c.Omega, scale) * RightJacobianInverse(Residual(c, T_ref));
+    const Se3 T_j_ref = T_ref[static_cast<std::size_t>(c.j)].Inverse();
+    const auto rows_of = [&](int body) -> MatrixXd {
+      const Se3& T_ref_body = T_ref[static_cast<std::size_t>(bodies.first_vertex[static_cast<std::size_t>(body)])];
+      return seen * Adjoint(T_j_ref * T_ref_body) * scale.asDiagonal();
+    };
+    const MatrixXd rows_a = rows_of(a), rows_b = rows_of(b);
+    if (a > 0) G.block<6, 6>(6 * (a - 1), 6 * (a - 1)) += rows_a.transpose() * rows_a;
+    if (b > 0) G.block<6, 6>(6 * (b - 1), 6 * (b - 1)) += rows_b.transpose() * rows_b;
+    if (a == 0 || b == 0) continue;
+    G.block<6, 6>(6 * (a - 1), 6 * (b - 1)) -= rows_a.transpose() * rows_b;
+    G.block<6, 6>(6 * (b - 1), 6 * (a - 1)) -= rows_b.transpose() * rows_a;
+  }
+  return G;
+}
+
+// Deficient edges' residual rotations turn their unseen directions against each other.
+double Tolerance(const Problem& problem, const Poses& T_ref) {
+  double sum_rad2 = 0.0;
+  int count = 0;
+  for (const Constraint& c : problem.constraints) {
+    if (c.rank == 6) continue;
+    sum_rad2 += Residual(c, T_ref).tail<3>().squaredNorm();
+    ++count;
+  }
+  const double noise_rad2 = count > 0 ? sum_rad2 / count : 0.0;
+  return std::clamp(kNoiseFactor * kNoiseFactor * noise_rad2, kToleranceMin, kToleranceMax);
+}
+
+// Null vectors of G as columns, in scaled body twists.
+MatrixXd NullVectors(const MatrixXd& G, double tolerance) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(G);
+  Eigen::Index count = 0;
+  while (count < G.rows() && eigen.eigenvalues()(count) <= tolerance) ++count;
+  return eigen.eigenvectors().leftCols(count);
+}
+
+// An orthonormal basis of the columns that are not rounding.
+FreeBasis RangeOf(const MatrixXd& columns) {
+  if (columns.cols() == 0) return FreeBasis(6, 0);
+  const Eigen::JacobiSVD<MatrixXd> svd(columns, Eigen::ComputeThinU);
+  constexpr double kVisible = 1e-5;  // null vectors have unit length over all bodies
+  Eigen::Index count = 0;
+  while (count < svd.singularValues().size() && svd.singularValues()(count) > kVisible) ++count;
+  return svd.matrixU().leftCols(count);
+}
+
+// One coordinate per null vector, chosen so that holding them all leaves no motion.
+std::vector<Pin> ChoosePins(const MatrixXd& null_vectors, const Bodies& bodies) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(null_vectors.transpose());
+  std::vector<Pin> pins;
+  for (Eigen::Index k = 0; k < null_vectors.cols(); ++k) {
+    const int column = qr.colsPermutation().indices()(k);
+    const int vertex = bodies.first_vertex[static_cast<std::size_t>(column / 6) + 1];
+    pins.push_back({6 * (vertex - 1) + column % 6});
+  }
+  return pins;
+}
+
+FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, const Vector6d& scale) {
+  return RangeOf(scale.cwiseInverse().asDiagonal() * Adjoint(T_vertex_body) * scale.asDiagonal() * body_null);
+}
+
+}  // namespace
+
+Observability Observe(const Problem& problem, const Poses& T_ref) {
+  Observability result;
+  result.free_of_vertex.assign(static_cast<std::size_t>(problem.vertex_count), FreeBasis(6, 0));
+  const bool full = std::all_of(problem.constraints.begin(), problem.constraints.end(),
+                                [](const Constraint& c) { return c.rank == 6; });
+  if (full) return result;
+  const Bodies bodies = FindBodies(problem);
+  const auto free_bodies = static_cast<Eigen::Index>(bodies.first_vertex.size()) - 1;
+  if (free_bodies == 0) return result;
+  const Vector6d scale = ScaleOf(TypicalLength_m(problem));
+  MatrixXd null_vectors = MatrixXd::Identity(6 * free_bodies, 6 * free_bodies);
+  if (free_bodies <= kBodiesMax)
+    null_vectors = NullVectors(GeometryMatrix(problem, T_ref, bodies, scale), Tolerance(problem, T_ref));
+  result.nullity = static_cast<int>(null_vectors.cols());
+  if (result.nullity == 0) return result;
+  result.pins = ChoosePins(null_vectors, bodies);
+  for (std::size_t v = 0; v < result.free_of_vertex.size(); ++v) {
+    const int body = bodies.body_of_vertex[v];
+    if (body == 0) continue;
+    const Se3& T_ref_body = T_ref[static_cast<std::size_t>(bodies.first_vertex[static_cast<std::size_t>(body)])];
+    result.free_of_vertex[v] =
+        FreeDirections(null_vectors.middleRows(6 * (body - 1), 6), T_ref[v].Inverse() * T_ref_body, scale);
+  }
+  return result;
+}
+
+}  // namespace rigcal::graph

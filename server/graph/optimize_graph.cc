@@ -1,0 +1,158 @@
+#include "server/graph/optimize_graph.h"
+
+#include <algorithm>
+
+namespace rigcal::graph {
+namespace {
+
+bool SamePins(const std::vector<Pin>& a, const std::vector<Pin>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Pin p, Pin q) { return p.row == q.row; });
+}
+
+GlobalError GlobalErrorAt(const Problem& problem, const Poses& T_ref) {
+  GlobalError error;
+  if (problem.constraints.empty()) return error;
+  for (const Constraint& constraint : problem.constraints) {
+    const Vector6d e = Residual(constraint, T_ref);
+    error.translation_m2 += e.head<3>().squaredNorm();
+    error.rotation_rad2 += e.tail<3>().squaredNorm();
+  }
+  const auto count = static_cast<double>(problem.constraints.size());
+  error.translation_m2 /= count;
+  error.rotation_rad2 /= count;
+  error.total = error.translation_m2 + error.rotation_rad2;
+  return error;
+}
+
+int DegreesOfFreedom(const Problem& problem, const Observability& observability) {
+  int rank_sum = 0;
+  for (const Constraint& constraint : problem.constraints) rank_sum += constraint.rank;
+  return rank_sum - (6 * problem.free_count() - observability.nullity);
+}
+
+void FillResiduals(const Graph& graph, const Problem& problem, const Poses& T_ref, GraphSolution& solution) {
+  solution.residuals.resize(graph.edges.size());
+  for (std::size_t k = 0; k < graph.edges.size(); ++k)
+    solution.residuals[k].edge = graph.edges[problem.edges_by_id[k]].id;
+  for (const Constraint& constraint : problem.constraints) {
+    EdgeResidual& residual = solution.residuals[constraint.edge];
+    residual.in_solution = true;
+    residual.e = Residual(constraint, T_ref);
+    residual.weighted = residual.e.dot(constraint.Omega * residual.e);
+    solution.cost += residual.weighted;
+  }
+}
+
+Diagnosis NotObservable(const SensorId& sensor, const SensorId& reference, const FreeBasis& basis) {
+  const std::string directions = NameDirections(basis);
+  return {"not_observable",
+          "the pose of sensor " + sensor.str() + " is not fully determined: its edges leave free " + directions +
+              " (in the axes of " + sensor.str() + ")",
+          "Add an edge that sees this direction, for example by a session that shows " + sensor.str() +
+              " together with a sensor connected to " + reference.str() + " under other orientations."};
+}
+
+Diagnosis NotConverged(const Optimum& optimum) {
+  return {"no_convergence", "the graph did not settle within " + std::to_string(optimum.iterations) + " iterations",
+          "Look for edges with a large residual: one that is grossly wrong keeps the graph from settling. Withdraw or "
+          "repeat it."};
+}
+
+Diagnosis Singular() {
+  return {"singular", "the uncertainty of the solved poses could not be computed: the information of the edges spans "
+                      "too many orders of magnitude",
+          "Check the information matrices of the edges for wrong units (metres and radians)."};
+}
+
+void FillPoses(const Graph& graph, const Problem& problem, const Settled& settled, GraphSolution& solution) {
+  for (std::size_t s = 0; s < graph.sensors.size(); ++s) {
+    SensorPose& pose = solution.poses[s];
+    pose.sensor = graph.sensors[s];
+    const int vertex = problem.vertex_of_sensor[s];
+    if (vertex < 0) continue;
+    const FreeBasis& free = settled.observability.free_of_vertex[static_cast<std::size_t>(vertex)];
+    pose.known = free.cols() == 0;
+    if (pose.known) {
+      pose.T_ref_sensor = settled.optimum.T_ref[static_cast<std::size_t>(vertex)];
+    } else {
+      solution.diagnoses.push_back(NotObservable(pose.sensor, graph.reference, free));
+    }
+  }
+}
+
+void ForgetPoses(const Graph& graph, GraphSolution& solution) {
+  for (SensorPose& pose : solution.poses) {
+    pose.known = pose.sensor == graph.reference;
+    pose.T_ref_sensor = Se3();
+  }
+}
+
+void FillMarginals(const Graph& graph, const Problem& problem, const Settled& settled, BlockCholesky<6>& cholesky,
+                   GraphSolution& solution) {
+  if (problem.free_count() == 0) return;
+  NormalEquations equations;
+  Linearize(problem, settled.optimum.T_ref, equations);
+  AddPins(settled.observability.pins, equations.H);
+  if (!cholesky.Factor(equations.H, 0.0)) {
+    solution.diagnoses.push_back(Singular());
+    return ForgetPoses(graph, solution);
+  }
+  const std::vector<Matrix6d> marginals = cholesky.InverseDiagonal();
+  for (std::size_t v = 1; v < problem.sensor_of_vertex.size(); ++v) {
+    SensorPose& pose = solution.poses[problem.sensor_of_vertex[v]];
+    if (pose.known) pose.covariance = Symmetrized(marginals[v - 1]);
+  }
+}
+
+}  // namespace
+
+Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky, int iterations_max) {
+  Settled settled;
+  settled.observability = Observe(problem, start);
+  settled.optimum = Optimize(problem, start, settled.observability.pins, cholesky, iterations_max);
+  // What is free may look different at the optimum than at the start.
+  constexpr int kRoundsMax = 3;
+  for (int round = 0; round < kRoundsMax; ++round) {
+    Observability at_optimum = Observe(problem, settled.optimum.T_ref);
+    const bool settled_down = SamePins(at_optimum.pins, settled.observability.pins);
+    settled.observability = std::move(at_optimum);
+    if (settled_down) break;
+    const int iterations_before = settled.optimum.iterations;
+    settled.optimum = Optimize(problem, settled.optimum.T_ref, settled.observability.pins, cholesky, iterations_max);
+    settled.optimum.iterations += iterations_before;
+  }
+  return settled;
+}
+
+GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const Poses& tree, const Poses& start,
+                            const SolveOptions& options) {
+  GraphSolution solution;
+  solution.poses.resize(graph.sensors.size());
+  solution.diagnoses = problem.diagnoses;
+  const auto cholesky = MakeCholesky<6>(problem.pattern);
+  const Settled settled = Settle(problem, start, *cholesky, options.iterations_max);
+  solution.converged = settled.optimum.converged;
+  solution.iterations = settled.optimum.iterations;
+  if (!solution.converged) solution.diagnoses.push_back(NotConverged(settled.optimum));
+  FillResiduals(graph, problem, settled.optimum.T_ref, solution);
+  solution.before = GlobalErrorAt(problem, tree);
+  solution.after = GlobalErrorAt(problem, settled.optimum.T_ref);
+  solution.dof = DegreesOfFreedom(problem, settled.observability);
+  FillPoses(graph, problem, settled, solution);
+  if (options.marginals) FillMarginals(graph, problem, settled, *cholesky, solution);
+  return solution;
+}
+
+GraphSolution WithoutReference(const Graph& graph, const Problem& problem) {
+  GraphSolution solution;
+  solution.diagnoses = problem.diagnoses;
+  solution.poses.resize(graph.sensors.size());
+  for (std::size_t s = 0; s < graph.sensors.size(); ++s) solution.poses[s].sensor = graph.sensors[s];
+  solution.residuals.resize(graph.edges.size());
+  for (std::size_t k = 0; k < graph.edges.size(); ++k)
+    solution.residuals[k].edge = graph.edges[problem.edges_by_id[k]].id;
+  solution.converged = graph.sensors.empty();
+  return solution;
+}
+
+}  // namespace rigcal::graph

@@ -1,0 +1,22 @@
+// From a start to a GraphSolution: optimum, what is observable, marginals, residuals, errors before and after.
+#pragma once
+
+#include "server/graph/observability.h"
+#include "server/graph/solve.h"
+
+namespace rigcal::graph {
+
+// The optimum with the free directions held, and the factor of H at it.
+struct Settled {
+  Optimum optimum;
+  Observability observability;
+};
+[[nodiscard]] Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky, int iterations_max);
+
+// `tree` is the start that E_global before is measured at.
+[[nodiscard]] GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const Poses& tree,
+                                          const Poses& start, const SolveOptions& options);
+// A graph whose reference is not among its sensors, or that has no sensors: nothing is known.
+[[nodiscard]] GraphSolution WithoutReference(const Graph& graph, const Problem& problem);
+
+}  // namespace rigcal::graph

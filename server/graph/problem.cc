@@ -1,0 +1,238 @@
+#include "server/graph/problem.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "server/graph/sensor_order.h"
+#include "server/graph/union_find.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::graph {
+namespace {
+
+auto PoseKey(const GraphEdge& edge) {
+  const Se3& T = edge.T_a_b;
+  return std::make_tuple(T.p_m.x(), T.p_m.y(), T.p_m.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w());
+}
+
+// Ids are unique in a store; the rest of the key only makes the order total for graphs made by hand.
+bool EdgeBefore(const GraphEdge& a, const GraphEdge& b) {
+  if (a.id != b.id) return a.id < b.id;
+  if (a.frame_a != b.frame_a) return a.frame_a < b.frame_a;
+  if (a.frame_b != b.frame_b) return a.frame_b < b.frame_b;
+  if (PoseKey(a) != PoseKey(b)) return PoseKey(a) < PoseKey(b);
+  return std::lexicographical_compare(a.Omega.data(), a.Omega.data() + 36, b.Omega.data(), b.Omega.data() + 36);
+}
+
+std::vector<std::size_t> SortedById(const std::vector<GraphEdge>& edges) {
+  std::vector<std::size_t> order(edges.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&edges](std::size_t a, std::size_t b) { return EdgeBefore(edges[a], edges[b]); });
+  return order;
+}
+
+std::string NameOfEdge(const GraphEdge& edge) {
+  return "edge " + edge.frame_a.str() + " - " + edge.frame_b.str() + " (" + edge.id.str().substr(0, 12) + ")";
+}
+
+// Empty: usable. Else why not.
+std::string WhyUnusable(const GraphEdge& edge, bool frames_known) {
+  if (!frames_known) return "names a sensor that is not in the graph";
+  if (edge.frame_a == edge.frame_b) return "joins a sensor with itself";
+  if (!edge.T_a_b.p_m.allFinite() || !edge.T_a_b.q.coeffs().allFinite()) return "has a pose that is not finite";
+  if (edge.T_a_b.q.norm() < 0.5) return "has a quaternion of length zero";
+  return {};
+}
+
+// Log det Omega and rank, cheaply where Omega is clearly positive definite; false if it is indefinite, asymmetric or zero.
+bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
+  const double scale = edge.Omega.cwiseAbs().maxCoeff();
+  if (!edge.Omega.allFinite() || scale == 0.0) return false;
+  if ((edge.Omega - edge.Omega.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) return false;
+  constraint.Omega = Symmetrized(edge.Omega);
+  const Eigen::LLT<Matrix6d> llt(constraint.Omega);
+  const Vector6d pivots = llt.matrixLLT().diagonal();
+  constexpr double kClearPivotRatio = 1e-5;  // of square roots, after scaling: far above the tolerance of a rank
+  if (edge.rank == 6 && llt.info() == Eigen::Success &&
+      (pivots.array() > kClearPivotRatio * constraint.Omega.diagonal().array().sqrt()).all()) {
+    constraint.rank = 6;
+    constraint.log_det_Omega = 2.0 * pivots.array().log().sum();
+    return true;
+  }
+  if (!IsPositiveSemidefinite(constraint.Omega)) return false;
+  constraint.rank = Observable(constraint.Omega).rank;
+  constraint.log_det_Omega = constraint.rank == 6 ? constraint.Omega.ldlt().vectorD().cwiseAbs().array().log().sum() : 0.0;
+  return constraint.rank > 0;
+}
+
+void FillMeasurement(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint) {
+  constraint.T_i_j = edge.T_a_b.Normalized();
+  constraint.T_j_i = constraint.T_i_j.Inverse();
+  constraint.edge = edge_idx;
+}
+
+struct Link {
+  int a = 0, b = 0;       // sensor ranks (position in the canonical order of sensors)
+  Constraint constraint;  // without vertices
+};
+
+// The graph with sensors replaced by their rank in canonical order.
+struct Ranked {
+  std::vector<std::size_t> sensor_of_rank;
+  std::vector<int> rank_of_sensor;
+  int reference = -1;
+  std::vector<Link> links;
+};
+
+std::vector<std::size_t> CanonicalSensors(const Graph& graph) {
+  std::vector<std::size_t> order(graph.sensors.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&graph](std::size_t a, std::size_t b) {
+    return SensorBefore(graph.sensors[a], graph.sensors[b]);
+  });
+  return order;
+}
+
+Ranked RankSensors(const Graph& graph) {
+  Ranked ranked;
+  ranked.sensor_of_rank = CanonicalSensors(graph);
+  ranked.rank_of_sensor.resize(graph.sensors.size());
+  for (std::size_t r = 0; r < ranked.sensor_of_rank.size(); ++r) {
+    ranked.rank_of_sensor[ranked.sensor_of_rank[r]] = static_cast<int>(r);
+    if (graph.sensors[ranked.sensor_of_rank[r]] == graph.reference) ranked.reference = static_cast<int>(r);
+  }
+  return ranked;
+}
+
+int FindRank(const Graph& graph, const Ranked& ranked, const SensorId& sensor) {
+  const auto& order = ranked.sensor_of_rank;
+  const auto found = std::lower_bound(order.begin(), order.end(), sensor, [&graph](std::size_t s, const SensorId& id) {
+    return SensorBefore(graph.sensors[s], id);
+  });
+  if (found == order.end() || graph.sensors[*found] != sensor) return -1;
+  return static_cast<int>(found - order.begin());
+}
+
+void CollectLinks(const Graph& graph, Ranked& ranked, Problem& problem) {
+  ranked.links.reserve(graph.edges.size());
+  for (std::size_t e = 0; e < problem.edges_by_id.size(); ++e) {
+    const GraphEdge& edge = graph.edges[problem.edges_by_id[e]];
+    const int a = FindRank(graph, ranked, edge.frame_a), b = FindRank(graph, ranked, edge.frame_b);
+    Constraint constraint;
+    std::string why = WhyUnusable(edge, a >= 0 && b >= 0);
+    if (why.empty() && !JudgeInformation(edge, constraint))
+      why = "has an information matrix that is zero, not finite, not symmetric or not positive semi-definite";
+    if (why.empty()) {
+      FillMeasurement(edge, e, constraint);
+      ranked.links.push_back({a, b, constraint});
+    } else {
+      problem.diagnoses.push_back({"edge_not_usable", NameOfEdge(edge) + " " + why + " and takes no part",
+                                   "Withdraw this edge, mend it where it was made and push it again."});
+    }
+  }
+}
+
+Diagnosis NotConnected(const Graph& graph, const SensorId& sensor, bool has_edge) {
+  const std::string reference = graph.reference.str();
+  const std::string why = has_edge ? "its edges lead only to sensors that are not connected either"
+                                   : "it has no good edge";
+  return {"not_connected", "sensor " + sensor.str() + " is not connected to reference " + reference + ": " + why,
+          "Capture a session that shows " + sensor.str() + " together with a sensor connected to " + reference +
+              ", or push an edge between them."};
+}
+
+// Ranks of the reference's component in canonical order, the reference first; a diagnosis for every other sensor.
+std::vector<int> ReferenceComponent(const Graph& graph, const Ranked& ranked, Problem& problem) {
+  UnionFind sets(ranked.sensor_of_rank.size());
+  std::vector<bool> has_edge(ranked.sensor_of_rank.size(), false);
+  for (const Link& link : ranked.links) {
+    sets.Join(link.a, link.b);
+    has_edge[static_cast<std::size_t>(link.a)] = has_edge[static_cast<std::size_t>(link.b)] = true;
+  }
+  std::vector<int> component;
+  if (ranked.reference >= 0) component.push_back(ranked.reference);
+  for (std::size_t r = 0; r < ranked.sensor_of_rank.size(); ++r) {
+    const int rank = static_cast<int>(r);
+    if (rank == ranked.reference) continue;
+    if (ranked.reference >= 0 && sets.Find(rank) == sets.Find(ranked.reference)) {
+      component.push_back(rank);
+    } else {
+      problem.diagnoses.push_back(NotConnected(graph, graph.sensors[ranked.sensor_of_rank[r]], has_edge[r]));
+    }
+  }
+  return component;
+}
+
+// Vertex of every rank (-1: not in the component): the reference 0, the others in elimination order.
+std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& component) {
+  std::vector<int> member(ranked.sensor_of_rank.size(), -1);
+  for (std::size_t k = 0; k < component.size(); ++k) member[static_cast<std::size_t>(component[k])] = static_cast<int>(k);
+  std::vector<std::pair<int, int>> links;
+  links.reserve(ranked.links.size());
+  for (const Link& link : ranked.links) {
+    const int a = member[static_cast<std::size_t>(link.a)], b = member[static_cast<std::size_t>(link.b)];
+    if (a > 0 && b > 0) links.emplace_back(a - 1, b - 1);
+  }
+  const std::vector<int> order = EliminationOrder(static_cast<int>(component.size()) - 1, links);
+  std::vector<int> vertex_of_rank(ranked.sensor_of_rank.size(), -1);
+  vertex_of_rank[static_cast<std::size_t>(component[0])] = 0;
+  for (std::size_t p = 0; p < order.size(); ++p)
+    vertex_of_rank[static_cast<std::size_t>(component[static_cast<std::size_t>(order[p]) + 1])] = static_cast<int>(p) + 1;
+  return vertex_of_rank;
+}
+
+void AssignSlots(Problem& problem) {
+  std::vector<BlockPosition>& blocks = problem.pattern.off_diagonal;
+  const auto position = [](const Constraint& c) { return BlockPosition{std::max(c.i, c.j) - 1, std::min(c.i, c.j) - 1}; };
+  const auto before = [](const BlockPosition& a, const BlockPosition& b) {
+    return std::tie(a.col, a.row) < std::tie(b.col, b.row);
+  };
+  for (const Constraint& c : problem.constraints)
+    if (c.i > 0 && c.j > 0) blocks.push_back(position(c));
+  std::sort(blocks.begin(), blocks.end(), before);
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  for (Constraint& c : problem.constraints) {
+    if (c.i == 0 || c.j == 0) continue;
+    c.slot = static_cast<int>(std::lower_bound(blocks.begin(), blocks.end(), position(c), before) - blocks.begin());
+  }
+}
+
+void FillVertices(const Ranked& ranked, const std::vector<int>& vertex_of_rank, Problem& problem) {
+  for (std::size_t r = 0; r < vertex_of_rank.size(); ++r) {
+    if (vertex_of_rank[r] < 0) continue;
+    problem.vertex_of_sensor[ranked.sensor_of_rank[r]] = vertex_of_rank[r];
+    problem.sensor_of_vertex[static_cast<std::size_t>(vertex_of_rank[r])] = ranked.sensor_of_rank[r];
+  }
+}
+
+}  // namespace
+
+Problem MakeProblem(const Graph& graph) {
+  Problem problem;
+  problem.edges_by_id = SortedById(graph.edges);
+  problem.vertex_of_sensor.assign(graph.sensors.size(), -1);
+  Ranked ranked = RankSensors(graph);
+  CollectLinks(graph, ranked, problem);
+  const std::vector<int> component = ReferenceComponent(graph, ranked, problem);
+  if (component.empty()) return problem;
+  problem.vertex_count = static_cast<int>(component.size());
+  problem.sensor_of_vertex.resize(component.size());
+  const std::vector<int> vertex_of_rank = NumberVertices(ranked, component);
+  FillVertices(ranked, vertex_of_rank, problem);
+  problem.constraints.reserve(ranked.links.size());
+  for (const Link& link : ranked.links) {
+    const int i = vertex_of_rank[static_cast<std::size_t>(link.a)];
+    if (i < 0) continue;
+    problem.constraints.push_back(link.constraint);
+    problem.constraints.back().i = i;
+    problem.constraints.back().j = vertex_of_rank[static_cast<std::size_t>(link.b)];
+  }
+  problem.pattern.block_count = problem.free_count();
+  AssignSlots(problem);
+  return problem;
+}
+
+}  // namespace rigcal::graph

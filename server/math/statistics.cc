@@ -1,0 +1,50 @@
+#include "server/math/statistics.h"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+namespace rigcal {
+namespace {
+
+namespace policies = boost::math::policies;
+// No exceptions: a quantile at probability 1 is infinite.
+using Quiet = policies::policy<policies::domain_error<policies::ignore_error>,
+                               policies::overflow_error<policies::ignore_error>,
+                               policies::evaluation_error<policies::ignore_error>>;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+double ChiSquareQuantile(double probability, double dof) {
+  if (!(dof > 0) || probability <= 0) return 0.0;  // without freedom the statistic is always zero
+  if (probability >= 1) return kInfinity;
+  return boost::math::quantile(boost::math::chi_squared_distribution<double, Quiet>(dof), probability);
+}
+
+double ChiSquareTail(double statistic, double dof) {
+  if (statistic <= 0) return 1.0;
+  if (!(dof > 0) || !std::isfinite(statistic)) return 0.0;
+  return boost::math::cdf(complement(boost::math::chi_squared_distribution<double, Quiet>(dof), statistic));
+}
+
+double StudentQuantile(double probability, double dof) {
+  if (probability <= 0) return -kInfinity;
+  if (probability >= 1) return kInfinity;
+  if (probability == 0.5) return 0.0;
+  if (!(dof > 0)) return probability > 0.5 ? kInfinity : -kInfinity;
+  return boost::math::quantile(boost::math::students_t_distribution<double, Quiet>(dof), probability);
+}
+
+double HotellingLimit(int m, int p, double probability) {
+  const int nu = m - 1;
+  if (nu < p || probability >= 1) return kInfinity;
+  if (p < 1 || probability <= 0) return 0.0;
+  const double rest = nu - p + 1;
+  const boost::math::fisher_f_distribution<double, Quiet> fisher(p, rest);
+  return p * nu / rest * boost::math::quantile(fisher, probability);
+}
+
+}  // namespace rigcal

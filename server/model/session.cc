@@ -1,0 +1,119 @@
+#include "server/model/session.h"
+
+#include <algorithm>
+#include <set>
+
+#include "server/base/limits.h"
+#include "server/base/text.h"
+
+namespace rigcal {
+namespace {
+
+Status CheckText(const std::string& field, const std::string& text) {
+  constexpr std::size_t kTextBytesMax = 1024;
+  if (text.size() <= kTextBytesMax && IsPrintableUtf8(text)) return {};
+  return Fail(ErrorCode::kInvalidInput, field + ": " + Quoted(text) + " is not one line of readable text",
+              "Use at most " + std::to_string(kTextBytesMax) + " bytes of UTF-8 without control characters.");
+}
+
+bool HasSensor(const SessionHeader& header, const SensorId& id) {
+  return std::any_of(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
+}
+
+bool MayShareTarget(const Sensor& a, const Sensor& b) {
+  if (a.kind != SensorKind::kCamera || b.kind != SensorKind::kCamera) return false;
+  return !a.sees || !b.sees || *a.sees == *b.sees;
+}
+
+bool HasTarget(const SessionHeader& header, const TargetId& id) {
+  return std::any_of(header.targets.begin(), header.targets.end(), [&](const Checkerboard& t) { return t.id == id; });
+}
+
+Status CheckTexts(const SessionHeader& header) {
+  RIGCAL_TRY(CheckText("rig_model", header.rig_model));
+  RIGCAL_TRY(CheckText("operator", header.operator_name));
+  for (const auto& [key, value] : header.conditions) {
+    RIGCAL_TRY(CheckText("conditions", key));
+    RIGCAL_TRY(CheckText("conditions " + key, value));
+  }
+  return {};
+}
+
+Status CheckCount(const std::string& things, std::size_t count, std::size_t count_max) {
+  if (count >= 1 && count <= count_max) return {};
+  return Fail(ErrorCode::kInvalidInput, things + ": the session has " + std::to_string(count),
+              "Give 1 to " + std::to_string(count_max) + ".");
+}
+
+Status CheckReference(const SessionHeader& header) {
+  if (HasSensor(header, header.reference)) return {};
+  return Fail(ErrorCode::kInvalidInput, "reference sensor " + Quoted(header.reference.str()) + " is not a sensor",
+              "Name one of the session's sensors as the reference.");
+}
+
+Status CheckSightings(const SessionHeader& header) {
+  for (const Sensor& sensor : header.sensors)
+    if (sensor.sees && !HasTarget(header, *sensor.sees))
+      return Fail(ErrorCode::kInvalidInput,
+                  "sensor " + sensor.id.str() + ": it sees target " + Quoted(sensor.sees->str()) +
+                      ", which the session does not list",
+                  "List the target, or leave 'sees' away if any target may be seen.");
+  return {};
+}
+
+template <typename T>
+Status CheckUnique(const std::string& kind, const std::vector<T>& things) {
+  std::set<std::string_view> seen;
+  for (const T& thing : things)
+    if (!seen.insert(thing.id.str()).second)
+      return Fail(ErrorCode::kInvalidInput, kind + " " + thing.id.str() + " is listed twice",
+                  "Give every " + kind + " its own name.");
+  return {};
+}
+
+}  // namespace
+
+std::string NameOf(SensorKind kind) {
+  switch (kind) {
+    case SensorKind::kCamera: return "camera";
+    case SensorKind::kLidar: return "lidar";
+    case SensorKind::kTracker: return "tracker";
+    case SensorKind::kPoseStream: return "pose_stream";
+  }
+  return "camera";
+}
+
+Result<SensorKind> SensorKindOf(const std::string& name) {
+  for (SensorKind kind : {SensorKind::kCamera, SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream})
+    if (NameOf(kind) == name) return kind;
+  return Fail(ErrorCode::kInvalidInput, "sensor kind " + Quoted(name) + " is not known",
+              "Use camera, lidar, tracker or pose_stream.");
+}
+
+Status Validate(const SessionHeader& header) {
+  if (header.format != 1)
+    return Fail(ErrorCode::kUnsupported, "session format " + std::to_string(header.format) + " is not known",
+                "This version reads format 1; update Rigcal if the session is newer.");
+  RIGCAL_TRY(CheckName(RobotTag::kKind, header.robot.str()));
+  RIGCAL_TRY(CheckTexts(header));
+  if (header.captured_at.ns < 0)
+    return Fail(ErrorCode::kInvalidInput, "captured_at lies before 1970", "Give the time of the capture.");
+  RIGCAL_TRY(CheckCount("sensors", header.sensors.size(), limits::kSensorsPerSessionMax));
+  RIGCAL_TRY(CheckCount("targets", header.targets.size(), limits::kTargetsPerSessionMax));
+  for (const Checkerboard& target : header.targets) RIGCAL_TRY(Validate(target));
+  RIGCAL_TRY(CheckUnique("target", header.targets));
+  for (const Sensor& sensor : header.sensors) RIGCAL_TRY(Validate(sensor));
+  RIGCAL_TRY(CheckUnique("sensor", header.sensors));
+  RIGCAL_TRY(CheckSightings(header));
+  return CheckReference(header);
+}
+
+std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
+  std::vector<SensorPair> pairs;
+  for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
+    for (auto b = a + 1; b != header.sensors.end(); ++b)
+      if (MayShareTarget(*a, *b)) pairs.push_back({a->id, b->id});
+  return pairs;
+}
+
+}  // namespace rigcal

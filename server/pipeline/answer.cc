@@ -1,0 +1,180 @@
+#include "server/pipeline/answer.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "server/base/version.h"
+#include "server/formats/answers.h"
+#include "server/formats/parameters.h"
+#include "server/graph/solve.h"
+#include "server/pipeline/robot_rows.h"
+#include "storage/edges.h"
+#include "storage/jobs.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using formats::Parameters;
+using Verb = std::function<Result<std::string>(const AnswerContext&, const Parameters&)>;
+
+template <typename IdType>
+Result<IdType> RequiredId(const Parameters& parameters, const std::string& name) {
+  const auto text = parameters.Text(name);
+  if (!text)
+    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", "See docs/api.md for the verb's parameters.");
+  return IdType::Parse(*text);
+}
+
+Result<RobotId> OptionalRobot(const Parameters& parameters) {
+  return parameters.Text("robot") ? RequiredId<RobotId>(parameters, "robot") : RobotId();
+}
+
+// kNotFound for a robot that the store does not know.
+Result<RobotId> KnownRobot(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
+  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(context.store));
+  if (std::any_of(robots.begin(), robots.end(), [&](const auto& row) { return row.robot == robot; })) return robot;
+  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+}
+
+Result<std::string> Robots(const AnswerContext& context, const Parameters&) {
+  const Stamp now = context.clock.Now();
+  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
+  return formats::WriteRobots(rows, now);
+}
+
+Result<std::string> Sessions(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
+  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const auto rows, LoadSessionRows(context.store, robot));
+  return formats::WriteSessions(rows);
+}
+
+Result<std::string> Session(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const SessionId id, RequiredId<SessionId>(parameters, "id"));
+  RIGCAL_ASSIGN(const auto row, LoadSessionRow(context.store, id));
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(context.store, id));
+  RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, id));
+  return formats::WriteSession(row, manifest.value_or(Manifest{}), edges);
+}
+
+Result<std::string> Edges(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, robot, false));
+  RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(context.store, robot, 0));
+  if (!revision) return formats::WriteEdges(robot, 0, edges, {});
+  RIGCAL_ASSIGN(const auto document, formats::ReadRevisionDocument(revision->document));
+  return formats::WriteEdges(robot, revision->number, edges, document.solution.residuals);
+}
+
+Result<std::string> OneEdge(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const EdgeId id, RequiredId<EdgeId>(parameters, "id"));
+  RIGCAL_ASSIGN(const auto edge, storage::LoadEdge(context.store, id));
+  if (!edge)
+    return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known", "`rigcal edges ROBOT` lists those that are.");
+  return formats::WriteEdge(*edge);
+}
+
+Result<std::string> Show(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
+  RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, number));
+  return formats::WriteShow(revision, context.clock.Now());
+}
+
+Result<std::string> Revisions(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
+  return formats::WriteRevisions(robot, revisions, context.clock.Now());
+}
+
+// Poses and edges both come from the revision's own document: an edge that arrived since plays no part.
+Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
+  RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
+  RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, 0));
+  RIGCAL_ASSIGN(const auto document, formats::ReadRevisionDocument(revision.document));
+  Graph graph = graph::GraphOf(document.edges, document.reference);
+  graph.reference = document.reference;
+  graph.sensors.clear();
+  for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);
+  RIGCAL_ASSIGN(const auto relative, graph::Relative(graph, document.solution, a, b));
+  formats::LookupAnswer answer;
+  answer.robot = robot;
+  answer.revision = revision.number;
+  answer.frame_a = a;
+  answer.frame_b = b;
+  answer.T_a_b = relative.T_A_B;
+  answer.covariance = relative.covariance;
+  answer.verdict = revision.verdict;
+  return formats::WriteLookup(answer);
+}
+
+Result<std::string> OfStatus(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
+  const Stamp now = context.clock.Now();
+  formats::StatusAnswer answer;
+  answer.version = std::string(Version());
+  answer.http_address = context.http_address;
+  answer.uptime_ns = now.ns - context.started_at.ns;
+  RIGCAL_ASSIGN(answer.robots, LoadRobotRows(context.store, robot, now));
+  for (const auto& row : answer.robots) answer.jobs_waiting += row.jobs_waiting;
+  return formats::WriteStatus(answer, now);
+}
+
+Result<std::string> Due(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", kDefaultMaxAge_ns));
+  if (max_age_ns < 0)
+    return Fail(ErrorCode::kInvalidInput, "the parameter 'max_age_ns' is negative", "Give an age such as 90d.");
+  const Stamp now = context.clock.Now();
+  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
+  std::vector<formats::DueAnswer> due;
+  for (const auto& row : rows) due.push_back({row.robot, row.calibrated_at, row.verdict});
+  return formats::WriteDue(due, max_age_ns, now);
+}
+
+Result<std::string> Health(const AnswerContext& context, const Parameters&) {
+  const Stamp now = context.clock.Now();
+  formats::HealthAnswer answer;
+  answer.version = std::string(Version());
+  answer.http_address = context.http_address;
+  answer.uptime_ns = now.ns - context.started_at.ns;
+  answer.schema = context.store.SchemaVersion();
+  answer.protocol = kWireProtocol;
+  std::error_code error;
+  const auto space = std::filesystem::space(context.store.folder(), error);
+  if (error)
+    answer.problem = Error{ErrorCode::kStorage, "the data folder cannot be read: " + error.message(), "Check the disk."};
+  else
+    answer.disk_free_bytes = static_cast<std::int64_t>(space.available);
+  constexpr std::int64_t kDiskLow_bytes = 1LL << 30;
+  if (!error && answer.disk_free_bytes < kDiskLow_bytes)
+    answer.problem = Error{ErrorCode::kStorage, "less than 1 GiB is free on the disk of the data folder",
+                           "Make room before the next session."};
+  return formats::WriteHealth(answer, now);
+}
+
+const std::map<std::string, Verb>& Verbs() {
+  static const std::map<std::string, Verb> verbs = {
+      {"robots", Robots},       {"sessions", Sessions}, {"session", Session}, {"edges", Edges},
+      {"edge", OneEdge},        {"show", Show},         {"lookup", Lookup},   {"revisions", Revisions},
+      {"status", OfStatus},     {"due", Due},           {"health", Health},
+  };
+  return verbs;
+}
+
+}  // namespace
+
+Result<std::string> Answer(const AnswerContext& context, const std::string& verb, const std::string& json) {
+  const auto found = Verbs().find(verb);
+  if (found == Verbs().end())
+    return Fail(ErrorCode::kInvalidInput, "the verb '" + verb.substr(0, 32) + "' is not known", "docs/api.md lists the verbs.");
+  RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
+  return found->second(context, parameters);
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,91 @@
+#include <map>
+
+#include "server/formats/answers.h"
+#include "server/formats/parameters.h"
+#include "server/pipeline/answer.h"
+#include "server/pipeline/robot_rows.h"
+#include "server/report/render.h"
+#include "storage/revisions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr const char* kJson = "application/json; charset=utf-8";
+
+report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
+  report::FleetRow fleet;
+  fleet.robot = row.robot;
+  fleet.revision = row.revision;
+  fleet.verdict = row.verdict;
+  fleet.calibrated_at = row.calibrated_at.value_or(Stamp{});
+  fleet.sessions = row.sessions;
+  fleet.edges = row.edges;
+  fleet.overdue = row.overdue;
+  return fleet;
+}
+
+Result<PageText> FleetPage(const AnswerContext& context) {
+  const Stamp now = context.clock.Now();
+  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
+  std::vector<report::FleetRow> fleet;
+  for (const auto& row : rows) fleet.push_back(FleetRowOf(row));
+  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now));
+  return PageText{std::move(body), kHtml};
+}
+
+Result<PageText> RobotPage(const AnswerContext& context, const std::string& name) {
+  RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(name));
+  const Stamp now = context.clock.Now();
+  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
+  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
+  RIGCAL_ASSIGN(std::string body, report::RenderRobot(FleetRowOf(rows.front()), revisions, now));
+  return PageText{std::move(body), kHtml};
+}
+
+Result<PageText> Api(const AnswerContext& context, const std::string& verb, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(std::string body, Answer(context, verb, json));
+  return PageText{std::move(body), kJson};
+}
+
+// Prometheus text: one gauge per line.
+Result<PageText> Metrics(const AnswerContext& context) {
+  const Stamp now = context.clock.Now();
+  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
+  std::map<std::string, int> verdicts = {{"pass", 0}, {"warn", 0}, {"fail", 0}, {"unknown", 0}};
+  std::int64_t jobs = 0, edges = 0, sessions = 0;
+  for (const auto& row : rows) {
+    ++verdicts[NameOf(row.verdict.level)];
+    jobs += row.jobs_waiting;
+    edges += row.edges;
+    sessions += row.sessions;
+  }
+  std::string text = "rigcal_uptime_seconds " + std::to_string((now.ns - context.started_at.ns) / 1'000'000'000) + "\n";
+  text += "rigcal_jobs_waiting " + std::to_string(jobs) + "\nrigcal_edges " + std::to_string(edges) +
+          "\nrigcal_sessions " + std::to_string(sessions) + "\n";
+  for (const auto& [verdict, count] : verdicts)
+    text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(count) + "\n";
+  return PageText{text, "text/plain; version=0.0.4; charset=utf-8"};
+}
+
+Result<PageText> Healthz(const AnswerContext& context) {
+  RIGCAL_ASSIGN(std::string body, Answer(context, "health", "{}"));
+  return PageText{std::move(body), kJson};
+}
+
+}  // namespace
+
+Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
+  const std::string api = "/api/v1/", robots = "/robots/";
+  if (path == "/") return FleetPage(context);
+  if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
+  if (path == "/healthz") return Healthz(context);
+  if (path == "/metrics") return Metrics(context);
+  if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
+  if (path.rfind(robots, 0) == 0 && path.back() == '/' && path.size() > robots.size())
+    return RobotPage(context, path.substr(robots.size(), path.size() - robots.size() - 1));
+  return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots: /");
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,92 @@
+#include "server/pipeline/publish.h"
+
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "server/base/durable_file.h"
+#include "server/base/version.h"
+#include "server/formats/documents.h"
+#include "server/report/render.h"
+#include "storage/blobs.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error DiskError(const fs::path& path, const std::error_code& error) {
+  return {ErrorCode::kStorage, "the report folder " + path.string() + " cannot be written: " + error.message(),
+          "Check free space and permissions of the data folder."};
+}
+
+// Pictures are hard links to their blobs: no copy, and a blob never changes.
+Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges, const fs::path& folder,
+                    std::vector<Digest>& present) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Fail(DiskError(folder, error));
+  std::set<Digest> done;
+  for (const Edge& edge : edges)
+    for (const Evidence& item : edge.evidence) {
+      if (!done.insert(item.digest).second || !storage::HasBlob(store.BlobFolder(), item.digest)) continue;
+      const fs::path from = storage::BlobPath(store.BlobFolder(), item.digest);
+      const fs::path file = folder / (item.digest.str() + "." + item.suffix);
+      fs::create_hard_link(from, file, error);
+      if (error) fs::copy_file(from, file, fs::copy_options::overwrite_existing, error);
+      if (error) return Fail(DiskError(file, error));
+      present.push_back(item.digest);
+    }
+  return {};
+}
+
+Status WriteFiles(const std::map<std::string, std::string>& files, const fs::path& folder) {
+  for (const auto& [name, contents] : files) {
+    std::error_code error;
+    fs::create_directories((folder / name).parent_path(), error);
+    if (error) return Fail(DiskError(folder / name, error));
+    RIGCAL_TRY(WriteDurably(folder / name, contents));
+  }
+  return {};
+}
+
+Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
+  std::error_code error;
+  fs::remove_all(folder, error);
+  fs::rename(temporary, folder, error);
+  if (error) return Fail(DiskError(folder, error));
+  return SyncFolder(folder.parent_path());
+}
+
+Result<report::ReportInput> ReportOf(const Revision& revision) {
+  report::ReportInput input;
+  input.number = revision.number;
+  input.created_at = revision.created_at;
+  input.digest = revision.digest;
+  input.software_version = std::string(Version());
+  RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
+  return input;
+}
+
+}  // namespace
+
+Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key, const Clock& clock) {
+  RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(store, key.robot, key.number));
+  if (!revision)
+    return Fail(ErrorCode::kNotFound, "robot " + key.robot.str() + " has no revision " + std::to_string(key.number),
+                "See its revisions with: rigcal show " + key.robot.str());
+  RIGCAL_ASSIGN(report::ReportInput input, ReportOf(*revision));
+  const fs::path robot_folder = store.ReportFolder() / key.robot.str();
+  const fs::path folder = robot_folder / std::to_string(key.number);
+  const fs::path temporary = robot_folder / (".new-" + std::to_string(key.number));
+  std::error_code error;
+  fs::remove_all(temporary, error);
+  RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
+  RIGCAL_ASSIGN(const auto files, report::RenderRevision(input, revision->document));
+  RIGCAL_TRY(WriteFiles(files, temporary));
+  RIGCAL_TRY(MoveInPlace(temporary, folder));
+  RIGCAL_TRY(store.Write([&] { return storage::AppendPublication(store, key, clock.Now()); }));
+  return folder;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,16 @@
+// A committed revision -> its report folder, published at once or not at all.
+#pragma once
+
+#include <filesystem>
+
+#include "server/base/stamp.h"
+#include "storage/revisions.h"
+
+namespace rigcal::pipeline {
+
+// Renders into a temporary folder, fsyncs, renames it to ReportFolder()/<robot>/<number>, marks it published. Doing it
+// twice is harmless. Returns the folder.
+[[nodiscard]] Result<std::filesystem::path> Publish(storage::Store& store, const storage::RevisionKey& key,
+                                                    const Clock& clock);
+
+}  // namespace rigcal::pipeline

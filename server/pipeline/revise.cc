@@ -1,0 +1,76 @@
+#include "server/pipeline/revise.h"
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "server/base/sha256.h"
+#include "server/fleet/assess.h"
+#include "server/formats/documents.h"
+#include "server/graph/solve.h"
+#include "storage/edges.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(std::vector<storage::SessionRow> rows, storage::LoadSessions(store, robot));
+  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const auto& row) { return !row.closed; }), rows.end());
+  if (rows.empty()) return SensorId();
+  const auto first = std::min_element(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
+    return std::tie(x.captured_at, x.id) < std::tie(y.captured_at, y.id);
+  });
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, first->id));
+  return manifest ? manifest->header.reference : SensorId();
+}
+
+void AddSensorsOfFailedEdges(const std::vector<Edge>& edges, Graph& graph) {
+  std::set<SensorId> known(graph.sensors.begin(), graph.sensors.end());
+  for (const Edge& edge : edges)
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (known.insert(sensor).second) graph.sensors.push_back(sensor);
+  std::sort(graph.sensors.begin(), graph.sensors.end());
+}
+
+}  // namespace
+
+Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
+  RobotGraph loaded;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
+    RIGCAL_ASSIGN(loaded.edges, storage::LoadEdges(store, robot, false));
+    RIGCAL_ASSIGN(const SensorId reference, LoadReference(store, robot));
+    loaded.graph = graph::GraphOf(loaded.edges, reference);
+    if (!reference.empty()) loaded.graph.reference = reference;
+    return {};
+  }));
+  AddSensorsOfFailedEdges(loaded.edges, loaded.graph);
+  return loaded;
+}
+
+Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock) {
+  RIGCAL_ASSIGN(RobotGraph loaded, LoadRobotGraph(store, robot));
+  formats::RevisionInput input;
+  input.robot = robot;
+  input.reference = loaded.graph.reference;
+  input.solution = graph::Solve(loaded.graph);
+  input.verdict = fleet::Assess(loaded.edges, input.solution);
+  input.edges = std::move(loaded.edges);
+
+  Revision revision;
+  revision.robot = robot;
+  revision.created_at = clock.Now();
+  revision.verdict = input.verdict;
+  revision.document = formats::WriteRevisionDocument(input);
+  revision.digest = Sha256Of(revision.document);
+  revision.edge_watermark = loaded.watermark;
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
+    return {};
+  }));
+  return revision;
+}
+
+}  // namespace rigcal::pipeline

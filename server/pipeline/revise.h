@@ -1,0 +1,22 @@
+// Once per burst: the canonical solve of all good edges of a robot -> the numbered revision.
+#pragma once
+
+#include "server/base/stamp.h"
+#include "server/model/graph.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// The graph of a robot: good edges, plus the sensors that appear only in failed ones. The reference is the one that the
+// earliest captured session names (ties: smaller session id); without a session, GraphOf's own rule.
+struct RobotGraph {
+  std::vector<Edge> edges;  // good and failed, sorted by id
+  Graph graph;
+  std::int64_t watermark = 0;
+};
+[[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot);
+
+// Solves, judges and commits. The same edges give the same document, byte for byte, whatever the order of arrival.
+[[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,95 @@
+#include "server/pipeline/robot_rows.h"
+
+#include <algorithm>
+
+#include "storage/jobs.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRow& robot, Stamp now) {
+  formats::RobotAnswer row;
+  row.robot = robot.robot;
+  row.sessions = robot.sessions;
+  row.edges = robot.edges;
+  RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
+  RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(store, robot.robot, 0));
+  if (!revision) {
+    row.verdict = {VerdictLevel::kUnknown, "there is no revision yet", "Push a capture session or finished edges."};
+    return row;
+  }
+  row.revision = revision->number;
+  row.verdict = revision->verdict;
+  row.calibrated_at = revision->created_at;
+  row.overdue = now.ns - revision->created_at.ns > kDefaultMaxAge_ns;
+  return row;
+}
+
+Result<formats::SessionAnswer> RowOf(storage::Store& store, const storage::SessionRow& session) {
+  formats::SessionAnswer row;
+  row.session = session.id;
+  row.robot = session.robot;
+  row.closed = session.closed;
+  row.payloads = session.payloads;
+  row.payloads_held = session.payloads_held;
+  row.bytes = session.bytes;
+  row.captured_at = session.captured_at;
+  row.opened_at = session.opened_at;
+  if (session.closed) row.closed_at = session.closed_at;
+  row.operator_name = session.operator_name;
+  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(store, session.id));
+  row.jobs_waiting = jobs.waiting;
+  row.jobs_total = jobs.total;
+  return row;
+}
+
+}  // namespace
+
+Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot, Stamp now) {
+  std::vector<formats::RobotAnswer> rows;
+  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
+  for (const storage::RobotRow& item : robots) {
+    if (!robot.empty() && item.robot != robot) continue;
+    RIGCAL_ASSIGN(auto row, RowOf(store, item, now));
+    rows.push_back(std::move(row));
+  }
+  if (!robot.empty() && rows.empty())
+    return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) { return x.robot < y.robot; });
+  return rows;
+}
+
+Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot) {
+  std::vector<formats::SessionAnswer> rows;
+  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
+  for (const storage::SessionRow& item : sessions) {
+    RIGCAL_ASSIGN(auto row, RowOf(store, item));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Result<formats::SessionAnswer> LoadSessionRow(storage::Store& store, const SessionId& id) {
+  RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
+  if (!session)
+    return Fail(ErrorCode::kNotFound, "session " + id.str() + " is not known", "`rigcal sessions` lists those that are.");
+  return RowOf(store, *session);
+}
+
+Result<Revision> LoadRevisionOf(storage::Store& store, const RobotId& robot, std::int64_t number) {
+  constexpr std::int64_t kNumberMax = 1'000'000'000;
+  const bool possible = number >= 0 && number <= kNumberMax;
+  if (possible) {
+    RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(store, robot, static_cast<int>(number)));
+    if (revision) return *revision;
+  }
+  if (number != 0)
+    return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision " + std::to_string(number),
+                "Leave the number out to get the newest.");
+  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision yet",
+              "Push a capture session or finished edges; `rigcal robots` lists the robots that are known.");
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,23 @@
+// READ: what the store says of each robot, as answers and pages show it.
+#pragma once
+
+#include <vector>
+
+#include "server/base/stamp.h"
+#include "server/formats/answers.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// A calibration older than this is overdue on the fleet page (`rigcal due` takes its own limit).
+constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'000;
+
+// One row per robot, sorted by id; only `robot` if it is not empty (kNotFound if there is none).
+[[nodiscard]] Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot,
+                                                                      Stamp now);
+[[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot);
+[[nodiscard]] Result<formats::SessionAnswer> LoadSessionRow(storage::Store& store, const SessionId& id);
+// The newest revision, or `number`; kNotFound names the robot.
+[[nodiscard]] Result<Revision> LoadRevisionOf(storage::Store& store, const RobotId& robot, std::int64_t number);
+
+}  // namespace rigcal::pipeline

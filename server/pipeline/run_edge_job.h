@@ -1,0 +1,15 @@
+// From a stored session to one finished edge: the file to read first.
+#pragma once
+
+#include "server/base/stamp.h"
+#include "server/model/edge.h"
+#include "storage/jobs.h"
+
+namespace rigcal::pipeline {
+
+// Loads the pair's captures, detects (cached by content), estimates with its jackknife, and commits the edge together
+// with the end of the job. What cannot be calibrated becomes a failed edge with its diagnoses, never an error; an error
+// means that the store failed and the job is still waiting. One job of a robot at a time.
+[[nodiscard]] Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock);
+
+}  // namespace rigcal::pipeline

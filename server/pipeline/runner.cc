@@ -1,0 +1,91 @@
+#include "server/pipeline/runner.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <thread>
+#include <vector>
+
+#include "server/base/log.h"
+
+namespace rigcal::pipeline {
+namespace {
+// After a failure of the store (a full disk, say) the same step is tried again after this long.
+constexpr std::int64_t kRetry_ns = 2'000'000'000;
+}  // namespace
+
+struct Runner::Impl {
+  Options options;
+  Announcer announcer;
+  LiveGraphs live;
+  Claims claims;
+  std::vector<storage::Store> stores;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::uint64_t wakes = 0;  // guarded by mutex
+  bool stopping = false;    // guarded by mutex
+  std::vector<std::thread> threads;
+
+  void Loop(storage::Store& store) {
+    std::uint64_t seen = 0;
+    while (Seen(seen)) {
+      const auto result = Step({store, *options.clock, live, claims, announcer});
+      if (!result) LogError(result.error());
+      if (result && result->worked)
+        Signal();  // its robot may be free for another thread now
+      else
+        Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
+    }
+  }
+
+  // Notes which wakes are covered by the step to come; false when stopping.
+  bool Seen(std::uint64_t& seen) {
+    const std::lock_guard lock(mutex);
+    seen = wakes;
+    return !stopping;
+  }
+
+  void Wait(std::uint64_t seen, std::optional<Stamp> wake_at) {
+    std::unique_lock lock(mutex);
+    const auto ready = [&] { return stopping || wakes != seen; };
+    if (!wake_at) return changed.wait(lock, ready);
+    changed.wait_for(lock, std::chrono::nanoseconds(wake_at->ns - options.clock->Now().ns), ready);
+  }
+
+  void Signal() {
+    {
+      const std::lock_guard lock(mutex);
+      ++wakes;
+    }
+    changed.notify_all();
+  }
+
+  ~Impl() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    changed.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  }
+};
+
+Runner::Runner(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Runner::~Runner() = default;
+Runner::Runner(Runner&&) noexcept = default;
+Runner& Runner::operator=(Runner&&) noexcept = default;
+
+Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
+  auto impl = std::make_unique<Impl>();
+  impl->options = options;
+  impl->announcer = std::move(announcer);
+  for (int i = 0; i < options.threads; ++i) {
+    RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
+    impl->stores.push_back(std::move(store));
+  }
+  for (storage::Store& store : impl->stores) impl->threads.emplace_back([&store, raw = impl.get()] { raw->Loop(store); });
+  return Runner(std::move(impl));
+}
+
+void Runner::Wake() { impl_->Signal(); }
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,31 @@
+// The job runner: threads that loop over Step(). Owns its threads and one Store per thread.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "server/pipeline/step.h"
+
+namespace rigcal::pipeline {
+
+class Runner {
+ public:
+  struct Options {
+    std::filesystem::path folder;  // of the store
+    const Clock* clock = nullptr;
+    int threads = 2;
+  };
+  [[nodiscard]] static Result<Runner> Start(const Options& options, Announcer announcer);
+  ~Runner();  // finishes the step at hand, then joins; unfinished work is found again at the next start
+  Runner(Runner&&) noexcept;
+  Runner& operator=(Runner&&) noexcept;
+  // There may be work. Any thread; never blocks.
+  void Wake();
+
+ private:
+  struct Impl;
+  explicit Runner(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,53 @@
+// One piece of work, chosen from what the store says is unfinished: after a crash the same rule finds the same work.
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/base/stamp.h"
+#include "server/model/graph.h"
+#include "server/pipeline/live_graphs.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Which robots are being worked on: one writer per robot at a time. Shared by the runner's threads.
+class Claims {
+ public:
+  [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it
+  void GiveBack(const RobotId& robot);
+  [[nodiscard]] std::vector<RobotId> Taken() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<RobotId> taken_;
+};
+
+// What is told to the world. Called from the thread that steps; must not block.
+struct Announcer {
+  std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)> event;
+  std::function<void(const Revision&, const SensorId& reference, const std::vector<SensorPose>&, std::int64_t edges)>
+      calibration;
+};
+
+struct StepContext {
+  storage::Store& store;  // of the calling thread
+  const Clock& clock;
+  LiveGraphs& live;
+  Claims& claims;
+  const Announcer& announcer;
+};
+
+struct StepResult {
+  bool worked = false;           // false: there was nothing to do
+  std::optional<Stamp> wake_at;  // nothing now, but look again then (a batch whose sender went silent)
+};
+
+// In this order: publish a revision; revise a robot whose burst is over; run one edge job.
+[[nodiscard]] Result<StepResult> Step(const StepContext& context);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,88 @@
+#include "server/report/bars.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kBarsMax = 120, kNamedMax = 24;
+constexpr double kLeft_px = 44, kTop_px = 12, kHeight_px = 110, kFoot_px = 22;
+
+double RmsOf(const CaptureResidual& capture) { return std::isfinite(capture.rms) && capture.used ? std::max(capture.rms, 0.0) : 0.0; }
+
+// All of them, or the worst ones in their own order.
+std::vector<const CaptureResidual*> Drawn(const std::vector<CaptureResidual>& captures) {
+  std::vector<const CaptureResidual*> drawn;
+  for (const CaptureResidual& capture : captures) drawn.push_back(&capture);
+  if (drawn.size() <= kBarsMax) return drawn;
+  std::stable_sort(drawn.begin(), drawn.end(), [](const auto* a, const auto* b) { return RmsOf(*a) > RmsOf(*b); });
+  drawn.resize(kBarsMax);
+  std::sort(drawn.begin(), drawn.end());
+  return drawn;
+}
+
+// 1, 2 or 5 times a power of ten, at or above `value`.
+double NiceTop(double value) {
+  if (!(value > 0.0)) return 1.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * decade >= value) return step * decade;
+  return 10.0 * decade;
+}
+
+void FillGrid(Dictionary& svg, double top, double width) {
+  for (const double part : {0.0, 0.5, 1.0}) {
+    Dictionary* line = svg.AddSectionDictionary("GRID");
+    line->SetValue("X0", Fixed(kLeft_px - 6, 0));
+    line->SetValue("X1", Fixed(kLeft_px, 0));
+    line->SetValue("X2", Fixed(width - 6, 0));
+    line->SetValue("Y", Fixed(kTop_px + kHeight_px * (1 - part), 1));
+    line->SetValue("TEXT", part == 0.0 ? "0" : Significant(top * part, 2));
+  }
+}
+
+struct Slot { double left = 0.0, width = 0.0; bool named = false; };
+
+void FillBar(Dictionary& svg, const CaptureResidual& capture, const Slot& slot, double top, double worst) {
+  const double height = capture.used ? std::max(1.0, RmsOf(capture) / top * kHeight_px) : kHeight_px * 0.5;
+  Dictionary* bar = svg.AddSectionDictionary("BAR");
+  bar->SetValue("STATE", !capture.used ? "unused" : RmsOf(capture) >= worst ? "worst" : "used");
+  bar->SetValue("X", Fixed(slot.left + slot.width * 0.15, 1));
+  bar->SetValue("Y", Fixed(kTop_px + kHeight_px - height, 1));
+  bar->SetValue("W", Fixed(slot.width * 0.7, 1));
+  bar->SetValue("H", Fixed(height, 1));
+  bar->SetValue("TITLE", capture.capture.str() + ": " +
+                             (capture.used ? Significant(capture.rms, 3) + " px" : "not used. " + capture.note));
+  if (!slot.named) return;
+  const std::string& name = capture.capture.str();
+  Dictionary* label = bar->AddSectionDictionary("NAMED");
+  label->SetValue("X", Fixed(slot.left + slot.width / 2, 1));
+  label->SetValue("Y", Fixed(kTop_px + kHeight_px + 15, 0));
+  label->SetValue("TEXT", name.size() > 7 ? "\xE2\x80\xA6" + name.substr(name.size() - 6) : name);
+}
+
+}  // namespace
+
+std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures) {
+  const auto drawn = Drawn(captures);
+  const bool named = drawn.size() <= kNamedMax;
+  const double step = named ? 52.0 : std::max(7.0, 1000.0 / static_cast<double>(drawn.size()));
+  const double width = kLeft_px + step * static_cast<double>(drawn.size()) + 8;
+  double worst = 0.0;
+  for (const CaptureResidual* capture : drawn) worst = std::max(worst, RmsOf(*capture));
+  Dictionary* svg = parent.AddIncludeDictionary("BARS");
+  svg->SetFilename("bars.tpl");
+  svg->SetValue("WIDTH", Fixed(width, 0));
+  svg->SetValue("HEIGHT", Fixed(kTop_px + kHeight_px + kFoot_px, 0));
+  svg->SetValue("LABEL", "Residual of each capture, largest " + Significant(worst, 3) + " px");
+  FillGrid(*svg, NiceTop(worst), width);
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    FillBar(*svg, *drawn[i], {kLeft_px + step * static_cast<double>(i), step, named}, NiceTop(worst), worst);
+  if (drawn.size() == captures.size()) return "";
+  return "The " + std::to_string(drawn.size()) + " worst of " + std::to_string(captures.size()) + " captures are drawn.";
+}
+
+}  // namespace rigcal::report

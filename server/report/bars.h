@@ -1,0 +1,15 @@
+// Residual per capture as a small bar chart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/model/edge.h"
+#include "server/report/page.h"
+
+namespace rigcal::report {
+
+// Adds the include {{>BARS}}. Returns a sentence about captures that are not drawn, or nothing.
+[[nodiscard]] std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures);
+
+}  // namespace rigcal::report

@@ -1,0 +1,65 @@
+#include "server/report/edge_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+std::string InUnit(double value, int axis) { return axis < tangent::kRotation ? SigmaMm(value) : SigmaDeg(value); }
+
+std::string SourceText(const Uncertainty& uncertainty) {
+  switch (uncertainty.source) {
+    case UncertaintySource::kJackknife:
+      return "\xCF\x83 from leaving out one of " + Count(uncertainty.dof + 1UL, "capture", "captures") + " at a time.";
+    case UncertaintySource::kModel: return "\xCF\x83 from the model alone: too few captures to test it.";
+    case UncertaintySource::kGiven: return "\xCF\x83 as given with the edge.";
+    case UncertaintySource::kAssumed: break;
+  }
+  return "\xCF\x83 is an assumption.";
+}
+
+// "x 0.71, rz 0.71": the entries of a direction that matter.
+std::string DirectionText(const Eigen::Matrix<double, 6, Eigen::Dynamic>& basis, Eigen::Index column) {
+  constexpr double kShown = 0.05;
+  std::string text;
+  for (int axis = 0; axis < 6; ++axis)
+    if (std::abs(basis(axis, column)) > kShown)
+      text += (text.empty() ? "" : ", ") + std::string(tangent::kNames[static_cast<std::size_t>(axis)]) + " " +
+              Fixed(basis(axis, column), 2);
+  return "(" + text + ")";
+}
+
+}  // namespace
+
+std::string AxisSigmaText(const Uncertainty& uncertainty, int axis) {
+  const AxisSigma sigma = SigmaOf(uncertainty, axis);
+  return sigma.known && std::isfinite(sigma.value) ? InUnit(sigma.value, axis) : "free";
+}
+
+std::string LargestSigma(const Uncertainty& uncertainty, int first_axis) {
+  double largest = -1.0;
+  std::string free;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis) {
+    const AxisSigma sigma = SigmaOf(uncertainty, axis);
+    if (sigma.known && std::isfinite(sigma.value))
+      largest = std::max(largest, sigma.value);
+    else
+      free += (free.empty() ? "" : " ") + std::string(tangent::kNames[static_cast<std::size_t>(axis)]);
+  }
+  if (free.empty()) return InUnit(largest, first_axis);
+  return largest < 0.0 ? "free" : InUnit(largest, first_axis) + ", free: " + free;
+}
+
+std::string ObservabilityText(const Uncertainty& uncertainty) {
+  const auto& basis = uncertainty.unobservable_basis;
+  if (uncertainty.rank >= 6) return "All 6 directions are observed. " + SourceText(uncertainty);
+  std::string text = std::to_string(uncertainty.rank) + " of 6 directions are observed";
+  for (Eigen::Index column = 0; column < basis.cols(); ++column)
+    text += (column == 0 ? "; free: " : ", ") + DirectionText(basis, column);
+  return text + ". " + SourceText(uncertainty);
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,16 @@
+// Uncertainty of an edge in words: sigma per axis, "free" where nothing was observed.
+#pragma once
+
+#include <string>
+
+#include "server/model/uncertainty.h"
+
+namespace rigcal::report {
+
+[[nodiscard]] std::string AxisSigmaText(const Uncertainty& uncertainty, int axis);  // mm, deg or "free"
+// Of the three axes from `first_axis` on; names the free ones: "0.21", "0.21, free: rz", "free".
+[[nodiscard]] std::string LargestSigma(const Uncertainty& uncertainty, int first_axis);
+// "All 6 directions are observed, ..." or what is free; and where sigma comes from.
+[[nodiscard]] std::string ObservabilityText(const Uncertainty& uncertainty);
+
+}  // namespace rigcal::report

@@ -1,0 +1,60 @@
+#include "server/report/edge_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <unordered_map>
+
+namespace rigcal::report {
+namespace {
+
+// A section costs its heading, too.
+std::size_t ItemsOf(const Edge& edge) {
+  return 2 + edge.captures.size() + std::min(edge.evidence.size(), kPicturesPerEdgeMax) + edge.diagnoses.size();
+}
+
+bool HasDetails(const Edge& edge) {
+  return !edge.captures.empty() || !edge.evidence.empty() || !edge.diagnoses.empty();
+}
+
+double InSigmas(const Edge& edge, const EdgeResidual* residual) {
+  if (!residual || edge.uncertainty.rank < 1 || !(residual->weighted > 0.0)) return 0.0;
+  return std::sqrt(residual->weighted / edge.uncertainty.rank);
+}
+
+bool Before(const ShownEdge& left, const ShownEdge& right) {
+  const auto key = [](const ShownEdge& shown) {
+    return std::make_tuple(shown.edge->state != EdgeState::kFailed, -shown.in_sigmas, shown.edge->frame_a,
+                           shown.edge->frame_b, shown.edge->id);
+  };
+  return key(left) < key(right);
+}
+
+void ChooseDetailed(std::vector<ShownEdge>& shown) {
+  std::size_t items = 0;
+  for (ShownEdge& one : shown) {
+    if (!HasDetails(*one.edge) || items + ItemsOf(*one.edge) > kDetailItemsMax) continue;
+    items += ItemsOf(*one.edge);
+    one.detailed = true;
+  }
+}
+
+}  // namespace
+
+std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision) {
+  std::unordered_map<EdgeId, const EdgeResidual*> residuals;
+  for (const EdgeResidual& residual : revision.solution.residuals)
+    if (residual.in_solution) residuals.emplace(residual.edge, &residual);
+  std::vector<ShownEdge> shown;
+  shown.reserve(revision.edges.size());
+  for (const Edge& edge : revision.edges) {
+    const auto found = residuals.find(edge.id);
+    const EdgeResidual* residual = found == residuals.end() ? nullptr : found->second;
+    shown.push_back({&edge, residual, false, InSigmas(edge, residual), "e-" + edge.id.str().substr(0, 16)});
+  }
+  std::sort(shown.begin(), shown.end(), Before);
+  ChooseDetailed(shown);
+  return shown;
+}
+
+}  // namespace rigcal::report

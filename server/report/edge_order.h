@@ -1,0 +1,25 @@
+// Edges as the report shows them: joined with their residuals, failed first, then the worst fit.
+#pragma once
+
+#include <vector>
+
+#include "server/report/render.h"
+
+namespace rigcal::report {
+
+struct ShownEdge {
+  const Edge* edge = nullptr;
+  const EdgeResidual* residual = nullptr;  // nullptr: not in the solution
+  bool detailed = false;                   // has a section of its own
+  double in_sigmas = 0.0;                  // sqrt(e^T Omega e / rank)
+  std::string anchor;                      // of the section
+};
+[[nodiscard]] std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision);
+
+// How much of a very large graph goes into one page; the rest is in revision.json.
+inline constexpr std::size_t kPoseRowsMax = 3000;
+inline constexpr std::size_t kEdgeRowsMax = 6000;
+inline constexpr std::size_t kDetailItemsMax = 4000;   // captures + pictures + diagnoses, all sections together
+inline constexpr std::size_t kPicturesPerEdgeMax = 200;
+
+}  // namespace rigcal::report

@@ -1,0 +1,127 @@
+#include "server/report/edge_section.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "server/report/bars.h"
+#include "server/report/edge_axes.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+void FillDiagnoses(Dictionary& section, const Edge& edge) {
+  for (const Diagnosis& diagnosis : edge.diagnoses) {
+    Dictionary* one = section.AddSectionDictionary("DIAGNOSIS");
+    one->SetValue("LEVEL", edge.state == EdgeState::kFailed ? "fail" : "warn");
+    one->SetValue("WHAT", diagnosis.what);
+    one->SetValue("CURE", diagnosis.cure);
+  }
+}
+
+void FillPose(Dictionary& section, const Edge& edge) {
+  Dictionary* pose = section.AddSectionDictionary("POSE");
+  pose->SetValue("FROM", edge.frame_a.str());
+  pose->SetValue("TO", edge.frame_b.str());
+  pose->SetValue("OBSERVABLE", ObservabilityText(edge.uncertainty));
+  const RollPitchYaw angles = RollPitchYawOf(edge.T_a_b.q);
+  const std::array<double, 3> rotation = {angles.roll, angles.pitch, angles.yaw};
+  const std::array<const char*, 3> names = {"x, roll", "y, pitch", "z, yaw"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    Dictionary* row = pose->AddSectionDictionary("AXIS");
+    row->SetValue("NAME", names[i]);
+    row->SetValue("P", Mm(edge.T_a_b.p_m(axis)));
+    row->SetValue("SP", AxisSigmaText(edge.uncertainty, axis));
+    row->SetValue("R", Deg(rotation[i]));
+    row->SetValue("SR", AxisSigmaText(edge.uncertainty, axis + tangent::kRotation));
+  }
+}
+
+void FillFigures(Dictionary& section, const Edge& edge) {
+  if (edge.figures.empty()) return;
+  Dictionary* figures = section.AddSectionDictionary("FIGURES");
+  for (const auto& [name, value] : edge.figures) {
+    Dictionary* row = figures->AddSectionDictionary("FIGURE");
+    row->SetValue("NAME", FigureName(name));
+    row->SetValue("VALUE", FigureValue(name, value));
+  }
+}
+
+void FillParts(Dictionary& section, const Edge& edge) {
+  if (edge.uncertainty.contributions.empty()) return;
+  Dictionary* parts = section.AddSectionDictionary("PARTS");
+  for (const Contribution& contribution : edge.uncertainty.contributions) {
+    const auto sigma = contribution.covariance.diagonal().cwiseMax(0.0).cwiseSqrt().eval();
+    Dictionary* row = parts->AddSectionDictionary("PART");
+    row->SetValue("NAME", contribution.name);
+    row->SetValue("MM", SigmaMm(sigma.head<3>().maxCoeff()));
+    row->SetValue("DEG", SigmaDeg(sigma.tail<3>().maxCoeff()));
+  }
+}
+
+void FillUnused(Dictionary& captures, const Edge& edge) {
+  constexpr std::size_t kUnusedMax = 30;
+  std::size_t shown = 0;
+  for (const CaptureResidual& capture : edge.captures) {
+    if (capture.used || shown++ >= kUnusedMax) continue;
+    Dictionary* row = captures.AddSectionDictionary("UNUSED");
+    row->SetValue("CAPTURE", capture.capture.str());
+    if (!capture.note.empty()) ShowValue(*row, "REASON", "NOTE", capture.note);
+  }
+}
+
+void FillCaptures(Dictionary& section, const Edge& edge) {
+  if (edge.captures.empty()) return;
+  Dictionary* captures = section.AddSectionDictionary("CAPTURES");
+  const std::string cut = FillBars(*captures, edge.captures);
+  if (!cut.empty()) ShowValue(*captures, "BARS_CUT", "TEXT", cut);
+  FillUnused(*captures, edge);
+}
+
+// The suffix becomes part of an address: only what we write ourselves.
+bool IsPicture(const Evidence& evidence) { return evidence.suffix == "jpg" || evidence.suffix == "png"; }
+
+void FillPicture(Dictionary& picture, const Evidence& evidence, const std::set<Digest>& stored) {
+  picture.SetValue("TITLE", evidence.title);
+  if (!IsPicture(evidence) || stored.count(evidence.digest) == 0) return picture.ShowSection("MISSING");
+  Dictionary* shown = picture.AddSectionDictionary("STORED");
+  shown->SetValue("FILE", evidence.digest.str() + "." + evidence.suffix);
+  shown->SetValue("ALT", evidence.title.empty() ? evidence.sensor.str() + " " + evidence.capture.str() : evidence.title);
+}
+
+void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>& stored) {
+  if (edge.evidence.empty()) return;
+  Dictionary* pictures = section.AddSectionDictionary("PICTURES");
+  const std::size_t count = std::min(edge.evidence.size(), kPicturesPerEdgeMax);
+  for (std::size_t i = 0; i < count; ++i)
+    FillPicture(*pictures->AddSectionDictionary("PICTURE"), edge.evidence[i], stored);
+  if (count < edge.evidence.size())
+    ShowValue(*pictures, "MORE", "COUNT", std::to_string(edge.evidence.size() - count));
+}
+
+}  // namespace
+
+void FillEdgeSection(Dictionary& section, const ShownEdge& shown, const std::set<Digest>& stored, bool open) {
+  const Edge& edge = *shown.edge;
+  const bool failed = edge.state == EdgeState::kFailed;
+  section.SetValue("STATE", failed ? "failed" : "good");
+  section.SetValue("LEVEL", failed ? "fail" : "pass");
+  section.SetValue("FROM", edge.frame_a.str());
+  section.SetValue("TO", edge.frame_b.str());
+  section.SetValue("METHOD", edge.method);
+  section.SetValue("ANCHOR", shown.anchor);
+  section.SetValue("ID", edge.id.str());
+  section.SetValue("PROVENANCE", edge.session.empty() ? "Pushed as a finished result."
+                                                      : "Session " + ShortDigest(edge.session.str()) + ".");
+  if (open) section.ShowSection("OPEN");
+  FillDiagnoses(section, edge);
+  if (!failed) FillPose(section, edge);
+  FillFigures(section, edge);
+  if (!failed) FillParts(section, edge);
+  FillCaptures(section, edge);
+  FillPictures(section, edge, stored);
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,22 @@
+// Fills the embedded templates. Every template escapes by itself (AUTOESCAPE): values go in as they are.
+#pragma once
+
+#include <ctemplate/template_dictionary.h>
+
+#include <string>
+
+#include "server/base/result.h"
+
+namespace rigcal::report {
+
+using Dictionary = ctemplate::TemplateDictionary;
+
+// "revision.tpl", ... with the dictionary's values. Thread-safe.
+[[nodiscard]] Result<std::string> Expand(const std::string& template_name, const Dictionary& values);
+
+// The <head> of a page: `root` is the relative path to the folder that holds style.css ("" or "../../").
+void FillHead(Dictionary& page, const std::string& title, const std::string& root);
+// {{#section}} with one value in it.
+void ShowValue(Dictionary& parent, const char* section, const char* variable, const std::string& value);
+
+}  // namespace rigcal::report

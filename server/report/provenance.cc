@@ -1,0 +1,30 @@
+#include <algorithm>
+#include <map>
+
+#include "server/report/tables.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+
+void FillProvenance(Dictionary& page, const ReportInput& input) {
+  constexpr std::size_t kSessionsMax = 100;
+  std::map<SessionId, std::size_t> sessions;
+  for (const Edge& edge : input.revision.edges) ++sessions[edge.session];
+  page.SetValue("SOFTWARE", input.software_version);
+  page.SetValue("DIGEST", input.digest.str());
+  if (const auto pushed = sessions.find(SessionId()); pushed != sessions.end()) {
+    ShowValue(page, "PUSHED", "COUNT", Count(pushed->second, "edge", "edges"));
+    sessions.erase(pushed);
+  }
+  std::size_t shown = 0;
+  for (const auto& [session, count] : sessions) {
+    if (shown++ == kSessionsMax) break;
+    Dictionary* row = page.AddSectionDictionary("SESSION");
+    row->SetValue("ID", session.str());
+    row->SetValue("EDGES", Count(count, "edge", "edges"));
+  }
+  if (sessions.size() > kSessionsMax)
+    ShowValue(page, "MORE_SESSIONS", "COUNT", std::to_string(sessions.size() - kSessionsMax));
+}
+
+}  // namespace rigcal::report

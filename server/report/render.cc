@@ -1,0 +1,72 @@
+#include "server/report/render.h"
+
+#include <set>
+
+#include "report_embedded.h"
+#include "server/report/banner.h"
+#include "server/report/drawing.h"
+#include "server/report/edge_section.h"
+#include "server/report/key_figures.h"
+#include "server/report/tables.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+void FillTitle(Dictionary& page, const ReportInput& input) {
+  const std::string robot = input.revision.robot.str();
+  FillHead(page, robot + ", revision " + std::to_string(input.number) + ": " +
+                     VerdictWord(input.revision.verdict.level), "");
+  page.SetValue("ROBOT", robot);
+  page.SetValue("NUMBER", std::to_string(input.number));
+  page.SetValue("TIME", TimeText(input.created_at));
+  page.SetValue("REFERENCE", input.revision.reference.str());
+}
+
+void FillDrawing(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
+  Dictionary* svg = page.AddIncludeDictionary("GRAPH");
+  svg->SetFilename("graph.tpl");
+  page.SetValue("GRAPH_NOTE", FillGraph(*svg, revision, edges));
+}
+
+void FillSections(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges) {
+  constexpr std::size_t kOpenMax = 8;  // more sections than this start folded, failed ones aside
+  const std::set<Digest> stored(input.evidence.begin(), input.evidence.end());
+  std::size_t detailed = 0, left = 0, shown_sections = 0;
+  for (const ShownEdge& shown : edges) detailed += shown.detailed ? 1 : 0;
+  for (const ShownEdge& shown : edges) {
+    const Edge& edge = *shown.edge;
+    if (!shown.detailed) {
+      left += edge.captures.empty() && edge.evidence.empty() && edge.diagnoses.empty() ? 0 : 1;
+      continue;
+    }
+    const bool failed = edge.state == EdgeState::kFailed;
+    Dictionary* section = page.AddSectionDictionary("DETAIL_SECTION")->AddIncludeDictionary("DETAIL");
+    section->SetFilename("edge.tpl");
+    FillEdgeSection(*section, shown, stored, detailed <= kOpenMax || (failed && shown_sections++ < kOpenMax));
+  }
+  if (left > 0) ShowValue(page, "MORE_DETAILS", "COUNT", std::to_string(left));
+}
+
+}  // namespace
+
+Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input, const std::string& document) {
+  const auto edges = InOrder(input.revision);
+  Dictionary page("revision");
+  FillTitle(page, input);
+  FillBanner(page, input.revision.verdict);
+  FillNotes(page, input.revision);
+  FillDrawing(page, input.revision, edges);
+  FillKeyFigures(page, input.revision);
+  FillPoses(page, input.revision);
+  FillEdges(page, input.revision, edges);
+  FillSections(page, input, edges);
+  FillProvenance(page, input);
+  RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
+  return std::map<std::string, std::string>{
+      {"index.html", std::move(html)}, {"revision.json", document}, {"style.css", StyleSheet()}};
+}
+
+std::string StyleSheet() { return std::string(embedded::kstyle_css); }
+
+}  // namespace rigcal::report

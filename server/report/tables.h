@@ -1,0 +1,15 @@
+// The tables of a revision page: poses in the reference frame, edges, provenance.
+#pragma once
+
+#include <vector>
+
+#include "server/report/edge_order.h"
+#include "server/report/page.h"
+
+namespace rigcal::report {
+
+void FillPoses(Dictionary& page, const formats::RevisionInput& revision);
+void FillEdges(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);
+void FillProvenance(Dictionary& page, const ReportInput& input);
+
+}  // namespace rigcal::report

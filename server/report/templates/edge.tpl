@@ -1,0 +1,66 @@
+{{%AUTOESCAPE context="HTML"}}
+<details class="card edge {{STATE}}"{{#OPEN}} open{{/OPEN}}>
+<summary><h2>{{FROM}} &rarr; {{TO}}</h2> <span class="badge {{LEVEL}}">{{STATE}}</span> <span class="soft"><bdi>{{METHOD}}</bdi></span></summary>
+<div id="{{ANCHOR}}" class="body">
+{{#DIAGNOSIS}}
+<div class="diagnosis {{LEVEL}}"><p class="what" dir="auto">{{WHAT}}</p><p class="cure" dir="auto">{{CURE}}</p></div>
+{{/DIAGNOSIS}}
+<div class="columns">
+{{#POSE}}
+<div>
+<h3>Pose of {{TO}} in {{FROM}}</h3>
+<div class="scroll" tabindex="0" role="region" aria-label="Pose and uncertainty">
+<table class="small">
+<thead><tr><th scope="col">Axis</th><th scope="col">Position, mm</th><th scope="col">&sigma;, mm</th><th scope="col">Rotation, deg</th><th scope="col">&sigma;, deg</th></tr></thead>
+<tbody>
+{{#AXIS}}<tr><th scope="row">{{NAME}}</th><td>{{P}}</td><td>{{SP}}</td><td>{{R}}</td><td>{{SR}}</td></tr>
+{{/AXIS}}
+</tbody>
+</table>
+</div>
+<p class="hint">{{OBSERVABLE}}</p>
+</div>
+{{/POSE}}
+{{#FIGURES}}
+<div>
+<h3>Figures</h3>
+<dl class="pairs">
+{{#FIGURE}}<dt><bdi>{{NAME}}</bdi></dt><dd>{{VALUE}}</dd>
+{{/FIGURE}}
+</dl>
+</div>
+{{/FIGURES}}
+{{#PARTS}}
+<div>
+<h3>Given constants inside &sigma;</h3>
+<table class="small">
+<thead><tr><th scope="col">From</th><th scope="col">mm</th><th scope="col">deg</th></tr></thead>
+<tbody>
+{{#PART}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th><td>{{MM}}</td><td>{{DEG}}</td></tr>
+{{/PART}}
+</tbody>
+</table>
+</div>
+{{/PARTS}}
+</div>
+{{#CAPTURES}}
+<h3>Residual of each capture <span class="soft">rms, px</span></h3>
+<div class="scroll" tabindex="0" role="region" aria-label="Residual of each capture">
+{{>BARS}}
+</div>
+{{#BARS_CUT}}<p class="hint">{{TEXT}}</p>{{/BARS_CUT}}
+{{#UNUSED}}<p class="hint" dir="auto"><strong>{{CAPTURE}}</strong> was not used{{#REASON}}: {{NOTE}}{{/REASON}}.</p>
+{{/UNUSED}}
+{{/CAPTURES}}
+{{#PICTURES}}
+<h3>Pictures</h3>
+<div class="pictures">
+{{#PICTURE}}
+<figure>{{#STORED}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" src="evidence/{{FILE}}" alt="{{ALT}}"></a>{{/STORED}}{{#MISSING}}<span class="missing">picture not stored</span>{{/MISSING}}<figcaption dir="auto">{{TITLE}}</figcaption></figure>
+{{/PICTURE}}
+</div>
+{{#MORE}}<p class="hint">{{COUNT}} more pictures are named in <a href="revision.json">revision.json</a>.</p>{{/MORE}}
+{{/PICTURES}}
+<p class="hint">{{PROVENANCE}} <code>edge {{ID}}</code></p>
+</div>
+</details>

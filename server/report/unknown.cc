@@ -1,0 +1,67 @@
+#include "server/report/unknown.h"
+
+#include <set>
+#include <vector>
+
+namespace rigcal::report {
+namespace {
+
+using Neighbours = std::map<SensorId, std::set<SensorId>>;
+
+Neighbours NeighboursBy(const std::vector<Edge>& edges, EdgeState state) {
+  Neighbours neighbours;
+  for (const Edge& edge : edges) {
+    if (edge.state != state) continue;
+    neighbours[edge.frame_a].insert(edge.frame_b);
+    neighbours[edge.frame_b].insert(edge.frame_a);
+  }
+  return neighbours;
+}
+
+std::set<SensorId> Reached(const Neighbours& neighbours, const SensorId& start) {
+  std::set<SensorId> reached = {start};
+  std::vector<SensorId> open = {start};
+  while (!open.empty()) {
+    const SensorId here = open.back();
+    open.pop_back();
+    const auto found = neighbours.find(here);
+    if (found == neighbours.end()) continue;
+    for (const SensorId& next : found->second)
+      if (reached.insert(next).second) open.push_back(next);
+  }
+  return reached;
+}
+
+std::string Listed(const std::set<SensorId>& sensors) {
+  constexpr std::size_t kListedMax = 4;
+  std::string text;
+  std::size_t count = 0;
+  for (const SensorId& sensor : sensors) {
+    if (count == kListedMax) return text + " and " + std::to_string(sensors.size() - kListedMax) + " more";
+    text += (count++ ? ", " : "") + sensor.str();
+  }
+  return text;
+}
+
+}  // namespace
+
+std::map<SensorId, std::string> WhyUnknown(const formats::RevisionInput& revision) {
+  const Neighbours good = NeighboursBy(revision.edges, EdgeState::kGood);
+  const Neighbours failed = NeighboursBy(revision.edges, EdgeState::kFailed);
+  const std::set<SensorId> reached = Reached(good, revision.reference);
+  std::map<SensorId, std::string> why;
+  for (const SensorPose& pose : revision.solution.poses) {
+    if (pose.known) continue;
+    if (reached.count(pose.sensor) > 0)
+      why[pose.sensor] = "its edges leave a direction of its pose free";
+    else if (const auto linked = good.find(pose.sensor); linked != good.end())
+      why[pose.sensor] = "it is joined only to " + Listed(linked->second) + ", which no good edge joins to " + revision.reference.str();
+    else if (const auto tried = failed.find(pose.sensor); tried != failed.end())
+      why[pose.sensor] = "every edge to it failed: " + Listed(tried->second);
+    else
+      why[pose.sensor] = "no edge names it";
+  }
+  return why;
+}
+
+}  // namespace rigcal::report

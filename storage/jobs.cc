@@ -1,0 +1,63 @@
+#include "storage/jobs.h"
+
+#include <algorithm>
+
+#include "storage/query.h"
+
+namespace rigcal::storage {
+namespace {
+
+std::string Subject(std::int64_t number) { return "job " + std::to_string(number); }
+
+JobRow RowOf(const Query& query) {
+  return {query.Int(0), query.IdAt<RobotId>(1), query.IdAt<SessionId>(2),
+          SensorPair{query.IdAt<SensorId>(3), query.IdAt<SensorId>(4)}};
+}
+
+bool Exists(Store& store, std::int64_t number) {
+  return Query(store, "SELECT 1 FROM job WHERE number = ?").Bind(number).Step();
+}
+
+}  // namespace
+
+Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots) {
+  return Load<std::optional<JobRow>>(store, "next job", [&]() -> Result<std::optional<JobRow>> {
+    Query query(store,
+                "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b FROM waiting_job w "
+                "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
+                "ORDER BY w.job_number");
+    while (query.Step()) {
+      JobRow row = RowOf(query);
+      if (std::find(busy_robots.begin(), busy_robots.end(), row.robot) == busy_robots.end()) return row;
+    }
+    return std::nullopt;
+  });
+}
+
+Result<std::int64_t> CountJobs(Store& store, const RobotId& robot) {
+  return Load<std::int64_t>(store, "jobs of robot " + robot.str(), [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT count(*) FROM waiting_job WHERE robot_id = ?");
+    return query.Bind(robot).Step() ? query.Int(0) : 0;
+  });
+}
+
+Result<JobCount> CountJobs(Store& store, const SessionId& session) {
+  return Load<JobCount>(store, "jobs of session " + session.str(), [&]() -> Result<JobCount> {
+    Query query(store,
+                "SELECT count(w.job_number), count(*) FROM session s JOIN job j ON j.session_number = s.number "
+                "LEFT JOIN waiting_job w ON w.job_number = j.number WHERE s.session_id = ?");
+    return query.Bind(session).Step() ? JobCount{query.Int(0), query.Int(1)} : JobCount{};
+  });
+}
+
+Status FinishJob(Store& store, std::int64_t number, Stamp now) {
+  return store.connection().Append(Subject(number), [&]() -> Status {
+    if (!Exists(store, number))
+      return Fail(ErrorCode::kNotFound, Subject(number) + " is not known", "Take jobs from the queue.");
+    Query(store, "INSERT INTO job_finished VALUES (?, ?) ON CONFLICT DO NOTHING").Bind(number, now).Run();
+    Query(store, "DELETE FROM waiting_job WHERE job_number = ?").Bind(number).Run();
+    return {};
+  });
+}
+
+}  // namespace rigcal::storage

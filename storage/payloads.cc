@@ -1,0 +1,68 @@
+#include "storage/query.h"
+#include "storage/sessions.h"
+
+namespace rigcal::storage {
+namespace {
+
+struct PayloadList {
+  std::int64_t session_number = 0;
+  std::int64_t count = 0;
+};
+
+std::string Subject(const SessionId& id) { return "payloads of session " + id.str(); }
+
+Result<PayloadList> FindList(Store& store, const SessionId& id) {
+  Query query(store, "SELECT number, payload_count FROM session WHERE session_id = ?");
+  if (query.Bind(id).Step()) return PayloadList{query.Int(0), query.Int(1)};
+  return Fail(ErrorCode::kNotFound, "session " + id.str() + " is not known", "Push the session folder.");
+}
+
+Status CheckIndices(const SessionId& id, const PayloadList& list, const std::vector<std::uint32_t>& payload_idx) {
+  for (const std::uint32_t idx : payload_idx)
+    if (idx >= list.count)
+      return Fail(
+          ErrorCode::kInvalidInput,
+          "session " + id.str() + " has no payload " + std::to_string(idx) + ", only " + std::to_string(list.count),
+          "Number the payloads as the manifest does, from 0.");
+  return {};
+}
+
+void InsertHeld(Store& store, std::int64_t session_number, std::uint32_t idx, Stamp now) {
+  Query insert(store, "INSERT INTO payload_held VALUES (?, ?, ?) ON CONFLICT DO NOTHING");
+  if (insert.Bind(session_number, idx, now).Run() == 0) return;
+  Query(store,
+        "INSERT INTO digest_held SELECT digest, ? FROM payload WHERE session_number = ? AND idx = ? "
+        "ON CONFLICT DO NOTHING")
+      .Bind(now, session_number, idx)
+      .Run();
+}
+
+}  // namespace
+
+Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id) {
+  return Load<std::vector<bool>>(store, Subject(id), [&]() -> Result<std::vector<bool>> {
+    RIGCAL_ASSIGN(const PayloadList list, FindList(store, id));
+    std::vector<bool> held(static_cast<std::size_t>(list.count), false);
+    Query query(store, "SELECT idx FROM payload_held WHERE session_number = ?");
+    query.Bind(list.session_number);
+    while (query.Step()) held.at(static_cast<std::size_t>(query.Int(0))) = true;
+    return held;
+  });
+}
+
+Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint32_t>& payload_idx, Stamp now) {
+  return store.connection().Append(Subject(id), [&]() -> Status {
+    RIGCAL_ASSIGN(const PayloadList list, FindList(store, id));
+    RIGCAL_TRY(CheckIndices(id, list, payload_idx));
+    for (const std::uint32_t idx : payload_idx) InsertHeld(store, list.session_number, idx, now);
+    return {};
+  });
+}
+
+Result<bool> IsHeld(Store& store, const Digest& digest) {
+  return Load<bool>(store, "payload " + digest.str(), [&]() -> Result<bool> {
+    return Query(store, "SELECT 1 FROM digest_held WHERE digest = ?").Bind(digest).Step();
+  });
+}
+
+}  // namespace rigcal::storage

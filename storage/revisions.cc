@@ -1,0 +1,112 @@
+#include "storage/revisions.h"
+
+#include "storage/query.h"
+#include "storage/sessions.h"
+
+namespace rigcal::storage {
+namespace {
+
+std::string Subject(const RobotId& robot) { return "revisions of robot " + robot.str(); }
+
+const std::string kColumns =
+    "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest ";
+
+Revision RevisionOf(const Query& query) {
+  Revision revision;
+  revision.robot = query.IdAt<RobotId>(0);
+  revision.number = static_cast<int>(query.Int(1));
+  revision.created_at = query.Time(2);
+  revision.edge_watermark = query.Int(3);
+  revision.verdict = {VerdictLevelOf(query.Text(4)), query.Text(5), query.Text(6)};
+  revision.digest = query.IdAt<Digest>(7);
+  return revision;
+}
+
+int NewestNumber(Store& store, const RobotId& robot) {
+  Query query(store, "SELECT coalesce(max(number), 0) FROM revision WHERE robot_id = ?");
+  return query.Bind(robot).Step() ? static_cast<int>(query.Int(0)) : 0;
+}
+
+void Insert(Store& store, const Revision& revision, int number) {
+  Query insert(store, "INSERT INTO revision VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
+              revision.verdict.why, revision.verdict.what_to_do, revision.digest);
+  insert.BindNoCopy(revision.document).Run();
+  Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
+}
+
+}  // namespace
+
+Result<int> AppendRevision(Store& store, const Revision& revision) {
+  return Append<int>(store, Subject(revision.robot), [&]() -> Result<int> {
+    RIGCAL_TRY(AppendRobot(store, revision.robot, revision.created_at));
+    const int number = NewestNumber(store, revision.robot) + 1;
+    Insert(store, revision, number);
+    return number;
+  });
+}
+
+Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number) {
+  return Load<std::optional<Revision>>(store, Subject(robot), [&]() -> Result<std::optional<Revision>> {
+    Query query(store, "SELECT " + kColumns + ", document FROM revision WHERE robot_id = ? AND number = ?");
+    if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
+    Revision revision = RevisionOf(query);
+    revision.document = query.Text(8);
+    return revision;
+  });
+}
+
+Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) {
+  return Load<std::vector<Revision>>(store, Subject(robot), [&]() -> Result<std::vector<Revision>> {
+    Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? ORDER BY number DESC");
+    query.Bind(robot);
+    std::vector<Revision> revisions;
+    while (query.Step()) revisions.push_back(RevisionOf(query));
+    return revisions;
+  });
+}
+
+// Two index look-ups per robot, whatever the number of edges and revisions.
+Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
+  return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
+    Query query(store,
+                "SELECT robot_id FROM robot r "
+                "WHERE (SELECT max(number) FROM edge e WHERE e.robot_id = r.robot_id) > "
+                "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
+                "ORDER BY v.number DESC LIMIT 1), 0) ORDER BY robot_id");
+    std::vector<RobotId> robots;
+    while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
+    return robots;
+  });
+}
+
+Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
+  return Load<std::vector<RevisionKey>>(store, "revisions to publish", [&]() -> Result<std::vector<RevisionKey>> {
+    Query query(store, "SELECT robot_id, revision_number FROM waiting_publication ORDER BY robot_id, revision_number");
+    std::vector<RevisionKey> keys;
+    while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});
+    return keys;
+  });
+}
+
+Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
+  const std::string subject = "publication of revision " + std::to_string(key.number) + " of robot " + key.robot.str();
+  return store.connection().Append(subject, [&]() -> Status {
+    Query(store, "INSERT INTO publication VALUES (?, ?, ?) ON CONFLICT DO NOTHING")
+        .Bind(key.robot, key.number, now)
+        .Run();
+    Query(store, "DELETE FROM waiting_publication WHERE robot_id = ? AND revision_number = ?")
+        .Bind(key.robot, key.number)
+        .Run();
+    return {};
+  });
+}
+
+Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what) {
+  return store.connection().Append("audit", [&]() -> Status {
+    Query(store, "INSERT INTO audit (at_ns, who, what) VALUES (?, ?, ?)").Bind(now, who, what).Run();
+    return {};
+  });
+}
+
+}  // namespace rigcal::storage

@@ -1,0 +1,26 @@
+#include "storage/query.h"
+#include "storage/sessions.h"
+
+namespace rigcal::storage {
+
+Status AppendRobot(Store& store, const RobotId& robot, Stamp now) {
+  return store.connection().Append("robot " + robot.str(), [&]() -> Status {
+    RIGCAL_TRY(CheckName(RobotTag::kKind, robot.str()));
+    Query(store, "INSERT INTO robot VALUES (?, ?) ON CONFLICT DO NOTHING").Bind(robot, now).Run();
+    return {};
+  });
+}
+
+Result<std::vector<RobotRow>> LoadRobots(Store& store) {
+  return Load<std::vector<RobotRow>>(store, "list of robots", [&]() -> Result<std::vector<RobotRow>> {
+    Query query(store,
+                "SELECT robot_id, first_seen_ns, "
+                "(SELECT count(*) FROM session s WHERE s.robot_id = r.robot_id), "
+                "(SELECT count(*) FROM edge e WHERE e.robot_id = r.robot_id) FROM robot r ORDER BY robot_id");
+    std::vector<RobotRow> rows;
+    while (query.Step()) rows.push_back({query.IdAt<RobotId>(0), query.Time(1), query.Int(2), query.Int(3)});
+    return rows;
+  });
+}
+
+}  // namespace rigcal::storage

@@ -1,0 +1,136 @@
+#include "storage/sessions.h"
+
+#include <set>
+
+#include "server/formats/documents.h"
+#include "storage/query.h"
+
+namespace rigcal::storage {
+namespace {
+
+std::string Subject(const SessionId& id) { return "session " + id.str(); }
+
+// A closed session holds all its payloads: then they need not be counted.
+const std::string kSelectRow =
+    "SELECT s.robot_id, s.session_id, s.payload_count, s.size_bytes, s.captured_ns, s.opened_ns, s.operator_name, "
+    "c.closed_ns, CASE WHEN c.closed_ns IS NOT NULL THEN s.payload_count "
+    "ELSE (SELECT count(*) FROM payload_held h WHERE h.session_number = s.number) END "
+    "FROM session s LEFT JOIN session_closed c ON c.session_number = s.number ";
+
+SessionRow RowOf(const Query& query) {
+  SessionRow row;
+  row.robot = query.IdAt<RobotId>(0);
+  row.id = query.IdAt<SessionId>(1);
+  row.payloads = query.Int(2);
+  row.bytes = query.Int(3);
+  row.captured_at = query.Time(4);
+  row.opened_at = query.Time(5);
+  row.operator_name = query.Text(6);
+  row.closed = !query.IsNull(7);
+  if (row.closed) row.closed_at = query.Time(7);
+  row.payloads_held = query.Int(8);
+  return row;
+}
+
+std::int64_t TotalBytes(const Manifest& manifest) {
+  std::int64_t total = 0;
+  for (const Payload& payload : manifest.payloads) total += payload.size_bytes;
+  return total;
+}
+
+// False if the session is there already.
+bool InsertSession(Store& store, const SessionId& id, const std::string& manifest_json, const Manifest& manifest,
+                   Stamp now) {
+  const SessionHeader& header = manifest.header;
+  Query insert(store,
+               "INSERT INTO session (session_id, robot_id, captured_ns, opened_ns, operator_name, payload_count, "
+               "size_bytes, manifest) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
+  insert.Bind(id, header.robot, header.captured_at, now, header.operator_name, manifest.payloads.size(),
+              TotalBytes(manifest));
+  return insert.BindNoCopy(manifest_json).Run() > 0;
+}
+
+void InsertPayloads(Store& store, const std::vector<Payload>& payloads) {
+  const std::int64_t session_number = store.database().getLastInsertRowid();
+  for (std::size_t i = 0; i < payloads.size(); ++i)
+    Query(store, "INSERT INTO payload VALUES (?, ?, ?, ?, ?)")
+        .Bind(session_number, i, payloads[i].path, payloads[i].digest, payloads[i].size_bytes)
+        .Run();
+}
+
+void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {
+  Query(store, "INSERT INTO job (session_number, sensor_a, sensor_b, queued_ns) VALUES (?, ?, ?, ?)")
+      .Bind(session_number, pair.a, pair.b, now)
+      .Run();
+  Query(store, "INSERT INTO waiting_job VALUES (?, ?)").Bind(store.database().getLastInsertRowid(), robot).Run();
+}
+
+// Each pair once, in the order given.
+std::vector<SensorPair> Distinct(const std::vector<SensorPair>& pairs) {
+  std::set<SensorPair> seen;
+  std::vector<SensorPair> distinct;
+  for (const SensorPair& pair : pairs)
+    if (seen.insert(pair).second) distinct.push_back(pair);
+  return distinct;
+}
+
+Status Close(Store& store, const SessionRow& row, const std::vector<SensorPair>& pairs, Stamp now) {
+  if (row.payloads_held < row.payloads)
+    return Fail(ErrorCode::kConflict,
+                Subject(row.id) + " holds " + std::to_string(row.payloads_held) + " of " +
+                    std::to_string(row.payloads) + " payloads",
+                "Send the missing ones: push the folder again.");
+  Query(store, "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ?").Bind(now, row.id).Run();
+  const std::int64_t session_number = store.database().getLastInsertRowid();
+  for (const SensorPair& pair : Distinct(pairs)) QueueJob(store, session_number, row.robot, pair, now);
+  return {};
+}
+
+}  // namespace
+
+Status AppendSession(Store& store, const SessionId& id, const std::string& manifest_json, const Manifest& manifest,
+                     Stamp now) {
+  return store.connection().Append(Subject(id), [&]() -> Status {
+    RIGCAL_TRY(AppendRobot(store, manifest.header.robot, now));
+    if (InsertSession(store, id, manifest_json, manifest, now)) InsertPayloads(store, manifest.payloads);
+    return {};
+  });
+}
+
+Result<std::optional<SessionRow>> LoadSession(Store& store, const SessionId& id) {
+  return Load<std::optional<SessionRow>>(store, Subject(id), [&]() -> Result<std::optional<SessionRow>> {
+    Query query(store, kSelectRow + "WHERE s.session_id = ?");
+    if (!query.Bind(id).Step()) return std::nullopt;
+    return RowOf(query);
+  });
+}
+
+Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id) {
+  return Load<std::optional<Manifest>>(store, Subject(id), [&]() -> Result<std::optional<Manifest>> {
+    Query query(store, "SELECT manifest FROM session WHERE session_id = ?");
+    if (!query.Bind(id).Step()) return std::nullopt;
+    RIGCAL_ASSIGN(Manifest manifest, formats::ReadManifest(query.Text(0)));
+    return manifest;
+  });
+}
+
+Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot) {
+  return Load<std::vector<SessionRow>>(store, "list of sessions", [&]() -> Result<std::vector<SessionRow>> {
+    Query query(store, kSelectRow + (robot.empty() ? "" : "WHERE s.robot_id = ? ") +
+                           "ORDER BY s.captured_ns DESC, s.number DESC");
+    if (!robot.empty()) query.Bind(robot);
+    std::vector<SessionRow> rows;
+    while (query.Step()) rows.push_back(RowOf(query));
+    return rows;
+  });
+}
+
+Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now) {
+  return store.connection().Append(Subject(id), [&]() -> Status {
+    RIGCAL_ASSIGN(const std::optional<SessionRow> row, LoadSession(store, id));
+    if (!row) return Fail(ErrorCode::kNotFound, Subject(id) + " is not known", "Push the session folder.");
+    return row->closed ? Status{} : Close(store, *row, pairs, now);
+  });
+}
+
+}  // namespace rigcal::storage

@@ -1,0 +1,4 @@
+# Programs that deploy/measure runs; each prints JSON.
+rigcal_program(durable_write_bench SOURCES bench/durable_write_bench.cc DEPS rigcal_base)
+rigcal_program(receipt_recorder SOURCES bench/receipt_recorder.cc DEPS rigcal_idl)
+rigcal_program(query_bench SOURCES bench/query_bench.cc DEPS rigcal_client)

@@ -1,0 +1,170 @@
+// A store in a temporary folder, a clock that stands still, and a recorder of what the pipeline announces.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "server/base/sha256.h"
+#include "server/formats/documents.h"
+#include "server/pipeline/step.h"
+#include "storage/blobs.h"
+#include "storage/edges.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+
+class StandingClock : public Clock {
+ public:
+  Stamp now{1'800'000'000'000'000'000};
+  [[nodiscard]] Stamp Now() const override { return now; }
+};
+
+class PipelineTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "rigcal-pipeline-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    auto opened = storage::Store::Open(folder_);
+    ASSERT_TRUE(opened) << Sentence(opened.error());
+    store_ = std::make_unique<storage::Store>(std::move(*opened));
+    announcer_.event = [this](const RobotId&, const std::string& kind, const std::string&, const std::string& json) {
+      events_.push_back({kind, json});
+    };
+    announcer_.calibration = [this](const Revision& revision, const SensorId&, const std::vector<SensorPose>& poses,
+                                    std::int64_t) {
+      revisions_.push_back(revision);
+      poses_ = poses;
+    };
+  }
+  void TearDown() override {
+    store_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  Result<StepResult> StepOnce() { return Step({*store_, clock_, live_, claims_, announcer_}); }
+  // Steps until there is nothing to do; the number of steps that worked.
+  int StepAll() {
+    for (int worked = 0; worked < 1000; ++worked) {
+      const auto result = StepOnce();
+      if (!result) ADD_FAILURE() << Sentence(result.error());
+      if (!result || !result->worked) return worked;
+    }
+    ADD_FAILURE() << "the pipeline never comes to rest";
+    return 1000;
+  }
+  [[nodiscard]] int Count(const std::string& kind) const {
+    return static_cast<int>(std::count_if(events_.begin(), events_.end(), [&](const auto& e) { return e.first == kind; }));
+  }
+
+  // A closed session whose payloads are `files` (path -> bytes), as the recorder would leave it.
+  SessionId StoreSession(const std::string& robot, const std::map<std::string, std::string>& files) {
+    Manifest manifest;
+    manifest.header.robot = RobotId(robot);
+    manifest.header.reference = SensorId("left");
+    manifest.header.captured_at = clock_.now;
+    Checkerboard board;
+    board.id = TargetId("board");
+    board.inner_cols = 9;
+    board.inner_rows = 6;
+    board.square_m = 0.025;
+    manifest.header.targets = {board};
+    for (const char* name : {"left", "right"}) {
+      Sensor sensor;
+      sensor.id = SensorId(name);
+      sensor.sees = board.id;
+      manifest.header.sensors.push_back(sensor);
+    }
+    for (const auto& [path, bytes] : files) {
+      const std::filesystem::path file(path);
+      Payload payload;
+      payload.path = path;
+      payload.sensor = SensorId(file.parent_path().string());
+      payload.capture = CaptureId(file.stem().string());
+      payload.digest = *storage::AppendBlob(store_->BlobFolder(), bytes);
+      payload.size_bytes = static_cast<std::int64_t>(bytes.size());
+      manifest.payloads.push_back(payload);
+    }
+    return Close(manifest);
+  }
+
+  SessionId Close(const Manifest& manifest) {
+    const std::string json = formats::WriteManifest(manifest);
+    const SessionId id(Sha256Of(json).str());
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < manifest.payloads.size(); ++i) all.push_back(i);
+    const Status stored = store_->Write([&]() -> Status {
+      RIGCAL_TRY(storage::AppendSession(*store_, id, json, manifest, clock_.now));
+      RIGCAL_TRY(storage::AppendHeld(*store_, id, all, clock_.now));
+      return storage::CloseSession(*store_, id, PairsToCalibrate(manifest.header), clock_.now);
+    });
+    if (!stored) ADD_FAILURE() << Sentence(stored.error());
+    return id;
+  }
+
+  void StoreEdges(const std::vector<Edge>& edges) {
+    const Status stored = store_->Write([&]() -> Status {
+      for (const Edge& edge : edges) {
+        RIGCAL_TRY(storage::AppendRobot(*store_, edge.robot, clock_.now));
+        RIGCAL_TRY(storage::AppendEdge(*store_, edge, clock_.now));
+      }
+      return {};
+    });
+    if (!stored) ADD_FAILURE() << Sentence(stored.error());
+  }
+
+  // The real picture pairs as session files; empty where the data is absent.
+  static std::map<std::string, std::string> RealPictures() {
+    const std::filesystem::path folder = std::filesystem::path(RIGCAL_SOURCE_DIR) / "../shared/data/stereo_opencv";
+    std::map<std::string, std::string> files;
+    if (!std::filesystem::is_directory(folder)) return files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::string stem = entry.path().stem().string();
+      for (const std::string side : {"left", "right"}) {
+        if (entry.path().extension() != ".jpg" || stem.rfind(side, 0) != 0) continue;
+        std::stringstream bytes;
+        bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+        files[side + "/" + stem.substr(side.size()) + ".jpg"] = bytes.str();
+      }
+    }
+    return files;
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<storage::Store> store_;
+  StandingClock clock_;
+  LiveGraphs live_;
+  Claims claims_;
+  Announcer announcer_;
+  std::vector<std::pair<std::string, std::string>> events_;
+  std::vector<Revision> revisions_;
+  std::vector<SensorPose> poses_;
+};
+
+// A finished edge between two sensors with T_a_b = a shift along x and equal, independent errors.
+inline Edge GivenEdge(const std::string& robot, const std::string& a, const std::string& b, double x_m) {
+  Edge edge;
+  edge.robot = RobotId(robot);
+  edge.frame_a = SensorId(a);
+  edge.frame_b = SensorId(b);
+  edge.T_a_b.p_m.x() = x_m;
+  edge.uncertainty = FromInformation(Matrix6d::Identity() * 1e6, UncertaintySource::kGiven, 0);
+  edge.method = "given";
+  edge.state = EdgeState::kGood;
+  return edge;
+}
+
+inline std::vector<Edge> Triangle(const std::string& robot) {
+  std::vector<Edge> edges = {GivenEdge(robot, "a", "b", 1.0), GivenEdge(robot, "b", "c", 1.0), GivenEdge(robot, "a", "c", 2.003)};
+  AssignPushedIds(edges);
+  return edges;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,29 @@
+#include <gtest/gtest.h>
+
+#include "server/formats/parameters.h"
+
+namespace rigcal::formats {
+namespace {
+
+TEST(Parameters, FlatObjectsOnly) {
+  const auto good = Parameters::Read(R"({"robot":"r","revision":3,"flag":true})");
+  ASSERT_TRUE(good);
+  EXPECT_EQ(good->Text("robot"), "r");
+  EXPECT_EQ(good->IntegerOr("revision", 0), 3);
+  EXPECT_EQ(good->IntegerOr("absent", 7), 7);
+  EXPECT_FALSE(good->IntegerOr("robot", 0));
+  EXPECT_TRUE(Parameters::Read(""));
+  for (const char* bad : {"[]", "1", "{", R"({"a":{"b":1}})", R"({"a":[1]})", R"({"a":1.5})", R"({"a":null})"})
+    EXPECT_FALSE(Parameters::Read(bad)) << bad;
+  EXPECT_FALSE(Parameters::Read(std::string(100'000, '[')));
+}
+
+TEST(Parameters, QueryStringsAreDecoded) {
+  EXPECT_EQ(ParametersOfQuery("robot=a%2Db&x=1+2&&flag").value(), R"({"flag":"","robot":"a-b","x":"1 2"})");
+  EXPECT_EQ(ParametersOfQuery("").value(), "{}");
+  EXPECT_FALSE(ParametersOfQuery("a=%2"));
+  EXPECT_FALSE(ParametersOfQuery("a=%zz"));
+}
+
+}  // namespace
+}  // namespace rigcal::formats

@@ -1,0 +1,105 @@
+#include <algorithm>
+
+#include "storage/revisions.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+TEST_F(PipelineTest, NothingStoredIsNothingToDo) { EXPECT_EQ(StepAll(), 0); }
+
+TEST_F(PipelineTest, PushedEdgesBecomeOneRevisionWhatTheOrder) {
+  std::vector<Edge> edges = Triangle("r");
+  StoreEdges(edges);
+  EXPECT_EQ(StepAll(), 2);  // revise, publish
+  ASSERT_EQ(revisions_.size(), 1u);
+  EXPECT_EQ(revisions_[0].number, 1);
+  EXPECT_EQ(Count("graph_update"), 1);
+  EXPECT_EQ(Count("published"), 1);
+  // Least squares of a triangle with equal weights: each edge takes a third of the 3 mm closure.
+  ASSERT_EQ(poses_.size(), 3u);
+  EXPECT_NEAR(poses_[1].T_ref_sensor.p_m.x(), 1.001, 1e-9);
+  EXPECT_NEAR(poses_[2].T_ref_sensor.p_m.x(), 2.002, 1e-9);
+
+  std::vector<Edge> reversed = Triangle("r");
+  std::reverse(reversed.begin(), reversed.end());
+  auto other = storage::Store::Open(folder_ / "other");
+  ASSERT_TRUE(other);
+  std::swap(*store_, *other);
+  LiveGraphs live;
+  StoreEdges({reversed[0]});
+  StoreEdges({reversed[1]});
+  StoreEdges({reversed[2]});
+  ASSERT_TRUE(Step({*store_, clock_, live, claims_, announcer_}));
+  ASSERT_EQ(revisions_.size(), 2u);
+  EXPECT_EQ(revisions_[0].document, revisions_[1].document);
+}
+
+TEST_F(PipelineTest, AnOpenBatchIsWaitedForButNotForEver) {
+  const std::vector<Edge> edges = Triangle("r");
+  const BatchId batch = BatchIdOf(RobotId("r"), edges);
+  StoreEdges({edges[0]});
+  ASSERT_TRUE(store_->Write([&]() -> Status {
+    RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), batch, 3, clock_.now));
+    return storage::AppendBatchItem(*store_, batch, 0, edges[0].id);
+  }));
+  const auto waiting = StepOnce();
+  ASSERT_TRUE(waiting) << Sentence(waiting.error());
+  EXPECT_FALSE(waiting->worked);
+  ASSERT_TRUE(waiting->wake_at);
+  EXPECT_EQ(Count("graph_update"), 1);  // the live state does not wait
+  EXPECT_TRUE(revisions_.empty());
+  clock_.now = *waiting->wake_at;
+  EXPECT_EQ(StepAll(), 2);
+  EXPECT_EQ(revisions_.size(), 1u);
+}
+
+TEST_F(PipelineTest, APictureThatCannotBeReadGivesAFailedEdgeWithACure) {
+  StoreSession("r", {{"left/01.png", "not a picture"}, {"right/01.png", "nor this"}});
+  StepAll();
+  const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
+  ASSERT_TRUE(edges);
+  ASSERT_EQ(edges->size(), 1u);
+  EXPECT_EQ(edges->front().state, EdgeState::kFailed);
+  ASSERT_FALSE(edges->front().diagnoses.empty());
+  EXPECT_FALSE(edges->front().diagnoses[0].cure.empty());
+  ASSERT_EQ(revisions_.size(), 1u);
+  EXPECT_NE(revisions_[0].verdict.level, VerdictLevel::kPass);
+  EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "index.html"));
+  const auto right = std::find_if(poses_.begin(), poses_.end(), [](const SensorPose& p) { return p.sensor.str() == "right"; });
+  ASSERT_NE(right, poses_.end());
+  EXPECT_FALSE(right->known);
+}
+
+TEST_F(PipelineTest, RealPairsGiveAnEdgeARevisionAndAReport) {
+  const auto files = RealPictures();
+  if (files.empty()) GTEST_SKIP() << "no ../shared/data/stereo_opencv beside the project";
+  StoreSession("r", files);
+  EXPECT_EQ(StepAll(), 3);  // job, revise, publish
+  const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
+  ASSERT_TRUE(edges);
+  ASSERT_EQ(edges->size(), 1u);
+  const Edge& edge = edges->front();
+  ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses[0].what;
+  EXPECT_NEAR(edge.T_a_b.p_m.norm(), 0.08318, 0.0003);
+  EXPECT_GT(edge.T_a_b.p_m.x(), 0.08);  // the right camera is at +x of the left one
+  EXPECT_EQ(edge.uncertainty.blocks.size(), 13u);
+  EXPECT_EQ(edge.evidence.size(), 26u);
+  EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "evidence" /
+                                      (edge.evidence[0].digest.str() + ".jpg")));
+}
+
+TEST_F(PipelineTest, WorkLeftByACrashIsFoundAgain) {
+  StoreEdges(Triangle("r"));
+  const auto first = StepOnce();  // revised, not yet published
+  ASSERT_TRUE(first && first->worked);
+  LiveGraphs fresh_live;  // a new process has neither live graphs nor claims
+  Claims fresh_claims;
+  const auto second = Step({*store_, clock_, fresh_live, fresh_claims, announcer_});
+  ASSERT_TRUE(second && second->worked);
+  EXPECT_EQ(Count("published"), 1);
+  EXPECT_EQ(revisions_.size(), 1u);
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
