@@ -1,0 +1,131 @@
+#include "server/calib/joint_covariance.h"
+
+#include <ceres/cost_function.h>
+
+#include <Eigen/Eigenvalues>
+#include <vector>
+
+#include "server/calib/costs/reference_view.h"
+#include "server/calib/costs/second_view.h"
+#include "server/calib/pose_block.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::calib {
+namespace {
+
+// After scaling to a unit diagonal the worst direction of a usable pair is at 1e-6 or above; rounding is at 1e-14.
+constexpr double kSmallestEigenvalue = 1e-11;
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using SharedToBoard = Eigen::Matrix<double, kReducedSize, 6>;
+
+tl::unexpected<Error> NotObservable(const std::string& what) {
+  return Fail(ErrorCode::kInvalidInput, what, "Take more captures with the board tilted in different directions.");
+}
+
+// The normal matrix of one capture: shared parameters, its board, and the corner between.
+struct CaptureNormal {
+  ReducedMatrix shared = ReducedMatrix::Zero();
+  SharedToBoard mixed = SharedToBoard::Zero();
+  Matrix6d board = Matrix6d::Zero();
+
+  // `starts` and `jacobians` of the shared blocks of one view; the last Jacobian is the board's.
+  void Add(const std::vector<int>& starts, const std::vector<RowMajor>& jacobians) {
+    const RowMajor& board_jacobian = jacobians.back();
+    board += board_jacobian.transpose() * board_jacobian;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      mixed.middleRows(starts[i], jacobians[i].cols()) += jacobians[i].transpose() * board_jacobian;
+      for (std::size_t j = 0; j < starts.size(); ++j)
+        shared.block(starts[i], starts[j], jacobians[i].cols(), jacobians[j].cols()) +=
+            jacobians[i].transpose() * jacobians[j];
+    }
+  }
+};
+
+// Jacobians of one view by its blocks as Ceres sees them; empty if the view is not feasible.
+std::vector<RowMajor> BlockJacobians(const ceres::CostFunction& cost, const std::vector<const double*>& blocks) {
+  std::vector<RowMajor> jacobians;
+  std::vector<double*> pointers;
+  for (const int size : cost.parameter_block_sizes()) jacobians.emplace_back(cost.num_residuals(), size);
+  for (RowMajor& jacobian : jacobians) pointers.push_back(jacobian.data());
+  Eigen::VectorXd residuals(cost.num_residuals());
+  if (!cost.Evaluate(blocks.data(), residuals.data(), pointers.data())) return {};
+  return jacobians;
+}
+
+bool AddReferenceView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
+  const PoseBlock T_a_board = BlockOf(state.T_a_board[k]);
+  auto jacobians = BlockJacobians(*MakeReferenceViewCost(problem.corners_board, problem.captures[k].a_px),
+                                  {state.intrinsics_a.data(), T_a_board.data()});
+  if (jacobians.empty()) return false;
+  if (!problem.estimate_a) jacobians[0].setZero();
+  jacobians[1] = jacobians[1] * PlusJacobian(state.T_a_board[k]);
+  normal.Add({kIntrinsicsAStart}, jacobians);
+  return true;
+}
+
+bool AddSecondView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
+  const PoseBlock T_a_b = BlockOf(state.T_a_b), T_a_board = BlockOf(state.T_a_board[k]);
+  auto jacobians = BlockJacobians(*MakeSecondViewCost(problem.corners_board, problem.captures[k].b_px),
+                                  {state.intrinsics_b.data(), T_a_b.data(), T_a_board.data()});
+  if (jacobians.empty()) return false;
+  if (!problem.estimate_b) jacobians[0].setZero();
+  jacobians[1] = jacobians[1] * PlusJacobian(state.T_a_b);
+  jacobians[2] = jacobians[2] * PlusJacobian(state.T_a_board[k]);
+  normal.Add({kIntrinsicsBStart, kPairStart}, jacobians);
+  return true;
+}
+
+// Inverse through the eigenvalues of the matrix scaled to a unit diagonal; empty if one of them is too small.
+Eigen::MatrixXd ScaledInverse(const Eigen::MatrixXd& matrix) {
+  if (!matrix.allFinite() || !(matrix.diagonal().minCoeff() > 0)) return {};
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * matrix * scale.asDiagonal());
+  if (solver.info() != Eigen::Success || !(solver.eigenvalues().minCoeff() > kSmallestEigenvalue)) return {};
+  const Eigen::MatrixXd scaled_inverse =
+      solver.eigenvectors() * solver.eigenvalues().cwiseInverse().asDiagonal() * solver.eigenvectors().transpose();
+  return scale.asDiagonal() * scaled_inverse * scale.asDiagonal();
+}
+
+}  // namespace
+
+Result<ReducedMatrix> ReducedNormal(const JointProblem& problem, const JointState& state) {
+  ReducedMatrix reduced = ReducedMatrix::Zero();
+  for (std::size_t k = 0; k < problem.captures.size(); ++k) {
+    CaptureNormal normal;
+    const bool a_ok = problem.captures[k].a_px.empty() || AddReferenceView(problem, state, k, normal);
+    const bool b_ok = problem.captures[k].b_px.empty() || AddSecondView(problem, state, k, normal);
+    if (!a_ok || !b_ok) return NotObservable("a board lies behind its camera");
+    const Eigen::MatrixXd board_inverse = ScaledInverse(normal.board);
+    if (board_inverse.size() == 0) return NotObservable("the pose of a board is not determined");
+    reduced += normal.shared - normal.mixed * board_inverse * normal.mixed.transpose();
+  }
+  return ReducedMatrix(0.5 * (reduced + reduced.transpose()));
+}
+
+Result<ReducedMatrix> InverseOfFree(const ReducedMatrix& normal) {
+  std::vector<int> free;
+  for (int i = 0; i < kReducedSize; ++i)
+    if (!normal.row(i).isZero(0)) free.push_back(i);
+  const Eigen::MatrixXd part = normal(free, free);
+  const Eigen::MatrixXd part_inverse = ScaledInverse(part);
+  if (part_inverse.size() == 0) return NotObservable("the captures leave a direction of the pair or its intrinsics open");
+  ReducedMatrix inverse = ReducedMatrix::Zero();
+  inverse(free, free) = part_inverse;
+  return inverse;
+}
+
+Result<ReducedMatrix> ModelCovariance(const JointProblem& problem, const JointState& state) {
+  const int dof = ResidualCount(problem) - ParameterCount(problem);
+  if (dof <= 0) return NotObservable("there are fewer corners than unknowns");
+  RIGCAL_ASSIGN(const ReducedMatrix normal, ReducedNormal(problem, state));
+  RIGCAL_ASSIGN(const ReducedMatrix inverse, InverseOfFree(normal));
+  double ssr_px2 = 0;
+  for (std::size_t k = 0; k < problem.captures.size(); ++k) {
+    const CaptureError error = ErrorOf(problem, state, k);
+    ssr_px2 += error.a_px2 + error.b_px2;
+  }
+  return ReducedMatrix(ssr_px2 / dof * inverse);
+}
+
+}  // namespace rigcal::calib
