@@ -35,7 +35,8 @@ void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
 }
 
 // What is said on the command line wins over the environment, which the DDS layer reads.
-void Apply(const GlobalOptions& options, Context& context) {
+void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) {
+  context.timeout_is_given = app.count("--timeout") > 0;
   if (!options.domain.empty()) setenv("RIGCAL_DOMAIN", options.domain.c_str(), 1);
   if (!options.tag.empty()) setenv("RIGCAL_DDS_TAG", options.tag.c_str(), 1);
   context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
@@ -71,7 +72,7 @@ int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::os
     app.fallthrough();  // global options may stand after the verb
     app.footer(kFooter);
     AddGlobalOptions(app, options, context);
-    app.parse_complete_callback([&] { Apply(options, context); });
+    app.parse_complete_callback([&] { Apply(app, options, context); });
     AddVerbs(app, context);
     return Parse(app, argc, argv, context);
   } catch (const std::exception& error) {

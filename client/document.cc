@@ -13,6 +13,8 @@ struct Document::Node {
   const json* value = nullptr;
 };
 
+Document::Document() : Document(std::make_shared<const Node>()) {}
+
 Document::Document(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
 
 Result<Document> Document::Parse(std::string_view text, std::string_view origin) {
@@ -88,6 +90,12 @@ std::string Quoted(const std::string& text) { return json(text).dump(-1, ' ', fa
 Field::Field(std::string key_in, std::string text) : key(std::move(key_in)), json(Quoted(text)) {}
 Field::Field(std::string key_in, const char* text) : Field(std::move(key_in), std::string(text)) {}
 Field::Field(std::string key_in, std::int64_t value) : key(std::move(key_in)), json(std::to_string(value)) {}
+
+Field Field::Raw(std::string key, std::string json_text) {
+  Field field(std::move(key), std::int64_t{0});
+  field.json = std::move(json_text);
+  return field;
+}
 
 std::string JsonObject(const std::vector<Field>& fields) {
   std::string text = "{";

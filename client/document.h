@@ -15,6 +15,7 @@ namespace rigcal::client {
 
 class Document {
  public:
+  Document();  // null
   // `origin` is named in the error.
   [[nodiscard]] static Result<Document> Parse(std::string_view text, std::string_view origin);
 
@@ -41,6 +42,7 @@ struct Field {
   Field(std::string key, std::string text);
   Field(std::string key, const char* text);
   Field(std::string key, std::int64_t value);
+  [[nodiscard]] static Field Raw(std::string key, std::string json);  // the value is JSON already
   std::string key, json;
 };
 [[nodiscard]] std::string JsonObject(const std::vector<Field>& fields);

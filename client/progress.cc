@@ -10,6 +10,7 @@ namespace {
 constexpr std::int64_t kRedraw_ns = 100'000'000;
 constexpr std::int64_t kLineEvery_ns = 5'000'000'000;
 constexpr int kBarWidth = 24;
+constexpr double kRateAfter_s = 0.2;
 
 std::string Bar(double ratio) {
   const int filled = static_cast<int>(std::lround(std::clamp(ratio, 0.0, 1.0) * kBarWidth));
@@ -18,29 +19,35 @@ std::string Bar(double ratio) {
 }
 }  // namespace
 
-Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns)
+Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns, Unit unit)
     : err_(err), is_terminal_(is_terminal), label_(std::move(label)), start_ns_(now_ns),
-      drawn_ns_(is_terminal ? now_ns - kRedraw_ns : now_ns) {}
+      drawn_ns_(is_terminal ? now_ns - kRedraw_ns : now_ns), unit_(unit) {}
+
+std::string Progress::Amount(double amount) const {
+  return unit_ == Unit::kBytes ? ByteText(amount) : Fixed(amount, 0) + " edges";
+}
 
 std::string Progress::LineOf(const ProgressState& state, std::int64_t now_ns) const {
-  const double ratio =
-      state.total_bytes > 0 ? static_cast<double>(state.done_bytes) / static_cast<double>(state.total_bytes) : 0.0;
+  const auto done = static_cast<double>(state.done), total = static_cast<double>(state.total);
+  const double ratio = state.total > 0 ? done / total : 0.0;
   const double elapsed_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
-  const double rate = elapsed_s > 0.2 ? static_cast<double>(state.done_bytes - skipped_bytes_) / elapsed_s : 0.0;
+  const double rate = elapsed_s > kRateAfter_s ? (done - static_cast<double>(skipped_)) / elapsed_s : 0.0;
   std::string line = label_ + " ";
   if (is_terminal_) line += Bar(ratio) + " ";
-  line += Fixed(100.0 * ratio, 0) + " %  " + ByteText(static_cast<double>(state.done_bytes)) + " of " +
-          ByteText(static_cast<double>(state.total_bytes));
+  line += Fixed(100.0 * ratio, 0) + " %  " + Amount(done) + " of " + Amount(total);
   if (!state.detail.empty()) line += "  " + state.detail;
   if (rate <= 0.0) return line;
-  line += "  " + ByteText(rate) + "/s";
-  const double left_s = static_cast<double>(state.total_bytes - state.done_bytes) / rate;
-  if (state.done_bytes < state.total_bytes) line += "  " + DurationText(left_s) + " left";
+  line += "  " + Amount(rate) + "/s";
+  if (done < total) line += "  " + DurationText((total - done) / rate) + " left";
   return line;
 }
 
+bool Progress::IsDue(std::int64_t now_ns) const {
+  return now_ns - drawn_ns_ >= (is_terminal_ ? kRedraw_ns : kLineEvery_ns);
+}
+
 void Progress::Show(const ProgressState& state, std::int64_t now_ns) {
-  if (now_ns - drawn_ns_ < (is_terminal_ ? kRedraw_ns : kLineEvery_ns)) return;
+  if (!IsDue(now_ns)) return;
   drawn_ns_ = now_ns;
   if (is_terminal_) {
     err_ << "\r\x1b[K" << LineOf(state, now_ns) << std::flush;

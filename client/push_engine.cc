@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::int64_t kBusyPauseFirst_ns = 5'000'000;
 constexpr std::int64_t kBusyPauseMax_ns = 500'000'000;
+constexpr std::int64_t kOnItsWay_ns = 500'000'000;
 // A manifest may be 16 MB on a slow link: it is not sent at every "need_manifest".
 constexpr std::int64_t kManifestAgain_ns = 3'000'000'000;
 constexpr int kComplaintsMax = 2;
@@ -71,15 +72,23 @@ bool PushEngine::IsStale(const wire::Receipt& receipt) const {
   return incarnation_ == receipt.incarnation && receipt.sequence_number <= sequence_number_;
 }
 
+// The newest receipt comes to those who join late: a refusal may be that of an earlier try, whose cause is mended. The
+// answer to our own question is believed.
+bool PushEngine::IsDoubtful(const wire::Receipt& receipt) {
+  if (receipt.state != wire::ReceiptState::kRefused || answered_ || doubted_refusal_) return false;
+  return doubted_refusal_ = true;
+}
+
 void PushEngine::OnReceipt(const wire::Receipt& receipt, std::int64_t now_ns) {
   if (Closed() || error_ || IsStale(receipt)) return;
   heard_ns_ = now_ns;
   if (incarnation_ != receipt.incarnation) MeetServer(receipt);
+  sequence_number_ = receipt.sequence_number;
+  if (IsDoubtful(receipt)) return;
   const auto before = std::pair(payloads_held_, written_bytes_);
   const bool state_changed = !answered_ || state_ != receipt.state;
   answered_ = true;
   state_ = receipt.state;
-  sequence_number_ = receipt.sequence_number;
   window_bytes_ = static_cast<std::int64_t>(receipt.window_bytes);
   written_bytes_ = static_cast<std::int64_t>(receipt.written_bytes);
   TakeHeld(receipt.held);
@@ -112,6 +121,7 @@ void PushEngine::MeetServer(const wire::Receipt& receipt) {
   chunks_.assign(chunks_.size(), ChunkState::kPending);
   cursor_ = 0;
   again_.clear();
+  given_again_ns_.clear();
   sent_bytes_ = sent_not_held_bytes_ = 0;
   written_base_bytes_ = written_bytes_;
 }
@@ -136,12 +146,19 @@ void PushEngine::Unsend(std::size_t chunk_idx) {
   again_.push_back(chunk_idx);
 }
 
+// A chunk stays listed until the server has it: receipts that were written meanwhile must not make it travel thrice.
+bool PushEngine::IsOnItsWayAgain(std::size_t chunk_idx, std::int64_t now_ns) const {
+  const auto given = given_again_ns_.find(chunk_idx);
+  return given != given_again_ns_.end() && now_ns - given->second < kOnItsWay_ns;
+}
+
 // The list may name chunks of another client that pushes the same session: only ours in flight count.
 void PushEngine::TakeBusy(const std::vector<wire::Receipt::ChunkAt>& busy, std::int64_t now_ns) {
   bool any = false;
   for (const auto& item : busy) {
     const auto idx = IndexOf(item.payload_idx, item.offset_bytes);
     if (!idx || held_[item.payload_idx] || chunks_[*idx] != ChunkState::kSent) continue;
+    if (IsOnItsWayAgain(*idx, now_ns)) continue;
     Unsend(*idx);
     any = true;
   }
@@ -181,7 +198,10 @@ void PushEngine::MarkSent(std::size_t chunk_idx, std::int64_t now_ns) {
   const auto size_bytes = static_cast<std::int64_t>(ChunkOf(chunk_idx).size_bytes);
   chunks_[chunk_idx] = ChunkState::kSent;
   has_sent_ = true;
-  if (!again_.empty() && again_.front() == chunk_idx) again_.pop_front();
+  if (!again_.empty() && again_.front() == chunk_idx) {
+    again_.pop_front();
+    given_again_ns_[chunk_idx] = now_ns;
+  }
   sent_bytes_ += size_bytes;
   sent_not_held_bytes_ += size_bytes;
   progress_ns_ = now_ns;

@@ -9,6 +9,7 @@
 #include <deque>
 #include <optional>
 #include <set>
+#include <unordered_map>
 #include <vector>
 
 #include "idl/convert.h"
@@ -59,6 +60,8 @@ class PushEngine {
   [[nodiscard]] PushAction Next(std::int64_t now_ns);
   // DDS did not take the chunk that Next() gave last: it will be given again.
   void NotSent(const ChunkAt& chunk);
+  // The header was not sent, since no server was there to hear it: it is due again at once.
+  void NotAsked() { header_ns_.reset(); }
   void Refuse(Error error);
 
   [[nodiscard]] bool Closed() const { return state_ == wire::ReceiptState::kClosed; }
@@ -83,11 +86,13 @@ class PushEngine {
   enum class ChunkState : std::uint8_t { kPending, kSent };
 
   [[nodiscard]] bool IsStale(const wire::Receipt& receipt) const;
+  [[nodiscard]] bool IsDoubtful(const wire::Receipt& receipt);
   void MeetServer(const wire::Receipt& receipt);
   void TakeHeld(const std::vector<bool>& held);
   void TakeBusy(const std::vector<wire::Receipt::ChunkAt>& busy, std::int64_t now_ns);
   void SendAllAgain();
   void Unsend(std::size_t chunk_idx);
+  [[nodiscard]] bool IsOnItsWayAgain(std::size_t chunk_idx, std::int64_t now_ns) const;
   [[nodiscard]] std::optional<std::size_t> NextChunk();
   [[nodiscard]] std::int64_t AskAt() const;
   [[nodiscard]] ChunkAt ChunkOf(std::size_t chunk_idx) const;
@@ -104,9 +109,10 @@ class PushEngine {
   std::vector<bool> held_;
   std::size_t cursor_ = 0;                  // in send_order: all before it were given once
   std::deque<std::size_t> again_;           // to be given again
+  std::unordered_map<std::size_t, std::int64_t> given_again_ns_;
 
   wire::ReceiptState state_ = wire::ReceiptState::kNeedManifest;
-  bool answered_ = false, has_sent_ = false;
+  bool answered_ = false, has_sent_ = false, doubted_refusal_ = false;
   std::optional<std::uint64_t> incarnation_;
   std::set<std::uint64_t> gone_;            // incarnations before this one
   std::uint64_t sequence_number_ = 0;

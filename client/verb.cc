@@ -60,7 +60,7 @@ std::string ReportAddress(const Document& status, const std::string& robot, std:
 Document RobotRow(const Document& document, const std::string& robot) {
   for (const Document& row : document["robots"].Items())
     if (row["robot"].Text() == robot) return row;
-  return document["robots"]["(none)"];
+  return {};
 }
 
 }  // namespace rigcal::client

@@ -18,7 +18,8 @@ struct Context {
   bool err_is_terminal = false;
   bool json = false;
   std::chrono::milliseconds timeout{5000};
-  wire::ParticipantOptions dds;
+  bool timeout_is_given = false;
+  wire::ParticipantOptions dds = {};
   ExitCode exit_code = ExitCode::kGood;  // set by the verb that ran
 };
 

@@ -15,7 +15,8 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kTick(200);  // how long Ctrl-C may go unnoticed
+constexpr milliseconds kTick(200);        // how long Ctrl-C may go unnoticed
+constexpr milliseconds kHintAfter(2000);
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
@@ -24,7 +25,6 @@ void OnInterrupt(int) { interrupted = true; }
 struct Options {
   std::string robot;
   int count = 0;
-  double duration_s = 0.0;
 };
 
 std::string TextOf(const std::string& kind, const Document& data) {
@@ -46,10 +46,13 @@ void Print(const Context& context, const rigcal_wire_Event& event) {
   const auto data = Document::Parse(event.json ? event.json : "{}", "the event");
   const std::string robot = event.robot_id, kind = event.kind;
   if (context.json) {
-    std::string line = JsonObject({{"kind", kind}, {"robot", robot}, {"sequence_number", std::to_string(event.sequence_number)},
-                                   {"stamp", ToIso({event.stamp_ns})}, {"subject_id", event.subject_id}});
-    line.pop_back();
-    context.out << line << ",\"data\":" << (data ? data->Dump() : "null") << "}" << std::endl;
+    context.out << JsonObject({Field::Raw("data", data ? data->Dump() : "null"),
+                               {"kind", kind},
+                               {"robot", robot},
+                               {"sequence_number", static_cast<std::int64_t>(event.sequence_number)},
+                               {"stamp", ToIso({event.stamp_ns})},
+                               {"subject_id", event.subject_id}})
+                << std::endl;
     return;
   }
   const std::string text = data ? TextOf(kind, *data) : "(not readable)";
@@ -64,13 +67,17 @@ Status WatchLoop(const Context& context, const Options& options) {
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(events.get()));
   const auto start = SteadyClock::now();
-  const auto is_over = [&] {
-    return options.duration_s > 0.0 && SteadyClock::now() - start >= std::chrono::duration<double>(options.duration_s);
-  };
+  const auto is_over = [&] { return context.timeout_is_given && SteadyClock::now() - start >= context.timeout; };
+  bool hinted = false;
   int seen = 0;
   const auto is_enough = [&] { return options.count > 0 && seen >= options.count; };
   while (!interrupted && !is_over() && !is_enough()) {
     RIGCAL_TRY(waitset.Wait(kTick));
+    if (!hinted && seen == 0 && events.MatchedWriters() == 0 && SteadyClock::now() - start > kHintAfter) {
+      context.err << "Nothing is announced yet on " << WhereText(context.dds) << "; waiting (Ctrl-C ends). "
+                  << "`rigcal doctor` tells whether a server is there." << std::endl;
+      hinted = true;
+    }
     RIGCAL_TRY(events.Take(256, [&](const rigcal_wire_Event& event, const wire::SampleOrigin&) {
       if (is_enough()) return;
       Print(context, event);
@@ -98,13 +105,12 @@ void AddWatch(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   verb->add_option("ROBOT", options->robot, "Only this robot");
   verb->add_option("--count", options->count, "End after so many events")->check(CLI::PositiveNumber)->type_name("N");
-  verb->add_option("--for", options->duration_s, "End after so many seconds")->check(CLI::PositiveNumber)->type_name("S");
   verb->footer(
-      "With --json: one JSON object a line.\n"
+      "With --json: one JSON object a line. --timeout S ends after S seconds.\n"
       "Examples:\n"
       "  rigcal watch\n"
       "  rigcal watch mapper-01 --count 10\n"
-      "  rigcal watch mapper-01 --for 60 --json\n");
+      "  rigcal watch mapper-01 --timeout 60 --json\n");
   verb->callback([&context, options] { context.exit_code = Run(context, *options); });
 }
 

@@ -102,6 +102,9 @@ class Origins {
  private:
   std::unordered_map<dds_instance_handle_t, SampleOrigin> by_publication_;
 };
+Status ForgetInstance(dds_entity_t writer, const void* sample);
+Status CallOnMatch(dds_entity_t writer, std::function<void()>* callback);
+std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader);
 bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant);
 int MatchedCount(dds_entity_t endpoint, bool is_writer);
 Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::milliseconds timeout);
@@ -119,6 +122,13 @@ class Writer {
     return internal::WriteSample(entity_.get(), &sample, InfoOf<T>().name);
   }
   [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(entity_.get(), true); }
+  // Drops what is kept for late joiners under the sample's key.
+  [[nodiscard]] Status Forget(const T& sample) { return internal::ForgetInstance(entity_.get(), &sample); }
+  // Calls back from a thread of DDS whenever a reader is matched or lost. Must not block. Call once.
+  [[nodiscard]] Status OnMatch(std::function<void()> callback) {
+    on_match_ = std::make_unique<std::function<void()>>(std::move(callback));
+    return internal::CallOnMatch(entity_.get(), on_match_.get());
+  }
   // True if a reader of that participant (SampleOrigin::participant) matched: what is written now reaches it.
   [[nodiscard]] bool HasReaderOf(dds_instance_handle_t participant) const {
     return internal::HasReaderOf(entity_.get(), participant);
@@ -131,6 +141,7 @@ class Writer {
 
  private:
   explicit Writer(Entity entity) : entity_(std::move(entity)) {}
+  std::unique_ptr<std::function<void()>> on_match_;  // outlives entity_
   Entity entity_;
 };
 
@@ -147,6 +158,13 @@ class Reader {
     return internal::TakeSamples(entity_.get(), max, [&](const void* sample, const dds_sample_info_t& info) {
       body(*static_cast<const T*>(sample), origins_.Of(entity_.get(), info.publication_handle));
     });
+  }
+  // The writers that discovery knows to match.
+  [[nodiscard]] std::vector<SampleOrigin> Matched() {
+    std::vector<SampleOrigin> matched;
+    for (const dds_instance_handle_t publication : internal::MatchedPublications(entity_.get()))
+      matched.push_back(origins_.Of(entity_.get(), publication));
+    return matched;
   }
   [[nodiscard]] int MatchedWriters() const { return internal::MatchedCount(entity_.get(), false); }
   [[nodiscard]] Status WaitForWriter(std::chrono::milliseconds timeout) const {

@@ -76,6 +76,26 @@ Status WriteSample(dds_entity_t writer, const void* sample, const char* topic) {
               "A fault in Rigcal or too little memory: report it with the log");
 }
 
+Status ForgetInstance(dds_entity_t writer, const void* sample) {
+  dds_dispose(writer, sample);
+  const dds_return_t code = dds_unregister_instance(writer, sample);
+  if (code == DDS_RETCODE_OK || code == DDS_RETCODE_PRECONDITION_NOT_MET) return {};
+  return Fail(ErrorCode::kInternal, std::string("DDS could not forget a sample: ") + dds_strretcode(-code),
+              "A fault in Rigcal or too little memory: report it with the log");
+}
+
+Status CallOnMatch(dds_entity_t writer, std::function<void()>* callback) {
+  dds_listener_t* listener = dds_create_listener(callback);
+  dds_lset_publication_matched(listener, [](dds_entity_t, const dds_publication_matched_status_t, void* argument) {
+    (*static_cast<std::function<void()>*>(argument))();
+  });
+  const dds_return_t code = dds_set_listener(writer, listener);
+  dds_delete_listener(listener);
+  if (code == DDS_RETCODE_OK) return {};
+  return Fail(ErrorCode::kInternal, std::string("DDS listener: ") + dds_strretcode(-code),
+              "A fault in Rigcal: report it with the log");
+}
+
 Result<int> TakeSamples(dds_entity_t reader, int max,
                         const std::function<void(const void*, const dds_sample_info_t&)>& body) {
   std::array<void*, kTakeMax> samples{};
@@ -115,6 +135,13 @@ const SampleOrigin& Origins::Of(dds_entity_t reader, dds_instance_handle_t publi
   }
   dds_free(names);
   return origin;
+}
+
+std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader) {
+  std::vector<dds_instance_handle_t> handles(static_cast<std::size_t>(MatchedCount(reader, false)));
+  const dds_return_t count = dds_get_matched_publications(reader, handles.data(), handles.size());
+  handles.resize(std::min(handles.size(), static_cast<std::size_t>(std::max(count, 0))));
+  return handles;
 }
 
 bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant) {

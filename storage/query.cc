@@ -9,11 +9,6 @@ namespace {
 
 using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-std::unique_ptr<SQLite::Statement> Prepared(Connection& connection, const std::string& sql) {
-  if (auto& idle = connection.IdleStatement(sql)) return std::move(idle);
-  return std::make_unique<SQLite::Statement>(connection.database(), sql);
-}
-
 }  // namespace
 
 Blob BlobOf(const double* values, std::size_t count) {
@@ -28,7 +23,9 @@ Blob BlobOf(const Matrix6d& matrix) {
 }
 
 Query::Query(Store& store, const std::string& sql)
-    : idle_(store.connection().IdleStatement(sql)), statement_(Prepared(store.connection(), sql)) {}
+    : idle_(store.connection().IdleStatement(sql)), statement_(std::move(idle_)) {
+  if (!statement_) statement_ = std::make_unique<SQLite::Statement>(store.connection().database(), sql);
+}
 
 Query::~Query() {
   statement_->tryReset();

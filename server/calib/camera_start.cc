@@ -107,7 +107,8 @@ Result<IntrinsicsVector> ZhangIntrinsics(const CameraViews& views) {
     cv::calibrateCamera(cv_views.object, cv_views.image, {views.width_px, views.height_px}, matrix, distortion, rvecs,
                         tvecs, flags);
     const IntrinsicsVector intrinsics = FromCameraMatrix(matrix, distortion);
-    if (!intrinsics.allFinite() || !Plausible(intrinsics[0], views) || !Plausible(intrinsics[1], views)) return failed();
+    if (!intrinsics.allFinite() || !Plausible(intrinsics[0], views) || !Plausible(intrinsics[1], views))
+      return failed();
     return intrinsics;
   } catch (const cv::Exception&) {
     return failed();

@@ -22,7 +22,8 @@ struct CameraViews {
 [[nodiscard]] IntrinsicsVector RoughIntrinsics(const CameraViews& views);
 // Zhang (2000) with two radial terms, on at most some tens of the views, evenly spread.
 [[nodiscard]] Result<IntrinsicsVector> ZhangIntrinsics(const CameraViews& views);
-// Poses T_cam_board that explain one view, best first: a plane seen small has two (Collins & Bartoli 2014). May be empty.
+// Poses T_cam_board that explain one view, best first: a plane seen small has two (Collins & Bartoli 2014). May be
+// empty.
 [[nodiscard]] std::vector<Se3> PlanarPoses(const IntrinsicsVector& intrinsics,
                                            const std::vector<Eigen::Vector3d>& corners_board,
                                            const std::vector<Eigen::Vector2d>& corners_px);

@@ -109,7 +109,8 @@ Result<ReducedMatrix> InverseOfFree(const ReducedMatrix& normal) {
     if (!normal.row(i).isZero(0)) free.push_back(i);
   const Eigen::MatrixXd part = normal(free, free);
   const Eigen::MatrixXd part_inverse = ScaledInverse(part);
-  if (part_inverse.size() == 0) return NotObservable("the captures leave a direction of the pair or its intrinsics open");
+  if (part_inverse.size() == 0)
+    return NotObservable("the captures leave a direction of the pair or its intrinsics open");
   ReducedMatrix inverse = ReducedMatrix::Zero();
   inverse(free, free) = part_inverse;
   return inverse;

@@ -1,5 +1,7 @@
 #include "server/calib/joint_problem.h"
 
+#include <ceres/cost_function.h>
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
@@ -13,15 +15,16 @@
 namespace rigcal::calib {
 namespace {
 
-// All parameters in one array, boards last: Ceres orders the blocks of a group by address, so the order, and with it every
-// bit of the result, is that of the captures.
+// All parameters in one array, boards last: Ceres orders the blocks of a group by address, so the order, and with it
+// every bit of the result, is that of the captures.
 class Parameters {
  public:
-  explicit Parameters(const JointState& state) : values_(2 * kIntrinsicsCount + kPoseSize * (1 + state.T_a_board.size())) {
-    Eigen::Map<IntrinsicsVector>(a()) = state.intrinsics_a;
-    Eigen::Map<IntrinsicsVector>(b()) = state.intrinsics_b;
-    Eigen::Map<PoseBlock>(pair()) = BlockOf(state.T_a_b);
-    for (std::size_t k = 0; k < state.T_a_board.size(); ++k) Eigen::Map<PoseBlock>(board(k)) = BlockOf(state.T_a_board[k]);
+  explicit Parameters(const JointState& state)
+      : values_(2 * kIntrinsicsCount + kPoseSize * (1 + state.T_a_board.size())) {
+    IntrinsicsAt(a()) = state.intrinsics_a;
+    IntrinsicsAt(b()) = state.intrinsics_b;
+    PoseAt(pair()) = BlockOf(state.T_a_b);
+    for (std::size_t k = 0; k < state.T_a_board.size(); ++k) PoseAt(board(k)) = BlockOf(state.T_a_board[k]);
   }
   double* a() { return values_.data(); }
   double* b() { return a() + kIntrinsicsCount; }
@@ -30,14 +33,17 @@ class Parameters {
 
   JointState State(std::size_t boards) {
     JointState state;
-    state.intrinsics_a = Eigen::Map<IntrinsicsVector>(a());
-    state.intrinsics_b = Eigen::Map<IntrinsicsVector>(b());
+    state.intrinsics_a = IntrinsicsAt(a());
+    state.intrinsics_b = IntrinsicsAt(b());
     state.T_a_b = PoseOf(pair()).Normalized();
     for (std::size_t k = 0; k < boards; ++k) state.T_a_board.push_back(PoseOf(board(k)).Normalized());
     return state;
   }
 
  private:
+  static Eigen::Map<IntrinsicsVector> IntrinsicsAt(double* block) { return Eigen::Map<IntrinsicsVector>(block); }
+  static Eigen::Map<PoseBlock> PoseAt(double* block) { return Eigen::Map<PoseBlock>(block); }
+
   std::vector<double> values_;
 };
 
@@ -108,7 +114,8 @@ Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& 
   return JointSolution{parameters.State(boards), static_cast<int>(summary.iterations.size())};
 }
 
-Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::size_t capture_idx, const Se3& T_a_board) {
+Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::size_t capture_idx,
+                   const Se3& T_a_board) {
   const JointProblem one{problem.corners_board, {problem.captures[capture_idx]}, false, false};
   Parameters parameters({state.intrinsics_a, state.intrinsics_b, state.T_a_b, {T_a_board}});
   ceres::Problem ceres_problem;
@@ -141,7 +148,8 @@ int ResidualCount(const JointProblem& problem) {
 }
 
 int ParameterCount(const JointProblem& problem) {
-  const int intrinsics = kIntrinsicsCount * (static_cast<int>(problem.estimate_a) + static_cast<int>(problem.estimate_b));
+  const int intrinsics =
+      kIntrinsicsCount * (static_cast<int>(problem.estimate_a) + static_cast<int>(problem.estimate_b));
   return 6 + intrinsics + 6 * static_cast<int>(problem.captures.size());
 }
 

@@ -6,7 +6,8 @@
 namespace rigcal::calib {
 namespace {
 
-// Two captures agree on T_a_b within the error of rough intrinsics: so many radians, and so much of the board's distance.
+// Two captures agree on T_a_b within the error of rough intrinsics: so many radians, and so much of the board's
+// distance.
 constexpr double kAngleTolerance_rad = 0.1;
 constexpr double kDistanceToleranceRatio = 0.15;
 // The vote is quadratic in their number.

@@ -31,8 +31,8 @@ Se3 PoseOf(const double* block) {
 QuaternionJacobian RotatedByQuaternion(const Eigen::Quaterniond& q, const Eigen::Vector3d& v) {
   const Eigen::Vector3d u = q.vec();
   QuaternionJacobian jacobian;
-  jacobian.leftCols<3>() = -2 * q.w() * Hat(v) + 2 * (u.dot(v) * Eigen::Matrix3d::Identity() + u * v.transpose() -
-                                                      2 * v * u.transpose());
+  jacobian.leftCols<3>() =
+      -2 * q.w() * Hat(v) + 2 * (u.dot(v) * Eigen::Matrix3d::Identity() + u * v.transpose() - 2 * v * u.transpose());
   jacobian.rightCols<1>() = 2 * u.cross(v);
   return jacobian;
 }

@@ -8,7 +8,7 @@ constexpr double kNearestDepth_m = 1e-6;
 
 struct Distorted {
   Eigen::Vector2d xy;
-  Eigen::Matrix2d d_xy;                   // by the undistorted coordinates
+  Eigen::Matrix2d d_xy;                  // by the undistorted coordinates
   Eigen::Matrix<double, 2, 5> d_params;  // by k1 k2 p1 p2 k3
 };
 

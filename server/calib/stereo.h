@@ -19,19 +19,19 @@ struct StereoCapture {
 };
 
 struct StereoProblem {
-  Sensor camera_a, camera_b;              // intrinsics given or absent
+  Sensor camera_a, camera_b;  // intrinsics given or absent
   Checkerboard board;
   std::vector<StereoCapture> captures;
 };
 
 struct StereoEstimate {
   PinholeRadtan intrinsics_a, intrinsics_b;
-  Se3 T_a_b;                                // pose of camera b in camera a
-  std::map<CaptureId, Se3> T_a_board;       // per capture used
-  double rms_px = 0;                        // sqrt(sum of squared distances / number of points), both views (OpenCV's)
+  Se3 T_a_b;                           // pose of camera b in camera a
+  std::map<CaptureId, Se3> T_a_board;  // per capture used
+  double rms_px = 0;                   // sqrt(sum of squared distances / number of points), both views (OpenCV's)
   double rms_a_px = 0, rms_b_px = 0;
-  Matrix6d C_model = Matrix6d::Zero();      // s^2 H^-1 of the joint problem, right tangent at b
-  std::vector<CaptureResidual> residuals;   // per capture
+  Matrix6d C_model = Matrix6d::Zero();     // s^2 H^-1 of the joint problem, right tangent at b
+  std::vector<CaptureResidual> residuals;  // per capture
   int iterations = 0;
 };
 

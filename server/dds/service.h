@@ -31,7 +31,7 @@ struct Callbacks {
 // What the pipeline announces; sent in the robot's partition.
 struct Announcement {
   RobotId robot;
-  std::string kind;        // Event::kind
+  std::string kind;  // Event::kind
   std::string subject_id;
   Stamp at;
   std::string json;

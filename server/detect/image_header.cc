@@ -81,8 +81,8 @@ Result<ImageSize> ReadImageSize(Bytes encoded) {
   // Both factors are below 2^32, so the division decides without overflow.
   if (size.width_px > limits::kImagePixelsMax / size.height_px)
     return Fail(ErrorCode::kInvalidInput,
-                "the picture claims " + text + ", more than the limit of " +
-                    std::to_string(limits::kImagePixelsMax) + " pixels",
+                "the picture claims " + text + ", more than the limit of " + std::to_string(limits::kImagePixelsMax) +
+                    " pixels",
                 "use smaller pictures");
   return size;
 }

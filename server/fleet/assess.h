@@ -1,4 +1,8 @@
-// Judges a robot's revision: verdict with one plain sentence why and one what to do; and who is overdue.
+// Judges a robot's revision: verdict with one plain sentence why and one what to do.
+//
+// Severity, worst first, and what decides: fail (an edge contradicts the others), unknown (a sensor without a pose, or no
+// settled solution), warn (failed edges, uncertain sensors, nothing that checks the result), pass. The worst that applies
+// is the verdict; of several reasons of one level all are named.
 #pragma once
 
 #include <vector>
@@ -14,11 +18,13 @@ struct Policy {
 };
 
 // Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph means
-// that nothing checks the result: warn. Unknown sensors: unknown, by name. Failed edges: warn, by name.
+// that nothing checks the result: warn. Unknown sensors (those that occur only in failed edges too): unknown, by name.
+// Failed edges: warn, by name, unless the same two sensors have a good edge as well (the failure was repaired since).
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {});
 
 // "statistic / limit" of one edge's residual against the covariance of that residual (edge covariance minus what the
-// solution explains is not used: conservative). limit is 0 where it cannot be judged.
+// solution explains is not used: conservative). limit is 0 where it cannot be judged: the edge takes no part, or its
+// covariance was estimated from too few blocks.
 struct EdgeTest {
   double statistic = 0.0;
   double limit = 0.0;

@@ -1,7 +1,9 @@
 #include "server/formats/answers.h"
 
+#include "server/formats/answer_rows.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
+#include "server/formats/manifest_fields.h"
 
 namespace rigcal::formats {
 namespace {
@@ -32,40 +34,9 @@ void WriteRobotRows(JsonWriter& out, const std::vector<RobotAnswer>& robots, Sta
   });
 }
 
-void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
-  out.Text("session", session.session.str());
-  out.Text("robot", session.robot.str());
-  out.Text("state", session.closed ? "closed" : "receiving");
-  out.Integer("payloads", session.payloads);
-  out.Integer("payloads_held", session.payloads_held);
-  out.Integer("bytes", session.bytes);
-  WriteStamp(out, "captured_at", session.captured_at);
-  WriteStamp(out, "opened_at", session.opened_at);
-  WriteStamp(out, "closed_at", session.closed_at);
-  out.Text("operator", session.operator_name);
-  out.Integer("jobs_waiting", session.jobs_waiting);
-  out.Integer("jobs_total", session.jobs_total);
-}
-
-void WriteEdgeRow(JsonWriter& out, const Edge& edge, const EdgeResidual* residual) {
-  out.Object([&] {
-    WriteEdgeSummary(out, edge);
-    WriteResidual(out, residual);
-  });
-}
-
-void WriteRevisionMembers(JsonWriter& out, const Revision& revision) {
-  out.Text("robot", revision.robot.str());
-  out.Integer("revision", revision.number);
-  out.Text("created_at", ToIso(revision.created_at));
-  out.Text("digest", revision.digest.str());
-}
-
-// A stored document goes in byte for byte, so that its digest can be checked by whoever reads the answer.
-std::string WithMember(std::string text, std::string_view key, const std::string& document) {
-  const std::string place = "\"" + std::string(key) + "\":null";
-  const std::size_t at = text.find(place);
-  return text.replace(at + place.size() - 4, 4, document);
+void WriteAddress(JsonWriter& out, const std::string& http_address) {
+  if (http_address.empty()) return out.Null("http_address");
+  out.Text("http_address", http_address);
 }
 
 }  // namespace
@@ -83,15 +54,13 @@ std::string WriteSessions(const std::vector<SessionAnswer>& sessions) {
 }
 
 std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges) {
-  const std::string text = WriteObject([&](JsonWriter& out) {
+  return WriteObject([&](JsonWriter& out) {
     out.Object("session", [&] { WriteSessionMembers(out, session); });
-    // Sorted before every free text of this document: the place is found at its first occurrence.
-    out.Null("manifest");
+    out.Object("manifest", [&] { WriteManifestMembers(out, manifest); });
     out.List("edges", [&] {
-      for (const Edge& edge : edges) WriteEdgeRow(out, edge, nullptr);
+      for (const Edge& edge : edges) out.Object([&] { WriteEdgeRowMembers(out, edge, nullptr); });
     });
   });
-  return WithMember(text, "manifest", WriteManifest(manifest));
 }
 
 std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
@@ -100,18 +69,21 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
     out.Text("robot", robot.str());
     WriteRevisionNumber(out, revision);
     out.List("edges", [&] {
-      for (const Edge& edge : edges) WriteEdgeRow(out, edge, ResidualOf(residuals, edge.id));
+      for (const Edge& edge : edges)
+        out.Object([&] { WriteEdgeRowMembers(out, edge, ResidualOf(residuals, edge.id)); });
     });
   });
 }
 
 std::string WriteShow(const Revision& revision, Stamp now) {
-  const std::string text = WriteObject([&](JsonWriter& out) {
+  std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     out.Null("document");
   });
-  return WithMember(text, "document", revision.document);
+  // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds free text.
+  const std::string place = "\"document\":null";
+  return text.replace(text.find(place) + place.size() - 4, 4, revision.document);
 }
 
 std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now) {
@@ -147,6 +119,7 @@ std::string WriteStatus(const StatusAnswer& answer, Stamp now) {
     out.Text("now", ToIso(now));
     out.Integer("uptime_ns", answer.uptime_ns);
     out.Integer("jobs_waiting", answer.jobs_waiting);
+    WriteAddress(out, answer.http_address);
     WriteRobotRows(out, answer.robots, now);
   });
 }
@@ -177,14 +150,14 @@ std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
     out.Integer("uptime_ns", answer.uptime_ns);
     out.Integer("disk_free_bytes", answer.disk_free_bytes);
     out.Text("now", ToIso(now));
+    WriteAddress(out, answer.http_address);
     if (!answer.problem) return out.Null("problem");
     out.Object("problem", [&] { WriteErrorMembers(out, *answer.problem); });
   });
 }
 
 std::string WriteError(const Error& error) {
-  return WriteObject(
-      [&](JsonWriter& out) { out.Object("error", [&] { WriteErrorMembers(out, error); }); });
+  return WriteObject([&](JsonWriter& out) { out.Object("error", [&] { WriteErrorMembers(out, error); }); });
 }
 
 std::optional<Error> ReadError(std::string_view text) {
@@ -195,51 +168,6 @@ std::optional<Error> ReadError(std::string_view text) {
   Error error{ErrorCodeOf(field.At("code").Text()), field.At("what").Text(), field.At("cure").Text()};
   if (!document->status()) return std::nullopt;
   return error;
-}
-
-std::string WriteSessionEvent(const SessionAnswer& session) {
-  return WriteObject([&](JsonWriter& out) { WriteSessionMembers(out, session); });
-}
-
-std::string WriteEdgeEvent(const Edge& edge, std::int64_t jobs_waiting, std::int64_t jobs_total) {
-  return WriteObject([&](JsonWriter& out) {
-    out.Object("edge", [&] {
-      WriteEdgeSummary(out, edge);
-      WriteResidual(out, nullptr);
-    });
-    out.Integer("jobs_waiting", jobs_waiting);
-    out.Integer("jobs_total", jobs_total);
-  });
-}
-
-std::string WriteGraphEvent(const RobotId& robot, std::int64_t edges, const GraphSolution& solution) {
-  std::int64_t known = 0;
-  for (const SensorPose& pose : solution.poses) known += pose.known ? 1 : 0;
-  return WriteObject([&](JsonWriter& out) {
-    out.Text("robot", robot.str());
-    out.Integer("edges", edges);
-    out.Integer("sensors", static_cast<std::int64_t>(solution.poses.size()));
-    out.Integer("sensors_known", known);
-    out.Flag("converged", solution.converged);
-    out.Number("cost", solution.cost);
-    out.Integer("dof", solution.dof);
-    WriteGlobalErrors(out, solution.before, solution.after);
-  });
-}
-
-std::string WriteRevisionEvent(const Revision& revision) {
-  return WriteObject([&](JsonWriter& out) {
-    WriteRevisionMembers(out, revision);
-    WriteVerdict(out, "verdict", revision.verdict);
-  });
-}
-
-std::string WritePublishedEvent(const RobotId& robot, int revision, const std::string& path) {
-  return WriteObject([&](JsonWriter& out) {
-    out.Text("robot", robot.str());
-    out.Integer("revision", revision);
-    out.Text("path", path);
-  });
 }
 
 }  // namespace rigcal::formats

@@ -15,9 +15,9 @@ namespace rigcal::formats {
 // verb robots
 struct RobotAnswer {
   RobotId robot;
-  int revision = 0;                   // 0: none yet, written as null
+  int revision = 0;  // 0: none yet, written as null
   Verdict verdict;
-  std::optional<Stamp> calibrated_at; // of the newest revision
+  std::optional<Stamp> calibrated_at;  // of the newest revision
   std::int64_t sessions = 0, edges = 0, jobs_waiting = 0;
   bool overdue = false;
 };
@@ -62,7 +62,8 @@ struct StatusAnswer {
   std::string version;
   std::int64_t uptime_ns = 0;
   std::int64_t jobs_waiting = 0;
-  std::vector<RobotAnswer> robots;    // all, or the one asked for
+  std::vector<RobotAnswer> robots;  // all, or the one asked for
+  std::string http_address;         // of the reports; empty: none
 };
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);
 
@@ -79,9 +80,10 @@ struct HealthAnswer {
   std::string version;
   std::int64_t uptime_ns = 0;
   std::int64_t disk_free_bytes = 0;
-  int schema = 0;                     // version of the store
-  int protocol = 0;                   // kWireProtocol
-  std::optional<Error> problem;       // absent: "ok"
+  int schema = 0;                // version of the store
+  int protocol = 0;              // kWireProtocol
+  std::optional<Error> problem;  // absent: "ok"
+  std::string http_address;      // of the reports; empty: none
 };
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);
 

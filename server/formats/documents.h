@@ -31,7 +31,7 @@ namespace rigcal::formats {
 struct RevisionInput {
   RobotId robot;
   SensorId reference;
-  std::vector<Edge> edges;      // good and failed, sorted by id
+  std::vector<Edge> edges;  // good and failed, sorted by id
   GraphSolution solution;
   Verdict verdict;
 };

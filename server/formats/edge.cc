@@ -22,7 +22,7 @@ Result<Edge> ReadEdge(std::string_view text) {
   Edge edge = ReadEdgeFields(document.Root());
   edge.uncertainty.blocks = ReadBlocks(document.Root().At("blocks"));
   RIGCAL_TRY(document.status());
-  if (edge.state == EdgeState::kGood) RIGCAL_TRY(Validate(edge));
+  RIGCAL_TRY(Validate(edge));
   return edge;
 }
 

@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "server/base/limits.h"
-#include "server/base/text.h"
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
@@ -12,7 +11,6 @@ namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kEdgeFileBytesMax = 256u << 20;
-constexpr std::size_t kMethodMax = 64;
 constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
 constexpr double kExactTolerance = 1e-12;       // nearer ones stay as they are, bit by bit
 
@@ -86,8 +84,8 @@ Uncertainty ReadUncertainty(const JsonField& edge) {
 }
 
 std::string ReadMethod(const JsonField& field) {
-  const std::string method = field.Text(kMethodMax);
-  if (!IsPrintableUtf8(method)) field.Refuse("must be printable text");
+  std::string method = field.Text();
+  if (const Status name = CheckName("method", method); !name) field.Refuse(name.error().what);
   return method;
 }
 

@@ -1,4 +1,4 @@
-// .g2o pose graphs: EDGE_SE3:QUAT, VERTEX_SE3:QUAT (optional), FIX. g2o's error is about D e with
+// .g2o pose graphs: EDGE_SE3:QUAT, VERTEX_SE3:QUAT (optional), FIX, '#' comments. g2o's error is about D e with
 // D = diag(1,1,1,1/2,1/2,1/2), so Omega_ours = D Omega_g2o D. Vertex n becomes sensor "n".
 #pragma once
 
@@ -12,11 +12,12 @@
 namespace rigcal::formats {
 
 struct G2oFile {
-  std::vector<Edge> edges;               // ids assigned, method "g2o", source given
+  std::vector<Edge> edges;               // ids assigned, method "g2o", source given; in the order of the file
   std::map<SensorId, Se3> T_world_vertex;  // if the file has vertices
+  SensorId fixed;                        // the first FIX line's vertex; empty: none
 };
 // Indefinite, non-finite or asymmetric information and non-unit quaternions (beyond 1e-3; nearer ones are normalised)
-// are refused; the error names line and edge.
+// are refused; the error names line and edge. The same pair may be measured several times.
 [[nodiscard]] Result<G2oFile> ReadG2o(std::string_view text, const RobotId& robot);
 [[nodiscard]] Matrix6d InformationFromG2o(const Matrix6d& Omega_g2o);
 [[nodiscard]] Matrix6d InformationToG2o(const Matrix6d& Omega);

@@ -51,7 +51,8 @@ class TreeBuilder : public nlohmann::json_sax<json> {
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(position, text_.size()));
     const auto line = 1 + std::count(text_.begin(), end, '\n');
     const bool too_large = dynamic_cast<const json::out_of_range*>(&error) != nullptr;
-    const std::string near = token.empty() ? "the end" : Quoted(token.substr(token.size() - std::min(token.size(), kNear)));
+    const std::string near =
+        token.empty() ? "the end" : Quoted(token.substr(token.size() - std::min(token.size(), kNear)));
     return Refuse("line " + std::to_string(line) + ": " +
                   (too_large ? "a number is too large, near " : "not JSON, near ") + near);
   }
@@ -81,8 +82,7 @@ class TreeBuilder : public nlohmann::json_sax<json> {
     return true;
   }
   bool Open(json value) {
-    if (open_.size() >= kJsonDepthMax)
-      return Refuse("nested deeper than " + std::to_string(kJsonDepthMax) + " levels");
+    if (open_.size() >= kJsonDepthMax) return Refuse("nested deeper than " + std::to_string(kJsonDepthMax) + " levels");
     open_.push_back(Place(std::move(value)));
     return true;
   }
@@ -159,7 +159,7 @@ JsonField JsonField::At(std::string_view key) const {
   }
   const auto found = Node(node_).find(std::string(key));
   if (found == Node(node_).end()) {
-    Refuse("\"" + std::string(key) + "\" is missing");
+    Refuse(Quoted(key) + " is missing");
     return nothing;
   }
   return JsonField(tree_, &*found);

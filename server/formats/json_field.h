@@ -19,8 +19,8 @@ constexpr std::size_t kJsonDepthMax = 32;
 constexpr std::size_t kTextMax = 4096;  // bytes of one free text
 
 struct JsonKind {
-  std::string name;       // "manifest": starts every error
-  std::string cure;       // what to do about a wrong document
+  std::string name;  // "manifest": starts every error
+  std::string cure;  // what to do about a wrong document
   std::size_t bytes_max;
 };
 

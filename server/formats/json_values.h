@@ -21,7 +21,7 @@ void WritePose(JsonWriter& out, std::string_view key, const Se3& T);            
 void WriteStamp(JsonWriter& out, std::string_view key, const std::optional<Stamp>& stamp);
 void WriteVerdict(JsonWriter& out, std::string_view key, const Verdict& verdict);
 void WriteDiagnoses(JsonWriter& out, std::string_view key, const std::vector<Diagnosis>& diagnoses);
-void WriteErrorMembers(JsonWriter& out, const Error& error);                      // code, what, cure
+void WriteErrorMembers(JsonWriter& out, const Error& error);  // code, what, cure
 // "e_global": {"before", "after"} of {"total", "translation_m2", "rotation_rad2"}.
 void WriteGlobalErrors(JsonWriter& out, const GlobalError& before, const GlobalError& after);
 // "sigma_m" and "sigma_rad", three values each; an unobservable axis is null.

@@ -69,11 +69,16 @@ void AppendObject(const json& object, std::string& out) {
 
 void Append(const json& value, std::string& out) {
   switch (value.type()) {
-    case json::value_t::object: return AppendObject(value, out);
-    case json::value_t::array: return AppendList(value, out);
-    case json::value_t::string: return AppendText(value.get_ref<const std::string&>(), out);
-    case json::value_t::number_float: return AppendNumber(value.get<double>(), out);
-    default: out += value.dump();
+    case json::value_t::object:
+      return AppendObject(value, out);
+    case json::value_t::array:
+      return AppendList(value, out);
+    case json::value_t::string:
+      return AppendText(value.get_ref<const std::string&>(), out);
+    case json::value_t::number_float:
+      return AppendNumber(value.get<double>(), out);
+    default:
+      out += value.dump();
   }
 }
 

@@ -18,24 +18,53 @@ class JsonWriter {
   JsonWriter& operator=(const JsonWriter&) = delete;
 
   template <typename Body>
-  void Object(const Body& body) { BeginObject(); body(); End(); }
+  void Object(const Body& body) {
+    BeginObject();
+    body();
+    End();
+  }
   template <typename Body>
-  void Object(std::string_view key, const Body& body) { Key(key); Object(body); }
+  void Object(std::string_view key, const Body& body) {
+    Key(key);
+    Object(body);
+  }
   template <typename Body>
-  void List(const Body& body) { BeginList(); body(); End(); }
+  void List(const Body& body) {
+    BeginList();
+    body();
+    End();
+  }
   template <typename Body>
-  void List(std::string_view key, const Body& body) { Key(key); List(body); }
+  void List(std::string_view key, const Body& body) {
+    Key(key);
+    List(body);
+  }
 
   void Number(double value);
-  void Number(std::string_view key, double value) { Key(key); Number(value); }
+  void Number(std::string_view key, double value) {
+    Key(key);
+    Number(value);
+  }
   void Integer(std::int64_t value);
-  void Integer(std::string_view key, std::int64_t value) { Key(key); Integer(value); }
+  void Integer(std::string_view key, std::int64_t value) {
+    Key(key);
+    Integer(value);
+  }
   void Text(std::string_view value);
-  void Text(std::string_view key, std::string_view value) { Key(key); Text(value); }
+  void Text(std::string_view key, std::string_view value) {
+    Key(key);
+    Text(value);
+  }
   void Flag(bool value);
-  void Flag(std::string_view key, bool value) { Key(key); Flag(value); }
+  void Flag(std::string_view key, bool value) {
+    Key(key);
+    Flag(value);
+  }
   void Null();
-  void Null(std::string_view key) { Key(key); Null(); }
+  void Null(std::string_view key) {
+    Key(key);
+    Null();
+  }
 
   [[nodiscard]] std::string Finish() const;
 

@@ -1,14 +1,12 @@
-#include <algorithm>
-
 #include "server/base/limits.h"
 #include "server/formats/documents.h"
 #include "server/formats/json_values.h"
+#include "server/formats/manifest_fields.h"
 #include "server/formats/payload_path.h"
 
 namespace rigcal::formats {
 namespace {
 
-constexpr std::size_t kSensorsMax = 10'000;
 constexpr std::size_t kConditionsMax = 256;
 constexpr std::size_t kIntrinsicsCount = 9;
 
@@ -94,10 +92,9 @@ void ReadIntrinsics(const JsonField& field, Sensor& sensor) {
 }
 
 SensorKind ReadKind(const JsonField& field) {
-  const std::string name = field.Text();
-  for (const SensorKind kind : {SensorKind::kCamera, SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream})
-    if (NameOf(kind) == name) return kind;
-  field.Refuse("is not a sensor type of this version");
+  const Result<SensorKind> kind = SensorKindOf(field.Text());
+  if (kind) return *kind;
+  field.Refuse(kind.error().what);
   return SensorKind::kCamera;
 }
 
@@ -138,7 +135,8 @@ SessionHeader ReadHeader(const JsonField& root) {
   header.reference = ReadId<SensorId>(root.At("reference"));
   for (const JsonField& target : root.At("targets").Items(limits::kTargetsPerSessionMax))
     header.targets.push_back(ReadTarget(target));
-  for (const JsonField& sensor : root.At("sensors").Items(kSensorsMax)) header.sensors.push_back(ReadSensor(sensor));
+  for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerSessionMax))
+    header.sensors.push_back(ReadSensor(sensor));
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
   return header;
@@ -158,29 +156,22 @@ Payload ReadPayload(const JsonField& field) {
   return payload;
 }
 
-Status CheckSorted(const std::vector<Payload>& payloads) {
-  const auto unsorted = std::adjacent_find(payloads.begin(), payloads.end(),
-                                           [](const Payload& a, const Payload& b) { return a.path >= b.path; });
-  if (unsorted == payloads.end()) return {};
-  return Fail(ErrorCode::kInvalidInput,
-              "manifest: payloads[" + std::to_string(unsorted + 1 - payloads.begin()) + "].path: not sorted, or twice",
-              ManifestKind().cure);
-}
-
 }  // namespace
 
-std::string WriteManifest(const Manifest& manifest) {
-  return WriteObject([&](JsonWriter& out) {
-    WriteHeader(out, manifest.header);
-    out.List("payloads", [&] {
-      for (const Payload& payload : manifest.payloads)
-        out.Object([&] {
-          out.Text("path", payload.path);
-          out.Text("sha256", payload.digest.str());
-          out.Integer("size_bytes", payload.size_bytes);
-        });
-    });
+void WriteManifestMembers(JsonWriter& out, const Manifest& manifest) {
+  WriteHeader(out, manifest.header);
+  out.List("payloads", [&] {
+    for (const Payload& payload : manifest.payloads)
+      out.Object([&] {
+        out.Text("path", payload.path);
+        out.Text("sha256", payload.digest.str());
+        out.Integer("size_bytes", payload.size_bytes);
+      });
   });
+}
+
+std::string WriteManifest(const Manifest& manifest) {
+  return WriteObject([&](JsonWriter& out) { WriteManifestMembers(out, manifest); });
 }
 
 Result<Manifest> ReadManifest(std::string_view text) {
@@ -191,7 +182,6 @@ Result<Manifest> ReadManifest(std::string_view text) {
   for (const JsonField& payload : root.At("payloads").Items(limits::kPayloadsPerSessionMax))
     manifest.payloads.push_back(ReadPayload(payload));
   RIGCAL_TRY(document.status());
-  RIGCAL_TRY(CheckSorted(manifest.payloads));
   RIGCAL_TRY(Validate(manifest));
   return manifest;
 }

@@ -24,6 +24,11 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// A name that was cut short ("fx" of "fx_px") is one step away.
+std::size_t Distance(std::string_view name, std::string_view known) {
+  return name.size() >= 2 && known.substr(0, name.size()) == name ? 1 : EditDistance(name, known);
+}
+
 }  // namespace
 
 std::string_view Nearest(std::string_view name, std::span<const std::string_view> known) {
@@ -31,7 +36,7 @@ std::string_view Nearest(std::string_view name, std::span<const std::string_view
   std::string_view best;
   std::size_t best_distance = name.size();
   for (const std::string_view candidate : known) {
-    const std::size_t distance = EditDistance(name, candidate);
+    const std::size_t distance = Distance(name, candidate);
     if (distance < best_distance && distance <= std::max<std::size_t>(2, candidate.size() / 2)) {
       best = candidate;
       best_distance = distance;

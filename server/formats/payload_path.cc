@@ -9,19 +9,14 @@ namespace rigcal::formats {
 namespace {
 
 constexpr std::array<std::string_view, 3> kPictureSuffixes = {"png", "jpg", "jpeg"};
-constexpr const char* kCure = "Payloads are <sensor>/<capture>.png, .jpg or .jpeg (docs/session-format.md).";
-
-char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+constexpr const char* kCure = "Payloads are <sensor>/<capture>.png, .jpg or .jpeg, in lower case.";
 
 }  // namespace
 
-std::string SuffixOf(std::string_view path) {
+std::string_view SuffixOf(std::string_view path) {
   const std::size_t dot = path.rfind('.');
-  const std::size_t slash = path.rfind('/');
-  if (dot == std::string_view::npos || (slash != std::string_view::npos && dot < slash)) return {};
-  std::string suffix(path.substr(dot + 1));
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(), Lower);
-  return suffix;
+  if (dot == std::string_view::npos || path.find('/', dot) != std::string_view::npos) return {};
+  return path.substr(dot + 1);
 }
 
 Result<Payload> PayloadAt(std::string_view path) {
@@ -30,10 +25,10 @@ Result<Payload> PayloadAt(std::string_view path) {
   };
   const std::size_t slash = path.find('/');
   if (slash == std::string_view::npos || path.find('/', slash + 1) != std::string_view::npos)
-    return bad("is not in a sensor's folder");
-  const std::string suffix = SuffixOf(path);
+    return bad("it is not in a sensor's folder");
+  const std::string_view suffix = SuffixOf(path);
   if (std::find(kPictureSuffixes.begin(), kPictureSuffixes.end(), suffix) == kPictureSuffixes.end())
-    return bad("has no suffix that is known here");
+    return bad("its name does not end in .png, .jpg or .jpeg");
   auto sensor = SensorId::Parse(path.substr(0, slash));
   if (!sensor) return bad(sensor.error().what);
   auto capture = CaptureId::Parse(path.substr(slash + 1, path.size() - slash - suffix.size() - 2));

@@ -10,15 +10,23 @@ namespace {
 constexpr double kCostRelative = 1e-14;
 constexpr double kStep = 1e-12;
 constexpr double kRoundingRelative = 1e-12;  // of the cost: below this a rise is rounding, not a wrong step
-constexpr double kLambdaFirst = 1e-6, kLambdaMax = 1e12, kLambdaFactor = 10.0;
+constexpr double kLambdaFirst = 1e-6, kLambdaMax = 1e12, kLambdaFactor = 10.0, kLambdaLeast = 1e-9;
 constexpr double kLambdaTrusted = 1e-3;      // a short step under heavier damping says nothing
+constexpr int kClimbsMax = 2;
+constexpr double kStepReuse = 0.05;          // m and rad
+constexpr double kGainReuse = 0.1;           // as long as each step gains this much less than the one before
 
 // One descent. Owns all the memory it needs, so that its loop allocates nothing.
+//
+// A full Gauss-Newton step along a soft direction may climb before the next one lands far below (long chains: every
+// such graph). So up to kClimbsMax undamped steps may go uphill in a row; if they do not end below the best point, the
+// descent returns to it and damps.
 class Descent {
  public:
   Descent(const Problem& problem, const std::vector<Pin>& pins, BlockCholesky<6>& cholesky, const Poses& start)
-      : problem_(problem), pins_(pins), cholesky_(cholesky), T_ref_(start), trial_(start) {
-    Prepare(T_ref_, equations_);
+      : problem_(problem), pins_(pins), cholesky_(cholesky), T_ref_(start), best_T_ref_(start), trial_(start) {
+    Prepare();
+    best_cost_ = equations_.cost;
   }
 
   Optimum Run(int iterations_max) {
@@ -27,41 +35,69 @@ class Descent {
       ++optimum.iterations;
       optimum.converged = Iterate();
     }
-    optimum.T_ref = std::move(T_ref_);
-    optimum.cost = equations_.cost;
-    optimum.converged = optimum.converged && std::isfinite(optimum.cost);
+    optimum.T_ref = std::move(best_T_ref_);
+    optimum.cost = best_cost_;
+    optimum.converged = optimum.converged && std::isfinite(best_cost_);
     return optimum;
   }
 
  private:
-  void Prepare(const Poses& T_ref, NormalEquations& equations) {
-    Linearize(problem_, T_ref, equations);
-    AddPins(pins_, equations.H);
+  void Prepare() {
+    if (reuse_factor_) return LinearizeGradient(problem_, T_ref_, equations_);
+    Linearize(problem_, T_ref_, equations_);
+    AddPins(pins_, equations_.H);
   }
 
   // True once nothing is left to gain.
   bool Iterate() {
-    if (!cholesky_.Factor(equations_.H, lambda_)) return Damp();
+    const bool reused = reuse_factor_;
+    if (!reused && !cholesky_.Factor(equations_.H, lambda_)) return Damp();
     step_ = -equations_.g;
     cholesky_.SolveInPlace(step_);
     if (!step_.allFinite()) return Damp();
     const double gain = -step_.dot(equations_.g) + lambda_ * DampedLength();
     const bool small = gain <= kCostRelative * equations_.cost || step_.cwiseAbs().maxCoeff() <= kStep;
-    const bool last = small && lambda_ <= kLambdaTrusted;
+    const bool last = small && lambda_ <= kLambdaTrusted && climbs_ == 0;
+    reuse_factor_ = lambda_ == 0.0 && step_.cwiseAbs().maxCoeff() <= kStepReuse && (!reused || gain < kGainReuse * gain_);
+    gain_ = gain;
     Retract(T_ref_, step_, trial_);
-    Prepare(trial_, trial_equations_);
-    if (!Improves(gain)) return last || Damp();
     std::swap(T_ref_, trial_);
-    std::swap(equations_, trial_equations_);
-    lambda_ = lambda_ <= kLambdaFirst ? 0.0 : lambda_ / kLambdaFactor;
-    return last;
+    Prepare();
+    if (Improves(gain)) return Keep(last);
+    if (last) return true;
+    return climbs_ < kClimbsMax && lambda_ == 0.0 && std::isfinite(equations_.cost) ? Climb() : Damp();
   }
 
   [[nodiscard]] bool Improves(double gain) const {
-    const double cost = trial_equations_.cost;
-    if (!std::isfinite(cost)) return false;
-    if (cost < equations_.cost) return true;
-    return gain <= kRoundingRelative * equations_.cost && cost <= (1.0 + kRoundingRelative) * equations_.cost;
+    if (!std::isfinite(equations_.cost)) return false;
+    if (equations_.cost < best_cost_) return true;
+    return gain <= kRoundingRelative * best_cost_ && equations_.cost <= (1.0 + kRoundingRelative) * best_cost_;
+  }
+
+  bool Keep(bool last) {
+    best_T_ref_ = T_ref_;
+    best_cost_ = equations_.cost;
+    climbs_ = 0;
+    lambda_ = lambda_ <= kLambdaLeast ? 0.0 : lambda_ / kLambdaFactor;
+    return last;
+  }
+
+  bool Climb() {
+    ++climbs_;
+    if (reuse_factor_) {
+      reuse_factor_ = false;
+      Prepare();
+    }
+    return false;
+  }
+
+  bool Damp() {
+    lambda_ = std::max(lambda_ * kLambdaFactor, kLambdaFirst);
+    climbs_ = 0;
+    reuse_factor_ = false;
+    T_ref_ = best_T_ref_;
+    Prepare();
+    return false;
   }
 
   // dx^T diag(H) dx, which the damping adds to the model's gain.
@@ -75,18 +111,17 @@ class Descent {
     return length;
   }
 
-  bool Damp() {
-    lambda_ = std::max(lambda_ * kLambdaFactor, kLambdaFirst);
-    return false;
-  }
-
   const Problem& problem_;
   const std::vector<Pin>& pins_;
   BlockCholesky<6>& cholesky_;
-  Poses T_ref_, trial_;
-  NormalEquations equations_, trial_equations_;
+  Poses T_ref_, best_T_ref_, trial_;
+  NormalEquations equations_;  // at T_ref_
+  double best_cost_ = 0.0;
   Eigen::VectorXd step_;
   double lambda_ = 0.0;
+  double gain_ = 0.0;          // of the step before
+  bool reuse_factor_ = false;  // H barely changes over short steps: the old factor finds the same optimum
+  int climbs_ = 0;
 };
 
 }  // namespace

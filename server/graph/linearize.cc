@@ -42,32 +42,46 @@ Vector6d UpperTransposedTimes(const UpperBlocks& A, const Vector6d& v) {
 
 const Se3& PoseOf(const Poses& T_ref, int vertex) { return T_ref[static_cast<std::size_t>(vertex)]; }
 
-// J_j = Jr^-1(e) and J_i = -J_j A with A = Ad(T_j^-1 T_i): one product serves three blocks.
-void AddEdge(const Constraint& constraint, const Poses& T_ref, NormalEquations& equations) {
+// What an edge's gradient and Hessian share: J_j = Jr^-1(e), J_i = -J_j A with A = Ad(T_j^-1 T_i).
+struct EdgeTerms {
+  UpperBlocks J_j, A;
+  Vector6d g_j;
+};
+
+EdgeTerms AddGradient(const Constraint& constraint, const Poses& T_ref, NormalEquations& equations) {
+  EdgeTerms terms;
   const Se3 T_j_i = PoseOf(T_ref, constraint.j).Inverse() * PoseOf(T_ref, constraint.i);
   const Vector6d e = (constraint.T_j_i * T_j_i.Inverse()).Log();
   const Vector6d weighted = constraint.Omega * e;
   equations.cost += e.dot(weighted);
-  const UpperBlocks J_j = BlocksOf(RightJacobianInverse(e));
-  const Matrix6d W = UpperTransposedTimes(J_j, TimesUpper(constraint.Omega, J_j));
-  const Vector6d g_j = UpperTransposedTimes(J_j, weighted);
+  terms.J_j = BlocksOf(RightJacobianInverse(e));
+  terms.A = AdjointBlocks(T_j_i);
+  terms.g_j = UpperTransposedTimes(terms.J_j, weighted);
+  if (constraint.j > 0) equations.g.segment<6>(6 * (constraint.j - 1)) += terms.g_j;
+  if (constraint.i > 0) equations.g.segment<6>(6 * (constraint.i - 1)) -= UpperTransposedTimes(terms.A, terms.g_j);
+  return terms;
+}
+
+// One product W serves three blocks.
+void AddHessian(const Constraint& constraint, const EdgeTerms& terms, BlockMatrix<6>& H) {
+  const Matrix6d W = UpperTransposedTimes(terms.J_j, TimesUpper(constraint.Omega, terms.J_j));
   const auto i = static_cast<std::size_t>(constraint.i), j = static_cast<std::size_t>(constraint.j);
-  if (j > 0) {
-    equations.H.diagonal[j - 1] += W;
-    equations.g.segment<6>(6 * (constraint.j - 1)) += g_j;
-  }
+  if (j > 0) H.diagonal[j - 1] += W;
   if (i == 0) return;
-  const UpperBlocks A = AdjointBlocks(T_j_i);
-  const Matrix6d WA = TimesUpper(W, A);
-  equations.H.diagonal[i - 1] += UpperTransposedTimes(A, WA);
-  equations.g.segment<6>(6 * (constraint.i - 1)) -= UpperTransposedTimes(A, g_j);
+  const Matrix6d WA = TimesUpper(W, terms.A);
+  H.diagonal[i - 1] += UpperTransposedTimes(terms.A, WA);
   if (constraint.slot < 0) return;
-  Matrix6d& block = equations.H.off_diagonal[static_cast<std::size_t>(constraint.slot)];
-  if (constraint.j > constraint.i) {
+  Matrix6d& block = H.off_diagonal[static_cast<std::size_t>(constraint.slot)];
+  if (j > i) {
     block -= WA;
   } else {
     block -= WA.transpose();
   }
+}
+
+void Clear(const Problem& problem, NormalEquations& equations) {
+  equations.g.setZero(6 * problem.free_count());
+  equations.cost = 0.0;
 }
 
 }  // namespace
@@ -86,11 +100,16 @@ double Cost(const Problem& problem, const Poses& T_ref) {
 }
 
 void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
+  Clear(problem, equations);
   equations.H.Resize(problem.pattern);
   equations.H.SetZero();
-  equations.g.setZero(6 * problem.free_count());
-  equations.cost = 0.0;
-  for (const Constraint& constraint : problem.constraints) AddEdge(constraint, T_ref, equations);
+  for (const Constraint& constraint : problem.constraints)
+    AddHessian(constraint, AddGradient(constraint, T_ref, equations), equations.H);
+}
+
+void LinearizeGradient(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
+  Clear(problem, equations);
+  for (const Constraint& constraint : problem.constraints) AddGradient(constraint, T_ref, equations);
 }
 
 void Retract(const Poses& T_ref, const Eigen::VectorXd& step, Poses& result) {

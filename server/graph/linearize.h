@@ -22,6 +22,8 @@ struct NormalEquations {
 [[nodiscard]] double Cost(const Problem& problem, const Poses& T_ref);
 // Analytic, with the full inverse right Jacobian of SE(3). Allocates only on the first call with `equations`.
 void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equations);
+// Cost and gradient alone; H stays as it is.
+void LinearizeGradient(const Problem& problem, const Poses& T_ref, NormalEquations& equations);
 // T * Exp(step), vertex by vertex; the reference stays.
 void Retract(const Poses& T_ref, const Eigen::VectorXd& step, Poses& result);
 

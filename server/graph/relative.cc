@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 
 #include "server/graph/observability.h"
 #include "server/graph/solve.h"
@@ -31,15 +32,15 @@ Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& sol
 }
 
 Poses PosesOf(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
+  std::map<SensorId, const Se3*> known;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.known) known.emplace(pose.sensor, &pose.T_ref_sensor);
   Poses T_ref(static_cast<std::size_t>(problem.vertex_count));
   std::vector<bool> placed(T_ref.size(), false);
-  for (const SensorPose& pose : solution.poses) {
-    const auto at = std::find(graph.sensors.begin(), graph.sensors.end(), pose.sensor);
-    if (!pose.known || at == graph.sensors.end()) continue;
-    const int vertex = problem.vertex_of_sensor[static_cast<std::size_t>(at - graph.sensors.begin())];
-    if (vertex < 0) continue;
-    T_ref[static_cast<std::size_t>(vertex)] = pose.T_ref_sensor;
-    placed[static_cast<std::size_t>(vertex)] = true;
+  for (std::size_t v = 0; v < T_ref.size(); ++v) {
+    const auto found = known.find(graph.sensors[problem.sensor_of_vertex[v]]);
+    placed[v] = found != known.end();
+    if (placed[v]) T_ref[v] = *found->second;
   }
   return GrowTree(problem, std::move(T_ref), std::move(placed));
 }

@@ -1,35 +1,19 @@
 #include "server/graph/selected_inverse.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 
 namespace rigcal::graph {
-namespace {
-
-using Strided = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-using ConstStrided = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
-
-}  // namespace
-
-SelectedInverse::SelectedInverse(const SupernodalView& L)
-    : L_(L), supernode_of_col_(static_cast<std::size_t>(L.size)), place_(static_cast<std::size_t>(L.size), -1),
-      values_(L.value_count) {
-  for (int s = 0; s < L.supernode_count; ++s)
-    std::fill(supernode_of_col_.begin() + L.super[s], supernode_of_col_.begin() + L.super[s + 1], s);
-  for (int s = L.supernode_count - 1; s >= 0; --s) InvertSupernode(s);
-}
-
-SelectedInverse::Shape SelectedInverse::ShapeOf(int s) const {
-  return {L_.super[s], L_.super[s + 1] - L_.super[s], L_.row_start[s + 1] - L_.row_start[s], L_.rows + L_.row_start[s],
-          static_cast<std::size_t>(L_.value_start[s])};
+SelectedInverse::SelectedInverse(const Supernodes& supernodes, const std::vector<double>& values)
+    : shape_(supernodes), place_(static_cast<std::size_t>(supernodes.size), -1), values_(values.size()) {
+  for (int s = supernodes.count() - 1; s >= 0; --s) InvertSupernode(s, values);
 }
 
 // Z_RJ = -Z_RR Y and Z_JJ = L_JJ^-T L_JJ^-1 - Y^T Z_RJ with Y = L_RJ L_JJ^-1, R the rows below the supernode J.
-void SelectedInverse::InvertSupernode(int s) {
-  const Shape shape = ShapeOf(s);
-  const int below = shape.row_count - shape.col_count;
-  const ConstStrided L(L_.values + shape.start, shape.row_count, shape.col_count, Eigen::OuterStride<>(shape.row_count));
-  Strided Z(values_.data() + shape.start, shape.row_count, shape.col_count, Eigen::OuterStride<>(shape.row_count));
+void SelectedInverse::InvertSupernode(int s, const std::vector<double>& L_values) {
+  const Supernode shape = SliceOf(shape_, s);
+  const int below = shape.below();
+  const Eigen::Map<const Eigen::MatrixXd> L(L_values.data() + shape.start, shape.row_count, shape.col_count);
+  Eigen::Map<Eigen::MatrixXd> Z(values_.data() + shape.start, shape.row_count, shape.col_count);
   const auto L_JJ = L.topRows(shape.col_count).triangularView<Eigen::Lower>();
   Eigen::MatrixXd L_inverse = Eigen::MatrixXd::Identity(shape.col_count, shape.col_count);
   L_JJ.solveInPlace(L_inverse);
@@ -45,19 +29,19 @@ void SelectedInverse::InvertSupernode(int s) {
 }
 
 // The rows below a supernode are a clique of the filled graph: all their entries were computed before.
-void SelectedInverse::GatherAncestors(const Shape& shape, Eigen::MatrixXd& Z_below) {
-  const int* rows = shape.rows + shape.col_count;
-  const int below = shape.row_count - shape.col_count;
+void SelectedInverse::GatherAncestors(const Supernode& supernode, Eigen::MatrixXd& Z_below) {
+  const int* rows = supernode.rows_below();
+  const int below = supernode.below();
   for (int k = 0; k < below; ++k) place_[static_cast<std::size_t>(rows[k])] = k;
   for (int first = 0, last = 0; first < below; first = last) {
-    const int ancestor = supernode_of_col_[static_cast<std::size_t>(rows[first])];
-    while (last < below && supernode_of_col_[static_cast<std::size_t>(rows[last])] == ancestor) ++last;
-    GatherFrom(ShapeOf(ancestor), rows + first, last - first, first, Z_below);
+    const int ancestor = shape_.supernode_of_col[static_cast<std::size_t>(rows[first])];
+    while (last < below && shape_.supernode_of_col[static_cast<std::size_t>(rows[last])] == ancestor) ++last;
+    GatherFrom(SliceOf(shape_, ancestor), rows + first, last - first, first, Z_below);
   }
   for (int k = 0; k < below; ++k) place_[static_cast<std::size_t>(rows[k])] = -1;
 }
 
-void SelectedInverse::GatherFrom(const Shape& ancestor, const int* cols, int col_count, int first,
+void SelectedInverse::GatherFrom(const Supernode& ancestor, const int* cols, int col_count, int first,
                                  Eigen::MatrixXd& Z_below) const {
   for (int k = 0; k < ancestor.row_count; ++k) {
     const int row = place_[static_cast<std::size_t>(ancestor.rows[k])];
@@ -72,7 +56,7 @@ void SelectedInverse::GatherFrom(const Shape& ancestor, const int* cols, int col
 
 double SelectedInverse::At(int row, int col) const {
   if (row < col) std::swap(row, col);
-  const Shape shape = ShapeOf(supernode_of_col_[static_cast<std::size_t>(col)]);
+  const Supernode shape = SliceOf(shape_, shape_.supernode_of_col[static_cast<std::size_t>(col)]);
   const int* found = std::lower_bound(shape.rows, shape.rows + shape.row_count, row);
   const auto k = static_cast<std::size_t>(found - shape.rows);
   return values_[shape.start + k + static_cast<std::size_t>(col - shape.first_col) * static_cast<std::size_t>(shape.row_count)];

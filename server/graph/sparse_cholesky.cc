@@ -1,159 +1,152 @@
-// Supernodal Cholesky through CHOLMOD, whose dense kernels are those of the BLAS of the machine.
-#include <cholmod.h>
-
+// Supernodal Cholesky, right-looking: the shape comes from CHOLMOD, the numbers from Eigen's dense kernels on one
+// thread. (CHOLMOD's own numeric phase starts OpenMP threads that spin, and its BLAS is chosen by the machine: neither
+// is acceptable where the same edges must give the same bytes and many robots are solved side by side.)
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cstring>
 
 #include "server/graph/cholesky_kinds.h"
 #include "server/graph/selected_inverse.h"
+#include "server/graph/supernodes.h"
 
 namespace rigcal::graph {
 namespace {
 
-// Owns CHOLMOD's workspace; not shared between threads.
-class Common {
- public:
-  Common() {
-    cholmod_start(&common_);
-    common_.print = 0;
-    common_.supernodal = CHOLMOD_SUPERNODAL;
-    common_.nmethods = 1;  // the blocks come in elimination order
-    common_.method[0].ordering = CHOLMOD_NATURAL;
-    common_.postorder = 1;
-  }
-  ~Common() { cholmod_finish(&common_); }
-  Common(const Common&) = delete;
-  Common& operator=(const Common&) = delete;
-  cholmod_common* get() { return &common_; }
-
- private:
-  cholmod_common common_{};
-};
+using Eigen::MatrixXd;
 
 template <int B>
 class SparseCholesky final : public BlockCholesky<B> {
  public:
   using typename BlockCholesky<B>::Block;
 
-  explicit SparseCholesky(const BlockPattern& pattern) : pattern_(pattern) {
-    AllocateMatrix();
-    factor_ = cholmod_analyze(matrix_, common_.get());
+  explicit SparseCholesky(const BlockPattern& pattern) : pattern_(pattern), shape_(AnalyzeSupernodes(pattern, B)) {
+    if (shape_.size == 0) return;
+    values_.resize(shape_.value_start.back());
+    place_.assign(static_cast<std::size_t>(shape_.size), -1);
+    for (int v = 0; v < pattern.block_count; ++v) diagonal_at_.push_back(Locate(v, v));
+    for (const BlockPosition& at : pattern.off_diagonal) off_diagonal_at_.push_back(Locate(at.row, at.col));
+    int below_max = 0;
+    for (int s = 0; s < shape_.count(); ++s) below_max = std::max(below_max, SliceOf(shape_, s).below());
+    update_.resize(static_cast<std::size_t>(below_max) * static_cast<std::size_t>(below_max));
   }
-  ~SparseCholesky() override {
-    cholmod_free_dense(&x_, common_.get());
-    cholmod_free_dense(&y_, common_.get());
-    cholmod_free_dense(&e_, common_.get());
-    cholmod_free_factor(&factor_, common_.get());
-    cholmod_free_sparse(&matrix_, common_.get());
-  }
-  SparseCholesky(const SparseCholesky&) = delete;
-  SparseCholesky& operator=(const SparseCholesky&) = delete;
 
   bool Factor(const BlockMatrix<B>& matrix, double lambda) override {
-    if (matrix_ == nullptr || factor_ == nullptr) return false;
-    for (int v = 0; v < pattern_.block_count; ++v) WriteDiagonal(v, matrix.diagonal[static_cast<std::size_t>(v)], lambda);
-    for (std::size_t s = 0; s < pattern_.off_diagonal.size(); ++s) WriteOffDiagonal(s, matrix.off_diagonal[s]);
-    return cholmod_factorize(matrix_, factor_, common_.get()) != 0 && common_.get()->status == CHOLMOD_OK &&
-           factor_->minor == factor_->n;
+    if (shape_.size == 0) return false;
+    std::fill(values_.begin(), values_.end(), 0.0);
+    for (std::size_t v = 0; v < diagonal_at_.size(); ++v) Write(diagonal_at_[v], matrix.diagonal[v], 1.0 + lambda);
+    for (std::size_t s = 0; s < off_diagonal_at_.size(); ++s) Write(off_diagonal_at_[s], matrix.off_diagonal[s], 1.0);
+    for (int s = 0; s < shape_.count(); ++s)
+      if (!Eliminate(SliceOf(shape_, s))) return false;
+    return true;
   }
 
-  void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) override {
-    cholmod_dense b{};
-    b.nrow = static_cast<std::size_t>(rhs.rows());
-    b.ncol = static_cast<std::size_t>(rhs.cols());
-    b.d = static_cast<std::size_t>(rhs.outerStride());
-    b.nzmax = b.d * b.ncol;
-    b.x = rhs.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    cholmod_solve2(CHOLMOD_A, factor_, &b, nullptr, &x_, nullptr, &y_, &e_, common_.get());
-    rhs = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x_->x), rhs.rows(), rhs.cols());
+  void SolveInPlace(Eigen::Ref<MatrixXd> rhs) override {
+    work_.resize(rhs.rows(), rhs.cols());
+    for (Eigen::Index k = 0; k < rhs.rows(); ++k) work_.row(shape_.position[static_cast<std::size_t>(k)]) = rhs.row(k);
+    for (int s = 0; s < shape_.count(); ++s) Forward(SliceOf(shape_, s));
+    for (int s = shape_.count() - 1; s >= 0; --s) Backward(SliceOf(shape_, s));
+    for (Eigen::Index k = 0; k < rhs.rows(); ++k) rhs.row(k) = work_.row(shape_.position[static_cast<std::size_t>(k)]);
   }
 
   std::vector<Block> InverseDiagonal() override {
-    const SelectedInverse inverse(View());
-    std::vector<int> position(factor_->n);
-    for (std::size_t k = 0; k < factor_->n; ++k)
-      position[static_cast<std::size_t>(static_cast<const int*>(factor_->Perm)[k])] = static_cast<int>(k);
+    const SelectedInverse inverse(shape_, values_);
     std::vector<Block> blocks(static_cast<std::size_t>(pattern_.block_count));
     for (std::size_t v = 0; v < blocks.size(); ++v) {
-      const int* at = position.data() + B * v;
+      const int first = shape_.position[B * v];
       for (int r = 0; r < B; ++r)
-        for (int c = 0; c < B; ++c) blocks[v](r, c) = inverse.At(at[r], at[c]);
+        for (int c = 0; c < B; ++c) blocks[v](r, c) = inverse.At(first + r, first + c);
     }
     return blocks;
   }
 
  private:
-  // Lower triangle by columns. Column k of block column v holds entries k..B-1 of the diagonal block, then the blocks below.
-  void AllocateMatrix() {
-    const auto n = static_cast<std::size_t>(B * pattern_.block_count);
-    const std::size_t entries = static_cast<std::size_t>(pattern_.block_count) * (B * (B + 1) / 2) +
-                                pattern_.off_diagonal.size() * (B * B);
-    matrix_ = cholmod_allocate_sparse(n, n, entries, 1, 1, -1, CHOLMOD_REAL, common_.get());
-    if (matrix_ == nullptr) return;
-    std::size_t slot = 0;
-    place_in_column_.resize(pattern_.off_diagonal.size());
-    for (int v = 0; v < pattern_.block_count; ++v) {
-      const std::size_t slot_begin = slot;
-      while (slot < pattern_.off_diagonal.size() && pattern_.off_diagonal[slot].col == v) {
-        place_in_column_[slot] = static_cast<int>(slot - slot_begin);
-        ++slot;
+  // Where a block lies in the factor, or its transpose, if the factor's order swaps its row and column.
+  struct Location {
+    std::size_t start = 0;
+    int stride = 0;
+    bool transposed = false;
+  };
+
+  Location Locate(int block_row, int block_col) const {
+    int row = shape_.position[static_cast<std::size_t>(B * block_row)];
+    int col = shape_.position[static_cast<std::size_t>(B * block_col)];
+    const bool transposed = row < col;
+    if (transposed) std::swap(row, col);
+    const Supernode at = SliceOf(shape_, shape_.supernode_of_col[static_cast<std::size_t>(col)]);
+    const auto k = static_cast<std::size_t>(std::lower_bound(at.rows, at.rows + at.row_count, row) - at.rows);
+    return {at.start + k + static_cast<std::size_t>(col - at.first_col) * static_cast<std::size_t>(at.row_count),
+            at.row_count, transposed};
+  }
+
+  void Write(const Location& at, const Block& block, double diagonal_factor) {
+    Eigen::Map<Block, 0, Eigen::OuterStride<>> target(values_.data() + at.start, Eigen::OuterStride<>(at.stride));
+    if (at.transposed) target = block.transpose(); else target = block;
+    target.diagonal() *= diagonal_factor;
+  }
+
+  Eigen::Map<MatrixXd> ValuesOf(const Supernode& supernode) {
+    return {values_.data() + supernode.start, supernode.row_count, supernode.col_count};
+  }
+
+  bool Eliminate(const Supernode& supernode) {
+    Eigen::Map<MatrixXd> L = ValuesOf(supernode);
+    auto L_JJ = L.topRows(supernode.col_count);
+    if (Eigen::internal::llt_inplace<double, Eigen::Lower>::blocked(L_JJ) != -1) return false;
+    const int below = supernode.below();
+    if (below == 0) return true;
+    auto L_RJ = L.bottomRows(below);
+    L_JJ.transpose().template triangularView<Eigen::Upper>().template solveInPlace<Eigen::OnTheRight>(L_RJ);
+    Eigen::Map<MatrixXd> update(update_.data(), below, below);
+    update.template triangularView<Eigen::Lower>().setZero();
+    update.template selfadjointView<Eigen::Lower>().rankUpdate(L_RJ);
+    SubtractFromAncestors(supernode, update);
+    return true;
+  }
+
+  void SubtractFromAncestors(const Supernode& supernode, const Eigen::Map<MatrixXd>& update) {
+    const int* rows = supernode.rows_below();
+    const int below = supernode.below();
+    for (int first = 0, last = 0; first < below; first = last) {
+      const int s = shape_.supernode_of_col[static_cast<std::size_t>(rows[first])];
+      while (last < below && shape_.supernode_of_col[static_cast<std::size_t>(rows[last])] == s) ++last;
+      const Supernode ancestor = SliceOf(shape_, s);
+      for (int k = 0, at = 0; k < below - first; ++k) {
+        while (ancestor.rows[at] != rows[first + k]) ++at;
+        place_[static_cast<std::size_t>(k)] = at;
       }
-      FillBlockColumn(v, slot_begin, slot);
+      for (int c = first; c < last; ++c) {
+        double* column = values_.data() + ancestor.start +
+                         static_cast<std::size_t>(rows[c] - ancestor.first_col) * static_cast<std::size_t>(ancestor.row_count);
+        for (int r = c; r < below; ++r) column[place_[static_cast<std::size_t>(r - first)]] -= update(r, c);
+      }
     }
   }
 
-  void FillBlockColumn(int v, std::size_t slot_begin, std::size_t slot_end) {
-    int* starts = Starts();
-    auto* rows = static_cast<int*>(matrix_->i);
-    for (int k = 0; k < B; ++k) {
-      int entry = starts[B * v + k];
-      for (int r = k; r < B; ++r) rows[entry++] = B * v + r;
-      for (std::size_t s = slot_begin; s < slot_end; ++s)
-        for (int r = 0; r < B; ++r) rows[entry++] = B * pattern_.off_diagonal[s].row + r;
-      starts[B * v + k + 1] = entry;
+  void Forward(const Supernode& supernode) {
+    const Eigen::Map<MatrixXd> L = ValuesOf(supernode);
+    auto x_J = work_.middleRows(supernode.first_col, supernode.col_count);
+    L.topRows(supernode.col_count).template triangularView<Eigen::Lower>().solveInPlace(x_J);
+    if (supernode.below() == 0) return;
+    below_.noalias() = L.bottomRows(supernode.below()) * x_J;
+    for (int k = 0; k < supernode.below(); ++k) work_.row(supernode.rows_below()[k]) -= below_.row(k);
+  }
+
+  void Backward(const Supernode& supernode) {
+    const Eigen::Map<MatrixXd> L = ValuesOf(supernode);
+    auto x_J = work_.middleRows(supernode.first_col, supernode.col_count);
+    if (supernode.below() > 0) {
+      below_.resize(supernode.below(), work_.cols());
+      for (int k = 0; k < supernode.below(); ++k) below_.row(k) = work_.row(supernode.rows_below()[k]);
+      x_J.noalias() -= L.bottomRows(supernode.below()).transpose() * below_;
     }
+    L.topRows(supernode.col_count).transpose().template triangularView<Eigen::Upper>().solveInPlace(x_J);
   }
 
-  void WriteDiagonal(int v, const Block& block, double lambda) {
-    for (int k = 0; k < B; ++k) {
-      double* column = Values() + Starts()[B * v + k];
-      std::memcpy(column, block.data() + B * k + k, sizeof(double) * static_cast<std::size_t>(B - k));
-      column[0] *= 1.0 + lambda;
-    }
-  }
-
-  void WriteOffDiagonal(std::size_t slot, const Block& block) {
-    const int v = pattern_.off_diagonal[slot].col;
-    for (int k = 0; k < B; ++k) {
-      double* column = Values() + Starts()[B * v + k] + (B - k) + B * place_in_column_[slot];
-      std::memcpy(column, block.data() + B * k, sizeof(double) * B);
-    }
-  }
-
-  [[nodiscard]] SupernodalView View() const {
-    SupernodalView view;
-    view.size = static_cast<int>(factor_->n);
-    view.supernode_count = static_cast<int>(factor_->nsuper);
-    view.super = static_cast<const int*>(factor_->super);
-    view.row_start = static_cast<const int*>(factor_->pi);
-    view.value_start = static_cast<const int*>(factor_->px);
-    view.rows = static_cast<const int*>(factor_->s);
-    view.values = static_cast<const double*>(factor_->x);
-    view.value_count = factor_->xsize;
-    return view;
-  }
-
-  [[nodiscard]] int* Starts() const { return static_cast<int*>(matrix_->p); }
-  [[nodiscard]] double* Values() const { return static_cast<double*>(matrix_->x); }
-
-  Common common_;
   BlockPattern pattern_;
-  std::vector<int> place_in_column_;
-  cholmod_sparse* matrix_ = nullptr;
-  cholmod_factor* factor_ = nullptr;
-  cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;
+  Supernodes shape_;
+  std::vector<Location> diagonal_at_, off_diagonal_at_;
+  std::vector<double> values_, update_;
+  std::vector<int> place_;
+  MatrixXd work_, below_;
 };
 
 }  // namespace

@@ -11,18 +11,21 @@
 namespace rigcal::http {
 
 struct Options {
-  std::string host = "127.0.0.1";
-  int port = 0;                      // 0: any free port
-  std::filesystem::path folder;      // published reports: served below /robots/
+  std::string host = "127.0.0.1";  // an address or a name; "[::1]" for IPv6
+  int port = 0;                    // 0: any free port
+  // Published reports, <robot>/<revision>/index.html ...: /robots/<robot>/revisions/<revision>/ shows them.
+  std::filesystem::path folder;
+  int request_timeout_ms = 10'000;  // for a request to arrive, and for each piece of an answer to be taken
 };
 
 // What dynamic paths answer: body and content type, or an error (kNotFound -> 404, kInvalidInput -> 400, else 503).
 struct Page {
   std::string body;
   std::string content_type;
+  std::string location = {};  // not empty: a temporary redirect to this path instead of the body
 };
-// `path` is decoded and normalised ("/", "/robots/x/", "/api/v1/robots", "/metrics", "/healthz"), `query` the raw query string.
-// Called from server threads, several at once.
+// `path` is decoded and normalised ("/", "/robots/x/", "/api/v1/robots", "/metrics", "/healthz"), `query` the raw query
+// string. Called from server threads, several at once. Not asked for the files of a numbered revision.
 using Answer = std::function<Result<Page>(const std::string& path, const std::string& query)>;
 
 class Server {

@@ -44,8 +44,8 @@ void Split(const Basis& null_vectors, Basis& unobservable, Basis& observable) {
   observable = Q.rightCols(6 - count);
 }
 
-// How many of the ascending eigenvalues count as zero. The scaled matrix has a 1 on its diagonal, hence an eigenvalue of
-// at least 1, unless there is no information at all.
+// How many of the ascending eigenvalues count as zero. The scaled matrix has a 1 on its diagonal, hence an eigenvalue
+// of at least 1, unless there is no information at all.
 int CountZero(const Vector6d& eigenvalues, double relative_tolerance) {
   if (!(eigenvalues(5) > 0.5)) return 6;
   int count = 0;

@@ -62,11 +62,10 @@ double SineCosineRestOver5(double theta) {
 
 // (1 - t/2 cot(t/2)) / t^2; the series has the Bernoulli numbers |B_2k| / (2k)!.
 double HalfCotangentRestOver2(double theta) {
-  constexpr std::array<double, 9> kSeries = {1 / 6.0 / Factorial(2),        1 / 30.0 / Factorial(4),
-                                             1 / 42.0 / Factorial(6),       1 / 30.0 / Factorial(8),
-                                             5 / 66.0 / Factorial(10),      691 / 2730.0 / Factorial(12),
-                                             7 / 6.0 / Factorial(14),       3617 / 510.0 / Factorial(16),
-                                             43867 / 798.0 / Factorial(18)};
+  constexpr std::array<double, 9> kSeries = {
+      1 / 6.0 / Factorial(2),  1 / 30.0 / Factorial(4),      1 / 42.0 / Factorial(6),
+      1 / 30.0 / Factorial(8), 5 / 66.0 / Factorial(10),     691 / 2730.0 / Factorial(12),
+      7 / 6.0 / Factorial(14), 3617 / 510.0 / Factorial(16), 43867 / 798.0 / Factorial(18)};
   if (theta < kSeriesBelow_rad) return Polynomial(kSeries, theta * theta);
   const double half = theta / 2;
   return (1 - half * std::cos(half) / std::sin(half)) / (theta * theta);
@@ -90,8 +89,8 @@ Matrix3d LeftJacobianCoupling(const Vector3d& rho, const Vector3d& phi) {
   const Matrix3d P = Hat(phi);
   const Matrix3d U = Hat(rho);
   const Matrix3d PU = P * U, UP = U * P, PUP = PU * P;
-  return 0.5 * U + ThetaMinusSineOver3(theta) * (PU + UP + PUP) +
-         CosineRestOver4(theta) * (P * PU + UP * P - 3 * PUP) + SineCosineRestOver5(theta) * (PUP * P + P * PUP);
+  return 0.5 * U + ThetaMinusSineOver3(theta) * (PU + UP + PUP) + CosineRestOver4(theta) * (P * PU + UP * P - 3 * PUP) +
+         SineCosineRestOver5(theta) * (PUP * P + P * PUP);
 }
 
 Matrix6d BlockUpperTriangular(const Matrix3d& diagonal, const Matrix3d& upper) {

@@ -11,9 +11,9 @@ namespace {
 
 namespace policies = boost::math::policies;
 // No exceptions: a quantile at probability 1 is infinite.
-using Quiet = policies::policy<policies::domain_error<policies::ignore_error>,
-                               policies::overflow_error<policies::ignore_error>,
-                               policies::evaluation_error<policies::ignore_error>>;
+using Quiet =
+    policies::policy<policies::domain_error<policies::ignore_error>, policies::overflow_error<policies::ignore_error>,
+                     policies::evaluation_error<policies::ignore_error>>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace

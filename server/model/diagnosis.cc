@@ -4,10 +4,14 @@ namespace rigcal {
 
 std::string NameOf(VerdictLevel level) {
   switch (level) {
-    case VerdictLevel::kUnknown: return "unknown";
-    case VerdictLevel::kPass: return "pass";
-    case VerdictLevel::kWarn: return "warn";
-    case VerdictLevel::kFail: return "fail";
+    case VerdictLevel::kUnknown:
+      return "unknown";
+    case VerdictLevel::kPass:
+      return "pass";
+    case VerdictLevel::kWarn:
+      return "warn";
+    case VerdictLevel::kFail:
+      return "fail";
   }
   return "unknown";
 }

@@ -38,10 +38,8 @@ Status CheckPose(const Edge& edge) {
 }
 
 Status CheckUncertainty(const Edge& edge) {
-  if (Status valid = Validate(edge.uncertainty); !valid)
-    return Refuse(edge, valid.error().what, valid.error().cure);
-  if (edge.uncertainty.rank < 1)
-    return Refuse(edge, "information is zero", "Leave an edge away that says nothing.");
+  if (Status valid = Validate(edge.uncertainty); !valid) return Refuse(edge, valid.error().what, valid.error().cure);
+  if (edge.uncertainty.rank < 1) return Refuse(edge, "information is zero", "Leave an edge away that says nothing.");
   return {};
 }
 

@@ -27,9 +27,7 @@ FieldHash& FieldHash::Number(std::uint64_t number) {
   return *this;
 }
 
-FieldHash& FieldHash::Real(double value) {
-  return Number(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value));
-}
+FieldHash& FieldHash::Real(double value) { return Number(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value)); }
 
 FieldHash& FieldHash::Pose(const Se3& T) {
   for (double value : T.p_m) Real(value);

@@ -51,7 +51,8 @@ Status CheckOneFilePerCapture(const std::vector<Payload>& payloads) {
   std::set<std::pair<std::string_view, std::string_view>> seen;
   for (const Payload& payload : payloads)
     if (!seen.emplace(payload.sensor.str(), payload.capture.str()).second)
-      return Refuse(payload, "sensor " + payload.sensor.str() + " has another file for capture " + payload.capture.str(),
+      return Refuse(payload,
+                    "sensor " + payload.sensor.str() + " has another file for capture " + payload.capture.str(),
                     "Keep one of the two.");
   return {};
 }

@@ -75,10 +75,14 @@ Status CheckUnique(const std::string& kind, const std::vector<T>& things) {
 
 std::string NameOf(SensorKind kind) {
   switch (kind) {
-    case SensorKind::kCamera: return "camera";
-    case SensorKind::kLidar: return "lidar";
-    case SensorKind::kTracker: return "tracker";
-    case SensorKind::kPoseStream: return "pose_stream";
+    case SensorKind::kCamera:
+      return "camera";
+    case SensorKind::kLidar:
+      return "lidar";
+    case SensorKind::kTracker:
+      return "tracker";
+    case SensorKind::kPoseStream:
+      return "pose_stream";
   }
   return "camera";
 }

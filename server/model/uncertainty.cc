@@ -52,10 +52,14 @@ Status CheckContributions(const std::vector<Contribution>& contributions) {
 
 std::string NameOf(UncertaintySource source) {
   switch (source) {
-    case UncertaintySource::kJackknife: return "jackknife";
-    case UncertaintySource::kModel: return "model";
-    case UncertaintySource::kGiven: return "given";
-    case UncertaintySource::kAssumed: return "assumed";
+    case UncertaintySource::kJackknife:
+      return "jackknife";
+    case UncertaintySource::kModel:
+      return "model";
+    case UncertaintySource::kGiven:
+      return "given";
+    case UncertaintySource::kAssumed:
+      return "assumed";
   }
   return "assumed";
 }
@@ -82,9 +86,10 @@ Uncertainty FromInformation(const Matrix6d& Omega, UncertaintySource source, int
 
 Result<Uncertainty> FromCovariance(const Matrix6d& covariance, UncertaintySource source, int dof) {
   const auto refused = [](const std::string& why) {
-    return Fail(ErrorCode::kInvalidInput, "covariance: " + why,
-                "Give a positive definite 6x6 covariance, order [x y z rx ry rz], in m and rad; where a direction is not "
-                "known, give the information matrix instead.");
+    return Fail(
+        ErrorCode::kInvalidInput, "covariance: " + why,
+        "Give a positive definite 6x6 covariance, order [x y z rx ry rz], in m and rad; where a direction is not "
+        "known, give the information matrix instead.");
   };
   if (!covariance.allFinite()) return refused("an entry is not finite");
   if (!IsPositiveSemidefinite(covariance)) return refused("the matrix is not symmetric and positive definite");
@@ -100,9 +105,9 @@ Status Validate(const Uncertainty& uncertainty) {
   RIGCAL_TRY(CheckInformation(uncertainty.Omega));
   const int rank = Observable(uncertainty.Omega).rank;
   if (uncertainty.rank != rank)
-    return Refuse("rank: " + std::to_string(uncertainty.rank) + " is given, the information matrix has rank " +
-                      RankText(rank),
-                  "Leave the rank away or correct it.");
+    return Refuse(
+        "rank: " + std::to_string(uncertainty.rank) + " is given, the information matrix has rank " + RankText(rank),
+        "Leave the rank away or correct it.");
   if (uncertainty.dof < 0)
     return Refuse("dof: " + std::to_string(uncertainty.dof) + " is negative", "Give 0 where the uncertainty is known.");
   RIGCAL_TRY(CheckBlocks(uncertainty));

@@ -8,10 +8,14 @@ namespace {
 // Shapes differ as well as colours: a tick, a triangle, a cross, a question mark.
 const char* IconOf(VerdictLevel level) {
   switch (level) {
-    case VerdictLevel::kPass: return "M4 12.5l5.5 5.5L20 6.5";
-    case VerdictLevel::kWarn: return "M12 3.5L22 20.5H2ZM12 10v4.5M12 17.4v.1";
-    case VerdictLevel::kFail: return "M5.5 5.5l13 13M18.5 5.5l-13 13";
-    case VerdictLevel::kUnknown: break;
+    case VerdictLevel::kPass:
+      return "M4 12.5l5.5 5.5L20 6.5";
+    case VerdictLevel::kWarn:
+      return "M12 3.5L22 20.5H2ZM12 10v4.5M12 17.4v.1";
+    case VerdictLevel::kFail:
+      return "M5.5 5.5l13 13M18.5 5.5l-13 13";
+    case VerdictLevel::kUnknown:
+      break;
   }
   return "M8 8.5a4 4 0 1 1 6 3.5c-1.4.8-2 1.6-2 3M12 18.9v.1";
 }

@@ -11,7 +11,9 @@ namespace {
 constexpr std::size_t kBarsMax = 120, kNamedMax = 24;
 constexpr double kLeft_px = 44, kTop_px = 12, kHeight_px = 110, kFoot_px = 22;
 
-double RmsOf(const CaptureResidual& capture) { return std::isfinite(capture.rms) && capture.used ? std::max(capture.rms, 0.0) : 0.0; }
+double RmsOf(const CaptureResidual& capture) {
+  return std::isfinite(capture.rms) && capture.used ? std::max(capture.rms, 0.0) : 0.0;
+}
 
 // All of them, or the worst ones in their own order.
 std::vector<const CaptureResidual*> Drawn(const std::vector<CaptureResidual>& captures) {
@@ -44,7 +46,10 @@ void FillGrid(Dictionary& svg, double top, double width) {
   }
 }
 
-struct Slot { double left = 0.0, width = 0.0; bool named = false; };
+struct Slot {
+  double left = 0.0, width = 0.0;
+  bool named = false;
+};
 
 void FillBar(Dictionary& svg, const CaptureResidual& capture, const Slot& slot, double top, double worst) {
   const double height = capture.used ? std::max(1.0, RmsOf(capture) / top * kHeight_px) : kHeight_px * 0.5;
@@ -82,7 +87,8 @@ std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& cap
   for (std::size_t i = 0; i < drawn.size(); ++i)
     FillBar(*svg, *drawn[i], {kLeft_px + step * static_cast<double>(i), step, named}, NiceTop(worst), worst);
   if (drawn.size() == captures.size()) return "";
-  return "The " + std::to_string(drawn.size()) + " worst of " + std::to_string(captures.size()) + " captures are drawn.";
+  return "The " + std::to_string(drawn.size()) + " worst of " + std::to_string(captures.size()) +
+         " captures are drawn.";
 }
 
 }  // namespace rigcal::report

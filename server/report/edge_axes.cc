@@ -14,22 +14,29 @@ std::string SourceText(const Uncertainty& uncertainty) {
   switch (uncertainty.source) {
     case UncertaintySource::kJackknife:
       return "\xCF\x83 from leaving out one of " + Count(uncertainty.dof + 1UL, "capture", "captures") + " at a time.";
-    case UncertaintySource::kModel: return "\xCF\x83 from the model alone: too few captures to test it.";
-    case UncertaintySource::kGiven: return "\xCF\x83 as given with the edge.";
-    case UncertaintySource::kAssumed: break;
+    case UncertaintySource::kModel:
+      return "\xCF\x83 from the model alone: too few captures to test it.";
+    case UncertaintySource::kGiven:
+      return "\xCF\x83 as given with the edge.";
+    case UncertaintySource::kAssumed:
+      break;
   }
   return "\xCF\x83 is an assumption.";
 }
 
-// "x 0.71, rz 0.71": the entries of a direction that matter.
-std::string DirectionText(const Eigen::Matrix<double, 6, Eigen::Dynamic>& basis, Eigen::Index column) {
+// "z", or "(x 0.71, rz -0.71)": the entries of a direction that matter. Its sign has no meaning: the first is positive.
+std::string DirectionText(const Vector6d& direction) {
   constexpr double kShown = 0.05;
-  std::string text;
-  for (int axis = 0; axis < 6; ++axis)
-    if (std::abs(basis(axis, column)) > kShown)
-      text += (text.empty() ? "" : ", ") + std::string(tangent::kNames[static_cast<std::size_t>(axis)]) + " " +
-              Fixed(basis(axis, column), 2);
-  return "(" + text + ")";
+  std::string text, name;
+  int count = 0;
+  double sign = 1.0;
+  for (int axis = 0; axis < 6; ++axis) {
+    if (std::abs(direction(axis)) <= kShown) continue;
+    name = tangent::kNames[static_cast<std::size_t>(axis)];
+    if (count++ == 0) sign = direction(axis) < 0 ? -1.0 : 1.0;
+    text.append(count == 1 ? "(" : ", ").append(name).append(" ").append(Fixed(sign * direction(axis), 2));
+  }
+  return count == 1 ? name : text + ")";
 }
 
 }  // namespace
@@ -39,7 +46,7 @@ std::string AxisSigmaText(const Uncertainty& uncertainty, int axis) {
   return sigma.known && std::isfinite(sigma.value) ? InUnit(sigma.value, axis) : "free";
 }
 
-std::string LargestSigma(const Uncertainty& uncertainty, int first_axis) {
+std::string LargestSigma(const Uncertainty& uncertainty, int first_axis, const std::string& unit) {
   double largest = -1.0;
   std::string free;
   for (int axis = first_axis; axis < first_axis + 3; ++axis) {
@@ -47,10 +54,10 @@ std::string LargestSigma(const Uncertainty& uncertainty, int first_axis) {
     if (sigma.known && std::isfinite(sigma.value))
       largest = std::max(largest, sigma.value);
     else
-      free += (free.empty() ? "" : " ") + std::string(tangent::kNames[static_cast<std::size_t>(axis)]);
+      free.append(free.empty() ? "" : " ").append(tangent::kNames[static_cast<std::size_t>(axis)]);
   }
-  if (free.empty()) return InUnit(largest, first_axis);
-  return largest < 0.0 ? "free" : InUnit(largest, first_axis) + ", free: " + free;
+  if (largest < 0.0) return "free";
+  return InUnit(largest, first_axis) + unit + (free.empty() ? "" : ", free: " + free);
 }
 
 std::string ObservabilityText(const Uncertainty& uncertainty) {
@@ -58,7 +65,7 @@ std::string ObservabilityText(const Uncertainty& uncertainty) {
   if (uncertainty.rank >= 6) return "All 6 directions are observed. " + SourceText(uncertainty);
   std::string text = std::to_string(uncertainty.rank) + " of 6 directions are observed";
   for (Eigen::Index column = 0; column < basis.cols(); ++column)
-    text += (column == 0 ? "; free: " : ", ") + DirectionText(basis, column);
+    text += (column == 0 ? "; free: " : ", ") + DirectionText(basis.col(column));
   return text + ". " + SourceText(uncertainty);
 }
 

@@ -8,8 +8,9 @@
 namespace rigcal::report {
 
 [[nodiscard]] std::string AxisSigmaText(const Uncertainty& uncertainty, int axis);  // mm, deg or "free"
-// Of the three axes from `first_axis` on; names the free ones: "0.21", "0.21, free: rz", "free".
-[[nodiscard]] std::string LargestSigma(const Uncertainty& uncertainty, int first_axis);
+// Of the three axes from `first_axis` on; names the free ones: "0.21", "0.21, free: rz", "free". `unit` follows the
+// number.
+[[nodiscard]] std::string LargestSigma(const Uncertainty& uncertainty, int first_axis, const std::string& unit = "");
 // "All 6 directions are observed, ..." or what is free; and where sigma comes from.
 [[nodiscard]] std::string ObservabilityText(const Uncertainty& uncertainty);
 

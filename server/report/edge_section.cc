@@ -88,7 +88,8 @@ void FillPicture(Dictionary& picture, const Evidence& evidence, const std::set<D
   if (!IsPicture(evidence) || stored.count(evidence.digest) == 0) return picture.ShowSection("MISSING");
   Dictionary* shown = picture.AddSectionDictionary("STORED");
   shown->SetValue("FILE", evidence.digest.str() + "." + evidence.suffix);
-  shown->SetValue("ALT", evidence.title.empty() ? evidence.sensor.str() + " " + evidence.capture.str() : evidence.title);
+  shown->SetValue("ALT",
+                  evidence.title.empty() ? evidence.sensor.str() + " " + evidence.capture.str() : evidence.title);
 }
 
 void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>& stored) {
@@ -97,8 +98,7 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
   const std::size_t count = std::min(edge.evidence.size(), kPicturesPerEdgeMax);
   for (std::size_t i = 0; i < count; ++i)
     FillPicture(*pictures->AddSectionDictionary("PICTURE"), edge.evidence[i], stored);
-  if (count < edge.evidence.size())
-    ShowValue(*pictures, "MORE", "COUNT", std::to_string(edge.evidence.size() - count));
+  if (count < edge.evidence.size()) ShowValue(*pictures, "MORE", "COUNT", std::to_string(edge.evidence.size() - count));
 }
 
 }  // namespace

@@ -10,10 +10,14 @@ namespace {
 
 int Urgency(VerdictLevel level) {
   switch (level) {
-    case VerdictLevel::kFail: return 0;
-    case VerdictLevel::kUnknown: return 1;
-    case VerdictLevel::kWarn: return 2;
-    case VerdictLevel::kPass: break;
+    case VerdictLevel::kFail:
+      return 0;
+    case VerdictLevel::kUnknown:
+      return 1;
+    case VerdictLevel::kWarn:
+      return 2;
+    case VerdictLevel::kPass:
+      break;
   }
   return 3;
 }
@@ -31,7 +35,8 @@ std::string FleetSummary(const std::vector<FleetRow>& rows) {
   }
   std::string text = Count(rows.size(), "robot", "robots");
   const char* separator = ": ";
-  for (const VerdictLevel level : {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass}) {
+  for (const VerdictLevel level :
+       {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass}) {
     if (levels[level] == 0) continue;
     text += separator + std::to_string(levels[level]) + " " + NameOf(level);
     separator = ", ";
@@ -77,8 +82,10 @@ void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now)
 Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now) {
   Dictionary page("fleet");
   FillHead(page, "Fleet", "");
-  page.SetValue("SUMMARY", FleetSummary(rows));
-  if (rows.empty()) page.ShowSection("EMPTY");
+  if (rows.empty())
+    page.ShowSection("EMPTY");
+  else
+    page.SetValue("SUMMARY", FleetSummary(rows));
   std::vector<FleetRow> sorted = rows;
   std::sort(sorted.begin(), sorted.end(), [](const FleetRow& a, const FleetRow& b) {
     return std::make_tuple(Urgency(a.verdict.level), !a.overdue, a.robot) <

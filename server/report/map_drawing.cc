@@ -58,7 +58,8 @@ std::string LinesOf(const std::vector<ShownEdge>& edges, EdgeState state, const 
   for (const ShownEdge& shown : edges) {
     const auto a = known.find(shown.edge->frame_a), b = known.find(shown.edge->frame_b);
     if (shown.edge->state != state || a == known.end() || b == known.end() || ++drawn > kTracesMax) continue;
-    path += "M" + PointIn(view, a->second->T_ref_sensor.p_m) + "L" + PointIn(view, b->second->T_ref_sensor.p_m);
+    path.append("M").append(PointIn(view, a->second->T_ref_sensor.p_m));
+    path.append("L").append(PointIn(view, b->second->T_ref_sensor.p_m));
   }
   return path;
 }
@@ -75,8 +76,9 @@ std::string FillMap(Dictionary& svg, const formats::RevisionInput& revision, con
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!poses[i].known) continue;
     known.emplace(poses[i].sensor, &poses[i]);
-    if (i % stride == 0) dots += "M" + PointIn(view, poses[i].T_ref_sensor.p_m) + "h0";
-    if (poses[i].sensor == revision.reference) origin = "M" + PointIn(view, poses[i].T_ref_sensor.p_m) + "h0";
+    const std::string dot = std::string("M").append(PointIn(view, poses[i].T_ref_sensor.p_m)).append("h0");
+    if (i % stride == 0) dots += dot;
+    if (poses[i].sensor == revision.reference) origin = dot;
   }
   svg.SetValue("WIDTH", Fixed(view.width_px, 0));
   svg.SetValue("HEIGHT", Fixed(view.height_px, 0));
@@ -84,9 +86,10 @@ std::string FillMap(Dictionary& svg, const formats::RevisionInput& revision, con
   Draw(svg, "known", kKnownFill, "2.6", dots);
   Draw(svg, "failed", kFailedStroke, "1.6", LinesOf(edges, EdgeState::kFailed, view, known));
   Draw(svg, "known", kKnownFill, "11", origin);
-  return "A map of the " + std::to_string(known.size()) + " known sensors at their solved positions: " +
-         kAxis[static_cast<std::size_t>(view.right)] + " to the right, " + kAxis[static_cast<std::size_t>(view.up)] +
-         " upwards, seen along " + kAxis[static_cast<std::size_t>(view.along)] +
+  return "A map of the " + std::to_string(known.size()) +
+         " known sensors at their solved positions: " + kAxis[static_cast<std::size_t>(view.right)] +
+         " to the right, " + kAxis[static_cast<std::size_t>(view.up)] + " upwards, seen along " +
+         kAxis[static_cast<std::size_t>(view.along)] +
          " of the reference frame; the large dot is the reference. Unknown sensors have no place on it.";
 }
 

@@ -16,7 +16,8 @@ struct Templates {
   Templates() {
     for (const auto& [name, text] : embedded::kEmbeddedFiles)
       if (IsTemplate(name))
-        complete &= cache.StringToTemplateCache(std::string(name), text.data(), text.size(), ctemplate::STRIP_WHITESPACE);
+        complete &=
+            cache.StringToTemplateCache(std::string(name), text.data(), text.size(), ctemplate::STRIP_WHITESPACE);
   }
 };
 

@@ -1,7 +1,11 @@
 // Fills the embedded templates. Every template escapes by itself (AUTOESCAPE): values go in as they are.
 #pragma once
 
+// ctemplate's headers use strlen without its header: so that one comes first.
+// clang-format off
+#include <cstring>
 #include <ctemplate/template_dictionary.h>
+// clang-format on
 
 #include <string>
 

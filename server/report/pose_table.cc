@@ -40,8 +40,7 @@ void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
     else
       ShowValue(*row, "UNKNOWN", "WHY", why.at(poses[i].sensor));
   }
-  if (poses.size() > kPoseRowsMax)
-    ShowValue(page, "MORE_POSES", "COUNT", std::to_string(poses.size() - kPoseRowsMax));
+  if (poses.size() > kPoseRowsMax) ShowValue(page, "MORE_POSES", "COUNT", std::to_string(poses.size() - kPoseRowsMax));
 }
 
 }  // namespace rigcal::report

@@ -15,8 +15,8 @@ namespace {
 
 void FillTitle(Dictionary& page, const ReportInput& input) {
   const std::string robot = input.revision.robot.str();
-  FillHead(page, robot + ", revision " + std::to_string(input.number) + ": " +
-                     VerdictWord(input.revision.verdict.level), "");
+  FillHead(page,
+           robot + ", revision " + std::to_string(input.number) + ": " + VerdictWord(input.revision.verdict.level), "");
   page.SetValue("ROBOT", robot);
   page.SetValue("NUMBER", std::to_string(input.number));
   page.SetValue("TIME", TimeText(input.created_at));

@@ -12,10 +12,10 @@ namespace rigcal::report {
 struct ReportInput {
   int number = 0;
   Stamp created_at;
-  Digest digest;                     // of the revision's document
-  formats::RevisionInput revision;   // edges with evidence
+  Digest digest;                    // of the revision's document
+  formats::RevisionInput revision;  // edges with evidence
   std::string software_version;
-  std::vector<Digest> evidence;      // digests whose pictures exist; the rest is shown as missing
+  std::vector<Digest> evidence;  // digests whose pictures exist; the rest is shown as missing
 };
 
 // File name (relative, '/'-separated) -> contents. Contains index.html, revision.json (= document), style.css.
@@ -25,9 +25,9 @@ struct ReportInput {
 
 struct FleetRow {
   RobotId robot;
-  int revision = 0;                  // 0: none yet
+  int revision = 0;  // 0: none yet
   Verdict verdict;
-  Stamp calibrated_at;               // of the newest revision
+  Stamp calibrated_at;  // of the newest revision
   std::int64_t sessions = 0, edges = 0;
   bool overdue = false;
 };

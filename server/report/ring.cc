@@ -5,10 +5,14 @@
 
 namespace rigcal::report {
 
-RingSize RingSizeOf(std::size_t sensors) {
-  if (sensors <= 2) return {660, 200, 215, 60};
-  if (sensors <= 12) return {660, 400, 215, 150};
-  if (sensors <= 60) return {760, 620, 260, 250};
+RingSize RingSizeOf(std::size_t sensors, std::size_t name_length) {
+  constexpr double kCharacter_px = 11.5, kGap_px = 24;
+  const auto radius_x = [name_length](double width_px) {
+    return std::max(120.0, width_px / 2 - kGap_px - kCharacter_px * static_cast<double>(name_length));
+  };
+  if (sensors <= 2) return {700, 200, radius_x(700), 60};
+  if (sensors <= 12) return {700, 460, std::min(radius_x(700), 235.0), 180};
+  if (sensors <= 60) return {760, 620, std::min(radius_x(760), 270.0), 260};
   return {620, 620, 295, 295};
 }
 
@@ -32,7 +36,8 @@ std::map<SensorId, Eigen::Vector2d> RingPlaces(const std::vector<SensorPose>& po
 
 Curve CurveBetween(const Eigen::Vector2d& a, const Eigen::Vector2d& b, int nth, int count) {
   const Eigen::Vector2d along = b - a;
-  const Eigen::Vector2d across = along.norm() > 0 ? Eigen::Vector2d(-along.y(), along.x()).normalized() : Eigen::Vector2d(0, 1);
+  const Eigen::Vector2d across =
+      along.norm() > 0 ? Eigen::Vector2d(-along.y(), along.x()).normalized() : Eigen::Vector2d(0, 1);
   const double spread_px = std::min(44.0, 240.0 / count);
   const double bend_px = spread_px * (nth - (count - 1) / 2.0);
   return {a, (a + b) / 2 + across * bend_px * 2.0, b};

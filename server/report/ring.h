@@ -11,14 +11,19 @@
 
 namespace rigcal::report {
 
-struct RingSize { double width_px, height_px, radius_x_px, radius_y_px; };
-[[nodiscard]] RingSize RingSizeOf(std::size_t sensors);
+struct RingSize {
+  double width_px, height_px, radius_x_px, radius_y_px;
+};
+// `name_length`: characters of the longest name beside the ring.
+[[nodiscard]] RingSize RingSizeOf(std::size_t sensors, std::size_t name_length);
 // Reference first (left for two sensors, else on top), the others clockwise in their order.
 [[nodiscard]] std::map<SensorId, Eigen::Vector2d> RingPlaces(const std::vector<SensorPose>& poses,
                                                              const SensorId& reference, const RingSize& size);
 
 // From a to b as a quadratic curve; several edges of one pair bend apart.
-struct Curve { Eigen::Vector2d a, control, b; };
+struct Curve {
+  Eigen::Vector2d a, control, b;
+};
 [[nodiscard]] Curve CurveBetween(const Eigen::Vector2d& a, const Eigen::Vector2d& b, int nth, int count);
 [[nodiscard]] Eigen::Vector2d At(const Curve& curve, double t);
 

@@ -1,4 +1,4 @@
-#include <set>
+#include <algorithm>
 #include <utility>
 
 #include "server/report/drawing.h"
@@ -10,20 +10,21 @@ namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kTagsMax = 40;  // more labels than this hide the drawing
+constexpr std::size_t kNameMax = 22;  // characters; the whole name is in the title
 
 std::string Point(const Eigen::Vector2d& p) { return Fixed(p.x(), 1) + " " + Fixed(p.y(), 1); }
 
 std::string TagText(const Edge& edge) {
   if (edge.state == EdgeState::kFailed) return "failed";
-  return "\xC2\xB1 " + LargestSigma(edge.uncertainty, tangent::kTranslation) + " mm";
+  return "\xC2\xB1 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm");
 }
 
 std::string TitleOf(const Edge& edge) {
   const std::string pair = edge.frame_a.str() + " \xE2\x86\x92 " + edge.frame_b.str() + ": ";
   if (edge.state == EdgeState::kFailed)
     return pair + "failed. " + (edge.diagnoses.empty() ? std::string() : edge.diagnoses.front().what);
-  return pair + "\xCF\x83 " + LargestSigma(edge.uncertainty, tangent::kTranslation) + " mm, " +
-         LargestSigma(edge.uncertainty, tangent::kRotation) + " deg";
+  return pair + "\xCF\x83 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm") + "; " +
+         LargestSigma(edge.uncertainty, tangent::kRotation, " deg");
 }
 
 struct Ring {
@@ -53,7 +54,7 @@ void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
   link->SetValue("STATE", failed ? "failed" : "good");
   link->SetValue("STROKE", failed ? kFailedStroke : kGoodStroke);
   link->SetValue("THICK", ring.named ? "3" : "1");
-  link->SetValue("D", "M" + Point(curve.a) + "Q" + Point(curve.control) + " " + Point(curve.b));
+  link->SetValue("D", std::string("M").append(Point(curve.a)) + "Q" + Point(curve.control) + " " + Point(curve.b));
   link->SetValue("TITLE", TitleOf(*shown.edge));
   if (failed) link->ShowSection("DASHED");
   if (!shown.detailed) return;
@@ -74,15 +75,14 @@ void DrawTag(Ring& ring, const ShownEdge& shown, const Curve& curve) {
 
 void DrawName(Dictionary& node, const std::string& id, const Eigen::Vector2d& place, const Eigen::Vector2d& spoke,
               const char* state) {
-  constexpr std::size_t kCharactersMax = 22;
-  constexpr double kGap_px = 20;
+  constexpr double kGap_px = 23;
   const Eigen::Vector2d out = spoke.norm() > 0 ? Eigen::Vector2d(spoke.normalized()) : Eigen::Vector2d(0, -1);
   Dictionary* name = node.AddSectionDictionary("NAMED");
   name->SetValue("STATE", state);
   name->SetValue("SIDE", out.x() > 0.25 ? "start" : out.x() < -0.25 ? "end" : "middle");
   name->SetValue("X", Fixed(place.x() + out.x() * kGap_px, 1));
   name->SetValue("Y", Fixed(place.y() + out.y() * kGap_px, 1));
-  name->SetValue("TEXT", id.size() > kCharactersMax ? id.substr(0, kCharactersMax - 1) + "\xE2\x80\xA6" : id);
+  name->SetValue("TEXT", id.size() > kNameMax ? id.substr(0, kNameMax - 1) + "\xE2\x80\xA6" : id);
 }
 
 void DrawNode(Ring& ring, const SensorPose& pose, bool is_reference, const Eigen::Vector2d& centre) {
@@ -104,7 +104,9 @@ void DrawNode(Ring& ring, const SensorPose& pose, bool is_reference, const Eigen
 
 std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
   const auto& poses = revision.solution.poses;
-  const RingSize size = RingSizeOf(poses.size());
+  std::size_t longest = 0;
+  for (const SensorPose& pose : poses) longest = std::max(longest, std::min(pose.sensor.str().size(), kNameMax));
+  const RingSize size = RingSizeOf(poses.size(), longest);
   svg.SetValue("WIDTH", Fixed(size.width_px, 0));
   svg.SetValue("HEIGHT", Fixed(size.height_px, 0));
   Ring ring{svg, RingPlaces(poses, revision.reference, size), poses.size() <= kNamedMax, {}};

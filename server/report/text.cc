@@ -17,12 +17,27 @@ std::string Format(double value, std::chars_format format, int precision) {
   return error == std::errc() ? std::string(buffer.data(), end) : std::string(kNotKnown);
 }
 
+// "4.10e-06" -> "4.10e-6".
+std::string ShortExponent(std::string text) {
+  const auto zero = text.find('e') + 2;
+  if (zero < text.size() - 1 && text[zero] == '0') text.erase(zero, 1);
+  return text;
+}
+
 bool IsZeroText(const std::string& text) { return text.find_first_not_of("-0.") == std::string::npos; }
 
-struct Unit { std::string_view suffix, shown; double scale; };
-constexpr std::array<Unit, 8> kUnits = {{{"_px", " px", 1.0}, {"_mm", " mm", 1.0}, {"_m", " mm", kMmPerMetre},
-                                         {"_rad", " deg", kDegPerRad}, {"_deg", " deg", 1.0}, {"_s", " s", 1.0},
-                                         {"_ns", " ns", 1.0}, {"_ratio", "", 1.0}}};
+struct Unit {
+  std::string_view suffix, shown;
+  double scale;
+};
+constexpr std::array<Unit, 8> kUnits = {{{"_px", " px", 1.0},
+                                         {"_mm", " mm", 1.0},
+                                         {"_m", " mm", kMmPerMetre},
+                                         {"_rad", " deg", kDegPerRad},
+                                         {"_deg", " deg", 1.0},
+                                         {"_s", " s", 1.0},
+                                         {"_ns", " ns", 1.0},
+                                         {"_ratio", "", 1.0}}};
 
 const Unit* UnitOf(std::string_view figure) {
   const auto ends = [figure](const Unit& unit) {
@@ -45,7 +60,7 @@ std::string Significant(double value, int digits) {
   if (!std::isfinite(value)) return kNotKnown;
   if (value == 0.0) return "0";
   const double size = std::abs(value);
-  if (size < 1e-4 || size >= 1e7) return Format(value, std::chars_format::scientific, digits - 1);
+  if (size < 1e-4 || size >= 1e7) return ShortExponent(Format(value, std::chars_format::scientific, digits - 1));
   const int exponent = static_cast<int>(std::floor(std::log10(size)));
   return Fixed(value, std::max(0, digits - 1 - exponent));
 }
@@ -89,10 +104,14 @@ std::string TimeText(Stamp stamp) {
 
 std::string VerdictWord(VerdictLevel level) {
   switch (level) {
-    case VerdictLevel::kPass: return "Pass";
-    case VerdictLevel::kWarn: return "Warning";
-    case VerdictLevel::kFail: return "Fail";
-    case VerdictLevel::kUnknown: break;
+    case VerdictLevel::kPass:
+      return "Pass";
+    case VerdictLevel::kWarn:
+      return "Warning";
+    case VerdictLevel::kFail:
+      return "Fail";
+    case VerdictLevel::kUnknown:
+      break;
   }
   return "Unknown";
 }

@@ -17,13 +17,15 @@ inline constexpr double kDegPerRad = 57.295779513082320877;
 [[nodiscard]] std::string Fixed(double value, int decimals);
 // `digits` significant digits, in fixed notation between 1e-4 and 1e7.
 [[nodiscard]] std::string Significant(double value, int digits);
-[[nodiscard]] std::string Mm(double value_m);        // 2 decimals
-[[nodiscard]] std::string Deg(double value_rad);     // 3 decimals
-[[nodiscard]] std::string SigmaMm(double value_m);   // 2 significant digits
+[[nodiscard]] std::string Mm(double value_m);       // 2 decimals
+[[nodiscard]] std::string Deg(double value_rad);    // 3 decimals
+[[nodiscard]] std::string SigmaMm(double value_m);  // 2 significant digits
 [[nodiscard]] std::string SigmaDeg(double value_rad);
 
 // R = Rz(yaw) Ry(pitch) Rx(roll), radians; where pitch is +-90 deg, roll is 0.
-struct RollPitchYaw { double roll = 0.0, pitch = 0.0, yaw = 0.0; };
+struct RollPitchYaw {
+  double roll = 0.0, pitch = 0.0, yaw = 0.0;
+};
 [[nodiscard]] RollPitchYaw RollPitchYawOf(const Eigen::Quaterniond& q);
 
 // "reprojection_rms_px", 0.21 -> "reprojection rms", "0.21 px"; _m as mm, _rad as deg.
@@ -31,8 +33,8 @@ struct RollPitchYaw { double roll = 0.0, pitch = 0.0, yaw = 0.0; };
 [[nodiscard]] std::string FigureValue(const std::string& figure, double value);
 
 [[nodiscard]] std::string Count(std::size_t count, const std::string& one, const std::string& many);  // "1 edge"
-[[nodiscard]] std::string TimeText(Stamp stamp);       // "2026-01-31 12:00:00 UTC"
+[[nodiscard]] std::string TimeText(Stamp stamp);  // "2026-01-31 12:00:00 UTC"
 [[nodiscard]] std::string VerdictWord(VerdictLevel level);
-[[nodiscard]] std::string ShortDigest(const std::string& digest);   // 12 digits
+[[nodiscard]] std::string ShortDigest(const std::string& digest);  // 12 digits
 
 }  // namespace rigcal::report

@@ -55,7 +55,8 @@ std::map<SensorId, std::string> WhyUnknown(const formats::RevisionInput& revisio
     if (reached.count(pose.sensor) > 0)
       why[pose.sensor] = "its edges leave a direction of its pose free";
     else if (const auto linked = good.find(pose.sensor); linked != good.end())
-      why[pose.sensor] = "it is joined only to " + Listed(linked->second) + ", which no good edge joins to " + revision.reference.str();
+      why[pose.sensor] = "it is joined only to " + Listed(linked->second) + ", which no good edge joins to " +
+                         revision.reference.str();
     else if (const auto tried = failed.find(pose.sensor); tried != failed.end())
       why[pose.sensor] = "every edge to it failed: " + Listed(tried->second);
     else

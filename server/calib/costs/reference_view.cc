@@ -32,8 +32,8 @@ class ReferenceViewCost final : public ceres::CostFunction {
  private:
   void FillRows(const Projection& projection, const Se3& T_a_board, std::size_t i, double** jacobians) const {
     if (jacobians[0] != nullptr)
-      Eigen::Map<Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor>>(
-          jacobians[0] + i * 2 * kIntrinsicsCount) = projection.d_intrinsics;
+      Eigen::Map<Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor>>(jacobians[0] + i * 2 * kIntrinsicsCount) =
+          projection.d_intrinsics;
     if (jacobians[1] == nullptr) return;
     Eigen::Map<Eigen::Matrix<double, 2, kPoseSize, Eigen::RowMajor>> d_pose(jacobians[1] + i * 2 * kPoseSize);
     d_pose.leftCols<3>() = projection.d_point;

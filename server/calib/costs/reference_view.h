@@ -1,5 +1,5 @@
-// Reprojection of one board view in camera a. Blocks: intrinsics of a [9], T_a_board [7]. Residuals in px: projected minus
-// seen, u and v of every corner in turn.
+// Reprojection of one board view in camera a. Blocks: intrinsics of a [9], T_a_board [7]. Residuals in px: projected
+// minus seen, u and v of every corner in turn.
 #pragma once
 
 #include <Eigen/Core>

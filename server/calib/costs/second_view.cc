@@ -41,8 +41,8 @@ class SecondViewCost final : public ceres::CostFunction {
   void FillRows(const Projection& projection, const Chain& chain, const Eigen::Matrix3d& R_b_a,
                 const Eigen::Vector3d& v_a, std::size_t i, double** jacobians) const {
     if (jacobians[0] != nullptr)
-      Eigen::Map<Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor>>(
-          jacobians[0] + i * 2 * kIntrinsicsCount) = projection.d_intrinsics;
+      Eigen::Map<Eigen::Matrix<double, 2, kIntrinsicsCount, Eigen::RowMajor>>(jacobians[0] + i * 2 * kIntrinsicsCount) =
+          projection.d_intrinsics;
     const PointJacobian d_v_a = projection.d_point * R_b_a;
     if (jacobians[1] != nullptr) {
       PoseRows d_T_a_b(jacobians[1] + i * 2 * kPoseSize);

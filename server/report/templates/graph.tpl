@@ -7,7 +7,7 @@
 <path class="link {{STATE}}" d="{{D}}" fill="none" stroke="{{STROKE}}" stroke-width="{{THICK}}"{{#DASHED}} stroke-dasharray="6 5"{{/DASHED}}><title>{{TITLE}}</title></path>
 {{#JUMPED}}</a>{{/JUMPED}}
 {{/LINK}}
-{{#TAG}}<text class="tag {{STATE}}" x="{{X}}" y="{{Y}}" text-anchor="middle" dominant-baseline="central" font-size="12" fill="#333333" stroke="#ffffff" stroke-width="4" paint-order="stroke">{{TEXT}}</text>
+{{#TAG}}<text class="tag {{STATE}}" x="{{X}}" y="{{Y}}" text-anchor="middle" dominant-baseline="central" font-size="12" fill="#333333" stroke="#ffffff" stroke-width="7" stroke-linejoin="round" paint-order="stroke">{{TEXT}}</text>
 {{/TAG}}
 {{#NODE}}
 {{#HALO}}<circle class="halo" cx="{{X}}" cy="{{Y}}" r="{{R}}" fill="none" stroke="#2457a6" stroke-width="2"/>{{/HALO}}

@@ -60,7 +60,7 @@
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
 <table>
 <thead>
-<tr><th rowspan="2" scope="col">Edge</th><th rowspan="2" scope="col">State</th><th rowspan="2" scope="col">Method</th><th rowspan="2" scope="col">Captures</th><th colspan="2" scope="colgroup">Size</th><th colspan="3" scope="colgroup">Residual</th><th colspan="2" scope="colgroup" class="sigma">Largest &sigma;</th></tr>
+<tr><th rowspan="2" scope="col">Edge</th><th rowspan="2" scope="col" class="text">State</th><th rowspan="2" scope="col" class="text">Method</th><th rowspan="2" scope="col">Captures</th><th colspan="2" scope="colgroup">Size</th><th colspan="3" scope="colgroup">Residual</th><th colspan="2" scope="colgroup" class="sigma">Largest &sigma;</th></tr>
 <tr><th scope="col">mm</th><th scope="col">deg</th><th scope="col">mm</th><th scope="col">deg</th><th scope="col">in &sigma;</th><th scope="col" class="sigma">mm</th><th scope="col" class="sigma">deg</th></tr>
 </thead>
 <tbody>

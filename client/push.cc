@@ -1,0 +1,139 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "client/edge_table.h"
+#include "client/progress.h"
+#include "client/push_result.h"
+#include "client/session_outlet.h"
+#include "client/table.h"
+#include "client/verbs.h"
+#include "server/formats/session_folder.h"
+
+namespace rigcal::client {
+namespace {
+
+struct Options {
+  std::string folder;
+  double give_up_s = 60.0;
+  bool no_wait = false;
+};
+
+struct Folder {
+  SessionToPush session;
+  FileMarks marks;
+};
+
+Result<Folder> ReadFolder(const Context& context, const Options& options) {
+  Folder folder;
+  folder.marks = MarkFiles(options.folder);
+  Progress progress(context.err, context.err_is_terminal, "Reading", SteadyNow_ns());
+  const auto manifest = formats::ReadSessionFolder(options.folder, [&](std::int64_t done, std::int64_t total) {
+    progress.Show({done, total, ""}, SteadyNow_ns());
+  });
+  progress.Clear();
+  if (!manifest) return Fail(manifest.error());
+  folder.session = SessionOf(*manifest);
+  return folder;
+}
+
+// A capture is there when its files of all sensors are.
+std::string CaptureText(const PushEngine& engine, const std::vector<Payload>& payloads) {
+  std::map<std::string, bool> captures;
+  for (std::uint32_t i = 0; i < payloads.size(); ++i) {
+    const auto [entry, is_new] = captures.emplace(payloads[i].capture.str(), engine.Held(i));
+    if (!is_new) entry->second = entry->second && engine.Held(i);
+  }
+  std::size_t held = 0;
+  for (const auto& [name, is_held] : captures) held += is_held ? 1 : 0;
+  return std::to_string(held) + "/" + std::to_string(captures.size()) + " captures";
+}
+
+PushPlan PlanOf(const SessionToPush& session, const Options& options) {
+  PushPlan plan;
+  for (const Payload& payload : session.payloads) plan.payload_bytes.push_back(payload.size_bytes);
+  plan.give_up_ns = std::llround(options.give_up_s * 1e9);
+  return plan;
+}
+
+Result<PushSummary> Send(const Context& context, const Options& options, const wire::Participant& participant,
+                         const Folder& folder) {
+  const SessionToPush& session = folder.session;
+  RIGCAL_ASSIGN(const auto outlet,
+                SessionOutlet::Open(participant, session, FilePieces(options.folder, session.payloads, folder.marks)));
+  PushEngine engine(PlanOf(session, options), SteadyNow_ns());
+  Progress progress(context.err, context.err_is_terminal, "Sending", SteadyNow_ns());
+  std::size_t counted = 0;
+  std::string detail = CaptureText(engine, session.payloads);
+  const TransferHooks hooks{
+      [&](const PushEngine& state, std::int64_t now_ns) {
+        if (state.PayloadsHeld() != counted && progress.IsDue(now_ns)) {
+          counted = state.PayloadsHeld();
+          detail = CaptureText(state, session.payloads);
+        }
+        progress.Skip(state.HeldAtFirst());
+        progress.Show({state.ArrivedBytes(), state.TotalBytes(), detail}, now_ns);
+      },
+      [&](const std::string& line) { progress.Say(line); }};
+  const Status done = RunTransfer(participant, {session.robot, session.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
+  progress.Clear();
+  if (!done) return Fail(done.error());
+  return SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
+}
+
+void SaySent(const Context& context, const PushSummary& summary) {
+  context.err << "Session " << summary.id.substr(0, 16) << " of " << summary.robot << " is stored: " << summary.items
+              << " files, " << ByteText(static_cast<double>(summary.total_bytes));
+  if (summary.held_before_bytes > 0)
+    context.err << " (" << ByteText(static_cast<double>(summary.held_before_bytes)) << " were there before)";
+  context.err << std::endl;
+}
+
+Result<Awaited> Await(const Context& context, const Options& options, const SessionToPush& session, ResultWatch& watch) {
+  const AwaitHooks hooks{[&](const Document& edge, std::int64_t, std::int64_t) {
+                           (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
+                         },
+                         [&](const std::string& line) { context.err << line << std::endl; }};
+  return watch.Await({session.robot, session.id, {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)}, hooks);
+}
+
+Status Run(const Context& context, const Options& options) {
+  RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
+  RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
+  RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
+  RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, folder));
+  SaySent(context, summary);
+  if (options.no_wait) {
+    if (context.json) context.out << ResultJson(summary, nullptr) << std::endl;
+    return {};
+  }
+  RIGCAL_ASSIGN(const Awaited awaited, Await(context, options, folder.session, watch));
+  if (context.json)
+    context.out << ResultJson(summary, &awaited) << std::endl;
+  else
+    PrintResult(awaited, context.out);
+  return {};
+}
+
+}  // namespace
+
+void AddPush(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("push", "Send a session folder, wait for its edges and the new calibration");
+  auto options = std::make_shared<Options>();
+  verb->add_option("DIR", options->folder, "The session folder (docs/session-format.md)")->required();
+  verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
+  verb->add_option("--timeout-total", options->give_up_s, "Give up after so many seconds without any answer (default 60)")
+      ->check(CLI::Range(0.1, 1e7))
+      ->type_name("S");
+  verb->footer(
+      "Break it off and run it again at any time: what is on the server's disk is not sent again.\n"
+      "Examples:\n"
+      "  rigcal push visit-2026-01-31/\n"
+      "  rigcal push visit-2026-01-31/ --no-wait\n"
+      "  rigcal push visit-2026-01-31/ --json > result.json\n");
+  verb->callback([&context, options] {
+    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context.err);
+  });
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,117 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "client/edge_outlet.h"
+#include "client/progress.h"
+#include "client/push_result.h"
+#include "client/table.h"
+#include "client/verbs.h"
+#include "server/base/durable_file.h"
+#include "server/formats/documents.h"
+#include "server/formats/g2o.h"
+
+namespace rigcal::client {
+namespace {
+
+constexpr std::size_t kInFlightMax = 2000;
+
+struct Options {
+  std::string file, robot;
+  std::optional<std::uint64_t> shuffle_seed;
+  double give_up_s = 60.0;
+  bool no_wait = false;
+};
+
+Result<EdgesToPush> ReadEdges(const Options& options) {
+  RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(options.robot));
+  RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, limits::kG2oFileBytesMax));
+  if (std::filesystem::path(options.file).extension() == ".g2o") {
+    RIGCAL_ASSIGN(formats::G2oFile file, formats::ReadG2o(text, robot));
+    return EdgesOf(robot, std::move(file.edges), options.shuffle_seed);
+  }
+  RIGCAL_ASSIGN(std::vector<Edge> edges, formats::ReadEdgeFile(text, robot));
+  return EdgesOf(robot, std::move(edges), options.shuffle_seed);
+}
+
+Status CheckCount(const EdgesToPush& batch, const Options& options) {
+  if (batch.edges.empty())
+    return Fail(ErrorCode::kInvalidInput, options.file + " has no edges", "Give a file with at least one edge");
+  if (batch.edges.size() > limits::kEdgesPerBatchMax)
+    return Fail(ErrorCode::kInvalidInput, options.file + " has more than " + std::to_string(limits::kEdgesPerBatchMax) + " edges",
+                "Split the file");
+  return {};
+}
+
+Result<PushSummary> Send(const Context& context, const Options& options, const wire::Participant& participant,
+                         const EdgesToPush& batch) {
+  RIGCAL_ASSIGN(const auto outlet, EdgeOutlet::Open(participant, batch));
+  PushPlan plan = BatchPlan(batch.edges.size(), kInFlightMax);
+  plan.send_order = batch.send_order;
+  plan.give_up_ns = std::llround(options.give_up_s * 1e9);
+  PushEngine engine(std::move(plan), SteadyNow_ns());
+  Progress progress(context.err, context.err_is_terminal, "Sending", SteadyNow_ns(), Progress::Unit::kEdges);
+  const TransferHooks hooks{
+      [&](const PushEngine& state, std::int64_t now_ns) {
+        progress.Skip(state.HeldAtFirst());
+        progress.Show({state.HeldBytes(), state.TotalBytes(), ""}, now_ns);
+      },
+      [&](const std::string& line) { progress.Say(line); }};
+  const Status done = RunTransfer(participant, {batch.robot, batch.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
+  progress.Clear();
+  if (!done) return Fail(done.error());
+  return SummaryOf(engine, "batch", batch.robot.str(), batch.id.str(), batch.edges.size());
+}
+
+Result<Awaited> Await(const Context& context, const Options& options, const EdgesToPush& batch, ResultWatch& watch) {
+  AwaitPlace place{batch.robot, SessionId(), {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)};
+  for (const Edge& edge : batch.edges) place.edges.insert(edge.id.str());
+  return watch.Await(std::move(place), {{}, [&](const std::string& line) { context.err << line << std::endl; }});
+}
+
+Status Run(const Context& context, const Options& options) {
+  RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
+  RIGCAL_TRY(CheckCount(batch, options));
+  RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
+  RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, batch.robot));
+  RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, batch));
+  context.err << summary.items << " edges of " << summary.robot << " are stored";
+  if (summary.held_before_bytes > 0) context.err << " (" << summary.held_before_bytes << " were there before)";
+  context.err << std::endl;
+  if (options.no_wait) {
+    if (context.json) context.out << ResultJson(summary, nullptr) << std::endl;
+    return {};
+  }
+  RIGCAL_ASSIGN(const Awaited awaited, Await(context, options, batch, watch));
+  if (context.json)
+    context.out << ResultJson(summary, &awaited) << std::endl;
+  else
+    PrintResult(awaited, context.out);
+  return {};
+}
+
+}  // namespace
+
+void AddPushEdges(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("push-edges", "Send finished pairwise results, wait for the new calibration");
+  auto options = std::make_shared<Options>();
+  verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")->required();
+  verb->add_option("--robot", options->robot, "The robot whose edges they are")->required()->type_name("ID");
+  verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
+  verb->add_option("--shuffle", options->shuffle_seed, "Send in an order drawn from this seed; the result is the same")
+      ->type_name("SEED");
+  verb->add_option("--timeout-total", options->give_up_s, "Give up after so many seconds without any answer (default 60)")
+      ->check(CLI::Range(0.1, 1e7))
+      ->type_name("S");
+  verb->footer(
+      "Pushing the same edges again changes nothing.\n"
+      "Examples:\n"
+      "  rigcal push-edges results.json --robot mapper-01\n"
+      "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n");
+  verb->callback([&context, options] {
+    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context.err);
+  });
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,60 @@
+#include "client/push_result.h"
+
+#include "client/edge_table.h"
+#include "client/table.h"
+#include "client/verb.h"
+
+namespace rigcal::client {
+namespace {
+
+constexpr std::size_t kEdgesPrintedMax = 40;
+
+std::string AddressOf(const Awaited& awaited) {
+  return ReportAddress(awaited.status, awaited.show["robot"].Text(), awaited.show["revision"].Integer().value_or(0));
+}
+
+}  // namespace
+
+PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id, std::size_t items) {
+  return {std::move(kind),      std::move(robot),     std::move(id),    items,
+          engine.TotalBytes(), engine.HeldAtFirst(), engine.restarts()};
+}
+
+void PrintResult(const Awaited& awaited, std::ostream& out) {
+  if (!awaited.has_revision) {
+    out << "Stored. It has no two sensors that this version can calibrate against each other, so there is no result.\n";
+    return;
+  }
+  const Document revision = awaited.show["document"];
+  const std::string robot = Plain(awaited.show["robot"].Text("?"));
+  out << "\n" << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
+  PrintVerdict(revision["verdict"], out);
+  PrintGlobalError(revision["e_global"], out);
+  const auto edges = revision["edges"].Items();
+  if (edges.size() <= kEdgesPrintedMax)
+    PrintEdges(edges, out);
+  else
+    out << edges.size() << " edges; `rigcal edges " << robot << "` lists them\n";
+  const std::string address = AddressOf(awaited);
+  out << "report  " << (address.empty() ? "`rigcal report " + robot + "` tells where it is" : address) << '\n';
+}
+
+std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {
+  const bool has_revision = awaited != nullptr && awaited->has_revision;
+  const auto total = static_cast<std::int64_t>(summary.total_bytes);
+  std::vector<Field> fields = {{"held_before", summary.held_before_bytes},
+                               {"id", summary.id},
+                               {"items", static_cast<std::int64_t>(summary.items)},
+                               {"kind", summary.kind},
+                               Field::Raw("report", "null"),
+                               {"robot", summary.robot},
+                               {"server_restarts", std::int64_t{summary.restarts}},
+                               Field::Raw("show", has_revision ? awaited->show_text : "null"),
+                               {"state", "closed"},
+                               {"total", total},
+                               {"unit", summary.kind == "session" ? "bytes" : "edges"}};
+  if (has_revision) fields[4] = Field("report", AddressOf(*awaited));
+  return JsonObject(fields);
+}
+
+}  // namespace rigcal::client

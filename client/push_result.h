@@ -1,0 +1,27 @@
+// What a push prints at its end: what was sent, and what the server made of it.
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "client/await_result.h"
+#include "client/push_engine.h"
+
+namespace rigcal::client {
+
+struct PushSummary {
+  std::string kind;         // "session" | "batch"
+  std::string robot, id;
+  std::size_t items = 0;    // files or edges
+  std::int64_t total_bytes = 0, held_before_bytes = 0;
+  int restarts = 0;         // of the server, seen on the way
+};
+[[nodiscard]] PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
+                                    std::size_t items);
+
+// Verdict, edges with sigma, E_global before and after, the report's address.
+void PrintResult(const Awaited& awaited, std::ostream& out);
+// The verb's own JSON document; `awaited` may be null.
+[[nodiscard]] std::string ResultJson(const PushSummary& summary, const Awaited* awaited);
+
+}  // namespace rigcal::client

@@ -1,0 +1,122 @@
+#include "server/calib/diagnoses.h"
+
+#include <cstdio>
+
+namespace rigcal::calib {
+namespace {
+
+constexpr std::size_t kNamesShown = 8;
+
+std::string PairOf(const StereoProblem& problem) {
+  return problem.camera_a.id.str() + " and " + problem.camera_b.id.str();
+}
+
+std::string CapturesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " capture" : " captures"); }
+
+std::string Number(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+}  // namespace
+
+std::string NamesOf(const std::vector<CaptureId>& captures) {
+  std::string names;
+  for (std::size_t i = 0; i < captures.size() && i < kNamesShown; ++i)
+    names += (i == 0 ? "" : ", ") + captures[i].str();
+  if (captures.size() > kNamesShown) names += " and " + std::to_string(captures.size() - kNamesShown) + " more";
+  return names;
+}
+
+Diagnosis TooFewCaptures(const StereoProblem& problem, std::size_t both) {
+  return {"too_few_captures",
+          PairOf(problem) + " see the board together in only " + CapturesText(both) + "; at least " +
+              std::to_string(kCapturesMin) + " are needed.",
+          "Take 10 to 20 captures in which both cameras see the whole board, tilted in different directions."};
+}
+
+Diagnosis FewCaptures(const StereoProblem& problem, std::size_t both) {
+  return {"few_captures",
+          PairOf(problem) + " see the board together in only " + CapturesText(both) + "; with fewer than " +
+              std::to_string(kCapturesForJackknife) +
+              " the uncertainty comes from the model alone and may be too small.",
+          "Take 10 to 20 captures in which both cameras see the whole board."};
+}
+
+Diagnosis NoCommonView(const StereoProblem& problem) {
+  return {"no_common_view", PairOf(problem) + " both see the board, but never in the same capture.",
+          "Hold the board where both pictures overlap, and name the two pictures of one instant alike."};
+}
+
+Diagnosis BoardNotFound(const StereoProblem& problem, const SensorId& camera, const std::vector<CaptureId>& captures) {
+  return {"board_not_found",
+          camera.str() + " does not show the " + std::to_string(problem.board.inner_cols) + " x " +
+              std::to_string(problem.board.inner_rows) + " board " + problem.board.id.str() + " in " +
+              CapturesText(captures.size()) + ": " + NamesOf(captures) + ".",
+          "Show the whole board, sharp and evenly lit, and check the counts of inner corners in session.yaml."};
+}
+
+Diagnosis ImageSizeChanged(const SensorId& camera, const std::vector<CaptureId>& captures) {
+  return {"image_size_changed",
+          "The pictures of " + camera.str() + " differ in size: those of " + NamesOf(captures) +
+              " are not as large as the first.",
+          "Take all pictures of one camera at one resolution, and push them as they come from the camera."};
+}
+
+Diagnosis IdenticalCaptures(const StereoProblem& problem, const std::vector<CaptureId>& captures) {
+  return {"identical_captures",
+          PairOf(problem) + ": " + CapturesText(captures.size()) + " (" + NamesOf(captures) +
+              ") repeat another and give no new information; they are not used.",
+          "Move and tilt the board between captures."};
+}
+
+Diagnosis NoTilt(const SensorId& camera, double spread_deg, double focal_sigma_ratio) {
+  return {"no_tilt",
+          "The boards that " + camera.str() + " sees differ in orientation by at most " + Number("%.1f", spread_deg) +
+              " deg, so its focal length would be uncertain by " +
+              (focal_sigma_ratio < 1 ? Number("%.0f", 100 * focal_sigma_ratio) : "more than 100") + " %.",
+          "Tilt the board by 20 to 40 deg to the left, right, up and down, or give the intrinsics of " + camera.str() +
+              " in session.yaml."};
+}
+
+Diagnosis AmbiguousPose(const StereoProblem& problem, const std::vector<CaptureId>& captures) {
+  return {"ambiguous_pose",
+          PairOf(problem) + ": in " + CapturesText(captures.size()) + " (" + NamesOf(captures) +
+              ") the board is so small or so flat to the picture that two poses fit it equally; they are not used.",
+          "Hold the board nearer, so that it fills a third of the picture, and tilt it."};
+}
+
+Diagnosis InconsistentCaptures(const StereoProblem& problem, const std::vector<CaptureId>& captures) {
+  return {"inconsistent_captures",
+          PairOf(problem) + ": the two pictures of " + NamesOf(captures) +
+              " contradict the other captures; they are not used.",
+          "Check that they show the same instant and that their names were not swapped."};
+}
+
+Diagnosis HighResidual(const StereoProblem& problem, double rms_px, double limit_px,
+                       const std::vector<CaptureId>& worst) {
+  return {
+      "high_residual",
+      PairOf(problem) + " fit the corners to " + Number("%.2f", rms_px) + " px rms, more than " +
+          Number("%.2f", limit_px) + " px; the worst captures are " + NamesOf(worst) + ".",
+      "Check that the pictures of a capture show the same instant, that the board is flat and its counts and square "
+      "size are right, and that given intrinsics belong to these cameras."};
+}
+
+Diagnosis IllConditioned(const StereoProblem& problem, const std::string& why) {
+  return {"ill_conditioned", PairOf(problem) + ": the result has no usable uncertainty (" + why + ").",
+          "Take more captures with the board tilted in different directions, near and far, in all corners."};
+}
+
+Diagnosis IntrinsicsTakenAsExact(const SensorId& camera) {
+  return {"intrinsics_taken_as_exact",
+          "The intrinsics of " + camera.str() + " are given without an uncertainty and taken as exact.",
+          "Give intrinsics_sigma in session.yaml, or leave the intrinsics out to have them estimated."};
+}
+
+Diagnosis FromError(const StereoProblem& problem, const std::string& code, const Error& error) {
+  return {code, PairOf(problem) + ": " + error.what + ".", error.cure};
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+
+#include "server/calib/diagnoses.h"
+#include "server/calib/estimation.h"
+#include "server/calib/selection.h"
+#include "server/calib/stereo.h"
+#include "server/math/jackknife.h"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr std::size_t kWorstShown = 3;
+
+Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) {
+  Edge edge;
+  edge.frame_a = problem.camera_a.id;
+  edge.frame_b = problem.camera_b.id;
+  edge.method = "stereo";
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = std::move(diagnoses);
+  const Selection selection = Select(problem);
+  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
+    const auto why = selection.unused.find(idx);
+    edge.captures.push_back({problem.captures[idx].capture, 0.0, false,
+                             why == selection.unused.end() ? "the pair was not solved" : why->second});
+  }
+  edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
+  edge.figures["captures_both"] = static_cast<double>(CountBoth(problem, selection.used));
+  return edge;
+}
+
+double HighRms_px(const StereoProblem& problem) {
+  int width_px = 0;
+  for (const StereoCapture& capture : problem.captures)
+    for (const auto& view : {capture.a, capture.b})
+      if (view) width_px = std::max(width_px, view->image_width_px);
+  return std::max(1.0, kHighRmsRatio * width_px);
+}
+
+std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
+  std::vector<CaptureResidual> used;
+  for (const CaptureResidual& residual : estimate.residuals)
+    if (residual.used) used.push_back(residual);
+  std::stable_sort(used.begin(), used.end(), [](const auto& left, const auto& right) { return left.rms > right.rms; });
+  std::vector<CaptureId> worst;
+  for (std::size_t i = 0; i < std::min(kWorstShown, used.size()); ++i) worst.push_back(used[i].capture);
+  return worst;
+}
+
+// What a reader of a good edge should know.
+void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagnosis>& notes) {
+  if (both < kCapturesForJackknife) notes.push_back(FewCaptures(problem, both));
+  if (const auto missed = MissedBy(problem, &StereoCapture::a); !missed.empty())
+    notes.push_back(BoardNotFound(problem, problem.camera_a.id, missed));
+  if (const auto missed = MissedBy(problem, &StereoCapture::b); !missed.empty())
+    notes.push_back(BoardNotFound(problem, problem.camera_b.id, missed));
+  std::vector<CaptureId> repeated;
+  for (const std::size_t idx : Select(problem).repeated) repeated.push_back(problem.captures[idx].capture);
+  if (!repeated.empty()) notes.push_back(IdenticalCaptures(problem, repeated));
+  for (const Sensor* camera : {&problem.camera_a, &problem.camera_b})
+    if (camera->intrinsics && !camera->intrinsics_sigma) notes.push_back(IntrinsicsTakenAsExact(camera->id));
+}
+
+void AddIntrinsicsFigures(const std::string& camera, const PinholeRadtan& intrinsics, Edge& edge) {
+  edge.figures["fx_" + camera + "_px"] = intrinsics.fx_px;
+  edge.figures["fy_" + camera + "_px"] = intrinsics.fy_px;
+  edge.figures["cx_" + camera + "_px"] = intrinsics.cx_px;
+  edge.figures["cy_" + camera + "_px"] = intrinsics.cy_px;
+  const char* names[5] = {"k1_", "k2_", "p1_", "p2_", "k3_"};
+  for (std::size_t i = 0; i < 5; ++i) edge.figures[names[i] + camera + "_ratio"] = intrinsics.distortion[i];
+}
+
+// Jackknife sigma over model sigma, mean over the directions in which the model has unit sigma. 1: the model's noise
+// explains the scatter between captures.
+double SigmaRatio(const Matrix6d& C_jack, const Matrix6d& C_model) {
+  return std::sqrt(C_model.ldlt().solve(C_jack).trace() / 6);
+}
+
+void AddFigures(const StereoEstimate& estimate, std::size_t both, Edge& edge) {
+  const auto used = std::count_if(estimate.residuals.begin(), estimate.residuals.end(),
+                                  [](const CaptureResidual& residual) { return residual.used; });
+  edge.figures["rms_px"] = estimate.rms_px;
+  edge.figures["rms_a_px"] = estimate.rms_a_px;
+  edge.figures["rms_b_px"] = estimate.rms_b_px;
+  edge.figures["captures_used"] = static_cast<double>(used);
+  edge.figures["captures_both"] = static_cast<double>(both);
+  edge.figures["captures_total"] = static_cast<double>(estimate.residuals.size());
+  edge.figures["iterations"] = estimate.iterations;
+  AddIntrinsicsFigures("a", estimate.intrinsics_a, edge);
+  AddIntrinsicsFigures("b", estimate.intrinsics_b, edge);
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : edge.uncertainty.blocks) d.push_back(block.d);
+  if (!d.empty()) edge.figures["model_sigma_ratio"] = SigmaRatio(JackknifeCovariance(d), estimate.C_model);
+}
+
+std::size_t CountBoth(const StereoProblem& problem, const StereoEstimate& estimate) {
+  return static_cast<std::size_t>(
+      std::count_if(problem.captures.begin(), problem.captures.end(), [&](const StereoCapture& capture) {
+        return estimate.T_a_board.count(capture.capture) > 0 && BothSee(capture, problem.board);
+      }));
+}
+
+Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Uncertainty uncertainty,
+              std::vector<Diagnosis> notes) {
+  Edge edge;
+  edge.frame_a = problem.camera_a.id;
+  edge.frame_b = problem.camera_b.id;
+  edge.method = "stereo";
+  edge.state = EdgeState::kGood;
+  edge.T_a_b = estimate.T_a_b;
+  edge.uncertainty = std::move(uncertainty);
+  edge.captures = estimate.residuals;
+  edge.diagnoses = std::move(notes);
+  const std::size_t both = CountBoth(problem, estimate);
+  AddNotes(problem, both, edge.diagnoses);
+  AddFigures(estimate, both, edge);
+  return edge;
+}
+
+Edge Solved(const StereoProblem& problem) {
+  if (auto diagnoses = Observability(problem); !diagnoses.empty()) return FailedEdge(problem, std::move(diagnoses));
+  std::vector<Diagnosis> notes;
+  const auto estimate = EstimateOrDiagnose(problem, nullptr, &notes);
+  if (!estimate) return FailedEdge(problem, {estimate.error()});
+  const double limit_px = HighRms_px(problem);
+  if (!(estimate->rms_px <= limit_px)) {
+    notes.insert(notes.begin(), HighResidual(problem, estimate->rms_px, limit_px, WorstOf(*estimate)));
+    Edge edge = FailedEdge(problem, std::move(notes));
+    edge.captures = estimate->residuals;
+    edge.figures["rms_px"] = estimate->rms_px;
+    return edge;
+  }
+  auto uncertainty = Jackknife(problem, *estimate);
+  if (!uncertainty) return FailedEdge(problem, {IllConditioned(problem, uncertainty.error().what)});
+  return GoodEdge(problem, *estimate, std::move(*uncertainty), std::move(notes));
+}
+
+}  // namespace
+
+Edge EstimateEdge(const StereoProblem& problem) {
+  try {
+    return Solved(problem);
+  } catch (const std::exception& exception) {
+    return FailedEdge(problem,
+                      {FromError(problem, "internal",
+                                 {ErrorCode::kInternal, exception.what(), "Report this with the session's id."})});
+  }
+}
+
+}  // namespace rigcal::calib

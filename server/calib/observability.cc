@@ -1,0 +1,108 @@
+#include "server/calib/observability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "server/calib/diagnoses.h"
+#include "server/calib/joint_covariance.h"
+#include "server/calib/selection.h"
+
+namespace rigcal::calib {
+namespace {
+
+using View = std::optional<BoardView>;
+
+constexpr double kTypicalCornerSigma_px = 0.25;
+// Well-tilted boards give 0.1 to 0.5 %; boards parallel to the picture give tens of per cent and more.
+constexpr double kFocalSigmaMaxRatio = 0.03;
+
+double LargestAngle_deg(const std::vector<Se3>& boards) {
+  double smallest_cosine = 1;
+  for (const Se3& left : boards)
+    for (const Se3& right : boards) smallest_cosine = std::min(smallest_cosine, left.R().col(2).dot(right.R().col(2)));
+  return std::acos(std::clamp(smallest_cosine, -1.0, 1.0)) * 180 / M_PI;
+}
+
+// Captures whose picture, where it was decoded, is not as large as the camera's first.
+std::vector<CaptureId> ResizedIn(const StereoProblem& problem, View StereoCapture::*camera) {
+  std::vector<CaptureId> resized;
+  const BoardView* first = nullptr;
+  for (const StereoCapture& capture : problem.captures) {
+    const View& view = capture.*camera;
+    if (!view || view->image_width_px == 0) continue;
+    if (first == nullptr) first = &*view;
+    if (view->image_width_px != first->image_width_px || view->image_height_px != first->image_height_px)
+      resized.push_back(capture.capture);
+  }
+  return resized;
+}
+
+std::vector<Diagnosis> CheckSizes(const StereoProblem& problem) {
+  std::vector<Diagnosis> diagnoses;
+  if (const auto resized = ResizedIn(problem, &StereoCapture::a); !resized.empty())
+    diagnoses.push_back(ImageSizeChanged(problem.camera_a.id, resized));
+  if (const auto resized = ResizedIn(problem, &StereoCapture::b); !resized.empty())
+    diagnoses.push_back(ImageSizeChanged(problem.camera_b.id, resized));
+  return diagnoses;
+}
+
+std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selection& selection, std::size_t both) {
+  const auto missed_a = MissedBy(problem, &StereoCapture::a), missed_b = MissedBy(problem, &StereoCapture::b);
+  const std::size_t total = problem.captures.size();
+  std::vector<Diagnosis> diagnoses;
+  if (both == 0 && missed_a.size() < total && missed_b.size() < total)
+    diagnoses.push_back(NoCommonView(problem));
+  else
+    diagnoses.push_back(TooFewCaptures(problem, both));
+  if (!missed_a.empty()) diagnoses.push_back(BoardNotFound(problem, problem.camera_a.id, missed_a));
+  if (!missed_b.empty()) diagnoses.push_back(BoardNotFound(problem, problem.camera_b.id, missed_b));
+  if (selection.repeated.empty()) return diagnoses;
+  std::vector<CaptureId> repeated;
+  for (const std::size_t idx : selection.repeated) repeated.push_back(problem.captures[idx].capture);
+  diagnoses.insert(diagnoses.begin(), IdenticalCaptures(problem, repeated));
+  return diagnoses;
+}
+
+void CheckTilt(const Sensor& camera, const CameraViews& views, std::vector<Diagnosis>& diagnoses) {
+  if (camera.intrinsics) return;
+  const FocalOutlook outlook = PredictFocal(views);
+  if (!(outlook.sigma_ratio < kFocalSigmaMaxRatio))
+    diagnoses.push_back(NoTilt(camera.id, outlook.spread_deg, outlook.sigma_ratio));
+}
+
+}  // namespace
+
+FocalOutlook PredictFocal(const CameraViews& views) {
+  JointProblem joint{views.corners_board, {}, true, false};
+  JointState state;
+  state.intrinsics_a = RoughIntrinsics(views);
+  for (const auto& corners_px : views.corners_px) {
+    const std::vector<Se3> poses = PlanarPoses(state.intrinsics_a, views.corners_board, corners_px);
+    if (poses.empty()) continue;
+    joint.captures.push_back({corners_px, {}});
+    state.T_a_board.push_back(poses.front());
+  }
+  FocalOutlook outlook{std::numeric_limits<double>::infinity(), LargestAngle_deg(state.T_a_board)};
+  if (joint.captures.empty()) return outlook;
+  const auto normal = ReducedNormal(joint, state);
+  if (!normal) return outlook;
+  if (const auto inverse = InverseOfFree(*normal)) {
+    const double sigma_px = kTypicalCornerSigma_px * std::sqrt((*inverse)(kIntrinsicsAStart, kIntrinsicsAStart));
+    outlook.sigma_ratio = sigma_px / state.intrinsics_a[0];
+  }
+  return outlook;
+}
+
+std::vector<Diagnosis> Observability(const StereoProblem& problem) {
+  std::vector<Diagnosis> diagnoses = CheckSizes(problem);
+  if (!diagnoses.empty()) return diagnoses;
+  const Selection selection = Select(problem);
+  const std::size_t both = CountBoth(problem, selection.used);
+  if (both < kCapturesMin) return ExplainTooFew(problem, selection, both);
+  CheckTilt(problem.camera_a, ViewsOfA(problem, selection.used), diagnoses);
+  CheckTilt(problem.camera_b, ViewsOfB(problem, selection.used), diagnoses);
+  return diagnoses;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,37 @@
+// Which captures enter the joint problem, and why the others do not.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/calib/camera_start.h"
+#include "server/calib/joint_problem.h"
+#include "server/calib/stereo.h"
+
+namespace rigcal::calib {
+
+// A capture that both cameras saw always enters. One that a single camera saw enters if that camera's intrinsics are
+// estimated, as it tells about them and about nothing else. A capture that shows what an earlier one shows does not
+// enter: as a block of its own it would make the jackknife believe in information that is not there.
+struct Selection {
+  std::vector<std::size_t> used;              // indices into StereoProblem::captures, ascending
+  std::map<std::size_t, std::string> unused;  // index, and why in words
+  std::vector<std::size_t> repeated;          // the unused ones that repeat another
+};
+
+// Found, with the right number of finite corners.
+[[nodiscard]] bool Sees(const std::optional<BoardView>& view, const Checkerboard& board);
+[[nodiscard]] bool BothSee(const StereoCapture& capture, const Checkerboard& board);
+// Captures in which a camera (&StereoCapture::a or b) does not see the board.
+[[nodiscard]] std::vector<CaptureId> MissedBy(const StereoProblem& problem,
+                                              std::optional<BoardView> StereoCapture::*camera);
+[[nodiscard]] Selection Select(const StereoProblem& problem);
+
+[[nodiscard]] std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_t>& used);
+[[nodiscard]] JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used);
+[[nodiscard]] CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used);
+[[nodiscard]] CameraViews ViewsOfB(const StereoProblem& problem, const std::vector<std::size_t>& used);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,39 @@
+#include "server/dds/durable_batch.h"
+
+#include "server/base/durable_file.h"
+#include "server/base/parallel_for.h"
+#include "storage/sessions.h"
+
+namespace rigcal::dds {
+namespace {
+
+Status SyncAll(const std::vector<storage::FinishedFile>& files) {
+  std::vector<Status> synced(files.size());
+  ParallelFor(files.size(), [&](std::size_t i) { synced[i] = SyncFile(files[i].path); });
+  for (const Status& one : synced) RIGCAL_TRY(one);
+  return {};
+}
+
+Status Close(storage::Store& store, const SessionId& session, Stamp now) {
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
+  if (!manifest)
+    return Fail(ErrorCode::kStorage, "session " + session.str() + " has no manifest", "Run `rigcal doctor`");
+  return storage::CloseSession(store, session, PairsToCalibrate(manifest->header), now);
+}
+
+Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {
+  for (const auto& [session, idx] : batch.held)
+    RIGCAL_TRY(storage::AppendHeld(store, session, {idx.begin(), idx.end()}, now));
+  for (const SessionId& session : batch.closing) RIGCAL_TRY(Close(store, session, now));
+  return {};
+}
+
+}  // namespace
+
+Status Persist(storage::Store& store, const DurableBatch& batch, Stamp now) {
+  RIGCAL_TRY(SyncAll(batch.files));
+  RIGCAL_TRY(storage::AdoptBlobs(store.BlobFolder(), batch.files));
+  return store.Write([&] { return Record(store, batch, now); });
+}
+
+}  // namespace rigcal::dds

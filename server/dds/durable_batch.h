@@ -1,0 +1,24 @@
+// Complete payload files and the rows that say so: what becomes durable together.
+#pragma once
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "server/base/stamp.h"
+#include "storage/blobs.h"
+#include "storage/store.h"
+
+namespace rigcal::dds {
+
+struct DurableBatch {
+  std::vector<storage::FinishedFile> files;
+  std::map<SessionId, std::set<std::uint32_t>> held;  // payloads that become held
+  std::set<SessionId> closing;                        // sessions of `held` of which they are the last
+};
+
+// Syncs the files side by side, moves them to the blob store, then records all in ONE transaction. Any thread; `store`
+// is that thread's own. When it returns good, everything survives power loss; otherwise nothing is recorded.
+[[nodiscard]] Status Persist(storage::Store& store, const DurableBatch& batch, Stamp now);
+
+}  // namespace rigcal::dds

@@ -1,0 +1,96 @@
+#include "server/dds/intake.h"
+
+#include "server/base/log.h"
+#include "server/dds/from_idl.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr std::chrono::milliseconds kIdle{1000};
+constexpr int kSmallAtOnce = 256;
+constexpr int kBigAtOnce = 8;  // chunks are loaned from DDS while they are copied: few at a time
+
+}  // namespace
+
+Intake::Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Requests& requests)
+    : readers_(std::move(readers)),
+      waitset_(std::move(waitset)),
+      outbox_(&outbox),
+      inbox_(&inbox),
+      requests_(&requests) {}
+
+Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant) {
+  const std::vector<std::string> robots = {wire::kAllRobotsPartition};
+  const std::vector<std::string> everyone = {wire::kOperatorPartition, wire::kAllRobotsPartition};
+  RIGCAL_ASSIGN(auto requests, wire::Reader<rigcal_wire_Request>::Open(participant, everyone));
+  RIGCAL_ASSIGN(auto headers, wire::Reader<rigcal_wire_SessionHeader>::Open(participant, robots));
+  RIGCAL_ASSIGN(auto manifests, wire::Reader<rigcal_wire_Manifest>::Open(participant, robots));
+  RIGCAL_ASSIGN(auto edges, wire::Reader<rigcal_wire_PairwiseResult>::Open(participant, robots));
+  RIGCAL_ASSIGN(auto chunks, wire::Reader<rigcal_wire_Chunk>::Open(participant, robots));
+  return Readers{std::move(requests), std::move(headers), std::move(manifests), std::move(edges), std::move(chunks)};
+}
+
+Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox, Requests& requests) {
+  RIGCAL_ASSIGN(Readers readers, OpenReaders(participant));
+  RIGCAL_ASSIGN(wire::WaitSet waitset, wire::WaitSet::Open(participant));
+  for (const dds_entity_t reader : {readers.requests.get(), readers.headers.get(), readers.manifests.get(),
+                                    readers.edges.get(), readers.chunks.get()})
+    RIGCAL_TRY(waitset.Attach(reader));
+  return Intake(std::move(readers), std::move(waitset), outbox, inbox, requests);
+}
+
+template <typename T>
+bool Intake::TakeInto(wire::Reader<T>& reader, int max) {
+  const auto taken = reader.Take(max, [&](const T& sample, const wire::SampleOrigin& origin) {
+    if (auto arrival = FromIdl(sample, origin)) static_cast<void>(inbox_->Offer(std::move(*arrival)));
+  });
+  if (!taken) LogError(taken.error());
+  return taken && *taken > 0;
+}
+
+bool Intake::TakeRequests() {
+  const auto taken = readers_.requests.Take(kSmallAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
+    for (const std::string& partition : origin.partitions)
+      if (partition == wire::kOperatorPartition || RobotOfPartition(partition))
+        return requests_->Offer(
+            {partition, origin.participant, sample.id, sample.verb, sample.json == nullptr ? "" : sample.json});
+  });
+  if (!taken) LogError(taken.error());
+  return taken && *taken > 0;
+}
+
+bool Intake::TakeAll() {
+  bool any = TakeRequests();
+  any |= TakeInto(readers_.headers, kSmallAtOnce);
+  any |= TakeInto(readers_.manifests, kBigAtOnce);
+  any |= TakeInto(readers_.edges, kSmallAtOnce);
+  any |= TakeInto(readers_.chunks, kBigAtOnce);
+  return any;
+}
+
+// A robot that may soon push or listen gets its writers now, so that the first receipt finds its reader.
+void Intake::MeetRobots() {
+  const auto meet = [&](const std::vector<wire::SampleOrigin>& writers) {
+    for (const wire::SampleOrigin& writer : writers)
+      for (const std::string& partition : writer.partitions)
+        if (const auto robot = RobotOfPartition(partition)) outbox_->AddRobot(*robot);
+  };
+  meet(readers_.headers.Matched());
+  meet(readers_.edges.Matched());
+}
+
+void Intake::Run() {
+  while (!*stopped_) {
+    const auto woken = waitset_.Wait(kIdle);
+    if (!woken) return LogError(woken.error());
+    if (*woken) MeetRobots();
+    while (!*stopped_ && TakeAll()) continue;
+  }
+}
+
+void Intake::Stop() {
+  *stopped_ = true;
+  waitset_.Wake();
+}
+
+}  // namespace rigcal::dds

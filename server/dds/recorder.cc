@@ -1,0 +1,72 @@
+#include "server/dds/recorder.h"
+
+#include "server/base/log.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr std::int64_t kRoundBytes = 8LL << 20;        // small enough that clients hear of progress often
+constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
+constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
+constexpr std::chrono::milliseconds kIdle{1000};
+
+}  // namespace
+
+Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
+                   std::uint64_t incarnation)
+    : stores_(std::move(stores)),
+      inbox_(inbox),
+      outbox_(outbox),
+      incarnation_(incarnation),
+      sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
+      batches_(stores_.takes, outbox, callbacks, clock, incarnation),
+      last_commit_(std::chrono::steady_clock::now()) {}
+
+void Recorder::Answer(const Refusal& refusal) {
+  LogWarn("robot " + refusal.partition.str() + ": refused: " + Sentence(refusal.error));
+  wire::Receipt receipt;
+  receipt.robot = refusal.robot;
+  receipt.subject_id = refusal.subject_id;
+  receipt.state = wire::ReceiptState::kRefused;
+  receipt.incarnation = incarnation_;
+  receipt.error = refusal.error;
+  outbox_.Send(refusal.partition, std::move(receipt));
+}
+
+void Recorder::Take(Arrival arrival) {
+  if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(std::move(*chunk));
+  if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(std::move(*item));
+  if (const auto* open = std::get_if<OpenSession>(&arrival)) return sessions_.Take(*open);
+  if (const auto* text = std::get_if<ManifestText>(&arrival)) return sessions_.Take(*text);
+  if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return sessions_.Take(*discarded);
+  if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
+}
+
+void Recorder::TakeRound() {
+  auto arrivals = inbox_.Take(kRoundBytes, kIdle);
+  for (Arrival& arrival : arrivals) Take(std::move(arrival));
+  sessions_.Write();
+  inbox_.Release();  // before clients are told that they may send more
+  sessions_.Report();
+}
+
+// While a commit runs the next payloads come in, and are committed together when it is done.
+void Recorder::CommitDue() {
+  const bool is_full = sessions_.PendingBytes() >= kCommitBytes;
+  sessions_.FinishCommit(is_full ? SessionRecorder::Patience::kAll : SessionRecorder::Patience::kNone);
+  sessions_.StartCommit();
+  const auto now = std::chrono::steady_clock::now();
+  if (!batches_.HasPending() || (!inbox_.Empty() && now - last_commit_ < kCommitAfter)) return;
+  batches_.Commit();
+  last_commit_ = now;
+}
+
+void Recorder::Run() {
+  while (!inbox_.Stopped()) {
+    TakeRound();
+    CommitDue();
+  }
+  sessions_.Settle();
+}
+
+}  // namespace rigcal::dds

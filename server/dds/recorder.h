@@ -1,0 +1,38 @@
+// Thread W: takes from the inbox, makes it durable in batches, sends the receipts. A receipt means: on disk.
+#pragma once
+
+#include <chrono>
+
+#include "server/dds/batch_recorder.h"
+#include "server/dds/inbox.h"
+#include "server/dds/session_recorder.h"
+
+namespace rigcal::dds {
+
+class Recorder {
+ public:
+  // Its own connections to the store, for this thread and for commits.
+  struct Stores {
+    storage::Store takes, commits;
+  };
+  // All outlive it. `incarnation` differs for every start of a server.
+  Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
+           std::uint64_t incarnation);
+  void Run();  // until the inbox is stopped
+
+ private:
+  void Take(Arrival arrival);
+  void Answer(const Refusal& refusal);
+  void TakeRound();
+  void CommitDue();
+
+  Stores stores_;
+  Inbox& inbox_;
+  Outbox& outbox_;
+  std::uint64_t incarnation_;
+  SessionRecorder sessions_;
+  BatchRecorder batches_;
+  std::chrono::steady_clock::time_point last_commit_;
+};
+
+}  // namespace rigcal::dds

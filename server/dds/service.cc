@@ -1,0 +1,93 @@
+#include "server/dds/service.h"
+
+#include <random>
+#include <thread>
+
+#include "server/base/limits.h"
+#include "server/dds/intake.h"
+#include "server/dds/recorder.h"
+#include "storage/sessions.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr std::size_t kInboxItemsMax = 200'000;
+
+std::uint64_t NewIncarnation() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32) | random();
+}
+
+}  // namespace
+
+struct Service::Impl {
+  Impl(wire::Participant opened, Callbacks given)
+      : participant(std::move(opened)),
+        callbacks(std::move(given)),
+        requests(outbox, callbacks.answer),
+        outbox(participant, [this] { requests.ReadersChanged(); }) {}
+  ~Impl();
+  [[nodiscard]] Status Open(const Options& options);
+  void Start();
+
+  // Threads are joined before any of it goes. The outbox goes before requests, which its writers call.
+  wire::Participant participant;
+  Callbacks callbacks;
+  Inbox inbox{{limits::kWindowBytes, limits::kIntakeBytesMax, kInboxItemsMax}};
+  Requests requests;
+  Outbox outbox;
+  std::unique_ptr<Recorder> recorder;
+  std::unique_ptr<Intake> intake;
+  std::thread thread_d, thread_w, thread_q;
+};
+
+Status Service::Impl::Open(const Options& options) {
+  RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
+  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
+  for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
+  const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
+  RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
+  recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox,
+                                        callbacks, clock, NewIncarnation());
+  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, requests));
+  intake = std::make_unique<Intake>(std::move(opened));
+  return {};
+}
+
+void Service::Impl::Start() {
+  thread_w = std::thread([this] { recorder->Run(); });
+  thread_q = std::thread([this] { requests.Run(); });
+  thread_d = std::thread([this] { intake->Run(); });
+}
+
+Service::Impl::~Impl() {
+  if (intake) intake->Stop();
+  inbox.Stop();
+  requests.Stop();
+  for (std::thread* thread : {&thread_d, &thread_w, &thread_q})
+    if (thread->joinable()) thread->join();
+}
+
+Service::Service(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Service::~Service() = default;
+Service::Service(Service&&) noexcept = default;
+Service& Service::operator=(Service&&) noexcept = default;
+
+Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
+  RIGCAL_ASSIGN(wire::Participant participant, wire::Participant::Open(options.participant));
+  auto impl = std::make_unique<Impl>(std::move(participant), std::move(callbacks));
+  RIGCAL_TRY(impl->Open(options));
+  impl->Start();
+  return Service(std::move(impl));
+}
+
+void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }
+
+void Service::Publish(const RobotId& robot, int revision, const SensorId& reference,
+                      const std::vector<SensorPose>& poses, const Verdict& verdict, std::int64_t edges,
+                      std::int64_t jobs_waiting, Stamp at) {
+  for (const SensorPose& pose : poses) impl_->outbox.SendCalibration(robot, revision, reference, pose, verdict, at);
+  impl_->outbox.SendStatus(robot, revision, verdict, edges, jobs_waiting, at);
+}
+
+}  // namespace rigcal::dds

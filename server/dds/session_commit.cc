@@ -1,0 +1,106 @@
+// The second half of SessionRecorder: commits and receipts.
+#include <algorithm>
+
+#include "server/base/limits.h"
+#include "server/base/log.h"
+#include "server/dds/session_recorder.h"
+#include "storage/sessions.h"
+
+namespace rigcal::dds {
+// The files go on a thread of their own: meanwhile this one takes and writes the next.
+void SessionRecorder::StartCommit() {
+  if (commit_.valid() || finished_.empty()) return;
+  running_ = {};
+  for (const Finished& one : finished_) {
+    running_.files.push_back({one.path, one.digest});
+    for (const std::uint32_t idx : intakes_.at(one.session)->WithSameContent(one.payload_idx))
+      running_.held[one.session].insert(idx);
+  }
+  for (const auto& [session, idx] : running_.held)
+    if (intakes_.at(session)->Completes(idx)) running_.closing.insert(session);
+  finished_.clear();
+  pending_bytes_ = 0;
+  commit_ = std::async(std::launch::async, [this] {
+    const Status done = Persist(commit_store_, running_, clock_.Now());
+    commit_done_();
+    return done;
+  });
+}
+
+void SessionRecorder::FinishCommit(Patience patience) {
+  if (!commit_.valid()) return;
+  const bool is_ready = commit_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  if (!is_ready && patience == Patience::kNone) return;
+  if (const Status done = commit_.get(); done) {
+    Announce(running_);
+  } else {
+    GiveUp(running_, done.error());
+  }
+}
+
+void SessionRecorder::Settle() {
+  FinishCommit(Patience::kAll);
+  StartCommit();
+  FinishCommit(Patience::kAll);
+}
+
+void SessionRecorder::Announce(const DurableBatch& batch) {
+  for (const auto& [session, idx] : batch.held) {
+    SessionIntake& intake = *intakes_.at(session);
+    intake.MarkHeld({idx.begin(), idx.end()});
+    SendProgress(intake, intake.AllHeld() ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving);
+    if (!intake.AllHeld()) continue;
+    const RobotId robot = intake.robot();
+    Remove(session);
+    callbacks_.work_arrived(robot);
+  }
+}
+
+// Nothing of it was receipted: the client is told and starts from what is held.
+void SessionRecorder::GiveUp(const DurableBatch& batch, const Error& error) {
+  LogError(error);
+  for (const auto& [session, idx] : batch.held) {
+    const RobotId robot = intakes_.at(session)->robot();
+    Remove(session);
+    SendRefusal(robot, session, error);
+  }
+}
+
+// Many sessions at once share what the intake can hold.
+std::int64_t SessionRecorder::WindowBytes() const {
+  const auto sessions = static_cast<std::int64_t>(std::max<std::size_t>(intakes_.size(), 1));
+  const auto chunk_bytes = static_cast<std::int64_t>(limits::kChunkBytesMax);
+  return std::clamp(limits::kIntakeBytesMax / sessions, 2 * chunk_bytes, limits::kWindowBytes);
+}
+
+void SessionRecorder::SendProgress(const SessionIntake& intake, wire::ReceiptState state) {
+  outbox_.Send(intake.robot(), intake.ReceiptOf(state, WindowBytes()));
+}
+
+void SessionRecorder::SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state) {
+  wire::Receipt receipt;
+  receipt.robot = robot;
+  receipt.subject_id = session.str();
+  receipt.state = state;
+  receipt.incarnation = incarnation_;
+  receipt.window_bytes = static_cast<std::uint64_t>(WindowBytes());
+  if (state == wire::ReceiptState::kClosed) {
+    auto held = storage::LoadHeld(store_, session);
+    if (!held) return SendRefusal(robot, session, held.error());
+    receipt.held = std::move(*held);
+  }
+  outbox_.Send(robot, std::move(receipt));
+}
+
+void SessionRecorder::SendRefusal(const RobotId& robot, const SessionId& session, const Error& error) {
+  LogWarn("robot " + robot.str() + ", session " + session.str() + " refused: " + Sentence(error));
+  wire::Receipt receipt;
+  receipt.robot = robot;
+  receipt.subject_id = session.str();
+  receipt.state = wire::ReceiptState::kRefused;
+  receipt.incarnation = incarnation_;
+  receipt.error = error;
+  outbox_.Send(robot, std::move(receipt));
+}
+
+}  // namespace rigcal::dds

@@ -1,0 +1,56 @@
+#include "server/fleet/assess.h"
+
+#include <cctype>
+
+#include "server/fleet/findings.h"
+
+namespace rigcal::fleet {
+namespace {
+
+std::string Capitalised(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+std::string Uncapitalised(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+// One sentence each, however many findings.
+Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings) {
+  Verdict verdict;
+  verdict.level = level;
+  for (const Finding& finding : findings) {
+    const bool first = verdict.why.empty();
+    verdict.why += first ? Capitalised(finding.why) : "; also, " + finding.why;
+    verdict.what_to_do += first ? finding.what_to_do : "; then " + Uncapitalised(finding.what_to_do);
+  }
+  verdict.why += ".";
+  verdict.what_to_do += ".";
+  return verdict;
+}
+
+std::vector<Finding> Collect(std::initializer_list<std::optional<Finding>> candidates) {
+  std::vector<Finding> findings;
+  for (const std::optional<Finding>& candidate : candidates)
+    if (candidate) findings.push_back(*candidate);
+  return findings;
+}
+
+}  // namespace
+
+Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+  if (const auto none = FindNoEdges(edges)) return VerdictFrom(VerdictLevel::kUnknown, {*none});
+  if (const auto contradiction = FindContradiction(edges, solution, policy))
+    return VerdictFrom(VerdictLevel::kFail, {*contradiction});
+  if (const auto unknown = Collect({FindUnsettled(solution), FindUnknownSensors(edges, solution)}); !unknown.empty())
+    return VerdictFrom(VerdictLevel::kUnknown, unknown);
+  const auto warnings = Collect(
+      {FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedResult(solution)});
+  if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
+  return {VerdictLevel::kPass, "Every sensor is known well enough and the edges agree with each other.",
+          "Nothing; calibrate again when it is due."};
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,159 @@
+#include "server/fleet/findings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "server/math/tangent.h"
+
+namespace rigcal::fleet {
+namespace {
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr std::size_t kNamesMax = 6;
+
+std::string Number(double value, const char* unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.3g %s", value, unit);
+  return text.data();
+}
+
+// "a", "a and b", "a, b and c", "a, b, c, d, e, f and 3 more".
+std::string List(const std::vector<std::string>& names) {
+  const std::size_t shown = names.size() > kNamesMax ? kNamesMax : names.size();
+  std::string text;
+  for (std::size_t k = 0; k < shown; ++k) {
+    const bool last = k + 1 == names.size();
+    if (k > 0) text += last ? " and " : ", ";
+    text += names[k];
+  }
+  if (names.size() > shown) text += " and " + std::to_string(names.size() - shown) + " more";
+  return text;
+}
+
+std::string NameOfEdge(const Edge& edge) { return edge.frame_a.str() + " - " + edge.frame_b.str(); }
+
+std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
+
+const Diagnosis* DiagnosisOf(const GraphSolution& solution, const std::string& sensor) {
+  for (const Diagnosis& diagnosis : solution.diagnoses)
+    if (diagnosis.what.find("sensor " + sensor + " ") != std::string::npos ||
+        diagnosis.what.find("sensor " + sensor + ":") != std::string::npos)
+      return &diagnosis;
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                         const Policy& policy) {
+  std::map<EdgeId, const Edge*> by_id;
+  for (const Edge& edge : edges) by_id.emplace(edge.id, &edge);
+  const auto edge_count = static_cast<std::size_t>(std::count_if(
+      solution.residuals.begin(), solution.residuals.end(), [](const EdgeResidual& r) { return r.in_solution; }));
+  const Edge* worst = nullptr;
+  const EdgeResidual* worst_residual = nullptr;
+  double worst_ratio = 1.0;
+  for (const EdgeResidual& residual : solution.residuals) {
+    const auto found = by_id.find(residual.edge);
+    if (found == by_id.end()) continue;
+    const EdgeTest test = TestResidual(*found->second, residual, edge_count, policy);
+    if (test.limit <= 0.0 || test.statistic / test.limit <= worst_ratio) continue;
+    worst = found->second, worst_residual = &residual, worst_ratio = test.statistic / test.limit;
+  }
+  if (worst == nullptr) return std::nullopt;
+  const std::string off = Number(1e3 * worst_residual->e.head<3>().norm(), "mm") + " and " +
+                          Number(kDegreesPerRadian * worst_residual->e.tail<3>().norm(), "deg");
+  return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " + off + ", " +
+                     Number(worst_ratio, "times") + " the limit of its test",
+                 "Check that " + worst->frame_a.str() + " and " + worst->frame_b.str() +
+                     " have not moved and are named right, then repeat their session"};
+}
+
+std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
+  const bool any = std::any_of(edges.begin(), edges.end(), [](const Edge& e) { return e.state == EdgeState::kGood; });
+  if (any) return std::nullopt;
+  if (edges.empty()) return Finding{"nothing has been calibrated yet", "Push a capture session"};
+  return Finding{"every calibration failed", "Open the failed edges, do what each of them says, and push again"};
+}
+
+std::optional<Finding> FindUnsettled(const GraphSolution& solution) {
+  if (solution.converged) return std::nullopt;
+  return Finding{"the graph did not settle", "Look for an edge with a large residual, withdraw it and repeat its session"};
+}
+
+std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  std::set<SensorId> solved;
+  std::vector<std::string> unknown;
+  for (const SensorPose& pose : solution.poses) {
+    solved.insert(pose.sensor);
+    if (!pose.known) unknown.push_back(pose.sensor.str());
+  }
+  std::set<SensorId> only_failed;
+  for (const Edge& edge : edges)
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (!solved.contains(sensor)) only_failed.insert(sensor);
+  for (const SensorId& sensor : only_failed) unknown.push_back(sensor.str());
+  if (unknown.empty()) return std::nullopt;
+  const Diagnosis* diagnosis = DiagnosisOf(solution, unknown.front());
+  if (unknown.size() == 1 && diagnosis != nullptr) {
+    std::string cure = diagnosis->cure;
+    if (!cure.empty() && cure.back() == '.') cure.pop_back();
+    return Finding{diagnosis->what, cure};
+  }
+  const std::string them = unknown.size() == 1 ? "it" : "them";
+  return Finding{"the pose of " + List(unknown) + " is not known: no good edges tie " + them + " fully to the reference",
+                 "Capture a session that shows " + List(unknown) + " together with sensors that are known"};
+}
+
+std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges) {
+  std::set<std::pair<SensorId, SensorId>> good;
+  for (const Edge& edge : edges)
+    if (edge.state == EdgeState::kGood) good.insert(PairOf(edge));
+  std::set<std::pair<SensorId, SensorId>> seen;
+  std::vector<std::string> failed;
+  std::string cure;
+  for (const Edge& edge : edges) {
+    if (edge.state == EdgeState::kGood || good.contains(PairOf(edge)) || !seen.insert(PairOf(edge)).second) continue;
+    if (failed.empty() && !edge.diagnoses.empty()) cure = edge.diagnoses.front().cure;
+    failed.push_back(NameOfEdge(edge));
+  }
+  if (failed.empty()) return std::nullopt;
+  if (!cure.empty() && cure.back() == '.') cure.pop_back();
+  if (failed.size() > 1 || cure.empty()) cure = "Open each failed edge: its page says why and what to do";
+  return Finding{"the calibration of " + List(failed) + " failed", cure};
+}
+
+std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
+  std::vector<std::pair<double, const SensorPose*>> uncertain;
+  for (const SensorPose& pose : solution.poses) {
+    if (!pose.known) continue;
+    const Vector6d sigma = pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const double ratio = std::max(sigma.head<3>().maxCoeff() / policy.sigma_max_m,
+                                  sigma.tail<3>().maxCoeff() / policy.sigma_max_rad);
+    if (ratio > 1.0) uncertain.emplace_back(ratio, &pose);
+  }
+  if (uncertain.empty()) return std::nullopt;
+  std::stable_sort(uncertain.begin(), uncertain.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> names;
+  for (const auto& [ratio, pose] : uncertain) names.push_back(pose->sensor.str());
+  const Vector6d sigma = uncertain.front().second->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const std::string worst = Number(1e3 * sigma.head<3>().maxCoeff(), "mm") + " and " +
+                            Number(kDegreesPerRadian * sigma.tail<3>().maxCoeff(), "deg");
+  const std::string limit = Number(1e3 * policy.sigma_max_m, "mm") + " and " +
+                            Number(kDegreesPerRadian * policy.sigma_max_rad, "deg");
+  return Finding{"the pose of " + List(names) + " is less certain than the policy asks (worst " + names.front() + ": " +
+                     worst + " at 1 sigma, limit " + limit + ")",
+                 "Add captures of " + List(names) + " with the board at more distances and tilts"};
+}
+
+std::optional<Finding> FindUncheckedResult(const GraphSolution& solution) {
+  if (solution.dof > 0) return std::nullopt;
+  return Finding{"no loop of edges checks the result",
+                 "Calibrate one more pair of sensors, or repeat a pair, so that the edges check each other"};
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,14 @@
+// Rows that answers and events share.
+#pragma once
+
+#include "server/formats/answers.h"
+#include "server/formats/json_writer.h"
+
+namespace rigcal::formats {
+
+void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session);
+void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
+// Without its document.
+void WriteRevisionMembers(JsonWriter& out, const Revision& revision);
+
+}  // namespace rigcal::formats

@@ -1,0 +1,77 @@
+#include "server/formats/answer_rows.h"
+#include "server/formats/answers.h"
+#include "server/formats/edge_fields.h"
+#include "server/formats/json_values.h"
+
+namespace rigcal::formats {
+
+void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
+  out.Text("session", session.session.str());
+  out.Text("robot", session.robot.str());
+  out.Text("state", session.closed ? "closed" : "receiving");
+  out.Integer("payloads", session.payloads);
+  out.Integer("payloads_held", session.payloads_held);
+  out.Integer("bytes", session.bytes);
+  WriteStamp(out, "captured_at", session.captured_at);
+  WriteStamp(out, "opened_at", session.opened_at);
+  WriteStamp(out, "closed_at", session.closed_at);
+  out.Text("operator", session.operator_name);
+  out.Integer("jobs_waiting", session.jobs_waiting);
+  out.Integer("jobs_total", session.jobs_total);
+}
+
+void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual) {
+  WriteEdgeSummary(out, edge);
+  WriteResidual(out, residual);
+}
+
+void WriteRevisionMembers(JsonWriter& out, const Revision& revision) {
+  out.Text("robot", revision.robot.str());
+  out.Integer("revision", revision.number);
+  out.Text("created_at", ToIso(revision.created_at));
+  out.Text("digest", revision.digest.str());
+}
+
+std::string WriteSessionEvent(const SessionAnswer& session) {
+  return WriteObject([&](JsonWriter& out) { WriteSessionMembers(out, session); });
+}
+
+std::string WriteEdgeEvent(const Edge& edge, std::int64_t jobs_waiting, std::int64_t jobs_total) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Object("edge", [&] { WriteEdgeRowMembers(out, edge, nullptr); });
+    out.Integer("jobs_waiting", jobs_waiting);
+    out.Integer("jobs_total", jobs_total);
+  });
+}
+
+std::string WriteGraphEvent(const RobotId& robot, std::int64_t edges, const GraphSolution& solution) {
+  std::int64_t known = 0;
+  for (const SensorPose& pose : solution.poses) known += pose.known ? 1 : 0;
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("robot", robot.str());
+    out.Integer("edges", edges);
+    out.Integer("sensors", static_cast<std::int64_t>(solution.poses.size()));
+    out.Integer("sensors_known", known);
+    out.Flag("converged", solution.converged);
+    out.Number("cost", solution.cost);
+    out.Integer("dof", solution.dof);
+    WriteGlobalErrors(out, solution.before, solution.after);
+  });
+}
+
+std::string WriteRevisionEvent(const Revision& revision) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteRevisionMembers(out, revision);
+    WriteVerdict(out, "verdict", revision.verdict);
+  });
+}
+
+std::string WritePublishedEvent(const RobotId& robot, int revision, const std::string& path) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("robot", robot.str());
+    out.Integer("revision", revision);
+    out.Text("path", path);
+  });
+}
+
+}  // namespace rigcal::formats

@@ -1,0 +1,11 @@
+// A manifest's members, for documents that hold one.
+#pragma once
+
+#include "server/formats/json_writer.h"
+#include "server/model/session.h"
+
+namespace rigcal::formats {
+
+void WriteManifestMembers(JsonWriter& out, const Manifest& manifest);
+
+}  // namespace rigcal::formats

@@ -1,0 +1,148 @@
+#include <cmath>
+
+#include "server/base/limits.h"
+#include "server/formats/session_folder.h"
+#include "server/formats/yaml_field.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr const char* kCure = "Mend the file; docs/session-format.md has a complete example.";
+constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
+constexpr std::size_t kIntrinsicsCount = 9;
+
+template <typename IdType>
+IdType ReadId(const YamlField& field) {
+  const std::string text = field.Text();
+  auto id = IdType::Parse(text);
+  if (id) return *std::move(id);
+  field.Refuse(id.error().what, id.error().cure);
+  return IdType();
+}
+
+std::string TextOr(const YamlField& map, std::string_view key, const std::string& otherwise) {
+  const auto field = map.Find(key);
+  return field ? field->Text() : otherwise;
+}
+
+Stamp ReadCapturedAt(const YamlField& field) {
+  const Result<Stamp> stamp = ParseIso(field.Text());
+  if (stamp) return *stamp;
+  field.Refuse(stamp.error().what, "Write the time of the capture as 2026-01-31T12:00:00Z.");
+  return {};
+}
+
+Se3 ReadPose(const YamlField& field) {
+  field.AllowOnly({"p_m", "q_xyzw"});
+  Se3 T;
+  double q[4] = {0, 0, 0, 1};
+  field.At("p_m").Numbers(T.p_m.data(), 3);
+  const YamlField quaternion = field.At("q_xyzw");
+  quaternion.Numbers(q, 4);
+  T.q = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
+  if (!(std::abs(T.q.norm() - 1.0) <= kHandWrittenTolerance))
+    quaternion.Refuse("must have unit length (it is " + std::to_string(T.q.norm()) + ")");
+  return T.Normalized();
+}
+
+void ReadIntrinsics(const YamlField& field, Sensor& sensor) {
+  field.AllowOnly({"model", "fx_px", "fy_px", "cx_px", "cy_px", "distortion", "sigma"});
+  if (const auto model = field.Find("model"); model && model->Text() != "pinhole_radtan")
+    model->Refuse("is not known here", "This version knows pinhole_radtan.");
+  PinholeRadtan camera;
+  camera.fx_px = field.At("fx_px").Number();
+  camera.fy_px = field.At("fy_px").Number();
+  camera.cx_px = field.At("cx_px").Number();
+  camera.cy_px = field.At("cy_px").Number();
+  if (const auto k = field.Find("distortion")) k->Numbers(camera.distortion.data(), camera.distortion.size());
+  sensor.intrinsics = camera;
+  if (const auto sigma = field.Find("sigma")) {
+    sensor.intrinsics_sigma.emplace(kIntrinsicsCount);
+    sigma->Numbers(sensor.intrinsics_sigma->data(), kIntrinsicsCount);
+  }
+}
+
+Sensor ReadSensor(const YamlField& field) {
+  field.AllowOnly({"type", "sees", "intrinsics", "T_ref_nominal"});
+  Sensor sensor;
+  sensor.id = SensorId(field.Key());
+  const YamlField type = field.At("type");
+  if (const Result<SensorKind> kind = SensorKindOf(type.Text()))
+    sensor.kind = *kind;
+  else
+    type.Refuse(kind.error().what, kind.error().cure);
+  if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
+  if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
+  if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T);
+  if (const Status valid = Validate(sensor); !valid) field.Refuse(valid.error());
+  return sensor;
+}
+
+Checkerboard ReadTarget(const YamlField& field) {
+  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial"});
+  if (const YamlField type = field.At("type"); type.Text() != "checkerboard")
+    type.Refuse("is not known here", "This version knows checkerboard.");
+  Checkerboard board;
+  board.id = TargetId(field.Key());
+  const std::vector<YamlField> corners = field.At("inner_corners").Items();
+  if (corners.size() == 2) {
+    board.inner_cols = static_cast<int>(corners[0].Integer(1, 1000));
+    board.inner_rows = static_cast<int>(corners[1].Integer(1, 1000));
+  } else {
+    field.At("inner_corners").Refuse("must be two numbers, [columns, rows]");
+  }
+  board.square_m = field.At("square_size_m").Number();
+  if (const auto sigma = field.Find("square_size_sigma_m")) board.square_sigma_m = sigma->Number();
+  board.serial = TextOr(field, "serial", "");
+  if (const Status valid = Validate(board); !valid) field.Refuse(valid.error());
+  return board;
+}
+
+SessionHeader ReadHeader(const YamlField& root) {
+  root.AllowOnly(
+      {"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors", "conditions"});
+  SessionHeader header;
+  header.format = static_cast<int>(root.At("format").Integer(1, 1));
+  header.robot = ReadId<RobotId>(root.At("robot"));
+  header.rig_model = TextOr(root, "rig_model", "");
+  header.captured_at = ReadCapturedAt(root.At("captured_at"));
+  header.operator_name = TextOr(root, "operator", "");
+  for (const YamlField& target : root.At("targets").Members())
+    header.targets.push_back(ReadTarget(target.Called("target '" + target.Key() + "'")));
+  for (const YamlField& sensor : root.At("sensors").Members())
+    header.sensors.push_back(ReadSensor(sensor.Called("sensor '" + sensor.Key() + "'")));
+  if (const auto reference = root.Find("reference"))
+    header.reference = ReadId<SensorId>(*reference);
+  else if (!header.sensors.empty())
+    header.reference = header.sensors.front().id;
+  if (const auto conditions = root.Find("conditions"))
+    for (const YamlField& condition : conditions->Members())
+      header.conditions.emplace(condition.Key(), condition.Text());
+  return header;
+}
+
+// Which line a rule that spans the file is about.
+YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
+  for (const YamlField& sensor : root.At("sensors").Members()) {
+    const auto sees = sensor.Find("sees");
+    if (sees && !root.At("targets").Find(sees->Text())) return *sees;
+  }
+  const auto reference = root.Find("reference");
+  return reference && !root.At("sensors").Find(header.reference.str()) ? *reference : root;
+}
+
+}  // namespace
+
+Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& name) {
+  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(text, name, kCure, limits::kSessionYamlBytesMax));
+  const YamlField root(*tree);
+  SessionHeader header = ReadHeader(root);
+  if (tree->error) return Fail(*tree->error);
+  if (const Status valid = Validate(header); !valid) {
+    PlaceOf(root, header).Refuse(valid.error());
+    return Fail(*tree->error);
+  }
+  return header;
+}
+
+}  // namespace rigcal::formats

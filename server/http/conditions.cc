@@ -1,0 +1,59 @@
+#include "server/http/conditions.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace rigcal::http {
+namespace {
+
+std::string_view Trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// Digits only; nothing if empty, mixed or too large.
+std::optional<std::int64_t> Number(std::string_view text) {
+  std::int64_t value = 0;
+  if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos) return std::nullopt;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
+
+RangeAnswer Part(std::int64_t first, std::int64_t last, std::int64_t size_bytes) {
+  if (first >= size_bytes) return {RangeKind::kUnsatisfiable, {}};
+  return {RangeKind::kPart, {first, std::min(last, size_bytes - 1)}};
+}
+
+}  // namespace
+
+bool MatchesTag(std::string_view if_none_match, const std::string& etag) {
+  if (Trimmed(if_none_match) == "*") return true;
+  while (!if_none_match.empty()) {
+    const auto comma = std::min(if_none_match.find(','), if_none_match.size());
+    std::string_view tag = Trimmed(if_none_match.substr(0, comma));
+    if (tag.substr(0, 2) == "W/") tag.remove_prefix(2);
+    if (tag == etag) return true;
+    if_none_match.remove_prefix(std::min(comma + 1, if_none_match.size()));
+  }
+  return false;
+}
+
+RangeAnswer ParseRange(std::string_view header, std::int64_t size_bytes) {
+  constexpr std::string_view kUnit = "bytes=";
+  const std::string_view text = Trimmed(header);
+  if (text.substr(0, kUnit.size()) != kUnit) return {};
+  const std::string_view spec = Trimmed(text.substr(kUnit.size()));
+  const auto dash = spec.find('-');
+  if (dash == std::string_view::npos) return {};
+  const std::string_view from = Trimmed(spec.substr(0, dash)), to = Trimmed(spec.substr(dash + 1));
+  const auto first = Number(from), last = Number(to);
+  if (from.empty() && last) {
+    if (*last == 0) return {RangeKind::kUnsatisfiable, {}};
+    return Part(std::max<std::int64_t>(0, size_bytes - *last), size_bytes - 1, size_bytes);
+  }
+  if (!first || (!to.empty() && (!last || *last < *first))) return {};
+  return Part(*first, last.value_or(size_bytes - 1), size_bytes);
+}
+
+}  // namespace rigcal::http

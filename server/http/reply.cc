@@ -1,0 +1,81 @@
+#include "server/http/reply.h"
+
+#include <cstring>
+
+#include "server/base/sha256.h"
+#include "server/http/conditions.h"
+#include "server/http/error_body.h"
+
+namespace rigcal::http {
+namespace {
+
+// The pages need nothing from elsewhere and run no script of their own pages: so nothing else is allowed.
+constexpr const char* kContentPolicy =
+    "default-src 'none'; style-src 'self'; img-src 'self' data:; script-src 'self'; connect-src 'self'; "
+    "font-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+void Add(mg_connection* connection, const char* name, const std::string& value) {
+  mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
+}
+
+}  // namespace
+
+bool IsHead(const mg_connection* connection) {
+  const char* method = mg_get_request_info(connection)->request_method;
+  return method && std::strcmp(method, "HEAD") == 0;
+}
+
+std::string_view HeaderOf(const mg_connection* connection, const char* name) {
+  const char* value = mg_get_header(connection, name);
+  return value ? std::string_view(value) : std::string_view();
+}
+
+void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, const Headers& headers) {
+  mg_response_header_start(connection, status);
+  Add(connection, "Content-Security-Policy", kContentPolicy);
+  Add(connection, "X-Content-Type-Options", "nosniff");
+  Add(connection, "Referrer-Policy", "no-referrer");
+  Add(connection, "Cross-Origin-Resource-Policy", "same-origin");
+  if (status != 304) Add(connection, "Content-Length", std::to_string(body_bytes));
+  for (const auto& [name, value] : headers) Add(connection, name.c_str(), value);
+  mg_response_header_send(connection);
+}
+
+bool SendBytes(mg_connection* connection, std::string_view bytes) {
+  constexpr std::size_t kPieceBytes = 64 << 10;
+  while (!bytes.empty()) {
+    const std::string_view piece = bytes.substr(0, kPieceBytes);
+    if (mg_write(connection, piece.data(), piece.size()) != static_cast<int>(piece.size())) return false;
+    bytes.remove_prefix(piece.size());
+  }
+  return true;
+}
+
+int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type) {
+  const std::string etag = "\"" + Sha256Of(body).str().substr(0, 32) + "\"";
+  const Headers headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}, {"Content-Type", content_type}};
+  if (MatchesTag(HeaderOf(connection, "If-None-Match"), etag)) {
+    SendHead(connection, 304, 0, headers);
+    return 304;
+  }
+  SendHead(connection, 200, static_cast<std::int64_t>(body.size()), headers);
+  if (!IsHead(connection)) (void)SendBytes(connection, body);
+  return 200;
+}
+
+int SendRedirect(mg_connection* connection, int status, const std::string& location) {
+  SendHead(connection, status, 0, {{"Location", location}, {"Cache-Control", "no-cache"}});
+  return status;
+}
+
+int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers) {
+  const std::string body = as_json ? ErrorDocument(error) : ErrorPage(status, error);
+  Headers all = {{"Content-Type", as_json ? "application/json; charset=utf-8" : "text/html; charset=utf-8"},
+                 {"Cache-Control", "no-store"}};
+  all.insert(all.end(), headers.begin(), headers.end());
+  SendHead(connection, status, static_cast<std::int64_t>(body.size()), all);
+  if (!IsHead(connection)) (void)SendBytes(connection, body);
+  return status;
+}
+
+}  // namespace rigcal::http

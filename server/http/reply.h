@@ -1,0 +1,30 @@
+// Writes answers: status, the headers that every answer carries, body (none for HEAD).
+#pragma once
+
+#include <civetweb.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/base/result.h"
+
+namespace rigcal::http {
+
+using Headers = std::vector<std::pair<std::string, std::string>>;
+
+// Status line, security headers, Content-Length, then `headers`.
+void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, const Headers& headers);
+// False once the client has gone or stopped taking.
+[[nodiscard]] bool SendBytes(mg_connection* connection, std::string_view bytes);
+// Head and body; 304 if the client has this very body.
+int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type);
+int SendRedirect(mg_connection* connection, int status, const std::string& location);
+// A small page, or below /api the document {"error": {code, cure, what}}. Returns the status.
+int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers = {});
+
+[[nodiscard]] bool IsHead(const mg_connection* connection);
+[[nodiscard]] std::string_view HeaderOf(const mg_connection* connection, const char* name);  // "" if absent
+
+}  // namespace rigcal::http

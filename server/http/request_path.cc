@@ -1,0 +1,83 @@
+#include "server/http/request_path.h"
+
+#include <civetweb.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "server/base/ids.h"
+
+namespace rigcal::http {
+namespace {
+
+tl::unexpected<Error> Refused() {
+  return Fail(ErrorCode::kInvalidInput, "this address is not understood", "Check it for typing errors, or start at /.");
+}
+
+// mg_url_decode keeps a bad escape as it is; here it is an error.
+bool HasBadEscape(std::string_view raw) {
+  const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
+  for (std::size_t i = raw.find('%'); i != std::string_view::npos; i = raw.find('%', i + 1))
+    if (i + 2 >= raw.size() || !is_hex(raw[i + 1]) || !is_hex(raw[i + 2])) return true;
+  return false;
+}
+
+bool IsForbidden(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\'; }
+
+std::vector<std::string> Segments(const std::string& path) {
+  std::vector<std::string> segments;
+  for (std::size_t start = 0; start < path.size();) {
+    const std::size_t end = std::min(path.find('/', start), path.size());
+    if (end > start) segments.push_back(path.substr(start, end - start));
+    start = end + 1;
+  }
+  return segments;
+}
+
+bool IsNumber(const std::string& text) {
+  return !text.empty() && text.size() <= 9 && text.front() != '0' &&
+         text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+bool IsRevision(const std::vector<std::string>& segments) {
+  return segments.size() >= 4 && segments[0] == "robots" && segments[2] == "revisions" && IsNumber(segments[3]) &&
+         RobotId::Parse(segments[1]).has_value();
+}
+
+}  // namespace
+
+Result<std::string> NormalPath(std::string_view raw) {
+  if (raw.empty() || raw.front() != '/' || HasBadEscape(raw)) return Refused();
+  std::string decoded(raw.size() + 1, '\0');
+  const int length =
+      mg_url_decode(raw.data(), static_cast<int>(raw.size()), decoded.data(), static_cast<int>(decoded.size()), 0);
+  if (length < 1) return Refused();
+  decoded.resize(static_cast<std::size_t>(length));
+  if (std::any_of(decoded.begin(), decoded.end(), IsForbidden)) return Refused();
+  std::string path;
+  for (const std::string& segment : Segments(decoded)) {
+    if (segment.front() == '.') return Refused();
+    path += "/" + segment;
+  }
+  return decoded.back() == '/' ? path + "/" : path;
+}
+
+std::optional<std::string> PublishedFile(const std::string& path) {
+  const auto segments = Segments(path);
+  if (!IsRevision(segments)) return std::nullopt;
+  std::string file = segments[1] + "/" + segments[3];
+  for (std::size_t i = 4; i < segments.size(); ++i) file += "/" + segments[i];
+  return path.back() == '/' ? file + "/index.html" : file;
+}
+
+std::optional<std::string> WithSlash(const std::string& path) {
+  if (path.back() == '/') return std::nullopt;
+  const auto segments = Segments(path);
+  const bool is_robot = segments.size() == 2 && segments[0] == "robots" && RobotId::Parse(segments[1]).has_value();
+  if (!is_robot && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
+  return path + "/";
+}
+
+bool IsApi(const std::string& path) { return path == "/api" || path.rfind("/api/", 0) == 0; }
+
+}  // namespace rigcal::http

@@ -1,0 +1,25 @@
+// What a request's path means. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/base/result.h"
+
+namespace rigcal::http {
+
+// Percent-decoded, repeated slashes joined. Refuses what does not start with '/', bad escapes, control characters,
+// backslashes, and any segment that starts with '.': so there is neither a parent folder nor a hidden file.
+[[nodiscard]] Result<std::string> NormalPath(std::string_view raw);
+
+// "/robots/<robot>/revisions/<number>/<file>" -> "<robot>/<number>/<file>" below the published folder ("index.html" for
+// a path that ends in '/'); nothing for every other path ("latest" is no number).
+[[nodiscard]] std::optional<std::string> PublishedFile(const std::string& path);
+
+// Where a page's address lacks its last slash, without which relative links lead astray: the right address.
+[[nodiscard]] std::optional<std::string> WithSlash(const std::string& path);
+
+[[nodiscard]] bool IsApi(const std::string& path);
+
+}  // namespace rigcal::http

@@ -1,0 +1,186 @@
+#include "server/http/server.h"
+
+#include <civetweb.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <future>
+
+#include "server/base/limits.h"
+#include "server/base/log.h"
+#include "server/http/error_body.h"
+#include "server/http/reply.h"
+#include "server/http/request_path.h"
+#include "server/http/static_file.h"
+
+namespace rigcal::http {
+namespace {
+
+struct Site {
+  std::filesystem::path folder;
+  Answer answer;
+};
+
+bool MayRead(const char* method) { return std::strcmp(method, "GET") == 0 || std::strcmp(method, "HEAD") == 0; }
+
+Result<Page> Ask(const Site& site, const std::string& path, const std::string& query) {
+  try {
+    return site.answer(path, query);
+  } catch (const std::exception& error) {
+    LogError({ErrorCode::kInternal, path + ": " + error.what(), "Report this with the program's version."});
+  } catch (...) {
+    LogError({ErrorCode::kInternal, path + ": unknown exception", "Report this with the program's version."});
+  }
+  return Fail(ErrorCode::kInternal, "the server failed to answer " + path, "See the server's log.");
+}
+
+int ServeFile(mg_connection* connection, const Site& site, const std::string& file) {
+  const int status = SendFile(connection, site.folder, file);
+  if (status != 404) return status;
+  return SendError(connection, 404,
+                   {ErrorCode::kNotFound, "There is no report file here: " + file,
+                    "The report may not be published yet: look again in a moment, or start at the fleet."},
+                   false);
+}
+
+int ServePath(mg_connection* connection, const Site& site, const std::string& path, const std::string& query) {
+  if (const auto address = WithSlash(path)) return SendRedirect(connection, 301, *address);
+  if (const auto file = PublishedFile(path)) return ServeFile(connection, site, *file);
+  const auto page = Ask(site, path, query);
+  if (!page) return SendError(connection, StatusOf(page.error().code), page.error(), IsApi(path));
+  if (!page->location.empty()) return SendRedirect(connection, 302, page->location);
+  return SendBody(connection, page->body, page->content_type);
+}
+
+int Serve(mg_connection* connection, const Site& site) {
+  const mg_request_info* request = mg_get_request_info(connection);
+  // Nobody reads a body here: closing is what keeps a client from sending one for ever.
+  if (request->content_length > 0 || mg_get_header(connection, "Transfer-Encoding")) mg_disable_keep_alive(connection);
+  const std::string raw = request->local_uri_raw ? request->local_uri_raw : "";
+  if (!MayRead(request->request_method))
+    return SendError(connection, 405,
+                     {ErrorCode::kInvalidInput, std::string(request->request_method) + " is not answered here",
+                      "Use GET or HEAD; data goes in with `rigcal push`."},
+                     IsApi(raw), {{"Allow", "GET, HEAD"}});
+  const auto path = NormalPath(raw);
+  if (!path) return SendError(connection, 400, path.error(), IsApi(raw));
+  return ServePath(connection, site, *path, request->query_string ? request->query_string : "");
+}
+
+}  // namespace
+
+namespace {
+
+// civetweb looks at its stop flag when a client comes, or every 2 s: so a client comes.
+void Stop(mg_context* context, const std::string& host, int port) {
+  std::array<char, 128> ignored{};
+  std::future<void> stopped = std::async(std::launch::async, [context] { mg_stop(context); });
+  while (stopped.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready)
+    if (mg_connection* knock = mg_connect_client(host.c_str(), port, 0, ignored.data(), ignored.size()))
+      mg_close_connection(knock);
+}
+
+}  // namespace
+
+struct Server::Impl {
+  std::string host;
+  Site site;
+  int port = 0;
+  mg_context* context = nullptr;
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (context) Stop(context, host, port);
+  }
+};
+
+namespace {
+
+int OnRequest(mg_connection* connection) {
+  return Serve(connection, *static_cast<const Site*>(mg_get_user_data(mg_get_context(connection))));
+}
+
+// What civetweb refuses by itself (a malformed request) looks like everything else.
+int OnError(mg_connection* connection, int status, const char* message) {
+  SendError(connection, status,
+            {ErrorCode::kInvalidInput, std::string("The request was refused: ") + message, "Start at the fleet: /"},
+            false);
+  return 0;
+}
+
+int OnLog(const mg_connection*, const char* message) {
+  Log(LogLevel::kDebug, std::string("http: ") + message);
+  return 1;
+}
+
+Status CheckOptions(const Options& options) {
+  const bool odd = options.host.empty() ||
+                   options.host.find_first_not_of(
+                       "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:[]") != std::string::npos;
+  if (odd || options.port < 0 || options.port > 65535)
+    return Fail(ErrorCode::kInvalidInput,
+                "the HTTP address " + options.host + ":" + std::to_string(options.port) + " is not one",
+                "Give HOST:PORT, for example 127.0.0.1:8080 (port 0: any free one).");
+  return {};
+}
+
+Result<mg_context*> StartContext(const Options& options, const Site& site) {
+  static const unsigned library = mg_init_library(0);
+  (void)library;
+  const std::string address = options.host + ":" + std::to_string(options.port);
+  const std::string threads = std::to_string(limits::kHttpConnectionsMax);
+  const std::string timeout = std::to_string(options.request_timeout_ms);
+  const std::array<const char*, 15> settings = {"listening_ports",
+                                                address.c_str(),
+                                                "num_threads",
+                                                threads.c_str(),
+                                                "request_timeout_ms",
+                                                timeout.c_str(),
+                                                "decode_url",
+                                                "no",
+                                                "enable_auth_domain_check",
+                                                "no",
+                                                "enable_directory_listing",
+                                                "no",
+                                                "tcp_nodelay",
+                                                "1",
+                                                nullptr};
+  mg_callbacks callbacks{};
+  callbacks.begin_request = OnRequest;
+  callbacks.http_error = OnError;
+  callbacks.log_message = OnLog;
+  std::array<char, 256> text{};
+  unsigned code = 0;
+  mg_error_data error{&code, text.data(), text.size()};
+  auto options_list = settings;
+  mg_init_data init{&callbacks, const_cast<Site*>(&site), options_list.data()};
+  if (mg_context* context = mg_start2(&init, &error)) return context;
+  return Fail(ErrorCode::kConflict, "the HTTP server cannot listen on " + address + ": " + text.data(),
+              "Stop the program that uses this port, or choose another one (port 0: any free one).");
+}
+
+}  // namespace
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Server::~Server() = default;
+Server::Server(Server&&) noexcept = default;
+Server& Server::operator=(Server&&) noexcept = default;
+int Server::port() const { return impl_->port; }
+
+Result<Server> Server::Start(const Options& options, Answer answer) {
+  RIGCAL_TRY(CheckOptions(options));
+  auto impl = std::make_unique<Impl>();
+  impl->host = options.host;
+  impl->site = {options.folder, std::move(answer)};
+  RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));
+  mg_server_port bound{};
+  if (mg_get_server_ports(impl->context, 1, &bound) < 1 || bound.port <= 0)
+    return Fail(ErrorCode::kInternal, "the HTTP server does not say its port", "Give a port other than 0.");
+  impl->port = bound.port;
+  return Server(std::move(impl));
+}
+
+}  // namespace rigcal::http

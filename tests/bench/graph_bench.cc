@@ -1,0 +1,174 @@
+// graph_bench --g2o FILE [--mode batch|marginals|incremental] [--order file|shuffled] [--seed S] [--repeat N]
+// One JSON object: how long the graph engine takes, what it finds, in g2o's own cost too, and a digest of the poses.
+#include <sys/resource.h>
+#include <time.h>  // NOLINT(modernize-deprecated-headers): clock_gettime is POSIX
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <random>
+
+#include "server/base/durable_file.h"
+#include "server/base/limits.h"
+#include "server/base/sha256.h"
+#include "server/formats/g2o.h"
+#include "server/graph/solve.h"
+
+namespace {
+
+using namespace rigcal;  // NOLINT(google-build-using-namespace): a program of one file
+
+struct Arguments {
+  std::string g2o, mode = "batch", order = "file";
+  unsigned seed = 1;
+  int repeat = 0;
+};
+
+double Now_us() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double, std::micro>(now).count();
+}
+
+// g2o's error is (t, vec(q)) of Z^-1 X_i^-1 X_j, q with w >= 0, under the information matrix as in the file.
+double CostOfG2o(const Graph& graph, const GraphSolution& solution) {
+  std::map<SensorId, Se3> T_ref;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.known) T_ref.emplace(pose.sensor, pose.T_ref_sensor);
+  double cost = 0.0;
+  for (const GraphEdge& edge : graph.edges) {
+    if (!T_ref.contains(edge.frame_a) || !T_ref.contains(edge.frame_b)) continue;
+    const Se3 error = (edge.T_a_b.Inverse() * T_ref[edge.frame_a].Inverse() * T_ref[edge.frame_b]).Normalized();
+    Vector6d e;
+    e << error.p_m, error.q.vec();
+    cost += e.dot(formats::InformationToG2o(edge.Omega) * e);
+  }
+  return cost;
+}
+
+std::string DigestOf(const GraphSolution& solution) {
+  std::string bytes;
+  for (const SensorPose& pose : solution.poses) {
+    const std::array<double, 7> numbers = {pose.T_ref_sensor.p_m.x(), pose.T_ref_sensor.p_m.y(),
+                                           pose.T_ref_sensor.p_m.z(), pose.T_ref_sensor.q.x(),
+                                           pose.T_ref_sensor.q.y(),   pose.T_ref_sensor.q.z(),
+                                           pose.T_ref_sensor.q.w()};
+    bytes.append(pose.sensor.str());
+    bytes.append(std::string_view(reinterpret_cast<const char*>(numbers.data()), sizeof numbers));
+  }
+  return Sha256Of(std::string_view(bytes)).str();
+}
+
+// Of this thread: what a run costs however busy the machine is.
+double Cpu_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+struct Run {
+  std::vector<double> times_us, cpu_times_us;
+  GraphSolution solution;
+
+  template <typename Body>
+  void Time(const Body& body) {
+    const double begin_us = Now_us(), cpu_begin_us = Cpu_us();
+    body();
+    times_us.push_back(Now_us() - begin_us);
+    cpu_times_us.push_back(Cpu_us() - cpu_begin_us);
+  }
+};
+
+Run RunBatch(const Graph& graph, const Arguments& arguments) {
+  graph::SolveOptions options;
+  options.marginals = arguments.mode == "marginals";
+  Run run;
+  const double start_us = Now_us();
+  const auto enough = [&] {
+    if (arguments.repeat > 0) return static_cast<int>(run.times_us.size()) >= arguments.repeat;
+    return run.times_us.size() >= 3 && (run.times_us.size() >= 1000 || Now_us() - start_us > 2e6);
+  };
+  while (!enough()) {
+    run.Time([&] { run.solution = graph::Solve(graph, options); });
+  }
+  return run;
+}
+
+// Every edge by itself, each update from the state before it; sensors appear with their first edge.
+Run RunIncremental(const std::vector<Edge>& edges) {
+  Run run;
+  std::vector<Edge> so_far;
+  graph::SolveOptions options;
+  options.marginals = false;
+  for (const Edge& edge : edges) {
+    so_far.push_back(edge);
+    const Graph graph = graph::GraphOf(so_far, edges.front().frame_a);
+    run.Time([&] { run.solution = graph::Update(graph, run.solution, options); });
+  }
+  return run;
+}
+
+double PeakRss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+nlohmann::json Summary(const Graph& graph, Run run) {
+  const double total_us = std::accumulate(run.times_us.begin(), run.times_us.end(), 0.0);
+  std::sort(run.times_us.begin(), run.times_us.end());
+  std::sort(run.cpu_times_us.begin(), run.cpu_times_us.end());
+  const auto last = run.times_us.size() - 1;
+  return {{"median_us", run.times_us[last / 2]},
+          {"p99_us", run.times_us[last * 99 / 100]},
+          {"max_us", run.times_us[last]},
+          {"cpu_median_us", run.cpu_times_us[last / 2]},
+          {"total_ms", total_us / 1e3},
+          {"runs", run.times_us.size()},
+          {"iterations", run.solution.iterations},
+          {"converged", run.solution.converged},
+          {"cost", run.solution.cost},
+          {"cost_g2o", CostOfG2o(graph, run.solution)},
+          {"dof", run.solution.dof},
+          {"peak_rss_mb", PeakRss_mb()},
+          {"vertices", graph.sensors.size()},
+          {"edges", graph.edges.size()},
+          {"digest", DigestOf(run.solution)}};
+}
+
+int Measure(const Arguments& arguments) {
+  const Result<std::string> text = ReadFile(arguments.g2o, limits::kG2oFileBytesMax);
+  if (!text) return std::cerr << Sentence(text.error()) << '\n', 4;
+  const double begin_us = Now_us();
+  Result<formats::G2oFile> file = formats::ReadG2o(*text, RobotId("bench"));
+  const double read_ms = (Now_us() - begin_us) / 1e3;
+  if (!file) return std::cerr << arguments.g2o << ": " << Sentence(file.error()) << '\n', 4;
+  if (arguments.order == "shuffled") {
+    std::mt19937 random(arguments.seed);
+    std::shuffle(file->edges.begin(), file->edges.end(), random);
+  }
+  const Graph graph = graph::GraphOf(file->edges, file->fixed);
+  nlohmann::json summary =
+      Summary(graph, arguments.mode == "incremental" ? RunIncremental(file->edges) : RunBatch(graph, arguments));
+  summary["read_ms"] = read_ms;
+  std::cout << summary.dump() << '\n';
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Times the graph engine on a .g2o file");
+  app.add_option("--g2o", arguments.g2o, "The file")->required();
+  app.add_option("--mode", arguments.mode)->check(CLI::IsMember({"batch", "marginals", "incremental"}));
+  app.add_option("--order", arguments.order)->check(CLI::IsMember({"file", "shuffled"}));
+  app.add_option("--seed", arguments.seed, "Of the shuffling");
+  app.add_option("--repeat", arguments.repeat, "Solves to time (default: two seconds' worth, 3 to 1000)");
+  CLI11_PARSE(app, argc, argv);
+  return Measure(arguments);
+}

@@ -1,0 +1,4 @@
+rigcal_test(storage_fault_test
+  SOURCES fault/fault_disk.cc fault/storage_fault_test.cc fault/storage_kill_test.cc
+  DEPS rigcal_storage
+  LABELS fault)

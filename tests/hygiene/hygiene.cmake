@@ -1,0 +1,7 @@
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+foreach(name include_table function_size words)
+  add_test(NAME hygiene.${name}
+    COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/${name}_test.py
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(hygiene.${name} PROPERTIES TIMEOUT 120 LABELS hygiene)
+endforeach()

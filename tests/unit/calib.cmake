@@ -1,0 +1,13 @@
+rigcal_test(calib_test
+  SOURCES unit/calib_derivative_test.cc unit/calib_estimate_test.cc unit/calib_diagnosis_test.cc unit/calib_start_test.cc
+          unit/calib_virtual_pair.cc
+  DEPS rigcal_calib)
+rigcal_test(calib_statistics_test
+  SOURCES unit/calib_statistics_test.cc unit/calib_virtual_pair.cc
+  DEPS rigcal_calib)
+rigcal_test(calib_real_test
+  SOURCES unit/calib_real_test.cc
+  DEPS rigcal_calib rigcal_detect)
+rigcal_program(stereo_measure
+  SOURCES bench/stereo_measure.cc
+  DEPS rigcal_calib rigcal_detect)

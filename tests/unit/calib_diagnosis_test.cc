@@ -1,0 +1,173 @@
+#include <gmock/gmock.h>
+
+#include "tests/unit/calib_virtual_pair.h"
+
+namespace rigcal::calib {
+namespace {
+
+using testing::HasSubstr;
+
+const Diagnosis* Find(const Edge& edge, const std::string& code) {
+  for (const Diagnosis& diagnosis : edge.diagnoses)
+    if (diagnosis.code == code) return &diagnosis;
+  return nullptr;
+}
+
+// The sentence names both sensors or one, and says what to do.
+void ExpectFailed(const Edge& edge, const std::string& code, const std::string& naming) {
+  EXPECT_EQ(edge.state, EdgeState::kFailed);
+  const Diagnosis* diagnosis = Find(edge, code);
+  ASSERT_NE(diagnosis, nullptr) << (edge.diagnoses.empty() ? "no diagnosis" : edge.diagnoses[0].what);
+  EXPECT_THAT(diagnosis->what, HasSubstr(naming));
+  EXPECT_FALSE(diagnosis->cure.empty());
+}
+
+void ExpectNote(const Edge& edge, const std::string& code, const std::string& naming) {
+  EXPECT_EQ(edge.state, EdgeState::kGood);
+  const Diagnosis* diagnosis = Find(edge, code);
+  ASSERT_NE(diagnosis, nullptr);
+  EXPECT_THAT(diagnosis->what, HasSubstr(naming));
+  EXPECT_FALSE(diagnosis->cure.empty());
+}
+
+StereoProblem Usual(int captures = 10) { return Photographed(VirtualPair(), TiltedBoards(captures), 0.2, 2); }
+
+// Boards that all face camera a squarely, at different places.
+std::vector<Se3> FlatBoards(int count, const Eigen::Vector3d& rotation_rad) {
+  std::vector<Se3> boards;
+  for (int k = 0; k < count; ++k)
+    boards.push_back(BoardAt(
+        VirtualPair(), {0.05 + 0.05 * std::sin(2.0 * k), 0.04 * std::cos(3.0 * k), 0.45 + 0.02 * k}, rotation_rad));
+  return boards;
+}
+
+TEST(Diagnosis, NoCapturesAtAll) {
+  StereoProblem problem = Usual();
+  problem.captures.clear();
+  ExpectFailed(EstimateEdge(problem), "too_few_captures", "0 captures");
+}
+
+TEST(Diagnosis, TooFewCaptures) {
+  ExpectFailed(EstimateEdge(Usual(2)), "too_few_captures",
+               "front_left and front_right see the board together in only 2");
+}
+
+TEST(Diagnosis, FewCapturesIsANote) { ExpectNote(EstimateEdge(Usual(6)), "few_captures", "only 6 captures"); }
+
+TEST(Diagnosis, BoardNotFoundListsTheCaptures) {
+  StereoProblem problem = Usual(5);
+  for (const std::size_t k : {0U, 2U, 3U}) problem.captures[k].b = NotFoundView();
+  const Edge edge = EstimateEdge(problem);
+  ExpectFailed(edge, "too_few_captures", "only 2 captures");
+  ExpectFailed(edge, "board_not_found", "front_right does not show the 9 x 6 board board in 3 captures: 000, 002, 003");
+}
+
+TEST(Diagnosis, BoardNotFoundIsANoteOnAGoodEdge) {
+  StereoProblem problem = Usual(12);
+  problem.captures[7].a = NotFoundView();
+  ExpectNote(EstimateEdge(problem), "board_not_found",
+             "front_left does not show the 9 x 6 board board in 1 capture: 007");
+}
+
+TEST(Diagnosis, NoCommonView) {
+  StereoProblem problem = Usual(8);
+  for (std::size_t k = 0; k < 8; ++k) (k % 2 == 0 ? problem.captures[k].a : problem.captures[k].b).reset();
+  ExpectFailed(EstimateEdge(problem), "no_common_view", "never in the same capture");
+}
+
+TEST(Diagnosis, NoTiltWhereAllBoardsFaceTheCamera) {
+  const auto problem = Photographed(VirtualPair(), FlatBoards(10, Eigen::Vector3d::Zero()), 0.2, 2);
+  ExpectFailed(EstimateEdge(problem), "no_tilt", "The boards that front_left sees");
+}
+
+TEST(Diagnosis, NoTiltWhereExactBoardsFaceTheCamera) {
+  VirtualPair pair;
+  pair.a.distortion = pair.b.distortion = {0, 0, 0, 0, 0};
+  const auto problem = Photographed(pair, FlatBoards(10, Eigen::Vector3d::Zero()), 0, 0);
+  ExpectFailed(EstimateEdge(problem), "no_tilt", "front_left");
+}
+
+TEST(Diagnosis, GivenIntrinsicsNeedNoTilt) {
+  const VirtualPair pair;
+  auto problem = Photographed(pair, FlatBoards(10, Eigen::Vector3d::Zero()), 0.2, 2);
+  problem.camera_a.intrinsics = pair.a;
+  problem.camera_b.intrinsics = pair.b;
+  EXPECT_EQ(EstimateEdge(problem).state, EdgeState::kGood);
+}
+
+TEST(Diagnosis, IntrinsicsTakenAsExactIsANote) {
+  const VirtualPair pair;
+  auto problem = Usual(10);
+  problem.camera_b.intrinsics = pair.b;
+  ExpectNote(EstimateEdge(problem), "intrinsics_taken_as_exact", "front_right");
+}
+
+TEST(Diagnosis, IdenticalCaptures) {
+  const VirtualPair pair;
+  const Se3 board = TiltedBoards(1)[0];
+  ExpectFailed(EstimateEdge(Photographed(pair, {board, board, board, board, board}, 0.1, 2)), "identical_captures",
+               "001, 002, 003, 004");
+}
+
+TEST(Diagnosis, ARepeatedCaptureIsANoteAndNoBlock) {
+  std::vector<Se3> boards = TiltedBoards(10);
+  boards.push_back(boards[4]);
+  const Edge edge = EstimateEdge(Photographed(VirtualPair(), boards, 0.1, 2));
+  ExpectNote(edge, "identical_captures", "010");
+  EXPECT_EQ(edge.uncertainty.blocks.size(), 10U);
+  EXPECT_FALSE(edge.captures[10].used);
+  EXPECT_THAT(edge.captures[10].note, HasSubstr("004"));
+}
+
+TEST(Diagnosis, ImageSizeChanged) {
+  StereoProblem problem = Usual();
+  problem.captures[3].b->image_width_px = 1280;
+  ExpectFailed(EstimateEdge(problem), "image_size_changed", "front_right differ in size: those of 003");
+}
+
+TEST(Diagnosis, HighResidual) {
+  ExpectFailed(EstimateEdge(Photographed(VirtualPair(), TiltedBoards(10), 2.0, 2)), "high_residual", "px rms");
+}
+
+TEST(Diagnosis, SwappedPicturesAreNamedAndLeftOut) {
+  StereoProblem problem = Usual(12);
+  std::swap(problem.captures[3].b, problem.captures[8].b);
+  const Edge edge = EstimateEdge(problem);
+  ExpectNote(edge, "inconsistent_captures", "003, 008");
+  EXPECT_FALSE(edge.captures[3].used);
+  EXPECT_LT((edge.T_a_b.p_m - VirtualPair().T_a_b.p_m).norm(), 0.002);
+}
+
+// A board so small that its perspective drowns in the noise.
+TEST(Diagnosis, AmbiguousPose) {
+  VirtualPair pair;
+  pair.board.square_m = 0.004;
+  std::vector<Se3> boards;
+  for (int k = 0; k < 6; ++k)
+    boards.push_back(BoardAt(pair, {0.05, 0.02 * k, 1.4}, {0.4 * std::cos(1.1 * k), 0.4 * std::sin(1.1 * k), 0}));
+  StereoProblem problem = Photographed(pair, boards, 0.4, 2);
+  problem.camera_a.intrinsics = pair.a;
+  problem.camera_b.intrinsics = pair.b;
+  ExpectFailed(EstimateEdge(problem), "ambiguous_pose", "two poses fit it equally");
+}
+
+TEST(Diagnosis, CornersThatAreNoNumbersAreNotUsed) {
+  StereoProblem problem = Usual(10);
+  problem.captures[2].a->corners_px[7].x() = std::numeric_limits<double>::quiet_NaN();
+  const Edge edge = EstimateEdge(problem);
+  EXPECT_EQ(edge.state, EdgeState::kGood);
+  EXPECT_TRUE(edge.uncertainty.Omega.allFinite());
+}
+
+TEST(Diagnosis, AllCornersInOnePointFailInWords) {
+  StereoProblem problem = Usual(6);
+  for (std::size_t k = 0; k < 6; ++k)
+    for (auto* view : {&*problem.captures[k].a, &*problem.captures[k].b})
+      for (Eigen::Vector2d& uv_px : view->corners_px) uv_px = {100.0 + 20.0 * static_cast<double>(k), 50};
+  const Edge edge = EstimateEdge(problem);
+  EXPECT_EQ(edge.state, EdgeState::kFailed);
+  EXPECT_FALSE(edge.diagnoses.empty());
+}
+
+}  // namespace
+}  // namespace rigcal::calib

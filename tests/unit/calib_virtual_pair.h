@@ -1,0 +1,29 @@
+// A pair of cameras and a board with known truth. Pictures of it come from OpenCV's projection, which shares no code
+// with the one under test.
+#pragma once
+
+#include <vector>
+
+#include "server/calib/stereo.h"
+
+namespace rigcal::calib {
+
+struct VirtualPair {
+  PinholeRadtan a{610, 605, 322, 238, {-0.28, 0.09, 0.001, -0.0007, 0.01}};
+  PinholeRadtan b{590, 596, 315, 244, {-0.25, 0.07, -0.0005, 0.0009, -0.01}};
+  Se3 T_a_b;
+  Checkerboard board{TargetId("board"), 9, 6, 0.03, 0.0, ""};
+  int width_px = 640, height_px = 480;
+  VirtualPair();
+};
+
+// Boards about 0.5 m in front of camera a, centred, tilted to all sides by up to 30 deg, all different.
+std::vector<Se3> TiltedBoards(int count);
+// A board whose centre is at `centre_m`, turned by the rotation vector.
+Se3 BoardAt(const VirtualPair& pair, const Eigen::Vector3d& centre_m, const Eigen::Vector3d& rotation_rad);
+
+// Captures "000", "001", ... with Gaussian noise on every corner; intrinsics absent.
+StereoProblem Photographed(const VirtualPair& pair, const std::vector<Se3>& T_a_board, double sigma_px, unsigned seed);
+BoardView NotFoundView();
+
+}  // namespace rigcal::calib

@@ -1,0 +1,114 @@
+// The program as people run it: exit codes, help, and what it says where nobody answers.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct Ran {
+  int code = -1;
+  std::string text;  // out and err
+  double took_s = 0.0;
+};
+
+// `arguments` come from this file only.
+Ran Run(const std::string& arguments) {
+  static const std::string tag = "test-" + std::to_string(std::random_device()()) + "-" + std::to_string(getpid());
+  const auto start = std::chrono::steady_clock::now();
+  const std::string command = "RIGCAL_DDS_TAG=" + tag + " '" RIGCAL_PROGRAM "' " + arguments + " 2>&1";
+  Ran ran;
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (pipe != nullptr && std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) ran.text += buffer.data();
+  const int status = pipe == nullptr ? -1 : pclose(pipe);
+  ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  ran.took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return ran;
+}
+
+const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges", "show",
+                                         "lookup", "status",     "watch",  "report",   "due",   "doctor"};
+
+TEST(Program, HelpOfEveryVerbHasExamples) {
+  const Ran top = Run("--help");
+  EXPECT_EQ(top.code, 0);
+  for (const std::string& verb : kVerbs) {
+    EXPECT_NE(top.text.find("\n  " + verb + " "), std::string::npos) << verb;
+    const Ran ran = Run(verb + " --help");
+    EXPECT_EQ(ran.code, 0) << verb;
+    const std::size_t examples = ran.text.find("Examples:\n");
+    ASSERT_NE(examples, std::string::npos) << verb;
+    EXPECT_NE(ran.text.find("\n  rigcal " + verb, examples), std::string::npos) << verb;
+  }
+}
+
+TEST(Program, Version) {
+  const Ran ran = Run("--version");
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_EQ(ran.text.rfind("rigcal ", 0), 0U);
+  EXPECT_NE(ran.text.find("protocol"), std::string::npos);
+}
+
+TEST(Program, WrongUsageIsTwoWithASentence) {
+  for (const char* arguments :
+       {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
+        "show r --revision zero", "show r --revision 0", "status --timeout never", "status --timeout -1",
+        "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate"}) {
+    const Ran ran = Run(arguments);
+    EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
+    EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;
+  }
+}
+
+TEST(Program, ADomainThatIsNoneIsRefused) {
+  for (const char* domain : {"x", "231", "-1", "99999999999"}) {
+    const Ran ran = Run(std::string("status --timeout 0.2 --domain=") + domain);
+    EXPECT_EQ(ran.code, 4) << ran.text;
+    EXPECT_NE(ran.text.find("0..230"), std::string::npos) << ran.text;
+  }
+}
+
+TEST(Program, NobodyThereIsThreeWithinTheTimeout) {
+  for (const char* verb : {"robots", "sessions", "edges r", "show r", "lookup r a b", "status", "report r", "due"}) {
+    const Ran ran = Run(std::string(verb) + " --timeout 0.3");
+    EXPECT_EQ(ran.code, 3) << verb << "\n" << ran.text;
+    EXPECT_NE(ran.text.find("no rigcald answers on DDS domain 0, tag 'test-"), std::string::npos) << ran.text;
+    EXPECT_NE(ran.text.find("rigcal doctor"), std::string::npos);
+    EXPECT_GE(ran.took_s, 0.3);
+    EXPECT_LT(ran.took_s, 5.0);
+  }
+}
+
+TEST(Program, DoctorSaysThatNobodyIsThere) {
+  const Ran ran = Run("doctor");
+  EXPECT_EQ(ran.code, 3) << ran.text;
+  EXPECT_NE(ran.text.find("fail"), std::string::npos);
+  EXPECT_NE(ran.text.find("-> "), std::string::npos);
+  const Ran json = Run("doctor --json");
+  EXPECT_EQ(json.code, 3);
+  EXPECT_EQ(json.text.rfind("{\"checks\":[", 0), 0U) << json.text;
+}
+
+TEST(Program, InputThatIsNotThereIsRefusedBeforeAnythingIsSent) {
+  for (const char* arguments : {"push /nonexistent", "push-edges /nonexistent.json --robot r", "push-edges /nonexistent.g2o --robot r",
+                                "push-edges /dev/null --robot '../x'", "watch ../x"}) {
+    const Ran ran = Run(arguments);
+    EXPECT_EQ(ran.code, 4) << arguments << "\n" << ran.text;
+    EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << ran.text;
+  }
+}
+
+TEST(Program, WatchEndsAfterItsTimeout) {
+  const Ran ran = Run("watch --timeout 0.3");
+  EXPECT_EQ(ran.code, 0) << ran.text;
+  EXPECT_LT(ran.took_s, 5.0);
+}
+
+}  // namespace

@@ -1,0 +1,220 @@
+// Whole verbs against a server in memory: what is printed, what is asked, how it ends.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include "client/command_line.h"
+#include "client/document.h"
+#include "client_fake_server.h"
+#include "server/base/stamp.h"
+#include "server/base/version.h"
+
+namespace rigcal::client {
+namespace {
+
+struct Ran {
+  int code = -1;
+  std::string out, err;
+};
+
+Ran Run(std::vector<std::string> words) {
+  words.insert(words.begin(), "rigcal");
+  words.insert(words.end(), {"--tag", TestPlace().tag, "--timeout", "20"});
+  std::vector<const char*> argv;
+  for (const std::string& word : words) argv.push_back(word.c_str());
+  std::ostringstream out, err;
+  const int code = RunCommandLine(static_cast<int>(argv.size()), argv.data(), out, err, false);
+  return {code, out.str(), err.str()};
+}
+
+FakeServer::AnswerTo Always(const std::string& text) {
+  return [text](const std::string&, const std::string&) -> Result<std::string> { return text; };
+}
+
+std::string Lookup(const std::string& level) {
+  return R"({"T_a_b":{"p_m":[0.08318,-0.00092,0.00012],"q_xyzw":[0,0,0.7071067811865476,0.7071067811865476]},"covariance":[)"
+         R"([1e-06,0,0,0,0,0],[0,4e-06,0,0,0,0],[0,0,9e-06,0,0,0],[0,0,0,1e-08,0,0],[0,0,0,0,4e-08,0],[0,0,0,0,0,9e-08]],)"
+         R"("frame_a":"left","frame_b":"right","revision":3,"robot":"r","sigma_m":[0.001,0.002,0.003],"sigma_rad":[0.0001,0.0002,0.0003],)"
+         R"("verdict":{"level":")" + level + R"(","what_to_do":"Nothing","why":"all agree"},"new_field":[1]})";
+}
+
+TEST(Verbs, LookupPrintsPoseSigmaAndCovariance) {
+  std::string asked_verb, asked_json;
+  FakeServer server("r", [&](const std::string& verb, const std::string& json) -> Result<std::string> {
+    asked_verb = verb;
+    asked_json = json;
+    return Lookup("pass");
+  });
+  const Ran ran = Run({"lookup", "r", "left", "right"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(asked_verb, "lookup");
+  EXPECT_EQ(asked_json, R"({"robot":"r","a":"left","b":"right"})");
+  EXPECT_NE(ran.out.find("T_left_right"), std::string::npos);
+  EXPECT_NE(ran.out.find("p mm       83.180 -0.920 0.120"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("rpy deg    0.0000 0.0000 90.0000"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("sigma mm   1.0000 2.0000 3.0000"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("sigma deg  0.00573 0.01146 0.01719"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("9.0000e-08\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("verdict  pass: all agree. Nothing."), std::string::npos) << ran.out;
+}
+
+TEST(Verbs, JsonIsTheServersDocumentVerbatim) {
+  FakeServer server("r", Always(Lookup("pass")));
+  const Ran ran = Run({"lookup", "r", "left", "right", "--json"});
+  EXPECT_EQ(ran.out, Lookup("pass") + "\n");
+  EXPECT_EQ(ran.err, "");
+}
+
+TEST(Verbs, AVerdictOfFailIsExitCodeOne) {
+  FakeServer server("r", Always(Lookup("fail")));
+  EXPECT_EQ(Run({"lookup", "r", "left", "right"}).code, 1);
+  EXPECT_EQ(Run({"lookup", "r", "left", "right", "--json"}).code, 1);
+}
+
+TEST(Verbs, AnErrorIsASentenceAndExitCodeFour) {
+  FakeServer server("r", [](const std::string&, const std::string&) -> Result<std::string> {
+    return Fail(ErrorCode::kNotFound, "robot 'x' is not known", "`rigcal robots` lists those that are");
+  });
+  for (const char* verb : {"show", "edges", "status", "report"}) {
+    const Ran ran = Run({verb, "x"});
+    EXPECT_EQ(ran.code, 4) << verb;
+    EXPECT_EQ(ran.out, "") << verb;
+    EXPECT_EQ(ran.err, "rigcal: robot 'x' is not known. `rigcal robots` lists those that are.\n") << verb;
+  }
+}
+
+TEST(Verbs, DueListsTheOverdueAndExitsOneIfAnyIs) {
+  std::string asked;
+  bool overdue = true;
+  FakeServer server("r", [&](const std::string&, const std::string& json) -> Result<std::string> {
+    asked = json;
+    return std::string(R"({"max_age_ns":2592000000000000,"now":"2026-01-31T12:00:00Z","robots":[)") +
+           R"({"robot":"fresh","calibrated_at":"2026-01-30T12:00:00Z","age_ns":86400000000000,"overdue":false,"verdict":{"level":"pass"}},)" +
+           R"({"robot":"old-one","calibrated_at":null,"age_ns":null,"overdue":)" + (overdue ? "true" : "false") + R"(,"verdict":{"level":"unknown"}}]})";
+  });
+  Ran ran = Run({"due", "--max-age", "30d"});
+  EXPECT_EQ(asked, R"({"max_age_ns":2592000000000000})");
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.out.find("old-one"), std::string::npos);
+  EXPECT_EQ(ran.out.find("fresh"), std::string::npos);
+  overdue = false;
+  EXPECT_EQ(Run({"due"}).code, 0);
+  EXPECT_EQ(Run({"due", "--max-age", "soon"}).code, 2);
+}
+
+TEST(Verbs, EveryListTakesAnEmptyDocumentAndForeignTypes) {
+  for (const std::string& text : {std::string("{}"), std::string(R"({"robots":[{"robot":7,"verdict":[]}],"sessions":[[]],"edges":[null,{"T_a_b":3}],"document":"x"})")}) {
+    FakeServer server("r", Always(text));
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"robots"}, {"sessions"}, {"sessions", "r"}, {"edges", "r"}, {"show", "r"}, {"lookup", "r", "a", "b"}, {"status"}, {"due"}})
+      EXPECT_EQ(Run(words).code, 0) << words.front() << " " << text;
+  }
+}
+
+TEST(Verbs, WatchPrintsEventsAndEndsAfterItsCount) {
+  FakeServer server("r");
+  std::atomic<bool> ended{false};
+  Ran ran;
+  std::thread watcher([&] {
+    ran = Run({"watch", "r", "--count", "2"});
+    ended = true;
+  });
+  // An event before the watcher knows our writer is not heard, so they are sent until it ends.
+  while (!ended && server.WaitForWatcher())
+    server.SendEvent("revision", R"({"robot":"r","revision":4,"verdict":{"level":"warn","why":"one edge is far off"}})");
+  watcher.join();
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_NE(ran.out.find("revision  revision 4, warn: one edge is far off."), std::string::npos) << ran.out;
+  EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 2);
+}
+
+TEST(Verbs, DoctorFindsTheServer) {
+  FakeServer server("r", [](const std::string& verb, const std::string&) -> Result<std::string> {
+    EXPECT_EQ(verb, "health");
+    return R"({"state":"ok","version":")" + std::string(Version()) + R"(","protocol":)" + std::to_string(kWireProtocol) +
+           R"(,"schema":1,"uptime_ns":1,"now":")" + ToIso(SystemClock().Now()) + R"(","disk_free_bytes":90000000000,"problem":null})";
+  });
+  const Ran ran = Run({"doctor", "--json"});
+  const auto document = Document::Parse(ran.out, "doctor");
+  ASSERT_TRUE(document) << ran.out << ran.err;
+  std::map<std::string, std::string> levels;
+  for (const Document& check : (*document)["checks"].Items()) levels[check["name"].Text()] = check["level"].Text();
+  for (const char* name : {"dds", "discovery", "round trip", "versions", "clock", "disk of server"})
+    EXPECT_EQ(levels[name], "ok") << name << " " << ran.out;
+}
+
+// What a server with a finished calibration of this session answers.
+FakeServer::AnswerTo CalibratedServer(std::atomic<int>& session_questions) {
+  return [&session_questions](const std::string& verb, const std::string& json) -> Result<std::string> {
+    const std::string edge =
+        R"({"id":"e1","frame_a":"left","frame_b":"right","state":"good","method":"stereo","session":null,"T_a_b":{"p_m":[0.08318,0,0],"q_xyzw":[0,0,0,1]},)"
+        R"("sigma_m":[0.0001,0.0002,0.0003],"sigma_rad":[0.001,0.002,0.003],"diagnoses":[],"residual":null})";
+    if (verb == "session") {
+      const bool is_done = ++session_questions >= 2;
+      return std::string(R"({"session":{"jobs_waiting":)") + (is_done ? "0" : "1") + R"(,"jobs_total":1},"edges":[)" + (is_done ? edge : "") + "]}";
+    }
+    if (verb == "status") return R"({"http_address":"http://127.0.0.1:8420","robots":[{"robot":"r1","revision":1}]})";
+    EXPECT_EQ(verb, "show");
+    EXPECT_EQ(json, R"({"robot":"r1","revision":1})");
+    return R"({"robot":"r1","revision":1,"age_ns":1,"digest":"d","document":{"verdict":{"level":"pass","why":"all agree"},"edges":[)" + edge +
+           R"(],"e_global":{"before":{"total":0.5,"translation_m2":0.4,"rotation_rad2":0.1},"after":{"total":0.05,"translation_m2":0.04,"rotation_rad2":0.01}}}})";
+  };
+}
+
+TEST(Verbs, PushPrintsTheEdgesTheVerdictAndTheReport) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  std::atomic<int> session_questions{0};
+  FakeServer server("r1", CalibratedServer(session_questions));
+  const Ran ran = Run({"push", folder.path().string()});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("left - right  stereo  good  sigma 0.100 0.200 0.300 mm"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("r1, revision 1"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("E_global  before 0.5"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("report  http://127.0.0.1:8420/robots/r1/revisions/1/"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.err.find("is stored: 4 files"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find('\x1b'), std::string::npos);
+}
+
+TEST(Verbs, PushJsonIsOneDocument) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  std::atomic<int> session_questions{0};
+  FakeServer server("r1", CalibratedServer(session_questions));
+  const Ran ran = Run({"push", folder.path().string(), "--json"});
+  const auto document = Document::Parse(ran.out, "push");
+  ASSERT_TRUE(document) << ran.out;
+  EXPECT_EQ((*document)["items"].Integer(), 4);
+  EXPECT_EQ((*document)["total"].Integer(), 4000);
+  EXPECT_EQ((*document)["show"]["revision"].Integer(), 1);
+  EXPECT_EQ((*document)["report"].Text(), "http://127.0.0.1:8420/robots/r1/revisions/1/");
+}
+
+TEST(Verbs, PushWithoutWaitingAsksNothing) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  FakeServer server("r1");
+  EXPECT_EQ(Run({"push", folder.path().string(), "--no-wait"}).code, 0);
+  EXPECT_EQ(server.requests_seen, 0);
+}
+
+TEST(Verbs, PushEdgesTakesJson) {
+  SessionFolder folder;
+  folder.Write("edges.json",
+               R"({"format":1,"edges":[{"frame_a":"a","frame_b":"b","T_a_b":{"p_m":[0,1,0],"q_xyzw":[0,0,0,1]},"covariance":[)"
+               R"([1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
+  FakeServer server("r1");
+  const Ran ran = Run({"push-edges", (folder.path() / "edges.json").string(), "--robot", "r1", "--no-wait", "--json"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  const auto document = Document::Parse(ran.out, "push-edges");
+  ASSERT_TRUE(document);
+  EXPECT_EQ((*document)["items"].Integer(), 1);
+  EXPECT_EQ(server.Subject((*document)["id"].Text()).payloads.size(), 1U);
+}
+
+}  // namespace
+}  // namespace rigcal::client

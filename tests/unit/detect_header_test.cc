@@ -1,0 +1,75 @@
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "server/detect/image_header.h"
+
+namespace rigcal::detect {
+namespace {
+
+using testing::HasSubstr;
+
+Result<ImageSize> SizeOf(const std::string& bytes) { return ReadImageSize(std::as_bytes(std::span(bytes))); }
+
+std::string BigEndian(std::uint32_t value, int bytes) {
+  std::string text;
+  for (int i = bytes - 1; i >= 0; --i) text += static_cast<char>((value >> (8 * i)) & 0xFF);
+  return text;
+}
+
+std::string Png(std::uint32_t width, std::uint32_t height) {
+  return std::string("\x89PNG\r\n\x1a\n", 8) + BigEndian(13, 4) + "IHDR" + BigEndian(width, 4) + BigEndian(height, 4);
+}
+
+std::string Segment(char marker, const std::string& content) {
+  return std::string("\xFF") + marker + BigEndian(static_cast<std::uint32_t>(content.size() + 2), 2) + content;
+}
+
+std::string Frame(char marker, std::uint32_t width, std::uint32_t height) {
+  return Segment(marker, "\x08" + BigEndian(height, 2) + BigEndian(width, 2) + "\x01");
+}
+
+const std::string kJpeg = "\xFF\xD8";
+
+TEST(ImageHeader, ReadsPng) { EXPECT_EQ(*SizeOf(Png(640, 480)), (ImageSize{640, 480})); }
+
+TEST(ImageHeader, ReadsJpegBehindOtherSegments) {
+  // The huffman table's marker lies among the frames' markers, and its content looks like a frame.
+  const std::string table = Segment('\xC4', Frame('\xC0', 1, 2));
+  EXPECT_EQ(*SizeOf(kJpeg + Segment('\xE1', "Exif") + table + "\xFF" + Frame('\xC2', 640, 480)), (ImageSize{640, 480}));
+}
+
+TEST(ImageHeader, RefusesMoreThanTheLimit) {
+  const auto size = SizeOf(Png(0xFFFFFFFF, 0xFFFFFFFF));
+  ASSERT_FALSE(size);
+  EXPECT_THAT(size.error().what, HasSubstr("limit"));
+  EXPECT_TRUE(SizeOf(Png(20'000, 10'000)));
+  EXPECT_FALSE(SizeOf(Png(20'000, 10'001)));
+}
+
+TEST(ImageHeader, RefusesEmptyPictures) {
+  EXPECT_FALSE(SizeOf(Png(0, 480)));
+  EXPECT_FALSE(SizeOf(kJpeg + Frame('\xC0', 640, 0)));
+}
+
+TEST(ImageHeader, RefusesEveryTruncation) {
+  for (const std::string& whole : {Png(640, 480), kJpeg + Segment('\xE0', "JFIF") + Frame('\xC0', 640, 480)}) {
+    const std::size_t needed = whole.size() - (whole[0] == '\x89' ? 0 : 1);
+    for (std::size_t size = 0; size < needed; ++size) EXPECT_FALSE(SizeOf(whole.substr(0, size))) << size;
+  }
+}
+
+TEST(ImageHeader, SegmentsOfNoLengthEnd) {
+  std::string bytes = kJpeg;
+  for (int i = 0; i < 1000; ++i) bytes += std::string("\xFF\xE0\x00\x00", 4);
+  EXPECT_FALSE(SizeOf(bytes));
+}
+
+TEST(ImageHeader, RefusesOtherFormats) {
+  const auto size = SizeOf("BM this is a bitmap");
+  ASSERT_FALSE(size);
+  EXPECT_THAT(size.error().what, HasSubstr("neither PNG nor JPEG"));
+}
+
+}  // namespace
+}  // namespace rigcal::detect

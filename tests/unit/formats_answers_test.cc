@@ -1,0 +1,187 @@
+#include <nlohmann/json.hpp>
+
+#include "server/base/sha256.h"
+#include "server/formats/answers.h"
+#include "tests/unit/formats_samples.h"
+
+namespace rigcal::formats {
+namespace {
+
+using nlohmann::json;
+
+constexpr Stamp kNow{1769947200000000000};        // 2026-02-01T12:00:00Z
+constexpr Stamp kDayBefore{1769860800000000000};  // 2026-01-31T12:00:00Z
+const RobotId kRobot("mapper-01");
+const Verdict kPass{VerdictLevel::kPass, "All is well.", "Nothing."};
+
+RobotAnswer SampleRobot() { return {kRobot, 3, kPass, kDayBefore, 2, 7, 1, false}; }
+
+SessionAnswer SampleSession() {
+  return {SessionId(std::string(64, 'c')), kRobot, false, 18, 17, 1234567, kDayBefore, kNow, std::nullopt, "Ada", 1, 2};
+}
+
+TEST(Answers, Robots) {
+  EXPECT_EQ(WriteRobots({SampleRobot()}, kNow),
+            "{\"robots\":[{\"age_ns\":86400000000000,\"calibrated_at\":\"2026-01-31T12:00:00Z\",\"edges\":7,"
+            "\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\",\"sessions\":2,"
+            "\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\",\"why\":\"All is well.\"}}]}");
+  EXPECT_EQ(WriteRobots({}, kNow), "{\"robots\":[]}");
+}
+
+TEST(Answers, ARobotWithoutRevisionHasNoAge) {
+  const json row = json::parse(WriteRobots({RobotAnswer{kRobot, 0, {}, {}, 0, 0, 0, true}}, kNow))["robots"][0];
+  for (const char* key : {"revision", "calibrated_at", "age_ns"}) EXPECT_TRUE(row.at(key).is_null()) << key;
+  EXPECT_EQ(row["verdict"]["level"], "unknown");
+}
+
+TEST(Answers, Sessions) {
+  EXPECT_EQ(WriteSessions({SampleSession()}),
+            "{\"sessions\":[{\"bytes\":1234567,\"captured_at\":\"2026-01-31T12:00:00Z\",\"closed_at\":null,"
+            "\"jobs_total\":2,\"jobs_waiting\":1,\"opened_at\":\"2026-02-01T12:00:00Z\",\"operator\":\"Ada\","
+            "\"payloads\":18,\"payloads_held\":17,\"robot\":\"mapper-01\",\"session\":\"" +
+                std::string(64, 'c') + "\",\"state\":\"receiving\"}]}");
+}
+
+TEST(Answers, SessionHoldsManifestAndEdges) {
+  const Manifest manifest = samples::SampleManifest();
+  const json document = json::parse(WriteSession(SampleSession(), manifest, {samples::SampleEdge()}));
+  EXPECT_EQ(document["session"]["state"], "receiving");
+  EXPECT_EQ(document["manifest"], json::parse(WriteManifest(manifest)));
+  EXPECT_EQ(document["edges"][0]["frame_b"], "right");
+}
+
+TEST(Answers, EdgesCarryTheirResidual) {
+  const std::vector<Edge> edges = {samples::SampleFailedEdge(), samples::SampleEdge(), samples::SamplePlanarEdge()};
+  Vector6d e = Vector6d::Zero();
+  e(tangent::kRy) = 0.25;
+  const json document = json::parse(WriteEdges(kRobot, 3, edges, {{edges[1].id, true, e, 0.5}}));
+  EXPECT_EQ(document["revision"], 3);
+  EXPECT_TRUE(document["edges"][0]["residual"].is_null());
+  EXPECT_TRUE(document["edges"][2]["residual"].is_null());
+  EXPECT_EQ(document["edges"][1]["residual"],
+            json::parse(R"({"e":[0,0,0,0,0.25,0],"in_solution":true,"weighted":0.5})"));
+  EXPECT_EQ(document["edges"][1]["sigma_m"][2], 3e-4);
+  EXPECT_FALSE(document["edges"][1].contains("information"));
+  EXPECT_TRUE(json::parse(WriteEdges(kRobot, 0, {}, {}))["revision"].is_null());
+}
+
+Revision SampleRevisionRow() {
+  Revision revision;
+  revision.robot = kRobot;
+  revision.number = 3;
+  revision.created_at = kDayBefore;
+  revision.verdict = kPass;
+  revision.document = WriteRevisionDocument(samples::SampleRevision());
+  revision.digest = Sha256Of(revision.document);
+  return revision;
+}
+
+TEST(Answers, ShowHoldsTheDocumentByteForByte) {
+  const Revision revision = SampleRevisionRow();
+  const std::string text = WriteShow(revision, kNow);
+  EXPECT_NE(text.find(revision.document), std::string::npos);
+  const json document = json::parse(text);
+  EXPECT_EQ(document["age_ns"], 86400000000000);
+  EXPECT_EQ(document["revision"], 3);
+  EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));
+  EXPECT_EQ(document["document"]["reference"], "left");
+}
+
+TEST(Answers, Revisions) {
+  const std::string text = WriteRevisions(kRobot, {SampleRevisionRow()}, kNow);
+  const json row = json::parse(text)["revisions"][0];
+  EXPECT_EQ(row["created_at"], "2026-01-31T12:00:00Z");
+  EXPECT_EQ(row["verdict"]["level"], "pass");
+  EXPECT_FALSE(row.contains("document"));
+}
+
+TEST(Answers, LookupHasTheVarianceOfOneAxisThere) {
+  LookupAnswer answer;
+  answer.robot = kRobot;
+  answer.revision = 3;
+  answer.frame_a = SensorId("left");
+  answer.frame_b = SensorId("right");
+  answer.T_a_b.p_m = {0.1, 0.2, 0.3};
+  answer.covariance(tangent::kRx, tangent::kRx) = 4e-4;
+  answer.verdict = kPass;
+  const json document = json::parse(WriteLookup(answer));
+  EXPECT_EQ(document["covariance"][3][3], 4e-4);
+  EXPECT_EQ(document["covariance"][4][4], 0.0);
+  EXPECT_EQ(document["sigma_rad"], json::parse("[0.02, 0.0, 0.0]"));
+  EXPECT_EQ(document["sigma_m"], json::parse("[0.0, 0.0, 0.0]"));
+  EXPECT_EQ(document["T_a_b"], json::parse(R"({"p_m":[0.1,0.2,0.3],"q_xyzw":[0.0,0.0,0.0,1.0]})"));
+}
+
+TEST(Answers, DueCountsFromTheLimit) {
+  const std::int64_t day_ns = kNow.ns - kDayBefore.ns;
+  const auto overdue = [&](std::optional<Stamp> at, std::int64_t max_age_ns) {
+    return json::parse(WriteDue({{kRobot, at, kPass}}, max_age_ns, kNow))["robots"][0]["overdue"].get<bool>();
+  };
+  EXPECT_FALSE(overdue(kDayBefore, day_ns));
+  EXPECT_TRUE(overdue(kDayBefore, day_ns - 1));
+  EXPECT_TRUE(overdue(std::nullopt, day_ns));
+}
+
+TEST(Answers, Status) {
+  StatusAnswer answer;
+  answer.version = "0.1.0";
+  answer.uptime_ns = 5;
+  answer.jobs_waiting = 1;
+  answer.robots = {SampleRobot()};
+  const json status = json::parse(WriteStatus(answer, kNow));
+  EXPECT_EQ(status["now"], "2026-02-01T12:00:00Z");
+  EXPECT_EQ(status["version"], "0.1.0");
+  EXPECT_EQ(status["uptime_ns"], 5);
+  EXPECT_EQ(status["jobs_waiting"], 1);
+  EXPECT_EQ(status["robots"][0]["sessions"], 2);
+}
+
+TEST(Answers, Health) {
+  HealthAnswer answer;
+  answer.version = "0.1.0";
+  answer.disk_free_bytes = 1000;
+  answer.schema = 2;
+  answer.protocol = 1;
+  const json good = json::parse(WriteHealth(answer, kNow));
+  EXPECT_EQ(good["state"], "ok");
+  EXPECT_EQ(good["disk_free_bytes"], 1000);
+  EXPECT_EQ(good["schema"], 2);
+  EXPECT_EQ(good["protocol"], 1);
+  EXPECT_TRUE(good["problem"].is_null());
+  answer.problem = Error{ErrorCode::kStorage, "disk full", "Free some space."};
+  const json bad = json::parse(WriteHealth(answer, kNow));
+  EXPECT_EQ(bad["state"], "failing");
+  EXPECT_EQ(bad["problem"]["code"], "storage");
+}
+
+TEST(Answers, ErrorsComeBack) {
+  const Error error{ErrorCode::kNotFound, "robot \"x\" is not known", "See `rigcal robots`."};
+  const std::string text = WriteError(error);
+  EXPECT_EQ(text,
+            "{\"error\":{\"code\":\"not_found\",\"cure\":\"See `rigcal robots`.\",\"what\":\"robot \\\"x\\\" is not "
+            "known\"}}");
+  const auto read = ReadError(text);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->code, ErrorCode::kNotFound);
+  EXPECT_EQ(read->what, error.what);
+  EXPECT_FALSE(ReadError("{\"robots\":[]}"));
+  EXPECT_FALSE(ReadError("{\"error\":3}"));
+  EXPECT_FALSE(ReadError("{\"error\":"));
+}
+
+TEST(Events, HaveTheDocumentedMembers) {
+  const json edge = json::parse(WriteEdgeEvent(samples::SampleEdge(), 1, 3));
+  EXPECT_EQ(edge["edge"]["state"], "good");
+  EXPECT_EQ(edge["jobs_total"], 3);
+  const json graph = json::parse(WriteGraphEvent(kRobot, 3, samples::SampleRevision().solution));
+  EXPECT_EQ(graph["sensors"], 3);
+  EXPECT_EQ(graph["sensors_known"], 2);
+  EXPECT_EQ(graph["e_global"]["after"]["total"], 0.03);
+  EXPECT_EQ(json::parse(WriteRevisionEvent(SampleRevisionRow()))["verdict"]["level"], "pass");
+  EXPECT_EQ(json::parse(WriteSessionEvent(SampleSession()))["payloads_held"], 17);
+  EXPECT_EQ(WritePublishedEvent(kRobot, 3, "/robots/mapper-01/revisions/3/"),
+            "{\"path\":\"/robots/mapper-01/revisions/3/\",\"revision\":3,\"robot\":\"mapper-01\"}");
+}
+
+}  // namespace
+}  // namespace rigcal::formats

@@ -1,0 +1,83 @@
+#include "server/base/sha256.h"
+#include "tests/unit/formats_samples.h"
+
+namespace rigcal::formats {
+namespace {
+
+using samples::SampleManifest;
+
+TEST(ManifestDocument, HasTheGoldenBytes) { samples::ExpectGolden("manifest.json", WriteManifest(SampleManifest())); }
+
+TEST(ManifestDocument, ComesBackWhole) {
+  const Manifest manifest = SampleManifest();
+  const Result<Manifest> read = ReadManifest(WriteManifest(manifest));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->header.captured_at, manifest.header.captured_at);
+  EXPECT_EQ(read->header.operator_name, manifest.header.operator_name);
+  EXPECT_EQ(read->header.conditions, manifest.header.conditions);
+  ASSERT_EQ(read->header.sensors.size(), 2u);
+  const Sensor& right = read->header.sensors[0];
+  EXPECT_EQ(right.id, SensorId("right"));
+  EXPECT_EQ(right.intrinsics->cy_px, 1.0 / 3.0);
+  EXPECT_EQ(right.intrinsics->distortion[1], 0.11);
+  EXPECT_EQ(right.intrinsics_sigma, manifest.header.sensors[0].intrinsics_sigma);
+  EXPECT_EQ(right.T_ref_nominal->q.y(), 0.6);
+  EXPECT_FALSE(read->header.sensors[1].intrinsics || read->header.sensors[1].sees);
+  EXPECT_EQ(read->header.targets[0].inner_cols, 9);
+  EXPECT_EQ(read->payloads[1].size_bytes, 2147483648);
+  EXPECT_EQ(read->payloads[1].capture, CaptureId("01"));
+  EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));
+}
+
+struct BadManifest {
+  std::string from, to, what;
+};
+
+class RefusedManifest : public testing::TestWithParam<BadManifest> {};
+
+TEST_P(RefusedManifest, NamesTheField) {
+  std::string text = WriteManifest(SampleManifest());
+  const std::size_t at = text.find(GetParam().from);
+  ASSERT_NE(at, std::string::npos) << text;
+  text.replace(at, GetParam().from.size(), GetParam().to);
+  const Result<Manifest> read = ReadManifest(text);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().what, GetParam().what);
+  EXPECT_FALSE(read.error().cure.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, RefusedManifest,
+    testing::Values(
+        BadManifest{"\"format\":1", "\"format\":2", "manifest: format: must be an integer from 1 to 1"},
+        BadManifest{"\"robot\":\"mapper-01\"", "\"robot\":\"../x\"",
+                    "manifest: robot: robot id \"../x\" is not a valid name"},
+        BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",
+                    "manifest: sensors[0].type: sensor kind \"camra\" is not known"},
+        BadManifest{"\"type\":\"camera\"", "\"type\":\"lidar\"", "sensor right: kind lidar is not supported"},
+        BadManifest{"pinhole_radtan", "fisheye", "manifest: sensors[0].intrinsics.model: must be \"pinhole_radtan\""},
+        BadManifest{"0.0,0.6,0.0,0.8", "0.0,0.6,0.0,0.7",
+                    "manifest: sensors[0].T_ref_nominal.q_xyzw: must have unit length (it is 0.921954)"},
+        BadManifest{"\"inner_corners\":[9,6]", "\"inner_corners\":[9]",
+                    "manifest: targets[0].inner_corners: must be two integers: columns and rows"},
+        BadManifest{"\"checkerboard\"", "\"charuco\"", "manifest: targets[0].type: must be \"checkerboard\""},
+        BadManifest{"\"sees\":\"board\"", "\"sees\":\"b\"",
+                    "sensor right: it sees target \"b\", which the session does not list"},
+        BadManifest{"left/01.png", "left/../../etc/passwd",
+                    "manifest: payloads[0].path: file \"left/../../etc/passwd\": it is not in a sensor's folder"},
+        BadManifest{"left/01.png", "left/01.exe",
+                    "manifest: payloads[0].path: file \"left/01.exe\": its name does not end in .png, .jpg or .jpeg"},
+        BadManifest{"left/01.png", "left/.png",
+                    "manifest: payloads[0].path: file \"left/.png\": capture id \"\" is not a valid name"},
+        BadManifest{"left/01.png", "up/01.png", "file \"up/01.png\": sensor up is not in the session"},
+        BadManifest{"left/01.png", "right/02.png", "file \"right/02.png\": it is listed twice or out of order"},
+        BadManifest{"aaaa\"", "aaa\"",
+                    "manifest: payloads[0].sha256: sha256 \"" + std::string(63, 'a') + "\" is not a sha256 digest"},
+        BadManifest{"\"size_bytes\":123", "\"size_bytes\":-1",
+                    "manifest: payloads[0].size_bytes: must be an integer from 1 to 2147483648"},
+        BadManifest{
+            "2026-01-31T", "31.1.2026 ",
+            "manifest: captured_at: time \"31.1.2026 12:00:00.123456789Z\" is not a date between 1970 and 2200"}));
+
+}  // namespace
+}  // namespace rigcal::formats

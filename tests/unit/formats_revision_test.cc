@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/formats_samples.h"
+
+namespace rigcal::formats {
+namespace {
+
+using nlohmann::json;
+using samples::SampleRevision;
+
+TEST(RevisionDocument, HasTheGoldenBytes) {
+  samples::ExpectGolden("revision.json", WriteRevisionDocument(SampleRevision()));
+}
+
+TEST(RevisionDocument, DoesNotDependOnTheOrderOfEdges) {
+  const RevisionInput sorted = SampleRevision();
+  RevisionInput shuffled = sorted;
+  std::rotate(shuffled.edges.begin(), shuffled.edges.begin() + 1, shuffled.edges.end());
+  std::reverse(shuffled.solution.residuals.begin(), shuffled.solution.residuals.end());
+  EXPECT_EQ(WriteRevisionDocument(shuffled), WriteRevisionDocument(sorted));
+}
+
+TEST(RevisionDocument, ComesBack) {
+  const RevisionInput input = SampleRevision();
+  const Result<RevisionInput> read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->robot, input.robot);
+  EXPECT_EQ(read->reference, input.reference);
+  EXPECT_EQ(read->verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(read->verdict.what_to_do, input.verdict.what_to_do);
+  EXPECT_EQ(read->solution.before.translation_m2, 0.2);
+  EXPECT_EQ(read->solution.after.rotation_rad2, 0.01);
+  EXPECT_EQ(read->solution.dof, 6);
+  EXPECT_EQ(read->solution.iterations, 4);
+  EXPECT_EQ(read->solution.diagnoses, input.solution.diagnoses);
+  ASSERT_EQ(read->solution.poses.size(), 3u);
+  EXPECT_EQ(read->solution.poses[1].covariance, samples::SampleCovariance());
+  EXPECT_FALSE(read->solution.poses[2].known);
+  ASSERT_EQ(read->solution.residuals.size(), 2u);
+  EXPECT_EQ(read->solution.residuals[0].e, input.solution.residuals[0].e);
+  EXPECT_FALSE(read->solution.residuals[1].in_solution);
+  EXPECT_EQ(read->edges[1].evidence[0].digest, input.edges[1].evidence[0].digest);
+  EXPECT_EQ(WriteRevisionDocument(*read), WriteRevisionDocument(input));
+}
+
+TEST(RevisionDocument, HoldsNoBlockVectors) {
+  RevisionInput input = SampleRevision();
+  input.edges[1].uncertainty.blocks = {{"01", Vector6d::Ones()}, {"02", Vector6d::Ones()}};
+  EXPECT_EQ(WriteRevisionDocument(input), WriteRevisionDocument(SampleRevision()));
+}
+
+TEST(RevisionDocument, AnUnknownSensorHasNoNumbers) {
+  const json sensors = json::parse(WriteRevisionDocument(SampleRevision()))["sensors"];
+  for (const char* key : {"T_ref_sensor", "covariance", "sigma_m", "sigma_rad"})
+    EXPECT_TRUE(sensors[2].at(key).is_null()) << key;
+  EXPECT_NEAR(sensors[1]["sigma_rad"][1].get<double>(), 5e-3, 1e-15);
+  EXPECT_NEAR(sensors[1]["covariance"][3][3].get<double>(), 16e-6, 1e-18);
+  EXPECT_NEAR(sensors[1]["covariance"][1][3].get<double>(), -2e-7, 1e-20);
+}
+
+TEST(RevisionDocument, ErrorsNameThePath) {
+  std::string text = WriteRevisionDocument(SampleRevision());
+  const std::string from = "\"q_xyzw\":[0.36,0.0,0.48,0.8]";
+  text.replace(text.find(from), from.size(), "\"q_xyzw\":[0.36,0.0,0.48,0.0]");
+  const auto read = ReadRevisionDocument(text);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().what, "revision: edges[1].T_a_b.q_xyzw: must have unit length (it is 0.600000)");
+}
+
+RevisionInput LargeRevision(int sensors, int edges) {
+  samples::RandomValues random;
+  RevisionInput input = SampleRevision();
+  input.edges.clear();
+  input.solution.poses.clear();
+  input.solution.residuals.clear();
+  const auto name = [](int i) { return SensorId(std::to_string(i)); };
+  for (int i = 0; i < sensors; ++i)
+    input.solution.poses.push_back({name(i), true, random.Pose(), random.PositiveDefinite()});
+  for (int i = 0; i < edges; ++i) {
+    Edge edge;
+    edge.robot = input.robot;
+    edge.frame_a = name(i % sensors);
+    edge.frame_b = name((i * 7 + 1) % sensors);
+    edge.T_a_b = random.Pose();
+    edge.uncertainty = FromInformation(random.PositiveDefinite(), UncertaintySource::kGiven, 0);
+    edge.method = "g2o";
+    edge.state = EdgeState::kGood;
+    edge.id = PushedEdgeId(edge.robot, ContentDigest(edge), 0);
+    input.solution.residuals.push_back({edge.id, true, random.Vector(), random.Number()});
+    input.edges.push_back(std::move(edge));
+  }
+  std::sort(input.edges.begin(), input.edges.end(), [](const Edge& a, const Edge& b) { return a.id < b.id; });
+  std::sort(input.solution.residuals.begin(), input.solution.residuals.end(),
+            [](const EdgeResidual& a, const EdgeResidual& b) { return a.edge < b.edge; });
+  return input;
+}
+
+double CpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+// 0.2 s and 0.3 s in a release build; the limit is for work that grows with the square of the edges.
+TEST(RevisionDocument, ALargeGraphComesBackBitForBitInTime) {
+  const RevisionInput input = LargeRevision(2500, 5000);
+  const double start = CpuSeconds();
+  const std::string text = WriteRevisionDocument(input);
+  const double written = CpuSeconds();
+  const Result<RevisionInput> read = ReadRevisionDocument(text);
+  const double done = CpuSeconds();
+  ASSERT_TRUE(read) << Sentence(read.error());
+  RecordProperty("write_ms", std::to_string(1e3 * (written - start)));
+  RecordProperty("read_ms", std::to_string(1e3 * (done - written)));
+  std::printf("[ bytes %zu, write %.0f ms, read %.0f ms ]\n", text.size(), 1e3 * (written - start),
+              1e3 * (done - written));
+  EXPECT_LT(done - start, 20.0);
+  ASSERT_EQ(read->edges.size(), input.edges.size());
+  for (std::size_t i = 0; i < input.edges.size(); ++i) {
+    ASSERT_EQ(read->edges[i].uncertainty.Omega, input.edges[i].uncertainty.Omega);
+    ASSERT_EQ(read->edges[i].uncertainty.covariance, input.edges[i].uncertainty.covariance);
+    ASSERT_EQ(read->edges[i].T_a_b.q.coeffs(), input.edges[i].T_a_b.q.coeffs());
+    ASSERT_EQ(read->edges[i].T_a_b.p_m, input.edges[i].T_a_b.p_m);
+    ASSERT_EQ(read->solution.residuals[i].e, input.solution.residuals[i].e);
+    ASSERT_EQ(read->solution.residuals[i].weighted, input.solution.residuals[i].weighted);
+  }
+  for (std::size_t i = 0; i < input.solution.poses.size(); ++i)
+    ASSERT_EQ(read->solution.poses[i].covariance, input.solution.poses[i].covariance);
+}
+
+}  // namespace
+}  // namespace rigcal::formats

@@ -1,0 +1,179 @@
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "server/base/sha256.h"
+#include "server/formats/session_folder.h"
+#include "tests/unit/formats_samples.h"
+
+namespace rigcal::formats {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kPng = std::string("\x89PNG\r\n\x1a\n", 8) + "left";
+const std::string kJpeg = "\xff\xd8\xff\xe0right";
+
+class SessionFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "formats-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    root_ = name;
+    folder_ = root_ / "session";
+    Write("session.yaml",
+          "format: 1\nrobot: mapper-01\ncaptured_at: 2026-01-31T12:00:00Z\ntargets:\n  board: {type: checkerboard, "
+          "inner_corners: [9, 6], square_size_m: 0.025}\nsensors:\n  left: {type: camera}\n  right: {type: camera}\n");
+    Write("left/01.png", kPng);
+    Write("right/01.jpg", kJpeg);
+    Write("right/02.jpeg", kJpeg + "2");
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void Write(const std::string& path, const std::string& bytes) {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path, std::ios::binary) << bytes;
+  }
+  Result<Manifest> Read() { return ReadSessionFolder(folder_, {}); }
+  void ExpectRefused(const std::string& what) {
+    const auto manifest = Read();
+    ASSERT_FALSE(manifest);
+    EXPECT_THAT(manifest.error().what, testing::HasSubstr(what));
+    EXPECT_FALSE(manifest.error().cure.empty());
+  }
+
+  fs::path root_, folder_;
+};
+
+TEST_F(SessionFolder, BecomesAManifestSortedByPath) {
+  const auto manifest = Read();
+  ASSERT_TRUE(manifest) << Sentence(manifest.error());
+  ASSERT_EQ(manifest->payloads.size(), 3u);
+  EXPECT_EQ(manifest->payloads[0].path, "left/01.png");
+  EXPECT_EQ(manifest->payloads[0].digest, Sha256Of(kPng));
+  EXPECT_EQ(manifest->payloads[0].size_bytes, 12);
+  EXPECT_EQ(manifest->payloads[1].sensor, SensorId("right"));
+  EXPECT_EQ(manifest->payloads[1].capture, CaptureId("01"));
+  EXPECT_EQ(manifest->payloads[2].path, "right/02.jpeg");
+}
+
+TEST_F(SessionFolder, IsTheSameSessionWhereverItIs) {
+  const auto before = Read();
+  const fs::path moved = root_ / "moved";
+  fs::rename(folder_, moved);
+  folder_ = moved;
+  const auto after = Read();
+  ASSERT_TRUE(before && after);
+  EXPECT_EQ(WriteManifest(*before), WriteManifest(*after));
+  EXPECT_TRUE(ReadManifest(WriteManifest(*after)));
+}
+
+TEST_F(SessionFolder, ReportsProgressUpToTheEnd) {
+  std::int64_t last = 0, all = 0;
+  int calls = 0;
+  const auto manifest = ReadSessionFolder(folder_, [&](std::int64_t hashed, std::int64_t in_all) {
+    EXPECT_GT(hashed, last);
+    last = hashed;
+    all = in_all;
+    ++calls;
+  });
+  ASSERT_TRUE(manifest);
+  EXPECT_EQ(calls, 3);
+  EXPECT_EQ(last, 12 + 9 + 10);
+  EXPECT_EQ(all, last);
+}
+
+TEST_F(SessionFolder, IgnoresDotFiles) {
+  Write(".DS_Store", "x");
+  Write("left/.hidden.txt", "x");
+  Write(".git/config", "x");
+  EXPECT_TRUE(Read());
+}
+
+TEST_F(SessionFolder, FollowsLinksThatStayInside) {
+  fs::create_symlink("01.jpg", folder_ / "right/03.jpg");
+  const auto manifest = Read();
+  ASSERT_TRUE(manifest) << Sentence(manifest.error());
+  EXPECT_EQ(manifest->payloads[3].digest, Sha256Of(kJpeg));
+}
+
+TEST_F(SessionFolder, RefusesLinksThatLeaveOrDangle) {
+  std::ofstream(root_ / "secret.png", std::ios::binary) << kPng;
+  fs::create_symlink("../../secret.png", folder_ / "left/02.png");
+  ExpectRefused("file \"left/02.png\": the symbolic link leads out of the session");
+  fs::remove(folder_ / "left/02.png");
+  fs::create_symlink("nothing.png", folder_ / "left/02.png");
+  ExpectRefused("file \"left/02.png\": the symbolic link leads nowhere");
+  fs::remove(folder_ / "left/02.png");
+  fs::rename(folder_ / "left", root_ / "session-left");  // a sibling whose path begins like the session's
+  fs::create_directory_symlink("../session-left", folder_ / "left");
+  ExpectRefused("file \"left\": the symbolic link leads out of the session");
+}
+
+TEST_F(SessionFolder, RefusesAFolderOfNoSensor) {
+  Write("rigth/01.png", kPng);
+  ExpectRefused("folder \"rigth\": session.yaml has no sensor of this name; did you mean \"right\"?");
+}
+
+TEST_F(SessionFolder, RefusesFilesThatDoNotBelong) {
+  Write("README.txt", "x");
+  ExpectRefused("file \"README.txt\": it does not belong to a session");
+  fs::remove(folder_ / "README.txt");
+  Write("left/notes.txt", "x");
+  ExpectRefused("file \"left/notes.txt\": its name does not end in .png, .jpg or .jpeg");
+  fs::remove(folder_ / "left/notes.txt");
+  Write("left/02.PNG", kPng);
+  ExpectRefused("file \"left/02.PNG\": its name does not end in .png, .jpg or .jpeg");
+  fs::remove(folder_ / "left/02.PNG");
+  Write("left/deep/01.png", kPng);
+  ExpectRefused("file \"left/deep\": it is not a file");
+}
+
+TEST_F(SessionFolder, RefusesBadNames) {
+  Write("left/a b.png", kPng);
+  ExpectRefused("file \"left/a b.png\": capture id \"a b\" is not a valid name");
+}
+
+TEST_F(SessionFolder, RefusesPipes) {
+  ASSERT_EQ(mkfifo((folder_ / "left/02.png").c_str(), 0600), 0);
+  ExpectRefused("file \"left/02.png\": it is not a file");
+}
+
+TEST_F(SessionFolder, RefusesEmptyAndRenamedPictures) {
+  Write("left/02.png", "");
+  ExpectRefused("file \"left/02.png\": it is empty");
+  Write("left/02.png", kJpeg);
+  ExpectRefused("file \"left/02.png\": it is a JPEG, not a PNG picture");
+  Write("left/02.png", "\x89P");
+  ExpectRefused("file \"left/02.png\": it is not a PNG picture");
+  fs::remove(folder_ / "left/02.png");
+  Write("left/02.jpg", kPng);
+  ExpectRefused("file \"left/02.jpg\": it is a PNG, not a JPEG picture");
+}
+
+TEST_F(SessionFolder, RefusesTwoFilesOfOneCapture) {
+  Write("left/01.jpg", kJpeg);
+  ExpectRefused("sensor 'left' has another file of capture '01'");
+}
+
+TEST_F(SessionFolder, RefusesAFolderWithoutCaptures) {
+  for (const char* sensor : {"left", "right"})
+    for (const auto& entry : fs::directory_iterator(folder_ / sensor)) fs::remove(entry.path());
+  ExpectRefused("it has no captures");
+}
+
+TEST_F(SessionFolder, RefusesWhatIsNoSession) {
+  fs::remove(folder_ / "session.yaml");
+  ExpectRefused("it has no session.yaml");
+  fs::remove_all(folder_);
+  ExpectRefused("there is no such folder");
+}
+
+TEST_F(SessionFolder, NamesTheLineOfSessionYaml) {
+  Write("session.yaml", "format: 1\nrobot: 'a b'\n");
+  ExpectRefused("session.yaml line 2: robot: robot id \"a b\" is not a valid name");
+}
+
+}  // namespace
+}  // namespace rigcal::formats

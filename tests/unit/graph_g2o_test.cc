@@ -1,0 +1,106 @@
+#include <gmock/gmock.h>
+
+#include "tests/unit/graph_fixture.h"
+
+namespace rigcal::formats {
+namespace {
+
+const RobotId kRobot("robot");
+
+std::string EdgeLine(const std::string& ids, const std::string& quaternion = "0 0 0 1",
+                     const std::string& information = "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 4 0 0 4 0 4") {
+  return "EDGE_SE3:QUAT " + ids + " 1 2 3 " + quaternion + " " + information + "\n";
+}
+
+std::string Refusal(const std::string& text) {
+  const Result<G2oFile> file = ReadG2o(text, kRobot);
+  return file ? "accepted" : file.error().what;
+}
+
+TEST(G2o, ReadsEdgesVerticesAndFix) {
+  const Result<G2oFile> file = ReadG2o("# made by hand\nVERTEX_SE3:QUAT 3 1 0 0 0 0 0 1\r\n\nFIX 3\n" +
+                                           EdgeLine("3 12", "0.6 0 0 0.8"), kRobot);
+  ASSERT_TRUE(file.has_value()) << Sentence(file.error());
+  ASSERT_EQ(file->edges.size(), 1U);
+  const Edge& edge = file->edges[0];
+  EXPECT_EQ(edge.frame_a.str(), "3");
+  EXPECT_EQ(edge.frame_b.str(), "12");
+  EXPECT_EQ(edge.T_a_b.p_m, Eigen::Vector3d(1, 2, 3));
+  EXPECT_NEAR(edge.T_a_b.q.x(), 0.6, 1e-15);
+  EXPECT_NEAR(edge.T_a_b.q.w(), 0.8, 1e-15);
+  EXPECT_EQ(edge.method, "g2o");
+  EXPECT_EQ(edge.uncertainty.source, UncertaintySource::kGiven);
+  EXPECT_EQ(edge.uncertainty.dof, 0);
+  EXPECT_EQ(edge.state, EdgeState::kGood);
+  EXPECT_TRUE(Validate(edge).has_value());
+  EXPECT_EQ(file->fixed.str(), "3");
+  EXPECT_EQ(file->T_world_vertex.at(SensorId("3")).p_m.x(), 1.0);
+}
+
+// Rotational information is quartered, cross terms are halved; position of every entry in the upper triangle.
+TEST(G2o, ConvertsInformationEntryByEntry) {
+  const std::string information = "101 2 3 4 5 6 102 8 9 10 11 103 13 14 15 104 17 18 105 20 106";
+  const Result<G2oFile> file = ReadG2o(EdgeLine("0 1", "0 0 0 1", information), kRobot);
+  ASSERT_TRUE(file.has_value()) << Sentence(file.error());
+  const Matrix6d& Omega = file->edges[0].uncertainty.Omega;
+  EXPECT_EQ(Omega(0, 0), 101.0);
+  EXPECT_EQ(Omega(0, 1), 2.0);
+  EXPECT_EQ(Omega(0, 3), 4.0 / 2);
+  EXPECT_EQ(Omega(2, 5), 15.0 / 2);
+  EXPECT_EQ(Omega(3, 3), 104.0 / 4);
+  EXPECT_EQ(Omega(5, 4), 20.0 / 4);
+  EXPECT_EQ(Omega, Omega.transpose());
+  EXPECT_LT((InformationFromG2o(InformationToG2o(Omega)) - Omega).norm(), 1e-12);
+}
+
+// g2o's vector part of q is half the rotation vector: a small rotation costs the same in both.
+TEST(G2o, ASmallErrorCostsTheSameInBothConventions) {
+  std::mt19937 random(70);
+  const Matrix6d Omega = graph::RandomInformation(random, 0.01, 0.01);
+  const Se3 error = Se3::Exp(graph::RandomVector(random, 1e-7, 1e-7));
+  Vector6d e_g2o;
+  e_g2o << error.p_m, error.q.vec();
+  const double ours = error.Log().dot(Omega * error.Log());
+  EXPECT_NEAR(e_g2o.dot(InformationToG2o(Omega) * e_g2o), ours, 1e-6 * ours);
+}
+
+TEST(G2o, TheSamePairTwiceGivesTwoEdgesWhateverTheOrder) {
+  const std::string a = EdgeLine("0 1"), b = EdgeLine("1 2");
+  const Result<G2oFile> first = ReadG2o(a + a + b, kRobot), second = ReadG2o(b + a + a, kRobot);
+  ASSERT_TRUE(first && second);
+  std::vector<EdgeId> ids_first, ids_second;
+  for (const Edge& edge : first->edges) ids_first.push_back(edge.id);
+  for (const Edge& edge : second->edges) ids_second.push_back(edge.id);
+  EXPECT_NE(ids_first[0], ids_first[1]);
+  EXPECT_THAT(ids_first, testing::UnorderedElementsAreArray(ids_second));
+}
+
+TEST(G2o, RefusesByLineAndEdge) {
+  const std::string good = EdgeLine("0 1");
+  EXPECT_EQ(Refusal(""), "the file has no EDGE_SE3:QUAT line");
+  EXPECT_EQ(Refusal(good + "EDGE_SE2 0 1 0 0 0\n"), "line 2: \"EDGE_SE2\" is not supported");
+  EXPECT_EQ(Refusal(good + good + "EDGE_SE3:QUAT 0 1 1 2\n"), "line 3: edge 0 - 1: ends after 2 of 28 numbers");
+  EXPECT_EQ(Refusal("EDGE_SE3:QUAT x 1\n"), "line 1: \"x\" is not a vertex number");
+  EXPECT_EQ(Refusal("EDGE_SE3:QUAT 0 -1\n"), "line 1: \"-1\" is not a vertex number");
+  EXPECT_THAT(Refusal(EdgeLine("4 5", "0 0 0 1.1")), testing::StartsWith("line 1: edge 4 - 5: the quaternion has length 1.1"));
+  EXPECT_EQ(Refusal(EdgeLine("4 4")), "line 1: edge 4 - 4: joins a vertex with itself");
+  EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 nan 1")), "line 1: edge 4 - 5: \"nan\" is not a finite number");
+  EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 0 0 0 1 0 0 0 0 -1 0 0 0 4 0 0 4 0 4")),
+            "line 1: edge 4 - 5: the information matrix is indefinite");
+  EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 0 1", "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0")),
+            "line 1: edge 4 - 5: the information matrix is zero");
+  EXPECT_THAT(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 4 0 0 4 0 4 9")),
+              testing::HasSubstr("more fields than expected, from \"9\""));
+  EXPECT_EQ(Refusal("VERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"), "line 2: vertex 1: occurs twice");
+}
+
+TEST(G2o, NearlyUnitQuaternionsAreNormalisedAndRankDeficientInformationIsKept) {
+  const Result<G2oFile> file =
+      ReadG2o(EdgeLine("0 1", "0 0 0 1.0005", "1 0 0 0 0 0 0 0 0 0 0 1 0 0 0 4 0 0 4 0 4"), kRobot);
+  ASSERT_TRUE(file.has_value()) << Sentence(file.error());
+  EXPECT_EQ(file->edges[0].T_a_b.q.w(), 1.0);
+  EXPECT_EQ(file->edges[0].uncertainty.rank, 5);
+}
+
+}  // namespace
+}  // namespace rigcal::formats

@@ -1,0 +1,237 @@
+// The numerical core against oracles that share none of its formulas: finite differences, Ceres's automatic
+// differentiation, dense inverses.
+#include <ceres/autodiff_manifold.h>
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+
+#include "server/graph/chordal.h"
+#include "server/graph/gauss_newton.h"
+#include "server/graph/spanning_tree.h"
+#include "tests/unit/graph_fixture.h"
+
+namespace rigcal::graph {
+namespace {
+
+Poses Perturbed(const Problem& problem, unsigned seed, double size) {
+  std::mt19937 random(seed);
+  Poses T_ref = SpanningTreePoses(problem);
+  for (std::size_t v = 1; v < T_ref.size(); ++v) T_ref[v] = T_ref[v] * Se3::Exp(RandomVector(random, size, size));
+  return T_ref;
+}
+
+TEST(GraphLinearize, GradientMatchesFiniteDifferencesFarFromZeroResidual) {
+  const Problem problem = MakeProblem(MakeRig(5, 9, 20, 0.5, 0.5).graph);
+  const Poses T_ref = Perturbed(problem, 21, 0.4);
+  NormalEquations equations;
+  Linearize(problem, T_ref, equations);
+  ASSERT_GT(equations.cost, 1.0);
+  EXPECT_NEAR(equations.cost, Cost(problem, T_ref), 1e-9 * equations.cost);
+  constexpr double kStep = 1e-5;
+  for (int row = 0; row < equations.g.size(); ++row) {
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(equations.g.size());
+    Poses plus, minus;
+    step(row) = kStep;
+    Retract(T_ref, step, plus);
+    Retract(T_ref, -step, minus);
+    const double slope = (Cost(problem, plus) - Cost(problem, minus)) / (2 * kStep);
+    EXPECT_NEAR(2.0 * equations.g(row), slope, 1e-6 * equations.g.cwiseAbs().maxCoeff()) << row;
+  }
+}
+
+// H = J^T Omega J with J by finite differences of the residuals.
+TEST(GraphLinearize, HessianIsThatOfFiniteDifferenceJacobians) {
+  const Problem problem = MakeProblem(MakeRig(4, 8, 22, 0.5, 0.5).graph);
+  const Poses T_ref = Perturbed(problem, 23, 0.4);
+  NormalEquations equations;
+  Linearize(problem, T_ref, equations);
+  const int size = 6 * problem.free_count();
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size, size);
+  for (const Constraint& constraint : problem.constraints) {
+    Eigen::MatrixXd J(6, size);
+    for (int row = 0; row < size; ++row) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(size);
+      step(row) = 1e-6;
+      Poses plus, minus;
+      Retract(T_ref, step, plus);
+      Retract(T_ref, -step, minus);
+      J.col(row) = (Residual(constraint, plus) - Residual(constraint, minus)) / 2e-6;
+    }
+    H += J.transpose() * constraint.Omega * J;
+  }
+  for (int v = 0; v < problem.free_count(); ++v)
+    EXPECT_LT((equations.H.diagonal[static_cast<std::size_t>(v)] - H.block<6, 6>(6 * v, 6 * v)).norm(), 1e-6 * H.norm());
+  for (std::size_t s = 0; s < problem.pattern.off_diagonal.size(); ++s) {
+    const BlockPosition at = problem.pattern.off_diagonal[s];
+    EXPECT_LT((equations.H.off_diagonal[s] - H.block<6, 6>(6 * at.row, 6 * at.col)).norm(), 1e-6 * H.norm());
+  }
+}
+
+TEST(GraphChordal, IsExactForExactMeasurementsWhateverTheAngles) {
+  const RandomRig rig = MakeRig(60, 150, 24, 1e-12, 1e-12, false);
+  const Problem problem = MakeProblem(rig.graph);
+  const std::optional<Poses> chordal = ChordalPoses(problem);
+  ASSERT_TRUE(chordal.has_value());
+  for (std::size_t v = 0; v < chordal->size(); ++v)
+    EXPECT_LT(Distance((*chordal)[v], rig.truth[problem.sensor_of_vertex[v]]), 1e-9) << v;
+}
+
+// Dense and sparse factors of one random matrix, and their inverses' diagonal blocks against a dense LU inverse.
+TEST(GraphCholesky, SparseAndDenseAgreeWithAnInverse) {
+  const Problem problem = MakeProblem(MakeRig(120, 260, 25).graph);
+  NormalEquations equations;
+  Linearize(problem, SpanningTreePoses(problem), equations);
+  const int size = 6 * problem.free_count();
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size, size);
+  for (int v = 0; v < problem.free_count(); ++v)
+    H.block<6, 6>(6 * v, 6 * v) = equations.H.diagonal[static_cast<std::size_t>(v)];
+  for (std::size_t s = 0; s < problem.pattern.off_diagonal.size(); ++s) {
+    const BlockPosition at = problem.pattern.off_diagonal[s];
+    H.block<6, 6>(6 * at.row, 6 * at.col) = equations.H.off_diagonal[s];
+    H.block<6, 6>(6 * at.col, 6 * at.row) = equations.H.off_diagonal[s].transpose();
+  }
+  const Eigen::MatrixXd inverse = H.partialPivLu().inverse();
+  for (const int dense_max : {0, 1000}) {
+    const auto cholesky = MakeCholesky<6>(problem.pattern, dense_max);
+    ASSERT_TRUE(cholesky->Factor(equations.H, 0.0));
+    Eigen::MatrixXd x = equations.g;
+    cholesky->SolveInPlace(x);
+    EXPECT_LT((H * x - equations.g).norm(), 1e-9 * equations.g.norm()) << dense_max;
+    const std::vector<Matrix6d> blocks = cholesky->InverseDiagonal();
+    for (int v = 0; v < problem.free_count(); ++v) {
+      const Matrix6d expected = inverse.block<6, 6>(6 * v, 6 * v);
+      EXPECT_LT((blocks[static_cast<std::size_t>(v)] - expected).norm(), 1e-8 * expected.norm()) << dense_max << " " << v;
+    }
+  }
+}
+
+TEST(GraphCholesky, AnIndefiniteMatrixIsRefusedByBothKinds) {
+  const Problem problem = MakeProblem(MakeRig(50, 100, 26).graph);
+  NormalEquations equations;
+  Linearize(problem, SpanningTreePoses(problem), equations);
+  equations.H.diagonal[30](2, 2) = -1.0;
+  for (const int dense_max : {0, 1000}) EXPECT_FALSE(MakeCholesky<6>(problem.pattern, dense_max)->Factor(equations.H, 0.0));
+}
+
+// --- Ceres: the same cost written once more, on rotation vectors, differentiated automatically. ---
+
+template <typename T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+
+// Log of SE(3) by its own route: matrix V(phi) solved, not inverted in closed form. Angles stay below pi in these tests.
+template <typename T>
+Eigen::Matrix<T, 6, 1> LogOf(const Eigen::Quaternion<T>& q_in, const Vector3<T>& p) {
+  const Eigen::Quaternion<T> q = q_in.w() < T(0) ? Eigen::Quaternion<T>(-q_in.coeffs()) : q_in;
+  const std::array<T, 4> wxyz = {q.w(), q.x(), q.y(), q.z()};
+  std::array<T, 3> phi_array;
+  ceres::QuaternionToAngleAxis(wxyz.data(), phi_array.data());
+  const Vector3<T> phi(phi_array[0], phi_array[1], phi_array[2]);
+  const T theta2 = phi.squaredNorm() + T(1e-30);
+  const T theta = sqrt(theta2);
+  Eigen::Matrix<T, 3, 3> P;
+  P << T(0), -phi.z(), phi.y(), phi.z(), T(0), -phi.x(), -phi.y(), phi.x(), T(0);
+  T b = (T(1) - cos(theta)) / theta2, c = (theta - sin(theta)) / (theta2 * theta);
+  if (theta < T(1e-3)) b = T(0.5) - theta2 / T(24), c = T(1) / T(6) - theta2 / T(120);
+  const Eigen::Matrix<T, 3, 3> V = Eigen::Matrix<T, 3, 3>::Identity() + b * P + c * P * P;
+  Eigen::Matrix<T, 6, 1> xi;
+  xi.template head<3>() = V.inverse() * p;
+  xi.template tail<3>() = phi;
+  return xi;
+}
+
+struct EdgeCost {
+  Se3 T_a_b;
+  Matrix6d sqrt_Omega;
+  template <typename T>
+  bool operator()(const T* a, const T* b, T* residual) const {
+    const Eigen::Map<const Vector3<T>> p_a(a), p_b(b);
+    const Eigen::Map<const Eigen::Quaternion<T>> q_a(a + 3), q_b(b + 3);
+    const Eigen::Quaternion<T> q_m = T_a_b.q.conjugate().cast<T>();
+    const Eigen::Quaternion<T> q = q_m * (q_a.conjugate() * q_b);
+    const Vector3<T> p = q_m * (q_a.conjugate() * (p_b - p_a) - T_a_b.p_m.cast<T>());
+    Eigen::Map<Eigen::Matrix<T, 6, 1>> e(residual);
+    e = sqrt_Omega.cast<T>() * LogOf<T>(q, p);
+    return true;
+  }
+};
+
+// [p, q_xyzw]: world-frame translation step, rotation vector on the right.
+struct PoseSteps {
+  template <typename T>
+  bool Plus(const T* x, const T* delta, T* sum) const {
+    for (int k = 0; k < 3; ++k) sum[k] = x[k] + delta[k];
+    std::array<T, 4> wxyz;
+    ceres::AngleAxisToQuaternion(delta + 3, wxyz.data());
+    const Eigen::Quaternion<T> step(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+    Eigen::Map<Eigen::Quaternion<T>> result(sum + 3);
+    result = Eigen::Map<const Eigen::Quaternion<T>>(x + 3) * step;
+    return true;
+  }
+  template <typename T>
+  bool Minus(const T* y, const T* x, T* delta) const {
+    for (int k = 0; k < 3; ++k) delta[k] = y[k] - x[k];
+    const Eigen::Quaternion<T> q =
+        Eigen::Map<const Eigen::Quaternion<T>>(x + 3).conjugate() * Eigen::Map<const Eigen::Quaternion<T>>(y + 3);
+    const std::array<T, 4> wxyz = {q.w(), q.x(), q.y(), q.z()};
+    ceres::QuaternionToAngleAxis(wxyz.data(), delta + 3);
+    return true;
+  }
+};
+using PoseManifold = ceres::AutoDiffManifold<PoseSteps, 7, 6>;
+
+struct CeresSolution {
+  std::vector<std::array<double, 7>> poses;
+  double cost = 0.0;
+};
+
+CeresSolution SolveWithCeres(const Graph& graph, const GraphSolution& start) {
+  CeresSolution solution;
+  for (const SensorPose& pose : start.poses) {
+    const Se3& T = pose.T_ref_sensor;
+    solution.poses.push_back({T.p_m.x(), T.p_m.y(), T.p_m.z(), T.q.x(), T.q.y(), T.q.z(), T.q.w()});
+  }
+  ceres::Problem problem;
+  for (auto& pose : solution.poses) problem.AddParameterBlock(pose.data(), 7, new PoseManifold);
+  problem.SetParameterBlockConstant(solution.poses[0].data());
+  for (const GraphEdge& edge : graph.edges) {
+    const Matrix6d sqrt_Omega = edge.Omega.llt().matrixU();
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<EdgeCost, 6, 7, 7>(new EdgeCost{edge.T_a_b, sqrt_Omega}),
+                             nullptr, solution.poses[std::stoul(edge.frame_a.str())].data(),
+                             solution.poses[std::stoul(edge.frame_b.str())].data());
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 1e-16;
+  options.initial_trust_region_radius = 1e12;
+  options.max_num_iterations = 100;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  solution.cost = 2.0 * summary.final_cost;
+  return solution;
+}
+
+TEST(GraphSolve, FindsTheOptimumThatCeresFinds) {
+  for (unsigned seed = 30; seed < 40; ++seed) {
+    const RandomRig rig = MakeRig(4 + seed % 9, 20 + seed % 7, seed, 0.05, 0.05);
+    const GraphSolution ours = Solve(rig.graph);
+    GraphSolution start = ours;  // started away from our optimum
+    std::mt19937 random(seed);
+    for (std::size_t v = 1; v < start.poses.size(); ++v)
+      start.poses[v].T_ref_sensor = rig.truth[v] * Se3::Exp(RandomVector(random, 0.01, 0.01));
+    const CeresSolution theirs = SolveWithCeres(rig.graph, start);
+    EXPECT_NEAR(ours.cost, theirs.cost, 1e-9 * theirs.cost) << seed;
+    for (std::size_t v = 0; v < theirs.poses.size(); ++v) {
+      const auto& x = theirs.poses[v];
+      EXPECT_LT((ours.poses[v].T_ref_sensor.p_m - Eigen::Vector3d(x[0], x[1], x[2])).norm(), 1e-6) << seed << " " << v;
+      const Eigen::Quaterniond q(x[6], x[3], x[4], x[5]);
+      EXPECT_LT(ours.poses[v].T_ref_sensor.q.angularDistance(q), 1e-6) << seed << " " << v;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::graph

@@ -1,0 +1,122 @@
+#include <gmock/gmock.h>
+
+#include "server/graph/observability.h"
+#include "tests/unit/graph_fixture.h"
+
+namespace rigcal::graph {
+namespace {
+
+// Full information except for the given axes of frame b.
+Matrix6d Blind(std::initializer_list<int> axes) {
+  Matrix6d Omega = 1e6 * Matrix6d::Identity();
+  for (const int axis : axes) Omega(axis, axis) = 0.0;
+  return Omega;
+}
+
+// Three sensors known fully, 3 hangs on sensor 0 by a deficient edge.
+RandomRig RigWithDeficientEdge(const Matrix6d& Omega) {
+  RandomRig rig = MakeRig(4, 7, 50, 0.001, 0.001, false);
+  std::erase_if(rig.graph.edges, [](const GraphEdge& e) { return e.frame_a == Name(3) || e.frame_b == Name(3); });
+  for (std::size_t k = 0; k < 3; ++k)  // a triangle, whatever the random pairs were
+    rig.graph.edges.push_back(MakeEdge(60 + k, k, (k + 1) % 3, rig.truth[k].Inverse() * rig.truth[(k + 1) % 3],
+                                       1e6 * Matrix6d::Identity()));
+  rig.graph.edges.push_back(MakeEdge(70, 0, 3, rig.truth[3], Omega));
+  return rig;
+}
+
+TEST(GraphObservability, AFreeAxisMakesTheSensorUnknownAndIsNamed) {
+  const std::array<std::string, 6> names = {"translation along x", "translation along y", "translation along z",
+                                            "rotation about x",    "rotation about y",    "rotation about z"};
+  for (int axis = 0; axis < 6; ++axis) {
+    const RandomRig rig = RigWithDeficientEdge(Blind({axis}));
+    const GraphSolution solution = Solve(rig.graph);
+    EXPECT_TRUE(solution.converged);
+    EXPECT_TRUE(solution.poses[2].known);
+    EXPECT_GT(solution.poses[2].covariance(0, 0), 0.0);
+    EXPECT_FALSE(solution.poses[3].known);
+    EXPECT_EQ(solution.poses[3].covariance, Matrix6d::Zero());
+    ASSERT_EQ(solution.diagnoses.size(), 1U);
+    EXPECT_EQ(solution.diagnoses[0].code, "not_observable");
+    EXPECT_EQ(solution.diagnoses[0].what, "the pose of sensor 3 is not fully determined: its edges leave free " +
+                                              names[static_cast<std::size_t>(axis)] + " (in the axes of 3)");
+    const int full_edges = static_cast<int>(rig.graph.edges.size()) - 1;
+    EXPECT_EQ(solution.dof, 6 * full_edges + 5 - (6 * 3 - 1));
+  }
+}
+
+// A deficient edge takes nothing from what the others say, and adds nothing to sensors it cannot reach.
+TEST(GraphObservability, KnownSensorsKeepTheirUncertainty) {
+  const RandomRig rig = RigWithDeficientEdge(Blind({2, 5}));
+  Graph without = rig.graph;
+  without.edges.pop_back();
+  const GraphSolution a = Solve(rig.graph), b = Solve(without);
+  for (std::size_t v = 1; v < 3; ++v) {
+    EXPECT_LT((a.poses[v].covariance - b.poses[v].covariance).norm(), 1e-9 * b.poses[v].covariance.norm());
+    EXPECT_LT(Distance(a.poses[v].T_ref_sensor, b.poses[v].T_ref_sensor), 1e-10);
+  }
+}
+
+TEST(GraphObservability, ASecondEdgeThatSeesTheAxisMakesItKnown) {
+  RandomRig rig = RigWithDeficientEdge(Blind({2}));
+  rig.graph.edges.push_back(MakeEdge(71, 1, 3, rig.truth[1].Inverse() * rig.truth[3], Blind({0})));
+  const GraphSolution solution = Solve(rig.graph);
+  EXPECT_TRUE(solution.poses[3].known);
+  EXPECT_TRUE(solution.diagnoses.empty());
+  EXPECT_LT(Distance(solution.poses[3].T_ref_sensor, rig.truth[3]), 0.01);
+}
+
+// Two edges with the same blind axis, turned against each other by 2 mrad of noise, seem to see it: they do not.
+TEST(GraphObservability, NoiseDoesNotInventInformation) {
+  RandomRig rig = RigWithDeficientEdge(Blind({2}));
+  Vector6d noise = Vector6d::Zero();
+  noise(tangent::kRx) = 0.002;
+  rig.graph.edges.push_back(
+      MakeEdge(71, 1, 3, rig.truth[1].Inverse() * rig.truth[3] * Se3::Exp(noise), Blind({2})));
+  const GraphSolution solution = Solve(rig.graph);
+  EXPECT_FALSE(solution.poses[3].known);
+  ASSERT_FALSE(solution.diagnoses.empty());
+  EXPECT_THAT(solution.diagnoses[0].what, testing::HasSubstr("leave free translation along z"));
+}
+
+// Sensors tied rigidly to one that is not observable are not observable either; the direction is told in their own axes.
+TEST(GraphObservability, WhatHangsOnAFreeSensorIsFreeToo) {
+  RandomRig rig = RigWithDeficientEdge(Blind({0}));
+  rig.graph.sensors.push_back(Name(4));
+  Se3 T_3_4;
+  T_3_4.q = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());  // x of 3 is -y of 4
+  rig.graph.edges.push_back(MakeEdge(72, 3, 4, T_3_4, 1e6 * Matrix6d::Identity()));
+  const GraphSolution solution = Solve(rig.graph);
+  EXPECT_FALSE(solution.poses[4].known);
+  ASSERT_EQ(solution.diagnoses.size(), 2U);
+  EXPECT_THAT(solution.diagnoses[1].what, testing::HasSubstr("sensor 4 is not fully determined: its edges leave free "
+                                                             "translation along y"));
+  const auto relative = Relative(rig.graph, solution, Name(0), Name(4));
+  ASSERT_FALSE(relative.has_value());
+  EXPECT_THAT(relative.error().what, testing::HasSubstr("sensor 4 is not fully determined"));
+}
+
+TEST(GraphObservability, BytesDoNotDependOnTheOrderOfEdges) {
+  RandomRig rig = RigWithDeficientEdge(Blind({0, 1, 5}));
+  const GraphSolution first = Solve(rig.graph);
+  std::mt19937 random(51);
+  for (int round = 0; round < 5; ++round) {
+    std::shuffle(rig.graph.edges.begin(), rig.graph.edges.end(), random);
+    EXPECT_TRUE(SameBytes(first, Solve(rig.graph)));
+  }
+}
+
+TEST(GraphObservability, DirectionsAreNamedInWords) {
+  FreeBasis basis(6, 1);
+  basis << 0.6, 0.8, 0.0, 0.0, 0.0, 0.0;
+  EXPECT_EQ(NameDirections(basis), "translation along (0.60, 0.80, 0.00)");
+  basis << 0.0, 0.0, 0.5, 0.0, 0.0, 1.0;
+  EXPECT_EQ(NameDirections(basis), "rotation about z coupled with translation along z");
+  FreeBasis two(6, 2);
+  two.setZero();
+  two(tangent::kX, 0) = two(tangent::kRz, 0) = two(tangent::kX, 1) = 1.0;
+  two(tangent::kRz, 1) = -1.0;
+  EXPECT_EQ(NameDirections(two), "rotation about z and translation along x");
+}
+
+}  // namespace
+}  // namespace rigcal::graph

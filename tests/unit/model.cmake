@@ -1,0 +1,4 @@
+rigcal_test(model_test
+  SOURCES unit/model_uncertainty_test.cc unit/model_edge_id_test.cc unit/model_edge_validate_test.cc
+          unit/model_session_test.cc unit/model_manifest_test.cc
+  DEPS rigcal_model)

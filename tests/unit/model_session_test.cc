@@ -1,0 +1,171 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "server/model/session.h"
+
+namespace rigcal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Sensor Camera(const char* id) {
+  Sensor sensor;
+  sensor.id = SensorId(id);
+  return sensor;
+}
+
+SessionHeader GoodHeader() {
+  SessionHeader header;
+  header.robot = RobotId("mapper-01");
+  header.reference = SensorId("left");
+  header.sensors = {Camera("left"), Camera("right")};
+  header.targets = {{TargetId("board"), 9, 6, 0.025, 0.0, "A-17"}};
+  header.operator_name = "Jürgen";
+  return header;
+}
+
+Error RefusalAfter(const std::function<void(SessionHeader&)>& change) {
+  SessionHeader header = GoodHeader();
+  change(header);
+  const Status status = Validate(header);
+  if (status) return {};
+  EXPECT_FALSE(status.error().cure.empty());
+  return status.error();
+}
+
+TEST(ValidateHeader, AcceptsAGoodOne) {
+  EXPECT_EQ(RefusalAfter([](SessionHeader&) {}).what, "");
+}
+
+TEST(ValidateHeader, NamesWhatIsMissingOrDouble) {
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.reference = SensorId("top"); }).what, HasSubstr("\"top\""));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.push_back(Camera("left")); }).what,
+              HasSubstr("left is listed twice"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.targets.push_back(h.targets[0]); }).what,
+              HasSubstr("board is listed twice"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors[1].sees = TargetId("wall"); }).what,
+              HasSubstr("sensor right: it sees target \"wall\""));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.clear(); }).what, HasSubstr("sensors"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.targets.clear(); }).what, HasSubstr("targets"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.resize(1025, Camera("x")); }).cure, HasSubstr("1024"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.robot = RobotId("a/b"); }).what, HasSubstr("robot id"));
+}
+
+TEST(ValidateHeader, RefusesNewerFormats) {
+  const Error error = RefusalAfter([](auto& h) { h.format = 2; });
+  EXPECT_EQ(error.code, ErrorCode::kUnsupported);
+  EXPECT_THAT(error.what, HasSubstr("format 2"));
+}
+
+TEST(ValidateHeader, RefusesKindsThatAreNotSupported) {
+  for (SensorKind kind : {SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream}) {
+    const Error error = RefusalAfter([&](auto& h) { h.sensors[1].kind = kind; });
+    EXPECT_EQ(error.code, ErrorCode::kUnsupported);
+    EXPECT_THAT(error.what, HasSubstr("sensor right: kind " + NameOf(kind)));
+    EXPECT_THAT(error.cure, HasSubstr("camera"));
+  }
+}
+
+TEST(ValidateHeader, TextsMustBeReadable) {
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.operator_name = "a\nb"; }).what, HasSubstr("operator"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.rig_model = "\xff"; }).what, HasSubstr("rig_model"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.conditions["light"] = "\x01"; }).what, HasSubstr("conditions light"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.targets[0].serial = std::string(300, 'x'); }).what, HasSubstr("serial"));
+}
+
+TEST(ValidateSensor, IntrinsicsAreInRange) {
+  const auto refusal = [](const std::function<void(Sensor&)>& change) {
+    return RefusalAfter([&](SessionHeader& header) {
+             header.sensors[1].intrinsics = PinholeRadtan{530, 530, 320, 240, {}};
+             change(header.sensors[1]);
+           })
+        .what;
+  };
+  EXPECT_EQ(refusal([](Sensor&) {}), "");
+  EXPECT_EQ(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(9, 0.1); }), "");
+  EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics->fy_px = 0; }), HasSubstr("sensor right: intrinsics"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics->distortion[4] = kNaN; }), HasSubstr("sensor right: intrinsics"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(8, 0.1); }), HasSubstr("9 finite"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(9, -0.1); }), HasSubstr("9 finite"));
+  EXPECT_THAT(refusal([](Sensor& s) {
+                s.intrinsics_sigma = std::vector<double>(9, 0.1);
+                s.intrinsics.reset();
+              }),
+              HasSubstr("without intrinsics"));
+}
+
+TEST(ValidateSensor, NominalPoseIsAPose) {
+  EXPECT_EQ(RefusalAfter([](auto& h) { h.sensors[1].T_ref_nominal = Se3{}; }).what, "");
+  EXPECT_THAT(RefusalAfter([](auto& h) {
+                h.sensors[1].T_ref_nominal = Se3{{kNaN, 0, 0}, {1, 0, 0, 0}};
+              }).what,
+              HasSubstr("sensor right: nominal p_m"));
+  EXPECT_THAT(RefusalAfter([](auto& h) {
+                h.sensors[1].T_ref_nominal = Se3{{0, 0, 0}, {2, 0, 0, 0}};
+              }).what,
+              HasSubstr("sensor right: nominal q_xyzw"));
+}
+
+Checkerboard Board(int cols, int rows) { return {TargetId("board"), cols, rows, 0.025, 0.0, ""}; }
+
+TEST(ValidateTarget, OneCountIsOddAndOneIsEven) {
+  EXPECT_TRUE(Validate(Board(9, 6)).has_value());
+  EXPECT_TRUE(Validate(Board(6, 9)).has_value());
+  for (const Checkerboard& board : {Board(9, 7), Board(8, 6), Board(5, 5), Board(6, 6)}) {
+    const Status status = Validate(board);
+    ASSERT_FALSE(status.has_value());
+    EXPECT_THAT(status.error().what, HasSubstr("target board"));
+    EXPECT_THAT(status.error().what, HasSubstr("180 degrees"));
+    EXPECT_THAT(status.error().cure, HasSubstr("one odd and one even"));
+  }
+}
+
+TEST(ValidateTarget, CountsAndSizesAreInRange) {
+  EXPECT_TRUE(Validate(Board(3, 100)).has_value());
+  EXPECT_FALSE(Validate(Board(2, 5)).has_value());
+  EXPECT_FALSE(Validate(Board(101, 6)).has_value());
+  EXPECT_FALSE(Validate(Board(9, -6)).has_value());
+  const auto accepts = [](double square_m, double sigma_m) {
+    Checkerboard board = Board(9, 6);
+    board.square_m = square_m;
+    board.square_sigma_m = sigma_m;
+    return Validate(board).has_value();
+  };
+  EXPECT_TRUE(accepts(0.001, 0));
+  EXPECT_TRUE(accepts(1.0, 0.001));
+  EXPECT_FALSE(accepts(0.00099, 0));
+  EXPECT_FALSE(accepts(25, 0));  // millimetres by mistake
+  EXPECT_FALSE(accepts(kNaN, 0));
+  EXPECT_FALSE(accepts(0.025, -1e-6));
+  EXPECT_FALSE(accepts(0.025, 0.02));
+  EXPECT_FALSE(accepts(0.025, kNaN));
+}
+
+TEST(SensorKind, NamesRoundTrip) {
+  for (const char* name : {"camera", "lidar", "tracker", "pose_stream"})
+    EXPECT_EQ(NameOf(SensorKindOf(name).value()), name);
+  EXPECT_FALSE(SensorKindOf("nose").has_value());
+}
+
+TEST(PairsToCalibrate, AreCamerasThatMaySeeTheSameTarget) {
+  SessionHeader header = GoodHeader();
+  header.sensors = {Camera("d"), Camera("c"), Camera("b"), Camera("a")};
+  header.sensors[0].sees = header.sensors[1].sees = TargetId("board");
+  header.sensors[2].sees = TargetId("wall");
+  header.sensors[3].kind = SensorKind::kLidar;
+  const auto pair = [](const char* a, const char* b) { return SensorPair{SensorId(a), SensorId(b)}; };
+  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c")));
+  header.sensors[3].kind = SensorKind::kCamera;  // sees any target
+  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a"), pair("b", "a")));
+  header.sensors.resize(1);
+  EXPECT_THAT(PairsToCalibrate(header), IsEmpty());
+}
+
+}  // namespace
+}  // namespace rigcal

@@ -1,0 +1,105 @@
+// Every text that a person or another program chose goes through every template without becoming markup.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/unit/report_sample.h"
+
+namespace rigcal::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kHostile = "<script>alert('x')</script>\"><img src=x onerror=\"y\"> & \xD7\xA9\xD7\x9C\xE2\x80\xAE";
+
+void ExpectHarmless(const std::string& page, const std::string& where) {
+  EXPECT_THAT(page, Not(HasSubstr("<script"))) << where;
+  EXPECT_THAT(page, Not(HasSubstr("<img src=x"))) << where;
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;")) << where;
+  EXPECT_THAT(page, HasSubstr("\xD7\xA9\xD7\x9C")) << where << ": right-to-left text is kept";
+}
+
+std::string PageOf(const ReportInput& input) { return RenderRevision(input, "{}").value().at("index.html"); }
+
+struct Field {
+  std::string name;
+  void (*set)(ReportInput&);
+};
+
+class HostileText : public ::testing::TestWithParam<Field> {};
+
+TEST_P(HostileText, IsEscapedOnRevisionPage) {
+  ReportInput input = SampleReport();
+  GetParam().set(input);
+  ExpectHarmless(PageOf(input), GetParam().name);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Fields, HostileText,
+    ::testing::Values(
+        Field{"verdict_why", [](ReportInput& in) { in.revision.verdict.why = kHostile; }},
+        Field{"verdict_what_to_do", [](ReportInput& in) { in.revision.verdict.what_to_do = kHostile; }},
+        Field{"diagnosis_what", [](ReportInput& in) { in.revision.edges.back().diagnoses[0].what = kHostile; }},
+        Field{"diagnosis_cure", [](ReportInput& in) { in.revision.edges.back().diagnoses[0].cure = kHostile; }},
+        Field{"graph_note",
+              [](ReportInput& in) {
+                in.revision.solution.diagnoses = {{"c", kHostile, kHostile}};
+              }},
+        Field{"method", [](ReportInput& in) { in.revision.edges[0].method = kHostile; }},
+        Field{"capture_note", [](ReportInput& in) { in.revision.edges[0].captures[4].note = kHostile; }},
+        Field{"picture_title", [](ReportInput& in) { in.revision.edges[0].evidence[0].title = kHostile; }},
+        Field{"missing_picture_title", [](ReportInput& in) { in.revision.edges[0].evidence.back().title = kHostile; }},
+        Field{"contribution",
+              [](ReportInput& in) { in.revision.edges[0].uncertainty.contributions[0].name = kHostile; }},
+        Field{"figure",
+              [](ReportInput& in) {
+                in.revision.edges[0].figures = {{kHostile, 1.0}};
+              }},
+        Field{"software", [](ReportInput& in) { in.software_version = kHostile; }},
+        // Ids cannot hold such text when they come through Parse; the pages do not rely on it.
+        Field{"robot", [](ReportInput& in) { in.revision.robot = RobotId(kHostile); }},
+        Field{"sensor", [](ReportInput& in) { in.revision.solution.poses[1].sensor = SensorId(kHostile); }},
+        Field{"frame", [](ReportInput& in) { in.revision.edges[0].frame_b = SensorId(kHostile); }},
+        Field{"capture", [](ReportInput& in) { in.revision.edges[0].captures[0].capture = CaptureId(kHostile); }},
+        Field{"session", [](ReportInput& in) { in.revision.edges[0].session = SessionId(kHostile); }}),
+    [](const auto& field) { return field.param.name; });
+
+TEST(HostileTextElsewhere, FleetAndRobotPage) {
+  const FleetRow row{RobotId(kHostile), 3, {VerdictLevel::kFail, kHostile, kHostile}, Stamp{1}, 1, 1, true};
+  Revision revision;
+  revision.number = 3;
+  revision.verdict = row.verdict;
+  ExpectHarmless(RenderFleet({row}, Stamp{2}).value(), "fleet");
+  ExpectHarmless(RenderRobot(row, {revision}, Stamp{2}).value(), "robot");
+}
+
+TEST(HostileTextElsewhere, Drawing) {
+  ReportInput input = SampleReport();
+  input.revision.edges.back().diagnoses[0].what = kHostile;
+  ExpectHarmless(RenderGraphSvg(input.revision), "drawing");
+}
+
+// A template without this line escapes nothing at all.
+TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
+  int templates = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/server/report/templates")) {
+    std::string first;
+    std::ifstream file(entry.path());
+    std::getline(file, first);
+    EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
+    ++templates;
+  }
+  EXPECT_EQ(templates, 8);
+}
+
+TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {
+  ReportInput input = SampleReport();
+  input.revision.edges[0].evidence[0].suffix = "jpg/../../../../secret";
+  EXPECT_THAT(PageOf(input), Not(HasSubstr("secret")));
+}
+
+}  // namespace
+}  // namespace rigcal::report

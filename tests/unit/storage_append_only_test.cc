@@ -1,0 +1,78 @@
+// No statement changes or removes what is stored, in any table but the queues.
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "tests/unit/storage_fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+std::vector<std::string> Column(Store& store, const std::string& sql) {
+  std::vector<std::string> values;
+  SQLite::Statement query(store.database(), sql);
+  while (query.executeStep()) values.push_back(query.getColumn(0).getString());
+  return values;
+}
+
+class AppendOnlyTest : public StoreTest {
+ protected:
+  // At least one row in each table.
+  void SetUp() override {
+    const SensorPair pair{SensorId("left"), SensorId("right")};
+    const SessionId session = AppendClosedSession(store_, 2, {pair});
+    const JobRow job = LoadNextJob(store_, {}).value().value();
+    Edge edge = MakeEdge(1);
+    edge.session = session;
+    const BatchId batch(DigestOf("batch").str());
+    ASSERT_TRUE(store_.Write([&]() -> Status {
+      RIGCAL_TRY(AppendEdge(store_, edge, {1}));
+      RIGCAL_TRY(FinishJob(store_, job.number, {2}));
+      RIGCAL_TRY(AppendBatch(store_, kRobot, batch, 2, {3}));
+      RIGCAL_TRY(AppendBatchItem(store_, batch, 0, edge.id));
+      RIGCAL_TRY(AppendView(store_, DigestOf("image"), "chessboard 1", {}));
+      RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      return AppendPublication(store_, {kRobot, number}, {6});
+    }));
+  }
+};
+
+TEST_F(AppendOnlyTest, EveryTableButTheQueues) {
+  const std::vector<std::string> tables =
+      Column(store_,
+             "SELECT name FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' "
+             "AND name NOT LIKE 'waiting%'");
+  EXPECT_GE(tables.size(), 20u);
+  for (const std::string& table : tables) {
+    EXPECT_NE(Column(store_, "SELECT count(*) FROM " + table).front(), "0") << table << " is not put to the test";
+    const std::string first = Column(store_, "SELECT name FROM pragma_table_info('" + table + "')").front();
+    EXPECT_THROW(store_.database().exec("DELETE FROM " + table), SQLite::Exception) << table;
+    EXPECT_THROW(store_.database().exec("UPDATE " + table + " SET " + first + " = " + first), SQLite::Exception)
+        << table;
+    EXPECT_THROW(store_.database().exec("INSERT OR REPLACE INTO " + table + " SELECT * FROM " + table),
+                 SQLite::Exception)
+        << table;
+  }
+}
+
+TEST_F(AppendOnlyTest, AClosedSessionTakesNoMorePayloads) {
+  const std::string digest(64, 'a');
+  EXPECT_THROW(store_.database().exec("INSERT INTO payload VALUES (1, 2, 'left/x.png', '" + digest + "', 5)"),
+               SQLite::Exception);
+}
+
+TEST_F(AppendOnlyTest, UnitsAreTheEndOfColumnNames) {
+  const std::vector<std::string> reals =
+      Column(store_,
+             "SELECT m.name || '.' || c.name FROM sqlite_schema m JOIN pragma_table_info(m.name) c "
+             "WHERE m.type = 'table' AND c.type = 'REAL'");
+  ASSERT_FALSE(reals.empty());
+  for (const std::string& name : reals) {
+    const bool unitless =
+        name.find("_q") != std::string::npos || name == "edge_figure.value" || name == "edge_capture.rms";
+    const bool has_unit = name.ends_with("_m") || name.ends_with("_rad");
+    EXPECT_TRUE(unitless || has_unit) << name;
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::storage
