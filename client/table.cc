@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 namespace rigcal::client {
 
@@ -56,7 +57,9 @@ std::string Fixed(std::optional<double> value, int digits) {
   if (!value || !std::isfinite(*value)) return "-";
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(), "%.*f", digits, *value);
-  return text.data();
+  const std::string_view shown(text.data());
+  const bool is_zero = shown.find_first_not_of("-0.") == std::string_view::npos;
+  return std::string(is_zero && shown.front() == '-' ? shown.substr(1) : shown);
 }
 
 std::string Scaled(std::optional<double> value, double scale, int digits) {

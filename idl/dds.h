@@ -106,6 +106,7 @@ Status ForgetInstance(dds_entity_t writer, const void* sample);
 Status CallOnMatch(dds_entity_t writer, std::function<void()>* callback);
 std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader);
 bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant);
+void ClearMatch(dds_entity_t endpoint);  // so that a wait set sleeps again
 int MatchedCount(dds_entity_t endpoint, bool is_writer);
 Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::milliseconds timeout);
 }  // namespace internal

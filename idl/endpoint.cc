@@ -155,6 +155,13 @@ bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant) {
   return false;
 }
 
+// A mask that names a status of the other kind of endpoint is refused whole.
+void ClearMatch(dds_entity_t endpoint) {
+  std::uint32_t status = 0;
+  if (dds_take_status(endpoint, &status, DDS_SUBSCRIPTION_MATCHED_STATUS) != DDS_RETCODE_OK)
+    dds_take_status(endpoint, &status, DDS_PUBLICATION_MATCHED_STATUS);
+}
+
 int MatchedCount(dds_entity_t endpoint, bool is_writer) {
   const dds_return_t count = is_writer ? dds_get_matched_subscriptions(endpoint, nullptr, 0)
                                        : dds_get_matched_publications(endpoint, nullptr, 0);
@@ -168,11 +175,10 @@ Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::millisec
   const dds_time_t deadline = dds_time() + DDS_MSECS(timeout.count());
   while (MatchedCount(endpoint, is_writer) == 0) {
     dds_attach_t woken = 0;
-    std::uint32_t status = 0;
     if (dds_waitset_wait_until(waitset.get(), &woken, 1, deadline) <= 0)
       return Fail(ErrorCode::kUnreachable, "no rigcald answers on DDS",
                   "Check that rigcald runs with the same domain and tag; `rigcal doctor` shows what is reachable");
-    dds_take_status(endpoint, &status, DDS_PUBLICATION_MATCHED_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS);
+    ClearMatch(endpoint);
   }
   return {};
 }

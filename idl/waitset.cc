@@ -6,7 +6,6 @@ namespace rigcal::wire {
 namespace {
 
 constexpr std::size_t kWokenMax = 64;
-constexpr std::uint32_t kMatched = DDS_PUBLICATION_MATCHED_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS;
 
 Status Attached(dds_return_t code) {
   if (code == DDS_RETCODE_OK) return {};
@@ -43,9 +42,8 @@ Result<bool> WaitSet::Wait(std::chrono::milliseconds timeout) {
   for (std::size_t i = 0; i < listed; ++i) {
     const auto entity = static_cast<dds_entity_t>(woken[i]);
     bool was_set = false;
-    std::uint32_t status = 0;
     if (entity == guard_.get()) dds_take_guardcondition(entity, &was_set);
-    if (entity != guard_.get() && entity != 0) dds_take_status(entity, &status, kMatched);
+    if (entity != guard_.get() && entity != 0) internal::ClearMatch(entity);
   }
   return count > 0;
 }

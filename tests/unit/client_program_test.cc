@@ -19,7 +19,7 @@ struct Ran {
 };
 
 // `arguments` come from this file only.
-Ran Run(const std::string& arguments) {
+Ran Rigcal(const std::string& arguments) {
   static const std::string tag = "test-" + std::to_string(std::random_device()()) + "-" + std::to_string(getpid());
   const auto start = std::chrono::steady_clock::now();
   const std::string command = "RIGCAL_DDS_TAG=" + tag + " '" RIGCAL_PROGRAM "' " + arguments + " 2>&1";
@@ -37,11 +37,11 @@ const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sess
                                          "lookup", "status",     "watch",  "report",   "due",   "doctor"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
-  const Ran top = Run("--help");
+  const Ran top = Rigcal("--help");
   EXPECT_EQ(top.code, 0);
   for (const std::string& verb : kVerbs) {
     EXPECT_NE(top.text.find("\n  " + verb + " "), std::string::npos) << verb;
-    const Ran ran = Run(verb + " --help");
+    const Ran ran = Rigcal(verb + " --help");
     EXPECT_EQ(ran.code, 0) << verb;
     const std::size_t examples = ran.text.find("Examples:\n");
     ASSERT_NE(examples, std::string::npos) << verb;
@@ -50,7 +50,7 @@ TEST(Program, HelpOfEveryVerbHasExamples) {
 }
 
 TEST(Program, Version) {
-  const Ran ran = Run("--version");
+  const Ran ran = Rigcal("--version");
   EXPECT_EQ(ran.code, 0);
   EXPECT_EQ(ran.text.rfind("rigcal ", 0), 0U);
   EXPECT_NE(ran.text.find("protocol"), std::string::npos);
@@ -61,7 +61,7 @@ TEST(Program, WrongUsageIsTwoWithASentence) {
        {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
         "show r --revision zero", "show r --revision 0", "status --timeout never", "status --timeout -1",
         "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate"}) {
-    const Ran ran = Run(arguments);
+    const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;
   }
@@ -69,7 +69,7 @@ TEST(Program, WrongUsageIsTwoWithASentence) {
 
 TEST(Program, ADomainThatIsNoneIsRefused) {
   for (const char* domain : {"x", "231", "-1", "99999999999"}) {
-    const Ran ran = Run(std::string("status --timeout 0.2 --domain=") + domain);
+    const Ran ran = Rigcal(std::string("status --timeout 0.2 --domain=") + domain);
     EXPECT_EQ(ran.code, 4) << ran.text;
     EXPECT_NE(ran.text.find("0..230"), std::string::npos) << ran.text;
   }
@@ -77,7 +77,7 @@ TEST(Program, ADomainThatIsNoneIsRefused) {
 
 TEST(Program, NobodyThereIsThreeWithinTheTimeout) {
   for (const char* verb : {"robots", "sessions", "edges r", "show r", "lookup r a b", "status", "report r", "due"}) {
-    const Ran ran = Run(std::string(verb) + " --timeout 0.3");
+    const Ran ran = Rigcal(std::string(verb) + " --timeout 0.3");
     EXPECT_EQ(ran.code, 3) << verb << "\n" << ran.text;
     EXPECT_NE(ran.text.find("no rigcald answers on DDS domain 0, tag 'test-"), std::string::npos) << ran.text;
     EXPECT_NE(ran.text.find("rigcal doctor"), std::string::npos);
@@ -87,11 +87,11 @@ TEST(Program, NobodyThereIsThreeWithinTheTimeout) {
 }
 
 TEST(Program, DoctorSaysThatNobodyIsThere) {
-  const Ran ran = Run("doctor");
+  const Ran ran = Rigcal("doctor");
   EXPECT_EQ(ran.code, 3) << ran.text;
   EXPECT_NE(ran.text.find("fail"), std::string::npos);
   EXPECT_NE(ran.text.find("-> "), std::string::npos);
-  const Ran json = Run("doctor --json");
+  const Ran json = Rigcal("doctor --json");
   EXPECT_EQ(json.code, 3);
   EXPECT_EQ(json.text.rfind("{\"checks\":[", 0), 0U) << json.text;
 }
@@ -99,14 +99,14 @@ TEST(Program, DoctorSaysThatNobodyIsThere) {
 TEST(Program, InputThatIsNotThereIsRefusedBeforeAnythingIsSent) {
   for (const char* arguments : {"push /nonexistent", "push-edges /nonexistent.json --robot r", "push-edges /nonexistent.g2o --robot r",
                                 "push-edges /dev/null --robot '../x'", "watch ../x"}) {
-    const Ran ran = Run(arguments);
+    const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 4) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << ran.text;
   }
 }
 
 TEST(Program, WatchEndsAfterItsTimeout) {
-  const Ran ran = Run("watch --timeout 0.3");
+  const Ran ran = Rigcal("watch --timeout 0.3");
   EXPECT_EQ(ran.code, 0) << ran.text;
   EXPECT_LT(ran.took_s, 5.0);
 }

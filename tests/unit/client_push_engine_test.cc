@@ -193,7 +193,7 @@ TEST(PushEngine, AnswersWithoutProgressMeanThatChunksWereLost) {
   EXPECT_EQ(Chunks(engine, 1).size(), 2U);
   std::size_t again = 0;
   for (std::uint64_t second = 1; second <= 6 && again == 0; ++second) {
-    const std::int64_t now_ns = static_cast<std::int64_t>(second) * kSecond_ns + 10;
+    const std::int64_t now_ns = static_cast<std::int64_t>(second) * (kSecond_ns + 10);
     EXPECT_EQ(engine.Next(now_ns).kind, Kind::kSendHeader);
     engine.OnReceipt(ReceiptOf(State::kReceiving, 1 + second, {false, false}), now_ns + 1);
     again = Chunks(engine, now_ns + 2).size();

@@ -50,6 +50,8 @@ TEST(Numbers, UnknownIsADash) {
   EXPECT_EQ(Fixed(std::nullopt, 2), "-");
   EXPECT_EQ(Fixed(std::numeric_limits<double>::quiet_NaN(), 2), "-");
   EXPECT_EQ(Fixed(1.2345, 2), "1.23");
+  EXPECT_EQ(Fixed(-0.0004, 3), "0.000");
+  EXPECT_EQ(Fixed(-0.0005001, 3), "-0.001");
   EXPECT_EQ(Scaled(0.08318, 1e3, 2), "83.18");
   EXPECT_EQ(Scaled(std::nullopt, 1e3, 2), "-");
   EXPECT_EQ(Fixed(1e300, 0).size(), 301U);

@@ -21,7 +21,7 @@ struct Ran {
   std::string out, err;
 };
 
-Ran Run(std::vector<std::string> words) {
+Ran Rigcal(std::vector<std::string> words) {
   words.insert(words.begin(), "rigcal");
   words.insert(words.end(), {"--tag", TestPlace().tag, "--timeout", "20"});
   std::vector<const char*> argv;
@@ -49,7 +49,7 @@ TEST(Verbs, LookupPrintsPoseSigmaAndCovariance) {
     asked_json = json;
     return Lookup("pass");
   });
-  const Ran ran = Run({"lookup", "r", "left", "right"});
+  const Ran ran = Rigcal({"lookup", "r", "left", "right"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked_verb, "lookup");
   EXPECT_EQ(asked_json, R"({"robot":"r","a":"left","b":"right"})");
@@ -64,15 +64,15 @@ TEST(Verbs, LookupPrintsPoseSigmaAndCovariance) {
 
 TEST(Verbs, JsonIsTheServersDocumentVerbatim) {
   FakeServer server("r", Always(Lookup("pass")));
-  const Ran ran = Run({"lookup", "r", "left", "right", "--json"});
+  const Ran ran = Rigcal({"lookup", "r", "left", "right", "--json"});
   EXPECT_EQ(ran.out, Lookup("pass") + "\n");
   EXPECT_EQ(ran.err, "");
 }
 
 TEST(Verbs, AVerdictOfFailIsExitCodeOne) {
   FakeServer server("r", Always(Lookup("fail")));
-  EXPECT_EQ(Run({"lookup", "r", "left", "right"}).code, 1);
-  EXPECT_EQ(Run({"lookup", "r", "left", "right", "--json"}).code, 1);
+  EXPECT_EQ(Rigcal({"lookup", "r", "left", "right"}).code, 1);
+  EXPECT_EQ(Rigcal({"lookup", "r", "left", "right", "--json"}).code, 1);
 }
 
 TEST(Verbs, AnErrorIsASentenceAndExitCodeFour) {
@@ -80,7 +80,7 @@ TEST(Verbs, AnErrorIsASentenceAndExitCodeFour) {
     return Fail(ErrorCode::kNotFound, "robot 'x' is not known", "`rigcal robots` lists those that are");
   });
   for (const char* verb : {"show", "edges", "status", "report"}) {
-    const Ran ran = Run({verb, "x"});
+    const Ran ran = Rigcal({verb, "x"});
     EXPECT_EQ(ran.code, 4) << verb;
     EXPECT_EQ(ran.out, "") << verb;
     EXPECT_EQ(ran.err, "rigcal: robot 'x' is not known. `rigcal robots` lists those that are.\n") << verb;
@@ -96,14 +96,14 @@ TEST(Verbs, DueListsTheOverdueAndExitsOneIfAnyIs) {
            R"({"robot":"fresh","calibrated_at":"2026-01-30T12:00:00Z","age_ns":86400000000000,"overdue":false,"verdict":{"level":"pass"}},)" +
            R"({"robot":"old-one","calibrated_at":null,"age_ns":null,"overdue":)" + (overdue ? "true" : "false") + R"(,"verdict":{"level":"unknown"}}]})";
   });
-  Ran ran = Run({"due", "--max-age", "30d"});
+  Ran ran = Rigcal({"due", "--max-age", "30d"});
   EXPECT_EQ(asked, R"({"max_age_ns":2592000000000000})");
   EXPECT_EQ(ran.code, 1);
   EXPECT_NE(ran.out.find("old-one"), std::string::npos);
   EXPECT_EQ(ran.out.find("fresh"), std::string::npos);
   overdue = false;
-  EXPECT_EQ(Run({"due"}).code, 0);
-  EXPECT_EQ(Run({"due", "--max-age", "soon"}).code, 2);
+  EXPECT_EQ(Rigcal({"due"}).code, 0);
+  EXPECT_EQ(Rigcal({"due", "--max-age", "soon"}).code, 2);
 }
 
 TEST(Verbs, EveryListTakesAnEmptyDocumentAndForeignTypes) {
@@ -111,7 +111,7 @@ TEST(Verbs, EveryListTakesAnEmptyDocumentAndForeignTypes) {
     FakeServer server("r", Always(text));
     for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
              {"robots"}, {"sessions"}, {"sessions", "r"}, {"edges", "r"}, {"show", "r"}, {"lookup", "r", "a", "b"}, {"status"}, {"due"}})
-      EXPECT_EQ(Run(words).code, 0) << words.front() << " " << text;
+      EXPECT_EQ(Rigcal(words).code, 0) << words.front() << " " << text;
   }
 }
 
@@ -120,7 +120,7 @@ TEST(Verbs, WatchPrintsEventsAndEndsAfterItsCount) {
   std::atomic<bool> ended{false};
   Ran ran;
   std::thread watcher([&] {
-    ran = Run({"watch", "r", "--count", "2"});
+    ran = Rigcal({"watch", "r", "--count", "2"});
     ended = true;
   });
   // An event before the watcher knows our writer is not heard, so they are sent until it ends.
@@ -138,7 +138,7 @@ TEST(Verbs, DoctorFindsTheServer) {
     return R"({"state":"ok","version":")" + std::string(Version()) + R"(","protocol":)" + std::to_string(kWireProtocol) +
            R"(,"schema":1,"uptime_ns":1,"now":")" + ToIso(SystemClock().Now()) + R"(","disk_free_bytes":90000000000,"problem":null})";
   });
-  const Ran ran = Run({"doctor", "--json"});
+  const Ran ran = Rigcal({"doctor", "--json"});
   const auto document = Document::Parse(ran.out, "doctor");
   ASSERT_TRUE(document) << ran.out << ran.err;
   std::map<std::string, std::string> levels;
@@ -170,7 +170,7 @@ TEST(Verbs, PushPrintsTheEdgesTheVerdictAndTheReport) {
   folder.WriteSession("r1", 2, 1000);
   std::atomic<int> session_questions{0};
   FakeServer server("r1", CalibratedServer(session_questions));
-  const Ran ran = Run({"push", folder.path().string()});
+  const Ran ran = Rigcal({"push", folder.path().string()});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_NE(ran.out.find("left - right  stereo  good  sigma 0.100 0.200 0.300 mm"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("r1, revision 1"), std::string::npos) << ran.out;
@@ -185,7 +185,7 @@ TEST(Verbs, PushJsonIsOneDocument) {
   folder.WriteSession("r1", 2, 1000);
   std::atomic<int> session_questions{0};
   FakeServer server("r1", CalibratedServer(session_questions));
-  const Ran ran = Run({"push", folder.path().string(), "--json"});
+  const Ran ran = Rigcal({"push", folder.path().string(), "--json"});
   const auto document = Document::Parse(ran.out, "push");
   ASSERT_TRUE(document) << ran.out;
   EXPECT_EQ((*document)["items"].Integer(), 4);
@@ -198,7 +198,7 @@ TEST(Verbs, PushWithoutWaitingAsksNothing) {
   SessionFolder folder;
   folder.WriteSession("r1", 2, 1000);
   FakeServer server("r1");
-  EXPECT_EQ(Run({"push", folder.path().string(), "--no-wait"}).code, 0);
+  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait"}).code, 0);
   EXPECT_EQ(server.requests_seen, 0);
 }
 
@@ -208,7 +208,7 @@ TEST(Verbs, PushEdgesTakesJson) {
                R"({"format":1,"edges":[{"frame_a":"a","frame_b":"b","T_a_b":{"p_m":[0,1,0],"q_xyzw":[0,0,0,1]},"covariance":[)"
                R"([1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
   FakeServer server("r1");
-  const Ran ran = Run({"push-edges", (folder.path() / "edges.json").string(), "--robot", "r1", "--no-wait", "--json"});
+  const Ran ran = Rigcal({"push-edges", (folder.path() / "edges.json").string(), "--robot", "r1", "--no-wait", "--json"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   const auto document = Document::Parse(ran.out, "push-edges");
   ASSERT_TRUE(document);

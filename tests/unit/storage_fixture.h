@@ -3,10 +3,14 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include "server/base/sha256.h"
 #include "server/model/edge.h"
@@ -21,11 +25,22 @@
 
 namespace rigcal::storage {
 
+// In memory where there is such a file system, so that tests do not wait for the disk's syncs.
+inline std::filesystem::path MemoryFolder() {
+  std::error_code code;
+  const std::filesystem::path memory = "/dev/shm";
+  return std::filesystem::is_directory(memory, code) && access(memory.c_str(), W_OK) == 0
+             ? memory
+             : std::filesystem::temp_directory_path();
+}
+
 class TempFolder {
  public:
-  TempFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "storage-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
+  explicit TempFolder(const std::filesystem::path& parent = MemoryFolder()) {
+    std::string pattern = (parent / "storage-XXXXXX").string();
+    const char* made = mkdtemp(pattern.data());
+    if (made == nullptr) throw std::runtime_error("no temporary folder in " + parent.string());
+    path_ = made;
   }
   ~TempFolder() {
     std::error_code ignored;

@@ -145,7 +145,7 @@ TEST_F(WorkTest, RevisionsAreNumberedPerRobot) {
 
 TEST_F(WorkTest, ALargeDocumentComesBack) {
   Revision revision = MakeRevision(1);
-  revision.document.assign(40u << 20, 'd');
+  revision.document.assign(12u << 20, 'd');
   revision.document.back() = 'e';
   ASSERT_TRUE(AppendRevision(store_, revision));
   EXPECT_TRUE(LoadRevision(store_, kRobot, 1).value()->document == revision.document);
