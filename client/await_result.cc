@@ -25,13 +25,13 @@ struct ResultWatch::State {
   AwaitPlace place;
   const AwaitHooks& hooks;
   Awaited result;
-  std::set<std::string> seen = {};              // edges that were told
+  std::set<std::string> seen = {};                   // edges that were told
   std::set<std::int64_t> made = {}, published = {};  // revisions, by event
   bool jobs_done = false, finished = false;
   bool ask_now = true;
-  std::int64_t waiting = 0, total = 0;          // jobs of the session
-  std::int64_t looked_at_revision = 0;          // it does not hold all the edges
-  std::size_t looked_for = 0;                   // that many edges
+  std::int64_t waiting = 0, total = 0;  // jobs of the session
+  std::int64_t looked_at_revision = 0;  // it does not hold all the edges
+  std::size_t looked_for = 0;           // that many edges
 };
 
 ResultWatch::ResultWatch(Connection connection, wire::Reader<rigcal_wire_Event> events, wire::WaitSet waitset)
@@ -73,7 +73,8 @@ void ResultWatch::TakeEvent(const rigcal_wire_Event& event, State& state) const 
 
 Status ResultWatch::TakeEvents(State& state, milliseconds timeout) {
   RIGCAL_TRY(waitset_.Wait(timeout));
-  RIGCAL_TRY(events_.Take(1024, [&](const rigcal_wire_Event& event, const wire::SampleOrigin&) { TakeEvent(event, state); }));
+  RIGCAL_TRY(
+      events_.Take(1024, [&](const rigcal_wire_Event& event, const wire::SampleOrigin&) { TakeEvent(event, state); }));
   return {};
 }
 
@@ -94,8 +95,7 @@ Status ResultWatch::AskSession(State& state) {
 // `show` may be megabytes: it is asked for only when there is a revision that was not looked at.
 Status ResultWatch::AskRevision(State& state) {
   const std::string robot = state.place.robot.str();
-  RIGCAL_ASSIGN(state.result.status,
-                connection_.AskDocument("status", JsonObject({{"robot", robot}}), kAnswerWithin));
+  RIGCAL_ASSIGN(state.result.status, connection_.AskDocument("status", JsonObject({{"robot", robot}}), kAnswerWithin));
   const Document rows = state.result.status["robots"];
   const std::int64_t newest = rows.size() > 0 ? rows[0]["revision"].Integer().value_or(0) : 0;
   if (newest == 0 || (newest == state.looked_at_revision && state.looked_for == state.place.edges.size())) return {};
@@ -141,7 +141,8 @@ Result<Awaited> ResultWatch::Await(AwaitPlace place, const AwaitHooks& hooks) {
       if (!asked && asked.error().code != ErrorCode::kUnreachable) return Fail(asked.error());
       if (!asked && SteadyNow_ns() - answered_ns >= state.place.give_up_ns)
         return Fail(UnreachableError(state.place.where, milliseconds(state.place.give_up_ns / 1'000'000)));
-      if (!asked && hooks.say) hooks.say("No rigcald answers on " + state.place.where + ". Still trying; nothing is lost.");
+      if (!asked && hooks.say)
+        hooks.say("No rigcald answers on " + state.place.where + ". Still trying; nothing is lost.");
     }
     if (!state.finished) RIGCAL_TRY(TakeEvents(state, milliseconds(200)));
   }

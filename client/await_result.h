@@ -25,17 +25,17 @@ struct AwaitPlace {
 };
 
 struct Awaited {
-  bool has_revision = false;    // false: the session has no sensor pairs, so there is none to wait for
-  Document show;                // docs/api.md, show: a revision that holds all the edges
-  std::string show_text;        // the same, verbatim
+  bool has_revision = false;  // false: the session has no sensor pairs, so there is none to wait for
+  Document show;              // docs/api.md, show: a revision that holds all the edges
+  std::string show_text;      // the same, verbatim
   Document status;
 };
 
 // Open before the push begins: no event is missed.
 class ResultWatch {
  public:
-  [[nodiscard]] static Result<ResultWatch> Open(const wire::Participant& participant, const wire::ParticipantOptions& dds,
-                                                const RobotId& robot);
+  [[nodiscard]] static Result<ResultWatch> Open(const wire::Participant& participant,
+                                                const wire::ParticipantOptions& dds, const RobotId& robot);
   // kUnreachable if no server answered for give_up_ns.
   [[nodiscard]] Result<Awaited> Await(AwaitPlace place, const AwaitHooks& hooks);
 

@@ -15,7 +15,7 @@
 namespace rigcal::client {
 namespace {
 
-constexpr std::int64_t kBufferWanted_bytes = 4 << 20;   // deploy/dds/default.xml
+constexpr std::int64_t kBufferWanted_bytes = 4 << 20;  // deploy/dds/default.xml
 constexpr std::int64_t kClockGood_ns = 100'000'000;
 constexpr std::int64_t kRoundTripGood_ns = 50'000'000;
 constexpr double kDiskWarn_bytes = 10e9, kDiskFail_bytes = 1e9;
@@ -58,9 +58,11 @@ Check JudgeInterfaces(const std::vector<NetworkInterface>& interfaces) {
   if (interfaces.empty())
     return {"network", CheckLevel::kFail, "no interface is up", "Bring up at least the loopback: `ip link set lo up`"};
   if (!has_network)
-    return {"network", CheckLevel::kWarn, text + ": only this machine is reachable", "Connect the network if rigcald runs elsewhere"};
+    return {"network", CheckLevel::kWarn, text + ": only this machine is reachable",
+            "Connect the network if rigcald runs elsewhere"};
   if (!has_multicast)
-    return {"network", CheckLevel::kWarn, text + ": no multicast, servers on other machines are not found by themselves",
+    return {"network", CheckLevel::kWarn,
+            text + ": no multicast, servers on other machines are not found by themselves",
             "`ip link set DEV multicast on`, or name the server as a peer through CYCLONEDDS_URI"};
   return {"network", CheckLevel::kOk, text, ""};
 }
@@ -73,7 +75,8 @@ std::optional<std::int64_t> ReceiveBufferMax() {
 }
 
 Check JudgeReceiveBuffer(std::optional<std::int64_t> bytes_max) {
-  if (!bytes_max) return {"socket buffer", CheckLevel::kWarn, "net.core.rmem_max cannot be read", "Run on Linux with /proc mounted"};
+  if (!bytes_max)
+    return {"socket buffer", CheckLevel::kWarn, "net.core.rmem_max cannot be read", "Run on Linux with /proc mounted"};
   const std::string text = "net.core.rmem_max is " + ByteText(static_cast<double>(*bytes_max)) + ", wanted " +
                            ByteText(static_cast<double>(kBufferWanted_bytes));
   if (*bytes_max >= kBufferWanted_bytes) return {"socket buffer", CheckLevel::kOk, text, ""};
@@ -83,11 +86,13 @@ Check JudgeReceiveBuffer(std::optional<std::int64_t> bytes_max) {
 
 Check JudgeVersions(const std::string& client, int client_protocol, const std::string& server,
                     std::optional<std::int64_t> server_protocol) {
-  const std::string text = "rigcal " + client + " (protocol " + std::to_string(client_protocol) + "), rigcald " + server +
-                           " (protocol " + (server_protocol ? std::to_string(*server_protocol) : "?") + ")";
+  const std::string text = "rigcal " + client + " (protocol " + std::to_string(client_protocol) + "), rigcald " +
+                           server + " (protocol " + (server_protocol ? std::to_string(*server_protocol) : "?") + ")";
   if (server_protocol != client_protocol)
-    return {"versions", CheckLevel::kFail, text, "Install the same version of rigcal here and of rigcald on the server"};
-  if (client != server) return {"versions", CheckLevel::kWarn, text, "They understand each other; install the same version when you can"};
+    return {"versions", CheckLevel::kFail, text,
+            "Install the same version of rigcal here and of rigcald on the server"};
+  if (client != server)
+    return {"versions", CheckLevel::kWarn, text, "They understand each other; install the same version when you can"};
   return {"versions", CheckLevel::kOk, text, ""};
 }
 
@@ -110,7 +115,8 @@ Check JudgeDisk(const std::string& where, std::optional<std::int64_t> free_bytes
   const auto bytes = static_cast<double>(*free_bytes);
   const std::string text = ByteText(bytes) + " free";
   if (bytes >= kDiskWarn_bytes) return {where, CheckLevel::kOk, text, ""};
-  return {where, bytes < kDiskFail_bytes ? CheckLevel::kFail : CheckLevel::kWarn, text, "Make room before the next session"};
+  return {where, bytes < kDiskFail_bytes ? CheckLevel::kFail : CheckLevel::kWarn, text,
+          "Make room before the next session"};
 }
 
 }  // namespace rigcal::client

@@ -19,14 +19,17 @@ constexpr const char* kFooter =
 
 struct GlobalOptions {
   double timeout_s = 5.0;
-  std::string domain, tag;
+  int domain = 0;
+  std::string tag;
 };
 
 void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
   app.add_flag("--json", context.json, "Print JSON: the server's document of docs/api.md, or the verb's own");
   app.add_option("--domain", options.domain, "DDS domain, 0..230 (default: RIGCAL_DOMAIN, else 0)")
-      ->type_name("N");
-  app.add_option("--tag", options.tag, "DDS discovery tag: sees only servers with the same one (default: RIGCAL_DDS_TAG)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 230));
+  app.add_option("--tag", options.tag,
+                 "DDS discovery tag: sees only servers with the same one (default: RIGCAL_DDS_TAG)")
       ->type_name("NAME");
   app.add_option("--timeout", options.timeout_s, "Seconds to wait for an answer (default 5)")
       ->type_name("S")
@@ -37,7 +40,7 @@ void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
 // What is said on the command line wins over the environment, which the DDS layer reads.
 void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) {
   context.timeout_is_given = app.count("--timeout") > 0;
-  if (!options.domain.empty()) setenv("RIGCAL_DOMAIN", options.domain.c_str(), 1);
+  if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(options.domain).c_str(), 1);
   if (!options.tag.empty()) setenv("RIGCAL_DDS_TAG", options.tag.c_str(), 1);
   context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
 }

@@ -53,7 +53,9 @@ Error UnreachableError(const std::string& where, milliseconds waited) {
 
 Connection::Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies,
                        wire::WaitSet waitset, std::string where)
-    : requests_(std::move(requests)), replies_(std::move(replies)), waitset_(std::move(waitset)),
+    : requests_(std::move(requests)),
+      replies_(std::move(replies)),
+      waitset_(std::move(waitset)),
       where_(std::move(where)) {}
 
 Result<Connection> Connection::Open(const wire::Participant& participant, const wire::ParticipantOptions& options) {

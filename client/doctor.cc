@@ -51,7 +51,8 @@ Result<Health> AskHealth(Connection& connection, milliseconds timeout) {
 
 void CheckAnswers(const std::vector<Health>& answers, std::vector<Check>& checks) {
   std::vector<Health> sorted = answers;
-  std::sort(sorted.begin(), sorted.end(), [](const Health& x, const Health& y) { return x.round_trip_ns < y.round_trip_ns; });
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Health& x, const Health& y) { return x.round_trip_ns < y.round_trip_ns; });
   const Health& fastest = sorted.front();
   const Document& document = fastest.document;
   checks.push_back(JudgeRoundTrip(sorted[sorted.size() / 2].round_trip_ns));
@@ -69,7 +70,8 @@ Status CheckServer(const Context& context, Findings& findings) {
   findings.checks.push_back({"dds", CheckLevel::kOk, "takes part in " + WhereText(context.dds), ""});
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
   const std::int64_t start_ns = SteadyNow_ns();
-  RIGCAL_TRY(connection.WaitForServer(std::max(kDiscoverWithin, context.timeout_is_given ? context.timeout : kDiscoverWithin)));
+  RIGCAL_TRY(connection.WaitForServer(
+      std::max(kDiscoverWithin, context.timeout_is_given ? context.timeout : kDiscoverWithin)));
   const double found_ms = static_cast<double>(SteadyNow_ns() - start_ns) * 1e-6;
   findings.checks.push_back({"discovery", CheckLevel::kOk, "found a rigcald after " + Fixed(found_ms, 0) + " ms", ""});
   std::vector<Health> answers;
@@ -80,7 +82,8 @@ Status CheckServer(const Context& context, Findings& findings) {
   findings.has_server = true;
   CheckAnswers(answers, findings.checks);
   if (connection.MatchedServers() > 1)
-    findings.checks.push_back({"servers", CheckLevel::kWarn, std::to_string(connection.MatchedServers()) + " servers answer",
+    findings.checks.push_back({"servers", CheckLevel::kWarn,
+                               std::to_string(connection.MatchedServers()) + " servers answer",
                                "Stop all but one, or keep them apart by --domain or --tag"});
   return {};
 }
@@ -93,9 +96,10 @@ Findings Look(const Context& context) {
   if (const Status seen = CheckServer(context, findings); !seen) {
     const bool is_absent = seen.error().code == ErrorCode::kUnreachable;
     findings.checks.push_back({is_absent ? "discovery" : "server", CheckLevel::kFail, Plain(seen.error().what),
-                               is_absent ? "Start `rigcald --data DIR` with the same domain and tag; let UDP ports 7400-7700 "
-                                           "through firewalls; between machines the network must pass multicast"
-                                         : Plain(seen.error().cure)});
+                               is_absent
+                                   ? "Start `rigcald --data DIR` with the same domain and tag; let UDP ports 7400-7700 "
+                                     "through firewalls; between machines the network must pass multicast"
+                                   : Plain(seen.error().cure)});
   }
   return findings;
 }
@@ -112,8 +116,9 @@ void Print(const Findings& findings, std::ostream& out) {
 void PrintJson(const Findings& findings, ExitCode code, std::ostream& out) {
   std::string list = "[";
   for (const Check& check : findings.checks)
-    list += (list.size() > 1 ? "," : "") + JsonObject({{"cure", check.cure}, {"level", NameOf(check.level)},
-                                                       {"name", check.name}, {"text", check.text}});
+    list +=
+        (list.size() > 1 ? "," : "") +
+        JsonObject({{"cure", check.cure}, {"level", NameOf(check.level)}, {"name", check.name}, {"text", check.text}});
   out << JsonObject({Field::Raw("checks", list + "]"), Field::Raw("good", code == ExitCode::kGood ? "true" : "false")})
       << std::endl;
 }
@@ -122,7 +127,9 @@ ExitCode Run(const Context& context) {
   const Findings findings = Look(context);
   const bool failed = std::any_of(findings.checks.begin(), findings.checks.end(),
                                   [](const Check& check) { return check.level == CheckLevel::kFail; });
-  const ExitCode code = !findings.has_server ? ExitCode::kUnreachable : failed ? ExitCode::kVerdictFail : ExitCode::kGood;
+  const ExitCode code = !findings.has_server ? ExitCode::kUnreachable
+                        : failed             ? ExitCode::kVerdictFail
+                                             : ExitCode::kGood;
   if (context.json)
     PrintJson(findings, code, context.out);
   else

@@ -42,15 +42,14 @@ Document Document::operator[](std::size_t idx) const {
 
 bool Document::IsNull() const { return !node_->value || node_->value->is_null(); }
 
-std::size_t Document::size() const {
-  return node_->value && node_->value->is_structured() ? node_->value->size() : 0;
-}
+std::size_t Document::size() const { return node_->value && node_->value->is_structured() ? node_->value->size() : 0; }
 
 std::vector<Document> Document::Items() const {
   std::vector<Document> items;
   if (!node_->value || !node_->value->is_array()) return items;
   items.reserve(node_->value->size());
-  for (const json& item : *node_->value) items.push_back(Document(std::make_shared<const Node>(Node{node_->root, &item})));
+  for (const json& item : *node_->value)
+    items.push_back(Document(std::make_shared<const Node>(Node{node_->root, &item})));
   return items;
 }
 

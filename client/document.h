@@ -19,17 +19,17 @@ class Document {
   // `origin` is named in the error.
   [[nodiscard]] static Result<Document> Parse(std::string_view text, std::string_view origin);
 
-  [[nodiscard]] Document operator[](std::string_view key) const;   // member of an object, or null
-  [[nodiscard]] Document operator[](std::size_t idx) const;        // element of an array, or null
+  [[nodiscard]] Document operator[](std::string_view key) const;  // member of an object, or null
+  [[nodiscard]] Document operator[](std::size_t idx) const;       // element of an array, or null
   [[nodiscard]] bool IsNull() const;
-  [[nodiscard]] std::size_t size() const;                          // of an array or object; else 0
-  [[nodiscard]] std::vector<Document> Items() const;               // elements of an array; else none
-  [[nodiscard]] std::vector<std::string> Keys() const;             // of an object; else none
+  [[nodiscard]] std::size_t size() const;               // of an array or object; else 0
+  [[nodiscard]] std::vector<Document> Items() const;    // elements of an array; else none
+  [[nodiscard]] std::vector<std::string> Keys() const;  // of an object; else none
   [[nodiscard]] std::string Text(std::string_view fallback = "") const;
   [[nodiscard]] std::optional<double> Number() const;
   [[nodiscard]] std::optional<std::int64_t> Integer() const;
   [[nodiscard]] bool Flag(bool fallback = false) const;
-  [[nodiscard]] std::string Dump() const;                          // compact JSON
+  [[nodiscard]] std::string Dump() const;  // compact JSON
 
  private:
   struct Node;

@@ -44,7 +44,8 @@ ExitCode Run(const Context& context, const std::string& max_age) {
 void AddDue(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("due", "List the robots whose calibration is older than an age");
   auto max_age = std::make_shared<std::string>("90d");
-  verb->add_option("--max-age", *max_age, "Oldest age that is good: 90d, 12h, 30m, 45s (default 90d)")->type_name("AGE");
+  verb->add_option("--max-age", *max_age, "Oldest age that is good: 90d, 12h, 30m, 45s (default 90d)")
+      ->type_name("AGE");
   verb->footer(
       "A robot that was never calibrated is overdue. Exit code 1 if any is; --json lists all robots.\n"
       "Examples:\n"

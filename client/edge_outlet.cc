@@ -23,7 +23,8 @@ EdgesToPush EdgesOf(const RobotId& robot, std::vector<Edge> edges, std::optional
 }
 
 Result<std::unique_ptr<EdgeOutlet>> EdgeOutlet::Open(const wire::Participant& participant, const EdgesToPush& batch) {
-  RIGCAL_ASSIGN(auto items, wire::Writer<rigcal_wire_PairwiseResult>::Open(participant, {wire::RobotPartition(batch.robot)}));
+  RIGCAL_ASSIGN(auto items,
+                wire::Writer<rigcal_wire_PairwiseResult>::Open(participant, {wire::RobotPartition(batch.robot)}));
   return std::unique_ptr<EdgeOutlet>(new EdgeOutlet(batch, std::move(items)));
 }
 

@@ -14,10 +14,11 @@ namespace rigcal::client {
 struct EdgesToPush {
   RobotId robot;
   BatchId id;
-  std::vector<Edge> edges;                 // sorted by id
-  std::vector<std::uint32_t> send_order;   // the file's order, or shuffled
+  std::vector<Edge> edges;                // sorted by id
+  std::vector<std::uint32_t> send_order;  // the file's order, or shuffled
 };
-[[nodiscard]] EdgesToPush EdgesOf(const RobotId& robot, std::vector<Edge> edges, std::optional<std::uint64_t> shuffle_seed);
+[[nodiscard]] EdgesToPush EdgesOf(const RobotId& robot, std::vector<Edge> edges,
+                                  std::optional<std::uint64_t> shuffle_seed);
 
 class EdgeOutlet : public Outlet {
  public:

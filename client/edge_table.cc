@@ -47,8 +47,14 @@ void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
 }
 
 void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
-  Table table({{"A"}, {"B"}, {"METHOD"}, {"p mm", Align::kRight}, {"rpy deg", Align::kRight},
-               {"sigma mm", Align::kRight}, {"sigma deg", Align::kRight}, {"|e| mm", Align::kRight},
+  Table table({{"A"},
+               {"B"},
+               {"METHOD"},
+               {"p mm", Align::kRight},
+               {"rpy deg", Align::kRight},
+               {"sigma mm", Align::kRight},
+               {"sigma deg", Align::kRight},
+               {"|e| mm", Align::kRight},
                {"|e| deg", Align::kRight}});
   for (const Document& edge : edges)
     if (edge["state"].Text() != "failed") AddRow(edge, table);
@@ -56,7 +62,8 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
   for (const Document& edge : edges) {
     const bool failed = edge["state"].Text() == "failed";
     if (failed || edge["diagnoses"].size() > 0)
-      out << Plain(edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?")) << (failed ? ": FAILED" : ":") << '\n';
+      out << Plain(edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?")) << (failed ? ": FAILED" : ":")
+          << '\n';
     PrintDiagnoses(edge["diagnoses"], out);
   }
 }
@@ -65,7 +72,8 @@ std::string EdgeLine(const Document& edge) {
   std::string line = edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?") + "  " + edge["method"].Text("-") +
                      "  " + edge["state"].Text("?");
   if (edge["sigma_m"].size() == 3)
-    line += "  sigma " + Triple(edge["sigma_m"], kMmPerM, 3) + " mm, " + Triple(edge["sigma_rad"], kDegPerRad, 4) + " deg";
+    line +=
+        "  sigma " + Triple(edge["sigma_m"], kMmPerM, 3) + " mm, " + Triple(edge["sigma_rad"], kDegPerRad, 4) + " deg";
   for (const Document& item : edge["diagnoses"].Items())
     line += "  " + Sentence({ErrorCode::kInvalidInput, item["what"].Text(), item["cure"].Text()});
   return Plain(line);

@@ -9,10 +9,10 @@ namespace rigcal::client {
 
 enum class ExitCode {
   kGood = 0,
-  kVerdictFail = 1,   // the answer came and says "fail" (a robot's verdict, an overdue robot, a failed check)
+  kVerdictFail = 1,  // the answer came and says "fail" (a robot's verdict, an overdue robot, a failed check)
   kUsage = 2,
   kUnreachable = 3,
-  kRefused = 4,       // the input, or the thing asked for, was refused
+  kRefused = 4,  // the input, or the thing asked for, was refused
 };
 
 [[nodiscard]] ExitCode ExitCodeOf(const Error& error);

@@ -19,7 +19,8 @@ std::optional<FileMark> MarkOf(const fs::path& path) {
 bool ReadAt(int file, std::uint64_t offset_bytes, std::string& piece) {
   std::size_t done = 0;
   while (done < piece.size()) {
-    const ssize_t count = ::pread(file, piece.data() + done, piece.size() - done, static_cast<off_t>(offset_bytes + done));
+    const ssize_t count =
+        ::pread(file, piece.data() + done, piece.size() - done, static_cast<off_t>(offset_bytes + done));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return false;
     done += static_cast<std::size_t>(count);
@@ -42,9 +43,10 @@ FilePieces::FilePieces(fs::path folder, std::vector<Payload> payloads, FileMarks
     : folder_(std::move(folder)), payloads_(std::move(payloads)), marks_(std::move(marks)) {}
 
 Error FilePieces::Changed(std::uint32_t payload_idx) const {
-  return {ErrorCode::kInvalidInput,
-          (folder_ / payloads_[payload_idx].path).string() + " changed, or can no longer be read, while it was being sent",
-          "Let nothing write to the folder, then push it again: what is already on the server is not sent twice"};
+  return {
+      ErrorCode::kInvalidInput,
+      (folder_ / payloads_[payload_idx].path).string() + " changed, or can no longer be read, while it was being sent",
+      "Let nothing write to the folder, then push it again: what is already on the server is not sent twice"};
 }
 
 Status FilePieces::Check(std::uint32_t payload_idx) const {

@@ -35,7 +35,8 @@ struct Options {
 
 ExitCode Run(const Context& context, const Options& options) {
   const std::string parameters = JsonObject({{"robot", options.robot}, {"a", options.a}, {"b", options.b}});
-  return Answer(context, {"lookup", parameters, Print, [](const Document& document) { return Judge(document["verdict"]); }});
+  return Answer(context,
+                {"lookup", parameters, Print, [](const Document& document) { return Judge(document["verdict"]); }});
 }
 
 }  // namespace

@@ -20,8 +20,12 @@ std::string Bar(double ratio) {
 }  // namespace
 
 Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns, Unit unit)
-    : err_(err), is_terminal_(is_terminal), label_(std::move(label)), start_ns_(now_ns),
-      drawn_ns_(is_terminal ? now_ns - kRedraw_ns : now_ns), unit_(unit) {}
+    : err_(err),
+      is_terminal_(is_terminal),
+      label_(std::move(label)),
+      start_ns_(now_ns),
+      drawn_ns_(is_terminal ? now_ns - kRedraw_ns : now_ns),
+      unit_(unit) {}
 
 std::string Progress::Amount(double amount) const {
   return unit_ == Unit::kBytes ? ByteText(amount) : Fixed(amount, 0) + " edges";

@@ -10,7 +10,7 @@ namespace rigcal::client {
 
 struct ProgressState {
   std::int64_t done = 0, total = 0;  // in the unit of the bar
-  std::string detail;          // "12/40 captures"
+  std::string detail;                // "12/40 captures"
 };
 
 class Progress {

@@ -65,17 +65,17 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
   Progress progress(context.err, context.err_is_terminal, "Sending", SteadyNow_ns());
   std::size_t counted = 0;
   std::string detail = CaptureText(engine, session.payloads);
-  const TransferHooks hooks{
-      [&](const PushEngine& state, std::int64_t now_ns) {
-        if (state.PayloadsHeld() != counted && progress.IsDue(now_ns)) {
-          counted = state.PayloadsHeld();
-          detail = CaptureText(state, session.payloads);
-        }
-        progress.Skip(state.HeldAtFirst());
-        progress.Show({state.ArrivedBytes(), state.TotalBytes(), detail}, now_ns);
-      },
-      [&](const std::string& line) { progress.Say(line); }};
-  const Status done = RunTransfer(participant, {session.robot, session.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
+  const TransferHooks hooks{[&](const PushEngine& state, std::int64_t now_ns) {
+                              if (state.PayloadsHeld() != counted && progress.IsDue(now_ns)) {
+                                counted = state.PayloadsHeld();
+                                detail = CaptureText(state, session.payloads);
+                              }
+                              progress.Skip(state.HeldAtFirst());
+                              progress.Show({state.ArrivedBytes(), state.TotalBytes(), detail}, now_ns);
+                            },
+                            [&](const std::string& line) { progress.Say(line); }};
+  const Status done =
+      RunTransfer(participant, {session.robot, session.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
   progress.Clear();
   if (!done) return Fail(done.error());
   return SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
@@ -89,12 +89,14 @@ void SaySent(const Context& context, const PushSummary& summary) {
   context.err << std::endl;
 }
 
-Result<Awaited> Await(const Context& context, const Options& options, const SessionToPush& session, ResultWatch& watch) {
+Result<Awaited> Await(const Context& context, const Options& options, const SessionToPush& session,
+                      ResultWatch& watch) {
   const AwaitHooks hooks{[&](const Document& edge, std::int64_t, std::int64_t) {
                            (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
                          },
                          [&](const std::string& line) { context.err << line << std::endl; }};
-  return watch.Await({session.robot, session.id, {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)}, hooks);
+  return watch.Await({session.robot, session.id, {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)},
+                     hooks);
 }
 
 Status Run(const Context& context, const Options& options) {
@@ -122,7 +124,8 @@ void AddPush(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   verb->add_option("DIR", options->folder, "The session folder (docs/session-format.md)")->required();
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
-  verb->add_option("--timeout-total", options->give_up_s, "Give up after so many seconds without any answer (default 60)")
+  verb->add_option("--timeout-total", options->give_up_s,
+                   "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
   verb->footer(

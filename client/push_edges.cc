@@ -39,7 +39,8 @@ Status CheckCount(const EdgesToPush& batch, const Options& options) {
   if (batch.edges.empty())
     return Fail(ErrorCode::kInvalidInput, options.file + " has no edges", "Give a file with at least one edge");
   if (batch.edges.size() > limits::kEdgesPerBatchMax)
-    return Fail(ErrorCode::kInvalidInput, options.file + " has more than " + std::to_string(limits::kEdgesPerBatchMax) + " edges",
+    return Fail(ErrorCode::kInvalidInput,
+                options.file + " has more than " + std::to_string(limits::kEdgesPerBatchMax) + " edges",
                 "Split the file");
   return {};
 }
@@ -52,13 +53,13 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
   plan.give_up_ns = std::llround(options.give_up_s * 1e9);
   PushEngine engine(std::move(plan), SteadyNow_ns());
   Progress progress(context.err, context.err_is_terminal, "Sending", SteadyNow_ns(), Progress::Unit::kEdges);
-  const TransferHooks hooks{
-      [&](const PushEngine& state, std::int64_t now_ns) {
-        progress.Skip(state.HeldAtFirst());
-        progress.Show({state.HeldBytes(), state.TotalBytes(), ""}, now_ns);
-      },
-      [&](const std::string& line) { progress.Say(line); }};
-  const Status done = RunTransfer(participant, {batch.robot, batch.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
+  const TransferHooks hooks{[&](const PushEngine& state, std::int64_t now_ns) {
+                              progress.Skip(state.HeldAtFirst());
+                              progress.Show({state.HeldBytes(), state.TotalBytes(), ""}, now_ns);
+                            },
+                            [&](const std::string& line) { progress.Say(line); }};
+  const Status done =
+      RunTransfer(participant, {batch.robot, batch.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
   progress.Clear();
   if (!done) return Fail(done.error());
   return SummaryOf(engine, "batch", batch.robot.str(), batch.id.str(), batch.edges.size());
@@ -96,12 +97,14 @@ Status Run(const Context& context, const Options& options) {
 void AddPushEdges(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("push-edges", "Send finished pairwise results, wait for the new calibration");
   auto options = std::make_shared<Options>();
-  verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")->required();
+  verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")
+      ->required();
   verb->add_option("--robot", options->robot, "The robot whose edges they are")->required()->type_name("ID");
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
   verb->add_option("--shuffle", options->shuffle_seed, "Send in an order drawn from this seed; the result is the same")
       ->type_name("SEED");
-  verb->add_option("--timeout-total", options->give_up_s, "Give up after so many seconds without any answer (default 60)")
+  verb->add_option("--timeout-total", options->give_up_s,
+                   "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
   verb->footer(

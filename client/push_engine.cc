@@ -23,7 +23,10 @@ PushPlan BatchPlan(std::size_t items, std::size_t in_flight_max) {
 }
 
 PushEngine::PushEngine(PushPlan plan, std::int64_t now_ns)
-    : plan_(std::move(plan)), held_(plan_.payload_bytes.size(), false), heard_ns_(now_ns), progress_ns_(now_ns),
+    : plan_(std::move(plan)),
+      held_(plan_.payload_bytes.size(), false),
+      heard_ns_(now_ns),
+      progress_ns_(now_ns),
       resume_ns_(now_ns) {
   for (std::size_t i = 0; i < plan_.payload_bytes.size(); ++i) {
     first_chunk_.push_back(payload_of_.size());
@@ -101,8 +104,8 @@ void PushEngine::OnReceipt(const wire::Receipt& receipt, std::int64_t now_ns) {
   TakeBusy(receipt.busy, now_ns);
   complaint_ = state_ == wire::ReceiptState::kReceiving ? receipt.error : std::nullopt;
   if (state_ == wire::ReceiptState::kRefused)
-    error_ = receipt.error.value_or(Error{ErrorCode::kInvalidInput, "the server refused it without saying why",
-                                          "Look at the server's log"});
+    error_ = receipt.error.value_or(
+        Error{ErrorCode::kInvalidInput, "the server refused it without saying why", "Look at the server's log"});
 }
 
 // Another incarnation: what was in flight is lost, and its held bits are the truth.
@@ -134,7 +137,8 @@ void PushEngine::TakeHeld(const std::vector<bool>& held) {
     ++payloads_held_;
     held_bytes_ += plan_.payload_bytes[i];
     for (std::size_t chunk = first_chunk_[i]; chunk < first_chunk_[i + 1]; ++chunk)
-      if (chunks_[chunk] == ChunkState::kSent) sent_not_held_bytes_ -= static_cast<std::int64_t>(ChunkOf(chunk).size_bytes);
+      if (chunks_[chunk] == ChunkState::kSent)
+        sent_not_held_bytes_ -= static_cast<std::int64_t>(ChunkOf(chunk).size_bytes);
   }
 }
 

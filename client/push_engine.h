@@ -18,7 +18,7 @@
 namespace rigcal::client {
 
 struct PushPlan {
-  std::vector<std::int64_t> payload_bytes;         // in the manifest's order
+  std::vector<std::int64_t> payload_bytes;  // in the manifest's order
   std::int64_t chunk_bytes = limits::kChunkBytesMax;
   std::optional<std::int64_t> fixed_window_bytes;  // of what is sent and not held; absent: as receipts say
   std::vector<std::uint32_t> send_order;           // of chunks; empty: ascending
@@ -38,13 +38,13 @@ struct ChunkAt {
 
 struct PushAction {
   enum class Kind {
-    kSendHeader,    // session: SessionHeader; batch: any one item that is not held (ProbeItem)
+    kSendHeader,  // session: SessionHeader; batch: any one item that is not held (ProbeItem)
     kSendManifest,
-    kSendChunk,     // `chunk`
-    kWait,          // for a receipt, at most until `until_ns`
-    kClosed,        // all is durable
-    kRefused,       // error() says why
-    kGaveUp,        // nobody answered for give_up_ns
+    kSendChunk,  // `chunk`
+    kWait,       // for a receipt, at most until `until_ns`
+    kClosed,     // all is durable
+    kRefused,    // error() says why
+    kGaveUp,     // nobody answered for give_up_ns
   };
   Kind kind = Kind::kWait;
   ChunkAt chunk;
@@ -69,9 +69,9 @@ class PushEngine {
   // What the server says is wrong with a payload while it goes on receiving.
   [[nodiscard]] const std::optional<Error>& complaint() const { return complaint_; }
 
-  [[nodiscard]] bool Answered() const { return answered_; }             // by any receipt, ever
+  [[nodiscard]] bool Answered() const { return answered_; }  // by any receipt, ever
   [[nodiscard]] std::int64_t SilentFor(std::int64_t now_ns) const { return now_ns - heard_ns_; }
-  [[nodiscard]] int restarts() const { return restarts_; }              // of the server, seen by this engine
+  [[nodiscard]] int restarts() const { return restarts_; }  // of the server, seen by this engine
   [[nodiscard]] std::int64_t HeldBytes() const { return held_bytes_; }
   [[nodiscard]] std::int64_t HeldAtFirst() const { return held_at_first_bytes_; }  // before anything was sent
   [[nodiscard]] std::int64_t TotalBytes() const { return total_bytes_; }
@@ -103,22 +103,22 @@ class PushEngine {
   void CheckStall(std::int64_t now_ns);
 
   PushPlan plan_;
-  std::vector<std::size_t> first_chunk_;    // of each payload; one more at the end
-  std::vector<std::uint32_t> payload_of_;   // of each chunk
+  std::vector<std::size_t> first_chunk_;   // of each payload; one more at the end
+  std::vector<std::uint32_t> payload_of_;  // of each chunk
   std::vector<ChunkState> chunks_;
   std::vector<bool> held_;
-  std::size_t cursor_ = 0;                  // in send_order: all before it were given once
-  std::deque<std::size_t> again_;           // to be given again
+  std::size_t cursor_ = 0;         // in send_order: all before it were given once
+  std::deque<std::size_t> again_;  // to be given again
   std::unordered_map<std::size_t, std::int64_t> given_again_ns_;
 
   wire::ReceiptState state_ = wire::ReceiptState::kNeedManifest;
   bool answered_ = false, has_sent_ = false, doubted_refusal_ = false;
   std::optional<std::uint64_t> incarnation_;
-  std::set<std::uint64_t> gone_;            // incarnations before this one
+  std::set<std::uint64_t> gone_;  // incarnations before this one
   std::uint64_t sequence_number_ = 0;
   std::int64_t window_bytes_ = 0, written_bytes_ = 0;
-  std::int64_t written_base_bytes_ = 0;     // written_bytes when we began to count sent_bytes_
-  std::int64_t sent_bytes_ = 0;             // since then, without what was answered busy
+  std::int64_t written_base_bytes_ = 0;  // written_bytes when we began to count sent_bytes_
+  std::int64_t sent_bytes_ = 0;          // since then, without what was answered busy
   std::int64_t sent_not_held_bytes_ = 0;
   std::int64_t held_bytes_ = 0, held_at_first_bytes_ = 0, total_bytes_ = 0;
   std::size_t payloads_held_ = 0;

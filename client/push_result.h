@@ -10,11 +10,11 @@
 namespace rigcal::client {
 
 struct PushSummary {
-  std::string kind;         // "session" | "batch"
+  std::string kind;  // "session" | "batch"
   std::string robot, id;
-  std::size_t items = 0;    // files or edges
+  std::size_t items = 0;  // files or edges
   std::int64_t total_bytes = 0, held_before_bytes = 0;
-  int restarts = 0;         // of the server, seen on the way
+  int restarts = 0;  // of the server, seen on the way
 };
 [[nodiscard]] PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                                     std::size_t items);

@@ -9,8 +9,14 @@ namespace {
 void Print(const Document& document, std::ostream& out) {
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
-  Table table({{"ROBOT"}, {"VERDICT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight},
-               {"SESSIONS", Align::kRight}, {"EDGES", Align::kRight}, {"JOBS", Align::kRight}, {""}});
+  Table table({{"ROBOT"},
+               {"VERDICT"},
+               {"REVISION", Align::kRight},
+               {"AGE", Align::kRight},
+               {"SESSIONS", Align::kRight},
+               {"EDGES", Align::kRight},
+               {"JOBS", Align::kRight},
+               {""}});
   for (const Document& row : document["robots"].Items())
     table.Add({row["robot"].Text("?"), row["verdict"]["level"].Text("unknown"), CountOf(row["revision"]),
                AgeOf(row["age_ns"]), CountOf(row["sessions"]), CountOf(row["edges"]), CountOf(row["jobs_waiting"]),

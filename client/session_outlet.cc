@@ -36,7 +36,10 @@ SessionToPush SessionOf(const Manifest& manifest) {
 SessionOutlet::SessionOutlet(const SessionToPush& session, FilePieces pieces,
                              wire::Writer<rigcal_wire_SessionHeader> headers,
                              wire::Writer<rigcal_wire_Manifest> manifests, wire::Writer<rigcal_wire_Chunk> chunks)
-    : session_(session), pieces_(std::move(pieces)), headers_(std::move(headers)), manifests_(std::move(manifests)),
+    : session_(session),
+      pieces_(std::move(pieces)),
+      headers_(std::move(headers)),
+      manifests_(std::move(manifests)),
       chunks_(std::move(chunks)) {}
 
 Result<std::unique_ptr<SessionOutlet>> SessionOutlet::Open(const wire::Participant& participant,
@@ -45,8 +48,8 @@ Result<std::unique_ptr<SessionOutlet>> SessionOutlet::Open(const wire::Participa
   RIGCAL_ASSIGN(auto headers, wire::Writer<rigcal_wire_SessionHeader>::Open(participant, partition));
   RIGCAL_ASSIGN(auto manifests, wire::Writer<rigcal_wire_Manifest>::Open(participant, partition));
   RIGCAL_ASSIGN(auto chunks, wire::Writer<rigcal_wire_Chunk>::Open(participant, partition));
-  return std::unique_ptr<SessionOutlet>(new SessionOutlet(session, std::move(pieces), std::move(headers),
-                                                          std::move(manifests), std::move(chunks)));
+  return std::unique_ptr<SessionOutlet>(
+      new SessionOutlet(session, std::move(pieces), std::move(headers), std::move(manifests), std::move(chunks)));
 }
 
 bool SessionOutlet::HasServer() const {

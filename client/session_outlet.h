@@ -12,7 +12,7 @@ namespace rigcal::client {
 struct SessionToPush {
   RobotId robot;
   SessionId id;
-  std::string manifest;     // canonical text
+  std::string manifest;  // canonical text
   std::vector<Payload> payloads;
   std::int64_t total_bytes = 0;
 };

@@ -10,14 +10,20 @@ namespace {
 void Print(const Document& document, std::ostream& out) {
   if (document["sessions"].size() == 0) out << "No session is known yet. Send one with `rigcal push DIR`.\n";
   if (document["sessions"].size() == 0) return;
-  Table table({{"SESSION"}, {"ROBOT"}, {"STATE"}, {"CAPTURED"}, {"FILES", Align::kRight}, {"BYTES", Align::kRight},
-               {"JOBS", Align::kRight}, {"OPERATOR"}});
+  Table table({{"SESSION"},
+               {"ROBOT"},
+               {"STATE"},
+               {"CAPTURED"},
+               {"FILES", Align::kRight},
+               {"BYTES", Align::kRight},
+               {"JOBS", Align::kRight},
+               {"OPERATOR"}});
   for (const Document& row : document["sessions"].Items()) {
     const auto done = row["jobs_total"].Integer().value_or(0) - row["jobs_waiting"].Integer().value_or(0);
     table.Add({row["session"].Text("?").substr(0, 16), row["robot"].Text("?"), row["state"].Text("?"),
                row["captured_at"].Text("-"), CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
-               ByteText(row["bytes"].Number().value_or(0.0)),
-               std::to_string(done) + "/" + CountOf(row["jobs_total"]), row["operator"].Text()});
+               ByteText(row["bytes"].Number().value_or(0.0)), std::to_string(done) + "/" + CountOf(row["jobs_total"]),
+               row["operator"].Text()});
   }
   table.Print(out);
 }

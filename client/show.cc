@@ -11,7 +11,10 @@ namespace {
 
 void PrintPoses(const Document& revision, std::ostream& out) {
   out << "\nPoses in " << Plain(revision["reference"].Text("?")) << '\n';
-  Table table({{"SENSOR"}, {"p mm", Align::kRight}, {"rpy deg", Align::kRight}, {"sigma mm", Align::kRight},
+  Table table({{"SENSOR"},
+               {"p mm", Align::kRight},
+               {"rpy deg", Align::kRight},
+               {"sigma mm", Align::kRight},
                {"sigma deg", Align::kRight}});
   for (const Document& sensor : revision["sensors"].Items()) {
     const Document pose = sensor["T_ref_sensor"];

@@ -15,7 +15,8 @@ constexpr std::int64_t kSaySilent_ns = 3'000'000'000;
 constexpr milliseconds kTick(200);  // a bar moves at least this often
 
 milliseconds WaitFor(std::int64_t until_ns, std::int64_t now_ns) {
-  const auto wait = std::chrono::ceil<milliseconds>(std::chrono::nanoseconds(std::max<std::int64_t>(until_ns - now_ns, 0)));
+  const auto wait =
+      std::chrono::ceil<milliseconds>(std::chrono::nanoseconds(std::max<std::int64_t>(until_ns - now_ns, 0)));
   return std::min(wait, kTick);
 }
 
@@ -24,7 +25,11 @@ class Transfer {
  public:
   Transfer(wire::Reader<rigcal_wire_Receipt> receipts, wire::WaitSet waitset, const TransferPlace& place,
            PushEngine& engine, Outlet& outlet, const TransferHooks& hooks)
-      : receipts_(std::move(receipts)), waitset_(std::move(waitset)), place_(place), engine_(engine), outlet_(outlet),
+      : receipts_(std::move(receipts)),
+        waitset_(std::move(waitset)),
+        place_(place),
+        engine_(engine),
+        outlet_(outlet),
         hooks_(hooks) {}
 
   Status Run() {
@@ -68,13 +73,15 @@ class Transfer {
         if (outlet_.HasServer()) return SayIfBusy(outlet_.SendHeader(engine_));
         engine_.NotAsked();
         return waitset_.Wait(kTick).map([](bool) {});
-      case PushAction::Kind::kSendManifest: return SayIfBusy(outlet_.SendManifest());
+      case PushAction::Kind::kSendManifest:
+        return SayIfBusy(outlet_.SendManifest());
       case PushAction::Kind::kSendChunk: {
         const Status sent = outlet_.SendChunk(action.chunk);
         if (!sent && sent.error().code == ErrorCode::kBusy) engine_.NotSent(action.chunk);
         return SayIfBusy(sent);
       }
-      default: return waitset_.Wait(WaitFor(action.until_ns, now_ns)).map([](bool) {});
+      default:
+        return waitset_.Wait(WaitFor(action.until_ns, now_ns)).map([](bool) {});
     }
   }
 
@@ -88,7 +95,8 @@ class Transfer {
     const bool is_silent = engine_.SilentFor(now_ns) > kSaySilent_ns;
     if (is_silent == said_silent_ || !hooks_.say) return;
     said_silent_ = is_silent;
-    hooks_.say(is_silent ? "No rigcald answers on " + place_.where + ". Still trying; nothing is lost." : "rigcald answers.");
+    hooks_.say(is_silent ? "No rigcald answers on " + place_.where + ". Still trying; nothing is lost."
+                         : "rigcald answers.");
   }
 
   Status GiveUp(std::int64_t now_ns) const {
@@ -112,7 +120,8 @@ class Transfer {
 }  // namespace
 
 std::int64_t SteadyNow_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 Status RunTransfer(const wire::Participant& participant, const TransferPlace& place, PushEngine& engine, Outlet& outlet,

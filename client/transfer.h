@@ -35,8 +35,8 @@ struct TransferHooks {
 
 struct TransferPlace {
   RobotId robot;
-  std::string subject_id;   // session or batch
-  std::string where;        // WhereText
+  std::string subject_id;  // session or batch
+  std::string where;       // WhereText
 };
 
 [[nodiscard]] std::int64_t SteadyNow_ns();

@@ -27,12 +27,13 @@ struct Context {
 struct Question {
   std::string verb;
   std::string parameters = "{}";
-  std::function<void(const Document&, std::ostream&)> print;   // for people
-  std::function<ExitCode(const Document&)> judge;              // empty: good
+  std::function<void(const Document&, std::ostream&)> print;  // for people
+  std::function<ExitCode(const Document&)> judge;             // empty: good
 };
 ExitCode Answer(const Context& context, const Question& question);
 // Asks; the error is left to the caller.
-[[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb, const std::string& parameters);
+[[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb,
+                                          const std::string& parameters);
 
 // kVerdictFail if `verdict` (a verdict of docs/api.md) is "fail".
 [[nodiscard]] ExitCode Judge(const Document& verdict);

@@ -15,7 +15,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kTick(200);        // how long Ctrl-C may go unnoticed
+constexpr milliseconds kTick(200);  // how long Ctrl-C may go unnoticed
 constexpr milliseconds kHintAfter(2000);
 
 std::atomic<bool> interrupted{false};
@@ -30,13 +30,16 @@ struct Options {
 std::string TextOf(const std::string& kind, const Document& data) {
   if (kind == "edge") {
     const Document edge = data["edge"].IsNull() ? data : data["edge"];
-    return EdgeLine(edge) + (data["jobs_total"].IsNull() ? "" : "  (" + CountOf(data["jobs_waiting"]) + " of " +
-                                                                    CountOf(data["jobs_total"]) + " jobs waiting)");
+    return EdgeLine(edge) + (data["jobs_total"].IsNull() ? ""
+                                                         : "  (" + CountOf(data["jobs_waiting"]) + " of " +
+                                                               CountOf(data["jobs_total"]) + " jobs waiting)");
   }
-  if (kind == "session_closed") return "session " + data["session"].Text("?").substr(0, 16) + ", " +
-                                       CountOf(data["jobs_total"]) + " sensor pairs to calibrate";
-  if (kind == "graph_update") return CountOf(data["sensors_known"]) + " of " + CountOf(data["sensors"]) +
-                                     " sensors known, " + CountOf(data["edges"]) + " edges (provisional)";
+  if (kind == "session_closed")
+    return "session " + data["session"].Text("?").substr(0, 16) + ", " + CountOf(data["jobs_total"]) +
+           " sensor pairs to calibrate";
+  if (kind == "graph_update")
+    return CountOf(data["sensors_known"]) + " of " + CountOf(data["sensors"]) + " sensors known, " +
+           CountOf(data["edges"]) + " edges (provisional)";
   if (kind == "revision") return "revision " + CountOf(data["revision"]) + ", " + VerdictText(data["verdict"]);
   if (kind == "published") return "report of revision " + CountOf(data["revision"]) + " at " + data["path"].Text("?");
   return data.Dump();

@@ -34,7 +34,7 @@ Error ErrorOf(const SQLite::Exception& failure, const std::string& subject) {
       return {ErrorCode::kStorage, what,
               "The database file is damaged: restore it from a backup, or start with an empty folder."};
     case SQLITE_FULL:
-      return {ErrorCode::kStorage, what, "The disk is full: free some space."};
+      return {ErrorCode::kStorage, what, "Free some space on the disk."};
     case SQLITE_IOERR:
       return {ErrorCode::kStorage, what, "Check that the disk has free space and is healthy."};
     case SQLITE_CANTOPEN:

@@ -49,6 +49,14 @@ FileDescriptor OpenFolder(const fs::path& folder) {
   return FileDescriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
+// Blobs that were being written when the last process died; nobody writes now.
+void RemoveLeftovers(const fs::path& blob_folder) {
+  std::error_code code;
+  for (const fs::path& shard : ShardsOf(blob_folder))
+    for (fs::directory_iterator entry(shard, code), end; !code && entry != end; entry.increment(code))
+      if (entry->path().filename().string().find(".tmp-") != std::string::npos) fs::remove(entry->path(), code);
+}
+
 // SQLite removes the log when the last connection is closed in order.
 bool WasLeftInOrder(const fs::path& folder) {
   std::error_code code;
@@ -79,8 +87,10 @@ Result<FileDescriptor> MarkOpen(const fs::path& folder) {
   FileDescriptor mark = OpenFolder(BlobFolderOf(folder));
   if (mark.get() < 0) return FileFailure(BlobFolderOf(folder), "open", errno);
   const bool alone = flock(mark.get(), LOCK_EX | LOCK_NB) == 0;
-  if (alone && !WasLeftInOrder(folder) && syncfs(mark.get()) != 0)
-    return FileFailure(BlobFolderOf(folder), "sync", errno);
+  if (alone && !WasLeftInOrder(folder)) {
+    RemoveLeftovers(BlobFolderOf(folder));
+    if (syncfs(mark.get()) != 0) return FileFailure(BlobFolderOf(folder), "sync", errno);
+  }
   flock(mark.get(), LOCK_SH);
   return mark;
 }

@@ -20,7 +20,7 @@ namespace rigcal::storage {
 [[nodiscard]] FileDescriptor LockOpening(const std::filesystem::path& folder);
 // Marks the store as open until it is closed. Call it under LockOpening, before the database is opened: if the last
 // process died with the store open, what it had moved into place is made durable, so that a blob that is in sight
-// survives power loss.
+// survives power loss, and half-written ones are removed.
 [[nodiscard]] Result<FileDescriptor> MarkOpen(const std::filesystem::path& folder);
 
 }  // namespace rigcal::storage

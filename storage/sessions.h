@@ -25,17 +25,19 @@ struct SessionRow {
                                    const Manifest& manifest, Stamp now);
 [[nodiscard]] Result<std::optional<SessionRow>> LoadSession(Store& store, const SessionId& id);
 [[nodiscard]] Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id);
-// All of one robot, or of all robots if `robot` is empty; newest first.
+// All of one robot, or of all robots if `robot` is empty; newest captured_at first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
 
-// held[i]: payload i of the manifest is durable.
+// held[i]: payload i of the manifest is durable. kNotFound if the session is unknown.
 [[nodiscard]] Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id);
-// Marks payloads as durable. A no-op for those already marked.
+// Marks payloads as durable; a no-op for those already marked. Refuses the whole list if one index is not in the
+// manifest.
 [[nodiscard]] Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint32_t>& payload_idx,
                                 Stamp now);
 // Digests that are held by any session: what need not be sent again.
 [[nodiscard]] Result<bool> IsHeld(Store& store, const Digest& digest);
-// Closes the session (immutable from now on) and queues one job per pair. A no-op if closed.
+// Closes the session (immutable from now on) and queues one job per pair, in this order. A no-op if closed; kConflict
+// while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
 struct RobotRow {

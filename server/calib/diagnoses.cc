@@ -39,8 +39,9 @@ Diagnosis TooFewCaptures(const StereoProblem& problem, std::size_t both) {
 Diagnosis FewCaptures(const StereoProblem& problem, std::size_t both) {
   return {"few_captures",
           PairOf(problem) + " see the board together in only " + CapturesText(both) + "; with fewer than " +
-              std::to_string(kCapturesForJackknife) +
-              " the uncertainty comes from the model alone and may be too small.",
+              std::to_string(kCapturesEnough) +
+              (both < kCapturesForJackknife ? " the uncertainty comes from the model alone and is probably too small."
+                                            : " the uncertainty is itself uncertain."),
           "Take 10 to 20 captures in which both cameras see the whole board."};
 }
 

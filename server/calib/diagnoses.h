@@ -9,7 +9,8 @@
 namespace rigcal::calib {
 
 constexpr std::size_t kCapturesMin = 3;           // seen by both cameras
-constexpr std::size_t kCapturesForJackknife = 8;  // likewise; fewer: the uncertainty is the model's
+constexpr std::size_t kCapturesForJackknife = 5;  // likewise; fewer: the uncertainty is the model's
+constexpr std::size_t kCapturesEnough = 8;        // likewise; fewer: the jackknife has so few blocks that a note says so
 // Residuals beyond this mean that something is wrong, not noisy: a part of the picture's width, and at least one pixel.
 constexpr double kHighRmsRatio = 1.0 / 600;
 

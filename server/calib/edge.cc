@@ -50,7 +50,7 @@ std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
 
 // What a reader of a good edge should know.
 void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagnosis>& notes) {
-  if (both < kCapturesForJackknife) notes.push_back(FewCaptures(problem, both));
+  if (both < kCapturesEnough) notes.push_back(FewCaptures(problem, both));
   if (const auto missed = MissedBy(problem, &StereoCapture::a); !missed.empty())
     notes.push_back(BoardNotFound(problem, problem.camera_a.id, missed));
   if (const auto missed = MissedBy(problem, &StereoCapture::b); !missed.empty())

@@ -76,8 +76,8 @@ void BatchRecorder::Announce(const BatchId& id) {
     batch.held[item.idx] = true;
     ++batch.held_count;
   }
-  SendReceipt(id, batch);
   if (!pending_[id].empty()) callbacks_.work_arrived(batch.robot);
+  SendReceipt(id, batch);
 }
 
 // One transaction for all; if that fails, each batch by itself, so that a bad one harms no other.

@@ -156,6 +156,11 @@ Result<std::shared_ptr<Outbox::ReplyWriter>> Outbox::ReplyWriterOf(const std::st
   return replies_.emplace(partition, std::make_shared<ReplyWriter>(std::move(writer))).first->second;
 }
 
+Status Outbox::AddAsker(const std::string& partition) {
+  RIGCAL_TRY(ReplyWriterOf(partition));
+  return {};
+}
+
 Status Outbox::Reply(const std::string& partition, dds_instance_handle_t participant, const rigcal_wire_Reply& part) {
   RIGCAL_ASSIGN(const std::shared_ptr<ReplyWriter> writer, ReplyWriterOf(partition));
   if (!writer->HasReaderOf(participant))

@@ -30,6 +30,8 @@ class Outbox {
   void SendStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
                   std::int64_t jobs_waiting, Stamp at);
 
+  // Makes the reply writer of a partition, so that a client can find it before it asks.
+  [[nodiscard]] Status AddAsker(const std::string& partition);
   // One part of a reply, in the partition where the request came from ("operator" or "robot/<id>"). kUnreachable if the
   // participant that asked has no matched reader yet; kBusy if its reader does not take.
   [[nodiscard]] Status Reply(const std::string& partition, dds_instance_handle_t participant,

@@ -44,15 +44,15 @@ void SessionRecorder::Settle() {
   FinishCommit(Patience::kAll);
 }
 
+// Work is announced before the receipt: who has the receipt may count on it.
 void SessionRecorder::Announce(const DurableBatch& batch) {
   for (const auto& [session, idx] : batch.held) {
     SessionIntake& intake = *intakes_.at(session);
     intake.MarkHeld({idx.begin(), idx.end()});
-    SendProgress(intake, intake.AllHeld() ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving);
-    if (!intake.AllHeld()) continue;
-    const RobotId robot = intake.robot();
-    Remove(session);
-    callbacks_.work_arrived(robot);
+    const bool is_closed = intake.AllHeld();
+    if (is_closed) callbacks_.work_arrived(intake.robot());
+    SendProgress(intake, is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving);
+    if (is_closed) Remove(session);
   }
 }
 

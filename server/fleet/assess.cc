@@ -46,8 +46,8 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
     return VerdictFrom(VerdictLevel::kFail, {*contradiction});
   if (const auto unknown = Collect({FindUnsettled(solution), FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings = Collect(
-      {FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedResult(solution)});
+  const auto warnings =
+      Collect({FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedResult(solution)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return {VerdictLevel::kPass, "Every sensor is known well enough and the edges agree with each other.",
           "Nothing; calibrate again when it is due."};

@@ -1,8 +1,8 @@
 // Judges a robot's revision: verdict with one plain sentence why and one what to do.
 //
-// Severity, worst first, and what decides: fail (an edge contradicts the others), unknown (a sensor without a pose, or no
-// settled solution), warn (failed edges, uncertain sensors, nothing that checks the result), pass. The worst that applies
-// is the verdict; of several reasons of one level all are named.
+// Severity, worst first, and what decides: fail (an edge contradicts the others), unknown (a sensor without a pose, or
+// no settled solution), warn (failed edges, uncertain sensors, nothing that checks the result), pass. The worst that
+// applies is the verdict; of several reasons of one level all are named.
 #pragma once
 
 #include <vector>
@@ -12,14 +12,16 @@
 namespace rigcal::fleet {
 
 struct Policy {
-  double sigma_max_m = 0.005;     // a sensor less certain than this (any axis, 1 sigma) is a warning
+  double sigma_max_m = 0.005;  // a sensor less certain than this (any axis, 1 sigma) is a warning
   double sigma_max_rad = 0.005;
-  double residual_probability = 0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
+  double residual_probability =
+      0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
 };
 
-// Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph means
-// that nothing checks the result: warn. Unknown sensors (those that occur only in failed edges too): unknown, by name.
-// Failed edges: warn, by name, unless the same two sensors have a good edge as well (the failure was repaired since).
+// Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph
+// means that nothing checks the result: warn. Unknown sensors (those that occur only in failed edges too): unknown, by
+// name. Failed edges: warn, by name, unless the same two sensors have a good edge as well (the failure was repaired
+// since).
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {});
 
 // "statistic / limit" of one edge's residual against the covariance of that residual (edge covariance minus what the

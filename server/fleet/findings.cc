@@ -52,8 +52,8 @@ std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const G
                                          const Policy& policy) {
   std::map<EdgeId, const Edge*> by_id;
   for (const Edge& edge : edges) by_id.emplace(edge.id, &edge);
-  const auto edge_count = static_cast<std::size_t>(std::count_if(
-      solution.residuals.begin(), solution.residuals.end(), [](const EdgeResidual& r) { return r.in_solution; }));
+  const auto edge_count = static_cast<std::size_t>(std::count_if(solution.residuals.begin(), solution.residuals.end(),
+                                                                 [](const EdgeResidual& r) { return r.in_solution; }));
   const Edge* worst = nullptr;
   const EdgeResidual* worst_residual = nullptr;
   double worst_ratio = 1.0;
@@ -82,7 +82,8 @@ std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
 
 std::optional<Finding> FindUnsettled(const GraphSolution& solution) {
   if (solution.converged) return std::nullopt;
-  return Finding{"the graph did not settle", "Look for an edge with a large residual, withdraw it and repeat its session"};
+  return Finding{"the graph did not settle",
+                 "Look for an edge with a large residual, withdraw it and repeat its session"};
 }
 
 std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
@@ -105,8 +106,9 @@ std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const 
     return Finding{diagnosis->what, cure};
   }
   const std::string them = unknown.size() == 1 ? "it" : "them";
-  return Finding{"the pose of " + List(unknown) + " is not known: no good edges tie " + them + " fully to the reference",
-                 "Capture a session that shows " + List(unknown) + " together with sensors that are known"};
+  return Finding{
+      "the pose of " + List(unknown) + " is not known: no good edges tie " + them + " fully to the reference",
+      "Capture a session that shows " + List(unknown) + " together with sensors that are known"};
 }
 
 std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges) {
@@ -132,8 +134,8 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
   for (const SensorPose& pose : solution.poses) {
     if (!pose.known) continue;
     const Vector6d sigma = pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    const double ratio = std::max(sigma.head<3>().maxCoeff() / policy.sigma_max_m,
-                                  sigma.tail<3>().maxCoeff() / policy.sigma_max_rad);
+    const double ratio =
+        std::max(sigma.head<3>().maxCoeff() / policy.sigma_max_m, sigma.tail<3>().maxCoeff() / policy.sigma_max_rad);
     if (ratio > 1.0) uncertain.emplace_back(ratio, &pose);
   }
   if (uncertain.empty()) return std::nullopt;
@@ -143,8 +145,8 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
   const Vector6d sigma = uncertain.front().second->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const std::string worst = Number(1e3 * sigma.head<3>().maxCoeff(), "mm") + " and " +
                             Number(kDegreesPerRadian * sigma.tail<3>().maxCoeff(), "deg");
-  const std::string limit = Number(1e3 * policy.sigma_max_m, "mm") + " and " +
-                            Number(kDegreesPerRadian * policy.sigma_max_rad, "deg");
+  const std::string limit =
+      Number(1e3 * policy.sigma_max_m, "mm") + " and " + Number(kDegreesPerRadian * policy.sigma_max_rad, "deg");
   return Finding{"the pose of " + List(names) + " is less certain than the policy asks (worst " + names.front() + ": " +
                      worst + " at 1 sigma, limit " + limit + ")",
                  "Add captures of " + List(names) + " with the board at more distances and tilts"};

@@ -46,8 +46,7 @@ class Line {
     std::int64_t number = -1;
     const auto [end, status] = std::from_chars(field.data(), field.data() + field.size(), number);
     if (status != std::errc() || end != field.data() + field.size() || number < 0)
-      return Refuse(Quoted(field) + " is not a vertex number",
-                    "Vertices are whole numbers from 0.");
+      return Refuse(Quoted(field) + " is not a vertex number", "Vertices are whole numbers from 0.");
     return SensorId(std::to_string(number));
   }
 
@@ -67,8 +66,7 @@ class Line {
 
   Status ExpectEnd() {
     if (const std::string_view extra = Next(); !extra.empty())
-      return Refuse("has more fields than expected, from " + Quoted(extra),
-                    "Write one record per line.");
+      return Refuse("has more fields than expected, from " + Quoted(extra), "Write one record per line.");
     return {};
   }
 
@@ -107,8 +105,7 @@ class Reader {
     if (tag == "EDGE_SE3:QUAT") return ReadEdge(line);
     if (tag == "VERTEX_SE3:QUAT") return ReadVertexPose(line);
     if (tag == "FIX") return ReadFix(line);
-    return line.Refuse(Quoted(tag) + " is not supported",
-                       "Supported are EDGE_SE3:QUAT, VERTEX_SE3:QUAT and FIX.");
+    return line.Refuse(Quoted(tag) + " is not supported", "Supported are EDGE_SE3:QUAT, VERTEX_SE3:QUAT and FIX.");
   }
 
   Result<G2oFile> Finish() {

@@ -12,9 +12,9 @@
 namespace rigcal::formats {
 
 struct G2oFile {
-  std::vector<Edge> edges;               // ids assigned, method "g2o", source given; in the order of the file
+  std::vector<Edge> edges;                 // ids assigned, method "g2o", source given; in the order of the file
   std::map<SensorId, Se3> T_world_vertex;  // if the file has vertices
-  SensorId fixed;                        // the first FIX line's vertex; empty: none
+  SensorId fixed;                          // the first FIX line's vertex; empty: none
 };
 // Indefinite, non-finite or asymmetric information and non-unit quaternions (beyond 1e-3; nearer ones are normalised)
 // are refused; the error names line and edge. The same pair may be measured several times.

@@ -45,7 +45,7 @@ YamlField YamlField::Member(const YamlNode& node) const {
 YamlField YamlField::Called(std::string title) const { return {tree_, node_, std::move(title)}; }
 
 YamlField YamlField::At(std::string_view key) const {
-  const YamlField nothing(tree_, &kNothing, {});
+  YamlField nothing(tree_, &kNothing, {});
   if (tree_->error) return nothing;
   if (node_->kind != YamlNode::Kind::kMap) {
     Refuse("must be a map of names and values");

@@ -49,8 +49,9 @@ class BlockCholesky {
   [[nodiscard]] virtual std::vector<Block> InverseDiagonal() = 0;
 };
 
-// `blocks_dense_max`: up to this many blocks the dense factor is used.
+// Null if the factor would need more than kFactorBytesMax. `blocks_dense_max`: up to this many blocks it is dense.
 constexpr int kBlocksDenseMax = 40;
+constexpr std::size_t kFactorBytesMax = std::size_t{2} << 30;
 template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);

@@ -47,7 +47,10 @@ RotationSystem MakeRotationSystem(const Problem& problem) {
       if (v > 0) system.matrix.diagonal[static_cast<std::size_t>(v) - 1].diagonal().array() += weights[k];
     if (c.slot >= 0) {
       Matrix3d& block = system.matrix.off_diagonal[static_cast<std::size_t>(c.slot)];
-      if (c.i > c.j) block -= R_i_j; else block -= R_i_j.transpose();
+      if (c.i > c.j)
+        block -= R_i_j;
+      else
+        block -= R_i_j.transpose();
     } else if (c.i == 0) {
       system.rhs.middleRows<3>(3 * (c.j - 1)) += R_i_j.transpose();
     } else {
@@ -66,7 +69,7 @@ Matrix3d NearestRotation(const Matrix3d& matrix) {
 bool SolveRotations(const Problem& problem, Poses& T_ref) {
   RotationSystem system = MakeRotationSystem(problem);
   const auto cholesky = MakeCholesky<3>(problem.pattern);
-  if (!cholesky->Factor(system.matrix, 0.0)) return false;
+  if (cholesky == nullptr || !cholesky->Factor(system.matrix, 0.0)) return false;
   cholesky->SolveInPlace(system.rhs);
   if (!system.rhs.allFinite()) return false;
   for (int v = 1; v < problem.vertex_count; ++v) {
@@ -94,7 +97,7 @@ bool SolveTranslations(const Problem& problem, Poses& T_ref) {
     }
   }
   const auto cholesky = MakeCholesky<1>(problem.pattern);
-  if (!cholesky->Factor(laplacian, 0.0)) return false;
+  if (cholesky == nullptr || !cholesky->Factor(laplacian, 0.0)) return false;
   cholesky->SolveInPlace(p_m);
   for (int v = 1; v < problem.vertex_count; ++v) T_ref[static_cast<std::size_t>(v)].p_m = p_m.row(v - 1);
   return p_m.allFinite();

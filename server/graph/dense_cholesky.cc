@@ -20,7 +20,8 @@ class DenseCholesky final : public BlockCholesky<B> {
     for (std::size_t s = 0; s < off_diagonal_.size(); ++s)
       L_.template block<B, B>(B * off_diagonal_[s].row, B * off_diagonal_[s].col) = matrix.off_diagonal[s];
     if (lambda > 0.0) L_.diagonal() *= 1.0 + lambda;
-    return Eigen::internal::llt_inplace<double, Eigen::Lower>::blocked(L_) == -1;
+    Eigen::Ref<Eigen::MatrixXd> in_place(L_);
+    return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(in_place).info() == Eigen::Success;
   }
 
   void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) override {

@@ -11,10 +11,10 @@ constexpr double kCostRelative = 1e-14;
 constexpr double kStep = 1e-12;
 constexpr double kRoundingRelative = 1e-12;  // of the cost: below this a rise is rounding, not a wrong step
 constexpr double kLambdaFirst = 1e-6, kLambdaMax = 1e12, kLambdaFactor = 10.0, kLambdaLeast = 1e-9;
-constexpr double kLambdaTrusted = 1e-3;      // a short step under heavier damping says nothing
+constexpr double kLambdaTrusted = 1e-3;  // a short step under heavier damping says nothing
 constexpr int kClimbsMax = 2;
-constexpr double kStepReuse = 0.05;          // m and rad
-constexpr double kGainReuse = 0.1;           // as long as each step gains this much less than the one before
+constexpr double kStepReuse = 0.05;  // m and rad
+constexpr double kGainReuse = 0.1;   // as long as each step gains this much less than the one before
 
 // One descent. Owns all the memory it needs, so that its loop allocates nothing.
 //
@@ -58,7 +58,8 @@ class Descent {
     const double gain = -step_.dot(equations_.g) + lambda_ * DampedLength();
     const bool small = gain <= kCostRelative * equations_.cost || step_.cwiseAbs().maxCoeff() <= kStep;
     const bool last = small && lambda_ <= kLambdaTrusted && climbs_ == 0;
-    reuse_factor_ = lambda_ == 0.0 && step_.cwiseAbs().maxCoeff() <= kStepReuse && (!reused || gain < kGainReuse * gain_);
+    reuse_factor_ =
+        lambda_ == 0.0 && step_.cwiseAbs().maxCoeff() <= kStepReuse && (!reused || gain < kGainReuse * gain_);
     gain_ = gain;
     Retract(T_ref_, step_, trial_);
     std::swap(T_ref_, trial_);

@@ -17,8 +17,14 @@ std::string_view WithoutLeadingZeros(std::string_view digits) {
 }
 
 GraphEdge MeasurementOf(const Edge& edge) {
-  return {edge.id,    edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega, edge.uncertainty.rank,
-          edge.uncertainty.dof, edge.session};
+  return {edge.id,
+          edge.frame_a,
+          edge.frame_b,
+          edge.T_a_b,
+          edge.uncertainty.Omega,
+          edge.uncertainty.rank,
+          edge.uncertainty.dof,
+          edge.session};
 }
 
 }  // namespace

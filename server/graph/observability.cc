@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr int kBodiesMax = 200;            // beyond: everything outside the reference's body counts as free
-constexpr double kToleranceMin = 1e-10;    // of eigenvalues, which are squared sines of angles between directions
+constexpr int kBodiesMax = 200;          // beyond: not judged
+constexpr double kToleranceMin = 1e-10;  // of eigenvalues, which are squared sines of angles between directions
 constexpr double kToleranceMax = 1e-2;
 constexpr double kNoiseFactor = 3.0;
 
@@ -34,9 +34,9 @@ Bodies FindBodies(const Problem& problem) {
   for (int v = 0; v < problem.vertex_count; ++v) {
     const int root = sets.Find(v);  // the smallest of the set: seen before its members
     if (root == v) bodies.first_vertex.push_back(v);
-    bodies.body_of_vertex[static_cast<std::size_t>(v)] =
-        root == v ? static_cast<int>(bodies.first_vertex.size()) - 1
-                  : bodies.body_of_vertex[static_cast<std::size_t>(root)];
+    bodies.body_of_vertex[static_cast<std::size_t>(v)] = root == v
+                                                             ? static_cast<int>(bodies.first_vertex.size()) - 1
+                                                             : bodies.body_of_vertex[static_cast<std::size_t>(root)];
   }
   return bodies;
 }
@@ -68,7 +68,8 @@ MatrixXd GeometryMatrix(const Problem& problem, const Poses& T_ref, const Bodies
   const auto columns = 6 * (static_cast<Eigen::Index>(bodies.first_vertex.size()) - 1);
   MatrixXd G = MatrixXd::Zero(columns, columns);
   for (const Constraint& c : problem.constraints) {
-    const int a = bodies.body_of_vertex[static_cast<std::size_t>(c.i)], b = bodies.body_of_vertex[static_cast<std::size_t>(c.j)];
+    const int a = bodies.body_of_vertex[static_cast<std::size_t>(c.i)],
+              b = bodies.body_of_vertex[static_cast<std::size_t>(c.j)];
     if (a == b) continue;
     const MatrixXd seen = SeenDirections(c.Omega, scale) * RightJacobianInverse(Residual(c, T_ref));
     const Se3 T_j_ref = T_ref[static_cast<std::size_t>(c.j)].Inverse();
@@ -107,13 +108,12 @@ MatrixXd NullVectors(const MatrixXd& G, double tolerance) {
   return eigen.eigenvectors().leftCols(count);
 }
 
-// An orthonormal basis of the columns that are not rounding.
-FreeBasis RangeOf(const MatrixXd& columns) {
-  if (columns.cols() == 0) return FreeBasis(6, 0);
+// An orthonormal basis of the columns, without what is only noise in them.
+MatrixXd RangeOf(const MatrixXd& columns, double visible) {
+  if (columns.cols() == 0) return MatrixXd(6, 0);
   const Eigen::JacobiSVD<MatrixXd> svd(columns, Eigen::ComputeThinU);
-  constexpr double kVisible = 1e-5;  // null vectors have unit length over all bodies
   Eigen::Index count = 0;
-  while (count < svd.singularValues().size() && svd.singularValues()(count) > kVisible) ++count;
+  while (count < svd.singularValues().size() && svd.singularValues()(count) > visible) ++count;
   return svd.matrixU().leftCols(count);
 }
 
@@ -129,8 +129,27 @@ std::vector<Pin> ChoosePins(const MatrixXd& null_vectors, const Bodies& bodies) 
   return pins;
 }
 
-FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, const Vector6d& scale) {
-  return RangeOf(scale.cwiseInverse().asDiagonal() * Adjoint(T_vertex_body) * scale.asDiagonal() * body_null);
+// What a vertex takes of its body's free motions, in metres and radians. Null vectors have unit length over all bodies;
+// a body that is held shows in them only as much as the tolerance lets through.
+FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, const Vector6d& scale, double tolerance) {
+  const double visible = std::clamp(kNoiseFactor * std::sqrt(tolerance), 1e-5, 0.1);
+  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * Adjoint(T_vertex_body) * scale.asDiagonal() * body_null;
+  return scale.asDiagonal() * RangeOf(scaled, visible);
+}
+
+bool IsFullEverywhere(const Problem& problem) {
+  return std::all_of(problem.constraints.begin(), problem.constraints.end(),
+                     [](const Constraint& c) { return c.rank == 6; });
+}
+
+// Everything outside the reference's body, held as a whole.
+void LeaveUnjudged(const Problem& problem, const Bodies& bodies, Observability& result) {
+  result.judged = false;
+  for (std::size_t body = 1; body < bodies.first_vertex.size(); ++body)
+    for (int axis = 0; axis < 6; ++axis) result.pins.push_back({6 * (bodies.first_vertex[body] - 1) + axis});
+  for (int v = 0; v < problem.vertex_count; ++v)
+    if (bodies.body_of_vertex[static_cast<std::size_t>(v)] > 0)
+      result.free_of_vertex[static_cast<std::size_t>(v)] = Matrix6d::Identity();
 }
 
 }  // namespace
@@ -138,16 +157,14 @@ FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, co
 Observability Observe(const Problem& problem, const Poses& T_ref) {
   Observability result;
   result.free_of_vertex.assign(static_cast<std::size_t>(problem.vertex_count), FreeBasis(6, 0));
-  const bool full = std::all_of(problem.constraints.begin(), problem.constraints.end(),
-                                [](const Constraint& c) { return c.rank == 6; });
-  if (full) return result;
+  if (IsFullEverywhere(problem)) return result;
   const Bodies bodies = FindBodies(problem);
-  const auto free_bodies = static_cast<Eigen::Index>(bodies.first_vertex.size()) - 1;
+  const int free_bodies = static_cast<int>(bodies.first_vertex.size()) - 1;
   if (free_bodies == 0) return result;
+  if (free_bodies > kBodiesMax) return LeaveUnjudged(problem, bodies, result), result;
   const Vector6d scale = ScaleOf(TypicalLength_m(problem));
-  MatrixXd null_vectors = MatrixXd::Identity(6 * free_bodies, 6 * free_bodies);
-  if (free_bodies <= kBodiesMax)
-    null_vectors = NullVectors(GeometryMatrix(problem, T_ref, bodies, scale), Tolerance(problem, T_ref));
+  const double tolerance = Tolerance(problem, T_ref);
+  const MatrixXd null_vectors = NullVectors(GeometryMatrix(problem, T_ref, bodies, scale), tolerance);
   result.nullity = static_cast<int>(null_vectors.cols());
   if (result.nullity == 0) return result;
   result.pins = ChoosePins(null_vectors, bodies);
@@ -156,7 +173,7 @@ Observability Observe(const Problem& problem, const Poses& T_ref) {
     if (body == 0) continue;
     const Se3& T_ref_body = T_ref[static_cast<std::size_t>(bodies.first_vertex[static_cast<std::size_t>(body)])];
     result.free_of_vertex[v] =
-        FreeDirections(null_vectors.middleRows(6 * (body - 1), 6), T_ref[v].Inverse() * T_ref_body, scale);
+        FreeDirections(null_vectors.middleRows(6 * (body - 1), 6), T_ref[v].Inverse() * T_ref_body, scale, tolerance);
   }
   return result;
 }

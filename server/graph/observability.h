@@ -11,14 +11,15 @@ namespace rigcal::graph {
 using FreeBasis = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 struct Observability {
-  int nullity = 0;                      // of H
+  bool judged = true;                     // false: too many bodies: all but the reference's count as free
+  int nullity = 0;                        // of H
   std::vector<FreeBasis> free_of_vertex;  // per vertex, right tangent at it; no columns: fully observable
-  std::vector<Pin> pins;                // one per free direction: with them H is regular
+  std::vector<Pin> pins;                  // one per free direction: with them H is regular
 };
 
 // A question of geometry, not of weights: sensors tied by edges of full rank move as one body; between the bodies every
-// deficient edge counts with the directions it sees. Directions that two edges see only because noise turns them against
-// each other count as free (three times the residual rotation is the measure).
+// deficient edge counts with the directions it sees. Directions that two edges see only because noise turns them
+// against each other count as free (three times the residual rotation is the measure).
 [[nodiscard]] Observability Observe(const Problem& problem, const Poses& T_ref);
 
 // "translation along z", "rotation about (0.71, 0.71, 0.00)", ...; in the sensor's own axes.

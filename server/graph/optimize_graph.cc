@@ -9,15 +9,16 @@ bool SamePins(const std::vector<Pin>& a, const std::vector<Pin>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Pin p, Pin q) { return p.row == q.row; });
 }
 
-GlobalError GlobalErrorAt(const Problem& problem, const Poses& T_ref) {
+GlobalError MeanSquares(const std::vector<EdgeResidual>& residuals) {
   GlobalError error;
-  if (problem.constraints.empty()) return error;
-  for (const Constraint& constraint : problem.constraints) {
-    const Vector6d e = Residual(constraint, T_ref);
-    error.translation_m2 += e.head<3>().squaredNorm();
-    error.rotation_rad2 += e.tail<3>().squaredNorm();
+  double count = 0.0;
+  for (const EdgeResidual& residual : residuals) {
+    if (!residual.in_solution) continue;
+    error.translation_m2 += residual.e.head<3>().squaredNorm();
+    error.rotation_rad2 += residual.e.tail<3>().squaredNorm();
+    count += 1.0;
   }
-  const auto count = static_cast<double>(problem.constraints.size());
+  if (count == 0.0) return {};
   error.translation_m2 /= count;
   error.rotation_rad2 /= count;
   error.total = error.translation_m2 + error.rotation_rad2;
@@ -30,17 +31,16 @@ int DegreesOfFreedom(const Problem& problem, const Observability& observability)
   return rank_sum - (6 * problem.free_count() - observability.nullity);
 }
 
-void FillResiduals(const Graph& graph, const Problem& problem, const Poses& T_ref, GraphSolution& solution) {
-  solution.residuals.resize(graph.edges.size());
-  for (std::size_t k = 0; k < graph.edges.size(); ++k)
-    solution.residuals[k].edge = graph.edges[problem.edges_by_id[k]].id;
+std::vector<EdgeResidual> ResidualsAt(const Graph& graph, const Problem& problem, const Poses& T_ref) {
+  std::vector<EdgeResidual> residuals(graph.edges.size());
+  for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k].edge = graph.edges[problem.edges_by_id[k]].id;
   for (const Constraint& constraint : problem.constraints) {
-    EdgeResidual& residual = solution.residuals[constraint.edge];
+    EdgeResidual& residual = residuals[constraint.edge];
     residual.in_solution = true;
     residual.e = Residual(constraint, T_ref);
     residual.weighted = residual.e.dot(constraint.Omega * residual.e);
-    solution.cost += residual.weighted;
   }
+  return residuals;
 }
 
 Diagnosis NotObservable(const SensorId& sensor, const SensorId& reference, const FreeBasis& basis) {
@@ -52,6 +52,14 @@ Diagnosis NotObservable(const SensorId& sensor, const SensorId& reference, const
               " together with a sensor connected to " + reference.str() + " under other orientations."};
 }
 
+Diagnosis NotJudged(const SensorId& sensor) {
+  return {"not_judged",
+          "the pose of sensor " + sensor.str() +
+              " cannot be judged: too many sensors hang on edges that do not see every "
+              "direction",
+          "Add edges that see all six directions between these sensors."};
+}
+
 Diagnosis NotConverged(const Optimum& optimum) {
   return {"no_convergence", "the graph did not settle within " + std::to_string(optimum.iterations) + " iterations",
           "Look for edges with a large residual: one that is grossly wrong keeps the graph from settling. Withdraw or "
@@ -59,8 +67,9 @@ Diagnosis NotConverged(const Optimum& optimum) {
 }
 
 Diagnosis Singular() {
-  return {"singular", "the uncertainty of the solved poses could not be computed: the information of the edges spans "
-                      "too many orders of magnitude",
+  return {"singular",
+          "the uncertainty of the solved poses could not be computed: the information of the edges spans "
+          "too many orders of magnitude",
           "Check the information matrices of the edges for wrong units (metres and radians)."};
 }
 
@@ -75,7 +84,8 @@ void FillPoses(const Graph& graph, const Problem& problem, const Settled& settle
     if (pose.known) {
       pose.T_ref_sensor = settled.optimum.T_ref[static_cast<std::size_t>(vertex)];
     } else {
-      solution.diagnoses.push_back(NotObservable(pose.sensor, graph.reference, free));
+      solution.diagnoses.push_back(settled.observability.judged ? NotObservable(pose.sensor, graph.reference, free)
+                                                                : NotJudged(pose.sensor));
     }
   }
 }
@@ -104,6 +114,18 @@ void FillMarginals(const Graph& graph, const Problem& problem, const Settled& se
   }
 }
 
+GraphSolution TooLarge(const Graph& graph, const Problem& problem) {
+  GraphSolution solution = WithoutReference(graph, problem);
+  ForgetPoses(graph, solution);
+  solution.diagnoses.push_back({"too_large",
+                                "the graph of " + std::to_string(graph.sensors.size()) + " sensors and " +
+                                    std::to_string(graph.edges.size()) +
+                                    " edges is too densely connected to be solved in " +
+                                    std::to_string(kFactorBytesMax >> 30) + " GiB of memory",
+                                "Split the robot's sensors into groups, or push fewer edges between distant sensors."});
+  return solution;
+}
+
 }  // namespace
 
 Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky, int iterations_max) {
@@ -130,13 +152,15 @@ GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const Po
   solution.poses.resize(graph.sensors.size());
   solution.diagnoses = problem.diagnoses;
   const auto cholesky = MakeCholesky<6>(problem.pattern);
+  if (cholesky == nullptr) return TooLarge(graph, problem);
   const Settled settled = Settle(problem, start, *cholesky, options.iterations_max);
   solution.converged = settled.optimum.converged;
   solution.iterations = settled.optimum.iterations;
   if (!solution.converged) solution.diagnoses.push_back(NotConverged(settled.optimum));
-  FillResiduals(graph, problem, settled.optimum.T_ref, solution);
-  solution.before = GlobalErrorAt(problem, tree);
-  solution.after = GlobalErrorAt(problem, settled.optimum.T_ref);
+  solution.residuals = ResidualsAt(graph, problem, settled.optimum.T_ref);
+  for (const EdgeResidual& residual : solution.residuals) solution.cost += residual.weighted;
+  solution.before = MeanSquares(ResidualsAt(graph, problem, tree));
+  solution.after = MeanSquares(solution.residuals);
   solution.dof = DegreesOfFreedom(problem, settled.observability);
   FillPoses(graph, problem, settled, solution);
   if (options.marginals) FillMarginals(graph, problem, settled, *cholesky, solution);
@@ -148,9 +172,7 @@ GraphSolution WithoutReference(const Graph& graph, const Problem& problem) {
   solution.diagnoses = problem.diagnoses;
   solution.poses.resize(graph.sensors.size());
   for (std::size_t s = 0; s < graph.sensors.size(); ++s) solution.poses[s].sensor = graph.sensors[s];
-  solution.residuals.resize(graph.edges.size());
-  for (std::size_t k = 0; k < graph.edges.size(); ++k)
-    solution.residuals[k].edge = graph.edges[problem.edges_by_id[k]].id;
+  solution.residuals = ResidualsAt(graph, problem, {});
   solution.converged = graph.sensors.empty();
   return solution;
 }

@@ -11,7 +11,8 @@ struct Settled {
   Optimum optimum;
   Observability observability;
 };
-[[nodiscard]] Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky, int iterations_max);
+[[nodiscard]] Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky,
+                             int iterations_max);
 
 // `tree` is the start that E_global before is measured at.
 [[nodiscard]] GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const Poses& tree,

@@ -38,19 +38,25 @@ std::string NameOfEdge(const GraphEdge& edge) {
   return "edge " + edge.frame_a.str() + " - " + edge.frame_b.str() + " (" + edge.id.str().substr(0, 12) + ")";
 }
 
+// Far beyond any rig, and such that no sum over a graph overflows.
+constexpr double kTranslationMax_m = 1e9;
+constexpr double kInformationMin = 1e-30, kInformationMax = 1e30;
+
 // Empty: usable. Else why not.
 std::string WhyUnusable(const GraphEdge& edge, bool frames_known) {
   if (!frames_known) return "names a sensor that is not in the graph";
   if (edge.frame_a == edge.frame_b) return "joins a sensor with itself";
   if (!edge.T_a_b.p_m.allFinite() || !edge.T_a_b.q.coeffs().allFinite()) return "has a pose that is not finite";
   if (edge.T_a_b.q.norm() < 0.5) return "has a quaternion of length zero";
+  if (edge.T_a_b.p_m.cwiseAbs().maxCoeff() > kTranslationMax_m) return "has a translation beyond a million kilometres";
   return {};
 }
 
-// Log det Omega and rank, cheaply where Omega is clearly positive definite; false if it is indefinite, asymmetric or zero.
+// Log det Omega and rank, cheaply where Omega is clearly positive definite; false if it is indefinite, asymmetric or
+// zero.
 bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
   const double scale = edge.Omega.cwiseAbs().maxCoeff();
-  if (!edge.Omega.allFinite() || scale == 0.0) return false;
+  if (!edge.Omega.allFinite() || scale < kInformationMin || scale > kInformationMax) return false;
   if ((edge.Omega - edge.Omega.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) return false;
   constraint.Omega = Symmetrized(edge.Omega);
   const Eigen::LLT<Matrix6d> llt(constraint.Omega);
@@ -64,7 +70,8 @@ bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
   }
   if (!IsPositiveSemidefinite(constraint.Omega)) return false;
   constraint.rank = Observable(constraint.Omega).rank;
-  constraint.log_det_Omega = constraint.rank == 6 ? constraint.Omega.ldlt().vectorD().cwiseAbs().array().log().sum() : 0.0;
+  constraint.log_det_Omega =
+      constraint.rank == 6 ? constraint.Omega.ldlt().vectorD().cwiseAbs().array().log().sum() : 0.0;
   return constraint.rank > 0;
 }
 
@@ -90,9 +97,8 @@ struct Ranked {
 std::vector<std::size_t> CanonicalSensors(const Graph& graph) {
   std::vector<std::size_t> order(graph.sensors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&graph](std::size_t a, std::size_t b) {
-    return SensorBefore(graph.sensors[a], graph.sensors[b]);
-  });
+  std::sort(order.begin(), order.end(),
+            [&graph](std::size_t a, std::size_t b) { return SensorBefore(graph.sensors[a], graph.sensors[b]); });
   return order;
 }
 
@@ -124,7 +130,7 @@ void CollectLinks(const Graph& graph, Ranked& ranked, Problem& problem) {
     Constraint constraint;
     std::string why = WhyUnusable(edge, a >= 0 && b >= 0);
     if (why.empty() && !JudgeInformation(edge, constraint))
-      why = "has an information matrix that is zero, not finite, not symmetric or not positive semi-definite";
+      why = "has an information matrix that is zero, out of range, not symmetric or not positive semi-definite";
     if (why.empty()) {
       FillMeasurement(edge, e, constraint);
       ranked.links.push_back({a, b, constraint});
@@ -137,8 +143,8 @@ void CollectLinks(const Graph& graph, Ranked& ranked, Problem& problem) {
 
 Diagnosis NotConnected(const Graph& graph, const SensorId& sensor, bool has_edge) {
   const std::string reference = graph.reference.str();
-  const std::string why = has_edge ? "its edges lead only to sensors that are not connected either"
-                                   : "it has no good edge";
+  const std::string why =
+      has_edge ? "its edges lead only to sensors that are not connected either" : "it has no good edge";
   return {"not_connected", "sensor " + sensor.str() + " is not connected to reference " + reference + ": " + why,
           "Capture a session that shows " + sensor.str() + " together with a sensor connected to " + reference +
               ", or push an edge between them."};
@@ -169,7 +175,8 @@ std::vector<int> ReferenceComponent(const Graph& graph, const Ranked& ranked, Pr
 // Vertex of every rank (-1: not in the component): the reference 0, the others in elimination order.
 std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& component) {
   std::vector<int> member(ranked.sensor_of_rank.size(), -1);
-  for (std::size_t k = 0; k < component.size(); ++k) member[static_cast<std::size_t>(component[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < component.size(); ++k)
+    member[static_cast<std::size_t>(component[k])] = static_cast<int>(k);
   std::vector<std::pair<int, int>> links;
   links.reserve(ranked.links.size());
   for (const Link& link : ranked.links) {
@@ -180,13 +187,16 @@ std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& co
   std::vector<int> vertex_of_rank(ranked.sensor_of_rank.size(), -1);
   vertex_of_rank[static_cast<std::size_t>(component[0])] = 0;
   for (std::size_t p = 0; p < order.size(); ++p)
-    vertex_of_rank[static_cast<std::size_t>(component[static_cast<std::size_t>(order[p]) + 1])] = static_cast<int>(p) + 1;
+    vertex_of_rank[static_cast<std::size_t>(component[static_cast<std::size_t>(order[p]) + 1])] =
+        static_cast<int>(p) + 1;
   return vertex_of_rank;
 }
 
 void AssignSlots(Problem& problem) {
   std::vector<BlockPosition>& blocks = problem.pattern.off_diagonal;
-  const auto position = [](const Constraint& c) { return BlockPosition{std::max(c.i, c.j) - 1, std::min(c.i, c.j) - 1}; };
+  const auto position = [](const Constraint& c) {
+    return BlockPosition{std::max(c.i, c.j) - 1, std::min(c.i, c.j) - 1};
+  };
   const auto before = [](const BlockPosition& a, const BlockPosition& b) {
     return std::tie(a.col, a.row) < std::tie(b.col, b.row);
   };

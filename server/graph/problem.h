@@ -12,18 +12,18 @@ namespace rigcal::graph {
 // One edge that takes part. Vertices i = frame_a, j = frame_b.
 struct Constraint {
   int i = 0, j = 0;
-  Se3 T_i_j;           // as measured
-  Se3 T_j_i;           // its inverse
+  Se3 T_i_j;  // as measured
+  Se3 T_j_i;  // its inverse
   Matrix6d Omega = Matrix6d::Zero();
   int rank = 6;
   double log_det_Omega = 0.0;  // meaningful if rank is 6
-  int slot = -1;       // of the off-diagonal block H(later, earlier); -1: the reference is one end
-  std::size_t edge = 0;  // index into edges_by_id
+  int slot = -1;               // of the off-diagonal block H(later, earlier); -1: the reference is one end
+  std::size_t edge = 0;        // index into edges_by_id
 };
 
 struct Problem {
-  int vertex_count = 0;                  // with the reference, which is vertex 0 and fixed
-  std::vector<int> vertex_of_sensor;     // per Graph::sensors; -1: not connected to the reference
+  int vertex_count = 0;               // with the reference, which is vertex 0 and fixed
+  std::vector<int> vertex_of_sensor;  // per Graph::sensors; -1: not connected to the reference
   std::vector<std::size_t> sensor_of_vertex;
   std::vector<std::size_t> edges_by_id;  // indices into Graph::edges
   std::vector<Constraint> constraints;   // in the order of edges_by_id

@@ -23,9 +23,8 @@ Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& sol
                                  [&id](const SensorPose& candidate) { return candidate.sensor == id; });
   if (pose != solution.poses.end() && pose->known) return &*pose;
   const std::string prefix = "sensor " + id.str() + " ";
-  const auto why = std::find_if(solution.diagnoses.begin(), solution.diagnoses.end(), [&prefix](const Diagnosis& d) {
-    return d.what.find(prefix) != std::string::npos;
-  });
+  const auto why = std::find_if(solution.diagnoses.begin(), solution.diagnoses.end(),
+                                [&prefix](const Diagnosis& d) { return d.what.find(prefix) != std::string::npos; });
   if (why != solution.diagnoses.end()) return Fail(ErrorCode::kInvalidInput, why->what, why->cure);
   return Fail(ErrorCode::kInvalidInput, "the pose of sensor " + id.str() + " is not known in this solution",
               "Add an edge that connects it with " + graph.reference.str() + ".");
@@ -55,9 +54,12 @@ Result<JointCovariance> SolveColumns(const Problem& problem, const Poses& T_ref,
   Linearize(problem, T_ref, equations);
   AddPins(Observe(problem, T_ref).pins, equations.H);
   const auto cholesky = MakeCholesky<6>(problem.pattern);
-  if (!cholesky->Factor(equations.H, 0.0))
-    return Fail(ErrorCode::kInvalidInput, "the information of the edges spans too many orders of magnitude",
-                "Check the information matrices of the edges for wrong units (metres and radians).");
+  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0))
+    return Fail(
+        ErrorCode::kInvalidInput,
+        "the uncertainty between these sensors cannot be computed: the graph is too large, or the information of "
+        "its edges spans too many orders of magnitude",
+        "Check the information matrices of the edges for wrong units (metres and radians).");
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(6 * problem.free_count(), 12);
   if (a > 0) columns.block<6, 6>(6 * (a - 1), 0).setIdentity();
   if (b > 0) columns.block<6, 6>(6 * (b - 1), 6).setIdentity();

@@ -59,7 +59,8 @@ double SelectedInverse::At(int row, int col) const {
   const Supernode shape = SliceOf(shape_, shape_.supernode_of_col[static_cast<std::size_t>(col)]);
   const int* found = std::lower_bound(shape.rows, shape.rows + shape.row_count, row);
   const auto k = static_cast<std::size_t>(found - shape.rows);
-  return values_[shape.start + k + static_cast<std::size_t>(col - shape.first_col) * static_cast<std::size_t>(shape.row_count)];
+  return values_[shape.start + k +
+                 static_cast<std::size_t>(col - shape.first_col) * static_cast<std::size_t>(shape.row_count)];
 }
 
 }  // namespace rigcal::graph

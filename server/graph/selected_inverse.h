@@ -1,5 +1,5 @@
-// The entries of (L L^T)^-1 on the pattern of L (Takahashi's recursion, supernode by supernode, last to first), exact up
-// to rounding, without the inverse itself.
+// The entries of (L L^T)^-1 on the pattern of L (Takahashi's recursion, supernode by supernode, last to first), exact
+// up to rounding, without the inverse itself.
 #pragma once
 
 #include <Eigen/Core>

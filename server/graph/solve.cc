@@ -1,7 +1,6 @@
 #include "server/graph/solve.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "server/graph/chordal.h"
@@ -24,6 +23,7 @@ bool TreeSuffices(const Problem& problem, const Poses& tree) {
 
 // The start of the lowest weighted cost; earlier ones win ties.
 Poses BestStart(const Problem& problem, std::vector<Poses> starts) {
+  if (starts.size() == 1) return std::move(starts[0]);
   std::size_t best = 0;
   double best_cost = Cost(problem, starts[0]);
   for (std::size_t k = 1; k < starts.size(); ++k) {

@@ -18,8 +18,7 @@ class SparseCholesky final : public BlockCholesky<B> {
  public:
   using typename BlockCholesky<B>::Block;
 
-  explicit SparseCholesky(const BlockPattern& pattern) : pattern_(pattern), shape_(AnalyzeSupernodes(pattern, B)) {
-    if (shape_.size == 0) return;
+  SparseCholesky(const BlockPattern& pattern, Supernodes shape) : pattern_(pattern), shape_(std::move(shape)) {
     values_.resize(shape_.value_start.back());
     place_.assign(static_cast<std::size_t>(shape_.size), -1);
     for (int v = 0; v < pattern.block_count; ++v) diagonal_at_.push_back(Locate(v, v));
@@ -30,7 +29,6 @@ class SparseCholesky final : public BlockCholesky<B> {
   }
 
   bool Factor(const BlockMatrix<B>& matrix, double lambda) override {
-    if (shape_.size == 0) return false;
     std::fill(values_.begin(), values_.end(), 0.0);
     for (std::size_t v = 0; v < diagonal_at_.size(); ++v) Write(diagonal_at_[v], matrix.diagonal[v], 1.0 + lambda);
     for (std::size_t s = 0; s < off_diagonal_at_.size(); ++s) Write(off_diagonal_at_[s], matrix.off_diagonal[s], 1.0);
@@ -79,7 +77,10 @@ class SparseCholesky final : public BlockCholesky<B> {
 
   void Write(const Location& at, const Block& block, double diagonal_factor) {
     Eigen::Map<Block, 0, Eigen::OuterStride<>> target(values_.data() + at.start, Eigen::OuterStride<>(at.stride));
-    if (at.transposed) target = block.transpose(); else target = block;
+    if (at.transposed)
+      target = block.transpose();
+    else
+      target = block;
     target.diagonal() *= diagonal_factor;
   }
 
@@ -90,7 +91,8 @@ class SparseCholesky final : public BlockCholesky<B> {
   bool Eliminate(const Supernode& supernode) {
     Eigen::Map<MatrixXd> L = ValuesOf(supernode);
     auto L_JJ = L.topRows(supernode.col_count);
-    if (Eigen::internal::llt_inplace<double, Eigen::Lower>::blocked(L_JJ) != -1) return false;
+    Eigen::Ref<MatrixXd> in_place(L_JJ);
+    if (Eigen::LLT<Eigen::Ref<MatrixXd>>(in_place).info() != Eigen::Success) return false;
     const int below = supernode.below();
     if (below == 0) return true;
     auto L_RJ = L.bottomRows(below);
@@ -114,8 +116,9 @@ class SparseCholesky final : public BlockCholesky<B> {
         place_[static_cast<std::size_t>(k)] = at;
       }
       for (int c = first; c < last; ++c) {
-        double* column = values_.data() + ancestor.start +
-                         static_cast<std::size_t>(rows[c] - ancestor.first_col) * static_cast<std::size_t>(ancestor.row_count);
+        double* column =
+            values_.data() + ancestor.start +
+            static_cast<std::size_t>(rows[c] - ancestor.first_col) * static_cast<std::size_t>(ancestor.row_count);
         for (int r = c; r < below; ++r) column[place_[static_cast<std::size_t>(r - first)]] -= update(r, c);
       }
     }
@@ -153,7 +156,9 @@ class SparseCholesky final : public BlockCholesky<B> {
 
 template <int B>
 std::unique_ptr<BlockCholesky<B>> MakeSparseCholesky(const BlockPattern& pattern) {
-  return std::make_unique<SparseCholesky<B>>(pattern);
+  Supernodes shape = AnalyzeSupernodes(pattern, B);
+  if (shape.size == 0) return nullptr;
+  return std::make_unique<SparseCholesky<B>>(pattern, std::move(shape));
 }
 
 template std::unique_ptr<BlockCholesky<1>> MakeSparseCholesky<1>(const BlockPattern&);

@@ -70,8 +70,8 @@ Supernodes Spread(const cholmod_factor& factor, int block_size) {
 Supernode SliceOf(const Supernodes& supernodes, int s) {
   const auto k = static_cast<std::size_t>(s);
   return {supernodes.first_col[k], supernodes.first_col[k + 1] - supernodes.first_col[k],
-          supernodes.row_start[k + 1] - supernodes.row_start[k],
-          supernodes.rows.data() + supernodes.row_start[k], supernodes.value_start[k]};
+          supernodes.row_start[k + 1] - supernodes.row_start[k], supernodes.rows.data() + supernodes.row_start[k],
+          supernodes.value_start[k]};
 }
 
 Supernodes AnalyzeSupernodes(const BlockPattern& pattern, int block_size) {
@@ -81,7 +81,9 @@ Supernodes AnalyzeSupernodes(const BlockPattern& pattern, int block_size) {
   Configure(&common);
   if (cholmod_sparse* matrix = LowerPattern(pattern, &common); matrix != nullptr) {
     if (cholmod_factor* factor = cholmod_analyze(matrix, &common); factor != nullptr) {
-      if (common.status == CHOLMOD_OK && factor->is_super != 0) supernodes = Spread(*factor, block_size);
+      const std::size_t bytes = factor->xsize * static_cast<std::size_t>(block_size * block_size) * sizeof(double);
+      if (common.status == CHOLMOD_OK && factor->is_super != 0 && bytes <= kFactorBytesMax)
+        supernodes = Spread(*factor, block_size);
       cholmod_free_factor(&factor, &common);
     }
     cholmod_free_sparse(&matrix, &common);

@@ -7,14 +7,15 @@
 
 namespace rigcal::graph {
 
-// Supernode s has the columns first_col[s] .. first_col[s+1]-1 and the rows rows[row_start[s] .. row_start[s+1]-1], which
-// begin with its own columns and ascend. Its values are column-major, as many rows as it has, from value_start[s].
+// Supernode s has the columns first_col[s] .. first_col[s+1]-1 and the rows rows[row_start[s] .. row_start[s+1]-1],
+// which begin with its own columns and ascend. Its values are column-major, as many rows as it has, from
+// value_start[s].
 struct Supernodes {
   int size = 0;
   std::vector<int> first_col, row_start, rows;
   std::vector<std::size_t> value_start;  // one more than supernodes: the last is the number of values
   std::vector<int> supernode_of_col;
-  std::vector<int> position;             // where a row or column of the matrix comes in the factor
+  std::vector<int> position;  // where a row or column of the matrix comes in the factor
 
   [[nodiscard]] int count() const { return static_cast<int>(first_col.size()) - 1; }
 };
@@ -31,7 +32,7 @@ struct Supernode {
 [[nodiscard]] Supernode SliceOf(const Supernodes& supernodes, int s);
 
 // Symbolic analysis by CHOLMOD on the pattern of blocks, then every block spread to block_size rows and columns.
-// Empty (size 0) if memory does not suffice.
+// Empty (size 0) if the factor would need more than kFactorBytesMax.
 [[nodiscard]] Supernodes AnalyzeSupernodes(const BlockPattern& pattern, int block_size);
 
 }  // namespace rigcal::graph

@@ -53,10 +53,9 @@ double CostOfG2o(const Graph& graph, const GraphSolution& solution) {
 std::string DigestOf(const GraphSolution& solution) {
   std::string bytes;
   for (const SensorPose& pose : solution.poses) {
-    const std::array<double, 7> numbers = {pose.T_ref_sensor.p_m.x(), pose.T_ref_sensor.p_m.y(),
-                                           pose.T_ref_sensor.p_m.z(), pose.T_ref_sensor.q.x(),
-                                           pose.T_ref_sensor.q.y(),   pose.T_ref_sensor.q.z(),
-                                           pose.T_ref_sensor.q.w()};
+    const std::array<double, 7> numbers = {
+        pose.T_ref_sensor.p_m.x(), pose.T_ref_sensor.p_m.y(), pose.T_ref_sensor.p_m.z(), pose.T_ref_sensor.q.x(),
+        pose.T_ref_sensor.q.y(),   pose.T_ref_sensor.q.z(),   pose.T_ref_sensor.q.w()};
     bytes.append(pose.sensor.str());
     bytes.append(std::string_view(reinterpret_cast<const char*>(numbers.data()), sizeof numbers));
   }

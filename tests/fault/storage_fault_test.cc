@@ -188,8 +188,8 @@ TEST(FullDisk, IsOneClearSentence) {
   disk.Repair();
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, ErrorCode::kStorage);
-  EXPECT_EQ(Sentence(done.error()), "the store at " + folder.path().string() +
-                                        ": database or disk is full. The disk is full: free some space.");
+  EXPECT_EQ(Sentence(done.error()),
+            "the store at " + folder.path().string() + ": database or disk is full. Free some space on the disk.");
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(Jackknife, BlocksAreTheAnswersWithoutOneCapture) {
 }
 
 TEST(Jackknife, FewCapturesAreMarkedModel) {
-  const StereoProblem problem = Photographed(VirtualPair(), TiltedBoards(7), 0.2, 4);
+  const StereoProblem problem = Photographed(VirtualPair(), TiltedBoards(4), 0.2, 4);
   const auto estimate = Estimate(problem);
   ASSERT_TRUE(estimate);
   const auto uncertainty = Jackknife(problem, *estimate);

@@ -67,6 +67,20 @@ TEST_F(RealPairs, NinePairsAgreeWithAll) {
   for (int axis = 0; axis < 6; ++axis) EXPECT_LE(std::abs(difference[axis]), 3 * sigma[axis]) << axis;
 }
 
+// Two halves share nothing: their difference is what both sigmas together must cover. Bound: 3 on each of 6 axes.
+TEST_F(RealPairs, OddAndEvenCapturesAgreeWithinTheirOwnSigma) {
+  StereoProblem odd = problem_, even = problem_;
+  const auto is_odd = [](const StereoCapture& capture) { return (capture.capture.str().back() - '0') % 2 == 1; };
+  std::erase_if(odd.captures, [&](const StereoCapture& capture) { return !is_odd(capture); });
+  std::erase_if(even.captures, is_odd);
+  const Edge first = EstimateEdge(odd), second = EstimateEdge(even);
+  ASSERT_EQ(first.state, EdgeState::kGood);
+  ASSERT_EQ(second.state, EdgeState::kGood);
+  const Vector6d difference = (first.T_a_b.Inverse() * second.T_a_b).Log();
+  const Vector6d variance = (first.uncertainty.covariance + second.uncertainty.covariance).diagonal();
+  for (int axis = 0; axis < 6; ++axis) EXPECT_LE(std::abs(difference[axis]), 3 * std::sqrt(variance[axis])) << axis;
+}
+
 // The other camera first: the inverse pose.
 TEST_F(RealPairs, ExchangedCamerasGiveTheInverse) {
   StereoProblem exchanged = problem_;

@@ -1,6 +1,6 @@
-#include "client/checks.h"
-
 #include <gtest/gtest.h>
+
+#include "client/checks.h"
 
 namespace rigcal::client {
 namespace {

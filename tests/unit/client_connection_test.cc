@@ -1,7 +1,6 @@
-#include "client/connection.h"
-
 #include <gtest/gtest.h>
 
+#include "client/connection.h"
 #include "client_fake_server.h"
 
 namespace rigcal::client {
@@ -19,7 +18,8 @@ TEST(Connection, GivesTheDocumentVerbatim) {
   Asking asking;
   EXPECT_EQ(asking.connection.Ask("show", "{\"robot\":\"r\"}", milliseconds(10'000)).value_or("none"),
             "{ \"verb\":\"show\",  \"json\":{\"robot\":\"r\"}}");
-  EXPECT_EQ(asking.connection.Ask("health", "{}", milliseconds(10'000)).value_or("none"), "{ \"verb\":\"health\",  \"json\":{}}");
+  EXPECT_EQ(asking.connection.Ask("health", "{}", milliseconds(10'000)).value_or("none"),
+            "{ \"verb\":\"health\",  \"json\":{}}");
   EXPECT_EQ(asking.connection.MatchedServers(), 1);
 }
 

@@ -1,6 +1,6 @@
-#include "client/document.h"
-
 #include <gtest/gtest.h>
+
+#include "client/document.h"
 
 namespace rigcal::client {
 namespace {

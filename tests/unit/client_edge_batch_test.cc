@@ -37,7 +37,8 @@ TEST(EdgeBatch, AnItemsIndexIsTheRankOfItsIdWhateverTheFilesOrder) {
   const EdgesToPush backward = EdgesOf(RobotId("r"), reversed, std::nullopt);
   EXPECT_EQ(forward.id, backward.id);
   for (std::size_t i = 0; i < edges.size(); ++i) EXPECT_EQ(forward.edges[i].id, backward.edges[i].id);
-  EXPECT_TRUE(std::is_sorted(forward.edges.begin(), forward.edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; }));
+  EXPECT_TRUE(std::is_sorted(forward.edges.begin(), forward.edges.end(),
+                             [](const Edge& x, const Edge& y) { return x.id < y.id; }));
 }
 
 TEST(EdgeBatch, SentInTheFilesOrderUnlessShuffled) {

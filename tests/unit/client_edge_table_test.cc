@@ -1,8 +1,8 @@
-#include "client/edge_table.h"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
+
+#include "client/edge_table.h"
 
 namespace rigcal::client {
 namespace {
@@ -30,7 +30,9 @@ TEST(PrintEdges, GoodOnesInTheTableFailedOnesWithReasonAndCure) {
   EXPECT_NE(text.find("0.0573 - 0.1719"), std::string::npos) << text;
   EXPECT_NE(text.find("5.000"), std::string::npos) << text;   // |e| = 5 mm
   EXPECT_NE(text.find("1.0000"), std::string::npos) << text;  // and 1 degree
-  EXPECT_NE(text.find("left - top: FAILED\n  only 2 captures show the board to both. Record at least 8."), std::string::npos) << text;
+  EXPECT_NE(text.find("left - top: FAILED\n  only 2 captures show the board to both. Record at least 8."),
+            std::string::npos)
+      << text;
 }
 
 TEST(PrintEdges, NothingForNoEdges) {
@@ -42,14 +44,16 @@ TEST(PrintEdges, NothingForNoEdges) {
 TEST(EdgeLine, OneLine) {
   const auto edges = Parsed(kEdges).Items();
   EXPECT_EQ(EdgeLine(edges[0]), "left - right  stereo  good  sigma 0.100 0.200 0.300 mm, 0.0573 - 0.1719 deg");
-  EXPECT_EQ(EdgeLine(edges[1]), "left - top  stereo  failed  only 2 captures show the board to both. Record at least 8.");
+  EXPECT_EQ(EdgeLine(edges[1]),
+            "left - top  stereo  failed  only 2 captures show the board to both. Record at least 8.");
   EXPECT_EQ(EdgeLine(Document()), "? - ?  -  ?");
 }
 
 TEST(PrintGlobalError, BeforeAndAfterWithParts) {
   std::ostringstream out;
   PrintGlobalError(Parsed(R"({"before": {"total": 0.5, "translation_m2": 0.4, "rotation_rad2": 0.1},
-                              "after": {"total": 0.05, "translation_m2": 0.04, "rotation_rad2": 0.01}})"), out);
+                              "after": {"total": 0.05, "translation_m2": 0.04, "rotation_rad2": 0.01}})"),
+                   out);
   EXPECT_EQ(out.str(), "E_global  before 0.5 (0.4 m^2 + 0.1 rad^2)  after 0.05 (0.04 m^2 + 0.01 rad^2)\n");
 }
 

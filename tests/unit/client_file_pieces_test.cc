@@ -1,11 +1,11 @@
-#include "client/file_pieces.h"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
 #include <fstream>
+
+#include "client/file_pieces.h"
 
 namespace rigcal::client {
 namespace {

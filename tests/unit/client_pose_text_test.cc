@@ -1,9 +1,9 @@
-#include "client/pose_text.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
+
+#include "client/pose_text.h"
 
 namespace rigcal::client {
 namespace {
@@ -52,7 +52,8 @@ TEST(RollPitchYaw, TheQuaternionIsInOrderXyzw) {
 TEST(PoseText, MillimetresAndDegreesAndDashesWhereNothingIsKnown) {
   const auto document = Document::Parse(
       R"({"pose": {"p_m": [0.08318, -0.00092, 0.00012], "q_xyzw": [0, 0, 0.7071067811865476, 0.7071067811865476]},
-          "partly": [0.001, null, 0.003], "zero": {"q_xyzw": [0, 0, 0, 0]}})", "test");
+          "partly": [0.001, null, 0.003], "zero": {"q_xyzw": [0, 0, 0, 0]}})",
+      "test");
   ASSERT_TRUE(document);
   EXPECT_EQ(Triple((*document)["pose"]["p_m"], kMmPerM, 2), "83.18 -0.92 0.12");
   EXPECT_EQ(RpyText((*document)["pose"], 3), "0.000 0.000 90.000");
@@ -63,7 +64,8 @@ TEST(PoseText, MillimetresAndDegreesAndDashesWhereNothingIsKnown) {
 }
 
 TEST(PoseText, MatrixIsSixLinesOfSix) {
-  const auto document = Document::Parse("[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,-2.5e-9]]", "test");
+  const auto document = Document::Parse(
+      "[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],[0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,-2.5e-9]]", "test");
   ASSERT_TRUE(document);
   std::ostringstream out;
   PrintMatrix(*document, "", out);

@@ -67,12 +67,18 @@ TEST(Program, WrongUsageIsTwoWithASentence) {
   }
 }
 
-TEST(Program, ADomainThatIsNoneIsRefused) {
+TEST(Program, ADomainThatIsNoneIsWrongUsage) {
   for (const char* domain : {"x", "231", "-1", "99999999999"}) {
     const Ran ran = Rigcal(std::string("status --timeout 0.2 --domain=") + domain);
-    EXPECT_EQ(ran.code, 4) << ran.text;
-    EXPECT_NE(ran.text.find("0..230"), std::string::npos) << ran.text;
+    EXPECT_EQ(ran.code, 2) << ran.text;
+    EXPECT_NE(ran.text.find("--domain"), std::string::npos) << ran.text;
   }
+}
+
+TEST(Program, ATagThatIsNoneIsRefused) {
+  const Ran ran = Rigcal("status --timeout 0.2 --tag 'a b'");
+  EXPECT_EQ(ran.code, 4) << ran.text;
+  EXPECT_NE(ran.text.find("a b"), std::string::npos) << ran.text;
 }
 
 TEST(Program, NobodyThereIsThreeWithinTheTimeout) {
@@ -97,8 +103,9 @@ TEST(Program, DoctorSaysThatNobodyIsThere) {
 }
 
 TEST(Program, InputThatIsNotThereIsRefusedBeforeAnythingIsSent) {
-  for (const char* arguments : {"push /nonexistent", "push-edges /nonexistent.json --robot r", "push-edges /nonexistent.g2o --robot r",
-                                "push-edges /dev/null --robot '../x'", "watch ../x"}) {
+  for (const char* arguments :
+       {"push /nonexistent", "push-edges /nonexistent.json --robot r", "push-edges /nonexistent.g2o --robot r",
+        "push-edges /dev/null --robot '../x'", "watch ../x"}) {
     const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 4) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << ran.text;

@@ -1,8 +1,8 @@
-#include "client/progress.h"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
+
+#include "client/progress.h"
 
 namespace rigcal::client {
 namespace {
@@ -12,8 +12,7 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 TEST(Progress, OffATerminalALineEveryFewSecondsWithoutControlCharacters) {
   std::ostringstream err;
   Progress progress(err, false, "Sending", 0);
-  for (std::int64_t t = 0; t <= 12; ++t)
-    progress.Show({t * 10'000'000, 200'000'000, "1/4 captures"}, t * kSecond_ns);
+  for (std::int64_t t = 0; t <= 12; ++t) progress.Show({t * 10'000'000, 200'000'000, "1/4 captures"}, t * kSecond_ns);
   progress.Clear();
   EXPECT_EQ(err.str(),
             "Sending 25 %  50 MB of 200 MB  1/4 captures  10 MB/s  15 s left\n"

@@ -1,8 +1,8 @@
-#include "client/push_engine.h"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
+
+#include "client/push_engine.h"
 
 namespace rigcal::client {
 namespace {
@@ -242,7 +242,8 @@ TEST(PushEngine, WhatDdsDidNotTakeIsGivenAgain) {
 }
 
 TEST(PushEngine, HeldBitsBeyondTheSessionAreIgnored) {
-  PushEngine engine = Receiving(Plan({10}), ReceiptOf(State::kReceiving, 1, {false, true, true, true, true, true, true, true}));
+  PushEngine engine =
+      Receiving(Plan({10}), ReceiptOf(State::kReceiving, 1, {false, true, true, true, true, true, true, true}));
   EXPECT_EQ(engine.HeldBytes(), 0);
   EXPECT_EQ(Chunks(engine, 1).size(), 1U);
 }

@@ -18,9 +18,9 @@ constexpr std::int64_t kMs_ns = 1'000'000, kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kChunkBytes = 10;
 
 struct Faults {
-  double loss_ratio = 0.0;      // of what the client sends, and of receipts
-  double restart_ratio = 0.0;   // per millisecond
-  double discard_ratio = 0.0;   // chunks thrown away although within the window (another session fills the intake)
+  double loss_ratio = 0.0;     // of what the client sends, and of receipts
+  double restart_ratio = 0.0;  // per millisecond
+  double discard_ratio = 0.0;  // chunks thrown away although within the window (another session fills the intake)
 };
 
 struct Message {
@@ -172,7 +172,8 @@ class World {
   void Deliver(Client& client) {
     while (!client.on_the_way.empty() && Chance(0.7)) {
       const std::size_t last = std::min<std::size_t>(client.on_the_way.size(), 3) - 1;
-      const auto pick = client.on_the_way.begin() + std::uniform_int_distribution<std::ptrdiff_t>(0, static_cast<std::ptrdiff_t>(last))(random_);
+      const auto pick = client.on_the_way.begin() +
+                        std::uniform_int_distribution<std::ptrdiff_t>(0, static_cast<std::ptrdiff_t>(last))(random_);
       const Message message = *pick;
       client.on_the_way.erase(pick);
       if (message.to_incarnation != server_->incarnation()) continue;  // went down with the old process

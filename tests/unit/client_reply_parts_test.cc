@@ -1,6 +1,6 @@
-#include "client/reply_parts.h"
-
 #include <gtest/gtest.h>
+
+#include "client/reply_parts.h"
 
 namespace rigcal::client {
 namespace {

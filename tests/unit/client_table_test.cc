@@ -1,9 +1,9 @@
-#include "client/table.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <sstream>
+
+#include "client/table.h"
 
 namespace rigcal::client {
 namespace {

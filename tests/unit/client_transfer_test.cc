@@ -1,9 +1,8 @@
-#include "client/transfer.h"
-
 #include <gtest/gtest.h>
 
 #include "client/edge_outlet.h"
 #include "client/session_outlet.h"
+#include "client/transfer.h"
 #include "client_fake_server.h"
 #include "server/formats/session_folder.h"
 

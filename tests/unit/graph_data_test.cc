@@ -8,9 +8,9 @@ namespace {
 
 struct Known {
   const char* file;
-  double cost;             // optimum of the SE(3)-Log cost; 0: not published
-  double cost_g2o;         // optimum of g2o's own cost
-  double excess;           // of g2o's cost at our optimum, relative
+  double cost;      // optimum of the SE(3)-Log cost; 0: not published
+  double cost_g2o;  // optimum of g2o's own cost
+  double excess;    // of g2o's cost at our optimum, relative
 };
 
 void PrintTo(const Known& known, std::ostream* out) { *out << known.file; }
@@ -54,15 +54,15 @@ TEST_P(GraphData, ReachesTheKnownOptimum) {
 }
 
 // The g2o figures of the synthetic graphs bound from below only: our optimum is another cost's.
-INSTANTIATE_TEST_SUITE_P(
-    Public, GraphData,
-    testing::Values(Known{"posegraph_sesync/tinyGrid3D.g2o", 6.778920, 6.727882, 1e-4},
-                    Known{"posegraph_sesync/smallGrid3D.g2o", 464.145115, 458.15378, 2e-4},
-                    Known{"posegraph_sesync/parking-garage.g2o", 0.0, 1.238691, 1e-6},
-                    Known{"posegraph_sesync/sphere2500.g2o", 727.285111, 727.149667, 1e-6},
-                    Known{"posegraph_synthetic/k4_4_6.g2o", 19.098197, 19.098128, 1e-6},
-                    Known{"posegraph_synthetic/rig_12_59.g2o", 308.578341, 308.575804, 1e-6},
-                    Known{"posegraph_synthetic/rand_100_600.g2o", 3129.009235, 3128.986200, 1e-6}));
+INSTANTIATE_TEST_SUITE_P(Public, GraphData,
+                         testing::Values(Known{"posegraph_sesync/tinyGrid3D.g2o", 6.778920, 6.727882, 1e-4},
+                                         Known{"posegraph_sesync/smallGrid3D.g2o", 464.145115, 458.15378, 2e-4},
+                                         Known{"posegraph_sesync/parking-garage.g2o", 0.0, 1.238691, 1e-6},
+                                         Known{"posegraph_sesync/sphere2500.g2o", 727.285111, 727.149667, 1e-6},
+                                         Known{"posegraph_synthetic/k4_4_6.g2o", 19.098197, 19.098128, 1e-6},
+                                         Known{"posegraph_synthetic/rig_12_59.g2o", 308.578341, 308.575804, 1e-6},
+                                         Known{"posegraph_synthetic/rand_100_600.g2o", 3129.009235, 3128.986200,
+                                               1e-6}));
 
 // Marginals of a large graph against columns of the inverse, solved for one at a time.
 TEST(GraphDataMarginals, OfSphereAgreeWithSolvedColumns) {

@@ -1,6 +1,7 @@
 // Random sensor graphs with known truth, shared by the tests of server/graph.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -9,8 +10,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 #include "server/base/sha256.h"
 #include "server/formats/g2o.h"
@@ -85,7 +84,8 @@ inline bool SameBytes(const GraphSolution& a, const GraphSolution& b) {
   for (std::size_t k = 0; k < a.poses.size(); ++k) {
     const Se3 &T = a.poses[k].T_ref_sensor, &U = b.poses[k].T_ref_sensor;
     if (a.poses[k].sensor != b.poses[k].sensor || a.poses[k].known != b.poses[k].known) return false;
-    if (std::memcmp(T.p_m.data(), U.p_m.data(), 24) != 0 || std::memcmp(T.q.coeffs().data(), U.q.coeffs().data(), 32) != 0)
+    if (std::memcmp(T.p_m.data(), U.p_m.data(), 24) != 0 ||
+        std::memcmp(T.q.coeffs().data(), U.q.coeffs().data(), 32) != 0)
       return false;
     if (std::memcmp(a.poses[k].covariance.data(), b.poses[k].covariance.data(), 288) != 0) return false;
   }
@@ -98,7 +98,9 @@ inline bool SameBytes(const GraphSolution& a, const GraphSolution& b) {
 
 inline double Distance(const Se3& T, const Se3& U) { return (T.Inverse() * U).Log().norm(); }
 
-inline std::filesystem::path DataFolder() { return std::filesystem::path(RIGCAL_SOURCE_DIR) / ".." / "shared" / "data"; }
+inline std::filesystem::path DataFolder() {
+  return std::filesystem::path(RIGCAL_SOURCE_DIR) / ".." / "shared" / "data";
+}
 
 inline Result<formats::G2oFile> ReadData(const std::string& name) {
   const std::ifstream file(DataFolder() / name);

@@ -18,8 +18,8 @@ std::string Refusal(const std::string& text) {
 }
 
 TEST(G2o, ReadsEdgesVerticesAndFix) {
-  const Result<G2oFile> file = ReadG2o("# made by hand\nVERTEX_SE3:QUAT 3 1 0 0 0 0 0 1\r\n\nFIX 3\n" +
-                                           EdgeLine("3 12", "0.6 0 0 0.8"), kRobot);
+  const Result<G2oFile> file =
+      ReadG2o("# made by hand\nVERTEX_SE3:QUAT 3 1 0 0 0 0 0 1\r\n\nFIX 3\n" + EdgeLine("3 12", "0.6 0 0 0.8"), kRobot);
   ASSERT_TRUE(file.has_value()) << Sentence(file.error());
   ASSERT_EQ(file->edges.size(), 1U);
   const Edge& edge = file->edges[0];
@@ -82,7 +82,8 @@ TEST(G2o, RefusesByLineAndEdge) {
   EXPECT_EQ(Refusal(good + good + "EDGE_SE3:QUAT 0 1 1 2\n"), "line 3: edge 0 - 1: ends after 2 of 28 numbers");
   EXPECT_EQ(Refusal("EDGE_SE3:QUAT x 1\n"), "line 1: \"x\" is not a vertex number");
   EXPECT_EQ(Refusal("EDGE_SE3:QUAT 0 -1\n"), "line 1: \"-1\" is not a vertex number");
-  EXPECT_THAT(Refusal(EdgeLine("4 5", "0 0 0 1.1")), testing::StartsWith("line 1: edge 4 - 5: the quaternion has length 1.1"));
+  EXPECT_THAT(Refusal(EdgeLine("4 5", "0 0 0 1.1")),
+              testing::StartsWith("line 1: edge 4 - 5: the quaternion has length 1.1"));
   EXPECT_EQ(Refusal(EdgeLine("4 4")), "line 1: edge 4 - 4: joins a vertex with itself");
   EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 nan 1")), "line 1: edge 4 - 5: \"nan\" is not a finite number");
   EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 0 0 0 1 0 0 0 0 -1 0 0 0 4 0 0 4 0 4")),
@@ -91,7 +92,8 @@ TEST(G2o, RefusesByLineAndEdge) {
             "line 1: edge 4 - 5: the information matrix is zero");
   EXPECT_THAT(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 4 0 0 4 0 4 9")),
               testing::HasSubstr("more fields than expected, from \"9\""));
-  EXPECT_EQ(Refusal("VERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"), "line 2: vertex 1: occurs twice");
+  EXPECT_EQ(Refusal("VERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"),
+            "line 2: vertex 1: occurs twice");
 }
 
 TEST(G2o, NearlyUnitQuaternionsAreNormalisedAndRankDeficientInformationIsKept) {

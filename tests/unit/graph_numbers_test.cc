@@ -63,7 +63,8 @@ TEST(GraphLinearize, HessianIsThatOfFiniteDifferenceJacobians) {
     H += J.transpose() * constraint.Omega * J;
   }
   for (int v = 0; v < problem.free_count(); ++v)
-    EXPECT_LT((equations.H.diagonal[static_cast<std::size_t>(v)] - H.block<6, 6>(6 * v, 6 * v)).norm(), 1e-6 * H.norm());
+    EXPECT_LT((equations.H.diagonal[static_cast<std::size_t>(v)] - H.block<6, 6>(6 * v, 6 * v)).norm(),
+              1e-6 * H.norm());
   for (std::size_t s = 0; s < problem.pattern.off_diagonal.size(); ++s) {
     const BlockPosition at = problem.pattern.off_diagonal[s];
     EXPECT_LT((equations.H.off_diagonal[s] - H.block<6, 6>(6 * at.row, 6 * at.col)).norm(), 1e-6 * H.norm());
@@ -103,7 +104,8 @@ TEST(GraphCholesky, SparseAndDenseAgreeWithAnInverse) {
     const std::vector<Matrix6d> blocks = cholesky->InverseDiagonal();
     for (int v = 0; v < problem.free_count(); ++v) {
       const Matrix6d expected = inverse.block<6, 6>(6 * v, 6 * v);
-      EXPECT_LT((blocks[static_cast<std::size_t>(v)] - expected).norm(), 1e-8 * expected.norm()) << dense_max << " " << v;
+      EXPECT_LT((blocks[static_cast<std::size_t>(v)] - expected).norm(), 1e-8 * expected.norm())
+          << dense_max << " " << v;
     }
   }
 }
@@ -113,7 +115,8 @@ TEST(GraphCholesky, AnIndefiniteMatrixIsRefusedByBothKinds) {
   NormalEquations equations;
   Linearize(problem, SpanningTreePoses(problem), equations);
   equations.H.diagonal[30](2, 2) = -1.0;
-  for (const int dense_max : {0, 1000}) EXPECT_FALSE(MakeCholesky<6>(problem.pattern, dense_max)->Factor(equations.H, 0.0));
+  for (const int dense_max : {0, 1000})
+    EXPECT_FALSE(MakeCholesky<6>(problem.pattern, dense_max)->Factor(equations.H, 0.0));
 }
 
 // --- Ceres: the same cost written once more, on rotation vectors, differentiated automatically. ---
@@ -121,7 +124,8 @@ TEST(GraphCholesky, AnIndefiniteMatrixIsRefusedByBothKinds) {
 template <typename T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
 
-// Log of SE(3) by its own route: matrix V(phi) solved, not inverted in closed form. Angles stay below pi in these tests.
+// Log of SE(3) by its own route: matrix V(phi) solved, not inverted in closed form. Angles stay below pi in these
+// tests.
 template <typename T>
 Eigen::Matrix<T, 6, 1> LogOf(const Eigen::Quaternion<T>& q_in, const Vector3<T>& p) {
   const Eigen::Quaternion<T> q = q_in.w() < T(0) ? Eigen::Quaternion<T>(-q_in.coeffs()) : q_in;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "server/graph/observability.h"
+#include "server/graph/spanning_tree.h"
 #include "tests/unit/graph_fixture.h"
 
 namespace rigcal::graph {
@@ -18,8 +19,8 @@ RandomRig RigWithDeficientEdge(const Matrix6d& Omega) {
   RandomRig rig = MakeRig(4, 7, 50, 0.001, 0.001, false);
   std::erase_if(rig.graph.edges, [](const GraphEdge& e) { return e.frame_a == Name(3) || e.frame_b == Name(3); });
   for (std::size_t k = 0; k < 3; ++k)  // a triangle, whatever the random pairs were
-    rig.graph.edges.push_back(MakeEdge(60 + k, k, (k + 1) % 3, rig.truth[k].Inverse() * rig.truth[(k + 1) % 3],
-                                       1e6 * Matrix6d::Identity()));
+    rig.graph.edges.push_back(
+        MakeEdge(60 + k, k, (k + 1) % 3, rig.truth[k].Inverse() * rig.truth[(k + 1) % 3], 1e6 * Matrix6d::Identity()));
   rig.graph.edges.push_back(MakeEdge(70, 0, 3, rig.truth[3], Omega));
   return rig;
 }
@@ -70,15 +71,15 @@ TEST(GraphObservability, NoiseDoesNotInventInformation) {
   RandomRig rig = RigWithDeficientEdge(Blind({2}));
   Vector6d noise = Vector6d::Zero();
   noise(tangent::kRx) = 0.002;
-  rig.graph.edges.push_back(
-      MakeEdge(71, 1, 3, rig.truth[1].Inverse() * rig.truth[3] * Se3::Exp(noise), Blind({2})));
+  rig.graph.edges.push_back(MakeEdge(71, 1, 3, rig.truth[1].Inverse() * rig.truth[3] * Se3::Exp(noise), Blind({2})));
   const GraphSolution solution = Solve(rig.graph);
   EXPECT_FALSE(solution.poses[3].known);
   ASSERT_FALSE(solution.diagnoses.empty());
   EXPECT_THAT(solution.diagnoses[0].what, testing::HasSubstr("leave free translation along z"));
 }
 
-// Sensors tied rigidly to one that is not observable are not observable either; the direction is told in their own axes.
+// Sensors tied rigidly to one that is not observable are not observable either; the direction is told in their own
+// axes.
 TEST(GraphObservability, WhatHangsOnAFreeSensorIsFreeToo) {
   RandomRig rig = RigWithDeficientEdge(Blind({0}));
   rig.graph.sensors.push_back(Name(4));
@@ -116,6 +117,57 @@ TEST(GraphObservability, DirectionsAreNamedInWords) {
   two(tangent::kX, 0) = two(tangent::kRz, 0) = two(tangent::kX, 1) = 1.0;
   two(tangent::kRz, 1) = -1.0;
   EXPECT_EQ(NameDirections(two), "rotation about z and translation along x");
+}
+
+// The basis is metres and radians whatever the size of the rig: 4 m long edges, rotation about an axis 2 m away.
+TEST(GraphObservability, TheBasisIsInMetresAndRadians) {
+  RandomRig rig = RigWithDeficientEdge(Blind({5}));
+  for (GraphEdge& edge : rig.graph.edges) edge.T_a_b.p_m *= 4.0;
+  rig.graph.sensors.push_back(Name(4));
+  Se3 T_3_4;
+  T_3_4.p_m.x() = 2.0;  // turning 3 about its z moves 4 along its y, 2 m for each radian
+  rig.graph.edges.push_back(MakeEdge(72, 3, 4, T_3_4, 1e6 * Matrix6d::Identity()));
+  const Problem problem = MakeProblem(rig.graph);
+  const Observability observability = Observe(problem, SpanningTreePoses(problem));
+  ASSERT_EQ(observability.nullity, 1);
+  const auto vertex = static_cast<std::size_t>(problem.vertex_of_sensor[4]);
+  const FreeBasis& basis = observability.free_of_vertex[vertex];
+  ASSERT_EQ(basis.cols(), 1);
+  EXPECT_NEAR(basis(tangent::kY, 0) / basis(tangent::kRz, 0), 2.0, 1e-9);
+  EXPECT_NEAR(basis(tangent::kX, 0), 0.0, 1e-9);
+}
+
+// A sensor held by two deficient edges that complete each other stays known beside one that is free.
+TEST(GraphObservability, NoiseOnFreeSensorsDoesNotTaintHeldOnes) {
+  RandomRig rig = RigWithDeficientEdge(Blind({2}));
+  std::mt19937 random(52);
+  rig.graph.sensors.push_back(Name(4));
+  const Se3 T_0_4 = Se3::Exp(RandomVector(random, 0.5, 0.5));
+  const auto noisy = [&] { return Se3::Exp(RandomVector(random, 0.001, 0.002)); };
+  rig.graph.edges.push_back(MakeEdge(80, 0, 4, T_0_4 * noisy(), Blind({0})));
+  rig.graph.edges.push_back(MakeEdge(81, 1, 4, rig.truth[1].Inverse() * T_0_4 * noisy(), Blind({1})));
+  rig.graph.edges.push_back(MakeEdge(82, 4, 3, T_0_4.Inverse() * rig.truth[3] * noisy(), Blind({2})));
+  const GraphSolution solution = Solve(rig.graph);
+  EXPECT_TRUE(solution.converged);
+  EXPECT_FALSE(solution.poses[3].known);
+  EXPECT_TRUE(solution.poses[4].known);
+  EXPECT_LT(Distance(solution.poses[4].T_ref_sensor, T_0_4), 0.02);
+}
+
+// A long chain of deficient edges is more than is judged: said so, sensor by sensor, and quickly.
+TEST(GraphObservability, TooManyDeficientEdgesAreNotJudged) {
+  Graph graph{Name(0), {Name(0)}, {}};
+  Se3 T;
+  T.p_m.x() = 1.0;
+  for (std::size_t k = 0; k < 300; ++k) {
+    graph.sensors.push_back(Name(k + 1));
+    graph.edges.push_back(MakeEdge(k, k, k + 1, T, Blind({0})));
+  }
+  const GraphSolution solution = Solve(graph);
+  EXPECT_FALSE(solution.poses[1].known);
+  ASSERT_EQ(solution.diagnoses.size(), 300U);
+  EXPECT_EQ(solution.diagnoses[0].code, "not_judged");
+  EXPECT_THAT(solution.diagnoses[0].what, testing::HasSubstr("the pose of sensor 1 cannot be judged"));
 }
 
 }  // namespace

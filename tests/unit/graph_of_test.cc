@@ -21,7 +21,8 @@ std::vector<std::string> NamesOf(const Graph& graph) {
 }
 
 TEST(GraphOf, NumericNamesComeFirstAndAsNumbers) {
-  const Graph graph = GraphOf({EdgeBetween("10", "9"), EdgeBetween("b", "007"), EdgeBetween("a", "2"), EdgeBetween("7", "2x")}, SensorId());
+  const Graph graph = GraphOf(
+      {EdgeBetween("10", "9"), EdgeBetween("b", "007"), EdgeBetween("a", "2"), EdgeBetween("7", "2x")}, SensorId());
   EXPECT_EQ(NamesOf(graph), (std::vector<std::string>{"2", "007", "7", "9", "10", "2x", "a", "b"}));
   EXPECT_EQ(graph.reference.str(), "2");
 }

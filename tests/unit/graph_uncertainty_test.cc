@@ -59,7 +59,8 @@ TEST(GraphMarginals, AreTheScatterOfMonteCarlo) {
   EXPECT_LT(whitened_error(relative->covariance, scatter_2_4), 0.13);
 }
 
-// Mean over edges of tr(Omega Cov(edge)) / 6 is (N_V - 1) / N_E exactly, where residuals vanish: the trace of a projector.
+// Mean over edges of tr(Omega Cov(edge)) / 6 is (N_V - 1) / N_E exactly, where residuals vanish: the trace of a
+// projector.
 TEST(GraphMarginals, MeanEdgeUncertaintyIsVerticesOverEdges) {
   for (const std::size_t vertices : {std::size_t{12}, std::size_t{60}}) {
     const std::size_t edges = 4 * vertices;
@@ -82,11 +83,14 @@ TEST(GraphRelative, AgreesWithMarginalsAndIsIdentityForOneSensor) {
   const GraphSolution solution = Solve(rig.graph);
   const auto from_reference = Relative(rig.graph, solution, Name(0), Name(5));
   ASSERT_TRUE(from_reference.has_value());
-  EXPECT_LT((from_reference->covariance - solution.poses[5].covariance).norm(), 1e-9 * solution.poses[5].covariance.norm());
-  const auto there = Relative(rig.graph, solution, Name(3), Name(7)), back = Relative(rig.graph, solution, Name(7), Name(3));
+  EXPECT_LT((from_reference->covariance - solution.poses[5].covariance).norm(),
+            1e-9 * solution.poses[5].covariance.norm());
+  const auto there = Relative(rig.graph, solution, Name(3), Name(7)),
+             back = Relative(rig.graph, solution, Name(7), Name(3));
   ASSERT_TRUE(there && back);
   EXPECT_LT(Distance(there->T_A_B, back->T_A_B.Inverse()), 1e-12);
-  EXPECT_LT((InverseCovariance(there->T_A_B, there->covariance) - back->covariance).norm(), 1e-9 * back->covariance.norm());
+  EXPECT_LT((InverseCovariance(there->T_A_B, there->covariance) - back->covariance).norm(),
+            1e-9 * back->covariance.norm());
   const auto same = Relative(rig.graph, solution, Name(3), Name(3));
   ASSERT_TRUE(same.has_value());
   EXPECT_EQ(same->covariance, Matrix6d::Zero());
@@ -113,7 +117,8 @@ TEST(GraphUpdate, EqualsTheBatchOptimumAfterEveryEdge) {
   for (const GraphEdge& edge : rig.graph.edges) {
     graph.edges.push_back(edge);
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (std::find(graph.sensors.begin(), graph.sensors.end(), sensor) == graph.sensors.end()) graph.sensors.push_back(sensor);
+      if (std::find(graph.sensors.begin(), graph.sensors.end(), sensor) == graph.sensors.end())
+        graph.sensors.push_back(sensor);
     state = Update(graph, state);
     const GraphSolution batch = Solve(graph);
     EXPECT_NEAR(state.cost, batch.cost, 1e-9 * batch.cost + 1e-12);

@@ -160,7 +160,7 @@ inline SessionId AppendOpenSession(Store& store, std::size_t payloads, const Rob
 // One that holds all its payloads and is closed with `pairs`.
 inline SessionId AppendClosedSession(Store& store, std::size_t payloads, const std::vector<SensorPair>& pairs,
                                      const RobotId& robot = kRobot) {
-  const SessionId id = AppendOpenSession(store, payloads, robot);
+  SessionId id = AppendOpenSession(store, payloads, robot);
   std::vector<std::uint32_t> all(payloads);
   for (std::uint32_t i = 0; i < payloads; ++i) all[i] = i;
   EXPECT_TRUE(AppendHeld(store, id, all, {11}));

@@ -55,7 +55,7 @@ TEST_F(StoreTest, IsSetForDurability) {
 
 TEST(StoreOpen, MigratesAnEmptyFile) {
   const TempFolder folder;
-  std::ofstream(folder.path() / "rigcal.db");
+  std::ofstream(folder.path() / "rigcal.db").close();
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   EXPECT_EQ(store->SchemaVersion(), 1);

@@ -1,0 +1,203 @@
+#include <gmock/gmock.h>
+
+#include "server/fleet/assess.h"
+#include "server/math/statistics.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Edge MakeEdge(char letter, const std::string& a, const std::string& b, int dof = 0) {
+  Edge edge;
+  edge.id = EdgeId(std::string(64, letter));
+  edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
+  edge.uncertainty = FromInformation(1e6 * Matrix6d::Identity(), UncertaintySource::kGiven, dof);
+  edge.state = EdgeState::kGood;
+  return edge;
+}
+
+Edge FailedEdge(char letter, const std::string& a, const std::string& b) {
+  Edge edge = MakeEdge(letter, a, b);
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses.push_back({"too_few_captures", "3 captures show the board", "Take at least 10 captures."});
+  return edge;
+}
+
+EdgeResidual ResidualOf(const Edge& edge, double off_m) {
+  EdgeResidual residual;
+  residual.edge = edge.id;
+  residual.in_solution = true;
+  residual.e(tangent::kY) = off_m;
+  residual.weighted = residual.e.dot(edge.uncertainty.Omega * residual.e);
+  return residual;
+}
+
+SensorPose PoseOf(const std::string& name, bool known = true, double variance = 1e-6) {
+  SensorPose pose;
+  pose.sensor = SensorId(name);
+  pose.known = known;
+  if (known) pose.covariance = variance * Matrix6d::Identity();
+  return pose;
+}
+
+// A triangle in which all is well.
+struct Rig {
+  std::vector<Edge> edges = {MakeEdge('a', "left", "right"), MakeEdge('b', "right", "top"),
+                             MakeEdge('c', "left", "top")};
+  GraphSolution solution;
+  Rig() {
+    solution.converged = true;
+    solution.dof = 6;
+    solution.poses = {PoseOf("left", true, 0.0), PoseOf("right"), PoseOf("top")};
+    for (const Edge& edge : edges) solution.residuals.push_back(ResidualOf(edge, 0.0005));
+  }
+  [[nodiscard]] Verdict Judge() const { return Assess(edges, solution); }
+};
+
+TEST(Assess, PassesWhereAllIsWell) {
+  const Verdict verdict = Rig().Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_EQ(verdict.why, "Every sensor is known well enough and the edges agree with each other.");
+}
+
+TEST(Assess, FailsByTheWorstEdge) {
+  Rig rig;
+  rig.solution.residuals[1] = ResidualOf(rig.edges[1], 0.030);
+  rig.solution.residuals[2] = ResidualOf(rig.edges[2], 0.020);
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("Edge right - top contradicts the other edges: it is off by 30 mm and 0 deg"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("right and top"));
+}
+
+TEST(Assess, UnknownSensorsAreNamedWithTheirDiagnosis) {
+  Rig rig;
+  rig.solution.poses.push_back(PoseOf("lidar", false));
+  rig.solution.diagnoses.push_back({"not_connected",
+                                    "sensor lidar is not connected to reference left: it has no good edge",
+                                    "Capture a session that shows lidar."});
+  const Verdict one = rig.Judge();
+  EXPECT_EQ(one.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(one.why, "Sensor lidar is not connected to reference left: it has no good edge.");
+  EXPECT_EQ(one.what_to_do, "Capture a session that shows lidar.");
+  rig.solution.poses.push_back(PoseOf("arm", false));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("lidar and arm"));
+}
+
+TEST(Assess, ASensorThatOccursOnlyInFailedEdgesIsUnknown) {
+  Rig rig;
+  rig.edges.push_back(FailedEdge('d', "top", "rear"));
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_THAT(verdict.why, HasSubstr("rear"));
+}
+
+TEST(Assess, AnUnsettledGraphIsUnknown) {
+  Rig rig;
+  rig.solution.converged = false;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+  EXPECT_THAT(rig.Judge().why, HasSubstr("did not settle"));
+}
+
+TEST(Assess, NothingOrOnlyFailuresIsUnknown) {
+  EXPECT_EQ(Assess({}, {}).level, VerdictLevel::kUnknown);
+  EXPECT_THAT(Assess({}, {}).why, HasSubstr("Nothing has been calibrated yet"));
+  EXPECT_THAT(Assess({FailedEdge('a', "left", "right")}, {}).why, HasSubstr("Every calibration failed"));
+}
+
+TEST(Assess, FailedEdgesWarnWithTheirCureUnlessRepaired) {
+  Rig rig;
+  rig.solution.poses.push_back(PoseOf("rear"));
+  rig.edges.push_back(FailedEdge('d', "top", "rear"));
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why, "The calibration of top - rear failed.");
+  EXPECT_EQ(verdict.what_to_do, "Take at least 10 captures.");
+  rig.edges.push_back(MakeEdge('e', "rear", "top"));
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+}
+
+TEST(Assess, UncertainSensorsWarnOnEveryAxis) {
+  for (int axis = 0; axis < 6; ++axis) {
+    Rig rig;
+    rig.solution.poses[2].covariance(axis, axis) = 1e-4;
+    const Verdict verdict = rig.Judge();
+    EXPECT_EQ(verdict.level, VerdictLevel::kWarn) << axis;
+    EXPECT_THAT(verdict.why, HasSubstr("The pose of top is less certain than the policy asks")) << axis;
+    EXPECT_THAT(verdict.why, HasSubstr(axis < 3 ? "10 mm" : "0.573 deg"));
+  }
+}
+
+TEST(Assess, AGraphWithoutALoopWarns) {
+  Rig rig;
+  rig.solution.dof = 0;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kWarn);
+  EXPECT_EQ(rig.Judge().why, "No loop of edges checks the result.");
+}
+
+TEST(Assess, SeveralWarningsAreAllNamedInOneSentence) {
+  Rig rig;
+  rig.solution.dof = 0;
+  rig.solution.poses[1].covariance(0, 0) = 1e-4;
+  const Verdict verdict = rig.Judge();
+  EXPECT_THAT(verdict.why, HasSubstr("right"));
+  EXPECT_THAT(verdict.why, HasSubstr("; also, no loop"));
+  EXPECT_EQ(std::count(verdict.why.begin(), verdict.why.end(), '\n'), 0);
+}
+
+TEST(Assess, TheWorstLevelWins) {
+  Rig rig;
+  rig.solution.dof = 0;
+  rig.solution.poses.push_back(PoseOf("lidar", false));
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+  rig.solution.residuals[0] = ResidualOf(rig.edges[0], 0.05);
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kFail);
+}
+
+TEST(Assess, ManySensorsAreCounted) {
+  Rig rig;
+  for (int k = 0; k < 9; ++k) rig.solution.poses.push_back(PoseOf("s" + std::to_string(k), false));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("s0, s1, s2, s3, s4, s5 and 3 more"));
+}
+
+TEST(TestResidual, UsesChiSquareForKnownAndHotellingForEstimatedCovariance) {
+  Policy policy;
+  policy.residual_probability = 0.95;
+  const Edge known = MakeEdge('a', "left", "right"), estimated = MakeEdge('b', "left", "right", 39);
+  const EdgeTest chi_square = TestResidual(known, ResidualOf(known, 0.002), 1, policy);
+  EXPECT_NEAR(chi_square.statistic, 4.0, 1e-12);
+  EXPECT_NEAR(chi_square.limit, 12.592, 1e-3);  // table of chi-square, 6 degrees of freedom
+  EXPECT_NEAR(TestResidual(estimated, ResidualOf(estimated, 0.002), 1, policy).limit, 16.4, 0.05);  // design, m = 40
+}
+
+TEST(TestResidual, CorrectsForTheNumberOfEdges) {
+  const Edge edge = MakeEdge('a', "left", "right");
+  const EdgeTest one = TestResidual(edge, ResidualOf(edge, 0.0), 1),
+                 hundred = TestResidual(edge, ResidualOf(edge, 0.0), 100);
+  EXPECT_NEAR(ChiSquareTail(one.limit, 6), 1e-3, 1e-9);
+  EXPECT_NEAR(ChiSquareTail(hundred.limit, 6), 1e-5, 1e-9);
+}
+
+TEST(TestResidual, JudgesNothingFromTooFewBlocksOrOutsideTheSolution) {
+  const Edge few = MakeEdge('a', "left", "right", 4);
+  EXPECT_EQ(TestResidual(few, ResidualOf(few, 0.1), 1).limit, 0.0);
+  const Edge edge = MakeEdge('b', "left", "right");
+  EdgeResidual outside = ResidualOf(edge, 0.1);
+  outside.in_solution = false;
+  EXPECT_EQ(TestResidual(edge, outside, 1).limit, 0.0);
+}
+
+TEST(TestResidual, CountsOnlyTheDirectionsAnEdgeSees) {
+  Edge edge = MakeEdge('a', "left", "right");
+  Matrix6d Omega = edge.uncertainty.Omega;
+  Omega(2, 2) = 0.0;
+  edge.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
+  Policy policy;
+  policy.residual_probability = 0.95;
+  EXPECT_NEAR(TestResidual(edge, ResidualOf(edge, 0.001), 1, policy).limit, 11.070, 1e-3);  // 5 degrees of freedom
+}
+
+}  // namespace
+}  // namespace rigcal::fleet
