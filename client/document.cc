@@ -86,7 +86,7 @@ namespace {
 std::string Quoted(const std::string& text) { return json(text).dump(-1, ' ', false, json::error_handler_t::replace); }
 }  // namespace
 
-Field::Field(std::string key_in, std::string text) : key(std::move(key_in)), json(Quoted(text)) {}
+Field::Field(std::string key_in, const std::string& text) : key(std::move(key_in)), json(Quoted(text)) {}
 Field::Field(std::string key_in, const char* text) : Field(std::move(key_in), std::string(text)) {}
 Field::Field(std::string key_in, std::int64_t value) : key(std::move(key_in)), json(std::to_string(value)) {}
 

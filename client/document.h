@@ -39,7 +39,7 @@ class Document {
 
 // {"key": value, ...} as JSON text; for requests.
 struct Field {
-  Field(std::string key, std::string text);
+  Field(std::string key, const std::string& text);
   Field(std::string key, const char* text);
   Field(std::string key, std::int64_t value);
   [[nodiscard]] static Field Raw(std::string key, std::string json);  // the value is JSON already

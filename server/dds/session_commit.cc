@@ -20,8 +20,11 @@ void SessionRecorder::StartCommit() {
     if (intakes_.at(session)->Completes(idx)) running_.closing.insert(session);
   finished_.clear();
   pending_bytes_ = 0;
-  commit_ = std::async(std::launch::async, [this] {
-    const Status done = Persist(commit_store_, running_, clock_.Now());
+  commit_is_done_ = false;
+  // Where no thread can be made it is deferred: done when it is asked for.
+  commit_ = std::async(std::launch::async | std::launch::deferred, [this] {
+    Status done = Persist(commit_store_, running_, clock_.Now());
+    commit_is_done_ = true;
     commit_done_();
     return done;
   });
@@ -29,8 +32,8 @@ void SessionRecorder::StartCommit() {
 
 void SessionRecorder::FinishCommit(Patience patience) {
   if (!commit_.valid()) return;
-  const bool is_ready = commit_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  if (!is_ready && patience == Patience::kNone) return;
+  const bool is_running = !commit_is_done_ && commit_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout;
+  if (is_running && patience == Patience::kNone) return;
   if (const Status done = commit_.get(); done) {
     Announce(running_);
   } else {

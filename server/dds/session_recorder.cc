@@ -77,6 +77,8 @@ void SessionRecorder::Remove(const SessionId& session) {
   std::error_code ignored;
   fs::remove_all(found->second->folder(), ignored);
   open_payloads_ -= found->second->payloads();
+  const auto is_its = [&](const Finished& one) { return one.session == session; };
+  finished_.erase(std::remove_if(finished_.begin(), finished_.end(), is_its), finished_.end());
   if (!found->second->AllHeld()) ++incarnation_;
   intakes_.erase(found);
   dirty_.erase(session);

@@ -1,6 +1,7 @@
 // Sessions from header to closed: manifests, payload files, held bits, receipts. Thread W only.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <future>
 #include <memory>
@@ -33,7 +34,6 @@ class SessionRecorder {
   void Report();
   // Complete files that no commit has taken up yet.
   [[nodiscard]] std::int64_t PendingBytes() const { return pending_bytes_; }
-  [[nodiscard]] bool CommitRuns() const { return commit_.valid(); }
   // Makes them durable on a thread of its own, if none runs.
   void StartCommit();
   // Sends the receipts of the commit that runs, if it is done; kAll waits for it.
@@ -81,7 +81,8 @@ class SessionRecorder {
   std::vector<Finished> finished_;
   std::int64_t pending_bytes_ = 0;
   std::function<void()> commit_done_;
-  DurableBatch running_;        // what commit_ works on
+  DurableBatch running_;  // what commit_ works on
+  std::atomic<bool> commit_is_done_{false};
   std::future<Status> commit_;  // last: its end is waited for before anything else goes
 };
 

@@ -14,6 +14,7 @@
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
 #include "server/http/static_file.h"
+#include "server/http/worker_stack.h"
 
 namespace rigcal::http {
 namespace {
@@ -128,6 +129,7 @@ Status CheckOptions(const Options& options) {
 }
 
 Result<mg_context*> StartContext(const Options& options, const Site& site) {
+  RaiseWorkerStacks();
   static const unsigned library = mg_init_library(0);
   (void)library;
   const std::string address = options.host + ":" + std::to_string(options.port);

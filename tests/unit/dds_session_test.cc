@@ -1,6 +1,8 @@
 // Sessions over real DDS: server and clients in this process.
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "server/base/limits.h"
 #include "storage/blobs.h"
 #include "storage/jobs.h"
@@ -207,6 +209,47 @@ TEST_F(SessionTest, OneContentInTwoPlacesTravelsOnce) {
   client.SendPayload(session, 0);
   client.SendPayload(session, 1);
   EXPECT_TRUE(Holds(client.AwaitState(session.id.str(), ReceiptState::kClosed), 3));
+}
+
+TEST_F(SessionTest, OneContentInTwoPlacesMayTravelTwice) {
+  Session session = MakeSession("mapper-01", {500'000, 600'000, 500'000}, 40);
+  Manifest manifest = Must(formats::ReadManifest(session.manifest));
+  manifest.payloads[2].digest = manifest.payloads[0].digest;
+  session.payloads[2] = session.payloads[0];
+  session.manifest = formats::WriteManifest(manifest);
+  session.id = SessionId(Sha256Of(std::string_view(session.manifest)).str());
+  Client client = MakeClient("mapper-01");
+  client.SendManifest(session);
+  client.AwaitState(session.id.str(), ReceiptState::kReceiving);
+  for (const std::uint32_t i : {0, 2, 1, 0, 2}) client.SendPayload(session, i);
+  EXPECT_TRUE(Holds(client.AwaitState(session.id.str(), ReceiptState::kClosed), 3));
+  ExpectStored(session);
+}
+
+TEST_F(SessionTest, AFailingDiskIsToldAndHarmsNothing) {
+  const Session session = MakeSession("mapper-01", {1'000, 2'000, 3'000}, 50);
+  const auto blobs = folder_.path() / "blobs", away = folder_.path() / "away";
+  Client client = MakeClient("mapper-01");
+  client.SendManifest(session);
+  client.AwaitState(session.id.str(), ReceiptState::kReceiving);
+  client.SendPayload(session, 0);
+  client.Await(session.id.str(), [](const Receipt& receipt) { return receipt.held[0]; });
+  std::filesystem::rename(blobs, away);
+  std::ofstream(blobs) << "in the way";
+  client.SendPayload(session, 1);
+  client.SendPayload(session, 2);
+  const Receipt refused = client.AwaitState(session.id.str(), ReceiptState::kRefused);
+  EXPECT_EQ(refused.error->code, ErrorCode::kStorage);
+  std::filesystem::remove(blobs);
+  std::filesystem::rename(away, blobs);
+  client.SendHeader(session);
+  const Receipt receiving = client.AwaitState(session.id.str(), ReceiptState::kReceiving);
+  EXPECT_TRUE(receiving.held[0]);
+  EXPECT_FALSE(receiving.held[1] || receiving.held[2]);
+  client.SendPayload(session, 1);
+  client.SendPayload(session, 2);
+  client.AwaitState(session.id.str(), ReceiptState::kClosed);
+  ExpectStored(session);
 }
 
 TEST_F(SessionTest, ManyRobotsAtOnce) {
