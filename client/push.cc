@@ -74,11 +74,15 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
                               progress.Show({state.ArrivedBytes(), state.TotalBytes(), detail}, now_ns);
                             },
                             [&](const std::string& line) { progress.Say(line); }};
+  const std::int64_t start_ns = SteadyNow_ns();
   const Status done =
       RunTransfer(participant, {session.robot, session.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
   progress.Clear();
   if (!done) return Fail(done.error());
-  return SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
+  PushSummary summary =
+      SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
+  summary.transfer_ns = SteadyNow_ns() - start_ns;
+  return summary;
 }
 
 void SaySent(const Context& context, const PushSummary& summary) {

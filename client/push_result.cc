@@ -18,7 +18,7 @@ std::string AddressOf(const Awaited& awaited) {
 PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                       std::size_t items) {
   return {std::move(kind),     std::move(robot),     std::move(id),    items,
-          engine.TotalBytes(), engine.HeldAtFirst(), engine.restarts()};
+          engine.TotalBytes(), engine.HeldAtFirst(), engine.restarts(), 0};
 }
 
 void PrintResult(const Awaited& awaited, std::ostream& out) {
@@ -53,6 +53,7 @@ std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {
                                Field::Raw("show", has_revision ? awaited->show_text : "null"),
                                {"state", "closed"},
                                {"total", total},
+                               {"transfer_ns", summary.transfer_ns},
                                {"unit", summary.kind == "session" ? "bytes" : "edges"}};
   if (has_revision) fields[4] = Field("report", AddressOf(*awaited));
   return JsonObject(fields);

@@ -14,7 +14,8 @@ struct PushSummary {
   std::string robot, id;
   std::size_t items = 0;  // files or edges
   std::int64_t total_bytes = 0, held_before_bytes = 0;
-  int restarts = 0;  // of the server, seen on the way
+  int restarts = 0;              // of the server, seen on the way
+  std::int64_t transfer_ns = 0;  // from looking for the server to the last receipt
 };
 [[nodiscard]] PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                                     std::size_t items);

@@ -53,7 +53,8 @@ function(rigcal_test name)
   target_link_libraries(${name} PRIVATE ${arg_DEPS} GTest::gmock_main)
   rigcal_settings(${name})
   target_compile_definitions(${name} PRIVATE RIGCAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS "${arg_LABELS}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS "${arg_LABELS}"
+                        ENVIRONMENT "RIGCAL_DDS_LOCAL=1")
 endfunction()
 
 function(rigcal_embed target)

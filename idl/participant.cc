@@ -43,8 +43,10 @@ bool HasNetwork() {
 std::string Configuration(const std::string& tag) {
   std::string text(kdefault_xml);
   text.erase(text.find_last_not_of(" \n") + 1);
-  text += ",<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface autodetermine=\"true\"/>";
-  if (HasNetwork()) text += "<NetworkInterface name=\"lo\" presence_required=\"false\"/>";
+  text += ",<CycloneDDS><Domain Id=\"any\"><General><Interfaces>";
+  const bool only_here = !Variable("RIGCAL_DDS_LOCAL").empty();
+  text += only_here ? "<NetworkInterface name=\"lo\"/>" : "<NetworkInterface autodetermine=\"true\"/>";
+  if (!only_here && HasNetwork()) text += "<NetworkInterface name=\"lo\" presence_required=\"false\"/>";
   text += "</Interfaces></General><Discovery><Tag>" + tag + "</Tag></Discovery></Domain></CycloneDDS>";
   return text;
 }

@@ -53,9 +53,9 @@ class Context:
     def built(self):
         return all((self.bin / name).exists() for name in ("rigcald", "rigcal", "graph_bench", "stereo_measure"))
 
-    def run_json(self, program, *arguments, timeout=600):
+    def run_json(self, program, *arguments, timeout=600, env=None):
         """Runs a binary of ours and reads the JSON that it prints."""
-        done = subprocess.run([str(self.bin / program), *map(str, arguments)], capture_output=True, text=True, timeout=timeout)
+        done = subprocess.run([str(self.bin / program), *map(str, arguments)], capture_output=True, text=True, timeout=timeout, env=env)
         if done.returncode not in (0, 1):
             raise RuntimeError("%s %s: exit %d: %s" % (program, " ".join(map(str, arguments)), done.returncode, done.stderr.strip()[-300:]))
         return json.loads(done.stdout)

@@ -24,7 +24,7 @@ def disk_alone(context, folder, count):
 def wire_alone(context):
     """bytes/s that tuned ddsperf moves in samples of the same size, under our own DDS configuration."""
     configuration = (context.root / "deploy" / "dds" / "default.xml").read_text()
-    tag = "<CycloneDDS><Domain Id=\"any\"><Discovery><Tag>%s</Tag></Discovery></Domain></CycloneDDS>" % uuid.uuid4().hex
+    tag = "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces></General><Discovery><Tag>%s</Tag></Discovery></Domain></CycloneDDS>" % uuid.uuid4().hex
     environment = {**os.environ, "CYCLONEDDS_URI": configuration.strip() + "," + tag}
     commands = [["ddsperf", "-D", str(SECONDS), "sub"], ["ddsperf", "-D", str(SECONDS), "pub", "size", str(PAYLOAD_BYTES)]]
     subscriber, publisher = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
@@ -57,13 +57,13 @@ def run(context):
         wire = wire_alone(context)
         with Server(context, folder / "store") as server:
             document, whole_s = push(server, session)
-            rate = document["bytes_sent"] / document["transfer_s"]
+            rate = (document["total"] - document["held_before"]) / (document["transfer_ns"] * 1e-9)
             yield info("disk_alone", disk / 1e6, "MB/s")
             yield info("ddsperf_tuned", wire / 1e6, "MB/s")
             yield info("durable_push", rate / 1e6, "MB/s")
             yield info("durable_push_with_hashing_and_start", count * PAYLOAD_BYTES / whole_s / 1e6, "MB/s")
             yield at_least("share_of_the_smaller", rate / min(disk, wire), 0.6)
-            yield equal("payloads_held", document["payloads_held"], count)
+            yield equal("payloads", document["items"], count)
             again, _ = push(server, session)
-            yield equal("bytes_sent_by_a_second_push", again["bytes_sent"], 0)
+            yield equal("bytes_sent_by_a_second_push", again["total"] - again["held_before"], 0)
             yield at_most("server_peak_rss_1GB", server.peak_rss_mib(), 300.0, "MiB")

@@ -24,6 +24,6 @@ def run(context):
                 raise RuntimeError("lookup: " + done.stderr)
         yield at_most("cold_lookup_median", statistics.median(times_ms), 150.0, "ms")
         yield at_most("cold_lookup_worst_of_25", max(times_ms), 150.0, "ms")
-        result = context.run_json("query_bench", "--tag", server.tag, "--robot", "rig", "--a", "0", "--b", "11", "--count", 2000)
+        result = context.run_json("query_bench", "--tag", server.tag, "--robot", "rig", "--a", "0", "--b", "11", "--count", 2000, env=server.environment())
         yield at_most("round_trip_median", result["median_ms"], 3.0, "ms")
         yield at_most("round_trip_p99", result["p99_ms"], 10.0, "ms")

@@ -13,7 +13,7 @@ class Server:
         self.process = None
 
     def environment(self):
-        return {**os.environ, "RIGCAL_DDS_TAG": self.tag}
+        return {**os.environ, "RIGCAL_DDS_TAG": self.tag, "RIGCAL_DDS_LOCAL": "1"}
 
     def start(self):
         self.log = open(str(self.data) + ".log", "a")

@@ -24,7 +24,7 @@ def run(context):
         subprocess.run(["git", "clone", "--quiet", str(context.root), str(clone)], check=True)
         if context.data.is_dir():
             (clone.parent / "shared").symlink_to(context.data.parent)
-        environment = {**os.environ, "CCACHE_DISABLE": "1", "RIGCAL_DDS_TAG": "setup-%d" % os.getpid()}
+        environment = {**os.environ, "CCACHE_DISABLE": "1", "RIGCAL_DDS_TAG": "setup-%d" % os.getpid(), "RIGCAL_DDS_LOCAL": "1"}
         yield info("quickstart_cold", timed(["./deploy/quickstart", "--once"], clone, environment) / 60, "min")
         yield at_most("test_cold", timed(["./deploy/test"], clone, environment) / 60, 30.0, "min")
         yield info("quickstart_again", timed(["./deploy/quickstart", "--once"], clone, environment), "s")

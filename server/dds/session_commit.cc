@@ -7,6 +7,12 @@
 #include "storage/sessions.h"
 
 namespace rigcal::dds {
+std::int64_t SessionRecorder::PendingBytes() const {
+  std::int64_t bytes = 0;
+  for (const Finished& one : finished_) bytes += one.size_bytes;
+  return bytes;
+}
+
 // The files go on a thread of their own: meanwhile this one takes and writes the next.
 void SessionRecorder::StartCommit() {
   if (commit_.valid() || finished_.empty()) return;
@@ -19,7 +25,6 @@ void SessionRecorder::StartCommit() {
   for (const auto& [session, idx] : running_.held)
     if (intakes_.at(session)->Completes(idx)) running_.closing.insert(session);
   finished_.clear();
-  pending_bytes_ = 0;
   commit_is_done_ = false;
   // Where no thread can be made it is deferred: done when it is asked for.
   commit_ = std::async(std::launch::async | std::launch::deferred, [this] {
@@ -54,8 +59,11 @@ void SessionRecorder::Announce(const DurableBatch& batch) {
     intake.MarkHeld({idx.begin(), idx.end()});
     const bool is_closed = intake.AllHeld();
     if (is_closed) callbacks_.work_arrived(intake.robot());
-    SendProgress(intake, is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving);
+    const RobotId robot = intake.robot();
+    wire::Receipt receipt =
+        intake.ReceiptOf(is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving, WindowBytes());
     if (is_closed) Remove(session);
+    outbox_.Send(robot, std::move(receipt));
   }
 }
 
@@ -74,10 +82,6 @@ std::int64_t SessionRecorder::WindowBytes() const {
   const auto sessions = static_cast<std::int64_t>(std::max<std::size_t>(intakes_.size(), 1));
   const auto chunk_bytes = static_cast<std::int64_t>(limits::kChunkBytesMax);
   return std::clamp(limits::kIntakeBytesMax / sessions, 2 * chunk_bytes, limits::kWindowBytes);
-}
-
-void SessionRecorder::SendProgress(const SessionIntake& intake, wire::ReceiptState state) {
-  outbox_.Send(intake.robot(), intake.ReceiptOf(state, WindowBytes()));
 }
 
 void SessionRecorder::SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state) {

@@ -194,8 +194,8 @@ void SessionRecorder::Complete(SessionIntake& intake, std::uint32_t payload_idx,
     return intake.Drop(payload_idx, WrongHash(named ? (*manifest)->payloads[payload_idx].path
                                                     : "payload " + std::to_string(payload_idx)));
   }
-  finished_.push_back({intake.session(), payload_idx, part.path(), *digest});
-  pending_bytes_ += static_cast<std::int64_t>(part.size_bytes());
+  finished_.push_back(
+      {intake.session(), payload_idx, part.path(), *digest, static_cast<std::int64_t>(part.size_bytes())});
   intake.MarkFinished(payload_idx);
 }
 
@@ -229,7 +229,10 @@ void SessionRecorder::Write() {
 }
 
 void SessionRecorder::Report() {
-  for (const SessionId& session : dirty_) SendProgress(*intakes_.at(session), wire::ReceiptState::kReceiving);
+  for (const SessionId& session : dirty_) {
+    const SessionIntake& intake = *intakes_.at(session);
+    outbox_.Send(intake.robot(), intake.ReceiptOf(wire::ReceiptState::kReceiving, WindowBytes()));
+  }
   dirty_.clear();
 }
 

@@ -33,7 +33,7 @@ class SessionRecorder {
   // Then: tells the clients how far it is.
   void Report();
   // Complete files that no commit has taken up yet.
-  [[nodiscard]] std::int64_t PendingBytes() const { return pending_bytes_; }
+  [[nodiscard]] std::int64_t PendingBytes() const;
   // Makes them durable on a thread of its own, if none runs.
   void StartCommit();
   // Sends the receipts of the commit that runs, if it is done; kAll waits for it.
@@ -48,6 +48,7 @@ class SessionRecorder {
     std::uint32_t payload_idx = 0;
     std::filesystem::path path;
     Digest digest;
+    std::int64_t size_bytes = 0;
   };
 
   [[nodiscard]] Result<wire::ReceiptState> Open(const RobotId& robot, const SessionId& session);
@@ -65,7 +66,6 @@ class SessionRecorder {
   void GiveUp(const DurableBatch& batch, const Error& error);
 
   void SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state);
-  void SendProgress(const SessionIntake& intake, wire::ReceiptState state);
   void SendRefusal(const RobotId& robot, const SessionId& session, const Error& error);
   [[nodiscard]] std::int64_t WindowBytes() const;
 
@@ -79,7 +79,6 @@ class SessionRecorder {
   std::unordered_map<SessionId, std::unique_ptr<SessionIntake>> intakes_;
   std::set<SessionId> dirty_;  // their clients want to hear
   std::vector<Finished> finished_;
-  std::int64_t pending_bytes_ = 0;
   std::function<void()> commit_done_;
   DurableBatch running_;  // what commit_ works on
   std::atomic<bool> commit_is_done_{false};
