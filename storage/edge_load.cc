@@ -157,6 +157,16 @@ Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session) {
   return LoadSelection(store, "edges of session " + session.str(), {"e.session_id = ?", session.str()});
 }
 
+Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot) {
+  return Load<std::optional<Stamp>>(store, "edges of robot " + robot.str(), [&]() -> Result<std::optional<Stamp>> {
+    Query query(store,
+                "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM edge LEFT JOIN session USING (session_id) "
+                "WHERE edge.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
+    if (!query.Bind(robot).Step()) return std::nullopt;
+    return Stamp{query.Int(0)};
+  });
+}
+
 Result<std::int64_t> LoadEdgeWatermark(Store& store, const RobotId& robot) {
   return Load<std::int64_t>(store, "edges of robot " + robot.str(), [&]() -> Result<std::int64_t> {
     Query query(store, "SELECT coalesce(max(number), 0) FROM edge WHERE robot_id = ?");

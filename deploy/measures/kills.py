@@ -50,8 +50,8 @@ def lost_payloads(store, receipted):
     database = sqlite3.connect("file:%s?mode=ro" % (store / "rigcal.db"), uri=True)
     lost = 0
     for session, indexes in receipted.items():
-        rows = dict(database.execute("SELECT p.payload_idx, p.digest FROM payload p JOIN payload_held h "
-                                     "ON h.session_id = p.session_id AND h.payload_idx = p.payload_idx WHERE p.session_id = ?", (session,)))
+        rows = dict(database.execute("SELECT idx, digest FROM payload JOIN payload_held USING (session_number, idx) "
+                                     "JOIN session ON session.number = session_number WHERE session_id = ?", (session,)))
         for idx in indexes:
             digest = rows.get(idx)
             blob = store / "blobs" / (digest or "")[:2] / (digest or "")

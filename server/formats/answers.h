@@ -17,7 +17,7 @@ struct RobotAnswer {
   RobotId robot;
   int revision = 0;  // 0: none yet, written as null
   Verdict verdict;
-  std::optional<Stamp> calibrated_at;  // of the newest revision
+  std::optional<Stamp> calibrated_at;  // newest capture of a good edge; absent: never
   std::int64_t sessions = 0, edges = 0, jobs_waiting = 0;
   bool overdue = false;
 };

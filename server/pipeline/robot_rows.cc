@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -22,8 +23,8 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   }
   row.revision = revision->number;
   row.verdict = revision->verdict;
-  row.calibrated_at = revision->created_at;
-  row.overdue = now.ns - revision->created_at.ns > kDefaultMaxAge_ns;
+  RIGCAL_ASSIGN(row.calibrated_at, storage::LoadCalibratedAt(store, robot.robot));
+  row.overdue = !row.calibrated_at || now.ns - row.calibrated_at->ns > kDefaultMaxAge_ns;
   return row;
 }
 

@@ -27,7 +27,7 @@ struct FleetRow {
   RobotId robot;
   int revision = 0;  // 0: none yet
   Verdict verdict;
-  Stamp calibrated_at;  // of the newest revision
+  Stamp calibrated_at;  // newest capture behind a good edge; 0: never
   std::int64_t sessions = 0, edges = 0;
   bool overdue = false;
 };

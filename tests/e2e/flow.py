@@ -1,0 +1,65 @@
+"""Where the binaries are, a server in a temporary folder, and checks with words."""
+import os
+import pathlib
+import sys
+import tempfile
+import urllib.request
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "deploy"))
+from measures.measure import Context  # noqa: E402
+from measures.server import Server  # noqa: E402
+
+SKIPPED = 77
+
+
+class Flow:
+    """A temporary folder and a server in it that can be killed and started again."""
+
+    def __init__(self):
+        self.context = Context(full=False)
+        self.context.bin = pathlib.Path(os.environ["RIGCAL_BIN"])
+        self.temporary = tempfile.TemporaryDirectory(prefix="rigcal-e2e-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.server = Server(self.context, self.folder / "store")
+
+    def __enter__(self):
+        self.server.start()
+        self.address = self.ready()
+        return self
+
+    def __exit__(self, *_):
+        self.server.stop()
+        self.temporary.cleanup()
+
+    def ready(self):
+        line = self.server.process.stdout.readline()
+        check("ready" in line, "rigcald is ready: " + line)
+        return [word for word in line.split() if word.startswith("http://")][0].rstrip("/")
+
+    def kill_and_restart(self):
+        self.server.kill()
+        self.server.start()
+        self.address = self.ready()
+
+    def get(self, path):
+        with urllib.request.urlopen(self.address + path, timeout=20) as reply:
+            return reply.read().decode()
+
+    def rigcal(self, *arguments, exit_code=0):
+        done = self.server.rigcal(*arguments)
+        check(done.returncode == exit_code, "rigcal %s: exit %d instead of %d: %s%s" % (
+            " ".join(map(str, arguments)), done.returncode, exit_code, done.stdout, done.stderr))
+        check("Traceback" not in done.stderr and "terminate called" not in done.stderr, "no stack trace: " + done.stderr)
+        return done
+
+
+def check(condition, what):
+    if not condition:
+        raise SystemExit("FAILED: " + what)
+
+
+def skip_without(path):
+    if not path.exists():
+        print("SKIPPED: no " + path.name + " in ../shared/data")
+        raise SystemExit(SKIPPED)
