@@ -44,11 +44,14 @@ std::string FleetSummary(const std::vector<FleetRow>& rows) {
   return text + (overdue > 0 ? "; " + std::to_string(overdue) + " overdue" : "");
 }
 
+// A revision may hold failed edges only.
+bool IsNever(const FleetRow& robot) { return robot.revision == 0 || robot.calibrated_at.ns == 0; }
+
 void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
-  row.SetValue("AGE", robot.calibrated_at.ns == 0 ? "never" : AgeOf(robot.calibrated_at, now));
+  row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(robot.calibrated_at, now));
   row.SetValue("SESSIONS", std::to_string(robot.sessions));
   row.SetValue("EDGES", std::to_string(robot.edges));
   if (robot.overdue) row.ShowSection("OVERDUE");
@@ -100,7 +103,7 @@ Result<std::string> RenderRobot(const FleetRow& row, const std::vector<Revision>
   Dictionary page("robot");
   FillHead(page, row.robot.str() + ": " + VerdictWord(row.verdict.level), "../../");
   page.SetValue("ROBOT", row.robot.str());
-  page.SetValue("SUMMARY", (row.calibrated_at.ns == 0 ? std::string("Not calibrated yet")
+  page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
                                               : "Calibrated " + AgeOf(row.calibrated_at, now)) +
                                ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
                                Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
