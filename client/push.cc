@@ -87,9 +87,9 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
 
 void SaySent(const Context& context, const PushSummary& summary) {
   context.err << "Session " << summary.id.substr(0, 16) << " of " << summary.robot << " is stored: " << summary.items
-              << " files, " << ByteText(static_cast<double>(summary.total_bytes));
-  if (summary.held_before_bytes > 0)
-    context.err << " (" << ByteText(static_cast<double>(summary.held_before_bytes)) << " were there before)";
+              << " files, " << ByteText(static_cast<double>(summary.total));
+  if (summary.held_before > 0)
+    context.err << " (" << ByteText(static_cast<double>(summary.held_before)) << " were there before)";
   context.err << std::endl;
 }
 

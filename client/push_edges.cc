@@ -62,7 +62,9 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
       RunTransfer(participant, {batch.robot, batch.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
   progress.Clear();
   if (!done) return Fail(done.error());
-  return SummaryOf(engine, "batch", batch.robot.str(), batch.id.str(), batch.edges.size());
+  PushSummary summary = SummaryOf(engine, "batch", batch.robot.str(), batch.id.str(), batch.edges.size());
+  if (summary.held_before == 1) summary.held_before = 0;  // the one that asked the server what it has
+  return summary;
 }
 
 Result<Awaited> Await(const Context& context, const Options& options, const EdgesToPush& batch, ResultWatch& watch) {
@@ -78,7 +80,7 @@ Status Run(const Context& context, const Options& options) {
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, batch.robot));
   RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, batch));
   context.err << summary.items << " edges of " << summary.robot << " are stored";
-  if (summary.held_before_bytes > 0) context.err << " (" << summary.held_before_bytes << " were there before)";
+  if (summary.held_before > 0) context.err << " (" << summary.held_before << " were there before)";
   context.err << std::endl;
   if (options.no_wait) {
     if (context.json) context.out << ResultJson(summary, nullptr) << std::endl;

@@ -42,8 +42,8 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
 
 std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {
   const bool has_revision = awaited != nullptr && awaited->has_revision;
-  const auto total = static_cast<std::int64_t>(summary.total_bytes);
-  std::vector<Field> fields = {{"held_before", summary.held_before_bytes},
+  const auto total = static_cast<std::int64_t>(summary.total);
+  std::vector<Field> fields = {{"held_before", summary.held_before},
                                {"id", summary.id},
                                {"items", static_cast<std::int64_t>(summary.items)},
                                {"kind", summary.kind},

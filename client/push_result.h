@@ -13,7 +13,7 @@ struct PushSummary {
   std::string kind;  // "session" | "batch"
   std::string robot, id;
   std::size_t items = 0;  // files or edges
-  std::int64_t total_bytes = 0, held_before_bytes = 0;
+  std::int64_t total = 0, held_before = 0;  // bytes or edges
   int restarts = 0;              // of the server, seen on the way
   std::int64_t transfer_ns = 0;  // from looking for the server to the last receipt
 };
