@@ -103,7 +103,7 @@ Result<Awaited> Await(const Context& context, const Options& options, const Sess
                      hooks);
 }
 
-Status Run(const Context& context, const Options& options) {
+Status Run(Context& context, const Options& options) {
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
@@ -118,6 +118,7 @@ Status Run(const Context& context, const Options& options) {
     context.out << ResultJson(summary, &awaited) << std::endl;
   else
     PrintResult(awaited, context.out);
+  if (awaited.has_revision) context.exit_code = Judge(awaited.show["document"]["verdict"]);
   return {};
 }
 

@@ -73,7 +73,7 @@ Result<Awaited> Await(const Context& context, const Options& options, const Edge
   return watch.Await(std::move(place), {{}, [&](const std::string& line) { context.err << line << std::endl; }});
 }
 
-Status Run(const Context& context, const Options& options) {
+Status Run(Context& context, const Options& options) {
   RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
   RIGCAL_TRY(CheckCount(batch, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
@@ -91,6 +91,7 @@ Status Run(const Context& context, const Options& options) {
     context.out << ResultJson(summary, &awaited) << std::endl;
   else
     PrintResult(awaited, context.out);
+  if (awaited.has_revision) context.exit_code = Judge(awaited.show["document"]["verdict"]);
   return {};
 }
 

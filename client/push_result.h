@@ -12,10 +12,10 @@ namespace rigcal::client {
 struct PushSummary {
   std::string kind;  // "session" | "batch"
   std::string robot, id;
-  std::size_t items = 0;  // files or edges
+  std::size_t items = 0;                    // files or edges
   std::int64_t total = 0, held_before = 0;  // bytes or edges
-  int restarts = 0;              // of the server, seen on the way
-  std::int64_t transfer_ns = 0;  // from looking for the server to the last receipt
+  int restarts = 0;                         // of the server, seen on the way
+  std::int64_t transfer_ns = 0;             // from looking for the server to the last receipt
 };
 [[nodiscard]] PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                                     std::size_t items);

@@ -44,7 +44,7 @@ class Transfer {
       if (action.kind == PushAction::Kind::kGaveUp) return GiveUp(now_ns);
       RIGCAL_TRY(Do(action, now_ns));
       SayWhetherServerIsThere(now_ns);
-      if (hooks_.on_tick) hooks_.on_tick(engine_, now_ns);
+      if (hooks_.on_tick && engine_.Answered()) hooks_.on_tick(engine_, now_ns);
     }
   }
 

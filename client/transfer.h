@@ -29,7 +29,7 @@ class Outlet {
 
 // What a person is told on the way.
 struct TransferHooks {
-  std::function<void(const PushEngine&, std::int64_t now_ns)> on_tick;
+  std::function<void(const PushEngine&, std::int64_t now_ns)> on_tick;  // once a server has answered
   std::function<void(const std::string&)> say;
 };
 

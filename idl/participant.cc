@@ -70,7 +70,8 @@ Result<int> DomainNumber(const ParticipantOptions& options) {
   const std::string text = Variable("RIGCAL_DOMAIN");
   int number = options.domain;
   const char* end = text.data() + text.size();
-  const bool bad = !text.empty() && std::from_chars(text.data(), end, number).ptr != end;
+  const auto read = std::from_chars(text.data(), end, number);
+  const bool bad = !text.empty() && (read.ptr != end || read.ec != std::errc());
   if (bad || number < 0 || number > kDomainMax)
     return Fail(ErrorCode::kInvalidInput,
                 "DDS domain '" + (text.empty() ? std::to_string(number) : text) + "' is not in 0..230",

@@ -56,6 +56,14 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
   });
 }
 
+Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number) {
+  return Load<std::optional<Revision>>(store, Subject(robot), [&]() -> Result<std::optional<Revision>> {
+    Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number = ?");
+    if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
+    return RevisionOf(query);
+  });
+}
+
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) {
   return Load<std::vector<Revision>>(store, Subject(robot), [&]() -> Result<std::vector<Revision>> {
     Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? ORDER BY number DESC");

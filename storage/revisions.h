@@ -13,6 +13,8 @@ namespace rigcal::storage {
 [[nodiscard]] Result<int> AppendRevision(Store& store, const Revision& revision);
 // number 0: the newest.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number);
+// The same without the document, which may be many megabytes.
+[[nodiscard]] Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number);
 // Without documents; newest first.
 [[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot);
 // Robots whose newest edge is not in their newest revision (or who have edges and no revision).

@@ -23,4 +23,10 @@ Result<std::vector<RobotRow>> LoadRobots(Store& store) {
   });
 }
 
+Result<bool> HasRobot(Store& store, const RobotId& robot) {
+  return Load<bool>(store, "robot " + robot.str(), [&]() -> Result<bool> {
+    return Query(store, "SELECT 1 FROM robot WHERE robot_id = ?").Bind(robot).Step();
+  });
+}
+
 }  // namespace rigcal::storage

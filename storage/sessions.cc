@@ -8,6 +8,7 @@
 namespace rigcal::storage {
 namespace {
 
+std::string Subject(const RobotId& robot) { return "sessions of robot " + robot.str(); }
 std::string Subject(const SessionId& id) { return "session " + id.str(); }
 
 // A closed session holds all its payloads: then they need not be counted.
@@ -130,6 +131,37 @@ Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorP
     RIGCAL_ASSIGN(const std::optional<SessionRow> row, LoadSession(store, id));
     if (!row) return Fail(ErrorCode::kNotFound, Subject(id) + " is not known", "Push the session folder.");
     return row->closed ? Status{} : Close(store, *row, pairs, now);
+  });
+}
+
+Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot) {
+  return Load<std::vector<SessionId>>(store, Subject(robot), [&]() -> Result<std::vector<SessionId>> {
+    Query query(store,
+                "SELECT DISTINCT old.session_id FROM session old "
+                "JOIN session_closed ON session_closed.session_number = old.number "
+                "JOIN payload ON payload.session_number = old.number "
+                "JOIN payload again ON again.digest = payload.digest AND again.session_number > old.number "
+                "JOIN session_closed again_closed ON again_closed.session_number = again.session_number "
+                "JOIN session later ON later.number = again.session_number AND later.robot_id = old.robot_id "
+                "WHERE old.robot_id = ? GROUP BY old.number, later.number "
+                "HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count");
+    query.Bind(robot);
+    std::vector<SessionId> sessions;
+    while (query.Step()) sessions.push_back(query.IdAt<SessionId>(0));
+    return sessions;
+  });
+}
+
+Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot) {
+  return Load<std::vector<SensorId>>(store, Subject(robot), [&]() -> Result<std::vector<SensorId>> {
+    Query query(store,
+                "SELECT DISTINCT json_extract(sensor.value, '$.id') AS id FROM session "
+                "JOIN session_closed ON session_closed.session_number = session.number, "
+                "json_each(session.manifest, '$.sensors') AS sensor WHERE robot_id = ? ORDER BY id");
+    query.Bind(robot);
+    std::vector<SensorId> sensors;
+    while (query.Step()) sensors.push_back(query.IdAt<SensorId>(0));
+    return sensors;
   });
 }
 

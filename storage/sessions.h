@@ -28,6 +28,10 @@ struct SessionRow {
 // All of one robot, or of all robots if `robot` is empty; newest captured_at first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
 
+// Closed sessions that a later closed session of the robot repeats: it holds half or more of the same payloads, pushed
+// again with a corrected session.yaml, say. The same pictures are no second measurement, and the correction is what counts.
+[[nodiscard]] Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot);
+
 // held[i]: payload i of the manifest is durable. kNotFound if the session is unknown.
 [[nodiscard]] Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id);
 // Marks payloads as durable; a no-op for those already marked. Refuses the whole list if one index is not in the
@@ -40,6 +44,9 @@ struct SessionRow {
 // while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
+// All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
+[[nodiscard]] Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot);
+
 struct RobotRow {
   RobotId robot;
   Stamp first_seen_at;
@@ -47,5 +54,6 @@ struct RobotRow {
 };
 [[nodiscard]] Status AppendRobot(Store& store, const RobotId& robot, Stamp now);
 [[nodiscard]] Result<std::vector<RobotRow>> LoadRobots(Store& store);
+[[nodiscard]] Result<bool> HasRobot(Store& store, const RobotId& robot);
 
 }  // namespace rigcal::storage

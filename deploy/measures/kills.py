@@ -10,7 +10,7 @@ import time
 
 from .measure import at_least, equal, info, skip
 from .server import Server
-from .sessions import picture_session
+from .sessions import add_noise, picture_session
 
 KILLS = 100
 
@@ -24,6 +24,7 @@ class Observer:
         if "ready" not in self.process.stdout.readline():
             raise RuntimeError("receipt_recorder did not start")
         self.held = {}  # session id -> payload indexes that were receipted
+        self.closed = False
         self.lock = threading.Lock()
         self.thread = threading.Thread(target=self.listen, daemon=True)
         self.thread.start()
@@ -33,6 +34,11 @@ class Observer:
             receipt = json.loads(line)
             with self.lock:
                 self.held.setdefault(receipt["subject"], set()).update(receipt["held"])
+                self.closed = self.closed or receipt["state"] == "closed"
+
+    def has_closed(self):
+        with self.lock:
+            return self.closed
 
     def receipted(self):
         with self.lock:
@@ -82,7 +88,7 @@ class Round:
 
     def __init__(self, context, folder, session, chance):
         self.server, self.session, self.chance = Server(context, folder), session, chance
-        self.client_kills = self.server_kills = self.lost = 0
+        self.client_kills = self.server_kills = self.lost = self.under_way = 0
 
     def kill_once(self, span_s):
         """Starts a push, kills one of the two after a random time, and looks at the disk. True: the push got through."""
@@ -93,6 +99,7 @@ class Round:
             return True
         except subprocess.TimeoutExpired:
             pass
+        self.under_way += not self.observer.has_closed()
         if self.chance.random() < 0.5:
             self.client_kills += 1
         else:
@@ -129,8 +136,9 @@ def run(context):
     with context.folder() as temporary:
         folder = pathlib.Path(temporary)
         session = picture_session(folder / "session", "victim", pictures)
+        add_noise(session, 1_500_000, 40, seed=3)
         quiet, quiet_s = quiet_run(context, folder, session)
-        rounds, different, kills, heard = [], 0, 0, 0
+        rounds, different, kills, heard, under_way = [], 0, 0, 0, 0
         while kills < KILLS:
             one = Round(context, folder / ("round-%d" % len(rounds)), session, chance)
             # Half of the rounds kill early, while payloads travel; the others anywhere up to the report.
@@ -138,10 +146,12 @@ def run(context):
             rounds.append(one)
             kills += one.client_kills + one.server_kills
             heard += one.heard
+            under_way += one.under_way
             different += document["document"] != quiet["document"] or document["digest"] != quiet["digest"]
         yield at_least("kills", kills, KILLS)
         yield info("kills_of_client", sum(one.client_kills for one in rounds))
         yield info("kills_of_server", sum(one.server_kills for one in rounds))
-        yield info("receipts_witnessed", heard)
+        yield at_least("receipts_witnessed", heard, 100)
+        yield at_least("kills_while_payloads_were_under_way", under_way, 20)
         yield equal("receipted_payloads_lost", sum(one.lost for one in rounds), 0)
         yield equal("final_revisions_that_differ", different, 0)

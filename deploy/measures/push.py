@@ -7,9 +7,9 @@ import subprocess
 import time
 import uuid
 
-from .measure import at_least, at_most, equal, info
+from .measure import at_least, at_most, equal, info, skip
 from .server import Server
-from .sessions import noise_session
+from .sessions import noise_session, padded_session
 
 PAYLOAD_BYTES = 3_000_000
 SECONDS = 4
@@ -67,3 +67,18 @@ def run(context):
             again, _ = push(server, session)
             yield equal("bytes_sent_by_a_second_push", again["total"] - again["held_before"], 0)
             yield at_most("server_peak_rss_1GB", server.peak_rss_mib(), 300.0, "MiB")
+        yield from memory_with_calibration(context, folder, count)
+
+
+def memory_with_calibration(context, folder, count):
+    """The same gigabyte as pictures that decode: memory until the last edge is done."""
+    pictures = context.data / "stereo_opencv"
+    if not pictures.is_dir():
+        yield skip("server_peak_rss_1GB_calibrated", "no data in stereo_opencv")
+        return
+    session = padded_session(folder / "pictures", "pictures", pictures, PAYLOAD_BYTES, count, seed=2)
+    with Server(context, folder / "picture-store") as server:
+        done = server.rigcal("push", session)
+        if done.returncode not in (0, 1):
+            raise RuntimeError("push: exit %d: %s" % (done.returncode, done.stderr[-300:]))
+        yield at_most("server_peak_rss_1GB_calibrated", server.peak_rss_mib(), 300.0, "MiB")

@@ -50,11 +50,27 @@ Diagnosis NoCommonView(const StereoProblem& problem) {
           "Hold the board where both pictures overlap, and name the two pictures of one instant alike."};
 }
 
+namespace {
+
+// What the search said of the first of these captures: an unreadable file is not a hidden board.
+std::string ReasonOf(const StereoProblem& problem, const SensorId& camera, const std::vector<CaptureId>& captures) {
+  for (const StereoCapture& capture : problem.captures) {
+    if (captures.empty() || capture.capture != captures.front()) continue;
+    const std::optional<BoardView>& view = camera == problem.camera_a.id ? capture.a : capture.b;
+    const std::string reason = view ? view->why_not : "there is no picture of that name in the folder of " + camera.str();
+    return reason.empty() ? "" : " The first of them: " + reason + (reason.back() == '.' ? "" : ".");
+  }
+  return "";
+}
+
+}  // namespace
+
 Diagnosis BoardNotFound(const StereoProblem& problem, const SensorId& camera, const std::vector<CaptureId>& captures) {
   return {"board_not_found",
           camera.str() + " does not show the " + std::to_string(problem.board.inner_cols) + " x " +
-              std::to_string(problem.board.inner_rows) + " board " + problem.board.id.str() + " in " +
-              CapturesText(captures.size()) + ": " + NamesOf(captures) + ".",
+              std::to_string(problem.board.inner_rows) + " target '" + problem.board.id.str() + "' in " +
+              CapturesText(captures.size()) + ": " + NamesOf(captures) + "." +
+              ReasonOf(problem, camera, captures),
           "Show the whole board, sharp and evenly lit, and check the counts of inner corners in session.yaml."};
 }
 

@@ -142,8 +142,8 @@ Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate
     C = ShrinkTowardsModel(JackknifeCovariance(VectorsOf(blocks)), estimate.C_model, static_cast<int>(both));
   }
   for (const Contribution& contribution : contributions) C += contribution.covariance;
-  const int dof =
-      by_jackknife ? static_cast<int>(both) - 1 : ResidualCount(solved.joint) - ParameterCount(solved.joint);
+  // Also for the model: its thousands of residuals are not independent, the captures are.
+  const int dof = static_cast<int>(both) - 1;
   const auto source = by_jackknife ? UncertaintySource::kJackknife : UncertaintySource::kModel;
   RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, dof));
   uncertainty.blocks = std::move(blocks);

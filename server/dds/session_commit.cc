@@ -7,6 +7,7 @@
 #include "storage/sessions.h"
 
 namespace rigcal::dds {
+
 std::int64_t SessionRecorder::PendingBytes() const {
   std::int64_t bytes = 0;
   for (const Finished& one : finished_) bytes += one.size_bytes;

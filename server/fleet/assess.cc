@@ -42,12 +42,16 @@ std::vector<Finding> Collect(std::initializer_list<std::optional<Finding>> candi
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
   if (const auto none = FindNoEdges(edges)) return VerdictFrom(VerdictLevel::kUnknown, {*none});
+  // Residuals that are no optimum blame no edge.
+  if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
   if (const auto contradiction = FindContradiction(edges, solution, policy))
     return VerdictFrom(VerdictLevel::kFail, {*contradiction});
-  if (const auto unknown = Collect({FindUnsettled(solution), FindUnknownSensors(edges, solution)}); !unknown.empty())
+  if (const auto open = FindOpenLoops(edges, solution, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
+  if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
   const auto warnings =
-      Collect({FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedResult(solution)});
+      Collect({FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
+               FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return {VerdictLevel::kPass, "Every sensor is known well enough and the edges agree with each other.",
           "Nothing; calibrate again when it is due."};

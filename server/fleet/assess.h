@@ -14,6 +14,8 @@ namespace rigcal::fleet {
 struct Policy {
   double sigma_max_m = 0.005;  // a sensor less certain than this (any axis, 1 sigma) is a warning
   double sigma_max_rad = 0.005;
+  double residual_max_m = 0.05;   // an edge too poorly known to be tested, but off by more than this, fails
+  double residual_max_rad = 0.05;
   double residual_probability =
       0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
 };

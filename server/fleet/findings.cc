@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "server/fleet/bridges.h"
+#include "server/math/statistics.h"
 #include "server/math/tangent.h"
 
 namespace rigcal::fleet {
@@ -17,8 +19,14 @@ constexpr std::size_t kNamesMax = 6;
 
 std::string Number(double value, const char* unit) {
   std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.3g %s", value, unit);
+  std::snprintf(text.data(), text.size(), std::abs(value) < 100.0 ? "%.3g %s" : "%.0f %s", value, unit);
   return text.data();
+}
+
+std::string LimitText(double value) {
+  std::string text = Number(value, "");
+  text.pop_back();
+  return text;
 }
 
 // "a", "a and b", "a, b and c", "a, b, c, d, e, f and 3 more".
@@ -37,6 +45,14 @@ std::string List(const std::vector<std::string>& names) {
 std::string NameOfEdge(const Edge& edge) { return edge.frame_a.str() + " - " + edge.frame_b.str(); }
 
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
+
+// How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limits.
+double RatioOf(const EdgeTest& test, const EdgeResidual& residual, const Policy& policy) {
+  if (!residual.in_solution) return 0.0;
+  if (test.limit > 0.0) return test.statistic / test.limit;
+  return std::max(residual.e.head<3>().norm() / policy.residual_max_m,
+                  residual.e.tail<3>().norm() / policy.residual_max_rad);
+}
 
 const Diagnosis* DiagnosisOf(const GraphSolution& solution, const std::string& sensor) {
   for (const Diagnosis& diagnosis : solution.diagnoses)
@@ -60,9 +76,8 @@ std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const G
   for (const EdgeResidual& residual : solution.residuals) {
     const auto found = by_id.find(residual.edge);
     if (found == by_id.end()) continue;
-    const EdgeTest test = TestResidual(*found->second, residual, edge_count, policy);
-    if (test.limit <= 0.0 || test.statistic / test.limit <= worst_ratio) continue;
-    worst = found->second, worst_residual = &residual, worst_ratio = test.statistic / test.limit;
+    const double ratio = RatioOf(TestResidual(*found->second, residual, edge_count, policy), residual, policy);
+    if (ratio > worst_ratio) worst = found->second, worst_residual = &residual, worst_ratio = ratio;
   }
   if (worst == nullptr) return std::nullopt;
   const std::string off = Number(1e3 * worst_residual->e.head<3>().norm(), "mm") + " and " +
@@ -83,7 +98,7 @@ std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
 std::optional<Finding> FindUnsettled(const GraphSolution& solution) {
   if (solution.converged) return std::nullopt;
   return Finding{"the graph did not settle",
-                 "Look for an edge with a large residual, withdraw it and repeat its session"};
+                 "Look for an edge with a large residual and push its session again, corrected"};
 }
 
 std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
@@ -152,10 +167,46 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
                  "Add captures of " + List(names) + " with the board at more distances and tilts"};
 }
 
-std::optional<Finding> FindUncheckedResult(const GraphSolution& solution) {
-  if (solution.dof > 0) return std::nullopt;
-  return Finding{"no loop of edges checks the result",
-                 "Calibrate one more pair of sensors, or repeat a pair, so that the edges check each other"};
+std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (solution.dof <= 0)
+    return Finding{"no loop of edges checks the result",
+                   "Calibrate one more pair of sensors, or repeat a pair, so that the edges check each other"};
+  std::vector<std::string> names;
+  for (const SensorId& sensor : BehindBridges(edges, solution)) names.push_back(sensor.str());
+  if (names.empty()) return std::nullopt;
+  return Finding{"nothing checks the pose of " + List(names) + ": a single edge is the only tie to the reference",
+                 "Calibrate " + List(names) + " against one more sensor, or repeat the pair"};
+}
+
+std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                      const Policy& policy) {
+  if (solution.dof <= 0) return std::nullopt;
+  std::map<EdgeId, const Edge*> by_id;
+  for (const Edge& edge : edges)
+    if (edge.uncertainty.dof > 0) by_id.emplace(edge.id, &edge);
+  std::vector<std::string> names;
+  for (const EdgeResidual& residual : solution.residuals) {
+    const auto edge = by_id.find(residual.edge);
+    if (edge == by_id.end() || !residual.in_solution) continue;
+    const EdgeTest test = TestResidual(*edge->second, residual, solution.residuals.size(), policy);
+    if (test.limit <= 0.0) names.push_back(NameOfEdge(*edge->second));
+  }
+  if (names.empty()) return std::nullopt;
+  return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
+                 "Take 20 captures or more of each pair"};
+}
+
+std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                     const Policy& policy) {
+  if (solution.dof <= 0) return std::nullopt;
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges)
+    if (edge.state == EdgeState::kGood && !edge.session.empty() && !sessions.insert(edge.session).second)
+      return std::nullopt;
+  const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
+  if (solution.cost <= limit) return std::nullopt;
+  return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) + " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + LimitText(limit) + ")",
+                 "Look for the edge with the largest residual in sigmas and repeat its session"};
 }
 
 }  // namespace rigcal::fleet

@@ -16,11 +16,19 @@ struct Finding {
 // The edge that contradicts the others most.
 [[nodiscard]] std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                        const Policy& policy);
+// Edges whose covariance comes from too few captures for a test of their residual. Only where there is something to test.
+[[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                    const Policy& policy);
+// The weighted cost is beyond chi-square for its degrees of freedom: a long loop that does not close shows here even
+// where each edge alone hides it. Not where edges of one session share captures, as they are not independent.
+[[nodiscard]] std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                   const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUnsettled(const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
-[[nodiscard]] std::optional<Finding> FindUncheckedResult(const GraphSolution& solution);
+// Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
+[[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution);
 
 }  // namespace rigcal::fleet

@@ -5,6 +5,10 @@
 #include "server/math/statistics.h"
 
 namespace rigcal::fleet {
+namespace {
+// A limit above this would let ten sigmas through: such a test says nothing, so there is none.
+constexpr double kLimitMax = 100.0;
+}  // namespace
 
 EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_t edge_count, const Policy& policy) {
   EdgeTest test;
@@ -15,7 +19,7 @@ EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_
   const double probability = 1.0 - odds;
   const int dof = edge.uncertainty.dof;
   const double limit = dof > 0 ? HotellingLimit(dof + 1, rank, probability) : ChiSquareQuantile(probability, rank);
-  test.limit = std::isfinite(limit) ? limit : 0.0;
+  test.limit = std::isfinite(limit) && limit <= kLimitMax ? limit : 0.0;
   return test;
 }
 

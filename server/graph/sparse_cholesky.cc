@@ -65,8 +65,8 @@ class SparseCholesky final : public BlockCholesky<B> {
   };
 
   Location Locate(int block_row, int block_col) const {
-    int row = shape_.position[static_cast<std::size_t>(B * block_row)];
-    int col = shape_.position[static_cast<std::size_t>(B * block_col)];
+    int row = shape_.position[B * static_cast<std::size_t>(block_row)];
+    int col = shape_.position[B * static_cast<std::size_t>(block_col)];
     const bool transposed = row < col;
     if (transposed) std::swap(row, col);
     const Supernode at = SliceOf(shape_, shape_.supernode_of_col[static_cast<std::size_t>(col)]);

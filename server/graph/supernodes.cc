@@ -81,7 +81,8 @@ Supernodes AnalyzeSupernodes(const BlockPattern& pattern, int block_size) {
   Configure(&common);
   if (cholmod_sparse* matrix = LowerPattern(pattern, &common); matrix != nullptr) {
     if (cholmod_factor* factor = cholmod_analyze(matrix, &common); factor != nullptr) {
-      const std::size_t bytes = factor->xsize * static_cast<std::size_t>(block_size * block_size) * sizeof(double);
+      const std::size_t bytes =
+          factor->xsize * static_cast<std::size_t>(block_size) * static_cast<std::size_t>(block_size) * sizeof(double);
       if (common.status == CHOLMOD_OK && factor->is_super != 0 && bytes <= kFactorBytesMax)
         supernodes = Spread(*factor, block_size);
       cholmod_free_factor(&factor, &common);

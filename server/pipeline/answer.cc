@@ -24,7 +24,8 @@ template <typename IdType>
 Result<IdType> RequiredId(const Parameters& parameters, const std::string& name) {
   const auto text = parameters.Text(name);
   if (!text)
-    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", "See docs/api.md for the verb's parameters.");
+    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing",
+                "See docs/api.md for the verb's parameters.");
   return IdType::Parse(*text);
 }
 
@@ -35,9 +36,10 @@ Result<RobotId> OptionalRobot(const Parameters& parameters) {
 // kNotFound for a robot that the store does not know.
 Result<RobotId> KnownRobot(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
-  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(context.store));
-  if (std::any_of(robots.begin(), robots.end(), [&](const auto& row) { return row.robot == robot; })) return robot;
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+  RIGCAL_ASSIGN(const bool is_known, storage::HasRobot(context.store, robot));
+  if (is_known) return robot;
+  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known",
+              "`rigcal robots` lists those that are.");
 }
 
 Result<std::string> Robots(const AnswerContext& context, const Parameters&) {
@@ -64,17 +66,18 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
 Result<std::string> Edges(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, robot, false));
-  RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(context.store, robot, 0));
-  if (!revision) return formats::WriteEdges(robot, 0, edges, {});
-  RIGCAL_ASSIGN(const auto document, formats::ReadRevisionDocument(revision->document));
-  return formats::WriteEdges(robot, revision->number, edges, document.solution.residuals);
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
+  if (!newest) return formats::WriteEdges(robot, 0, edges, {});
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
+  return formats::WriteEdges(robot, newest->number, edges, revision.document->solution.residuals);
 }
 
 Result<std::string> OneEdge(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const EdgeId id, RequiredId<EdgeId>(parameters, "id"));
   RIGCAL_ASSIGN(const auto edge, storage::LoadEdge(context.store, id));
   if (!edge)
-    return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known", "`rigcal edges ROBOT` lists those that are.");
+    return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known",
+                "`rigcal edges ROBOT` lists those that are.");
   return formats::WriteEdge(*edge);
 }
 
@@ -96,8 +99,8 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
   RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
   RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
-  RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, 0));
-  RIGCAL_ASSIGN(const auto document, formats::ReadRevisionDocument(revision.document));
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, 0));
+  const formats::RevisionInput& document = *revision.document;
   Graph graph = graph::GraphOf(document.edges, document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
@@ -105,12 +108,12 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   RIGCAL_ASSIGN(const auto relative, graph::Relative(graph, document.solution, a, b));
   formats::LookupAnswer answer;
   answer.robot = robot;
-  answer.revision = revision.number;
+  answer.revision = revision.summary.number;
   answer.frame_a = a;
   answer.frame_b = b;
   answer.T_a_b = relative.T_A_B;
   answer.covariance = relative.covariance;
-  answer.verdict = revision.verdict;
+  answer.verdict = revision.summary.verdict;
   return formats::WriteLookup(answer);
 }
 
@@ -148,7 +151,8 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
   std::error_code error;
   const auto space = std::filesystem::space(context.store.folder(), error);
   if (error)
-    answer.problem = Error{ErrorCode::kStorage, "the data folder cannot be read: " + error.message(), "Check the disk."};
+    answer.problem =
+        Error{ErrorCode::kStorage, "the data folder cannot be read: " + error.message(), "Check the disk."};
   else
     answer.disk_free_bytes = static_cast<std::int64_t>(space.available);
   constexpr std::int64_t kDiskLow_bytes = 1LL << 30;
@@ -160,9 +164,9 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
 
 const std::map<std::string, Verb>& Verbs() {
   static const std::map<std::string, Verb> verbs = {
-      {"robots", Robots},       {"sessions", Sessions}, {"session", Session}, {"edges", Edges},
-      {"edge", OneEdge},        {"show", Show},         {"lookup", Lookup},   {"revisions", Revisions},
-      {"status", OfStatus},     {"due", Due},           {"health", Health},
+      {"robots", Robots},   {"sessions", Sessions}, {"session", Session}, {"edges", Edges},
+      {"edge", OneEdge},    {"show", Show},         {"lookup", Lookup},   {"revisions", Revisions},
+      {"status", OfStatus}, {"due", Due},           {"health", Health},
   };
   return verbs;
 }
@@ -172,7 +176,8 @@ const std::map<std::string, Verb>& Verbs() {
 Result<std::string> Answer(const AnswerContext& context, const std::string& verb, const std::string& json) {
   const auto found = Verbs().find(verb);
   if (found == Verbs().end())
-    return Fail(ErrorCode::kInvalidInput, "the verb '" + verb.substr(0, 32) + "' is not known", "docs/api.md lists the verbs.");
+    return Fail(ErrorCode::kInvalidInput, "the verb '" + verb.substr(0, 32) + "' is not known",
+                "docs/api.md lists the verbs.");
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
   return found->second(context, parameters);
 }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "server/base/stamp.h"
-#include "server/model/graph.h"
+#include "server/pipeline/revision_cache.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -13,6 +13,7 @@ namespace rigcal::pipeline {
 struct AnswerContext {
   storage::Store& store;
   const Clock& clock;
+  RevisionCache& revisions;
   Stamp started_at;
   std::string http_address;  // "http://127.0.0.1:8080", empty without HTTP
 };

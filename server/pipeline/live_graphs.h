@@ -1,4 +1,5 @@
-// The live state of each robot: its newest edges, solved at once, provisional, without a number. Rebuilt from the store.
+// The live state of each robot: its newest edges, solved at once, provisional, without a number. Rebuilt from the
+// store.
 #pragma once
 
 #include <map>

@@ -7,6 +7,7 @@
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
 #include "server/formats/documents.h"
+#include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
@@ -26,27 +27,47 @@ Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
   return manifest ? manifest->header.reference : SensorId();
 }
 
-void AddSensorsOfFailedEdges(const std::vector<Edge>& edges, Graph& graph) {
+// The edge stays visible, with its reason, but takes no part.
+void Supersede(Edge& edge) {
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = {{"superseded", "session " + edge.session.str().substr(0, 16) + " was pushed again in a corrected form",
+                     "Nothing: the edge of the later session counts."}};
+}
+
+Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, false));
+  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
+  const std::set<SessionId> old(superseded.begin(), superseded.end());
+  for (Edge& edge : edges)
+    if (edge.state == EdgeState::kGood && old.contains(edge.session)) Supersede(edge);
+  return edges;
+}
+
+void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector<SensorId>& listed, Graph& graph) {
   std::set<SensorId> known(graph.sensors.begin(), graph.sensors.end());
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (known.insert(sensor).second) graph.sensors.push_back(sensor);
-  std::sort(graph.sensors.begin(), graph.sensors.end());
+  for (const SensorId& sensor : listed)
+    if (known.insert(sensor).second) graph.sensors.push_back(sensor);
+  std::sort(graph.sensors.begin(), graph.sensors.end(), graph::SensorBefore);
 }
 
 }  // namespace
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
   RobotGraph loaded;
+  std::vector<SensorId> listed;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
-    RIGCAL_ASSIGN(loaded.edges, storage::LoadEdges(store, robot, false));
+    RIGCAL_ASSIGN(loaded.edges, LoadCurrentEdges(store, robot));
+    RIGCAL_ASSIGN(listed, storage::LoadListedSensors(store, robot));
     RIGCAL_ASSIGN(const SensorId reference, LoadReference(store, robot));
     loaded.graph = graph::GraphOf(loaded.edges, reference);
     if (!reference.empty()) loaded.graph.reference = reference;
     return {};
   }));
-  AddSensorsOfFailedEdges(loaded.edges, loaded.graph);
+  AddSensorsWithoutGoodEdge(loaded.edges, listed, loaded.graph);
   return loaded;
 }
 

@@ -7,7 +7,8 @@
 
 namespace rigcal::pipeline {
 
-// The graph of a robot: good edges, plus the sensors that appear only in failed ones. The reference is the one that the
+// The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list.
+// Edges of a session that a later one repeats (storage::LoadSuperseded) are shown as superseded and take no part. The reference is the one that the
 // earliest captured session names (ties: smaller session id); without a session, GraphOf's own rule.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id

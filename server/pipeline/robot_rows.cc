@@ -16,7 +16,7 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   row.sessions = robot.sessions;
   row.edges = robot.edges;
   RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
-  RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(store, robot.robot, 0));
+  RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
     row.verdict = {VerdictLevel::kUnknown, "there is no revision yet", "Push a capture session or finished edges."};
     return row;
@@ -57,7 +57,8 @@ Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, c
     rows.push_back(std::move(row));
   }
   if (!robot.empty() && rows.empty())
-    return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+    return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known",
+                "`rigcal robots` lists those that are.");
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) { return x.robot < y.robot; });
   return rows;
 }
@@ -75,22 +76,36 @@ Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& stor
 Result<formats::SessionAnswer> LoadSessionRow(storage::Store& store, const SessionId& id) {
   RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
   if (!session)
-    return Fail(ErrorCode::kNotFound, "session " + id.str() + " is not known", "`rigcal sessions` lists those that are.");
+    return Fail(ErrorCode::kNotFound, "session " + id.str() + " is not known",
+                "`rigcal sessions` lists those that are.");
   return RowOf(store, *session);
 }
 
-Result<Revision> LoadRevisionOf(storage::Store& store, const RobotId& robot, std::int64_t number) {
+namespace {
+
+// `load` is one of storage's two ways to read a revision.
+template <typename Load>
+Result<Revision> RequiredRevision(Load load, storage::Store& store, const RobotId& robot, std::int64_t number) {
   constexpr std::int64_t kNumberMax = 1'000'000'000;
-  const bool possible = number >= 0 && number <= kNumberMax;
-  if (possible) {
-    RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(store, robot, static_cast<int>(number)));
-    if (revision) return *revision;
+  if (number >= 0 && number <= kNumberMax) {
+    RIGCAL_ASSIGN(auto revision, load(store, robot, static_cast<int>(number)));
+    if (revision) return std::move(*revision);
   }
   if (number != 0)
     return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision " + std::to_string(number),
                 "Leave the number out to get the newest.");
   return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision yet",
               "Push a capture session or finished edges; `rigcal robots` lists the robots that are known.");
+}
+
+}  // namespace
+
+Result<Revision> LoadRevisionOf(storage::Store& store, const RobotId& robot, std::int64_t number) {
+  return RequiredRevision(storage::LoadRevision, store, robot, number);
+}
+
+Result<Revision> LoadRevisionSummaryOf(storage::Store& store, const RobotId& robot, std::int64_t number) {
+  return RequiredRevision(storage::LoadRevisionSummary, store, robot, number);
 }
 
 }  // namespace rigcal::pipeline

@@ -20,4 +20,7 @@ constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'000;
 // The newest revision, or `number`; kNotFound names the robot.
 [[nodiscard]] Result<Revision> LoadRevisionOf(storage::Store& store, const RobotId& robot, std::int64_t number);
 
+// The same without the document.
+[[nodiscard]] Result<Revision> LoadRevisionSummaryOf(storage::Store& store, const RobotId& robot, std::int64_t number);
+
 }  // namespace rigcal::pipeline

@@ -82,7 +82,8 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
     impl->stores.push_back(std::move(store));
   }
-  for (storage::Store& store : impl->stores) impl->threads.emplace_back([&store, raw = impl.get()] { raw->Loop(store); });
+  for (storage::Store& store : impl->stores)
+    impl->threads.emplace_back([&store, raw = impl.get()] { raw->Loop(store); });
   return Runner(std::move(impl));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/base/log.h"
 #include "server/formats/answers.h"
 #include "server/graph/solve.h"
 #include "server/pipeline/publish.h"
@@ -41,14 +42,17 @@ Status UpdateLive(const StepContext& context, const RobotId& robot) {
   options.marginals = false;
   LiveGraph live;
   live.watermark = loaded.watermark;
-  live.solution = previous ? graph::Update(loaded.graph, previous->solution, options) : graph::Solve(loaded.graph, options);
-  context.announcer.event(robot, "graph_update", robot.str(),
-                          formats::WriteGraphEvent(robot, static_cast<std::int64_t>(loaded.edges.size()), live.solution));
+  live.solution =
+      previous ? graph::Update(loaded.graph, previous->solution, options) : graph::Solve(loaded.graph, options);
+  context.announcer.event(
+      robot, "graph_update", robot.str(),
+      formats::WriteGraphEvent(robot, static_cast<std::int64_t>(loaded.edges.size()), live.solution));
   context.live.Set(robot, std::move(live));
   return {};
 }
 
-// A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing worked.
+// A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
+// worked.
 Result<bool> PublishNext(const StepContext& context) {
   RIGCAL_ASSIGN(const auto unpublished, storage::LoadUnpublished(context.store));
   std::optional<Error> problem;
@@ -90,40 +94,64 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
+// The live state of one robot, and its revision if its burst is over.
+Result<Burst> WorkOn(const StepContext& context, const RobotId& robot) {
+  RIGCAL_TRY(UpdateLive(context, robot));
+  RIGCAL_ASSIGN(const Burst burst, BurstOf(context, robot));
+  if (burst.over) RIGCAL_TRY(ReviseAndTell(context, robot));
+  return burst;
+}
+
+// A robot whose work failed rests, so that it holds up no other; then it is tried again.
+Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error) {
+  constexpr std::int64_t kRest_ns = 10'000'000'000;
+  LogError({error.code, "robot " + robot.str() + ": " + error.what, error.cure});
+  const Stamp until{context.clock.Now().ns + kRest_ns};
+  context.claims.Rest(robot, until);
+  return until;
+}
+
+void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
+  if (stamp && (!result.wake_at || *stamp < *result.wake_at)) result.wake_at = stamp;
+}
+
 Result<StepResult> ReviseNext(const StepContext& context) {
   StepResult result;
   RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(context.store));
   for (const RobotId& robot : unsolved) {
     const Claim claim(context.claims, robot);
     if (!claim.taken()) continue;
-    RIGCAL_TRY(UpdateLive(context, robot));
-    RIGCAL_ASSIGN(const Burst burst, BurstOf(context, robot));
-    if (burst.wake_at && (!result.wake_at || *burst.wake_at < *result.wake_at)) result.wake_at = burst.wake_at;
-    if (!burst.over) continue;
-    RIGCAL_TRY(ReviseAndTell(context, robot));
-    result.worked = true;
-    return result;
+    const Result<Burst> burst = WorkOn(context, robot);
+    WakeBy(burst ? burst->wake_at : LetRest(context, robot, burst.error()), result);
+    result.worked = burst && burst->over;
+    if (result.worked) return result;
   }
   return result;
 }
 
-Result<bool> RunNextJob(const StepContext& context) {
+Status RunJob(const StepContext& context, const storage::JobRow& job) {
+  RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, job, context.clock));
+  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
+  context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
+  return UpdateLive(context, job.robot);
+}
+
+Result<StepResult> RunNextJob(const StepContext& context) {
+  StepResult result;
   RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, context.claims.Taken()));
-  if (!job) return false;
+  if (!job) return result;
+  result.worked = true;
   const Claim claim(context.claims, job->robot);
-  if (!claim.taken()) return true;  // another thread was faster: look again
-  RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, *job, context.clock));
-  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job->session));
-  context.announcer.event(job->robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
-  RIGCAL_TRY(UpdateLive(context, job->robot));
-  return true;
+  if (!claim.taken()) return result;  // another thread was faster: look again
+  if (const Status ran = RunJob(context, *job); !ran) WakeBy(LetRest(context, job->robot, ran.error()), result);
+  return result;
 }
 
 }  // namespace
 
 bool Claims::Take(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
-  return taken_.insert(robot).second;
+  return !resting_.contains(robot) && taken_.insert(robot).second;
 }
 
 void Claims::GiveBack(const RobotId& robot) {
@@ -133,17 +161,39 @@ void Claims::GiveBack(const RobotId& robot) {
 
 std::vector<RobotId> Claims::Taken() const {
   const std::lock_guard lock(mutex_);
-  return {taken_.begin(), taken_.end()};
+  std::vector<RobotId> robots(taken_.begin(), taken_.end());
+  for (const auto& [robot, until] : resting_) robots.push_back(robot);
+  return robots;
+}
+
+void Claims::Rest(const RobotId& robot, Stamp until) {
+  const std::lock_guard lock(mutex_);
+  resting_[robot] = until;
+}
+
+std::optional<Stamp> Claims::NextRestEnd() const {
+  const std::lock_guard lock(mutex_);
+  std::optional<Stamp> next;
+  for (const auto& [robot, until] : resting_)
+    if (!next || until < *next) next = until;
+  return next;
+}
+
+void Claims::EndRests(Stamp now) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(resting_, [&](const auto& rest) { return rest.second <= now; });
 }
 
 Result<StepResult> Step(const StepContext& context) {
+  context.claims.EndRests(context.clock.Now());
   const Result<bool> published = PublishNext(context);
   if (published && *published) return StepResult{true, std::nullopt};
   RIGCAL_ASSIGN(StepResult revised, ReviseNext(context));
   if (revised.worked) return revised;
-  RIGCAL_ASSIGN(const bool ran, RunNextJob(context));
-  if (ran) return StepResult{true, std::nullopt};
+  RIGCAL_ASSIGN(StepResult ran, RunNextJob(context));
+  if (ran.worked) return ran;
   if (!published) return Fail(published.error());
+  WakeBy(context.claims.NextRestEnd(), revised);
   return revised;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -18,18 +19,24 @@ namespace rigcal::pipeline {
 // Which robots are being worked on: one writer per robot at a time. Shared by the runner's threads.
 class Claims {
  public:
-  [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it
+  [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it, or it rests
   void GiveBack(const RobotId& robot);
-  [[nodiscard]] std::vector<RobotId> Taken() const;
+  [[nodiscard]] std::vector<RobotId> Taken() const;  // includes those that rest
+  // A robot whose work failed is left alone until then, so that it holds up no other.
+  void Rest(const RobotId& robot, Stamp until);
+  void EndRests(Stamp now);
+  [[nodiscard]] std::optional<Stamp> NextRestEnd() const;
 
  private:
   mutable std::mutex mutex_;
   std::set<RobotId> taken_;
+  std::map<RobotId, Stamp> resting_;
 };
 
 // What is told to the world. Called from the thread that steps; must not block.
 struct Announcer {
-  std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)> event;
+  std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)>
+      event;
   std::function<void(const Revision&, const SensorId& reference, const std::vector<SensorPose>&, std::int64_t edges)>
       calibration;
 };

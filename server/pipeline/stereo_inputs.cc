@@ -16,24 +16,31 @@ namespace {
 struct Found {
   const Payload* payload = nullptr;
   storage::StoredView stored;
-  bool fresh = false;       // detected now, not yet in the store
-  std::string picture;      // encoded, if fresh
+  bool fresh = false;  // detected now, not yet in the store
   Status status;
 };
 
 const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {
-  const auto it = std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
+  const auto it =
+      std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
   return it == header.sensors.end() ? nullptr : &*it;
 }
 
 bool MaySee(const Sensor& sensor, const Checkerboard& board) { return !sensor.sees || *sensor.sees == board.id; }
 
 Status DetectFresh(const std::filesystem::path& blobs, const Checkerboard& board, Found& found) {
-  RIGCAL_ASSIGN(const std::string bytes,
-                storage::LoadBlob(blobs, found.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax)));
-  AnnotatedView annotated = detect::Detect(std::as_bytes(std::span(bytes)), board);
+  const auto bytes =
+      storage::LoadBlob(blobs, found.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
+  if (!bytes) {  // a damaged disk costs this picture, not the robot: and it is looked for again next time
+    found.fresh = false;
+    found.stored.view.why_not = Sentence(bytes.error());
+    return {};
+  }
+  AnnotatedView annotated = detect::Detect(std::as_bytes(std::span(*bytes)), board);
   found.stored.view = std::move(annotated.view);
-  found.picture = std::move(annotated.picture);
+  if (annotated.picture.empty()) return {};
+  // Stored at once, so that memory does not grow with the number of captures.
+  RIGCAL_ASSIGN(found.stored.picture, storage::AppendBlob(blobs, annotated.picture));
   return {};
 }
 
@@ -59,12 +66,7 @@ Result<std::vector<Found>> DetectAll(storage::Store& store, const Manifest& mani
   return all;
 }
 
-Status StoreFresh(storage::Store& store, const Checkerboard& board, std::vector<Found>& all) {
-  for (Found& found : all) {
-    if (!found.fresh || found.picture.empty()) continue;
-    RIGCAL_ASSIGN(found.stored.picture, storage::AppendBlob(store.BlobFolder(), found.picture));
-    found.picture.clear();
-  }
+Status StoreFresh(storage::Store& store, const Checkerboard& board, const std::vector<Found>& all) {
   const std::string key = detect::DetectorKey(board);
   return store.Write([&]() -> Status {
     for (const Found& found : all)
@@ -101,9 +103,8 @@ StereoInputs Assemble(const Sensor& a, const Sensor& b, const Checkerboard& boar
 
 std::size_t CommonViews(const calib::StereoProblem& problem) {
   return static_cast<std::size_t>(
-      std::count_if(problem.captures.begin(), problem.captures.end(), [](const calib::StereoCapture& c) {
-        return c.a && c.b && c.a->found && c.b->found;
-      }));
+      std::count_if(problem.captures.begin(), problem.captures.end(),
+                    [](const calib::StereoCapture& c) { return c.a && c.b && c.a->found && c.b->found; }));
 }
 
 }  // namespace

@@ -36,6 +36,8 @@ CREATE TABLE payload (
   PRIMARY KEY (session_number, idx)
 ) STRICT, WITHOUT ROWID;
 
+CREATE INDEX payload_of_digest ON payload (digest);
+
 CREATE TABLE payload_held (
   session_number INTEGER NOT NULL,
   idx INTEGER NOT NULL,

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
       return 1;
     }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("{\"bytes_per_s\": %.1f, \"count\": %d, \"seconds\": %.6f}\n", static_cast<double>(bytes) * count / seconds, count, seconds);
+  std::printf("{\"bytes_per_s\": %.1f, \"count\": %d, \"seconds\": %.6f}\n",
+              static_cast<double>(bytes) * count / seconds, count, seconds);
   return 0;
 }

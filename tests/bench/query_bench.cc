@@ -1,10 +1,9 @@
 // Round trips of one query against a running rigcald, from inside one process. Prints one JSON object.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 #include "client/connection.h"
 
@@ -49,7 +48,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", rigcal::Sentence(times_ms.error()).c_str());
     return 1;
   }
-  const auto at = [&](double share) { return (*times_ms)[static_cast<std::size_t>(share * static_cast<double>(times_ms->size() - 1))]; };
-  std::printf("{\"median_ms\": %.4f, \"p99_ms\": %.4f, \"max_ms\": %.4f, \"count\": %zu}\n", at(0.5), at(0.99), at(1.0), times_ms->size());
+  const auto at = [&](double share) {
+    return (*times_ms)[static_cast<std::size_t>(share * static_cast<double>(times_ms->size() - 1))];
+  };
+  std::printf("{\"median_ms\": %.4f, \"p99_ms\": %.4f, \"max_ms\": %.4f, \"count\": %zu}\n", at(0.5), at(0.99), at(1.0),
+              times_ms->size());
   return 0;
 }

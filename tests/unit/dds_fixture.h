@@ -20,7 +20,7 @@
 namespace rigcal::dds {
 
 using std::chrono::milliseconds;
-constexpr milliseconds kPatience{10'000};  // for what must come; never waited out when all is well
+constexpr milliseconds kPatience{60'000};  // for what must come; never waited out when all is well
 
 inline std::string RandomTag() {
   std::random_device random;

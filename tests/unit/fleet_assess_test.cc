@@ -116,6 +116,8 @@ TEST(Assess, FailedEdgesWarnWithTheirCureUnlessRepaired) {
   EXPECT_EQ(verdict.why, "The calibration of top - rear failed.");
   EXPECT_EQ(verdict.what_to_do, "Take at least 10 captures.");
   rig.edges.push_back(MakeEdge('e', "rear", "top"));
+  EXPECT_EQ(rig.Judge().why, "Nothing checks the pose of rear: a single edge is the only tie to the reference.");
+  rig.edges.push_back(MakeEdge('f', "rear", "left"));
   EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
 }
 

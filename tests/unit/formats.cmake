@@ -6,4 +6,3 @@ rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc DEPS rig
 rigcal_test(formats_answers_test SOURCES unit/formats_answers_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_yaml_test SOURCES unit/formats_session_yaml_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_folder_test SOURCES unit/formats_session_folder_test.cc DEPS rigcal_formats)
-include(${CMAKE_CURRENT_LIST_DIR}/formats_g2o.cmake OPTIONAL)

@@ -12,7 +12,7 @@ namespace rigcal::wire {
 namespace {
 
 using std::chrono::milliseconds;
-constexpr milliseconds kPatience{10'000};
+constexpr milliseconds kPatience{60'000};
 
 ParticipantOptions RandomOptions() {
   std::random_device random;

@@ -15,7 +15,7 @@
 namespace rigcal::wire {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{10'000};
+constexpr std::chrono::milliseconds kPatience{60'000};
 char g_json[] = "{\"a\": 1}";
 char g_words[] = "words";
 

@@ -6,8 +6,9 @@ namespace {
 
 class AnswerTest : public PipelineTest {
  protected:
+  RevisionCache revisions_cache_;
   Result<std::string> Ask(const std::string& verb, const std::string& json) {
-    return Answer({*store_, clock_, clock_.now, "http://127.0.0.1:1"}, verb, json);
+    return Answer({*store_, clock_, revisions_cache_, clock_.now, "http://127.0.0.1:1"}, verb, json);
   }
 };
 
@@ -51,7 +52,7 @@ TEST_F(AnswerTest, WhatCannotBeAnsweredIsSaidByName) {
 TEST_F(AnswerTest, PagesOfFleetAndRobotAreHtmlAndTheApiIsJson) {
   StoreEdges(Triangle("r"));
   StepAll();
-  const AnswerContext context{*store_, clock_, clock_.now, ""};
+  const AnswerContext context{*store_, clock_, revisions_cache_, clock_.now, ""};
   for (const std::string path : {"/", "/robots/r/"}) {
     const auto page = AnswerPage(context, path, "");
     ASSERT_TRUE(page) << path << Sentence(page.error());

@@ -61,7 +61,8 @@ class PipelineTest : public testing::Test {
     return 1000;
   }
   [[nodiscard]] int Count(const std::string& kind) const {
-    return static_cast<int>(std::count_if(events_.begin(), events_.end(), [&](const auto& e) { return e.first == kind; }));
+    return static_cast<int>(
+        std::count_if(events_.begin(), events_.end(), [&](const auto& e) { return e.first == kind; }));
   }
 
   // A closed session whose payloads are `files` (path -> bytes), as the recorder would leave it.
@@ -162,7 +163,8 @@ inline Edge GivenEdge(const std::string& robot, const std::string& a, const std:
 }
 
 inline std::vector<Edge> Triangle(const std::string& robot) {
-  std::vector<Edge> edges = {GivenEdge(robot, "a", "b", 1.0), GivenEdge(robot, "b", "c", 1.0), GivenEdge(robot, "a", "c", 2.003)};
+  std::vector<Edge> edges = {GivenEdge(robot, "a", "b", 1.0), GivenEdge(robot, "b", "c", 1.0),
+                             GivenEdge(robot, "a", "c", 2.003)};
   AssignPushedIds(edges);
   return edges;
 }

@@ -66,7 +66,8 @@ TEST_F(PipelineTest, APictureThatCannotBeReadGivesAFailedEdgeWithACure) {
   ASSERT_EQ(revisions_.size(), 1u);
   EXPECT_NE(revisions_[0].verdict.level, VerdictLevel::kPass);
   EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "index.html"));
-  const auto right = std::find_if(poses_.begin(), poses_.end(), [](const SensorPose& p) { return p.sensor.str() == "right"; });
+  const auto right =
+      std::find_if(poses_.begin(), poses_.end(), [](const SensorPose& p) { return p.sensor.str() == "right"; });
   ASSERT_NE(right, poses_.end());
   EXPECT_FALSE(right->known);
 }
@@ -87,6 +88,70 @@ TEST_F(PipelineTest, RealPairsGiveAnEdgeARevisionAndAReport) {
   EXPECT_EQ(edge.evidence.size(), 26u);
   EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "evidence" /
                                       (edge.evidence[0].digest.str() + ".jpg")));
+}
+
+TEST_F(PipelineTest, ACorrectedSessionSupersedesTheOneItRepeats) {
+  const std::map<std::string, std::string> files = {{"left/01.png", "one"}, {"right/01.png", "two"}};
+  StoreSession("r", files);
+  StepAll();
+  Edge good = GivenEdge("r", "left", "right", 0.1);  // as if the first session had given a good edge
+  const auto first = storage::LoadSessions(*store_, RobotId("r"));
+  ASSERT_TRUE(first);
+  good.session = first->front().id;
+  good.method = "stereo2";
+  good.id = EstimatedEdgeId(good.robot, good.session, good.method, good.frame_a, good.frame_b);
+  StoreEdges({good});
+  StepAll();
+  EXPECT_NE(revisions_.back().document.find("\"state\":\"good\""), std::string::npos);
+
+  clock_.now.ns += 1'000'000'000;  // another captured_at: another session of the same pictures
+  StoreSession("r", files);
+  StepAll();
+  EXPECT_EQ(revisions_.back().document.find("\"state\":\"good\""), std::string::npos);
+  EXPECT_NE(revisions_.back().document.find("superseded"), std::string::npos);
+}
+
+TEST_F(PipelineTest, ASensorInNoPairIsUnknownNotAbsent) {
+  Manifest manifest;
+  manifest.header.robot = RobotId("r");
+  manifest.header.reference = SensorId("left");
+  manifest.header.captured_at = clock_.now;
+  for (const char* name : {"near", "far"}) {
+    Checkerboard board;
+    board.id = TargetId(name);
+    board.inner_cols = 9, board.inner_rows = 6, board.square_m = 0.025;
+    manifest.header.targets.push_back(board);
+  }
+  for (const auto& [name, target] : {std::pair("left", "near"), {"right", "near"}, {"side", "far"}}) {
+    Sensor sensor;
+    sensor.id = SensorId(name);
+    sensor.sees = TargetId(target);
+    manifest.header.sensors.push_back(sensor);
+    Payload payload;
+    payload.sensor = sensor.id;
+    payload.capture = CaptureId("01");
+    payload.path = std::string(name) + "/01.png";
+    payload.digest = *storage::AppendBlob(store_->BlobFolder(), payload.path);
+    payload.size_bytes = static_cast<std::int64_t>(payload.path.size());
+    manifest.payloads.push_back(payload);
+  }
+  Close(manifest);
+  StepAll();
+  ASSERT_EQ(poses_.size(), 3u);
+  const auto side = std::find_if(poses_.begin(), poses_.end(), [](const SensorPose& p) { return p.sensor.str() == "side"; });
+  ASSERT_NE(side, poses_.end());
+  EXPECT_FALSE(side->known);
+}
+
+TEST_F(PipelineTest, ALostBlobCostsOnePictureNotTheRobot) {
+  StoreSession("r", {{"left/01.png", "one"}, {"right/01.png", "two"}});
+  std::filesystem::remove(storage::BlobPath(store_->BlobFolder(), Sha256Of(std::string("one"))));
+  StepAll();
+  const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
+  ASSERT_TRUE(edges);
+  ASSERT_EQ(edges->size(), 1u);
+  EXPECT_EQ(edges->front().state, EdgeState::kFailed);
+  EXPECT_EQ(revisions_.size(), 1u);
 }
 
 TEST_F(PipelineTest, WorkLeftByACrashIsFoundAgain) {

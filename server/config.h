@@ -1,0 +1,30 @@
+// What rigcald is told on its command line, and what it does without being told.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "idl/dds.h"
+#include "server/http/server.h"
+
+namespace CLI {
+class App;
+}
+
+namespace rigcal {
+
+struct Config {
+  std::filesystem::path data;
+  std::string http = "127.0.0.1:8420";
+  wire::ParticipantOptions participant;
+  int threads = 2;
+  bool verbose = false;
+};
+
+// $HOME/.local/share/rigcal.
+[[nodiscard]] std::filesystem::path DefaultData();
+void AddOptions(CLI::App& app, Config& config);
+// kInvalidInput if --http is not HOST:PORT.
+[[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
+
+}  // namespace rigcal

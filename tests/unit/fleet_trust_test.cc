@@ -1,0 +1,117 @@
+// A "pass" must be earned: what nothing checks, or no test could have caught, is said by name.
+#include <gmock/gmock.h>
+
+#include "server/fleet/assess.h"
+#include "server/fleet/bridges.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct Chain {
+  std::vector<Edge> edges;
+  GraphSolution solution;
+
+  Chain() {
+    solution.converged = true;
+    solution.dof = 6;
+  }
+  void AddSensor(const std::string& name) {
+    SensorPose pose;
+    pose.sensor = SensorId(name);
+    pose.known = true;
+    if (!solution.poses.empty()) pose.covariance = 1e-6 * Matrix6d::Identity();
+    solution.poses.push_back(pose);
+  }
+  void AddEdge(const std::string& a, const std::string& b, int dof, double off_m) {
+    Edge edge;
+    edge.id = EdgeId(std::string(64, static_cast<char>('a' + edges.size())));
+    edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
+    edge.uncertainty = FromInformation(1e6 * Matrix6d::Identity(), UncertaintySource::kGiven, dof);
+    edge.state = EdgeState::kGood;
+    EdgeResidual residual;
+    residual.edge = edge.id;
+    residual.in_solution = true;
+    residual.e(tangent::kX) = off_m;
+    residual.weighted = residual.e.dot(edge.uncertainty.Omega * residual.e);
+    solution.cost += residual.weighted;
+    solution.residuals.push_back(residual);
+    edges.push_back(edge);
+  }
+  [[nodiscard]] Verdict Judge() const { return Assess(edges, solution); }
+};
+
+// Left, right and top in a triangle whose edges all have covariances from dof + 1 captures.
+Chain Triangle(int dof, double off_m) {
+  Chain chain;
+  for (const char* name : {"left", "right", "top"}) chain.AddSensor(name);
+  chain.AddEdge("left", "right", dof, off_m);
+  chain.AddEdge("right", "top", dof, off_m);
+  chain.AddEdge("left", "top", dof, off_m);
+  return chain;
+}
+
+TEST(Trust, FewCapturesNeverPassForTheyCannotBeTested) {
+  for (int dof = 1; dof <= 12; ++dof) {
+    const Verdict verdict = Triangle(dof, 0.0005).Judge();
+    EXPECT_EQ(verdict.level, VerdictLevel::kWarn) << dof;
+    EXPECT_THAT(verdict.why, HasSubstr("Too few captures")) << dof;
+  }
+  EXPECT_EQ(Triangle(39, 0.0005).Judge().level, VerdictLevel::kPass);
+}
+
+TEST(Trust, AGrossContradictionFailsWhateverTheCaptures) {
+  for (int dof = 1; dof <= 40; ++dof) EXPECT_EQ(Triangle(dof, 0.1).Judge().level, VerdictLevel::kFail) << dof;
+}
+
+TEST(Trust, ALongLoopThatDoesNotCloseFails) {
+  Chain ring;
+  for (int k = 0; k < 21; ++k) ring.AddSensor("s" + std::to_string(k));
+  // 80 mm of closure shared by 21 edges of 1 mm: each edge alone is within its own limit.
+  for (int k = 0; k < 21; ++k) ring.AddEdge("s" + std::to_string(k), "s" + std::to_string((k + 1) % 21), 0, 0.08 / 21);
+  const Verdict verdict = ring.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("do not close"));
+}
+
+TEST(Trust, EdgesOfOneSessionAreNotIndependentSoTheirCostIsNoVerdict) {
+  Chain chain = Triangle(0, 0.0035);  // cost 37 for 6 degrees of freedom, each edge below its own limit
+  EXPECT_EQ(chain.Judge().level, VerdictLevel::kFail);
+  for (Edge& edge : chain.edges) edge.session = SessionId(std::string(64, '1'));
+  EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);
+}
+
+TEST(Trust, ASensorOnASingleEdgeIsUnchecked) {
+  Chain chain = Triangle(39, 0.0005);
+  chain.AddSensor("tail");
+  chain.AddSensor("tip");
+  chain.AddEdge("top", "tail", 39, 0.0);
+  chain.AddEdge("tip", "tail", 39, 0.0);
+  EXPECT_THAT(BehindBridges(chain.edges, chain.solution), ElementsAre(SensorId("tail"), SensorId("tip")));
+  const Verdict verdict = chain.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("tail and tip"));
+}
+
+TEST(Trust, APairThatIsMeasuredTwiceIsNoBridge) {
+  Chain chain = Triangle(39, 0.0005);
+  chain.AddSensor("tail");
+  chain.AddEdge("top", "tail", 39, 0.0);
+  chain.AddEdge("tail", "top", 39, 0.0);
+  EXPECT_TRUE(BehindBridges(chain.edges, chain.solution).empty());
+}
+
+TEST(Trust, ALoopBehindABridgeIsStillTiedByOneEdge) {
+  Chain chain = Triangle(39, 0.0005);
+  for (const char* name : {"x", "y", "z"}) chain.AddSensor(name);
+  chain.AddEdge("top", "x", 39, 0.0);
+  chain.AddEdge("x", "y", 39, 0.0);
+  chain.AddEdge("y", "z", 39, 0.0);
+  chain.AddEdge("z", "x", 39, 0.0);
+  EXPECT_THAT(BehindBridges(chain.edges, chain.solution), ElementsAre(SensorId("x"), SensorId("y"), SensorId("z")));
+}
+
+}  // namespace
+}  // namespace rigcal::fleet
