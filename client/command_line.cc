@@ -41,7 +41,7 @@ void AddGlobalOptions(CLI::App& app, GlobalOptions& options, Context& context) {
 void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) {
   context.timeout_is_given = app.count("--timeout") > 0;
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(options.domain).c_str(), 1);
-  if (!options.tag.empty()) setenv("RIGCAL_DDS_TAG", options.tag.c_str(), 1);
+  context.dds.tag = options.tag;
   context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
 }
 

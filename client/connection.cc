@@ -40,7 +40,7 @@ milliseconds Left(std::chrono::steady_clock::time_point deadline) {
 std::string WhereText(const wire::ParticipantOptions& options) {
   const char* domain = std::getenv("RIGCAL_DOMAIN");
   const char* tag_variable = std::getenv("RIGCAL_DDS_TAG");
-  const std::string tag = tag_variable && *tag_variable ? tag_variable : options.tag;
+  const std::string tag = options.tag.empty() && tag_variable != nullptr ? tag_variable : options.tag;
   const std::string where = "DDS domain " + (domain && *domain ? std::string(domain) : std::to_string(options.domain));
   return tag.empty() ? where : where + ", tag '" + tag + "'";
 }

@@ -15,6 +15,6 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out);
 // "  why. What to do." per diagnosis.
 void PrintDiagnoses(const Document& diagnoses, std::ostream& out);
 // "E_global  before ... -> after ..." of a revision's document.
-void PrintGlobalError(const Document& e_global, std::ostream& out);
+void PrintGlobalError(const Document& revision, std::ostream& out);
 
 }  // namespace rigcal::client

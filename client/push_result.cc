@@ -30,7 +30,7 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   const std::string robot = Plain(awaited.show["robot"].Text("?"));
   out << "\n" << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
   PrintVerdict(revision["verdict"], out);
-  PrintGlobalError(revision["e_global"], out);
+  PrintGlobalError(revision, out);
   const auto edges = revision["edges"].Items();
   if (edges.size() <= kEdgesPrintedMax)
     PrintEdges(edges, out);

@@ -31,7 +31,7 @@ void Print(const Document& document, std::ostream& out) {
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", "
       << AgeOf(document["age_ns"]) << " old\n";
   PrintVerdict(revision["verdict"], out);
-  PrintGlobalError(revision["e_global"], out);
+  PrintGlobalError(revision, out);
   PrintDiagnoses(revision["diagnoses"], out);
   PrintPoses(revision, out);
   out << "\nEdges\n";

@@ -42,7 +42,7 @@ class Entity {
 
 struct ParticipantOptions {
   int domain = 0;   // RIGCAL_DOMAIN overrides in Open if set
-  std::string tag;  // Discovery/Tag: isolates tests; RIGCAL_DDS_TAG overrides if set
+  std::string tag;  // Discovery/Tag: isolates tests; empty: RIGCAL_DDS_TAG
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
 };

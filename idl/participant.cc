@@ -81,7 +81,7 @@ Result<int> DomainNumber(const ParticipantOptions& options) {
 
 Result<std::string> DiscoveryTag(const ParticipantOptions& options) {
   const std::string variable = Variable("RIGCAL_DDS_TAG");
-  std::string tag = variable.empty() ? options.tag : variable;
+  std::string tag = options.tag.empty() ? variable : options.tag;
   if (!tag.empty()) RIGCAL_TRY(CheckName("DDS tag", tag));
   return tag;
 }

@@ -115,7 +115,6 @@ int main(int argc, char** argv) {
   }
   // What the command line says goes before the environment.
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(config.participant.domain).c_str(), 1);
-  if (!config.participant.tag.empty()) setenv("RIGCAL_DDS_TAG", config.participant.tag.c_str(), 1);
   rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
 
   sigset_t signals;

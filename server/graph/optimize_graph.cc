@@ -26,6 +26,7 @@ GlobalError MeanSquares(const std::vector<EdgeResidual>& residuals) {
 }
 
 int DegreesOfFreedom(const Problem& problem, const Observability& observability) {
+  if (!observability.judged) return 0;  // the rank of H is not known
   int rank_sum = 0;
   for (const Constraint& constraint : problem.constraints) rank_sum += constraint.rank;
   return rank_sum - (6 * problem.free_count() - observability.nullity);

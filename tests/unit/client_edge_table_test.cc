@@ -49,12 +49,15 @@ TEST(EdgeLine, OneLine) {
   EXPECT_EQ(EdgeLine(Document()), "? - ?  -  ?");
 }
 
-TEST(PrintGlobalError, BeforeAndAfterWithParts) {
-  std::ostringstream out;
-  PrintGlobalError(Parsed(R"({"before": {"total": 0.5, "translation_m2": 0.4, "rotation_rad2": 0.1},
-                              "after": {"total": 0.05, "translation_m2": 0.04, "rotation_rad2": 0.01}})"),
-                   out);
-  EXPECT_EQ(out.str(), "E_global  before 0.5 (0.4 m^2 + 0.1 rad^2)  after 0.05 (0.04 m^2 + 0.01 rad^2)\n");
+TEST(PrintGlobalError, BeforeAndAfterWithPartsAndAWordWhereNothingChecks) {
+  const std::string parts = R"("e_global": {"before": {"total": 0.5, "translation_m2": 0.4, "rotation_rad2": 0.1},
+                                            "after": {"total": 0.05, "translation_m2": 0.04, "rotation_rad2": 0.01}})";
+  const std::string line = "E_global  before 0.5 (0.4 m^2 + 0.1 rad^2)  after 0.05 (0.04 m^2 + 0.01 rad^2)\n";
+  std::ostringstream with_loop, without;
+  PrintGlobalError(Parsed("{\"dof\": 6, " + parts + "}"), with_loop);
+  EXPECT_EQ(with_loop.str(), line);
+  PrintGlobalError(Parsed("{\"dof\": 0, " + parts + "}"), without);
+  EXPECT_EQ(without.str(), line + "          no loop of edges: each fits by construction, so this checks nothing\n");
 }
 
 }  // namespace
