@@ -31,7 +31,7 @@ void Print(const Document& document, std::ostream& out) {
 ExitCode Run(const Context& context, const std::string& max_age) {
   const auto max_age_ns = ParseDuration(max_age);
   if (!max_age_ns) {
-    Report(max_age_ns.error(), context.err);
+    Report(max_age_ns.error(), context);
     return ExitCode::kUsage;
   }
   return Answer(context, {"due", JsonObject({{"max_age_ns", *max_age_ns}}), Print, [](const Document& document) {

@@ -1,5 +1,6 @@
 #include "client/edge_table.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -39,11 +40,34 @@ std::string PartsText(const Document& error) {
   return text.data();
 }
 
+std::string SentenceOf(const Document& diagnosis) {
+  return Sentence({ErrorCode::kInvalidInput, diagnosis["what"].Text(), diagnosis["cure"].Text()});
+}
+
+std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
+
+// What a reader of good edges should know: each sentence once, with the pairs that it is about.
+void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
+  std::vector<std::pair<std::string, std::string>> notes;  // sentence, pairs; in the order of the edges
+  for (const Document& edge : edges) {
+    if (edge["state"].Text() == "failed") continue;
+    for (const Document& item : edge["diagnoses"].Items()) {
+      const std::string sentence = SentenceOf(item);
+      const auto known = std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
+      if (known == notes.end())
+        notes.emplace_back(sentence, PairOf(edge));
+      else
+        known->second += ", " + PairOf(edge);
+    }
+  }
+  for (const auto& [sentence, pairs] : notes) out << Plain(pairs) << ":\n  " << Plain(sentence) << '\n';
+}
+
 }  // namespace
 
 void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
   for (const Document& item : diagnoses.Items())
-    out << "  " << Plain(Sentence({ErrorCode::kInvalidInput, item["what"].Text(), item["cure"].Text()})) << '\n';
+    out << "  " << Plain(SentenceOf(item)) << '\n';
 }
 
 void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
@@ -60,12 +84,11 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
     if (edge["state"].Text() != "failed") AddRow(edge, table);
   if (!table.empty()) table.Print(out);
   for (const Document& edge : edges) {
-    const bool failed = edge["state"].Text() == "failed";
-    if (failed || edge["diagnoses"].size() > 0)
-      out << Plain(edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?")) << (failed ? ": FAILED" : ":")
-          << '\n';
+    if (edge["state"].Text() != "failed") continue;
+    out << Plain(PairOf(edge)) << ": FAILED\n";
     PrintDiagnoses(edge["diagnoses"], out);
   }
+  PrintNotes(edges, out);
 }
 
 std::string EdgeLine(const Document& edge) {
@@ -74,8 +97,10 @@ std::string EdgeLine(const Document& edge) {
   if (edge["sigma_m"].size() == 3)
     line +=
         "  sigma " + Triple(edge["sigma_m"], kMmPerM, 3) + " mm, " + Triple(edge["sigma_rad"], kDegPerRad, 4) + " deg";
-  for (const Document& item : edge["diagnoses"].Items())
-    line += "  " + Sentence({ErrorCode::kInvalidInput, item["what"].Text(), item["cure"].Text()});
+  if (edge["state"].Text() == "failed")
+    for (const Document& item : edge["diagnoses"].Items()) line += "  " + SentenceOf(item);
+  else if (const std::size_t notes = edge["diagnoses"].size(); notes > 0)
+    line += notes == 1 ? ", 1 note" : ", " + std::to_string(notes) + " notes";
   return Plain(line);
 }
 

@@ -8,6 +8,7 @@
 #include "client/session_outlet.h"
 #include "client/table.h"
 #include "client/verbs.h"
+#include "server/base/thread_rank.h"
 #include "server/formats/session_folder.h"
 
 namespace rigcal::client {
@@ -79,8 +80,7 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
       RunTransfer(participant, {session.robot, session.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
   progress.Clear();
   if (!done) return Fail(done.error());
-  PushSummary summary =
-      SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
+  PushSummary summary = SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
   summary.transfer_ns = SteadyNow_ns() - start_ns;
   return summary;
 }
@@ -104,6 +104,7 @@ Result<Awaited> Await(const Context& context, const Options& options, const Sess
 }
 
 Status Run(Context& context, const Options& options) {
+  SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
@@ -140,7 +141,7 @@ void AddPush(CLI::App& app, Context& context) {
       "  rigcal push visit-2026-01-31/ --no-wait\n"
       "  rigcal push visit-2026-01-31/ --json > result.json\n");
   verb->callback([&context, options] {
-    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context.err);
+    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/durable_file.h"
+#include "server/base/thread_rank.h"
 #include "server/formats/documents.h"
 #include "server/formats/g2o.h"
 
@@ -74,6 +75,7 @@ Result<Awaited> Await(const Context& context, const Options& options, const Edge
 }
 
 Status Run(Context& context, const Options& options) {
+  SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
   RIGCAL_TRY(CheckCount(batch, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
@@ -116,7 +118,7 @@ void AddPushEdges(CLI::App& app, Context& context) {
       "  rigcal push-edges results.json --robot mapper-01\n"
       "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n");
   verb->callback([&context, options] {
-    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context.err);
+    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context);
   });
 }
 

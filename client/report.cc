@@ -45,7 +45,7 @@ Result<Place> Find(const Context& context, const Options& options) {
 
 ExitCode Run(const Context& context, const Options& options) {
   const auto place = Find(context, options);
-  if (!place) return Report(place.error(), context.err);
+  if (!place) return Report(place.error(), context);
   if (context.json) {
     context.out << JsonObject({{"address", place->address},
                                {"file_in_data_folder", place->file},

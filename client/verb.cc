@@ -2,6 +2,7 @@
 
 #include "client/table.h"
 #include "server/base/stamp.h"
+#include "server/formats/answers.h"
 
 namespace rigcal::client {
 
@@ -11,11 +12,16 @@ Result<std::string> AskOnce(const Context& context, const std::string& verb, con
   return connection.Ask(verb, parameters, context.timeout);
 }
 
+ExitCode Report(const Error& error, const Context& context) {
+  if (context.json) context.out << formats::WriteError(error) << std::endl;
+  return Report(error, context.err);
+}
+
 ExitCode Answer(const Context& context, const Question& question) {
   const auto text = AskOnce(context, question.verb, question.parameters);
-  if (!text) return Report(text.error(), context.err);
+  if (!text) return Report(text.error(), context);
   const auto document = Document::Parse(*text, "the server's answer to '" + question.verb + "'");
-  if (!document) return Report(document.error(), context.err);
+  if (!document) return Report(document.error(), context);
   if (context.json)
     context.out << *text << std::endl;
   else

@@ -23,6 +23,9 @@ struct Context {
   ExitCode exit_code = ExitCode::kGood;  // set by the verb that ran
 };
 
+// Report of exit_code.h to the context's streams; with --json also docs/api.md's error document on `out`.
+ExitCode Report(const Error& error, const Context& context);
+
 // A verb that asks one question and prints the answer.
 struct Question {
   std::string verb;

@@ -96,9 +96,9 @@ ExitCode Run(const Context& context, const Options& options) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   if (!options.robot.empty())
-    if (const auto robot = RobotId::Parse(options.robot); !robot) return Report(robot.error(), context.err);
+    if (const auto robot = RobotId::Parse(options.robot); !robot) return Report(robot.error(), context);
   const Status done = WatchLoop(context, options);
-  return done ? ExitCode::kGood : Report(done.error(), context.err);
+  return done ? ExitCode::kGood : Report(done.error(), context);
 }
 
 }  // namespace

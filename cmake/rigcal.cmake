@@ -1,5 +1,6 @@
 # rigcal_library(NAME SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])
 # rigcal_program(NAME SOURCES ... DEPS ...)
+# rigcal_manpage(NAME SECTION)                          build/.../man/NAME.SECTION.gz, from its --help
 # rigcal_test(NAME SOURCES ... DEPS ... [LABELS ...])     one GoogleTest program, one ctest per case
 # rigcal_embed(TARGET NAMESPACE ns FILES ...)             files as string_view constants: "<ns>/embedded.h"
 
@@ -22,6 +23,10 @@ if(RIGCAL_SANITIZE)
   add_link_options(-fsanitize=${RIGCAL_SANITIZE})
 endif()
 
+if(RIGCAL_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link,float-cast-overflow -fno-sanitize-recover=all)
+endif()
+
 function(rigcal_settings target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${RIGCAL_WARNINGS}>)
@@ -35,7 +40,7 @@ function(rigcal_library name)
   add_library(${name} STATIC ${arg_SOURCES})
   target_link_libraries(${name} PUBLIC ${arg_DEPS})
   rigcal_settings(${name})
-  if(arg_PCH AND NOT RIGCAL_TIDY)
+  if(arg_PCH AND NOT RIGCAL_TIDY AND NOT RIGCAL_FUZZ)
     target_precompile_headers(${name} PRIVATE ${arg_PCH})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       target_compile_options(${name} PRIVATE -fpch-preprocess)
@@ -48,6 +53,16 @@ function(rigcal_program name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_DEPS})
   rigcal_settings(${name})
+endfunction()
+
+function(rigcal_manpage name section)
+  set(script ${PROJECT_SOURCE_DIR}/deploy/packaging/manpage.py)
+  set_property(TARGET ${name} APPEND PROPERTY LINK_DEPENDS ${script})
+  file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/man)
+  add_custom_command(TARGET ${name} POST_BUILD
+    COMMAND ${Python3_EXECUTABLE} -B ${script} $<TARGET_FILE:${name}> ${section} ${PROJECT_VERSION}
+            ${PROJECT_BINARY_DIR}/man/${name}.${section}.gz
+    BYPRODUCTS ${PROJECT_BINARY_DIR}/man/${name}.${section}.gz VERBATIM)
 endfunction()
 
 function(rigcal_test name)

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstring>
 
-#include "server/base/limits.h"
+#include "server/base/text.h"
 
 namespace rigcal::wire {
 namespace {
@@ -35,7 +35,7 @@ std::vector<bool> Unpacked(const dds_sequence_octet& bytes) {
 Result<ReceiptState> StateOf(std::string_view name) {
   for (const auto& [state, text] : kStates)
     if (name == text) return state;
-  return Fail(ErrorCode::kUnsupported, "receipt state '" + std::string(name) + "' is unknown to this version",
+  return Fail(ErrorCode::kUnsupported, "receipt state " + Quoted(name) + " is unknown to this version",
               "Use a client of the server's version");
 }
 
@@ -50,7 +50,7 @@ const char* NameOfState(ReceiptState state) {
 Status CopyText(const std::string& text, char* to, std::size_t capacity, const char* field) {
   if (text.size() >= capacity || text.find('\0') != std::string::npos)
     return Fail(ErrorCode::kInvalidInput,
-                std::string(field) + " '" + text.substr(0, limits::kNameMax) + "' does not fit",
+                std::string(field) + " " + Quoted(text) + " does not fit",
                 "Use at most " + std::to_string(capacity - 1) + " characters");
   std::memcpy(to, text.c_str(), text.size() + 1);
   return {};

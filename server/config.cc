@@ -3,9 +3,20 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 
+#include "server/base/durable_file.h"
 #include "server/base/version.h"
+#include "server/formats/limits_text.h"
 
 namespace rigcal {
+namespace {
+
+std::string LimitNames() {
+  std::string names;
+  for (const limits::Setting& one : limits::Settings()) names += (names.empty() ? "" : ", ") + std::string(one.name);
+  return names;
+}
+
+}  // namespace
 
 std::filesystem::path DefaultData() {
   if (const char* home = std::getenv("HOME")) return std::filesystem::path(home) / ".local/share/rigcal";
@@ -21,10 +32,29 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_option("--threads", config.threads, "Threads that calibrate")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  app.add_option("--limits", config.limits_file, "YAML file of limits, NAME: VALUE (docs/limits.md)")
+      ->envname("RIGCAL_LIMITS")
+      ->type_name("FILE");
+  app.add_option("--limit", config.limits, "One limit, over the file's; may be repeated: " + LimitNames())
+      ->allow_extra_args(false)
+      ->type_name("NAME=VALUE");
   app.add_flag("--verbose", config.verbose, "Log every event");
   app.footer(
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420\n  rigcald --domain 7 --http "
-      "127.0.0.1:0");
+      "127.0.0.1:0\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB");
+}
+
+Result<limits::Limits> LimitsOf(const Config& config) {
+  limits::Limits limits;
+  if (!config.limits_file.empty()) {
+    RIGCAL_ASSIGN(const std::string text, ReadFile(config.limits_file, limits::kSessionYamlBytesMax));
+    RIGCAL_ASSIGN(limits, formats::ReadLimits(text, config.limits_file.string()));
+  }
+  for (const std::string& one : config.limits) {
+    RIGCAL_ASSIGN(limits, formats::WithLimit(limits, one));
+  }
+  RIGCAL_TRY(formats::CheckTogether(limits));
+  return limits;
 }
 
 Result<http::Options> HttpOptions(const Config& config) {

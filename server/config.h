@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "idl/dds.h"
+#include "server/base/limits_in_force.h"
 #include "server/http/server.h"
 
 namespace CLI {
@@ -19,6 +21,8 @@ struct Config {
   wire::ParticipantOptions participant;
   int threads = 2;
   bool verbose = false;
+  std::filesystem::path limits_file;  // empty: none
+  std::vector<std::string> limits;    // NAME=VALUE; they win over the file
 };
 
 // $HOME/.local/share/rigcal.
@@ -26,5 +30,7 @@ struct Config {
 void AddOptions(CLI::App& app, Config& config);
 // kInvalidInput if --http is not HOST:PORT.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
+// kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given.
+[[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);
 
 }  // namespace rigcal

@@ -9,9 +9,11 @@
 #include <mutex>
 
 #include "server/base/log.h"
+#include "server/base/thread_rank.h"
 #include "server/base/version.h"
 #include "server/config.h"
 #include "server/dds/service.h"
+#include "server/formats/limits_text.h"
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/runner.h"
@@ -62,7 +64,16 @@ http::Answer PagesOf(const std::filesystem::path& folder, pipeline::RevisionCach
   };
 }
 
+// Before any thread is made.
+Status EnforceLimits(const Config& config) {
+  RIGCAL_ASSIGN(const limits::Limits limits, LimitsOf(config));
+  limits::Enforce(limits);
+  if (const std::string changed = formats::ChangedLimits(limits); !changed.empty()) LogInfo("limits: " + changed);
+  return {};
+}
+
 Status Serve(const Config& config, const sigset_t& signals) {
+  RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(storage::LockFolder(config.data));
   RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(storage::Store query_store, storage::Store::Open(config.data));
@@ -81,8 +92,10 @@ Status Serve(const Config& config, const sigset_t& signals) {
     return pipeline::Answer({query_store, SystemClock(), revisions, started_at, address}, verb, json);
   };
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
+  SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
                 dds::Service::Start({config.participant, config.data, &SystemClock()}, callbacks));
+  SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));
   RIGCAL_TRY(pipeline::AnnounceStored(start_store, announcer));

@@ -18,4 +18,13 @@ struct StoredView {
                                                          const std::string& detector);
 [[nodiscard]] Status AppendView(Store& store, const Digest& image, const std::string& detector, const StoredView& view);
 
+struct StoredCloud {
+  CloudView view;
+  Digest picture;  // as above
+};
+[[nodiscard]] Result<std::optional<StoredCloud>> LoadCloud(Store& store, const Digest& cloud,
+                                                           const std::string& detector);
+[[nodiscard]] Status AppendCloud(Store& store, const Digest& cloud, const std::string& detector,
+                                 const StoredCloud& stored);
+
 }  // namespace rigcal::storage

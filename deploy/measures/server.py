@@ -21,10 +21,15 @@ class Server:
                                         stdout=subprocess.PIPE, stderr=self.log, text=True, env=self.environment())
         return self
 
-    def wait_ready(self):
+    def wait_address(self):
+        """Where its HTTP is."""
         line = self.process.stdout.readline()
         if "ready" not in line:
             raise RuntimeError("rigcald did not start: see %s.log" % self.data)
+        return [word for word in line.split() if word.startswith("http://")][0].rstrip("/")
+
+    def wait_ready(self):
+        self.wait_address()
         return self
 
     def kill(self):

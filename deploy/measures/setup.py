@@ -1,10 +1,14 @@
-"""A fresh clone, both commands of the README, a cold compiler cache: time and disk. Only with --full."""
+"""A fresh clone, both commands of the README, a cold compiler cache: time and disk; the package in a fresh Debian. Only with
+--full."""
 import os
 import pathlib
+import re
+import shutil
 import subprocess
+import sys
 import time
 
-from .measure import at_most, info, skip
+from .measure import at_most, equal, info, skip
 
 
 def timed(command, clone, environment):
@@ -15,10 +19,30 @@ def timed(command, clone, environment):
     return time.perf_counter() - start
 
 
+def package(context):
+    """Builds the package from the binaries that are there, and uses it in a fresh Debian root."""
+    subprocess.run(["cpack", "-G", "DEB", "--config", "build/release/CPackConfig.cmake"], cwd=context.root, check=True, stdout=subprocess.DEVNULL)
+    built = max((context.root / "build" / "release").glob("rigcal_*.deb"), key=lambda path: path.stat().st_mtime)
+    yield info("package_size_MiB", built.stat().st_size / 2**20)
+    if os.geteuid() != 0 and shutil.which("sudo") is None:
+        yield skip("package_smoke", "not run: needs root or sudo")
+        return
+    done = subprocess.run(["deploy/smoke-package", str(built)], cwd=context.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    figures = dict(re.findall(r"^(package_\w+) (\d+)$", done.stdout, re.MULTILINE))
+    if done.returncode != 0 or "package_install_s" not in figures:
+        print(done.stdout[-2000:], file=sys.stderr)
+        yield equal("package_smoke", 0, 1)
+        return
+    yield info("package_install_s", int(figures["package_install_s"]))
+    yield equal("package_smoke", int(figures["package_smoke"]), 1)
+
+
 def run(context):
     if not context.full:
+        yield skip("package_smoke", "not run: only with --full")
         yield skip("fresh_clone", "only with --full")
         return
+    yield from package(context)
     with context.folder() as temporary:
         clone = pathlib.Path(temporary) / "clone" / "rigcal"
         subprocess.run(["git", "clone", "--quiet", str(context.root), str(clone)], check=True)

@@ -1,4 +1,5 @@
 // Every named limit of Rigcal, with its default. What is beyond a limit is refused by name, never cut.
+// docs/limits.md says what happens beyond each; limits_in_force.h holds those that may be set at start-up.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,10 @@ constexpr std::size_t kSessionYamlBytesMax = 1 << 20;
 constexpr std::size_t kRequestBytesMax = 64 << 10;
 constexpr std::size_t kReplyPartBytes = 512 << 10;                // longer replies travel in parts
 constexpr std::int64_t kImagePixelsMax = 200'000'000;
+constexpr std::size_t kCloudPointsMax = 5'000'000;                  // of one capture
+constexpr std::size_t kCloudFieldsMax = 512;                      // values of one point, x y z included
+constexpr std::size_t kCloudValuesMax = 50'000'000;               // points times values of one point
+constexpr std::size_t kCloudHeaderBytesMax = 64 << 10;
 constexpr std::size_t kOpenSessionsMax = 256;                     // being received at once
 constexpr std::size_t kHttpConnectionsMax = 64;
 constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;

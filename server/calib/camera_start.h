@@ -1,31 +1,32 @@
-// Starting values of one camera: intrinsics from its views, and the board's pose in each.
+// Starting values of one camera's intrinsics from its views.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "server/base/result.h"
-#include "server/calib/projection.h"
-#include "server/math/se3.h"
+#include "server/calib/joint_problem.h"
 
 namespace rigcal::calib {
 
-// All views of one camera: pictures of one size, corners in the order of `corners_board`.
+// All views of one camera: pictures of one size.
 struct CameraViews {
   int width_px = 0, height_px = 0;
   std::vector<Eigen::Vector3d> corners_board;
-  std::vector<std::vector<Eigen::Vector2d>> corners_px;
+  std::vector<SeenCorners> seen;
+  CameraModel model = CameraModel::kPinholeRadtan;
 };
 
-// Focal lengths from vanishing points, principal point in the middle, no distortion; where the views do not tell the
-// focal length (no tilt), the picture's longer side. Always usable.
+// The first so many of `views`, evenly spread.
+[[nodiscard]] CameraViews Spread(const CameraViews& views, std::size_t count_max);
+// The camera alone, as camera a; no view is left away.
+[[nodiscard]] JointProblem OneCamera(const CameraViews& views, bool estimate);
+
+// Without distortion, principal point in the middle. Pinhole: focal lengths from vanishing points; where the views do
+// not tell them (no tilt), the picture's longer side. Fisheye: as RoughFisheye. Always usable.
 [[nodiscard]] IntrinsicsVector RoughIntrinsics(const CameraViews& views);
-// Zhang (2000) with two radial terms, on at most some tens of the views, evenly spread.
-[[nodiscard]] Result<IntrinsicsVector> ZhangIntrinsics(const CameraViews& views);
-// Poses T_cam_board that explain one view, best first: a plane seen small has two (Collins & Bartoli 2014). May be
-// empty.
-[[nodiscard]] std::vector<Se3> PlanarPoses(const IntrinsicsVector& intrinsics,
-                                           const std::vector<Eigen::Vector3d>& corners_board,
-                                           const std::vector<Eigen::Vector2d>& corners_px);
+// The rough intrinsics refined together with the board poses, a pinhole with two radial terms (Zhang 2000), on at most
+// some tens of the views, evenly spread; every corner of the views can be seen.
+[[nodiscard]] Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views);
 
 }  // namespace rigcal::calib

@@ -2,6 +2,9 @@
 
 #include <cstdio>
 
+#include "server/calib/seen_corners.h"
+#include "server/calib/selection.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -33,7 +36,7 @@ Diagnosis TooFewCaptures(const StereoProblem& problem, std::size_t both) {
   return {"too_few_captures",
           PairOf(problem) + " see the board together in only " + CapturesText(both) + "; at least " +
               std::to_string(kCapturesMin) + " are needed.",
-          "Take 10 to 20 captures in which both cameras see the whole board, tilted in different directions."};
+          "Take 10 to 20 captures in which both cameras see the board, tilted in different directions."};
 }
 
 Diagnosis FewCaptures(const StereoProblem& problem, std::size_t both) {
@@ -42,7 +45,7 @@ Diagnosis FewCaptures(const StereoProblem& problem, std::size_t both) {
               std::to_string(kCapturesEnough) +
               (both < kCapturesForJackknife ? " the uncertainty comes from the model alone and is probably too small."
                                             : " the uncertainty is itself uncertain."),
-          "Take 10 to 20 captures in which both cameras see the whole board."};
+          "Take 10 to 20 captures in which both cameras see the board."};
 }
 
 Diagnosis NoCommonView(const StereoProblem& problem) {
@@ -57,7 +60,8 @@ std::string ReasonOf(const StereoProblem& problem, const SensorId& camera, const
   for (const StereoCapture& capture : problem.captures) {
     if (captures.empty() || capture.capture != captures.front()) continue;
     const std::optional<BoardView>& view = camera == problem.camera_a.id ? capture.a : capture.b;
-    const std::string reason = view ? view->why_not : "there is no picture of that name in the folder of " + camera.str();
+    const std::string reason =
+        view ? WhyUnusable(*view, problem.board) : "there is no picture of that name in the folder of " + camera.str();
     return reason.empty() ? "" : " The first of them: " + reason + (reason.back() == '.' ? "" : ".");
   }
   return "";
@@ -67,11 +71,32 @@ std::string ReasonOf(const StereoProblem& problem, const SensorId& camera, const
 
 Diagnosis BoardNotFound(const StereoProblem& problem, const SensorId& camera, const std::vector<CaptureId>& captures) {
   return {"board_not_found",
-          camera.str() + " does not show the " + std::to_string(problem.board.inner_cols) + " x " +
-              std::to_string(problem.board.inner_rows) + " target '" + problem.board.id.str() + "' in " +
-              CapturesText(captures.size()) + ": " + NamesOf(captures) + "." +
-              ReasonOf(problem, camera, captures),
-          "Show the whole board, sharp and evenly lit, and check the counts of inner corners in session.yaml."};
+          camera.str() + " does not show the " + std::to_string(problem.board.cols) + " x " +
+              std::to_string(problem.board.rows) + " target '" + problem.board.id.str() + "' in " +
+              CapturesText(captures.size()) + ": " + NamesOf(captures) + "." + ReasonOf(problem, camera, captures),
+          "Show the whole board, sharp and evenly lit, and check its description in session.yaml."};
+}
+
+Diagnosis Unreadable(const SensorId& camera, const std::vector<CaptureId>& captures, const std::string& first_reason) {
+  return {"picture_unreadable",
+          std::to_string(captures.size()) + (captures.size() == 1 ? " picture of " : " pictures of ") + camera.str() +
+              " cannot be read and take no part: " + NamesOf(captures) + "." + first_reason,
+          "Copy the files again from where they were recorded, or take those captures again."};
+}
+
+std::vector<Diagnosis> Missed(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera) {
+  std::vector<CaptureId> unreadable, without_board;
+  for (const StereoCapture& capture : problem.captures) {
+    const std::optional<BoardView>& view = capture.*camera;
+    if (Sees(view, problem.board)) continue;
+    const bool readable = !view || view->found || view->image_width_px > 0;
+    (readable ? without_board : unreadable).push_back(capture.capture);
+  }
+  const SensorId& id = camera == &StereoCapture::a ? problem.camera_a.id : problem.camera_b.id;
+  std::vector<Diagnosis> diagnoses;
+  if (!unreadable.empty()) diagnoses.push_back(Unreadable(id, unreadable, ReasonOf(problem, id, unreadable)));
+  if (!without_board.empty()) diagnoses.push_back(BoardNotFound(problem, id, without_board));
+  return diagnoses;
 }
 
 Diagnosis ImageSizeChanged(const SensorId& camera, const std::vector<CaptureId>& captures) {
@@ -104,6 +129,17 @@ Diagnosis AmbiguousPose(const StereoProblem& problem, const std::vector<CaptureI
           "Hold the board nearer, so that it fills a third of the picture, and tilt it."};
 }
 
+Diagnosis AmbiguousBoard(const StereoProblem& problem, std::size_t captures, std::size_t poses) {
+  const int turn_deg = 360 / SymmetryOf(problem.board);
+  return {"ambiguous_board",
+          PairOf(problem) + ": target '" + problem.board.id.str() + "' (" + std::to_string(problem.board.cols) + " x " +
+              std::to_string(problem.board.rows) + ") looks the same turned by " + std::to_string(turn_deg) +
+              " deg, and its " + CapturesText(captures) + " fit " + std::to_string(poses) +
+              " different poses of the cameras equally.",
+          "Give nominal poses of both cameras in session.yaml, or use a board with one odd and one even count of inner "
+          "corners, or tilt and move the board between captures."};
+}
+
 Diagnosis InconsistentCaptures(const StereoProblem& problem, const std::vector<CaptureId>& captures) {
   return {"inconsistent_captures",
           PairOf(problem) + ": the two pictures of " + NamesOf(captures) +
@@ -129,7 +165,7 @@ Diagnosis IllConditioned(const StereoProblem& problem, const std::string& why) {
 Diagnosis IntrinsicsTakenAsExact(const SensorId& camera) {
   return {"intrinsics_taken_as_exact",
           "The intrinsics of " + camera.str() + " are given without an uncertainty and taken as exact.",
-          "Give intrinsics_sigma in session.yaml, or leave the intrinsics out to have them estimated."};
+          "Give 'sigma' with the intrinsics in session.yaml, or leave the intrinsics out to have them estimated."};
 }
 
 Diagnosis FromError(const StereoProblem& problem, const std::string& code, const Error& error) {

@@ -51,10 +51,8 @@ std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
 // What a reader of a good edge should know.
 void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagnosis>& notes) {
   if (both < kCapturesEnough) notes.push_back(FewCaptures(problem, both));
-  if (const auto missed = MissedBy(problem, &StereoCapture::a); !missed.empty())
-    notes.push_back(BoardNotFound(problem, problem.camera_a.id, missed));
-  if (const auto missed = MissedBy(problem, &StereoCapture::b); !missed.empty())
-    notes.push_back(BoardNotFound(problem, problem.camera_b.id, missed));
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
+    for (Diagnosis& missed : Missed(problem, camera)) notes.push_back(std::move(missed));
   std::vector<CaptureId> repeated;
   for (const std::size_t idx : Select(problem).repeated) repeated.push_back(problem.captures[idx].capture);
   if (!repeated.empty()) notes.push_back(IdenticalCaptures(problem, repeated));
@@ -62,13 +60,14 @@ void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagno
     if (camera->intrinsics && !camera->intrinsics_sigma) notes.push_back(IntrinsicsTakenAsExact(camera->id));
 }
 
-void AddIntrinsicsFigures(const std::string& camera, const PinholeRadtan& intrinsics, Edge& edge) {
+void AddIntrinsicsFigures(const std::string& camera, const CameraIntrinsics& intrinsics, Edge& edge) {
   edge.figures["fx_" + camera + "_px"] = intrinsics.fx_px;
   edge.figures["fy_" + camera + "_px"] = intrinsics.fy_px;
   edge.figures["cx_" + camera + "_px"] = intrinsics.cx_px;
   edge.figures["cy_" + camera + "_px"] = intrinsics.cy_px;
-  const char* names[5] = {"k1_", "k2_", "p1_", "p2_", "k3_"};
-  for (std::size_t i = 0; i < 5; ++i) edge.figures[names[i] + camera + "_ratio"] = intrinsics.distortion[i];
+  const std::vector<std::string>& names = DistortionNames(intrinsics.model);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    edge.figures[names[i] + "_" + camera + "_ratio"] = intrinsics.distortion[i];
 }
 
 // Jackknife sigma over model sigma, mean over the directions in which the model has unit sigma. 1: the model's noise

@@ -55,7 +55,7 @@ std::vector<RowMajor> BlockJacobians(const ceres::CostFunction& cost, const std:
 
 bool AddReferenceView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
   const PoseBlock T_a_board = BlockOf(state.T_a_board[k]);
-  auto jacobians = BlockJacobians(*MakeReferenceViewCost(problem.corners_board, problem.captures[k].a_px),
+  auto jacobians = BlockJacobians(*MakeReferenceViewCost(problem.model_a, problem.corners_board, problem.captures[k].a),
                                   {state.intrinsics_a.data(), T_a_board.data()});
   if (jacobians.empty()) return false;
   if (!problem.estimate_a) jacobians[0].setZero();
@@ -66,7 +66,7 @@ bool AddReferenceView(const JointProblem& problem, const JointState& state, std:
 
 bool AddSecondView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
   const PoseBlock T_a_b = BlockOf(state.T_a_b), T_a_board = BlockOf(state.T_a_board[k]);
-  auto jacobians = BlockJacobians(*MakeSecondViewCost(problem.corners_board, problem.captures[k].b_px),
+  auto jacobians = BlockJacobians(*MakeSecondViewCost(problem.model_b, problem.corners_board, problem.captures[k].b),
                                   {state.intrinsics_b.data(), T_a_b.data(), T_a_board.data()});
   if (jacobians.empty()) return false;
   if (!problem.estimate_b) jacobians[0].setZero();
@@ -87,15 +87,26 @@ Eigen::MatrixXd ScaledInverse(const Eigen::MatrixXd& matrix) {
   return scale.asDiagonal() * scaled_inverse * scale.asDiagonal();
 }
 
+Result<CaptureNormal> NormalOf(const JointProblem& problem, const JointState& state, std::size_t k) {
+  CaptureNormal normal;
+  const bool a_ok = problem.captures[k].a.empty() || AddReferenceView(problem, state, k, normal);
+  const bool b_ok = problem.captures[k].b.empty() || AddSecondView(problem, state, k, normal);
+  if (!a_ok || !b_ok) return NotObservable("a board lies where its camera cannot see");
+  return normal;
+}
+
 }  // namespace
+
+Result<Matrix6d> BoardInformation(const JointProblem& problem, const JointState& state, std::size_t k) {
+  RIGCAL_ASSIGN(const CaptureNormal normal, NormalOf(problem, state, k));
+  if (ScaledInverse(normal.board).size() == 0) return NotObservable("the pose of a board is not determined");
+  return Matrix6d(0.5 * (normal.board + normal.board.transpose()));
+}
 
 Result<ReducedMatrix> ReducedNormal(const JointProblem& problem, const JointState& state) {
   ReducedMatrix reduced = ReducedMatrix::Zero();
   for (std::size_t k = 0; k < problem.captures.size(); ++k) {
-    CaptureNormal normal;
-    const bool a_ok = problem.captures[k].a_px.empty() || AddReferenceView(problem, state, k, normal);
-    const bool b_ok = problem.captures[k].b_px.empty() || AddSecondView(problem, state, k, normal);
-    if (!a_ok || !b_ok) return NotObservable("a board lies behind its camera");
+    RIGCAL_ASSIGN(const CaptureNormal normal, NormalOf(problem, state, k));
     const Eigen::MatrixXd board_inverse = ScaledInverse(normal.board);
     if (board_inverse.size() == 0) return NotObservable("the pose of a board is not determined");
     reduced += normal.shared - normal.mixed * board_inverse * normal.mixed.transpose();

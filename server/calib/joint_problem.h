@@ -6,20 +6,23 @@
 
 #include "server/base/result.h"
 #include "server/calib/projection.h"
+#include "server/calib/seen_corners.h"
 #include "server/math/se3.h"
 
 namespace rigcal::calib {
 
-// One capture; an empty list: that camera did not see the board. A capture that only one camera saw has a board pose of
-// its own, so it informs that camera's intrinsics and nothing else.
+// One capture; empty: that camera did not see the board. The two may be different parts of the board. A capture that
+// only one camera saw has a board pose of its own, so it informs that camera's intrinsics and nothing else.
 struct JointCapture {
-  std::vector<Eigen::Vector2d> a_px, b_px;
+  SeenCorners a, b;
 };
 
 struct JointProblem {
   std::vector<Eigen::Vector3d> corners_board;
   std::vector<JointCapture> captures;
+  CameraModel model_a = CameraModel::kPinholeRadtan, model_b = CameraModel::kPinholeRadtan;
   bool estimate_a = true, estimate_b = true;  // intrinsics; otherwise they stay as the state gives them
+  std::vector<int> held_a;  // of the estimated intrinsics of a, by index: stay as the state gives them
 };
 
 struct JointState {
@@ -33,7 +36,7 @@ struct JointSolution {
   int iterations = 0;
 };
 
-// Sum of squared residuals of one capture per camera, in px^2. Infinite where a corner is not in front of the camera.
+// Sum of squared residuals of one capture per camera, in px^2. Infinite where the camera cannot see a corner.
 struct CaptureError {
   double a_px2 = 0, b_px2 = 0;
 };

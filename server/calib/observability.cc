@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "server/calib/camera_diagnoses.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/joint_covariance.h"
+#include "server/calib/planar_pose.h"
 #include "server/calib/selection.h"
 
 namespace rigcal::calib {
@@ -16,6 +18,9 @@ using View = std::optional<BoardView>;
 constexpr double kTypicalCornerSigma_px = 0.25;
 // Well-tilted boards give 0.1 to 0.5 %; boards parallel to the picture give tens of per cent and more.
 constexpr double kFocalSigmaMaxRatio = 0.03;
+// Sigma of a coefficient times its power of the outermost radius: up to 20 where boards fill the picture (the rational
+// model's halves nearly cancel), hundreds to thousands where they stay in its middle.
+constexpr double kDistortionSigmaMax = 50.0;
 
 double LargestAngle_deg(const std::vector<Se3>& boards) {
   double smallest_cosine = 1;
@@ -55,8 +60,8 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
     diagnoses.push_back(NoCommonView(problem));
   else
     diagnoses.push_back(TooFewCaptures(problem, both));
-  if (!missed_a.empty()) diagnoses.push_back(BoardNotFound(problem, problem.camera_a.id, missed_a));
-  if (!missed_b.empty()) diagnoses.push_back(BoardNotFound(problem, problem.camera_b.id, missed_b));
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
+    for (Diagnosis& missed : Missed(problem, camera)) diagnoses.push_back(std::move(missed));
   if (selection.repeated.empty()) return diagnoses;
   std::vector<CaptureId> repeated;
   for (const std::size_t idx : selection.repeated) repeated.push_back(problem.captures[idx].capture);
@@ -66,21 +71,45 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
 
 void CheckTilt(const Sensor& camera, const CameraViews& views, std::vector<Diagnosis>& diagnoses) {
   if (camera.intrinsics) return;
-  const FocalOutlook outlook = PredictFocal(views);
-  if (!(outlook.sigma_ratio < kFocalSigmaMaxRatio))
-    diagnoses.push_back(NoTilt(camera.id, outlook.spread_deg, outlook.sigma_ratio));
+  if (auto no_tilt = WhyNoTilt(camera.id, views)) diagnoses.push_back(std::move(*no_tilt));
+}
+
+// Of the corners seen, the largest radius (pinhole) or angle (fisheye), as the distortion's series takes it.
+double OutermostReach(CameraModel model, const IntrinsicsVector& intrinsics, const CameraViews& views) {
+  double reach = 0;
+  for (const SeenCorners& seen : views.seen)
+    for (const Eigen::Vector2d& uv_px : seen.uv_px) {
+      const auto ray = Unproject(model, intrinsics, uv_px);
+      if (!ray) continue;
+      const double r = ray->head<2>().norm();
+      reach = std::max(reach, model == CameraModel::kFisheyeKb4 ? std::atan2(r, ray->z()) : r / ray->z());
+    }
+  return reach;
+}
+
+// Of the radius or angle, by which the coefficient's effect grows against the undistorted lens.
+int PowerOf(CameraModel model, const std::string& name) {
+  if (name[0] == 'p') return 1;
+  const int order = name[1] - '0';
+  return 2 * (model == CameraModel::kPinholeRational && order > 3 ? order - 3 : order);
+}
+
+// Without distortion the two halves of the rational model are one: its focal length is judged as that of radtan.
+CameraModel OutlookModel(CameraModel model) {
+  return model == CameraModel::kPinholeRational ? CameraModel::kPinholeRadtan : model;
 }
 
 }  // namespace
 
 FocalOutlook PredictFocal(const CameraViews& views) {
-  JointProblem joint{views.corners_board, {}, true, false};
+  const CameraModel model = OutlookModel(views.model);
+  JointProblem joint = OneCamera({views.width_px, views.height_px, views.corners_board, {}, model}, true);
   JointState state;
   state.intrinsics_a = RoughIntrinsics(views);
-  for (const auto& corners_px : views.corners_px) {
-    const std::vector<Se3> poses = PlanarPoses(state.intrinsics_a, views.corners_board, corners_px);
+  for (const SeenCorners& seen : views.seen) {
+    const std::vector<Se3> poses = PlanarPoses(model, state.intrinsics_a, views.corners_board, seen);
     if (poses.empty()) continue;
-    joint.captures.push_back({corners_px, {}});
+    joint.captures.push_back({seen, {}});
     state.T_a_board.push_back(poses.front());
   }
   FocalOutlook outlook{std::numeric_limits<double>::infinity(), LargestAngle_deg(state.T_a_board)};
@@ -92,6 +121,25 @@ FocalOutlook PredictFocal(const CameraViews& views) {
     outlook.sigma_ratio = sigma_px / state.intrinsics_a[0];
   }
   return outlook;
+}
+
+std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views) {
+  const FocalOutlook outlook = PredictFocal(views);
+  if (outlook.sigma_ratio < kFocalSigmaMaxRatio) return std::nullopt;
+  return NoTilt(camera, outlook.spread_deg, outlook.sigma_ratio);
+}
+
+std::optional<Diagnosis> WhyDistortionOpen(const SensorId& camera, CameraModel model, const Eigen::VectorXd& variances,
+                                           const CameraViews& views, const IntrinsicsVector& intrinsics) {
+  if (model == CameraModel::kPinholeRadtan) return std::nullopt;
+  const double reach = OutermostReach(model, intrinsics, views);
+  const std::vector<std::string>& names = DistortionNames(model);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double sigma = std::sqrt(variances[4 + static_cast<Eigen::Index>(i)]);
+    const double effect = sigma * std::pow(reach, PowerOf(model, names[i]));
+    if (!(effect < kDistortionSigmaMax)) return DistortionOpen(camera, model, names[i]);
+  }
+  return std::nullopt;
 }
 
 std::vector<Diagnosis> Observability(const StereoProblem& problem) {

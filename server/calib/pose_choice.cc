@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "server/calib/camera_start.h"
+#include "server/calib/planar_pose.h"
 
 namespace rigcal::calib {
 namespace {
@@ -22,9 +22,9 @@ double ErrorAt(const JointProblem& problem, JointState state, std::size_t captur
 std::vector<Se3> AllowedPoses(const JointProblem& problem, const JointState& state, std::size_t capture_idx) {
   const JointCapture& capture = problem.captures[capture_idx];
   std::vector<Se3> allowed;
-  if (!capture.a_px.empty()) allowed = PlanarPoses(state.intrinsics_a, problem.corners_board, capture.a_px);
-  if (capture.b_px.empty()) return allowed;
-  for (const Se3& T_b_board : PlanarPoses(state.intrinsics_b, problem.corners_board, capture.b_px))
+  if (!capture.a.empty()) allowed = PlanarPoses(problem.model_a, state.intrinsics_a, problem.corners_board, capture.a);
+  if (capture.b.empty()) return allowed;
+  for (const Se3& T_b_board : PlanarPoses(problem.model_b, state.intrinsics_b, problem.corners_board, capture.b))
     allowed.push_back(state.T_a_b * T_b_board);
   return allowed;
 }
@@ -38,13 +38,15 @@ PoseChoice ChoosePose(const JointProblem& problem, const JointState& state, std:
   std::vector<Minimum> minima;
   PoseChoice choice;
   for (const Se3& candidate : candidates) {
+    if (!std::isfinite(ErrorAt(problem, state, capture_idx, candidate))) continue;
     const Se3 refined = SolveBoardPose(problem, state, capture_idx, candidate);
     minima.push_back({refined, ErrorAt(problem, state, capture_idx, refined)});
     if (minima.back().ssr_px2 < choice.ssr_px2) choice.T_a_board = refined, choice.ssr_px2 = minima.back().ssr_px2;
   }
   for (const Minimum& minimum : minima)
-    if (AngleBetween_rad(minimum.T_a_board, choice.T_a_board) > kSameMinimum_rad)
-      choice.other_ssr_px2 = std::min(choice.other_ssr_px2, minimum.ssr_px2);
+    if (minimum.ssr_px2 < choice.other_ssr_px2 &&
+        AngleBetween_rad(minimum.T_a_board, choice.T_a_board) > kSameMinimum_rad)
+      choice.T_a_board_other = minimum.T_a_board, choice.other_ssr_px2 = minimum.ssr_px2;
   return choice;
 }
 

@@ -11,7 +11,8 @@ namespace rigcal::calib {
 struct PoseChoice {
   Se3 T_a_board;
   double ssr_px2 = std::numeric_limits<double>::infinity();
-  // Of the best other minimum, more than a degree away; infinite if there is none.
+  // The best other minimum, more than a degree away; infinite if there is none.
+  Se3 T_a_board_other;
   double other_ssr_px2 = std::numeric_limits<double>::infinity();
 };
 

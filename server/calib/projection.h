@@ -1,26 +1,51 @@
-// Pinhole with radial-tangential distortion: the one projection of this module, with its derivatives.
+// The camera models: the one projection of this module with its derivatives, and its inverse.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <optional>
 
-#include "server/model/session.h"
+#include "server/model/camera.h"
 
 namespace rigcal::calib {
 
-constexpr int kIntrinsicsCount = 9;
-using IntrinsicsVector = Eigen::Matrix<double, kIntrinsicsCount, 1>;  // fx fy cx cy k1 k2 p1 p2 k3
+// fx fy cx cy, then the distortion in the order of DistortionNames(model); zeros behind IntrinsicsCount(model).
+constexpr int kIntrinsicsMax = 12;
+using IntrinsicsVector = Eigen::Matrix<double, kIntrinsicsMax, 1>;
 using PointJacobian = Eigen::Matrix<double, 2, 3>;
-using IntrinsicsJacobian = Eigen::Matrix<double, 2, kIntrinsicsCount>;
+using IntrinsicsJacobian =
+    Eigen::Matrix<double, 2, kIntrinsicsMax, Eigen::RowMajor>;  // columns behind the count are zero
 
-[[nodiscard]] IntrinsicsVector VectorOf(const PinholeRadtan& intrinsics);
-[[nodiscard]] PinholeRadtan IntrinsicsOf(const IntrinsicsVector& vector);
+// 9, 12, 8.
+[[nodiscard]] constexpr int IntrinsicsCount(CameraModel model) {
+  if (model == CameraModel::kFisheyeKb4) return 8;
+  return model == CameraModel::kPinholeRational ? 12 : 9;
+}
+// Distortion beyond the model's count is left away, what is missing is zero.
+[[nodiscard]] IntrinsicsVector VectorOf(const CameraIntrinsics& intrinsics);
+// The first IntrinsicsCount(model) numbers.
+[[nodiscard]] IntrinsicsVector PaddedIntrinsics(CameraModel model, const double* values);
+[[nodiscard]] CameraIntrinsics IntrinsicsOf(CameraModel model, const IntrinsicsVector& vector);
+
+// The first `count` columns as two rows of an optimiser's Jacobian.
+inline void CopyColumns(const IntrinsicsJacobian& d_intrinsics, int count, double* rows) {
+  for (int row : {0, 1}) std::copy_n(d_intrinsics.data() + row * kIntrinsicsMax, count, rows + row * count);
+}
 
 struct Projection {
-  bool in_front = false;  // false: the point is not in front of the camera, nothing else is set
+  bool in_front = false;  // false: the camera cannot see the point, nothing else is set
   Eigen::Vector2d uv_px = Eigen::Vector2d::Zero();
   PointJacobian d_point = PointJacobian::Zero();
   IntrinsicsJacobian d_intrinsics = IntrinsicsJacobian::Zero();
 };
-[[nodiscard]] Projection Project(const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p_cam);
+// Not seen are points on or behind the plane of a pinhole, and points so far out that the radial distortion has folded
+// over on the way from the axis to them (its slope by the radius, or by the angle of a fisheye, was not positive).
+// A fisheye sees points beyond 90 degrees where its series still grows.
+[[nodiscard]] Projection Project(CameraModel model, const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p_cam,
+                                 bool with_derivatives = true);
+
+// The unit ray that projects to the pixel (Newton on the sphere, to 1e-8 px); nothing where no visible ray does.
+[[nodiscard]] std::optional<Eigen::Vector3d> Unproject(CameraModel model, const IntrinsicsVector& intrinsics,
+                                                       const Eigen::Vector2d& uv_px);
 
 }  // namespace rigcal::calib

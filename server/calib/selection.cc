@@ -1,9 +1,6 @@
 #include "server/calib/selection.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "server/calib/board_points.h"
 
 namespace rigcal::calib {
 namespace {
@@ -13,61 +10,98 @@ using View = std::optional<BoardView>;
 // Noise of a resting board is some tenths of this; a hand cannot repeat a pose this well.
 constexpr double kSameViewRms_px = 0.5;
 
-std::string WhyNot(const View& view, const SensorId& camera) {
+std::string WhyNot(const View& view, const SensorId& camera, const Target& board) {
   if (!view) return camera.str() + ": no picture";
-  return camera.str() + ": " + (view->why_not.empty() ? "no board" : view->why_not);
+  return camera.str() + ": " + WhyUnusable(*view, board);
 }
 
-bool ShowSame(const BoardView& left, const BoardView& right) {
-  double sum = 0;
-  for (std::size_t i = 0; i < left.corners_px.size(); ++i)
-    sum += (left.corners_px[i] - right.corners_px[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(left.corners_px.size())) < kSameViewRms_px;
+// Where the point is in the picture, if it is seen.
+const Eigen::Vector2d* PlaceOf(const BoardView& view, int idx) {
+  const auto at = std::lower_bound(view.corner_idx.begin(), view.corner_idx.end(), idx);
+  if (at == view.corner_idx.end() || *at != idx) return nullptr;
+  return &view.corners_px[static_cast<std::size_t>(at - view.corner_idx.begin())];
 }
 
-// Every view of `capture` is also in `earlier`.
-bool Repeats(const StereoCapture& capture, const StereoCapture& earlier, const Checkerboard& board) {
-  const auto repeated = [&](const View& view, const View& before) {
-    return !Sees(view, board) || (Sees(before, board) && ShowSame(*view, *before));
-  };
-  return repeated(capture.a, earlier.a) && repeated(capture.b, earlier.b);
+bool ShowSameTurned(const BoardView& left, const BoardView& right, const Target& board, int turn) {
+  const double limit_px2 = kSameViewRms_px * kSameViewRms_px;
+  double sum_px2 = 0;
+  std::size_t shared = 0;
+  for (std::size_t i = 0; i < right.corner_idx.size(); ++i) {
+    const int idx = turn == 0 ? right.corner_idx[i] : TurnedIndex(board, right.corner_idx[i], turn);
+    const Eigen::Vector2d* place = PlaceOf(left, idx);
+    if (place == nullptr) continue;
+    ++shared;
+    sum_px2 += (*place - right.corners_px[i]).squaredNorm();
+    if (sum_px2 > limit_px2 * static_cast<double>(right.corner_idx.size())) return false;
+  }
+  return shared >= kCornersMin && sum_px2 < limit_px2 * static_cast<double>(shared);
+}
+
+// Which cameras of a capture see the board.
+struct SeenBy {
+  bool a = false, b = false;
+};
+
+std::vector<SeenBy> WhoSees(const StereoProblem& problem) {
+  std::vector<SeenBy> seen;
+  for (const StereoCapture& capture : problem.captures)
+    seen.push_back({Sees(capture.a, problem.board), Sees(capture.b, problem.board)});
+  return seen;
+}
+
+// Every view of capture `idx` is also in `earlier`.
+bool Repeats(const StereoProblem& problem, const std::vector<SeenBy>& seen, std::size_t idx, std::size_t earlier) {
+  const StereoCapture &capture = problem.captures[idx], &before = problem.captures[earlier];
+  if ((seen[idx].a && !seen[earlier].a) || (seen[idx].b && !seen[earlier].b)) return false;
+  return (!seen[idx].a || calib::ShowSame(*before.a, *capture.a, problem.board)) &&
+         (!seen[idx].b || calib::ShowSame(*before.b, *capture.b, problem.board));
 }
 
 // Empty: it enters.
 std::string WhyUseless(const StereoProblem& problem, const StereoCapture& capture) {
   const bool a = Sees(capture.a, problem.board), b = Sees(capture.b, problem.board);
   if (a && b) return {};
-  const std::string missing =
-      !a && !b ? WhyNot(capture.a, problem.camera_a.id) + "; " + WhyNot(capture.b, problem.camera_b.id)
-      : !a     ? WhyNot(capture.a, problem.camera_a.id)
-               : WhyNot(capture.b, problem.camera_b.id);
+  const std::string missing = !a && !b ? WhyNot(capture.a, problem.camera_a.id, problem.board) + "; " +
+                                             WhyNot(capture.b, problem.camera_b.id, problem.board)
+                              : !a ? WhyNot(capture.a, problem.camera_a.id, problem.board)
+                                   : WhyNot(capture.b, problem.camera_b.id, problem.board);
   const bool informs_intrinsics = (a && !problem.camera_a.intrinsics) || (b && !problem.camera_b.intrinsics);
   return informs_intrinsics ? std::string() : missing;
 }
 
-CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used, View StereoCapture::*camera) {
+CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used, View StereoCapture::*camera,
+                    const Sensor& sensor) {
   CameraViews views;
-  views.corners_board = BoardPoints(problem.board);
+  views.model = ModelOf(sensor);
+  views.corners_board = TargetPoints(problem.board);
   for (const std::size_t idx : used) {
     const View& view = problem.captures[idx].*camera;
     if (!Sees(view, problem.board)) continue;
     views.width_px = view->image_width_px;
     views.height_px = view->image_height_px;
-    views.corners_px.push_back(view->corners_px);
+    views.seen.push_back(SeenIn(*view, problem.board));
   }
   return views;
 }
 
-}  // namespace
-
-bool Sees(const View& view, const Checkerboard& board) {
-  if (!view || !view->found) return false;
-  if (view->corners_px.size() != static_cast<std::size_t>(board.inner_cols * board.inner_rows)) return false;
-  return std::all_of(view->corners_px.begin(), view->corners_px.end(),
-                     [](const Eigen::Vector2d& uv_px) { return uv_px.allFinite(); });
+int TurnOf(const CaptureId& capture, const std::map<CaptureId, int>& turns) {
+  const auto turn = turns.find(capture);
+  return turn == turns.end() ? 0 : turn->second;
 }
 
-bool BothSee(const StereoCapture& capture, const Checkerboard& board) {
+}  // namespace
+
+bool ShowSame(const BoardView& left, const BoardView& right, const Target& board) {
+  for (int turn = 0; turn < SymmetryOf(board); ++turn)
+    if (ShowSameTurned(left, right, board, turn)) return true;
+  return false;
+}
+
+CameraModel ModelOf(const Sensor& camera) { return camera.intrinsics ? camera.intrinsics->model : camera.camera_model; }
+
+bool Sees(const View& view, const Target& board) { return view && WhyUnusable(*view, board).empty(); }
+
+bool BothSee(const StereoCapture& capture, const Target& board) {
   return Sees(capture.a, board) && Sees(capture.b, board);
 }
 
@@ -80,18 +114,18 @@ std::vector<CaptureId> MissedBy(const StereoProblem& problem, View StereoCapture
 
 Selection Select(const StereoProblem& problem) {
   Selection selection;
+  const std::vector<SeenBy> seen = WhoSees(problem);
   // Captures of both cameras first: a single view that repeats one of them adds nothing, the reverse does.
   for (const bool both : {true, false}) {
     for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
       const StereoCapture& capture = problem.captures[idx];
-      if (BothSee(capture, problem.board) != both) continue;
+      if ((seen[idx].a && seen[idx].b) != both) continue;
       if (std::string why = WhyUseless(problem, capture); !why.empty()) {
         selection.unused[idx] = std::move(why);
         continue;
       }
-      const auto earlier = std::find_if(selection.used.begin(), selection.used.end(), [&](std::size_t other) {
-        return Repeats(capture, problem.captures[other], problem.board);
-      });
+      const auto earlier = std::find_if(selection.used.begin(), selection.used.end(),
+                                        [&](std::size_t other) { return Repeats(problem, seen, idx, other); });
       if (earlier == selection.used.end()) {
         selection.used.push_back(idx);
       } else {
@@ -110,28 +144,31 @@ std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_
       used.begin(), used.end(), [&](std::size_t idx) { return BothSee(problem.captures[idx], problem.board); }));
 }
 
-JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used) {
+JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used,
+                     const std::map<CaptureId, int>& turn_b) {
   JointProblem joint;
-  joint.corners_board = BoardPoints(problem.board);
+  joint.corners_board = TargetPoints(problem.board);
+  joint.model_a = ModelOf(problem.camera_a);
+  joint.model_b = ModelOf(problem.camera_b);
   joint.estimate_a = !problem.camera_a.intrinsics;
   joint.estimate_b = !problem.camera_b.intrinsics;
   for (const std::size_t idx : used) {
     const StereoCapture& capture = problem.captures[idx];
     JointCapture views;
     // A single view of a camera with given intrinsics never comes here, so no view is idle.
-    if (Sees(capture.a, problem.board)) views.a_px = capture.a->corners_px;
-    if (Sees(capture.b, problem.board)) views.b_px = capture.b->corners_px;
+    if (Sees(capture.a, problem.board)) views.a = SeenIn(*capture.a, problem.board);
+    if (Sees(capture.b, problem.board)) views.b = SeenIn(*capture.b, problem.board, TurnOf(capture.capture, turn_b));
     joint.captures.push_back(std::move(views));
   }
   return joint;
 }
 
 CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used) {
-  return ViewsOf(problem, used, &StereoCapture::a);
+  return ViewsOf(problem, used, &StereoCapture::a, problem.camera_a);
 }
 
 CameraViews ViewsOfB(const StereoProblem& problem, const std::vector<std::size_t>& used) {
-  return ViewsOf(problem, used, &StereoCapture::b);
+  return ViewsOf(problem, used, &StereoCapture::b, problem.camera_b);
 }
 
 }  // namespace rigcal::calib

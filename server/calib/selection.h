@@ -21,17 +21,25 @@ struct Selection {
   std::vector<std::size_t> repeated;          // the unused ones that repeat another
 };
 
-// Found, with the right number of finite corners.
-[[nodiscard]] bool Sees(const std::optional<BoardView>& view, const Checkerboard& board);
-[[nodiscard]] bool BothSee(const StereoCapture& capture, const Checkerboard& board);
+// The model of its given intrinsics, or the one they are to be estimated as.
+[[nodiscard]] CameraModel ModelOf(const Sensor& camera);
+// Found, with enough points of this board: see WhyUnusable.
+[[nodiscard]] bool Sees(const std::optional<BoardView>& view, const Target& board);
+[[nodiscard]] bool BothSee(const StereoCapture& capture, const Target& board);
 // Captures in which a camera (&StereoCapture::a or b) does not see the board.
 [[nodiscard]] std::vector<CaptureId> MissedBy(const StereoProblem& problem,
                                               std::optional<BoardView> StereoCapture::*camera);
 [[nodiscard]] Selection Select(const StereoProblem& problem);
 
 [[nodiscard]] std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_t>& used);
-[[nodiscard]] JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used);
+// `turn_b`: of the views of b, as in StereoEstimate.
+[[nodiscard]] JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used,
+                                   const std::map<CaptureId, int>& turn_b = {});
 [[nodiscard]] CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used);
 [[nodiscard]] CameraViews ViewsOfB(const StereoProblem& problem, const std::vector<std::size_t>& used);
+
+// The points that both show are at the same places (0.5 px rms), in one of the orientations in which the board looks
+// alike.
+[[nodiscard]] bool ShowSame(const BoardView& left, const BoardView& right, const Target& board);
 
 }  // namespace rigcal::calib

@@ -2,185 +2,121 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "server/calib/diagnoses.h"
 #include "server/calib/estimation.h"
 #include "server/calib/joint_covariance.h"
+#include "server/calib/observability.h"
 #include "server/calib/pair_start.h"
-#include "server/calib/pose_choice.h"
 #include "server/calib/selection.h"
+#include "server/calib/stereo_start.h"
+#include "server/calib/stereo_work.h"
 
 namespace rigcal::calib {
 namespace {
 
-// At the start T_a_b is still rough, so only gross contradictions count: swapped or unsynchronized pictures.
-constexpr double kContradictingRatio = 6.0;        // times the median rms of the captures
-constexpr double kContradictingWidthRatio = 0.02;  // and this part of the picture's width
-// Two minima of a board's pose whose weighted costs differ by less than four sigma squared cannot be told apart.
-constexpr double kAmbiguousCost = 16.0;
-constexpr int kPoseRoundsMax = 4;
+// Two poses of the cameras, from a board turned or not, whose costs differ by less than ten sigma squared are not told
+// apart: errors within a picture are correlated, so a few sigma come by chance.
+constexpr double kAmbiguousTurnCost = 100.0;
+constexpr double kVarianceMin_px2 = 1e-4;  // no corner is known better than to a hundredth of a pixel
+// Of two such poses the nearer to the nominal one wins if the other is so much farther (units of Discrepancy).
+constexpr double kFartherRatio = 2.0, kFartherAtLeast = 1.0;
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
-// The problem as it shrinks and its state as it improves: captures, views and board poses side by side.
-struct Work {
-  std::vector<std::size_t> used;
-  std::map<std::size_t, std::string> unused;
-  JointProblem joint;
-  JointState state;
-  int iterations = 0;
-
-  void Drop(std::size_t position, const std::string& why) {
-    unused[used[position]] = why;
-    const auto at = static_cast<std::ptrdiff_t>(position);
-    used.erase(used.begin() + at);
-    joint.captures.erase(joint.captures.begin() + at);
-    state.T_a_board.erase(state.T_a_board.begin() + at);
-  }
+// The joint refinement from one T_a_b.
+struct Attempt {
+  StereoWork work;
+  std::vector<Diagnosis> notes;
+  OrDiagnosis<void> status;
 };
 
-std::size_t CornersOf(const JointCapture& capture) { return capture.a_px.size() + capture.b_px.size(); }
-
-OrDiagnosis<IntrinsicsVector> StartOf(const StereoProblem& problem, const Sensor& camera, const CameraViews& views) {
-  if (camera.intrinsics) return VectorOf(*camera.intrinsics);
-  auto start = ZhangIntrinsics(views);
-  if (start) return *start;
-  Error error = start.error();
-  error.what = camera.id.str() + ": " + error.what;
-  return tl::unexpected(FromError(problem, "no_intrinsics", error));
+OrDiagnosis<void> Solve(const StereoProblem& problem, double width_px, Attempt& attempt) {
+  const auto contradicting = PlaceBoards(problem, width_px, attempt.work);
+  if (!contradicting.empty()) {
+    if (CountBoth(problem, attempt.work.used) < kCapturesMin)
+      return tl::unexpected(InconsistentCaptures(problem, contradicting));
+    attempt.notes.push_back(InconsistentCaptures(problem, contradicting));
+  }
+  return RefineWithChoices(problem, attempt.work, attempt.notes);
 }
 
-std::optional<Se3> StartOfPair(const Work& work) {
-  std::vector<PoseCandidates> candidates;
-  for (const JointCapture& capture : work.joint.captures) {
-    if (capture.a_px.empty() || capture.b_px.empty()) continue;
-    candidates.push_back({PlanarPoses(work.state.intrinsics_a, work.joint.corners_board, capture.a_px),
-                          PlanarPoses(work.state.intrinsics_b, work.joint.corners_board, capture.b_px)});
-  }
-  return ConsensusOf(candidates);
+// More captures first, then the smaller residuals; what failed last.
+bool Better(const StereoProblem& problem, const Attempt& left, const Attempt& right) {
+  if (left.status.has_value() != right.status.has_value()) return left.status.has_value();
+  if (!left.status) return false;
+  const std::size_t both_left = CountBoth(problem, left.work.used), both_right = CountBoth(problem, right.work.used);
+  if (both_left != both_right) return both_left > both_right;
+  return left.work.SumOfSquares_px2() < right.work.SumOfSquares_px2();
 }
 
-// Sets the board poses and drops the captures that no pose explains.
-std::vector<CaptureId> PlaceBoards(const StereoProblem& problem, double width_px, Work& work) {
-  work.state.T_a_board.resize(work.used.size());
-  std::vector<double> rms_px;
-  for (std::size_t k = 0; k < work.used.size(); ++k) {
-    const PoseChoice choice = ChoosePose(work.joint, work.state, k, AllowedPoses(work.joint, work.state, k));
-    work.state.T_a_board[k] = choice.T_a_board;
-    rms_px.push_back(std::sqrt(choice.ssr_px2 / static_cast<double>(CornersOf(work.joint.captures[k]))));
-  }
-  std::vector<double> sorted = rms_px;
-  std::sort(sorted.begin(), sorted.end());
-  const double limit_px =
-      std::max(kContradictingRatio * sorted[sorted.size() / 2], kContradictingWidthRatio * width_px);
-  std::vector<CaptureId> contradicting;
-  for (std::size_t k = work.used.size(); k-- > 0;) {
-    if (rms_px[k] <= limit_px) continue;
-    contradicting.insert(contradicting.begin(), problem.captures[work.used[k]].capture);
-    work.Drop(k, "its pictures contradict the other captures");
-  }
-  return contradicting;
+bool FitsEqually(const StereoProblem& problem, const Attempt& best, const Attempt& other) {
+  if (!other.status || CountBoth(problem, other.work.used) != CountBoth(problem, best.work.used)) return false;
+  const double variance_px2 = std::max(kVarianceMin_px2, best.work.Variance_px2());
+  return other.work.SumOfSquares_px2() - best.work.SumOfSquares_px2() < kAmbiguousTurnCost * variance_px2;
 }
 
-OrDiagnosis<Work> ColdStart(const StereoProblem& problem, std::vector<Diagnosis>& notes) {
-  Work work;
-  Selection selection = Select(problem);
-  work.used = std::move(selection.used);
-  work.unused = std::move(selection.unused);
-  if (CountBoth(problem, work.used) < kCapturesMin)
-    return tl::unexpected(TooFewCaptures(problem, CountBoth(problem, work.used)));
-  work.joint = JointOf(problem, work.used);
-  const CameraViews views_a = ViewsOfA(problem, work.used), views_b = ViewsOfB(problem, work.used);
-  const auto intrinsics_a = StartOf(problem, problem.camera_a, views_a);
-  if (!intrinsics_a) return tl::unexpected(intrinsics_a.error());
-  const auto intrinsics_b = StartOf(problem, problem.camera_b, views_b);
-  if (!intrinsics_b) return tl::unexpected(intrinsics_b.error());
-  work.state.intrinsics_a = *intrinsics_a;
-  work.state.intrinsics_b = *intrinsics_b;
-  const auto T_a_b = StartOfPair(work);
-  if (!T_a_b) return tl::unexpected(NoCommonView(problem));
-  work.state.T_a_b = *T_a_b;
-  const auto contradicting = PlaceBoards(problem, std::max(views_a.width_px, views_b.width_px), work);
-  if (contradicting.empty()) return work;
-  if (CountBoth(problem, work.used) < kCapturesMin) return tl::unexpected(InconsistentCaptures(problem, contradicting));
-  notes.push_back(InconsistentCaptures(problem, contradicting));
+// Two attempts may end in the same minimum.
+bool IsNew(const Attempt& attempt, const std::vector<Attempt>& others, double distance_m) {
+  return std::all_of(others.begin(), others.end(), [&](const Attempt& other) {
+    return Discrepancy(other.work.state.T_a_b, attempt.work.state.T_a_b, distance_m) >= 1.0;
+  });
+}
+
+// The attempt nearest to the nominal pose; none if there is no nominal pose or another is about as near.
+std::optional<std::size_t> ByNominalPose(const StereoProblem& problem, const std::vector<Attempt>& attempts,
+                                         double distance_m) {
+  if (!problem.camera_a.T_ref_nominal || !problem.camera_b.T_ref_nominal) return std::nullopt;
+  const Se3 nominal = problem.camera_a.T_ref_nominal->Inverse() * *problem.camera_b.T_ref_nominal;
+  std::vector<std::pair<double, std::size_t>> away;
+  for (std::size_t i = 0; i < attempts.size(); ++i)
+    away.emplace_back(Discrepancy(nominal, attempts[i].work.state.T_a_b, distance_m), i);
+  std::sort(away.begin(), away.end());
+  const double nearest = away[0].first, next = away[1].first;
+  if (next < kFartherRatio * nearest || next < nearest + kFartherAtLeast) return std::nullopt;
+  return away[0].second;
+}
+
+OrDiagnosis<Attempt> BestOf(const StereoProblem& problem, std::vector<Attempt> attempts, double distance_m) {
+  std::stable_sort(attempts.begin(), attempts.end(),
+                   [&](const Attempt& left, const Attempt& right) { return Better(problem, left, right); });
+  if (!attempts[0].status) return tl::unexpected(attempts[0].status.error());
+  std::vector<Attempt> equal;
+  for (Attempt& attempt : attempts)
+    if (equal.empty() || (FitsEqually(problem, equal[0], attempt) && IsNew(attempt, equal, distance_m)))
+      equal.push_back(std::move(attempt));
+  if (equal.size() == 1) return std::move(equal[0]);
+  if (const auto nearest = ByNominalPose(problem, equal, distance_m)) return std::move(equal[*nearest]);
+  return tl::unexpected(AmbiguousBoard(problem, CountBoth(problem, equal[0].work.used), equal.size()));
+}
+
+OrDiagnosis<StereoWork> SolvedFromScratch(const StereoProblem& problem, std::vector<Diagnosis>& notes) {
+  const auto start = ColdStart(problem);
+  if (!start) return tl::unexpected(start.error());
+  std::vector<Attempt> attempts;
+  for (const Se3& T_a_b : start->T_a_b) {
+    attempts.push_back({start->work, {}, {}});
+    attempts.back().work.state.T_a_b = T_a_b;
+    attempts.back().status = Solve(problem, start->width_px, attempts.back());
+  }
+  auto best = BestOf(problem, std::move(attempts), start->distance_m);
+  if (!best) return tl::unexpected(best.error());
+  notes.insert(notes.end(), best->notes.begin(), best->notes.end());
+  return std::move(best->work);
+}
+
+OrDiagnosis<StereoWork> SolvedFrom(const StereoProblem& problem, const StereoEstimate& start) {
+  StereoWork work = WarmStart(problem, start);
+  if (auto refined = Refine(problem, work); !refined) return tl::unexpected(refined.error());
   return work;
 }
 
-Work WarmStart(const StereoProblem& problem, const StereoEstimate& start) {
-  Work work;
-  work.state.intrinsics_a = VectorOf(problem.camera_a.intrinsics.value_or(start.intrinsics_a));
-  work.state.intrinsics_b = VectorOf(problem.camera_b.intrinsics.value_or(start.intrinsics_b));
-  work.state.T_a_b = start.T_a_b;
-  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
-    const auto board = start.T_a_board.find(problem.captures[idx].capture);
-    if (board == start.T_a_board.end()) {
-      work.unused[idx] = "not in the estimate that this one starts from";
-      continue;
-    }
-    work.used.push_back(idx);
-    work.state.T_a_board.push_back(board->second);
-  }
-  work.joint = JointOf(problem, work.used);
-  return work;
-}
-
-OrDiagnosis<void> Refine(const StereoProblem& problem, Work& work) {
-  auto solution = SolveJoint(work.joint, work.state);
-  if (!solution) return tl::unexpected(FromError(problem, "no_convergence", solution.error()));
-  work.state = std::move(solution->state);
-  work.iterations += solution->iterations;
-  return {};
-}
-
-double SumOfSquares(const Work& work) {
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < work.used.size(); ++k) {
-    const CaptureError error = ErrorOf(work.joint, work.state, k);
-    ssr_px2 += error.a_px2 + error.b_px2;
-  }
-  return ssr_px2;
-}
-
-// One look at every board's other pose. Returns whether anything changed.
-bool ReconsiderBoards(const StereoProblem& problem, Work& work, std::vector<CaptureId>& ambiguous) {
-  const double s2_px2 = SumOfSquares(work) / (ResidualCount(work.joint) - ParameterCount(work.joint));
-  bool changed = false;
-  for (std::size_t k = work.used.size(); k-- > 0;) {
-    std::vector<Se3> candidates = AllowedPoses(work.joint, work.state, k);
-    candidates.insert(candidates.begin(), work.state.T_a_board[k]);
-    const PoseChoice choice = ChoosePose(work.joint, work.state, k, candidates);
-    if (choice.other_ssr_px2 - choice.ssr_px2 < kAmbiguousCost * s2_px2) {
-      ambiguous.push_back(problem.captures[work.used[k]].capture);
-      work.Drop(k, "two poses of the board fit equally");
-      changed = true;
-    } else if ((work.state.T_a_board[k].Inverse() * choice.T_a_board).Log().norm() > 1e-3) {
-      work.state.T_a_board[k] = choice.T_a_board;
-      changed = true;
-    }
-  }
-  return changed;
-}
-
-// Solves, lets the joint problem decide between the two poses of every board, and solves again until nothing changes.
-OrDiagnosis<void> RefineWithChoices(const StereoProblem& problem, Work& work, std::vector<Diagnosis>& notes) {
-  std::vector<CaptureId> ambiguous;
-  for (int round = 0; round < kPoseRoundsMax; ++round) {
-    if (auto refined = Refine(problem, work); !refined) return refined;
-    if (!ReconsiderBoards(problem, work, ambiguous)) break;
-    std::sort(ambiguous.begin(), ambiguous.end());
-    if (CountBoth(problem, work.used) < kCapturesMin) return tl::unexpected(AmbiguousPose(problem, ambiguous));
-  }
-  if (!ambiguous.empty()) notes.push_back(AmbiguousPose(problem, ambiguous));
-  return Refine(problem, work);
-}
+std::size_t CornersOf(const JointCapture& capture) { return capture.a.size() + capture.b.size(); }
 
 double Rms(double sum_px2, std::size_t points) {
   return points == 0 ? 0.0 : std::sqrt(sum_px2 / static_cast<double>(points));
 }
 
-void FillResiduals(const StereoProblem& problem, const Work& work, StereoEstimate& estimate) {
+void FillResiduals(const StereoProblem& problem, const StereoWork& work, StereoEstimate& estimate) {
   CaptureError sum;
   std::size_t points_a = 0, points_b = 0;
   std::map<std::size_t, double> rms_px;
@@ -188,8 +124,8 @@ void FillResiduals(const StereoProblem& problem, const Work& work, StereoEstimat
     const CaptureError error = ErrorOf(work.joint, work.state, k);
     sum.a_px2 += error.a_px2;
     sum.b_px2 += error.b_px2;
-    points_a += work.joint.captures[k].a_px.size();
-    points_b += work.joint.captures[k].b_px.size();
+    points_a += work.joint.captures[k].a.size();
+    points_b += work.joint.captures[k].b.size();
     rms_px[work.used[k]] = Rms(error.a_px2 + error.b_px2, CornersOf(work.joint.captures[k]));
   }
   estimate.rms_a_px = Rms(sum.a_px2, points_a);
@@ -206,17 +142,36 @@ void FillResiduals(const StereoProblem& problem, const Work& work, StereoEstimat
   }
 }
 
-OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const Work& work) {
+std::optional<Diagnosis> WhyDistortionOpen(const StereoProblem& problem, const StereoWork& work,
+                                           const ReducedMatrix& covariance) {
+  const Eigen::VectorXd variances = covariance.diagonal();
+  std::optional<Diagnosis> why;
+  if (work.joint.estimate_a)
+    why =
+        WhyDistortionOpen(problem.camera_a.id, work.joint.model_a, variances.segment<kIntrinsicsMax>(kIntrinsicsAStart),
+                          ViewsOfA(problem, work.used), work.state.intrinsics_a);
+  if (!why && work.joint.estimate_b)
+    why =
+        WhyDistortionOpen(problem.camera_b.id, work.joint.model_b, variances.segment<kIntrinsicsMax>(kIntrinsicsBStart),
+                          ViewsOfB(problem, work.used), work.state.intrinsics_b);
+  return why;
+}
+
+OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const StereoWork& work) {
   StereoEstimate estimate;
   const auto covariance = ModelCovariance(work.joint, work.state);
   if (!covariance) return tl::unexpected(IllConditioned(problem, covariance.error().what));
+  if (auto open = WhyDistortionOpen(problem, work, *covariance)) return tl::unexpected(std::move(*open));
   estimate.C_model = covariance->block<6, 6>(kPairStart, kPairStart);
-  estimate.intrinsics_a = IntrinsicsOf(work.state.intrinsics_a);
-  estimate.intrinsics_b = IntrinsicsOf(work.state.intrinsics_b);
+  estimate.intrinsics_a = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
+  estimate.intrinsics_b = IntrinsicsOf(work.joint.model_b, work.state.intrinsics_b);
   estimate.T_a_b = work.state.T_a_b;
   estimate.iterations = work.iterations;
-  for (std::size_t k = 0; k < work.used.size(); ++k)
-    estimate.T_a_board[problem.captures[work.used[k]].capture] = work.state.T_a_board[k];
+  for (std::size_t k = 0; k < work.used.size(); ++k) {
+    const CaptureId& capture = problem.captures[work.used[k]].capture;
+    estimate.T_a_board[capture] = work.state.T_a_board[k];
+    if (work.turns_b[k] != 0) estimate.turn_b[capture] = work.turns_b[k];
+  }
   FillResiduals(problem, work, estimate);
   return estimate;
 }
@@ -227,10 +182,8 @@ tl::expected<StereoEstimate, Diagnosis> EstimateOrDiagnose(const StereoProblem& 
                                                            std::vector<Diagnosis>* notes) {
   std::vector<Diagnosis> ignored;
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
-  auto work = start != nullptr ? OrDiagnosis<Work>(WarmStart(problem, *start)) : ColdStart(problem, kept);
+  const auto work = start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept);
   if (!work) return tl::unexpected(work.error());
-  const auto refined = start != nullptr ? Refine(problem, *work) : RefineWithChoices(problem, *work, kept);
-  if (!refined) return tl::unexpected(refined.error());
   return Finished(problem, *work);
 }
 

@@ -20,15 +20,18 @@ struct StereoCapture {
 
 struct StereoProblem {
   Sensor camera_a, camera_b;  // intrinsics given or absent
-  Checkerboard board;
+  Target board;
   std::vector<StereoCapture> captures;
 };
 
 struct StereoEstimate {
-  PinholeRadtan intrinsics_a, intrinsics_b;
+  CameraIntrinsics intrinsics_a, intrinsics_b;
   Se3 T_a_b;                           // pose of camera b in camera a
   std::map<CaptureId, Se3> T_a_board;  // per capture used
-  double rms_px = 0;                   // sqrt(sum of squared distances / number of points), both views (OpenCV's)
+  // Of b's view against a's, times 360 / SymmetryOf(board) degrees, for boards that look alike when turned: how b's
+  // corners are renumbered. Captures not named: 0.
+  std::map<CaptureId, int> turn_b;
+  double rms_px = 0;  // sqrt(sum of squared distances / number of points), both views (OpenCV's)
   double rms_a_px = 0, rms_b_px = 0;
   Matrix6d C_model = Matrix6d::Zero();     // s^2 H^-1 of the joint problem, right tangent at b
   std::vector<CaptureResidual> residuals;  // per capture
@@ -42,8 +45,8 @@ struct StereoEstimate {
 [[nodiscard]] Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start = nullptr);
 // Leave one capture out, warm start, in parallel; block vectors in capture order. Adds the contribution of the board's
 // size (square_sigma_m) and of given intrinsics (intrinsics_sigma). Below 5 captures the source is the model:
-// from 5 to 7 ShrinkTowardsModel already weighs it heavily, while the model alone, blind to errors that a capture's corners
-// share, understates sigma about twice on real pictures.
+// from 5 to 7 ShrinkTowardsModel already weighs it heavily, while the model alone, blind to errors that a capture's
+// corners share, understates sigma about twice on real pictures.
 [[nodiscard]] Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate);
 
 // The three above as the finished edge; a failed one carries the diagnoses. Fills figures (rms_px, captures_used, ...).

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "server/base/limits.h"
+#include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/dds/server_side.h"
 #include "storage/edges.h"
 #include "storage/sessions.h"
 
@@ -103,7 +104,7 @@ void BatchRecorder::SendReceipt(const BatchId& id, const Batch& batch) {
   const bool all_held = batch.held_count == batch.held.size();
   receipt.state = all_held ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving;
   receipt.incarnation = incarnation_;
-  receipt.window_bytes = static_cast<std::uint64_t>(limits::kWindowBytes);
+  receipt.window_bytes = static_cast<std::uint64_t>(limits::InForce().window_bytes);
   receipt.written_bytes = batch.written_bytes;
   receipt.held = batch.held;
   outbox_.Send(batch.robot, std::move(receipt));
@@ -116,7 +117,7 @@ void BatchRecorder::SendRefusal(const RobotId& robot, const BatchId& id, const E
   receipt.subject_id = id.str();
   receipt.state = wire::ReceiptState::kRefused;
   receipt.incarnation = incarnation_;
-  receipt.error = error;
+  receipt.error = ToldToClient(error);
   outbox_.Send(robot, std::move(receipt));
 }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "server/base/limits.h"
+#include "server/base/text.h"
 
 namespace rigcal::dds {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::string_view kRobotPrefix = "robot/";
 Status CheckSpeaker(const RobotId& robot, const wire::SampleOrigin& origin) {
   const auto& own = origin.partitions;
   if (std::find(own.begin(), own.end(), wire::RobotPartition(robot)) != own.end()) return {};
-  const std::string speaker = own.empty() ? "nobody" : own.front();
+  const std::string speaker = own.empty() ? "nobody" : Quoted(own.front());
   return Fail(ErrorCode::kInvalidInput, "robot " + robot.str() + ": its data came from partition " + speaker,
               "Write a robot's data in its own partition " + wire::RobotPartition(robot));
 }

@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kIdle{1000};
 constexpr int kSmallAtOnce = 256;
-constexpr int kBigAtOnce = 8;  // chunks are loaned from DDS while they are copied: few at a time
+constexpr int kEdgesAtOnce = 32;  // each is decomposed and hashed: some 20 us
+constexpr int kBigAtOnce = 1;  // a chunk is copied while it is loaned from DDS: a millisecond
 
 }  // namespace
 
@@ -63,7 +64,9 @@ bool Intake::TakeAll() {
   bool any = TakeRequests();
   any |= TakeInto(readers_.headers, kSmallAtOnce);
   any |= TakeInto(readers_.manifests, kBigAtOnce);
-  any |= TakeInto(readers_.edges, kSmallAtOnce);
+  any |= TakeRequests();  // between what takes milliseconds, so that a flood of one kind holds no question up
+  any |= TakeInto(readers_.edges, kEdgesAtOnce);
+  any |= TakeRequests();
   any |= TakeInto(readers_.chunks, kBigAtOnce);
   return any;
 }

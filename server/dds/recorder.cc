@@ -1,6 +1,7 @@
 #include "server/dds/recorder.h"
 
 #include "server/base/log.h"
+#include "server/base/thread_rank.h"
 
 namespace rigcal::dds {
 namespace {
@@ -62,6 +63,7 @@ void Recorder::CommitDue() {
 }
 
 void Recorder::Run() {
+  SetThreadRank(ThreadRank::kWorks);
   while (!inbox_.Stopped()) {
     TakeRound();
     CommitDue();

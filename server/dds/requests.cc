@@ -4,6 +4,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/log.h"
+#include "server/base/thread_rank.h"
 #include "server/formats/answers.h"
 
 namespace rigcal::dds {
@@ -102,6 +103,7 @@ std::optional<Question> Requests::Next() {
 }
 
 void Requests::Run() {
+  SetThreadRank(ThreadRank::kAnswers);
   const auto stopped = [&] {
     const std::lock_guard lock(mutex_);
     return stopped_;

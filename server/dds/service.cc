@@ -3,7 +3,7 @@
 #include <random>
 #include <thread>
 
-#include "server/base/limits.h"
+#include "server/base/limits_in_force.h"
 #include "server/dds/intake.h"
 #include "server/dds/recorder.h"
 #include "storage/sessions.h"
@@ -33,7 +33,7 @@ struct Service::Impl {
   // Threads are joined before any of it goes. The outbox goes before requests, which its writers call.
   wire::Participant participant;
   Callbacks callbacks;
-  Inbox inbox{{limits::kWindowBytes, limits::kIntakeBytesMax, kInboxItemsMax}};
+  Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
   Requests requests;
   Outbox outbox;
   std::unique_ptr<Recorder> recorder;

@@ -1,8 +1,9 @@
 // The second half of SessionRecorder: commits and receipts.
 #include <algorithm>
 
-#include "server/base/limits.h"
+#include "server/base/limits_in_force.h"
 #include "server/base/log.h"
+#include "server/dds/server_side.h"
 #include "server/dds/session_recorder.h"
 #include "storage/sessions.h"
 
@@ -82,7 +83,8 @@ void SessionRecorder::GiveUp(const DurableBatch& batch, const Error& error) {
 std::int64_t SessionRecorder::WindowBytes() const {
   const auto sessions = static_cast<std::int64_t>(std::max<std::size_t>(intakes_.size(), 1));
   const auto chunk_bytes = static_cast<std::int64_t>(limits::kChunkBytesMax);
-  return std::clamp(limits::kIntakeBytesMax / sessions, 2 * chunk_bytes, limits::kWindowBytes);
+  const limits::Limits& limits = limits::InForce();
+  return std::clamp(limits.intake_bytes / sessions, 2 * chunk_bytes, limits.window_bytes);
 }
 
 void SessionRecorder::SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state) {
@@ -107,7 +109,7 @@ void SessionRecorder::SendRefusal(const RobotId& robot, const SessionId& session
   receipt.subject_id = session.str();
   receipt.state = wire::ReceiptState::kRefused;
   receipt.incarnation = incarnation_;
-  receipt.error = error;
+  receipt.error = ToldToClient(error);
   outbox_.Send(robot, std::move(receipt));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/base/limits.h"
+#include "server/dds/server_side.h"
 
 namespace rigcal::dds {
 namespace {
@@ -83,7 +84,8 @@ void SessionIntake::Drop(std::uint32_t payload_idx, Error complaint) {
   std::error_code ignored;
   std::filesystem::remove(Part(payload_idx).path(), ignored);
   parts_.erase(payload_idx);
-  if (complaints_.size() < kComplaintsMax) complaints_.insert_or_assign(payload_idx, std::move(complaint));
+  if (complaints_.size() < kComplaintsMax)
+    complaints_.insert_or_assign(payload_idx, ToldToClient(std::move(complaint)));
 }
 
 std::vector<std::uint32_t> SessionIntake::WithSameContent(std::uint32_t payload_idx) const {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
-#include "server/base/limits.h"
+#include "server/base/limits_in_force.h"
 #include "server/base/parallel_for.h"
 #include "server/base/version.h"
 #include "server/formats/documents.h"
+#include "server/model/admission.h"
 #include "storage/blobs.h"
 #include "storage/sessions.h"
 
@@ -61,8 +62,8 @@ Result<wire::ReceiptState> SessionRecorder::Open(const RobotId& robot, const Ses
 }
 
 void SessionRecorder::MakeRoom(std::size_t payloads) {
-  while (!intakes_.empty() &&
-         (intakes_.size() >= limits::kOpenSessionsMax || open_payloads_ + payloads > kOpenPayloadsMax)) {
+  const auto sessions_max = static_cast<std::size_t>(limits::InForce().open_sessions);
+  while (!intakes_.empty() && (intakes_.size() >= sessions_max || open_payloads_ + payloads > kOpenPayloadsMax)) {
     const auto later = [](const auto& a, const auto& b) { return a.second->last_used < b.second->last_used; };
     const SessionId oldest = std::min_element(intakes_.begin(), intakes_.end(), later)->first;
     Settle();  // complete files of that session are not wasted
@@ -141,6 +142,8 @@ Status SessionRecorder::StoreManifest(const ManifestText& text) {
         ErrorCode::kInvalidInput,
         "the session names robot " + manifest.header.robot.str() + ", but robot " + text.robot.str() + " pushes it",
         "Push it as the robot that session.yaml names");
+  RIGCAL_TRY(CheckAdmission(manifest, limits::InForce()));
+  RIGCAL_TRY(CheckCapturedAt(manifest.header, clock_.Now()));
   bool closed = false;
   RIGCAL_TRY(store_.Write([&]() -> Status {
     RIGCAL_TRY(storage::AppendSession(store_, text.session, text.bytes, manifest, clock_.Now()));

@@ -1,78 +1,125 @@
 #include "server/detect/board.h"
 
+#include <locale>
+#include <numeric>
 #include <opencv2/core/version.hpp>
+#include <sstream>
 
+#include "server/base/text.h"
 #include "server/detect/annotate.h"
+#include "server/detect/charuco.h"
 #include "server/detect/corners.h"
 #include "server/detect/grey_image.h"
+#include "server/detect/image_header.h"
+#include "server/detect/markers.h"
 #include "server/detect/orientation.h"
+#include "server/detect/tag_grid.h"
 
 namespace rigcal::detect {
 namespace {
 
 constexpr int kInnerMin = 3, kInnerMax = 256;  // what the search supports, and a bound on its work
 
-std::string Counts(const Checkerboard& board) {
-  return std::to_string(board.inner_cols) + " x " + std::to_string(board.inner_rows);
-}
+std::string Counts(const Target& board) { return std::to_string(board.cols) + " x " + std::to_string(board.rows); }
 
-// Empty: it can. Otherwise why not.
-std::string WhyUnsearchable(const Checkerboard& board) {
-  for (const int count : {board.inner_cols, board.inner_rows})
-    if (count < kInnerMin || count > kInnerMax)
-      return "a board of " + Counts(board) + " inner corners cannot be searched; both counts must be 3 to 256";
-  if (board.inner_cols % 2 == board.inner_rows % 2)
-    return "a board of " + Counts(board) + " inner corners looks the same turned round; use one odd and one even count";
+std::string WhyUnsearchableMarkers(const Target& board) {
+  const int id_count = IdCount(board.dictionary);
+  if (id_count == 0) return "the dictionary " + Quoted(board.dictionary) + " is not known";
+  const int markers = IsTagGrid(board.kind) ? board.cols * board.rows : (board.cols + 1) * (board.rows + 1) / 2;
+  if (markers > id_count)
+    return "a board of " + Counts(board) + " needs " + std::to_string(markers) + " markers, and " + board.dictionary +
+           " has " + std::to_string(id_count);
+  if (board.kind == TargetKind::kCharuco && (board.cols < 2 || board.rows < 2 || board.cols * board.rows < 6))
+    return "a charuco board of " + Counts(board) + " inner corners is too small to tell a pose; it needs 2 x 3";
+  if (IsTagGrid(board.kind) && markers < 2) return "a grid of one tag cannot be told from a stray one; it needs two";
   return {};
 }
 
-void FindBoard(const GreyImage& image, const Checkerboard& board, BoardView& view) {
-  const auto found = FindCorners(image, board.inner_cols, board.inner_rows);
+// Empty: it can. Otherwise why not.
+std::string WhyUnsearchable(const Target& board) {
+  const bool checkerboard = board.kind == TargetKind::kCheckerboard;
+  for (const int count : {board.cols, board.rows})
+    if (count < (checkerboard ? kInnerMin : 1) || count > kInnerMax)
+      return "a board of " + Counts(board) + (IsTagGrid(board.kind) ? " tags" : " inner corners") +
+             " cannot be searched; both counts must be " + (checkerboard ? "3" : "1") + " to 256";
+  return checkerboard ? std::string() : WhyUnsearchableMarkers(board);
+}
+
+void FindCheckerboard(const GreyImage& image, const Target& board, BoardView& view) {
+  const auto found = FindCorners(image, board.cols, board.rows);
   if (!found) {
     view.why_not = "no " + Counts(board) + " board in the picture; show the whole board, sharp and evenly lit";
     return;
   }
-  auto oriented = Oriented(image, board.inner_cols, board.inner_rows, *found);
+  auto oriented = Oriented(image, board.cols, board.rows, *found);
   if (!oriented) {
     view.why_not = "no " + Counts(board) + " board in the picture; " + oriented.error().what;
     return;
   }
   view.found = true;
   view.corners_px = std::move(*oriented);
+  view.corner_idx.resize(view.corners_px.size());
+  std::iota(view.corner_idx.begin(), view.corner_idx.end(), 0);
 }
 
-AnnotatedView DetectIn(const GreyImage& image, const Checkerboard& board) {
+void FindBoard(const GreyImage& image, const Target& board, BoardView& view) {
+  switch (board.kind) {
+    case TargetKind::kCheckerboard:
+      return FindCheckerboard(image, board, view);
+    case TargetKind::kCharuco:
+      return FindCharuco(image, board, view);
+    case TargetKind::kArucoGrid:
+    case TargetKind::kAprilGrid:
+      return FindTagGrid(image, board, view);
+  }
+}
+
+AnnotatedView DetectIn(const GreyImage& image, const Target& board) {
   AnnotatedView result;
   result.view.target = board.id;
   result.view.image_width_px = image.width_px;
   result.view.image_height_px = image.height_px;
   FindBoard(image, board, result.view);
-  result.picture = Annotated(image, result.view, board.inner_cols);
+  result.picture = Annotated(image, result.view, board);
   return result;
 }
 
-AnnotatedView NotFound(const Checkerboard& board, std::string why_not) {
+AnnotatedView NotFound(const Target& board, std::string why_not, const ImageSize& size) {
   AnnotatedView result;
   result.view.target = board.id;
+  result.view.image_width_px = static_cast<int>(size.width_px);
+  result.view.image_height_px = static_cast<int>(size.height_px);
   result.view.why_not = std::move(why_not);
   return result;
 }
 
 }  // namespace
 
-std::string DetectorKey(const Checkerboard& board) {
-  return "checkerboard-1/opencv-" CV_VERSION "/" + std::to_string(board.inner_cols) + "x" +
-         std::to_string(board.inner_rows) + "/" + board.id.str();
+std::string DetectorKey(const Target& target) {
+  const std::string search = "-1/opencv-" CV_VERSION "/";
+  const std::string geometry = std::to_string(target.cols) + "x" + std::to_string(target.rows) + "/";
+  if (target.kind == TargetKind::kCheckerboard) return "checkerboard" + search + geometry + target.id.str();
+  std::ostringstream markers;  // only ratios show in the picture
+  markers.imbue(std::locale::classic());
+  markers.precision(9);
+  markers << target.dictionary << "/";
+  if (target.kind == TargetKind::kCharuco)
+    markers << target.marker_m / target.square_m << (target.legacy_layout ? "/legacy/" : "/");
+  else
+    markers << target.spacing_ratio << "/";
+  return NameOf(target.kind) + search + geometry + markers.str() + target.id.str();
 }
 
-AnnotatedView Detect(std::span<const std::byte> encoded, const Checkerboard& board) {
-  if (std::string why_not = WhyUnsearchable(board); !why_not.empty()) return NotFound(board, std::move(why_not));
+AnnotatedView Detect(std::span<const std::byte> encoded, const Target& board) {
+  if (std::string why_not = WhyUnsearchable(board); !why_not.empty())
+    return NotFound(board, std::move(why_not), ReadImageSize(encoded).value_or(ImageSize{}));
   const auto image = DecodeGrey(encoded);
-  if (!image) return NotFound(board, image.error().what + "; " + image.error().cure);
+  if (!image) return NotFound(board, image.error().what + "; " + image.error().cure, {});
   try {
     return DetectIn(*image, board);
   } catch (const std::exception& exception) {
-    return NotFound(board, std::string("the search for the board failed: ") + exception.what());
+    return NotFound(board, std::string("the search for the board failed: ") + exception.what(),
+                    {image->width_px, image->height_px});
   }
 }
 

@@ -1,4 +1,4 @@
-// Finds a checkerboard in an encoded picture.
+// Finds a target of any kind in an encoded picture.
 #pragma once
 
 #include <span>
@@ -9,12 +9,13 @@
 
 namespace rigcal::detect {
 
-// Names algorithm, version and geometry: the key of the cache.
-[[nodiscard]] std::string DetectorKey(const Checkerboard& board);
+// Names algorithm, version, kind, geometry, layout, dictionary and target: the key of the cache.
+[[nodiscard]] std::string DetectorKey(const Target& target);
 // PNG or JPEG bytes, 8 or 16 bit, grey or colour; the header's dimensions are checked against limits before decoding.
-// Never fails: what is wrong with the picture or the board is view.why_not. Corner order is canonical: a board with one
-// odd and one even corner count has only one orientation; it is told by the colour of the squares.
-// Sub-pixel corners; pure: the same bytes give the same corners.
-[[nodiscard]] AnnotatedView Detect(std::span<const std::byte> encoded, const Checkerboard& board);
+// Never fails: what is wrong with the picture or the target is view.why_not; a size of 0 x 0 means that the picture
+// cannot be read. Corners have sub-pixel places and the
+// indices of TargetPoints(). A checkerboard is seen whole, in the order of Oriented(); boards with markers may be seen
+// in part. Pure: the same bytes give the same corners.
+[[nodiscard]] AnnotatedView Detect(std::span<const std::byte> encoded, const Target& target);
 
 }  // namespace rigcal::detect

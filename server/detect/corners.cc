@@ -95,10 +95,10 @@ Points Refined(const cv::Mat& image, const cv::Size& counts, const Points& point
 
 }  // namespace
 
-std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int inner_cols, int inner_rows) {
+std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int cols, int rows) {
   // OpenCV only reads, yet its wrapper for memory takes a mutable pointer.
   const cv::Mat grey(image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
-  const cv::Size counts(inner_cols, inner_rows);
+  const cv::Size counts(cols, rows);
   Points points;
   if (!Search(grey, counts, points)) return std::nullopt;
   std::vector<Eigen::Vector2d> corners;

@@ -11,7 +11,7 @@ namespace rigcal::detect {
 
 // Row-major, sub-pixel, in an order that still needs Oriented(). Empty: no board of these counts was found.
 // Throws what OpenCV throws.
-[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int inner_cols,
-                                                                      int inner_rows);
+[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int cols,
+                                                                      int rows);
 
 }  // namespace rigcal::detect

@@ -38,6 +38,20 @@ tl::unexpected<Error> Undecodable() {
   return Fail(ErrorCode::kInvalidInput, "the picture cannot be decoded", "save or copy the picture again");
 }
 
+// Decoders allocate, and a progressive JPEG's even fills, what the size claims, however little follows. The most pixels
+// that a byte can stand for: PNG at one bit per pixel and deflate's 1032 : 1; JPEG at one bit per block of 8 x 8.
+Status CheckPlausible(std::span<const std::byte> encoded, const ImageSize& claimed) {
+  constexpr std::int64_t kPngPixelsPerByteMax = 8 * 1032, kJpegPixelsPerByteMax = 8 * 64;
+  const bool is_png = encoded[0] == std::byte{0x89};
+  const auto bytes = static_cast<std::int64_t>(encoded.size());
+  if (claimed.width_px * claimed.height_px <= bytes * (is_png ? kPngPixelsPerByteMax : kJpegPixelsPerByteMax))
+    return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "the picture claims " + std::to_string(claimed.width_px) + " x " + std::to_string(claimed.height_px) +
+                  " pixels, which its " + std::to_string(bytes) + " bytes cannot hold",
+              "save or copy the picture again");
+}
+
 cv::Mat Decoded(std::span<const std::byte> encoded) {
   // imdecode only reads, yet its wrapper for memory takes a mutable pointer.
   auto* bytes = const_cast<std::byte*>(encoded.data());
@@ -58,9 +72,18 @@ Result<GreyImage> AsGrey(const cv::Mat& decoded, const ImageSize& claimed) {
 
 }  // namespace
 
+double GreyImage::Between(double x, double y) const {
+  x = std::clamp(x, 0.0, width_px - 1.0), y = std::clamp(y, 0.0, height_px - 1.0);
+  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+  const int x1 = std::min(x0 + 1, width_px - 1), y1 = std::min(y0 + 1, height_px - 1);
+  const double fx = x - x0, fy = y - y0;
+  return (1 - fy) * ((1 - fx) * At(x0, y0) + fx * At(x1, y0)) + fy * ((1 - fx) * At(x0, y1) + fx * At(x1, y1));
+}
+
 Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded) {
   RIGCAL_ASSIGN(const ImageSize claimed, ReadImageSize(encoded));
   if (encoded.size() > static_cast<std::size_t>(INT32_MAX)) return Undecodable();
+  RIGCAL_TRY(CheckPlausible(encoded, claimed));
   try {
     return AsGrey(Decoded(encoded), claimed);
   } catch (const std::exception&) {  // cv::Exception and bad_alloc: both mean that this picture gives no pixels

@@ -18,10 +18,13 @@ struct GreyImage {
   [[nodiscard]] std::uint8_t At(int x, int y) const {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x)];
   }
+  // Bilinear between pixel centres, of the nearest place inside. Finite coordinates; at least one pixel.
+  [[nodiscard]] double Between(double x, double y) const;
 };
 
 // The pixel grid as stored: an orientation tag is ignored, because intrinsics belong to the sensor's grid. 16 bit is
-// stretched between its 0.1 % and 99.9 % quantiles. Fails in words; throws nothing.
+// stretched between its 0.1 % and 99.9 % quantiles. A size that the bytes cannot hold is refused before anything is
+// allocated. Fails in words; throws nothing.
 [[nodiscard]] Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded);
 
 }  // namespace rigcal::detect

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "server/base/limits.h"
+#include "server/base/limits_in_force.h"
 
 namespace rigcal::detect {
 namespace {
@@ -78,11 +78,11 @@ Result<ImageSize> ReadImageSize(Bytes encoded) {
   const std::string text = std::to_string(size.width_px) + " x " + std::to_string(size.height_px) + " pixels";
   if (size.width_px == 0 || size.height_px == 0)
     return Fail(ErrorCode::kInvalidInput, "the picture claims " + text, "save or copy the picture again");
+  const std::int64_t pixels_max = limits::InForce().image_pixels;
   // Both factors are below 2^32, so the division decides without overflow.
-  if (size.width_px > limits::kImagePixelsMax / size.height_px)
+  if (size.width_px > pixels_max / size.height_px)
     return Fail(ErrorCode::kInvalidInput,
-                "the picture claims " + text + ", more than the limit of " + std::to_string(limits::kImagePixelsMax) +
-                    " pixels",
+                "the picture claims " + text + ", more than the limit of " + std::to_string(pixels_max) + " pixels",
                 "use smaller pictures");
   return size;
 }

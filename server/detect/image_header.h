@@ -15,7 +15,7 @@ struct ImageSize {
 };
 
 // PNG (IHDR) or JPEG (first SOF segment). Reads within `encoded` only. Fails on any other format, on a header that is
-// cut off, and on sizes that are zero or beyond limits::kImagePixelsMax.
+// cut off, and on sizes that are zero or beyond the limit image_pixels.
 [[nodiscard]] Result<ImageSize> ReadImageSize(std::span<const std::byte> encoded);
 
 }  // namespace rigcal::detect

@@ -73,10 +73,28 @@ Corners Mirrored(Corners corners, const Grid& grid) {
   return corners;
 }
 
+// By a quarter of a turn; equal counts only.
+Corners Turned(const Corners& corners, const Grid& grid) {
+  Corners turned;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int col = 0; col < grid.cols; ++col) turned.push_back(corners[grid.Index(row, grid.cols - 1 - col)]);
+  return turned;
+}
+
+// The order, of `step` (in quarters) and its multiples, that starts closest to the picture's top left.
+Corners FromTopLeft(const Corners& corners, const Grid& grid, int step) {
+  Corners best = corners, turned = corners;
+  for (int quarter = step; quarter < 4; quarter += step) {
+    turned = step == 1 ? Turned(turned, grid) : Corners(turned.rbegin(), turned.rend());
+    if (turned.front().sum() < best.front().sum()) best = turned;
+  }
+  return best;
+}
+
 }  // namespace
 
-Result<Corners> Oriented(const GreyImage& image, int inner_cols, int inner_rows, const Corners& corners) {
-  const Grid grid{inner_cols, inner_rows};
+Result<Corners> Oriented(const GreyImage& image, int cols, int rows, const Corners& corners) {
+  const Grid grid{cols, rows};
   const int cells = (grid.cols - 1) * (grid.rows - 1);
   const int handedness = Handedness(corners, grid);
   if (std::abs(handedness) != cells)
@@ -86,9 +104,14 @@ Result<Corners> Oriented(const GreyImage& image, int inner_cols, int inner_rows,
   if (std::abs(dark) < kAlternatingRatio)
     return Fail(ErrorCode::kInvalidInput, "the squares found do not alternate between dark and light",
                 "take the picture again with even light and nothing in front of the board");
-  // Half a turn keeps the hand and, with one odd and one even count, exchanges dark and light.
-  if (dark < 0) std::reverse(ordered.begin(), ordered.end());
-  return ordered;
+  // Half a turn keeps the hand; it exchanges dark and light if one count is odd and one even. With equal odd counts a
+  // quarter does.
+  if (cols % 2 != rows % 2) {
+    if (dark < 0) std::reverse(ordered.begin(), ordered.end());
+    return ordered;
+  }
+  if (cols == rows && cols % 2 == 1 && dark < 0) ordered = Turned(ordered, grid);
+  return FromTopLeft(ordered, grid, cols == rows && cols % 2 == 0 ? 1 : 2);
 }
 
 }  // namespace rigcal::detect

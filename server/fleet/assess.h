@@ -14,7 +14,7 @@ namespace rigcal::fleet {
 struct Policy {
   double sigma_max_m = 0.005;  // a sensor less certain than this (any axis, 1 sigma) is a warning
   double sigma_max_rad = 0.005;
-  double residual_max_m = 0.05;   // an edge too poorly known to be tested, but off by more than this, fails
+  double residual_max_m = 0.05;  // an edge too poorly known to be tested, but off by more than this, fails
   double residual_max_rad = 0.05;
   double residual_probability =
       0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
@@ -26,9 +26,9 @@ struct Policy {
 // since).
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {});
 
-// "statistic / limit" of one edge's residual against the covariance of that residual (edge covariance minus what the
-// solution explains is not used: conservative). limit is 0 where it cannot be judged: the edge takes no part, or its
-// covariance was estimated from too few blocks.
+// "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has
+// it, else e^T Omega e (edge covariance minus what the solution explains is not used: conservative). limit is 0 where
+// it cannot be judged: the edge takes no part, or its covariance was estimated from too few blocks.
 struct EdgeTest {
   double statistic = 0.0;
   double limit = 0.0;

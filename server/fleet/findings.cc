@@ -1,48 +1,17 @@
 #include "server/fleet/findings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
 #include "server/fleet/bridges.h"
+#include "server/fleet/wording.h"
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
 
 namespace rigcal::fleet {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
-constexpr std::size_t kNamesMax = 6;
-
-std::string Number(double value, const char* unit) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), std::abs(value) < 100.0 ? "%.3g %s" : "%.0f %s", value, unit);
-  return text.data();
-}
-
-std::string LimitText(double value) {
-  std::string text = Number(value, "");
-  text.pop_back();
-  return text;
-}
-
-// "a", "a and b", "a, b and c", "a, b, c, d, e, f and 3 more".
-std::string List(const std::vector<std::string>& names) {
-  const std::size_t shown = names.size() > kNamesMax ? kNamesMax : names.size();
-  std::string text;
-  for (std::size_t k = 0; k < shown; ++k) {
-    const bool last = k + 1 == names.size();
-    if (k > 0) text += last ? " and " : ", ";
-    text += names[k];
-  }
-  if (names.size() > shown) text += " and " + std::to_string(names.size() - shown) + " more";
-  return text;
-}
-
-std::string NameOfEdge(const Edge& edge) { return edge.frame_a.str() + " - " + edge.frame_b.str(); }
 
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
@@ -205,7 +174,8 @@ std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const Graph
       return std::nullopt;
   const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
   if (solution.cost <= limit) return std::nullopt;
-  return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) + " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + LimitText(limit) + ")",
+  return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) +
+                     " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + LimitText(limit) + ")",
                  "Look for the edge with the largest residual in sigmas and repeat its session"};
 }
 

@@ -16,7 +16,12 @@ struct Finding {
 // The edge that contradicts the others most.
 [[nodiscard]] std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                        const Policy& policy);
-// Edges whose covariance comes from too few captures for a test of their residual. Only where there is something to test.
+// A sensor whose edges fall into two groups; no side is chosen.
+[[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution);
+// Edges that the robust optimum rejects, the worst first; a loop that alone does not close is named whole.
+[[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
+// Edges whose covariance comes from too few captures for a test of their residual. Only where there is something to
+// test.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);
 // The weighted cost is beyond chi-square for its degrees of freedom: a long loop that does not close shows here even
@@ -29,6 +34,7 @@ struct Finding {
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
-[[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution);
+[[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges,
+                                                          const GraphSolution& solution);
 
 }  // namespace rigcal::fleet

@@ -151,6 +151,9 @@ std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
     out.Integer("disk_free_bytes", answer.disk_free_bytes);
     out.Text("now", ToIso(now));
     WriteAddress(out, answer.http_address);
+    out.Object("limits", [&] {
+      for (const limits::Setting& one : limits::Settings()) out.Integer(one.name, answer.limits.*one.value);
+    });
     if (!answer.problem) return out.Null("problem");
     out.Object("problem", [&] { WriteErrorMembers(out, *answer.problem); });
   });

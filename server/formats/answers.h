@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/base/limits_in_force.h"
 #include "server/formats/documents.h"
 
 namespace rigcal::formats {
@@ -84,6 +85,7 @@ struct HealthAnswer {
   int protocol = 0;              // kWireProtocol
   std::optional<Error> problem;  // absent: "ok"
   std::string http_address;      // of the reports; empty: none
+  limits::Limits limits;         // in force
 };
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);
 

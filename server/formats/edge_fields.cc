@@ -157,6 +157,12 @@ void WriteResidual(JsonWriter& out, const EdgeResidual* residual) {
     WriteVector(out, "e", residual->e);
     out.Flag("in_solution", residual->in_solution);
     out.Number("weighted", residual->weighted);
+    if (!residual->by_jackknife) return;
+    out.Object("jackknife", [&] {
+      out.Number("t_squared", residual->t_squared);
+      out.Integer("rank", residual->rank);
+      out.Number("dof", residual->dof);
+    });
   });
 }
 

@@ -15,7 +15,7 @@ void WriteEdgeSummary(JsonWriter& out, const Edge& edge);
 // The rest, without block vectors: robot, information, covariance, contributions, captures, evidence.
 void WriteEdgeDetail(JsonWriter& out, const Edge& edge);
 void WriteBlocks(JsonWriter& out, const std::vector<BlockVector>& blocks);
-// {"e", "in_solution", "weighted"}, or null.
+// {"e", "in_solution", "weighted", "jackknife": {"t_squared", "rank", "dof"} if there is one}, or null.
 void WriteResidual(JsonWriter& out, const EdgeResidual* residual);
 // Of `residuals`, sorted by edge id; null if the edge has none.
 [[nodiscard]] const EdgeResidual* ResidualOf(const std::vector<EdgeResidual>& residuals, const EdgeId& edge);

@@ -8,6 +8,7 @@
 #include "server/base/limits.h"
 #include "server/base/text.h"
 #include "server/math/covariance.h"
+#include "server/model/plausible.h"
 
 namespace rigcal::formats {
 namespace {
@@ -84,6 +85,7 @@ Result<Se3> PoseFrom(const Line& line, const double* numbers) {
   if (const double norm = T.q.norm(); !(std::abs(norm - 1.0) <= kUnitTolerance))
     return line.Refuse("the quaternion has length " + std::to_string(norm) + ", not 1",
                        "Normalise the quaternion; the order is qx qy qz qw.");
+  if (const Status near = CheckPlausible(T.p_m); !near) return line.Refuse(near.error().what, near.error().cure);
   return T.Normalized();
 }
 
@@ -144,12 +146,18 @@ class Reader {
   // Files repeat one matrix over and over: what it says is worked out once.
   Status SetInformation(const Line& line, const Matrix6d& Omega_g2o, Edge& edge) {
     if (file_.edges.empty() || Omega_g2o != last_Omega_g2o_) {
-      if (!IsPositiveSemidefinite(Omega_g2o))
+      const Matrix6d Omega = InformationFromG2o(Omega_g2o);
+      if (!IsPositiveSemidefinite(Omega))  // what the edge will be judged by; g2o's own scale may hide a small negative
         return line.Refuse("the information matrix is indefinite",
                            "An information matrix has no negative eigenvalue: correct it where it was made.");
-      last_ = FromInformation(InformationFromG2o(Omega_g2o), UncertaintySource::kGiven, 0);
+      const Status sane = CheckPlausible(Omega);
+      if (!sane) return line.Refuse(sane.error().what, sane.error().cure);
+      last_ = FromInformation(Omega, UncertaintySource::kGiven, 0);
       last_Omega_g2o_ = Omega_g2o;
     }
+    if (!last_.covariance.allFinite())
+      return line.Refuse("the information matrix is too badly conditioned to invert",
+                         "Check the units of its entries; they are for m and rad.");
     if (last_.rank < 1)
       return line.Refuse("the information matrix is zero", "An edge without information says nothing: remove it.");
     edge.uncertainty = last_;

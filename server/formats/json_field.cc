@@ -97,6 +97,8 @@ class TreeBuilder : public nlohmann::json_sax<json> {
   json* slot_ = nullptr;
 };
 
+constexpr std::size_t kPathShownMax = 200;
+
 // The path of `target` below `node`, found by search: paths are needed once, for the error, and cost nothing before.
 bool FindPath(const json& node, const void* target, std::string& path) {
   if (&node == target) return true;
@@ -146,7 +148,7 @@ void JsonField::Refuse(const std::string& what) const {
   if (tree_->error) return;
   std::string path;
   if (node_ != nullptr) FindPath(tree_->root, node_, path);
-  if (!IsPrintableUtf8(path)) path = Quoted(path);
+  if (!IsPrintableUtf8(path) || path.size() > kPathShownMax) path = Quoted(path);
   tree_->Refuse(path.empty() ? what : path + ": " + what);
 }
 

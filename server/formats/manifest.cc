@@ -8,7 +8,6 @@ namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kConditionsMax = 256;
-constexpr std::size_t kIntrinsicsCount = 9;
 
 JsonKind ManifestKind() {
   return {"manifest", "Push the session again with a client of the server's version.",
@@ -17,7 +16,7 @@ JsonKind ManifestKind() {
 
 void WriteIntrinsics(JsonWriter& out, const Sensor& sensor) {
   if (!sensor.intrinsics) return out.Null("intrinsics");
-  const PinholeRadtan& camera = *sensor.intrinsics;
+  const CameraIntrinsics& camera = *sensor.intrinsics;
   out.Object("intrinsics", [&] {
     out.Number("cx_px", camera.cx_px);
     out.Number("cy_px", camera.cy_px);
@@ -26,7 +25,7 @@ void WriteIntrinsics(JsonWriter& out, const Sensor& sensor) {
     });
     out.Number("fx_px", camera.fx_px);
     out.Number("fy_px", camera.fy_px);
-    out.Text("model", "pinhole_radtan");
+    out.Text("model", NameOf(camera.model));
     if (!sensor.intrinsics_sigma) return out.Null("sigma");
     out.List("sigma", [&] {
       for (const double sigma : *sensor.intrinsics_sigma) out.Number(sigma);
@@ -39,22 +38,39 @@ void WriteSensor(JsonWriter& out, const Sensor& sensor) {
     sensor.T_ref_nominal ? WritePose(out, "T_ref_nominal", *sensor.T_ref_nominal) : out.Null("T_ref_nominal");
     out.Text("id", sensor.id.str());
     WriteIntrinsics(out, sensor);
+    // Only where it says more than the intrinsics and the default: what could be written before keeps its bytes.
+    if (!sensor.intrinsics && sensor.camera_model != CameraModel::kPinholeRadtan)
+      out.Text("model", NameOf(sensor.camera_model));
+    if (sensor.range_bias_sigma_m) out.Number("range_bias_sigma_m", *sensor.range_bias_sigma_m);
     sensor.sees ? out.Text("sees", sensor.sees->str()) : out.Null("sees");
     out.Text("type", NameOf(sensor.kind));
   });
 }
 
-void WriteTarget(JsonWriter& out, const Checkerboard& board) {
+// Members that do not belong to the kind, or were not given, are absent: a checkerboard is written as it always was.
+void WriteTarget(JsonWriter& out, const Target& board) {
+  const bool charuco = board.kind == TargetKind::kCharuco, grid = IsTagGrid(board.kind);
+  const auto counts = [&] {
+    out.Integer(board.cols);
+    out.Integer(board.rows);
+  };
   out.Object([&] {
+    if (charuco || grid) out.Text("dictionary", board.dictionary);
     out.Text("id", board.id.str());
-    out.List("inner_corners", [&] {
-      out.Integer(board.inner_cols);
-      out.Integer(board.inner_rows);
-    });
+    if (!grid) out.List("inner_corners", counts);
+    if (charuco) out.Flag("legacy_layout", board.legacy_layout);
+    if (charuco) out.Number("marker_size_m", board.marker_m);
+    if (board.plate_m)
+      out.List("plate_size_m", [&] {
+        out.Number(board.plate_m->x());
+        out.Number(board.plate_m->y());
+      });
     out.Text("serial", board.serial);
+    if (grid) out.Number("spacing_ratio", board.spacing_ratio);
     out.Number("square_size_m", board.square_m);
     out.Number("square_size_sigma_m", board.square_sigma_m);
-    out.Text("type", "checkerboard");
+    if (grid) out.List("tags", counts);
+    out.Text("type", NameOf(board.kind));
   });
 }
 
@@ -72,13 +88,22 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
     for (const Sensor& sensor : header.sensors) WriteSensor(out, sensor);
   });
   out.List("targets", [&] {
-    for (const Checkerboard& board : header.targets) WriteTarget(out, board);
+    for (const Target& board : header.targets) WriteTarget(out, board);
   });
 }
 
+CameraModel ReadModel(const JsonField& field) {
+  const Result<CameraModel> model = CameraModelOf(field.Text());
+  if (model) return *model;
+  field.Refuse(model.error().what);
+  return CameraModel::kPinholeRadtan;
+}
+
 void ReadIntrinsics(const JsonField& field, Sensor& sensor) {
-  if (field.At("model").Text() != "pinhole_radtan") field.At("model").Refuse("must be \"pinhole_radtan\"");
-  PinholeRadtan camera;
+  sensor.camera_model = ReadModel(field.At("model"));
+  CameraIntrinsics camera;
+  camera.model = sensor.camera_model;
+  camera.distortion.assign(DistortionCount(camera.model), 0.0);
   camera.fx_px = field.At("fx_px").Number();
   camera.fy_px = field.At("fy_px").Number();
   camera.cx_px = field.At("cx_px").Number();
@@ -86,8 +111,8 @@ void ReadIntrinsics(const JsonField& field, Sensor& sensor) {
   field.At("distortion").Numbers(camera.distortion.data(), camera.distortion.size());
   sensor.intrinsics = camera;
   if (const auto sigma = field.Find("sigma")) {
-    sensor.intrinsics_sigma.emplace(kIntrinsicsCount);
-    sigma->Numbers(sensor.intrinsics_sigma->data(), kIntrinsicsCount);
+    sensor.intrinsics_sigma.emplace(4 + camera.distortion.size());
+    sigma->Numbers(sensor.intrinsics_sigma->data(), sensor.intrinsics_sigma->size());
   }
 }
 
@@ -102,26 +127,43 @@ Sensor ReadSensor(const JsonField& field) {
   Sensor sensor;
   sensor.id = ReadId<SensorId>(field.At("id"));
   sensor.kind = ReadKind(field.At("type"));
+  if (const auto model = field.Find("model")) sensor.camera_model = ReadModel(*model);
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
+  if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
   if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T, kUnitTolerance);
   return sensor;
 }
 
-Checkerboard ReadTarget(const JsonField& field) {
-  if (field.At("type").Text() != "checkerboard") field.At("type").Refuse("must be \"checkerboard\"");
-  Checkerboard board;
+TargetKind ReadTargetKind(const JsonField& field) {
+  const Result<TargetKind> kind = TargetKindOf(field.Text());
+  if (kind) return *kind;
+  field.Refuse(kind.error().what);
+  return TargetKind::kCheckerboard;
+}
+
+Target ReadTarget(const JsonField& field) {
+  Target board;
+  board.kind = ReadTargetKind(field.At("type"));
   board.id = ReadId<TargetId>(field.At("id"));
-  const std::vector<JsonField> corners = field.At("inner_corners").Items(2);
-  if (corners.size() == 2) {
-    board.inner_cols = static_cast<int>(corners[0].Integer(1, 10'000));
-    board.inner_rows = static_cast<int>(corners[1].Integer(1, 10'000));
+  const JsonField counts_field = field.At(IsTagGrid(board.kind) ? "tags" : "inner_corners");
+  const std::vector<JsonField> counts = counts_field.Items(2);
+  if (counts.size() == 2) {
+    board.cols = static_cast<int>(counts[0].Integer(1, 10'000));
+    board.rows = static_cast<int>(counts[1].Integer(1, 10'000));
   } else {
-    field.At("inner_corners").Refuse("must be two integers: columns and rows");
+    counts_field.Refuse("must be two integers: columns and rows");
   }
   board.square_m = field.At("square_size_m").Number();
   board.square_sigma_m = field.At("square_size_sigma_m").Number();
   board.serial = field.At("serial").Text();
+  if (board.kind != TargetKind::kCheckerboard) board.dictionary = field.At("dictionary").Text();
+  if (board.kind == TargetKind::kCharuco) {
+    board.marker_m = field.At("marker_size_m").Number();
+    board.legacy_layout = field.At("legacy_layout").Flag();
+  }
+  if (IsTagGrid(board.kind)) board.spacing_ratio = field.At("spacing_ratio").Number();
+  if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
   return board;
 }
 

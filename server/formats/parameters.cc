@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/base/limits.h"
+#include "server/base/text.h"
 
 namespace rigcal::formats {
 namespace {
@@ -51,7 +52,7 @@ Result<Parameters> Parameters::Read(std::string_view json) {
     else if (value.is_number_integer() || value.is_boolean())
       parameters.texts_[name] = value.dump();
     else
-      return Bad("the parameter '" + name + "' is neither a text nor an integer");
+      return Bad("the parameter " + Quoted(name) + " is neither a text nor an integer");
   }
   return parameters;
 }
@@ -67,7 +68,7 @@ Result<std::int64_t> Parameters::IntegerOr(const std::string& name, std::int64_t
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
   if (error == std::errc() && end == text->data() + text->size()) return value;
-  return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is not an integer", "Give a whole number.");
+  return Fail(ErrorCode::kInvalidInput, "the parameter " + Quoted(name) + " is not an integer", "Give a whole number.");
 }
 
 Result<std::string> ParametersOfQuery(std::string_view query) {

@@ -1,15 +1,22 @@
 #include "server/formats/payload_path.h"
 
 #include <algorithm>
-#include <array>
 
 #include "server/base/text.h"
 
 namespace rigcal::formats {
 namespace {
 
-constexpr std::array<std::string_view, 3> kPictureSuffixes = {"png", "jpg", "jpeg"};
-constexpr const char* kCure = "Payloads are <sensor>/<capture>.png, .jpg or .jpeg, in lower case.";
+constexpr const char* kCure =
+    "Payloads are <sensor>/<capture>.png, .jpg or .jpeg of a camera, .pcd, .ply or .bin of a lidar, in lower case.";
+
+bool IsKnown(std::string_view suffix) {
+  const auto is_of = [&](SensorKind kind) {
+    const auto& suffixes = SuffixesOf(kind);
+    return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
+  };
+  return is_of(SensorKind::kCamera) || is_of(SensorKind::kLidar);
+}
 
 }  // namespace
 
@@ -20,19 +27,18 @@ std::string_view SuffixOf(std::string_view path) {
 }
 
 Result<Payload> PayloadAt(std::string_view path) {
-  const auto bad = [&](const std::string& why) {
-    return Fail(ErrorCode::kInvalidInput, "file " + Quoted(path) + ": " + why, kCure);
+  const auto bad = [&](const std::string& why, const std::string& cure = kCure) {
+    return Fail(ErrorCode::kInvalidInput, "file " + Quoted(path) + ": " + why, cure);
   };
   const std::size_t slash = path.find('/');
   if (slash == std::string_view::npos || path.find('/', slash + 1) != std::string_view::npos)
     return bad("it is not in a sensor's folder");
   const std::string_view suffix = SuffixOf(path);
-  if (std::find(kPictureSuffixes.begin(), kPictureSuffixes.end(), suffix) == kPictureSuffixes.end())
-    return bad("its name does not end in .png, .jpg or .jpeg");
+  if (!IsKnown(suffix)) return bad("its name does not end in .png, .jpg, .jpeg, .pcd, .ply or .bin");
   auto sensor = SensorId::Parse(path.substr(0, slash));
-  if (!sensor) return bad(sensor.error().what);
+  if (!sensor) return bad(sensor.error().what, sensor.error().cure);
   auto capture = CaptureId::Parse(path.substr(slash + 1, path.size() - slash - suffix.size() - 2));
-  if (!capture) return bad(capture.error().what);
+  if (!capture) return bad(capture.error().what, capture.error().cure);
   Payload payload;
   payload.path = path;
   payload.sensor = *std::move(sensor);

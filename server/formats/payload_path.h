@@ -7,8 +7,8 @@
 
 namespace rigcal::formats {
 
-// Path, sensor and capture; digest and size stay empty. Refuses anything but two valid names and the suffix png, jpg or
-// jpeg. The error names the path.
+// Path, sensor and capture; digest and size stay empty. Refuses anything but two valid names and a suffix that
+// some kind of sensor has. The error names the path.
 [[nodiscard]] Result<Payload> PayloadAt(std::string_view path);
 // "png"; empty if there is none.
 [[nodiscard]] std::string_view SuffixOf(std::string_view path);

@@ -5,11 +5,21 @@
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
+#include "server/formats/suspects_fields.h"
 
 namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kRevisionBytesMax = 1u << 30;
+
+// What the covariance would be if edges were independent; null where it is that.
+void WriteAnalytic(JsonWriter& out, const SensorPose& pose) {
+  if (!pose.known || !pose.by_jackknife) return out.Null("analytic");
+  out.Object("analytic", [&] {
+    WriteMatrix(out, "covariance", pose.covariance_analytic);
+    WriteSigmas(out, pose.covariance_analytic);
+  });
+}
 
 void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
   out.Object([&] {
@@ -19,10 +29,12 @@ void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
       WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
       WriteMatrix(out, "covariance", pose.covariance);
       WriteSigmas(out, pose.covariance);
+      out.Text("sigma_source", pose.by_jackknife ? "jackknife" : "analytic");
     } else {
-      for (const char* key : {"T_ref_sensor", "covariance"}) out.Null(key);
+      for (const char* key : {"T_ref_sensor", "covariance", "sigma_source"}) out.Null(key);
       WriteNoSigmas(out);
     }
+    WriteAnalytic(out, pose);
   });
 }
 
@@ -33,6 +45,10 @@ SensorPose ReadSensorPose(const JsonField& field) {
   if (!pose.known) return pose;
   pose.T_ref_sensor = ReadPose(field.At("T_ref_sensor"), kUnitTolerance);
   pose.covariance = ReadMatrix(field.At("covariance"));
+  if (const auto analytic = field.Find("analytic")) {
+    pose.by_jackknife = true;
+    pose.covariance_analytic = ReadMatrix(analytic->At("covariance"));
+  }
   return pose;
 }
 
@@ -69,10 +85,22 @@ void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
   out.List("sensors", [&] {
     for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose);
   });
+  WriteSuspects(out, "suspects", solution.suspects);
 }
 
 EdgeResidual ReadResidual(const JsonField& field, const EdgeId& edge) {
-  return {edge, field.At("in_solution").Flag(), ReadVector(field.At("e")), field.At("weighted").Number()};
+  EdgeResidual residual;
+  residual.edge = edge;
+  residual.in_solution = field.At("in_solution").Flag();
+  residual.e = ReadVector(field.At("e"));
+  residual.weighted = field.At("weighted").Number();
+  const auto jackknife = field.Find("jackknife");
+  if (!jackknife) return residual;
+  residual.by_jackknife = true;
+  residual.t_squared = jackknife->At("t_squared").Number();
+  residual.rank = static_cast<int>(jackknife->At("rank").Integer(0, 6));
+  residual.dof = jackknife->At("dof").Number();
+  return residual;
 }
 
 GraphSolution ReadSolution(const JsonField& root) {
@@ -86,6 +114,7 @@ GraphSolution ReadSolution(const JsonField& root) {
   solution.diagnoses = ReadDiagnoses(root.At("diagnoses"));
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     solution.poses.push_back(ReadSensorPose(sensor));
+  if (const auto suspects = root.Find("suspects")) solution.suspects = ReadSuspects(*suspects);
   return solution;
 }
 

@@ -12,7 +12,7 @@
 #include "server/formats/folder_listing.h"
 #include "server/formats/nearest.h"
 #include "server/formats/payload_path.h"
-#include "server/formats/picture_kind.h"
+#include "server/formats/payload_kind.h"
 
 namespace rigcal::formats {
 namespace {
@@ -48,7 +48,7 @@ Result<Payload> PayloadOf(const ListedEntry& entry, const fs::path& folder, cons
                 title + "it has " + std::to_string(payload.size_bytes) + " bytes; the limit is " +
                     std::to_string(limits::kPayloadBytesMax),
                 "Store the capture in a smaller file.");
-  RIGCAL_TRY(CheckPicture(folder / sensor / entry.name, path));
+  RIGCAL_TRY(CheckPayloadKind(folder / sensor / entry.name, path));
   return payload;
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "server/base/limits.h"
+#include "server/base/text.h"
 #include "server/formats/session_folder.h"
 #include "server/formats/yaml_field.h"
 
@@ -9,7 +10,11 @@ namespace {
 
 constexpr const char* kCure = "Mend the file; docs/session-format.md has a complete example.";
 constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
-constexpr std::size_t kIntrinsicsCount = 9;
+
+// A key is printable, but may be a whole file long.
+std::string Title(const std::string& kind, const std::string& key) {
+  return kind + " " + (key.size() <= limits::kNameMax ? "'" + key + "'" : Quoted(key));
+}
 
 template <typename IdType>
 IdType ReadId(const YamlField& field) {
@@ -45,11 +50,19 @@ Se3 ReadPose(const YamlField& field) {
   return T.Normalized();
 }
 
+CameraModel ReadModel(const YamlField& field) {
+  const Result<CameraModel> model = CameraModelOf(field.Text());
+  if (model) return *model;
+  field.Refuse("is not known here", "This version knows pinhole_radtan, pinhole_rational and fisheye_kb4.");
+  return CameraModel::kPinholeRadtan;
+}
+
 void ReadIntrinsics(const YamlField& field, Sensor& sensor) {
   field.AllowOnly({"model", "fx_px", "fy_px", "cx_px", "cy_px", "distortion", "sigma"});
-  if (const auto model = field.Find("model"); model && model->Text() != "pinhole_radtan")
-    model->Refuse("is not known here", "This version knows pinhole_radtan.");
-  PinholeRadtan camera;
+  if (const auto model = field.Find("model")) sensor.camera_model = ReadModel(*model);
+  CameraIntrinsics camera;
+  camera.model = sensor.camera_model;
+  camera.distortion.assign(DistortionCount(camera.model), 0.0);
   camera.fx_px = field.At("fx_px").Number();
   camera.fy_px = field.At("fy_px").Number();
   camera.cx_px = field.At("cx_px").Number();
@@ -57,13 +70,13 @@ void ReadIntrinsics(const YamlField& field, Sensor& sensor) {
   if (const auto k = field.Find("distortion")) k->Numbers(camera.distortion.data(), camera.distortion.size());
   sensor.intrinsics = camera;
   if (const auto sigma = field.Find("sigma")) {
-    sensor.intrinsics_sigma.emplace(kIntrinsicsCount);
-    sigma->Numbers(sensor.intrinsics_sigma->data(), kIntrinsicsCount);
+    sensor.intrinsics_sigma.emplace(4 + camera.distortion.size());
+    sigma->Numbers(sensor.intrinsics_sigma->data(), sensor.intrinsics_sigma->size());
   }
 }
 
 Sensor ReadSensor(const YamlField& field) {
-  field.AllowOnly({"type", "sees", "intrinsics", "T_ref_nominal"});
+  field.AllowOnly({"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "T_ref_nominal"});
   Sensor sensor;
   sensor.id = SensorId(field.Key());
   const YamlField type = field.At("type");
@@ -72,28 +85,72 @@ Sensor ReadSensor(const YamlField& field) {
   else
     type.Refuse(kind.error().what, kind.error().cure);
   if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
+  const auto model = field.Find("model");
+  if (model && sensor.kind == SensorKind::kCamera) sensor.camera_model = ReadModel(*model);
+  if (model && sensor.kind != SensorKind::kCamera) model->Refuse("is for cameras only", "Leave it away.");
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
+  if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T);
   if (const Status valid = Validate(sensor); !valid) field.Refuse(valid.error());
   return sensor;
 }
 
-Checkerboard ReadTarget(const YamlField& field) {
-  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial"});
-  if (const YamlField type = field.At("type"); type.Text() != "checkerboard")
-    type.Refuse("is not known here", "This version knows checkerboard.");
-  Checkerboard board;
-  board.id = TargetId(field.Key());
-  const std::vector<YamlField> corners = field.At("inner_corners").Items();
-  if (corners.size() == 2) {
-    board.inner_cols = static_cast<int>(corners[0].Integer(1, 1000));
-    board.inner_rows = static_cast<int>(corners[1].Integer(1, 1000));
-  } else {
-    field.At("inner_corners").Refuse("must be two numbers, [columns, rows]");
+void ReadCounts(const YamlField& target, const char* key, int less, Target& board) {
+  const YamlField field = target.At(key);
+  const std::vector<YamlField> counts = field.Items();
+  if (counts.size() != 2) return field.Refuse("must be two numbers, [columns, rows]");
+  board.cols = static_cast<int>(counts[0].Integer(1, 1000)) - less;
+  board.rows = static_cast<int>(counts[1].Integer(1, 1000)) - less;
+}
+
+void ReadSize(const YamlField& target, const char* key, const char* sigma_key, Target& board) {
+  board.square_m = target.At(key).Number();
+  if (const auto sigma = target.Find(sigma_key)) board.square_sigma_m = sigma->Number();
+}
+
+void ReadCheckerboard(const YamlField& field, Target& board) {
+  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m"});
+  ReadCounts(field, "inner_corners", 0, board);
+  ReadSize(field, "square_size_m", "square_size_sigma_m", board);
+}
+
+// People count the squares of a ChArUco board; its points are the inner corners.
+void ReadCharuco(const YamlField& field, Target& board) {
+  field.AllowOnly({"type", "squares", "square_size_m", "square_size_sigma_m", "marker_size_m", "dictionary",
+                   "legacy_layout", "serial", "plate_size_m"});
+  ReadCounts(field, "squares", 1, board);
+  ReadSize(field, "square_size_m", "square_size_sigma_m", board);
+  board.marker_m = field.At("marker_size_m").Number();
+  board.dictionary = field.At("dictionary").Text();
+  if (const auto legacy = field.Find("legacy_layout")) {
+    board.legacy_layout = legacy->Text() == "true";
+    if (!board.legacy_layout && legacy->Text() != "false") legacy->Refuse("must be true or false");
   }
-  board.square_m = field.At("square_size_m").Number();
-  if (const auto sigma = field.Find("square_size_sigma_m")) board.square_sigma_m = sigma->Number();
+}
+
+void ReadTagGrid(const YamlField& field, Target& board) {
+  field.AllowOnly(
+      {"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial", "plate_size_m"});
+  ReadCounts(field, "tags", 0, board);
+  ReadSize(field, "tag_size_m", "tag_size_sigma_m", board);
+  board.spacing_ratio = field.At("spacing_ratio").Number();
+  board.dictionary = board.kind == TargetKind::kAprilGrid ? TextOr(field, "dictionary", "DICT_APRILTAG_36h11")
+                                                          : field.At("dictionary").Text();
+}
+
+Target ReadTarget(const YamlField& field) {
+  Target board;
+  board.id = TargetId(field.Key());
+  const YamlField type = field.At("type");
+  if (const Result<TargetKind> kind = TargetKindOf(type.Text()))
+    board.kind = *kind;
+  else
+    type.Refuse("is not known here", "This version knows checkerboard, charuco, aruco_grid and april_grid.");
+  if (board.kind == TargetKind::kCheckerboard) ReadCheckerboard(field, board);
+  if (board.kind == TargetKind::kCharuco) ReadCharuco(field, board);
+  if (IsTagGrid(board.kind)) ReadTagGrid(field, board);
   board.serial = TextOr(field, "serial", "");
+  if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
   if (const Status valid = Validate(board); !valid) field.Refuse(valid.error());
   return board;
 }
@@ -108,9 +165,9 @@ SessionHeader ReadHeader(const YamlField& root) {
   header.captured_at = ReadCapturedAt(root.At("captured_at"));
   header.operator_name = TextOr(root, "operator", "");
   for (const YamlField& target : root.At("targets").Members())
-    header.targets.push_back(ReadTarget(target.Called("target '" + target.Key() + "'")));
+    header.targets.push_back(ReadTarget(target.Called(Title("target", target.Key()))));
   for (const YamlField& sensor : root.At("sensors").Members())
-    header.sensors.push_back(ReadSensor(sensor.Called("sensor '" + sensor.Key() + "'")));
+    header.sensors.push_back(ReadSensor(sensor.Called(Title("sensor", sensor.Key()))));
   if (const auto reference = root.Find("reference"))
     header.reference = ReadId<SensorId>(*reference);
   else if (!header.sensors.empty())

@@ -56,7 +56,17 @@ template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);
 
-// A fill-reducing order of the vertices of a graph: position p is taken by vertex order[p]. Natural for small graphs.
-[[nodiscard]] std::vector<int> EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links);
+// What a factor of blocks of one row would take: its entries, and floating-point operations.
+struct EliminationCost {
+  double entries = 0.0, flops = 0.0;
+};
+
+// A fill-reducing order of the vertices of a graph: position p is taken by vertex order[p]. Natural for small graphs,
+// which have no estimate of the cost either.
+struct Elimination {
+  std::vector<int> order;
+  EliminationCost cost;
+};
+[[nodiscard]] Elimination EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links);
 
 }  // namespace rigcal::graph

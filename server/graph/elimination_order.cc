@@ -26,20 +26,25 @@ cholmod_sparse* LinkMatrix(int vertex_count, const std::vector<std::pair<int, in
 
 }  // namespace
 
-std::vector<int> EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links) {
-  std::vector<int> order(static_cast<std::size_t>(std::max(vertex_count, 0)));
+Elimination EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links) {
+  Elimination elimination;
+  std::vector<int>& order = elimination.order;
+  order.resize(static_cast<std::size_t>(std::max(vertex_count, 0)));
   std::iota(order.begin(), order.end(), 0);
-  if (vertex_count <= kBlocksDenseMax) return order;
+  if (vertex_count <= kBlocksDenseMax) return elimination;
   cholmod_common common;
   cholmod_start(&common);
   common.print = 0;
   if (cholmod_sparse* matrix = LinkMatrix(vertex_count, links, &common); matrix != nullptr) {
     std::vector<int> found(order.size());
-    if (cholmod_amd(matrix, nullptr, 0, found.data(), &common) != 0) order = std::move(found);
+    if (cholmod_amd(matrix, nullptr, 0, found.data(), &common) != 0) {
+      order = std::move(found);
+      elimination.cost = {common.lnz, common.fl};
+    }
     cholmod_free_sparse(&matrix, &common);
   }
   cholmod_finish(&common);
-  return order;
+  return elimination;
 }
 
 }  // namespace rigcal::graph

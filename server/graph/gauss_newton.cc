@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "server/graph/secant_pairs.h"
+#include "server/graph/step_solver.h"
+
 namespace rigcal::graph {
 namespace {
 
@@ -13,8 +16,10 @@ constexpr double kRoundingRelative = 1e-12;  // of the cost: below this a rise i
 constexpr double kLambdaFirst = 1e-6, kLambdaMax = 1e12, kLambdaFactor = 10.0, kLambdaLeast = 1e-9;
 constexpr double kLambdaTrusted = 1e-3;  // a short step under heavier damping says nothing
 constexpr int kClimbsMax = 2;
-constexpr double kStepReuse = 0.05;  // m and rad
-constexpr double kGainReuse = 0.1;   // as long as each step gains this much less than the one before
+constexpr double kStepReuse = 0.05;      // m and rad
+constexpr double kGainReuse = 0.1;       // as long as each step gains this much less than the one before
+constexpr double kShrinkLeast = 1e-4;    // one good step does not promise that the next shrinks as well
+constexpr double kRestRelative = 5e-15;  // of the cost: left to gain after a step, if gains go on shrinking as they did
 
 // One descent. Owns all the memory it needs, so that its loop allocates nothing.
 //
@@ -24,7 +29,13 @@ constexpr double kGainReuse = 0.1;   // as long as each step gains this much les
 class Descent {
  public:
   Descent(const Problem& problem, const std::vector<Pin>& pins, BlockCholesky<6>& cholesky, const Poses& start)
-      : problem_(problem), pins_(pins), cholesky_(cholesky), T_ref_(start), best_T_ref_(start), trial_(start) {
+      : problem_(problem),
+        pins_(pins),
+        cholesky_(cholesky),
+        T_ref_(start),
+        best_T_ref_(start),
+        trial_(start),
+        rough_(problem.free_count() <= kBlocksDenseMax || PrefersConjugateGradients(problem)) {
     Prepare();
     best_cost_ = equations_.cost;
   }
@@ -36,6 +47,7 @@ class Descent {
       optimum.converged = Iterate();
     }
     optimum.T_ref = std::move(best_T_ref_);
+    optimum.residuals = std::move(residuals_);
     optimum.cost = best_cost_;
     optimum.converged = optimum.converged && std::isfinite(best_cost_);
     return optimum;
@@ -44,7 +56,10 @@ class Descent {
  private:
   void Prepare() {
     if (reuse_factor_) return LinearizeGradient(problem_, T_ref_, equations_);
-    Linearize(problem_, T_ref_, equations_);
+    if (std::exchange(rough_, false))
+      LinearizeRoughly(problem_, T_ref_, equations_);
+    else
+      Linearize(problem_, T_ref_, equations_);
     AddPins(pins_, equations_.H);
   }
 
@@ -52,21 +67,37 @@ class Descent {
   bool Iterate() {
     const bool reused = reuse_factor_;
     if (!reused && !cholesky_.Factor(equations_.H, lambda_)) return Damp();
+    if (!reused) secants_.Clear();
     step_ = -equations_.g;
-    cholesky_.SolveInPlace(step_);
+    secants_.Apply(step_, [this](Eigen::VectorXd& x) { cholesky_.SolveInPlace(x); });
     if (!step_.allFinite()) return Damp();
     const double gain = -step_.dot(equations_.g) + lambda_ * DampedLength();
-    const bool small = gain <= kCostRelative * equations_.cost || step_.cwiseAbs().maxCoeff() <= kStep;
+    const bool small =
+        gain <= kCostRelative * equations_.cost || step_.cwiseAbs().maxCoeff() <= kStep || LeavesNothing(gain);
     const bool last = small && lambda_ <= kLambdaTrusted && climbs_ == 0;
     reuse_factor_ =
         lambda_ == 0.0 && step_.cwiseAbs().maxCoeff() <= kStepReuse && (!reused || gain < kGainReuse * gain_);
     gain_ = gain;
     Retract(T_ref_, step_, trial_);
     std::swap(T_ref_, trial_);
-    Prepare();
+    if (last) {
+      residuals_ = Residuals(problem_, T_ref_);
+      equations_.cost = Cost(problem_, residuals_);
+    } else {
+      g_before_ = equations_.g;
+      Prepare();
+      if (reuse_factor_) secants_.Remember(step_, equations_.g - g_before_);
+    }
     if (Improves(gain)) return Keep(last);
+    residuals_.clear();
     if (last) return true;
     return climbs_ < kClimbsMax && lambda_ == 0.0 && std::isfinite(equations_.cost) ? Climb() : Damp();
+  }
+
+  // Gains shrink at least geometrically near the optimum: what the steps after this one would still gain is nothing.
+  [[nodiscard]] bool LeavesNothing(double gain) const {
+    return gain_ > 0.0 && gain < kGainReuse * gain_ &&
+           gain * std::max(gain / gain_, kShrinkLeast) <= kRestRelative * equations_.cost;
   }
 
   [[nodiscard]] bool Improves(double gain) const {
@@ -95,6 +126,7 @@ class Descent {
   bool Damp() {
     lambda_ = std::max(lambda_ * kLambdaFactor, kLambdaFirst);
     climbs_ = 0;
+    gain_ = 0.0;
     reuse_factor_ = false;
     T_ref_ = best_T_ref_;
     Prepare();
@@ -118,10 +150,13 @@ class Descent {
   Poses T_ref_, best_T_ref_, trial_;
   NormalEquations equations_;  // at T_ref_
   double best_cost_ = 0.0;
-  Eigen::VectorXd step_;
+  Eigen::VectorXd step_, g_before_;
+  std::vector<Vector6d> residuals_;  // after the last step, if it was kept
+  SecantPairs secants_;
   double lambda_ = 0.0;
-  double gain_ = 0.0;          // of the step before
+  double gain_ = 0.0;          // of the step before; 0: none to compare with
   bool reuse_factor_ = false;  // H barely changes over short steps: the old factor finds the same optimum
+  bool rough_ = false;         // for the first step, where a start is fair or a factor costs little
   int climbs_ = 0;
 };
 
@@ -140,7 +175,7 @@ void AddPins(const std::vector<Pin>& pins, BlockMatrix<6>& H) {
 
 Optimum Optimize(const Problem& problem, const Poses& start, const std::vector<Pin>& pins, BlockCholesky<6>& cholesky,
                  int iterations_max) {
-  if (problem.free_count() == 0) return {start, Cost(problem, start), 0, true};
+  if (problem.free_count() == 0) return {start, {}, Cost(problem, start), 0, true};
   return Descent(problem, pins, cholesky, start).Run(iterations_max);
 }
 

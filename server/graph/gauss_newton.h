@@ -14,6 +14,7 @@ struct Pin {
 
 struct Optimum {
   Poses T_ref;
+  std::vector<Vector6d> residuals;  // by constraint; empty if they are not at hand
   double cost = 0.0;
   int iterations = 0;
   bool converged = false;

@@ -1,20 +1,16 @@
 #include "server/graph/linearize.h"
 
+#include "server/graph/edge_pair.h"
+
 namespace rigcal::graph {
 namespace {
 
 using Eigen::Matrix3d;
 
-// [D U; 0 D]: both Jacobians of an edge have this shape, which saves half of every product.
-struct UpperBlocks {
-  Matrix3d D, U;
-};
-
-UpperBlocks BlocksOf(const Matrix6d& matrix) { return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 3>()}; }
-
-UpperBlocks AdjointBlocks(const Se3& T) {
-  const Matrix3d R = T.R();
-  return {R, Hat(T.p_m) * R};
+// Ad(T_i_j^-1).
+UpperBlocks InverseAdjointBlocks(const Se3& T_i_j) {
+  const Matrix3d R_j_i = T_i_j.R().transpose();
+  return {R_j_i, -R_j_i * Hat(T_i_j.p_m)};
 }
 
 // S * [D U; 0 D].
@@ -25,58 +21,58 @@ Matrix6d TimesUpper(const Matrix6d& S, const UpperBlocks& A) {
   return product;
 }
 
-// [D U; 0 D]^T * S.
-Matrix6d UpperTransposedTimes(const UpperBlocks& A, const Matrix6d& S) {
-  Matrix6d product;
-  product.topRows<3>().noalias() = A.D.transpose() * S.topRows<3>();
-  product.bottomRows<3>().noalias() = A.U.transpose() * S.topRows<3>() + A.D.transpose() * S.bottomRows<3>();
-  return product;
-}
-
-Vector6d UpperTransposedTimes(const UpperBlocks& A, const Vector6d& v) {
-  Vector6d product;
-  product.head<3>() = A.D.transpose() * v.head<3>();
-  product.tail<3>() = A.U.transpose() * v.head<3>() + A.D.transpose() * v.tail<3>();
-  return product;
-}
-
 const Se3& PoseOf(const Poses& T_ref, int vertex) { return T_ref[static_cast<std::size_t>(vertex)]; }
 
-// What an edge's gradient and Hessian share: J_j = Jr^-1(e), J_i = -J_j A with A = Ad(T_j^-1 T_i).
-struct EdgeTerms {
-  UpperBlocks J_j, A;
-  Vector6d g_j;
-};
-
-EdgeTerms AddGradient(const Constraint& constraint, const Poses& T_ref, NormalEquations& equations) {
-  EdgeTerms terms;
-  const Se3 T_j_i = PoseOf(T_ref, constraint.j).Inverse() * PoseOf(T_ref, constraint.i);
-  const Vector6d e = (constraint.T_j_i * T_j_i.Inverse()).Log();
-  const Vector6d weighted = constraint.Omega * e;
-  equations.cost += e.dot(weighted);
-  terms.J_j = BlocksOf(RightJacobianInverse(e));
-  terms.A = AdjointBlocks(T_j_i);
-  terms.g_j = UpperTransposedTimes(terms.J_j, weighted);
-  if (constraint.j > 0) equations.g.segment<6>(6 * (constraint.j - 1)) += terms.g_j;
-  if (constraint.i > 0) equations.g.segment<6>(6 * (constraint.i - 1)) -= UpperTransposedTimes(terms.A, terms.g_j);
-  return terms;
+// The edge's part of the gradient: J_j = Jr^-1(e), J_i = -J_j Ad(T_j_i). Gives its part of the cost.
+double AddForces(const Constraint& constraint, const EdgeState& state, Eigen::VectorXd& g) {
+  Vector6d weighted;
+  weighted.noalias() = constraint.Omega * state.e;
+  const Vector6d g_j = JacobianTransposedTimes(state.e, weighted);
+  if (constraint.j > 0) g.segment<6>(6 * (constraint.j - 1)) += g_j;
+  if (constraint.i > 0) g.segment<6>(6 * (constraint.i - 1)) -= ForceOnI(state.T_i_j, g_j);
+  return state.e.dot(weighted);
 }
 
-// One product W serves three blocks.
-void AddHessian(const Constraint& constraint, const EdgeTerms& terms, BlockMatrix<6>& H) {
-  const Matrix6d W = UpperTransposedTimes(terms.J_j, TimesUpper(constraint.Omega, terms.J_j));
+EdgeState AddGradient(const Constraint& constraint, const Poses& T_ref, NormalEquations& equations) {
+  const EdgeState state = EdgeStateAt(constraint, PoseOf(T_ref, constraint.i), PoseOf(T_ref, constraint.j));
+  equations.cost += AddForces(constraint, state, equations.g);
+  return state;
+}
+
+// W = J_j^T Omega J_j serves three blocks.
+void AddBlocks(const Constraint& constraint, const Matrix6d& W, const Se3& T_i_j, BlockMatrix<6>& H) {
   const auto i = static_cast<std::size_t>(constraint.i), j = static_cast<std::size_t>(constraint.j);
   if (j > 0) H.diagonal[j - 1] += W;
   if (i == 0) return;
-  const Matrix6d WA = TimesUpper(W, terms.A);
-  H.diagonal[i - 1] += UpperTransposedTimes(terms.A, WA);
+  const UpperBlocks A = InverseAdjointBlocks(T_i_j);
+  const Matrix6d WA = TimesUpper(W, A), WA_transposed = WA.transpose();
+  H.diagonal[i - 1] += TimesUpper(WA_transposed, A);
   if (constraint.slot < 0) return;
-  Matrix6d& block = H.off_diagonal[static_cast<std::size_t>(constraint.slot)];
-  if (j > i) {
-    block -= WA;
-  } else {
-    block -= WA.transpose();
-  }
+  H.off_diagonal[static_cast<std::size_t>(constraint.slot)] -= j > i ? WA : WA_transposed;
+}
+
+void AddHessian(const Constraint& constraint, const EdgeState& state, BlockMatrix<6>& H) {
+  const UpperBlocks J_j = JacobianOf(state.e);
+  const Matrix6d half = TimesUpper(constraint.Omega, J_j).transpose();
+  AddBlocks(constraint, TimesUpper(half, J_j), state.T_i_j, H);
+}
+
+void AddForces(const Constraint& constraint, const Vector6d& g_i, const Vector6d& g_j, Eigen::VectorXd& g) {
+  if (constraint.j > 0) g.segment<6>(6 * (constraint.j - 1)) += g_j;
+  if (constraint.i > 0) g.segment<6>(6 * (constraint.i - 1)) -= g_i;
+}
+
+// False if one of the two needs the closed forms.
+bool AddGradients(const Constraint& a, const Constraint& b, const Poses& T_ref, NormalEquations& equations) {
+  pair::State state;
+  if (!pair::StateAt(a, b, T_ref, state)) return false;
+  const pair::Twist weighted = pair::Weighted(a.Omega, b.Omega, state.e);
+  const pair::Double2 cost = pair::Dot(state.e.linear, weighted.linear) + pair::Dot(state.e.angular, weighted.angular);
+  equations.cost += cost[0] + cost[1];
+  const pair::Twist g_j = pair::ForceOnJ(state.e, weighted), g_i = pair::ForceOnI(state, g_j);
+  AddForces(a, g_i.Lane(0), g_j.Lane(0), equations.g);
+  AddForces(b, g_i.Lane(1), g_j.Lane(1), equations.g);
+  return true;
 }
 
 void Clear(const Problem& problem, NormalEquations& equations) {
@@ -87,14 +83,32 @@ void Clear(const Problem& problem, NormalEquations& equations) {
 }  // namespace
 
 Vector6d Residual(const Constraint& constraint, const Poses& T_ref) {
-  return (constraint.T_j_i * (PoseOf(T_ref, constraint.i).Inverse() * PoseOf(T_ref, constraint.j))).Log();
+  return EdgeStateAt(constraint, PoseOf(T_ref, constraint.i), PoseOf(T_ref, constraint.j)).e;
 }
 
-double Cost(const Problem& problem, const Poses& T_ref) {
+std::vector<Vector6d> Residuals(const Problem& problem, const Poses& T_ref) {
+  const std::vector<Constraint>& constraints = problem.constraints;
+  std::vector<Vector6d> residuals(constraints.size());
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    pair::State state;
+    if (k + 1 < constraints.size() && pair::StateAt(constraints[k], constraints[k + 1], T_ref, state)) {
+      residuals[k] = state.e.Lane(0);
+      residuals[++k] = state.e.Lane(1);
+    } else {
+      residuals[k] = Residual(constraints[k], T_ref);
+    }
+  }
+  return residuals;
+}
+
+double Cost(const Problem& problem, const Poses& T_ref) { return Cost(problem, Residuals(problem, T_ref)); }
+
+double Cost(const Problem& problem, const std::vector<Vector6d>& residuals) {
   double cost = 0.0;
-  for (const Constraint& constraint : problem.constraints) {
-    const Vector6d e = Residual(constraint, T_ref);
-    cost += e.dot(constraint.Omega * e);
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    Vector6d weighted;
+    weighted.noalias() = problem.constraints[k].Omega * residuals[k];
+    cost += residuals[k].dot(weighted);
   }
   return cost;
 }
@@ -107,9 +121,29 @@ void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equa
     AddHessian(constraint, AddGradient(constraint, T_ref, equations), equations.H);
 }
 
+void LinearizeRoughly(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
+  LinearizeGradient(problem, T_ref, equations);
+  equations.H.Resize(problem.pattern);
+  equations.H.SetZero();
+  for (const Constraint& constraint : problem.constraints)
+    AddBlocks(constraint, constraint.Omega, constraint.T_i_j, equations.H);
+}
+
+void LinearizeEdge(const Constraint& constraint, const Poses& T_ref, BlockMatrix<6>& H, Eigen::VectorXd* g) {
+  const EdgeState state = EdgeStateAt(constraint, PoseOf(T_ref, constraint.i), PoseOf(T_ref, constraint.j));
+  AddHessian(constraint, state, H);
+  if (g != nullptr) AddForces(constraint, state, *g);
+}
+
 void LinearizeGradient(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
   Clear(problem, equations);
-  for (const Constraint& constraint : problem.constraints) AddGradient(constraint, T_ref, equations);
+  const std::vector<Constraint>& constraints = problem.constraints;
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    if (k + 1 < constraints.size() && AddGradients(constraints[k], constraints[k + 1], T_ref, equations))
+      ++k;
+    else
+      AddGradient(constraints[k], T_ref, equations);
+  }
 }
 
 void Retract(const Poses& T_ref, const Eigen::VectorXd& step, Poses& result) {

@@ -19,9 +19,15 @@ struct NormalEquations {
 
 // e = Log(T_i_j_measured^-1 T_i^-1 T_j).
 [[nodiscard]] Vector6d Residual(const Constraint& constraint, const Poses& T_ref);
+[[nodiscard]] std::vector<Vector6d> Residuals(const Problem& problem, const Poses& T_ref);
+[[nodiscard]] double Cost(const Problem& problem, const std::vector<Vector6d>& residuals);
 [[nodiscard]] double Cost(const Problem& problem, const Poses& T_ref);
 // Analytic, with the full inverse right Jacobian of SE(3). Allocates only on the first call with `equations`.
 void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equations);
+// The same with H as if every residual were zero: near enough for a first step from a fair start, at half the work.
+void LinearizeRoughly(const Problem& problem, const Poses& T_ref, NormalEquations& equations);
+// Adds one edge to H, and to g if given.
+void LinearizeEdge(const Constraint& constraint, const Poses& T_ref, BlockMatrix<6>& H, Eigen::VectorXd* g = nullptr);
 // Cost and gradient alone; H stays as it is.
 void LinearizeGradient(const Problem& problem, const Poses& T_ref, NormalEquations& equations);
 // T * Exp(step), vertex by vertex; the reference stays.

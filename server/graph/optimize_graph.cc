@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/graph/step_solver.h"
+
 namespace rigcal::graph {
 namespace {
 
@@ -9,16 +11,14 @@ bool SamePins(const std::vector<Pin>& a, const std::vector<Pin>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Pin p, Pin q) { return p.row == q.row; });
 }
 
-GlobalError MeanSquares(const std::vector<EdgeResidual>& residuals) {
+GlobalError MeanSquares(const std::vector<Vector6d>& residuals) {
   GlobalError error;
-  double count = 0.0;
-  for (const EdgeResidual& residual : residuals) {
-    if (!residual.in_solution) continue;
-    error.translation_m2 += residual.e.head<3>().squaredNorm();
-    error.rotation_rad2 += residual.e.tail<3>().squaredNorm();
-    count += 1.0;
+  if (residuals.empty()) return error;
+  for (const Vector6d& e : residuals) {
+    error.translation_m2 += e.head<3>().squaredNorm();
+    error.rotation_rad2 += e.tail<3>().squaredNorm();
   }
-  if (count == 0.0) return {};
+  const auto count = static_cast<double>(residuals.size());
   error.translation_m2 /= count;
   error.rotation_rad2 /= count;
   error.total = error.translation_m2 + error.rotation_rad2;
@@ -32,13 +32,14 @@ int DegreesOfFreedom(const Problem& problem, const Observability& observability)
   return rank_sum - (6 * problem.free_count() - observability.nullity);
 }
 
-std::vector<EdgeResidual> ResidualsAt(const Graph& graph, const Problem& problem, const Poses& T_ref) {
+std::vector<EdgeResidual> ByEdge(const Graph& graph, const Problem& problem, const std::vector<Vector6d>& e) {
   std::vector<EdgeResidual> residuals(graph.edges.size());
   for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k].edge = graph.edges[problem.edges_by_id[k]].id;
-  for (const Constraint& constraint : problem.constraints) {
+  for (std::size_t k = 0; k < e.size(); ++k) {
+    const Constraint& constraint = problem.constraints[k];
     EdgeResidual& residual = residuals[constraint.edge];
     residual.in_solution = true;
-    residual.e = Residual(constraint, T_ref);
+    residual.e = e[k];
     residual.weighted = residual.e.dot(constraint.Omega * residual.e);
   }
   return residuals;
@@ -104,11 +105,12 @@ void FillMarginals(const Graph& graph, const Problem& problem, const Settled& se
   NormalEquations equations;
   Linearize(problem, settled.optimum.T_ref, equations);
   AddPins(settled.observability.pins, equations.H);
-  if (!cholesky.Factor(equations.H, 0.0)) {
+  std::vector<Matrix6d> marginals;
+  if (cholesky.Factor(equations.H, 0.0)) marginals = cholesky.InverseDiagonal();
+  if (marginals.empty()) {
     solution.diagnoses.push_back(Singular());
     return ForgetPoses(graph, solution);
   }
-  const std::vector<Matrix6d> marginals = cholesky.InverseDiagonal();
   for (std::size_t v = 1; v < problem.sensor_of_vertex.size(); ++v) {
     SensorPose& pose = solution.poses[problem.sensor_of_vertex[v]];
     if (pose.known) pose.covariance = Symmetrized(marginals[v - 1]);
@@ -147,21 +149,23 @@ Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cho
   return settled;
 }
 
-GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const Poses& tree, const Poses& start,
-                            const SolveOptions& options) {
+GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const std::vector<Vector6d>& tree_residuals,
+                            const Poses& start, const SolveOptions& options) {
   GraphSolution solution;
   solution.poses.resize(graph.sensors.size());
   solution.diagnoses = problem.diagnoses;
-  const auto cholesky = MakeCholesky<6>(problem.pattern);
+  const auto cholesky = MakeStepSolver(problem);
   if (cholesky == nullptr) return TooLarge(graph, problem);
   const Settled settled = Settle(problem, start, *cholesky, options.iterations_max);
   solution.converged = settled.optimum.converged;
   solution.iterations = settled.optimum.iterations;
   if (!solution.converged) solution.diagnoses.push_back(NotConverged(settled.optimum));
-  solution.residuals = ResidualsAt(graph, problem, settled.optimum.T_ref);
+  const std::vector<Vector6d> e =
+      settled.optimum.residuals.empty() ? Residuals(problem, settled.optimum.T_ref) : settled.optimum.residuals;
+  solution.residuals = ByEdge(graph, problem, e);
   for (const EdgeResidual& residual : solution.residuals) solution.cost += residual.weighted;
-  solution.before = MeanSquares(ResidualsAt(graph, problem, tree));
-  solution.after = MeanSquares(solution.residuals);
+  solution.before = MeanSquares(tree_residuals);
+  solution.after = MeanSquares(e);
   solution.dof = DegreesOfFreedom(problem, settled.observability);
   FillPoses(graph, problem, settled, solution);
   if (options.marginals) FillMarginals(graph, problem, settled, *cholesky, solution);
@@ -173,7 +177,7 @@ GraphSolution WithoutReference(const Graph& graph, const Problem& problem) {
   solution.diagnoses = problem.diagnoses;
   solution.poses.resize(graph.sensors.size());
   for (std::size_t s = 0; s < graph.sensors.size(); ++s) solution.poses[s].sensor = graph.sensors[s];
-  solution.residuals = ResidualsAt(graph, problem, {});
+  solution.residuals = ByEdge(graph, problem, {});
   solution.converged = graph.sensors.empty();
   return solution;
 }

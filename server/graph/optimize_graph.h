@@ -14,9 +14,10 @@ struct Settled {
 [[nodiscard]] Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky,
                              int iterations_max);
 
-// `tree` is the start that E_global before is measured at.
-[[nodiscard]] GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const Poses& tree,
-                                          const Poses& start, const SolveOptions& options);
+// E_global before is that of `tree_residuals`, by constraint.
+[[nodiscard]] GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem,
+                                          const std::vector<Vector6d>& tree_residuals, const Poses& start,
+                                          const SolveOptions& options);
 // A graph whose reference is not among its sensors, or that has no sensors: nothing is known.
 [[nodiscard]] GraphSolution WithoutReference(const Graph& graph, const Problem& problem);
 

@@ -2,9 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <numeric>
+#include <string_view>
 #include <tuple>
 
+#include "server/graph/block_kernels.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/union_find.h"
 #include "server/math/covariance.h"
@@ -26,11 +30,22 @@ bool EdgeBefore(const GraphEdge& a, const GraphEdge& b) {
   return std::lexicographical_compare(a.Omega.data(), a.Omega.data() + 36, b.Omega.data(), b.Omega.data() + 36);
 }
 
+// The first characters of an id as a number that sorts as they do: compares most ids without looking at them.
+std::uint64_t PrefixOf(std::string_view id) {
+  std::uint64_t prefix = 0;
+  for (std::size_t k = 0; k < sizeof prefix; ++k)
+    prefix = prefix << 8 | (k < id.size() ? static_cast<unsigned char>(id[k]) : 0U);
+  return prefix;
+}
+
 std::vector<std::size_t> SortedById(const std::vector<GraphEdge>& edges) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> keys(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) keys[e] = {PrefixOf(edges[e].id.str()), e};
+  std::sort(keys.begin(), keys.end(), [&edges](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first < b.first : EdgeBefore(edges[a.second], edges[b.second]);
+  });
   std::vector<std::size_t> order(edges.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&edges](std::size_t a, std::size_t b) { return EdgeBefore(edges[a], edges[b]); });
+  for (std::size_t k = 0; k < keys.size(); ++k) order[k] = keys[k].second;
   return order;
 }
 
@@ -43,8 +58,7 @@ constexpr double kTranslationMax_m = 1e9;
 constexpr double kInformationMin = 1e-30, kInformationMax = 1e30;
 
 // Empty: usable. Else why not.
-std::string WhyUnusable(const GraphEdge& edge, bool frames_known) {
-  if (!frames_known) return "names a sensor that is not in the graph";
+std::string WhyUnusable(const GraphEdge& edge) {
   if (edge.frame_a == edge.frame_b) return "joins a sensor with itself";
   if (!edge.T_a_b.p_m.allFinite() || !edge.T_a_b.q.coeffs().allFinite()) return "has a pose that is not finite";
   if (edge.T_a_b.q.norm() < 0.5) return "has a quaternion of length zero";
@@ -55,17 +69,20 @@ std::string WhyUnusable(const GraphEdge& edge, bool frames_known) {
 // Log det Omega and rank, cheaply where Omega is clearly positive definite; false if it is indefinite, asymmetric or
 // zero.
 bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
-  const double scale = edge.Omega.cwiseAbs().maxCoeff();
-  if (!edge.Omega.allFinite() || scale < kInformationMin || scale > kInformationMax) return false;
-  if ((edge.Omega - edge.Omega.transpose()).cwiseAbs().maxCoeff() > 1e-9 * scale) return false;
-  constraint.Omega = Symmetrized(edge.Omega);
-  const Eigen::LLT<Matrix6d> llt(constraint.Omega);
-  const Vector6d pivots = llt.matrixLLT().diagonal();
+  constraint.Omega = 0.5 * edge.Omega + 0.5 * edge.Omega.transpose();
+  Matrix6d L = constraint.Omega;
+  const bool definite = FactorBlock<6>(L);  // inverse pivots; then no entry is larger than the largest of the diagonal
+  const double scale = definite ? constraint.Omega.diagonal().maxCoeff() : edge.Omega.cwiseAbs().maxCoeff();
+  if (!(scale >= kInformationMin && scale <= kInformationMax) || (!definite && !edge.Omega.allFinite())) return false;
+  if (!((edge.Omega - constraint.Omega).cwiseAbs().maxCoeff() <= 0.5e-9 * scale)) return false;
   constexpr double kClearPivotRatio = 1e-5;  // of square roots, after scaling: far above the tolerance of a rank
-  if (edge.rank == 6 && llt.info() == Eigen::Success &&
-      (pivots.array() > kClearPivotRatio * constraint.Omega.diagonal().array().sqrt()).all()) {
+  const Vector6d inverse_pivots = L.diagonal();
+  if (edge.rank == 6 && definite &&
+      (inverse_pivots.array().square() * constraint.Omega.diagonal().array() <
+       1.0 / (kClearPivotRatio * kClearPivotRatio))
+          .all()) {
     constraint.rank = 6;
-    constraint.log_det_Omega = 2.0 * pivots.array().log().sum();
+    constraint.log_det_Omega = -2.0 * std::log(inverse_pivots.prod());
     return true;
   }
   if (!IsPositiveSemidefinite(constraint.Omega)) return false;
@@ -73,12 +90,6 @@ bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
   constraint.log_det_Omega =
       constraint.rank == 6 ? constraint.Omega.ldlt().vectorD().cwiseAbs().array().log().sum() : 0.0;
   return constraint.rank > 0;
-}
-
-void FillMeasurement(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint) {
-  constraint.T_i_j = edge.T_a_b.Normalized();
-  constraint.T_j_i = constraint.T_i_j.Inverse();
-  constraint.edge = edge_idx;
 }
 
 struct Link {
@@ -89,7 +100,13 @@ struct Link {
 // The graph with sensors replaced by their rank in canonical order.
 struct Ranked {
   std::vector<std::size_t> sensor_of_rank;
-  std::vector<int> rank_of_sensor;
+  struct Name {
+    std::uint64_t prefix = 0;
+    std::string_view text;
+    int rank = -1;
+    friend auto operator<=>(const Name&, const Name&) = default;
+  };
+  std::vector<Name> names;  // sorted
   int reference = -1;
   std::vector<Link> links;
 };
@@ -97,6 +114,7 @@ struct Ranked {
 std::vector<std::size_t> CanonicalSensors(const Graph& graph) {
   std::vector<std::size_t> order(graph.sensors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
+  if (std::is_sorted(graph.sensors.begin(), graph.sensors.end(), SensorBefore)) return order;
   std::sort(order.begin(), order.end(),
             [&graph](std::size_t a, std::size_t b) { return SensorBefore(graph.sensors[a], graph.sensors[b]); });
   return order;
@@ -105,36 +123,33 @@ std::vector<std::size_t> CanonicalSensors(const Graph& graph) {
 Ranked RankSensors(const Graph& graph) {
   Ranked ranked;
   ranked.sensor_of_rank = CanonicalSensors(graph);
-  ranked.rank_of_sensor.resize(graph.sensors.size());
+  ranked.names.reserve(graph.sensors.size());
   for (std::size_t r = 0; r < ranked.sensor_of_rank.size(); ++r) {
-    ranked.rank_of_sensor[ranked.sensor_of_rank[r]] = static_cast<int>(r);
-    if (graph.sensors[ranked.sensor_of_rank[r]] == graph.reference) ranked.reference = static_cast<int>(r);
+    const SensorId& sensor = graph.sensors[ranked.sensor_of_rank[r]];
+    ranked.names.push_back({PrefixOf(sensor.str()), sensor.str(), static_cast<int>(r)});
+    if (sensor == graph.reference) ranked.reference = static_cast<int>(r);
   }
+  std::sort(ranked.names.begin(), ranked.names.end());
   return ranked;
 }
 
-int FindRank(const Graph& graph, const Ranked& ranked, const SensorId& sensor) {
-  const auto& order = ranked.sensor_of_rank;
-  const auto found = std::lower_bound(order.begin(), order.end(), sensor, [&graph](std::size_t s, const SensorId& id) {
-    return SensorBefore(graph.sensors[s], id);
-  });
-  if (found == order.end() || graph.sensors[*found] != sensor) return -1;
-  return static_cast<int>(found - order.begin());
+int FindRank(const Ranked& ranked, const SensorId& sensor) {
+  const Ranked::Name wanted{PrefixOf(sensor.str()), sensor.str(), -1};
+  const auto found = std::lower_bound(ranked.names.begin(), ranked.names.end(), wanted);
+  return found != ranked.names.end() && found->text == wanted.text ? found->rank : -1;
 }
 
 void CollectLinks(const Graph& graph, Ranked& ranked, Problem& problem) {
   ranked.links.reserve(graph.edges.size());
   for (std::size_t e = 0; e < problem.edges_by_id.size(); ++e) {
     const GraphEdge& edge = graph.edges[problem.edges_by_id[e]];
-    const int a = FindRank(graph, ranked, edge.frame_a), b = FindRank(graph, ranked, edge.frame_b);
-    Constraint constraint;
-    std::string why = WhyUnusable(edge, a >= 0 && b >= 0);
-    if (why.empty() && !JudgeInformation(edge, constraint))
-      why = "has an information matrix that is zero, out of range, not symmetric or not positive semi-definite";
-    if (why.empty()) {
-      FillMeasurement(edge, e, constraint);
-      ranked.links.push_back({a, b, constraint});
-    } else {
+    const int a = FindRank(ranked, edge.frame_a), b = FindRank(ranked, edge.frame_b);
+    ranked.links.push_back({a, b, Constraint()});
+    Constraint& constraint = ranked.links.back().constraint;
+    const std::string why =
+        a < 0 || b < 0 ? "names a sensor that is not in the graph" : FillConstraint(edge, e, constraint);
+    if (!why.empty()) {
+      ranked.links.pop_back();
       problem.diagnoses.push_back({"edge_not_usable", NameOfEdge(edge) + " " + why + " and takes no part",
                                    "Withdraw this edge, mend it where it was made and push it again."});
     }
@@ -173,7 +188,7 @@ std::vector<int> ReferenceComponent(const Graph& graph, const Ranked& ranked, Pr
 }
 
 // Vertex of every rank (-1: not in the component): the reference 0, the others in elimination order.
-std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& component) {
+std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& component, EliminationCost& cost) {
   std::vector<int> member(ranked.sensor_of_rank.size(), -1);
   for (std::size_t k = 0; k < component.size(); ++k)
     member[static_cast<std::size_t>(component[k])] = static_cast<int>(k);
@@ -183,7 +198,9 @@ std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& co
     const int a = member[static_cast<std::size_t>(link.a)], b = member[static_cast<std::size_t>(link.b)];
     if (a > 0 && b > 0) links.emplace_back(a - 1, b - 1);
   }
-  const std::vector<int> order = EliminationOrder(static_cast<int>(component.size()) - 1, links);
+  const Elimination elimination = EliminationOrder(static_cast<int>(component.size()) - 1, links);
+  const std::vector<int>& order = elimination.order;
+  cost = elimination.cost;
   std::vector<int> vertex_of_rank(ranked.sensor_of_rank.size(), -1);
   vertex_of_rank[static_cast<std::size_t>(component[0])] = 0;
   for (std::size_t p = 0; p < order.size(); ++p)
@@ -220,6 +237,16 @@ void FillVertices(const Ranked& ranked, const std::vector<int>& vertex_of_rank, 
 
 }  // namespace
 
+std::string FillConstraint(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint) {
+  if (std::string why = WhyUnusable(edge); !why.empty()) return why;
+  if (!JudgeInformation(edge, constraint))
+    return "has an information matrix that is zero, out of range, not symmetric or not positive semi-definite";
+  constraint.T_i_j = edge.T_a_b.Normalized();
+  constraint.T_j_i = constraint.T_i_j.Inverse();
+  constraint.edge = edge_idx;
+  return {};
+}
+
 Problem MakeProblem(const Graph& graph) {
   Problem problem;
   problem.edges_by_id = SortedById(graph.edges);
@@ -230,7 +257,7 @@ Problem MakeProblem(const Graph& graph) {
   if (component.empty()) return problem;
   problem.vertex_count = static_cast<int>(component.size());
   problem.sensor_of_vertex.resize(component.size());
-  const std::vector<int> vertex_of_rank = NumberVertices(ranked, component);
+  const std::vector<int> vertex_of_rank = NumberVertices(ranked, component, problem.elimination_cost);
   FillVertices(ranked, vertex_of_rank, problem);
   problem.constraints.reserve(ranked.links.size());
   for (const Link& link : ranked.links) {

@@ -2,6 +2,7 @@
 // in elimination order. Two graphs with the same edges in any order give the same Problem, bit by bit.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "server/graph/block_matrix.h"
@@ -28,11 +29,14 @@ struct Problem {
   std::vector<std::size_t> edges_by_id;  // indices into Graph::edges
   std::vector<Constraint> constraints;   // in the order of edges_by_id
   BlockPattern pattern;                  // of the free vertices 1..n as blocks 0..n-1
+  EliminationCost elimination_cost;      // of that pattern
   std::vector<Diagnosis> diagnoses;      // sensors that are not connected, edges that cannot be used
 
   [[nodiscard]] int free_count() const { return vertex_count > 0 ? vertex_count - 1 : 0; }
 };
 
+// Everything of a constraint but its vertices and slot, if the edge can be used; otherwise why it cannot.
+[[nodiscard]] std::string FillConstraint(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint);
 [[nodiscard]] Problem MakeProblem(const Graph& graph);
 
 }  // namespace rigcal::graph

@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <map>
 
 #include "server/graph/observability.h"
 #include "server/graph/solve.h"
-#include "server/graph/spanning_tree.h"
+#include "server/graph/solved_poses.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
@@ -28,20 +27,6 @@ Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& sol
   if (why != solution.diagnoses.end()) return Fail(ErrorCode::kInvalidInput, why->what, why->cure);
   return Fail(ErrorCode::kInvalidInput, "the pose of sensor " + id.str() + " is not known in this solution",
               "Add an edge that connects it with " + graph.reference.str() + ".");
-}
-
-Poses PosesOf(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
-  std::map<SensorId, const Se3*> known;
-  for (const SensorPose& pose : solution.poses)
-    if (pose.known) known.emplace(pose.sensor, &pose.T_ref_sensor);
-  Poses T_ref(static_cast<std::size_t>(problem.vertex_count));
-  std::vector<bool> placed(T_ref.size(), false);
-  for (std::size_t v = 0; v < T_ref.size(); ++v) {
-    const auto found = known.find(graph.sensors[problem.sensor_of_vertex[v]]);
-    placed[v] = found != known.end();
-    if (placed[v]) T_ref[v] = *found->second;
-  }
-  return GrowTree(problem, std::move(T_ref), std::move(placed));
 }
 
 // Covariance blocks of the columns of two vertices; the reference's are zero.
@@ -87,7 +72,7 @@ Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution,
     return Fail(ErrorCode::kInvalidInput, "sensors " + a.str() + " and " + b.str() + " are not connected in this graph",
                 "Solve the graph again with the edges that it has now.");
   RIGCAL_ASSIGN(const JointCovariance joint,
-                SolveColumns(problem, PosesOf(graph, problem, solution), vertex_a, vertex_b));
+                SolveColumns(problem, SolvedPoses(graph, problem, solution), vertex_a, vertex_b));
   relative.covariance = RelativeCovariance(relative.T_A_B, joint.C_AA, joint.C_BB, joint.C_AB);
   return relative;
 }

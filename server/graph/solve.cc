@@ -7,18 +7,18 @@
 #include "server/graph/optimize_graph.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/spanning_tree.h"
+#include "server/graph/step_solver.h"
 
 namespace rigcal::graph {
 namespace {
 
 constexpr double kTreeIsGood_rad = 0.5;  // below this residual rotation everywhere, a tree lies in the optimum's basin
 
-bool TreeSuffices(const Problem& problem, const Poses& tree) {
+bool StartSuffices(const Problem& problem, const std::vector<Vector6d>& residuals) {
   if (static_cast<int>(problem.constraints.size()) == problem.free_count()) return true;  // no loop: it is the optimum
-  if (problem.free_count() > kBlocksDenseMax) return false;
-  return std::all_of(problem.constraints.begin(), problem.constraints.end(), [&tree](const Constraint& constraint) {
-    return Residual(constraint, tree).tail<3>().norm() < kTreeIsGood_rad;
-  });
+  if (problem.free_count() > kBlocksDenseMax && !PrefersConjugateGradients(problem)) return false;
+  return std::all_of(residuals.begin(), residuals.end(),
+                     [](const Vector6d& e) { return e.tail<3>().norm() < kTreeIsGood_rad; });
 }
 
 // The start of the lowest weighted cost; earlier ones win ties.
@@ -60,9 +60,10 @@ GraphSolution SolveFrom(const Graph& graph, const GraphSolution* previous, const
   std::vector<Poses> starts;
   if (previous != nullptr) starts.push_back(WarmStart(graph, problem, *previous));
   starts.push_back(tree);
-  if (!TreeSuffices(problem, starts.front()))
+  const std::vector<Vector6d> tree_residuals = Residuals(problem, tree);
+  if (!StartSuffices(problem, previous == nullptr ? tree_residuals : Residuals(problem, starts.front())))
     if (std::optional<Poses> chordal = ChordalPoses(problem)) starts.push_back(std::move(*chordal));
-  return OptimizeGraph(graph, problem, tree, BestStart(problem, std::move(starts)), options);
+  return OptimizeGraph(graph, problem, tree_residuals, BestStart(problem, std::move(starts)), options);
 }
 
 }  // namespace

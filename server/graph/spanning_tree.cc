@@ -1,7 +1,6 @@
 #include "server/graph/spanning_tree.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 #include "server/graph/union_find.h"
@@ -11,13 +10,14 @@ namespace {
 
 // Constraints from the most to the least certain. 1/2 log det C = -1/2 log det Omega.
 std::vector<std::size_t> ByCertainty(const Problem& problem) {
-  std::vector<std::size_t> order(problem.constraints.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto key = [&problem](std::size_t k) {
+  std::vector<std::tuple<int, double, std::size_t>> keys(problem.constraints.size());
+  for (std::size_t k = 0; k < keys.size(); ++k) {
     const Constraint& c = problem.constraints[k];
-    return std::make_tuple(-c.rank, c.rank == 6 ? -c.log_det_Omega : 0.0, k);
-  };
-  std::sort(order.begin(), order.end(), [&key](std::size_t a, std::size_t b) { return key(a) < key(b); });
+    keys[k] = {-c.rank, c.rank == 6 ? -c.log_det_Omega : 0.0, k};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> order(keys.size());
+  for (std::size_t k = 0; k < keys.size(); ++k) order[k] = std::get<2>(keys[k]);
   return order;
 }
 

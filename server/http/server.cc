@@ -8,7 +8,7 @@
 #include <exception>
 #include <future>
 
-#include "server/base/limits.h"
+#include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/http/error_body.h"
 #include "server/http/reply.h"
@@ -133,7 +133,7 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   static const unsigned library = mg_init_library(0);
   (void)library;
   const std::string address = options.host + ":" + std::to_string(options.port);
-  const std::string threads = std::to_string(limits::kHttpConnectionsMax);
+  const std::string threads = std::to_string(limits::InForce().http_connections);
   const std::string timeout = std::to_string(options.request_timeout_ms);
   const std::array<const char*, 15> settings = {"listening_ports",
                                                 address.c_str(),

@@ -14,6 +14,10 @@ using Basis = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 // Information below this is none: its inverse would overflow.
 constexpr double kInformationMin = 1e-200;
 
+// What counts as symmetric and as not negative: at unit diagonal, and what a change of frame leaves as rounding noise
+// where nothing is known, as a share of the largest entry.
+constexpr double kIndefiniteRatio = 1e-9, kRoundingRatio = 1e-14, kScaleTolerance = 1e-12;
+
 // Scale per axis that brings the diagonal to 1. An axis that knows next to nothing beside the others of its unit keeps
 // their scale: rounding noise of a change of frame must not be blown up into information.
 Vector6d UnitDiagonalScale(const Matrix6d& Omega, double relative_tolerance) {
@@ -99,13 +103,26 @@ ObservableSubspace Observable(const Matrix6d& Omega, double relative_tolerance) 
 }
 
 bool IsPositiveSemidefinite(const Matrix6d& Omega) {
-  constexpr double kTolerance = 1e-9;
   if (!Omega.allFinite()) return false;
-  const double largest_entry = Omega.cwiseAbs().maxCoeff();
-  if (!((Omega - Omega.transpose()).cwiseAbs().maxCoeff() <= kTolerance * largest_entry)) return false;
-  const Vector6d eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Matrix6d>(Symmetrized(Omega), Eigen::EigenvaluesOnly).eigenvalues();
-  return eigenvalues.allFinite() && eigenvalues(0) >= -kTolerance * eigenvalues(5);
+  const double rounding = kRoundingRatio * Omega.cwiseAbs().maxCoeff();
+  Vector6d scale = UnitDiagonalScale(Omega, kScaleTolerance);
+  for (int axis = 0; axis < 6; ++axis)  // without information there is no diagonal to bring to 1: its unit's scale
+    if (Omega(axis, axis) <= 0.0) scale(axis) = scale.segment<3>(axis < 3 ? 0 : 3).minCoeff();
+  const auto scaled = [&scale](const Matrix6d& matrix) -> Matrix6d {
+    return scale.asDiagonal() * matrix * scale.asDiagonal();
+  };
+  const Matrix6d asymmetry = Omega - Omega.transpose();
+  const Matrix6d judged = scaled(asymmetry);
+  for (int k = 0; k < 36; ++k)
+    if (!(std::abs(asymmetry(k)) <= rounding || std::abs(judged(k)) <= kIndefiniteRatio)) return false;
+  const Matrix6d symmetric = Symmetrized(Omega);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled(symmetric));
+  if (!eigen.eigenvalues().allFinite()) return false;
+  for (int k = 0; k < 6 && eigen.eigenvalues()(k) < -kIndefiniteRatio * std::abs(eigen.eigenvalues()(5)); ++k) {
+    const Vector6d direction = (scale.asDiagonal() * eigen.eigenvectors().col(k)).normalized();
+    if (!(direction.dot(symmetric * direction) >= -rounding)) return false;
+  }
+  return true;
 }
 
 }  // namespace rigcal

@@ -27,7 +27,9 @@ struct ObservableSubspace {
 // Eigen-decomposition after scaling rows and columns to unit diagonal (m against rad); an eigenvalue below
 // `relative_tolerance` times the largest counts as zero.
 [[nodiscard]] ObservableSubspace Observable(const Matrix6d& Omega, double relative_tolerance = 1e-12);
-// Finite, symmetric to 1e-9 relative, smallest eigenvalue >= -1e-9 of the largest.
+// Finite, symmetric to 1e-9 and smallest eigenvalue >= -1e-9 of the largest, both judged with rows and columns scaled to
+// unit diagonal, so that metres do not hide what is wrong with the radians. Rounding noise, 1e-14 of the largest entry,
+// is forgiven.
 [[nodiscard]] bool IsPositiveSemidefinite(const Matrix6d& Omega);
 [[nodiscard]] Matrix6d Symmetrized(const Matrix6d& matrix);
 

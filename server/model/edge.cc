@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "server/model/field_hash.h"
+#include "server/model/plausible.h"
 
 namespace rigcal {
 namespace {
@@ -37,6 +38,15 @@ Status CheckPose(const Edge& edge) {
   return {};
 }
 
+// Of edges that were pushed as finished. What we estimate ourselves is judged by its residuals instead.
+Status CheckBelievable(const Edge& edge) {
+  if (!edge.session.empty()) return {};
+  if (Status near = CheckPlausible(edge.T_a_b.p_m); !near) return Refuse(edge, near.error().what, near.error().cure);
+  if (Status sane = CheckPlausible(edge.uncertainty.Omega); !sane)
+    return Refuse(edge, sane.error().what, sane.error().cure);
+  return {};
+}
+
 Status CheckUncertainty(const Edge& edge) {
   if (Status valid = Validate(edge.uncertainty); !valid) return Refuse(edge, valid.error().what, valid.error().cure);
   if (edge.uncertainty.rank < 1) return Refuse(edge, "information is zero", "Leave an edge away that says nothing.");
@@ -53,6 +63,8 @@ Status CheckFigures(const Edge& edge) {
 }
 
 }  // namespace
+
+std::string ResidualUnitOf(const std::string& method) { return method == "lidar_camera" ? "m" : "px"; }
 
 // Fields: robot, session, method, frame_a, frame_b.
 EdgeId EstimatedEdgeId(const RobotId& robot, const SessionId& session, const std::string& method,
@@ -113,7 +125,8 @@ Status Validate(const Edge& edge) {
     return {};
   }
   RIGCAL_TRY(CheckPose(edge));
-  return CheckUncertainty(edge);
+  RIGCAL_TRY(CheckUncertainty(edge));
+  return CheckBelievable(edge);
 }
 
 }  // namespace rigcal

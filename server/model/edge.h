@@ -24,7 +24,7 @@ struct Evidence {
   std::string suffix;  // "jpg" | "png"
 };
 
-// What one capture said: rms of its residuals in `unit` ("px").
+// What one capture said: rms of its residuals, in ResidualUnitOf() the edge's method.
 struct CaptureResidual {
   CaptureId capture;
   double rms = 0.0;
@@ -48,6 +48,9 @@ struct Edge {
   std::vector<CaptureResidual> captures;
   std::vector<Evidence> evidence;
 };
+
+// "px" (reprojection error), or "m" for lidar_camera (distance of the points from the board).
+[[nodiscard]] std::string ResidualUnitOf(const std::string& method);
 
 // id = sha256 over robot, source digest and index (design, words). For an estimated edge the source is its session and
 // the index its method and pair; for a pushed one the source is the digest of its canonical content and the index

@@ -10,6 +10,7 @@
 #include "server/base/stamp.h"
 #include "server/model/diagnosis.h"
 #include "server/model/edge.h"
+#include "server/model/suspects.h"
 
 namespace rigcal {
 
@@ -35,6 +36,8 @@ struct SensorPose {
   bool known = false;              // false: not connected to the reference, or not observable; then no numbers
   Se3 T_ref_sensor;
   Matrix6d covariance = Matrix6d::Zero();  // marginal, right tangent at the sensor; zero for the reference
+  bool by_jackknife = false;       // covariance is the jackknife's through the graph; else it is analytic
+  Matrix6d covariance_analytic = Matrix6d::Zero();  // H^-1: edges taken as independent; meaningful if by_jackknife
 };
 
 struct EdgeResidual {
@@ -42,6 +45,11 @@ struct EdgeResidual {
   bool in_solution = false;        // false: its part of the graph is not connected to the reference
   Vector6d e = Vector6d::Zero();   // Log(T_ij_measured^-1 T_i^-1 T_j), at the solution
   double weighted = 0.0;           // e^T Omega e
+  // T^2 = e^T C_e^+ e by the covariance of this very residual, which edges of shared captures correlate.
+  bool by_jackknife = false;       // false: the rest has no meaning
+  double t_squared = 0.0;
+  int rank = 0;                    // of C_e: directions in which other edges check this one
+  double dof = 0.0;                // behind the estimate of C_e; 0: known
 };
 
 // (1/N_E) sum |e|^2 and its two parts (paper, eq. for E_global).
@@ -60,6 +68,7 @@ struct GraphSolution {
   int dof = 0;                         // sum rank(Omega_e) - rank(H)
   int iterations = 0;
   std::vector<Diagnosis> diagnoses;    // unconnected sensors, weak directions, no convergence
+  Suspects suspects;                   // not judged unless asked for
 };
 
 // A numbered, stored, solved state. `document` is canonical JSON: same edges, same bytes; it holds neither number nor time.

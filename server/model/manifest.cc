@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <set>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 
 #include "server/base/limits.h"
@@ -16,23 +15,26 @@ Status Refuse(const Payload& payload, const std::string& what, const std::string
 }
 
 // The path follows from sensor and capture: what could leave the session's folder cannot be written down at all.
-Status CheckPath(const Payload& payload) {
-  constexpr std::array<std::string_view, 3> kCameraSuffixes = {".png", ".jpg", ".jpeg"};
+Status CheckPath(const Payload& payload, SensorKind kind) {
   const std::string stem = payload.sensor.str() + "/" + payload.capture.str();
-  for (std::string_view suffix : kCameraSuffixes)
-    if (payload.path == stem + std::string(suffix)) return {};
-  return Refuse(payload, "the path is not <sensor>/<capture>.png, .jpg or .jpeg",
-                "Name the file after its sensor and capture: " + Quoted(stem + ".png") + ".");
+  for (std::string_view suffix : SuffixesOf(kind))
+    if (payload.path == stem + "." + std::string(suffix)) return {};
+  const bool lidar = kind == SensorKind::kLidar;
+  return Refuse(payload,
+                lidar ? "the path is not <sensor>/<capture>.pcd, .ply or .bin"
+                      : "the path is not <sensor>/<capture>.png, .jpg or .jpeg",
+                "Name the file after its sensor and capture: " + Quoted(stem + (lidar ? ".pcd" : ".png")) + ".");
 }
 
-Status CheckPayload(const Payload& payload, const std::unordered_set<SensorId>& sensors) {
+Status CheckPayload(const Payload& payload, const std::unordered_map<SensorId, SensorKind>& sensors) {
   RIGCAL_TRY(CheckName(SensorTag::kKind, payload.sensor.str()));
   RIGCAL_TRY(CheckName(CaptureTag::kKind, payload.capture.str()));
-  RIGCAL_TRY(CheckPath(payload));
-  RIGCAL_TRY(CheckDigest("sha256 of " + Quoted(payload.path), payload.digest.str()));
-  if (!sensors.contains(payload.sensor))
+  const auto sensor = sensors.find(payload.sensor);
+  if (sensor == sensors.end())
     return Refuse(payload, "sensor " + payload.sensor.str() + " is not in the session",
                   "List the sensor in session.yaml or remove its folder.");
+  RIGCAL_TRY(CheckPath(payload, sensor->second));
+  RIGCAL_TRY(CheckDigest("sha256 of " + Quoted(payload.path), payload.digest.str()));
   if (payload.size_bytes < 1) return Refuse(payload, "it is empty", "Record it again or remove it.");
   if (payload.size_bytes > limits::kPayloadBytesMax)
     return Refuse(payload, "it is larger than " + std::to_string(limits::kPayloadBytesMax) + " bytes",
@@ -68,14 +70,20 @@ Status CheckTotal(const std::vector<Payload>& payloads) {
 
 }  // namespace
 
+const std::vector<std::string_view>& SuffixesOf(SensorKind kind) {
+  static const std::vector<std::string_view> kPictures = {"png", "jpg", "jpeg"}, kClouds = {"pcd", "ply", "bin"}, kNone;
+  if (kind == SensorKind::kCamera) return kPictures;
+  return kind == SensorKind::kLidar ? kClouds : kNone;
+}
+
 Status Validate(const Manifest& manifest) {
   RIGCAL_TRY(Validate(manifest.header));
   const std::size_t count = manifest.payloads.size();
   if (count < 1 || count > limits::kPayloadsPerSessionMax)
     return Fail(ErrorCode::kInvalidInput, "the session has " + std::to_string(count) + " files",
                 "Give 1 to " + std::to_string(limits::kPayloadsPerSessionMax) + " captures.");
-  std::unordered_set<SensorId> sensors;
-  for (const Sensor& sensor : manifest.header.sensors) sensors.insert(sensor.id);
+  std::unordered_map<SensorId, SensorKind> sensors;
+  for (const Sensor& sensor : manifest.header.sensors) sensors.emplace(sensor.id, sensor.kind);
   for (const Payload& payload : manifest.payloads) RIGCAL_TRY(CheckPayload(payload, sensors));
   RIGCAL_TRY(CheckOrder(manifest.payloads));
   RIGCAL_TRY(CheckOneFilePerCapture(manifest.payloads));

@@ -1,34 +1,49 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/model/plausible.h"
 #include "server/model/session.h"
 
 namespace rigcal {
 namespace {
-
-constexpr std::size_t kIntrinsicsCount = 9;  // fx fy cx cy k1 k2 p1 p2 k3
 
 Status Refuse(const Sensor& sensor, const std::string& what, const std::string& cure) {
   return Fail(ErrorCode::kInvalidInput, "sensor " + sensor.id.str() + ": " + what, cure);
 }
 
 Status CheckKind(const Sensor& sensor) {
-  if (sensor.kind == SensorKind::kCamera) return {};
-  return Fail(ErrorCode::kUnsupported,
-              "sensor " + sensor.id.str() + ": kind " + NameOf(sensor.kind) + " is not supported",
-              "This version calibrates sensors of kind camera; leave the sensor away.");
+  if (sensor.kind != SensorKind::kCamera && sensor.kind != SensorKind::kLidar)
+    return Fail(ErrorCode::kUnsupported,
+                "sensor " + sensor.id.str() + ": kind " + NameOf(sensor.kind) + " is not supported",
+                "This version calibrates sensors of kind camera and lidar; leave the sensor away.");
+  if (sensor.kind == SensorKind::kCamera || (!sensor.intrinsics && !sensor.intrinsics_sigma)) return {};
+  return Refuse(sensor, "a " + NameOf(sensor.kind) + " has no intrinsics", "Leave 'intrinsics' away.");
+}
+
+std::string NamesOf(CameraModel model) {
+  std::string names;
+  for (const std::string& name : DistortionNames(model)) names += (names.empty() ? "" : " ") + name;
+  return names;
 }
 
 Status CheckIntrinsics(const Sensor& sensor) {
   if (!sensor.intrinsics) return {};
-  const PinholeRadtan& camera = *sensor.intrinsics;
+  const CameraIntrinsics& camera = *sensor.intrinsics;
   for (double focal_px : {camera.fx_px, camera.fy_px})
     if (!(focal_px > 0.0 && std::isfinite(focal_px)))
       return Refuse(sensor, "intrinsics: a focal length is not positive", "Give fx and fy in pixels.");
+  for (double value_px : {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px})
+    if (std::abs(value_px) > kFocalMax_px)
+      return Refuse(sensor, "intrinsics: a value is beyond a million pixels", "Give fx, fy, cx and cy in pixels.");
+  if (camera.model != sensor.camera_model || camera.distortion.size() != DistortionCount(camera.model))
+    return Refuse(sensor, "intrinsics: distortion does not fit the model " + NameOf(sensor.camera_model),
+                  "Give " + NamesOf(sensor.camera_model) + ".");
   const bool finite = std::isfinite(camera.cx_px) && std::isfinite(camera.cy_px) &&
                       std::all_of(camera.distortion.begin(), camera.distortion.end(),
                                   [](double coefficient) { return std::isfinite(coefficient); });
-  if (!finite) return Refuse(sensor, "intrinsics: a value is not finite", "Give cx, cy in pixels and k1 k2 p1 p2 k3.");
+  if (!finite)
+    return Refuse(sensor, "intrinsics: a value is not finite",
+                  "Give cx, cy in pixels and " + NamesOf(camera.model) + ".");
   return {};
 }
 
@@ -36,14 +51,25 @@ Status CheckIntrinsicsSigma(const Sensor& sensor) {
   if (!sensor.intrinsics_sigma) return {};
   const std::vector<double>& sigma = *sensor.intrinsics_sigma;
   if (!sensor.intrinsics)
-    return Refuse(sensor, "intrinsics_sigma is given without intrinsics", "Give both, or leave both away.");
-  const bool good = sigma.size() == kIntrinsicsCount && std::all_of(sigma.begin(), sigma.end(), [](double value) {
+    return Refuse(sensor, "sigma is given without intrinsics", "Give both, or leave both away.");
+  const std::size_t count = 4 + DistortionCount(sensor.camera_model);
+  const bool good = sigma.size() == count && std::all_of(sigma.begin(), sigma.end(), [](double value) {
                       return value >= 0.0 && std::isfinite(value);
                     });
   if (!good)
-    return Refuse(sensor, "intrinsics_sigma is not 9 finite numbers >= 0",
-                  "Give one standard deviation each for fx fy cx cy k1 k2 p1 p2 k3.");
+    return Refuse(sensor, "intrinsics: sigma is not " + std::to_string(count) + " finite numbers >= 0",
+                  "Give one standard deviation each for fx fy cx cy " + NamesOf(sensor.camera_model) + ".");
   return {};
+}
+
+Status CheckRangeBias(const Sensor& sensor) {
+  constexpr double kSigmaMax_m = 1.0;
+  if (!sensor.range_bias_sigma_m) return {};
+  if (sensor.kind != SensorKind::kLidar)
+    return Refuse(sensor, "range_bias_sigma_m is for lidars only", "Leave it away.");
+  if (*sensor.range_bias_sigma_m >= 0 && *sensor.range_bias_sigma_m <= kSigmaMax_m) return {};
+  return Refuse(sensor, "range_bias_sigma_m " + std::to_string(*sensor.range_bias_sigma_m) + " is out of range",
+                "Give the standard deviation in metres, 0 to 1; the data sheet's range accuracy is a good value.");
 }
 
 Status CheckNominalPose(const Sensor& sensor) {
@@ -53,6 +79,8 @@ Status CheckNominalPose(const Sensor& sensor) {
   if (!T.p_m.allFinite()) return Refuse(sensor, "nominal p_m is not finite", "Give 3 finite numbers in metres.");
   if (!(std::abs(T.q.norm() - 1.0) <= kUnitTolerance))
     return Refuse(sensor, "nominal q_xyzw is not a unit quaternion", "Normalise it; the order is x y z w.");
+  if (const Status near = CheckPlausible(T.p_m); !near)
+    return Refuse(sensor, "nominal " + near.error().what, near.error().cure);
   return {};
 }
 
@@ -63,6 +91,7 @@ Status Validate(const Sensor& sensor) {
   RIGCAL_TRY(CheckKind(sensor));
   RIGCAL_TRY(CheckIntrinsics(sensor));
   RIGCAL_TRY(CheckIntrinsicsSigma(sensor));
+  RIGCAL_TRY(CheckRangeBias(sensor));
   return CheckNominalPose(sensor);
 }
 

@@ -1,7 +1,7 @@
 #include "server/model/session.h"
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
@@ -20,13 +20,14 @@ bool HasSensor(const SessionHeader& header, const SensorId& id) {
   return std::any_of(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
 }
 
+// Two lidars need no target, and no way to calibrate them from one is known here.
 bool MayShareTarget(const Sensor& a, const Sensor& b) {
-  if (a.kind != SensorKind::kCamera || b.kind != SensorKind::kCamera) return false;
+  if (a.kind != SensorKind::kCamera && b.kind != SensorKind::kCamera) return false;
   return !a.sees || !b.sees || *a.sees == *b.sees;
 }
 
 bool HasTarget(const SessionHeader& header, const TargetId& id) {
-  return std::any_of(header.targets.begin(), header.targets.end(), [&](const Checkerboard& t) { return t.id == id; });
+  return std::any_of(header.targets.begin(), header.targets.end(), [&](const Target& t) { return t.id == id; });
 }
 
 Status CheckTexts(const SessionHeader& header) {
@@ -61,13 +62,25 @@ Status CheckSightings(const SessionHeader& header) {
   return {};
 }
 
+// Names are ASCII (CheckName).
+std::string InLowerCase(std::string name) {
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return name;
+}
+
 template <typename T>
 Status CheckUnique(const std::string& kind, const std::vector<T>& things) {
-  std::set<std::string_view> seen;
-  for (const T& thing : things)
-    if (!seen.insert(thing.id.str()).second)
-      return Fail(ErrorCode::kInvalidInput, kind + " " + thing.id.str() + " is listed twice",
-                  "Give every " + kind + " its own name.");
+  std::map<std::string, std::string> seen;
+  for (const T& thing : things) {
+    const auto [other, is_new] = seen.emplace(InLowerCase(thing.id.str()), thing.id.str());
+    if (is_new) continue;
+    const bool same = other->second == thing.id.str();
+    return Fail(
+        ErrorCode::kInvalidInput,
+        kind + " " + thing.id.str() + (same ? " is listed twice" : " differs from " + other->second + " only in case"),
+        "Give every " + kind + " its own name; not every disk tells upper from lower case.");
+  }
   return {};
 }
 
@@ -104,7 +117,7 @@ Status Validate(const SessionHeader& header) {
     return Fail(ErrorCode::kInvalidInput, "captured_at lies before 1970", "Give the time of the capture.");
   RIGCAL_TRY(CheckCount("sensors", header.sensors.size(), limits::kSensorsPerSessionMax));
   RIGCAL_TRY(CheckCount("targets", header.targets.size(), limits::kTargetsPerSessionMax));
-  for (const Checkerboard& target : header.targets) RIGCAL_TRY(Validate(target));
+  for (const Target& target : header.targets) RIGCAL_TRY(Validate(target));
   RIGCAL_TRY(CheckUnique("target", header.targets));
   for (const Sensor& sensor : header.sensors) RIGCAL_TRY(Validate(sensor));
   RIGCAL_TRY(CheckUnique("sensor", header.sensors));

@@ -1,43 +1,37 @@
 // A capture session: what a technician has on disk (docs/session-format.md) and its canonical manifest.
 #pragma once
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/base/ids.h"
 #include "server/base/stamp.h"
 #include "server/math/se3.h"
+#include "server/model/camera.h"
+#include "server/model/target.h"
 
 namespace rigcal {
-
-// Pinhole with radial-tangential distortion, OpenCV's order k1 k2 p1 p2 k3. Pixel (0,0) is the centre of the first pixel.
-struct PinholeRadtan {
-  double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
-  std::array<double, 5> distortion = {0, 0, 0, 0, 0};
-};
 
 enum class SensorKind { kCamera, kLidar, kTracker, kPoseStream };  // "camera" | "lidar" | "tracker" | "pose_stream"
 [[nodiscard]] std::string NameOf(SensorKind kind);
 [[nodiscard]] Result<SensorKind> SensorKindOf(const std::string& name);
 
+// Of the files that a sensor of this kind has, without the dot: "png", ...; "pcd", ... Empty: none yet.
+[[nodiscard]] const std::vector<std::string_view>& SuffixesOf(SensorKind kind);
+
 struct Sensor {
   SensorId id;
   SensorKind kind = SensorKind::kCamera;
-  std::optional<PinholeRadtan> intrinsics;   // given; absent: estimated from the captures
-  std::optional<std::vector<double>> intrinsics_sigma;  // 9 values in the order fx fy cx cy k1 k2 p1 p2 k3, if known
-  std::optional<TargetId> sees;              // the one target this sensor looks at; absent: any
-  std::optional<Se3> T_ref_nominal;          // CAD pose of the sensor in the reference sensor
-};
-
-struct Checkerboard {
-  TargetId id;
-  int inner_cols = 0, inner_rows = 0;        // inner corners
-  double square_m = 0.0;
-  double square_sigma_m = 0.0;               // uncertainty of the measured square size (of the mean); 0: taken as exact
-  std::string serial;
+  CameraModel camera_model = CameraModel::kPinholeRadtan;  // of a camera: what its intrinsics are, or are estimated as
+  std::optional<CameraIntrinsics> intrinsics;           // of camera_model, given; absent: estimated from the captures
+  std::optional<std::vector<double>> intrinsics_sigma;  // fx fy cx cy and the distortion's, in its order, if known
+  std::optional<double>
+      range_bias_sigma_m;            // of a lidar: how far all its ranges may be off together; absent: not known
+  std::optional<TargetId> sees;      // the one target this sensor looks at; absent: any
+  std::optional<Se3> T_ref_nominal;  // CAD pose of the sensor in the reference sensor
 };
 
 struct SessionHeader {
@@ -47,7 +41,7 @@ struct SessionHeader {
   Stamp captured_at;
   std::string operator_name;
   SensorId reference;
-  std::vector<Checkerboard> targets;
+  std::vector<Target> targets;
   std::vector<Sensor> sensors;
   std::map<std::string, std::string> conditions;
 };
@@ -67,10 +61,9 @@ struct Manifest {
   std::vector<Payload> payloads;
 };
 
-// One sensor by itself: a camera (no other kind is accepted yet), intrinsics in range, nominal pose finite and unit.
+// One sensor by itself: a camera or a lidar (no other kind is accepted yet), intrinsics in range and of a camera,
+// nominal pose finite and unit.
 [[nodiscard]] Status Validate(const Sensor& sensor);
-// One target by itself: corner counts (one odd, one even) and sizes in range.
-[[nodiscard]] Status Validate(const Checkerboard& target);
 // Reference and targets exist, names unique, counts and sizes in range, payloads of known sensors. The error names
 // the sensor, target or file.
 [[nodiscard]] Status Validate(const SessionHeader& header);
@@ -80,8 +73,8 @@ struct SensorPair {
   SensorId a, b;
   friend auto operator<=>(const SensorPair&, const SensorPair&) = default;
 };
-// All pairs of sensors of a session that this version can calibrate: cameras that may see the same target; a < b in the
-// order of the session's sensors.
+// All pairs of sensors of a session that this version can calibrate: two cameras, or a camera and a lidar, that
+// may see the same target; a < b in the order of the session's sensors.
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
 
 }  // namespace rigcal

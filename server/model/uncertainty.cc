@@ -103,7 +103,11 @@ Result<Uncertainty> FromCovariance(const Matrix6d& covariance, UncertaintySource
 
 Status Validate(const Uncertainty& uncertainty) {
   RIGCAL_TRY(CheckInformation(uncertainty.Omega));
-  const int rank = Observable(uncertainty.Omega).rank;
+  const ObservableSubspace observable = Observable(uncertainty.Omega);
+  const int rank = observable.rank;
+  if (!observable.covariance.allFinite())
+    return Refuse("information: the matrix is too badly conditioned to invert",
+                  "Check the units of its entries; they are for m and rad.");
   if (uncertainty.rank != rank)
     return Refuse(
         "rank: " + std::to_string(uncertainty.rank) + " is given, the information matrix has rank " + RankText(rank),

@@ -40,7 +40,7 @@ struct Uncertainty {
 [[nodiscard]] Uncertainty FromInformation(const Matrix6d& Omega, UncertaintySource source, int dof);
 // Covariance must be positive definite.
 [[nodiscard]] Result<Uncertainty> FromCovariance(const Matrix6d& covariance, UncertaintySource source, int dof);
-// Finite, symmetric, positive semi-definite, rank and block vectors consistent. The error names the field.
+// Finite, symmetric, positive semi-definite, with a finite inverse where it has rank; rank and block vectors consistent. The error names the field.
 [[nodiscard]] Status Validate(const Uncertainty& uncertainty);
 
 // Standard deviations for people. NaN never: an unobservable axis has no number.

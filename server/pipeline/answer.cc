@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "server/base/version.h"
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
+#include "server/graph/graph_jackknife.h"
 #include "server/graph/solve.h"
 #include "server/pipeline/robot_rows.h"
 #include "storage/edges.h"
@@ -94,6 +96,29 @@ Result<std::string> Revisions(const AnswerContext& context, const Parameters& pa
   return formats::WriteRevisions(robot, revisions, context.clock.Now());
 }
 
+// The revision's edges whose block vectors the store holds.
+Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::RevisionInput& document) {
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, document.robot, true));
+  std::set<EdgeId> good;
+  for (const Edge& edge : document.edges)
+    if (edge.state == EdgeState::kGood) good.insert(edge.id);
+  edges.erase(std::remove_if(edges.begin(), edges.end(), [&](const Edge& edge) { return !good.contains(edge.id); }),
+              edges.end());
+  return graph::BlocksOf(edges);
+}
+
+// By the same covariance as the sensors of the revision.
+Result<graph::RelativePose> RelativeIn(const AnswerContext& context, const formats::RevisionInput& document,
+                                       const Graph& graph, const SensorId& a, const SensorId& b) {
+  const auto& poses = document.solution.poses;
+  const bool honest = std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; });
+  RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
+  if (!honest) return analytic;
+  RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, LoadBlocks(context.store, document));
+  const graph::GraphJackknife jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
+  return jackknife.available ? graph::HonestRelative(jackknife, document.solution, a, b) : analytic;
+}
+
 // Poses and edges both come from the revision's own document: an edge that arrived since plays no part.
 Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
@@ -105,7 +130,7 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   graph.reference = document.reference;
   graph.sensors.clear();
   for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);
-  RIGCAL_ASSIGN(const auto relative, graph::Relative(graph, document.solution, a, b));
+  RIGCAL_ASSIGN(const auto relative, RelativeIn(context, document, graph, a, b));
   formats::LookupAnswer answer;
   answer.robot = robot;
   answer.revision = revision.summary.number;
@@ -148,6 +173,7 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
   answer.uptime_ns = now.ns - context.started_at.ns;
   answer.schema = context.store.SchemaVersion();
   answer.protocol = kWireProtocol;
+  answer.limits = limits::InForce();
   std::error_code error;
   const auto space = std::filesystem::space(context.store.folder(), error);
   if (error)

@@ -7,8 +7,10 @@
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
 #include "server/formats/documents.h"
+#include "server/graph/graph_jackknife.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
+#include "server/graph/suspects.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -30,12 +32,13 @@ Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
 // The edge stays visible, with its reason, but takes no part.
 void Supersede(Edge& edge) {
   edge.state = EdgeState::kFailed;
-  edge.diagnoses = {{"superseded", "session " + edge.session.str().substr(0, 16) + " was pushed again in a corrected form",
+  edge.diagnoses = {{"superseded",
+                     "session " + edge.session.str().substr(0, 16) + " was pushed again in a corrected form",
                      "Nothing: the edge of the later session counts."}};
 }
 
-Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, false));
+Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, blocks));
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   const std::set<SessionId> old(superseded.begin(), superseded.end());
   for (Edge& edge : edges)
@@ -53,14 +56,23 @@ void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector
   std::sort(graph.sensors.begin(), graph.sensors.end(), graph::SensorBefore);
 }
 
+// Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; suspects are named beside it.
+GraphSolution SolveHonestly(const RobotGraph& loaded) {
+  GraphSolution solution = graph::Solve(loaded.graph);
+  const graph::GraphJackknife jackknife = graph::JackknifeGraph(loaded.graph, solution, graph::BlocksOf(loaded.edges));
+  graph::TakeHonest(loaded.graph, jackknife, solution);
+  solution.suspects = graph::FindSuspects(loaded.graph, solution);
+  return solution;
+}
+
 }  // namespace
 
-Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
+Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
   RobotGraph loaded;
   std::vector<SensorId> listed;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
-    RIGCAL_ASSIGN(loaded.edges, LoadCurrentEdges(store, robot));
+    RIGCAL_ASSIGN(loaded.edges, LoadCurrentEdges(store, robot, blocks));
     RIGCAL_ASSIGN(listed, storage::LoadListedSensors(store, robot));
     RIGCAL_ASSIGN(const SensorId reference, LoadReference(store, robot));
     loaded.graph = graph::GraphOf(loaded.edges, reference);
@@ -72,11 +84,11 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
 }
 
 Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock) {
-  RIGCAL_ASSIGN(RobotGraph loaded, LoadRobotGraph(store, robot));
+  RIGCAL_ASSIGN(RobotGraph loaded, LoadRobotGraph(store, robot, true));
   formats::RevisionInput input;
   input.robot = robot;
   input.reference = loaded.graph.reference;
-  input.solution = graph::Solve(loaded.graph);
+  input.solution = SolveHonestly(loaded);
   input.verdict = fleet::Assess(loaded.edges, input.solution);
   input.edges = std::move(loaded.edges);
 

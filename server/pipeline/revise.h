@@ -8,14 +8,16 @@
 namespace rigcal::pipeline {
 
 // The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list.
-// Edges of a session that a later one repeats (storage::LoadSuperseded) are shown as superseded and take no part. The reference is the one that the
-// earliest captured session names (ties: smaller session id); without a session, GraphOf's own rule.
+// Edges of a session that a later one repeats (storage::LoadSuperseded) are shown as superseded and take no part. The
+// reference is the one that the earliest captured session names (ties: smaller session id); without a session,
+// GraphOf's own rule.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id
   Graph graph;
   std::int64_t watermark = 0;
 };
-[[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot);
+// Block vectors only on demand.
+[[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks = false);
 
 // Solves, judges and commits. The same edges give the same document, byte for byte, whatever the order of arrival.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock);

@@ -1,36 +1,53 @@
 #include "server/pipeline/run_edge_job.h"
 
-#include "server/calib/stereo.h"
-#include "server/pipeline/stereo_inputs.h"
+#include "server/pipeline/pair_inputs.h"
+#include "server/pipeline/same_pictures.h"
 #include "storage/edges.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
 namespace {
 
-constexpr const char* kStereo = "stereo";
-
-Edge FailedEdge(const SensorPair& pair, const Error& error) {
+Edge FailedEdge(const SensorPair& pair, const std::string& method, const Error& error) {
   Edge edge;
   edge.frame_a = pair.a;
   edge.frame_b = pair.b;
-  edge.method = kStereo;
+  edge.method = method;
   edge.diagnoses.push_back({NameOf(error.code), error.what, error.cure});
   return edge;
+}
+
+// A method from its loader and its estimator. What cannot be loaded is a failed edge, unless the store failed.
+template <typename Inputs, typename Estimate>
+Result<Edge> EdgeFrom(const SensorPair& pair, const char* method, Result<Inputs> inputs, const Estimate& estimate) {
+  if (!inputs) {
+    if (inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
+    return FailedEdge(pair, method, inputs.error());
+  }
+  Edge edge = estimate(inputs->problem);
+  edge.evidence = std::move(inputs->evidence);
+  return edge;
+}
+
+bool IsLidar(const Manifest& manifest, const SensorId& id) {
+  const Sensor* sensor = SensorOf(manifest.header, id);
+  return sensor != nullptr && sensor->kind == SensorKind::kLidar;
 }
 
 Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, job.session));
   if (!manifest)
-    return FailedEdge(job.pair, {ErrorCode::kNotFound, "session " + job.session.str() + " is not in the store",
-                                 "Push the session again."});
-  auto inputs = LoadStereoInputs(store, *manifest, job.pair);
-  if (!inputs) {
-    if (inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
-    return FailedEdge(job.pair, inputs.error());
-  }
-  Edge edge = calib::EstimateEdge(inputs->problem);
-  edge.evidence = std::move(inputs->evidence);
+    return FailedEdge(
+        job.pair, "stereo",
+        {ErrorCode::kNotFound, "session " + job.session.str() + " is not in the store", "Push the session again."});
+  if (IsLidar(*manifest, job.pair.a) || IsLidar(*manifest, job.pair.b))
+    return EdgeFrom(job.pair, "lidar_camera", LoadLidarCamera(store, *manifest, job.pair),
+                    calib::EstimateLidarCameraEdge);
+  const std::vector<CaptureId> same = SamePictures(*manifest, job.pair);
+  auto inputs = LoadStereo(store, *manifest, job.pair);
+  if (inputs) LeaveOut(same, inputs->problem);
+  RIGCAL_ASSIGN(Edge edge, EdgeFrom(job.pair, "stereo", std::move(inputs), calib::EstimateEdge));
+  TellLeftOut(same, edge);
   return edge;
 }
 

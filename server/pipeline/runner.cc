@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/base/log.h"
+#include "server/base/thread_rank.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -26,6 +27,7 @@ struct Runner::Impl {
   std::vector<std::thread> threads;
 
   void Loop(storage::Store& store) {
+    SetThreadRank(ThreadRank::kWorks);
     std::uint64_t seen = 0;
     while (Seen(seen)) {
       const auto result = Step({store, *options.clock, live, claims, announcer});

@@ -51,7 +51,8 @@ struct Slot {
   bool named = false;
 };
 
-void FillBar(Dictionary& svg, const CaptureResidual& capture, const Slot& slot, double top, double worst) {
+void FillBar(Dictionary& svg, const CaptureResidual& capture, const Slot& slot, double top, double worst,
+             const std::string& unit) {
   const double height = capture.used ? std::max(1.0, RmsOf(capture) / top * kHeight_px) : kHeight_px * 0.5;
   Dictionary* bar = svg.AddSectionDictionary("BAR");
   bar->SetValue("STATE", !capture.used ? "unused" : RmsOf(capture) >= worst ? "worst" : "used");
@@ -60,7 +61,7 @@ void FillBar(Dictionary& svg, const CaptureResidual& capture, const Slot& slot, 
   bar->SetValue("W", Fixed(slot.width * 0.7, 1));
   bar->SetValue("H", Fixed(height, 1));
   bar->SetValue("TITLE", capture.capture.str() + ": " +
-                             (capture.used ? Significant(capture.rms, 3) + " px" : "not used. " + capture.note));
+                             (capture.used ? Significant(capture.rms, 3) + " " + unit : "not used. " + capture.note));
   if (!slot.named) return;
   const std::string& name = capture.capture.str();
   Dictionary* label = bar->AddSectionDictionary("NAMED");
@@ -71,7 +72,7 @@ void FillBar(Dictionary& svg, const CaptureResidual& capture, const Slot& slot, 
 
 }  // namespace
 
-std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures) {
+std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures, const std::string& unit) {
   const auto drawn = Drawn(captures);
   const bool named = drawn.size() <= kNamedMax;
   const double step = named ? 52.0 : std::max(7.0, 1000.0 / static_cast<double>(drawn.size()));
@@ -82,10 +83,10 @@ std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& cap
   svg->SetFilename("bars.tpl");
   svg->SetValue("WIDTH", Fixed(width, 0));
   svg->SetValue("HEIGHT", Fixed(kTop_px + kHeight_px + kFoot_px, 0));
-  svg->SetValue("LABEL", "Residual of each capture, largest " + Significant(worst, 3) + " px");
+  svg->SetValue("LABEL", "Residual of each capture, largest " + Significant(worst, 3) + " " + unit);
   FillGrid(*svg, NiceTop(worst), width);
   for (std::size_t i = 0; i < drawn.size(); ++i)
-    FillBar(*svg, *drawn[i], {kLeft_px + step * static_cast<double>(i), step, named}, NiceTop(worst), worst);
+    FillBar(*svg, *drawn[i], {kLeft_px + step * static_cast<double>(i), step, named}, NiceTop(worst), worst, unit);
   if (drawn.size() == captures.size()) return "";
   return "The " + std::to_string(drawn.size()) + " worst of " + std::to_string(captures.size()) +
          " captures are drawn.";

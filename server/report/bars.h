@@ -9,7 +9,8 @@
 
 namespace rigcal::report {
 
-// Adds the include {{>BARS}}. Returns a sentence about captures that are not drawn, or nothing.
-[[nodiscard]] std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures);
+// Adds the include {{>BARS}}; residuals are in `unit`. Returns a sentence about captures that are not drawn, or nothing.
+[[nodiscard]] std::string FillBars(Dictionary& parent, const std::vector<CaptureResidual>& captures,
+                                    const std::string& unit);
 
 }  // namespace rigcal::report

@@ -72,10 +72,21 @@ void FillUnused(Dictionary& captures, const Edge& edge) {
   }
 }
 
+bool IsMetric(const Edge& edge) { return ResidualUnitOf(edge.method) == "m"; }
+
+// Residuals as people read them: millimetres or pixels.
+std::vector<CaptureResidual> Shown(const Edge& edge) {
+  std::vector<CaptureResidual> captures = edge.captures;
+  for (CaptureResidual& capture : captures) capture.rms *= IsMetric(edge) ? 1e3 : 1;
+  return captures;
+}
+
 void FillCaptures(Dictionary& section, const Edge& edge) {
   if (edge.captures.empty()) return;
   Dictionary* captures = section.AddSectionDictionary("CAPTURES");
-  const std::string cut = FillBars(*captures, edge.captures);
+  const std::string unit = IsMetric(edge) ? "mm" : "px";
+  captures->SetValue("UNIT", unit);
+  const std::string cut = FillBars(*captures, Shown(edge), unit);
   if (!cut.empty()) ShowValue(*captures, "BARS_CUT", "TEXT", cut);
   FillUnused(*captures, edge);
 }

@@ -1,5 +1,7 @@
-// graph_bench --g2o FILE [--mode batch|marginals|incremental] [--order file|shuffled] [--seed S] [--repeat N]
+// graph_bench --g2o FILE | --synthetic VERTICES EDGES [--mode batch|marginals|incremental] [--order file|shuffled]
+//             [--seed S] [--repeat N] [--reference ceres]
 // One JSON object: how long the graph engine takes, what it finds, in g2o's own cost too, and a digest of the poses.
+// Marginals are timed at the solution, updates one by one.
 #include <sys/resource.h>
 #include <time.h>  // NOLINT(modernize-deprecated-headers): clock_gettime is POSIX
 
@@ -17,14 +19,17 @@
 #include "server/base/limits.h"
 #include "server/base/sha256.h"
 #include "server/formats/g2o.h"
+#include "server/graph/live_solver.h"
 #include "server/graph/solve.h"
+#include "tests/bench/graph_reference.h"
 
 namespace {
 
 using namespace rigcal;  // NOLINT(google-build-using-namespace): a program of one file
 
 struct Arguments {
-  std::string g2o, mode = "batch", order = "file";
+  std::string g2o, mode = "batch", order = "file", reference;
+  std::vector<std::size_t> synthetic;  // vertices, edges
   unsigned seed = 1;
   int repeat = 0;
 };
@@ -72,6 +77,7 @@ double Cpu_us() {
 struct Run {
   std::vector<double> times_us, cpu_times_us;
   GraphSolution solution;
+  int batches = 0;  // updates that were solved from the ground up
 
   template <typename Body>
   void Time(const Body& body) {
@@ -84,7 +90,7 @@ struct Run {
 
 Run RunBatch(const Graph& graph, const Arguments& arguments) {
   graph::SolveOptions options;
-  options.marginals = arguments.mode == "marginals";
+  options.marginals = false;
   Run run;
   const double start_us = Now_us();
   const auto enough = [&] {
@@ -98,16 +104,36 @@ Run RunBatch(const Graph& graph, const Arguments& arguments) {
 }
 
 // Every edge by itself, each update from the state before it; sensors appear with their first edge.
-Run RunIncremental(const std::vector<Edge>& edges) {
+Run RunIncremental(const Graph& graph) {
   Run run;
-  std::vector<Edge> so_far;
+  graph::LiveSolver live(graph.reference);
+  for (const GraphEdge& edge : graph.edges) {
+    graph::UpdateWork work;
+    run.Time([&] { work = live.Add(edge); });
+    run.batches += work.batch ? 1 : 0;
+  }
   graph::SolveOptions options;
   options.marginals = false;
-  for (const Edge& edge : edges) {
-    so_far.push_back(edge);
-    const Graph graph = graph::GraphOf(so_far, edges.front().frame_a);
-    run.Time([&] { run.solution = graph::Update(graph, run.solution, options); });
-  }
+  run.solution = live.Solution(options);
+  run.solution.cost = live.Cost();  // of the live poses as they are, not of the solution made from them
+  for (SensorPose& pose : run.solution.poses)
+    if (const std::optional<Se3> T = live.PoseOf(pose.sensor)) pose.T_ref_sensor = *T;
+  return run;
+}
+
+// All marginals at the solution, which is there already.
+Run RunMarginals(const Graph& graph, const Arguments& arguments) {
+  Run run;
+  graph::LiveSolver live(graph);
+  run.solution = live.Solution();
+  const double start_us = Now_us();
+  const auto enough = [&] {
+    if (arguments.repeat > 0) return static_cast<int>(run.times_us.size()) >= arguments.repeat;
+    return run.times_us.size() >= 3 && (run.times_us.size() >= 1000 || Now_us() - start_us > 2e6);
+  };
+  std::size_t count = 0;
+  while (!enough()) run.Time([&] { count = live.Marginals().size(); });
+  if (count == 0) run.solution.converged = false;
   return run;
 }
 
@@ -125,6 +151,8 @@ nlohmann::json Summary(const Graph& graph, Run run) {
   return {{"median_us", run.times_us[last / 2]},
           {"p99_us", run.times_us[last * 99 / 100]},
           {"max_us", run.times_us[last]},
+          {"min_us", run.times_us[0]},
+          {"batches", run.batches},
           {"cpu_median_us", run.cpu_times_us[last / 2]},
           {"total_ms", total_us / 1e3},
           {"runs", run.times_us.size()},
@@ -139,21 +167,34 @@ nlohmann::json Summary(const Graph& graph, Run run) {
           {"digest", DigestOf(run.solution)}};
 }
 
+Run RunOf(const Graph& graph, const Arguments& arguments) {
+  if (arguments.mode == "incremental") return RunIncremental(graph);
+  return arguments.mode == "marginals" ? RunMarginals(graph, arguments) : RunBatch(graph, arguments);
+}
+
+Result<std::vector<Edge>> EdgesOf(const Arguments& arguments, SensorId& fixed) {
+  if (!arguments.synthetic.empty())
+    return bench::RandomEdges(arguments.synthetic[0], arguments.synthetic[1], arguments.seed);
+  RIGCAL_ASSIGN(const std::string text, ReadFile(arguments.g2o, limits::kG2oFileBytesMax));
+  RIGCAL_ASSIGN(formats::G2oFile file, formats::ReadG2o(text, RobotId("bench")));
+  fixed = file.fixed;
+  return std::move(file.edges);
+}
+
 int Measure(const Arguments& arguments) {
-  const Result<std::string> text = ReadFile(arguments.g2o, limits::kG2oFileBytesMax);
-  if (!text) return std::cerr << Sentence(text.error()) << '\n', 4;
+  SensorId fixed;
   const double begin_us = Now_us();
-  Result<formats::G2oFile> file = formats::ReadG2o(*text, RobotId("bench"));
+  Result<std::vector<Edge>> edges = EdgesOf(arguments, fixed);
   const double read_ms = (Now_us() - begin_us) / 1e3;
-  if (!file) return std::cerr << arguments.g2o << ": " << Sentence(file.error()) << '\n', 4;
+  if (!edges) return std::cerr << Sentence(edges.error()) << '\n', 4;
   if (arguments.order == "shuffled") {
     std::mt19937 random(arguments.seed);
-    std::shuffle(file->edges.begin(), file->edges.end(), random);
+    std::shuffle(edges->begin(), edges->end(), random);
   }
-  const Graph graph = graph::GraphOf(file->edges, file->fixed);
-  nlohmann::json summary =
-      Summary(graph, arguments.mode == "incremental" ? RunIncremental(file->edges) : RunBatch(graph, arguments));
+  const Graph graph = graph::GraphOf(*edges, fixed);
+  nlohmann::json summary = Summary(graph, RunOf(graph, arguments));
   summary["read_ms"] = read_ms;
+  if (arguments.reference == "ceres") summary["ceres"] = bench::SolveWithCeres(graph);
   std::cout << summary.dump() << '\n';
   return 0;
 }
@@ -163,11 +204,22 @@ int Measure(const Arguments& arguments) {
 int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Times the graph engine on a .g2o file");
-  app.add_option("--g2o", arguments.g2o, "The file")->required();
+  app.add_option("--g2o", arguments.g2o, "The file");
   app.add_option("--mode", arguments.mode)->check(CLI::IsMember({"batch", "marginals", "incremental"}));
   app.add_option("--order", arguments.order)->check(CLI::IsMember({"file", "shuffled"}));
-  app.add_option("--seed", arguments.seed, "Of the shuffling");
+  app.add_option("--synthetic", arguments.synthetic, "VERTICES EDGES: a random graph instead (5 mm, 0.3 deg)")
+      ->expected(2);
+  app.add_option("--reference", arguments.reference, "Solve it with Ceres too, in the same run")
+      ->check(CLI::IsMember({"ceres"}));
+  app.add_option("--seed", arguments.seed, "Of the shuffling and the random graph");
   app.add_option("--repeat", arguments.repeat, "Solves to time (default: two seconds' worth, 3 to 1000)");
   CLI11_PARSE(app, argc, argv);
+  const bool sensible = arguments.synthetic.empty() ||
+                        (arguments.synthetic[0] >= 2 && arguments.synthetic[0] <= 100000 &&
+                         arguments.synthetic[1] + 1 >= arguments.synthetic[0] && arguments.synthetic[1] <= 1000000);
+  if (arguments.g2o.empty() == arguments.synthetic.empty() || !sensible)
+    return std::cerr
+               << "graph_bench: give --g2o FILE, or --synthetic VERTICES EDGES with at least VERTICES - 1 edges\n",
+           2;
   return Measure(arguments);
 }

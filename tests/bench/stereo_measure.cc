@@ -15,7 +15,7 @@
 namespace rigcal {
 namespace {
 
-Checkerboard Board() { return {TargetId("board"), 9, 6, 0.025, 0.0, ""}; }
+Target Board() { return {TargetId("board"), 9, 6, 0.025, 0.0, ""}; }
 
 std::string ReadFile(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -24,7 +24,7 @@ def bad_sessions(flow):
     refused(flow, ["session.yaml"], "push", place / "nowhere")
     refused(flow, ["line", "sensors"], "push", with_yaml(place / "one", lambda text: text.replace("sensors:", "sensor:")))
     refused(flow, ["square"], "push", with_yaml(place / "two", lambda text: text.replace("0.025", "-1")))
-    refused(flow, ["even"], "push", with_yaml(place / "three", lambda text: text.replace("[9, 6]", "[8, 6]")))
+    refused(flow, ["1x6", "corners"], "push", with_yaml(place / "three", lambda text: text.replace("[9, 6]", "[1, 6]")))
     renamed = noise_session(place / "four", "robot", 1000, 4, seed=4)
     (renamed / "left" / "00000.png").write_bytes(b"plain text")
     refused(flow, ["00000.png"], "push", renamed)

@@ -8,11 +8,11 @@ TABLE = "docs/includes.md"
 FOLDERS = {"base", "math", "model", "formats", "detect", "calib", "graph", "fleet", "cloud", "report"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 IDL_GENERATED = "rigcal.h"
-POSIX = re.compile(r"(sys|net|netinet|arpa)/\w+\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc)\.h")
+POSIX = re.compile(r"(sys|linux/sched|net|netinet|arpa)/\w+\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc)\.h")
 LIBRARIES = [
     ("tl/expected.hpp", "expected"), ("Eigen/", "Eigen"), ("unsupported/Eigen/", "Eigen"), ("openssl/", "OpenSSL"),
     ("spdlog/", "spdlog"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),
-    ("nlohmann/", "nlohmann-json"), ("yaml-cpp/", "yaml-cpp"), ("pcl/", "PCL"), ("SQLiteCpp/", "SQLiteCpp"),
+    ("nlohmann/", "nlohmann-json"), ("yaml-cpp/", "yaml-cpp"), ("lzf.h", "LZF"), ("pcl/", "PCL"), ("SQLiteCpp/", "SQLiteCpp"),
     ("sqlite3.h", "SQLite"), ("opencv2/", "OpenCV"), ("ceres/", "Ceres"), ("cholmod.h", "CHOLMOD"),
     ("ctemplate/", "ctemplate"), ("dds/", "Cyclone"), ("civetweb.h", "civetweb"), ("CLI/", "CLI11"),
 ]

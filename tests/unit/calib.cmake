@@ -1,13 +1,22 @@
 rigcal_test(calib_test
   SOURCES unit/calib_derivative_test.cc unit/calib_estimate_test.cc unit/calib_diagnosis_test.cc unit/calib_start_test.cc
-          unit/calib_virtual_pair.cc
+          unit/calib_projection_test.cc unit/calib_virtual_pair.cc
+  DEPS rigcal_calib)
+rigcal_test(calib_models_test
+  SOURCES unit/calib_models_test.cc unit/calib_symmetry_test.cc unit/calib_camera_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_statistics_test
   SOURCES unit/calib_statistics_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_real_test
-  SOURCES unit/calib_real_test.cc
+  SOURCES unit/calib_real_test.cc unit/calib_fisheye_real_test.cc
   DEPS rigcal_calib rigcal_detect)
 rigcal_program(stereo_measure
   SOURCES bench/stereo_measure.cc
   DEPS rigcal_calib rigcal_detect)
+rigcal_test(calib_lidar_camera_test
+  SOURCES unit/calib_lidar_camera_test.cc unit/calib_virtual_lidar.cc
+  DEPS rigcal_calib)
+rigcal_program(lidar_camera_measure
+  SOURCES bench/lidar_camera_measure.cc
+  DEPS rigcal_calib rigcal_detect rigcal_formats)

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Eigenvalues>
-#include <opencv2/calib3d.hpp>
 
 #include "server/calib/costs/reference_view.h"
 #include "server/calib/costs/second_view.h"
@@ -14,10 +13,11 @@
 namespace rigcal::calib {
 namespace {
 
-IntrinsicsVector Lens() {
-  IntrinsicsVector lens;
-  lens << 610, 590, 322, 238, -0.28, 0.09, 0.004, -0.007, 0.02;
-  return lens;
+CameraIntrinsics LensOf(CameraModel model) {
+  if (model == CameraModel::kPinholeRadtan) return {610, 590, 322, 238, {-0.28, 0.09, 0.004, -0.007, 0.02}, model};
+  if (model == CameraModel::kPinholeRational)
+    return {610, 590, 322, 238, {0.4, -0.06, 0.004, -0.007, 0.01, 0.7, 0.05, -0.02}, model};
+  return {310, 300, 322, 238, {-0.02, 0.03, -0.02, 0.004}, model};
 }
 
 Se3 Pose(const Eigen::Vector3d& p_m, const Eigen::Vector3d& axis, double angle_rad) {
@@ -38,38 +38,6 @@ Eigen::Matrix4d SeriesExp(const Vector6d& xi) {
     sum += term;
   }
   return sum;
-}
-
-TEST(Projection, AgreesWithOpenCv) {
-  const Eigen::Vector3d p_cam(0.21, -0.13, 0.7);
-  std::vector<cv::Point2d> pixels;
-  cv::projectPoints(std::vector<cv::Point3d>{{p_cam.x(), p_cam.y(), p_cam.z()}}, cv::Vec3d(0, 0, 0), cv::Vec3d(0, 0, 0),
-                    cv::Matx33d(610, 0, 322, 0, 590, 238, 0, 0, 1),
-                    std::vector<double>{-0.28, 0.09, 0.004, -0.007, 0.02}, pixels);
-  const Projection projection = Project(Lens(), p_cam);
-  EXPECT_NEAR(projection.uv_px.x(), pixels[0].x, 1e-9);
-  EXPECT_NEAR(projection.uv_px.y(), pixels[0].y, 1e-9);
-}
-
-TEST(Projection, DerivativesAreThoseOfDifferences) {
-  const Eigen::Vector3d p_cam(0.21, -0.13, 0.7);
-  const Projection projection = Project(Lens(), p_cam);
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(i);
-    const Eigen::Vector2d slope = (Project(Lens(), p_cam + step).uv_px - Project(Lens(), p_cam - step).uv_px) / 2e-6;
-    EXPECT_LT((slope - projection.d_point.col(i)).norm(), 1e-4) << i;
-  }
-  for (int i = 0; i < kIntrinsicsCount; ++i) {
-    const IntrinsicsVector step = 1e-5 * IntrinsicsVector::Unit(i);
-    const Eigen::Vector2d slope = (Project(Lens() + step, p_cam).uv_px - Project(Lens() - step, p_cam).uv_px) / 2e-5;
-    EXPECT_LT((slope - projection.d_intrinsics.col(i)).norm(), 1e-5) << i;
-  }
-}
-
-TEST(Projection, RefusesPointsBehindTheCamera) {
-  EXPECT_FALSE(Project(Lens(), {0.1, 0.1, -0.5}).in_front);
-  EXPECT_FALSE(Project(Lens(), {0.1, 0.1, 0.0}).in_front);
-  EXPECT_FALSE(Project(Lens(), {0.1, 0.1, std::numeric_limits<double>::quiet_NaN()}).in_front);
 }
 
 TEST(Se3Manifold, PlusIsTheFullExponentialOnTheRight) {
@@ -115,7 +83,7 @@ TEST(Se3Manifold, JacobiansAreThoseOfDifferences) {
 }
 
 // Far from zero residual, so that a Jacobian that is right only at the solution fails.
-class CostDerivatives : public testing::Test {
+class CostDerivatives : public testing::TestWithParam<CameraModel> {
  protected:
   static Eigen::VectorXd Residuals(const ceres::CostFunction& cost, const std::vector<const double*>& blocks) {
     Eigen::VectorXd residuals(cost.num_residuals());
@@ -151,27 +119,33 @@ class CostDerivatives : public testing::Test {
     }
   }
 
-  std::vector<Eigen::Vector3d> corners_board_ = {{0, 0, 0}, {0.03, 0, 0}, {0, 0.03, 0}, {0.2, 0.1, 0}};
-  std::vector<Eigen::Vector2d> corners_px_ = {{300, 200}, {310, 260}, {250, 240}, {400, 300}};
-  IntrinsicsVector lens_ = Lens();
+  CameraModel model_ = GetParam();
+  std::vector<Eigen::Vector3d> corners_board_ = {{0, 0, 0}, {0.03, 0, 0}, {0, 0.03, 0}, {9, 9, 9}, {0.2, 0.1, 0}};
+  SeenCorners seen_{{1, 0, 2, 4}, {{310, 260}, {300, 200}, {250, 240}, {400, 300}}};
+  IntrinsicsVector lens_ = VectorOf(LensOf(GetParam()));
   PoseBlock T_a_board_ = BlockOf(Pose({-0.05, 0.02, 0.6}, {1, -0.4, 0.3}, 0.5));
   PoseBlock T_a_b_ = BlockOf(Pose({0.12, 0.01, -0.02}, {0.1, 1, 0.2}, 0.2));
 };
+INSTANTIATE_TEST_SUITE_P(All, CostDerivatives,
+                         testing::Values(CameraModel::kPinholeRadtan, CameraModel::kPinholeRational,
+                                         CameraModel::kFisheyeKb4),
+                         [](const auto& tested) { return NameOf(tested.param); });
 
-TEST_F(CostDerivatives, ReferenceView) {
-  const auto cost = MakeReferenceViewCost(corners_board_, corners_px_);
+TEST_P(CostDerivatives, ReferenceView) {
+  const auto cost = MakeReferenceViewCost(model_, corners_board_, seen_);
+  EXPECT_EQ(cost->parameter_block_sizes()[0], IntrinsicsCount(model_));
   for (std::size_t which = 0; which < 2; ++which) ExpectRightJacobian(*cost, {lens_.data(), T_a_board_.data()}, which);
 }
 
-TEST_F(CostDerivatives, SecondView) {
-  const auto cost = MakeSecondViewCost(corners_board_, corners_px_);
+TEST_P(CostDerivatives, SecondView) {
+  const auto cost = MakeSecondViewCost(model_, corners_board_, seen_);
   for (std::size_t which = 0; which < 3; ++which)
     ExpectRightJacobian(*cost, {lens_.data(), T_a_b_.data(), T_a_board_.data()}, which);
 }
 
-TEST_F(CostDerivatives, SecondViewIsTheChainThroughA) {
-  const auto chained = MakeSecondViewCost(corners_board_, corners_px_);
-  const auto direct = MakeReferenceViewCost(corners_board_, corners_px_);
+TEST_P(CostDerivatives, SecondViewIsTheChainThroughA) {
+  const auto chained = MakeSecondViewCost(model_, corners_board_, seen_);
+  const auto direct = MakeReferenceViewCost(model_, corners_board_, seen_);
   const Eigen::Matrix4d T_b_board = PoseOf(T_a_b_.data()).Matrix().inverse() * PoseOf(T_a_board_.data()).Matrix();
   const PoseBlock block = BlockOf(Se3::FromMatrix(T_b_board));
   EXPECT_LT((Residuals(*chained, {lens_.data(), T_a_b_.data(), T_a_board_.data()}) -

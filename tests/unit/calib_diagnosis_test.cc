@@ -59,7 +59,8 @@ TEST(Diagnosis, BoardNotFoundListsTheCaptures) {
   for (const std::size_t k : {0U, 2U, 3U}) problem.captures[k].b = NotFoundView();
   const Edge edge = EstimateEdge(problem);
   ExpectFailed(edge, "too_few_captures", "only 2 captures");
-  ExpectFailed(edge, "board_not_found", "front_right does not show the 9 x 6 target 'board' in 3 captures: 000, 002, 003");
+  ExpectFailed(edge, "board_not_found",
+               "front_right does not show the 9 x 6 target 'board' in 3 captures: 000, 002, 003");
 }
 
 TEST(Diagnosis, BoardNotFoundIsANoteOnAGoodEdge) {
@@ -67,6 +68,15 @@ TEST(Diagnosis, BoardNotFoundIsANoteOnAGoodEdge) {
   problem.captures[7].a = NotFoundView();
   ExpectNote(EstimateEdge(problem), "board_not_found",
              "front_left does not show the 9 x 6 target 'board' in 1 capture: 007");
+}
+
+TEST(Diagnosis, APictureThatCannotBeReadIsNotAHiddenBoard) {
+  StereoProblem problem = Usual(12);
+  problem.captures[7].a = NotFoundView();
+  problem.captures[8].a = BoardView{false, "the picture cannot be decoded", TargetId("board"), 0, 0, {}};
+  const Edge edge = EstimateEdge(problem);
+  ExpectNote(edge, "picture_unreadable", "1 picture of front_left cannot be read and take no part: 008. The first of");
+  ExpectNote(edge, "board_not_found", "front_left does not show the 9 x 6 target 'board' in 1 capture: 007");
 }
 
 TEST(Diagnosis, NoCommonView) {

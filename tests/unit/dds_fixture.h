@@ -86,10 +86,10 @@ inline Session MakeSession(const std::string& robot, const std::vector<std::size
   Sensor camera;
   camera.id = SensorId("front");
   header.sensors = {camera};
-  Checkerboard board;
+  Target board;
   board.id = TargetId("board");
-  board.inner_cols = 9;
-  board.inner_rows = 6;
+  board.cols = 9;
+  board.rows = 6;
   board.square_m = 0.025;
   header.targets = {board};
   header.conditions["seed"] = std::to_string(seed);

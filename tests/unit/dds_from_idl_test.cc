@@ -45,6 +45,9 @@ TEST(FromIdl, AStrangerIsRefusedInItsOwnPartition) {
   EXPECT_EQ(refusal.robot.str(), "mapper-01");
   EXPECT_THAT(refusal.error.what, HasSubstr("mapper-01"));
   EXPECT_THAT(refusal.error.what, HasSubstr("robot/stranger"));
+  const auto terminal = FromIdl(ChunkOf(bytes), wire::SampleOrigin{1, {"\x1b[2J", "robot/stranger"}, 2});
+  ASSERT_TRUE(terminal);
+  EXPECT_THAT(std::get<Refusal>(*terminal).error.what, HasSubstr(R"("\x1b[2J")"));
 }
 
 TEST(FromIdl, NobodyIsToldWhereNobodyIs) {

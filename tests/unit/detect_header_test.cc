@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "server/detect/grey_image.h"
 #include "server/detect/image_header.h"
 
 namespace rigcal::detect {
@@ -45,6 +46,14 @@ TEST(ImageHeader, RefusesMoreThanTheLimit) {
   EXPECT_THAT(size.error().what, HasSubstr("limit"));
   EXPECT_TRUE(SizeOf(Png(20'000, 10'000)));
   EXPECT_FALSE(SizeOf(Png(20'000, 10'001)));
+}
+
+TEST(GreyImage, RefusesASizeThatItsBytesCannotHold) {
+  for (const std::string& encoded : {Png(14'000, 14'000), kJpeg + Frame('\xC2', 14'000, 14'000)}) {
+    const auto image = DecodeGrey(std::as_bytes(std::span(encoded)));
+    ASSERT_FALSE(image);
+    EXPECT_THAT(image.error().what, HasSubstr("14000 x 14000 pixels, which its"));
+  }
 }
 
 TEST(ImageHeader, RefusesEmptyPictures) {

@@ -11,7 +11,7 @@ namespace {
 
 const std::filesystem::path kData = RIGCAL_SOURCE_DIR "/../shared/data";
 
-AnnotatedView DetectFile(const std::filesystem::path& path, const Checkerboard& board) {
+AnnotatedView DetectFile(const std::filesystem::path& path, const Target& board) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   return Detect(std::as_bytes(std::span(bytes)), board);

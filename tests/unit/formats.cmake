@@ -6,3 +6,11 @@ rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc DEPS rig
 rigcal_test(formats_answers_test SOURCES unit/formats_answers_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_yaml_test SOURCES unit/formats_session_yaml_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_folder_test SOURCES unit/formats_session_folder_test.cc DEPS rigcal_formats)
+rigcal_test(formats_cloud_test SOURCES unit/formats_cloud_test.cc DEPS rigcal_formats)
+rigcal_test(formats_cloud_refusals_test SOURCES unit/formats_cloud_refusals_test.cc DEPS rigcal_formats)
+rigcal_test(formats_cloud_data_test SOURCES unit/formats_cloud_data_test.cc DEPS rigcal_formats)
+# PCL writes what our decoders read. Nothing else uses it here.
+find_package(PCL 1.13 REQUIRED COMPONENTS common io)
+rigcal_test(formats_cloud_pcl_test SOURCES unit/formats_cloud_pcl_test.cc DEPS rigcal_formats ${PCL_LIBRARIES})
+target_include_directories(formats_cloud_pcl_test SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
+rigcal_test(formats_limits_text_test SOURCES unit/formats_limits_text_test.cc DEPS rigcal_formats)

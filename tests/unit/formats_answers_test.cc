@@ -142,11 +142,14 @@ TEST(Answers, Health) {
   answer.disk_free_bytes = 1000;
   answer.schema = 2;
   answer.protocol = 1;
+  answer.limits.open_sessions = 7;
   const json good = json::parse(WriteHealth(answer, kNow));
   EXPECT_EQ(good["state"], "ok");
   EXPECT_EQ(good["disk_free_bytes"], 1000);
   EXPECT_EQ(good["schema"], 2);
   EXPECT_EQ(good["protocol"], 1);
+  EXPECT_EQ(good["limits"]["open_sessions"], 7);
+  EXPECT_EQ(good["limits"].size(), limits::Settings().size());
   EXPECT_TRUE(good["problem"].is_null());
   answer.problem = Error{ErrorCode::kStorage, "disk full", "Free some space."};
   const json bad = json::parse(WriteHealth(answer, kNow));

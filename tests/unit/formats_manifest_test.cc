@@ -23,7 +23,7 @@ TEST(ManifestDocument, ComesBackWhole) {
   EXPECT_EQ(right.intrinsics_sigma, manifest.header.sensors[0].intrinsics_sigma);
   EXPECT_EQ(right.T_ref_nominal->q.y(), 0.6);
   EXPECT_FALSE(read->header.sensors[1].intrinsics || read->header.sensors[1].sees);
-  EXPECT_EQ(read->header.targets[0].inner_cols, 9);
+  EXPECT_EQ(read->header.targets[0].cols, 9);
   EXPECT_EQ(read->payloads[1].size_bytes, 2147483648);
   EXPECT_EQ(read->payloads[1].capture, CaptureId("01"));
   EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));
@@ -54,19 +54,21 @@ INSTANTIATE_TEST_SUITE_P(
                     "manifest: robot: robot id \"../x\" is not a valid name"},
         BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",
                     "manifest: sensors[0].type: sensor kind \"camra\" is not known"},
-        BadManifest{"\"type\":\"camera\"", "\"type\":\"lidar\"", "sensor right: kind lidar is not supported"},
-        BadManifest{"pinhole_radtan", "fisheye", "manifest: sensors[0].intrinsics.model: must be \"pinhole_radtan\""},
+        BadManifest{"\"type\":\"camera\"", "\"type\":\"tracker\"", "sensor right: kind tracker is not supported"},
+        BadManifest{"pinhole_radtan", "fisheye",
+                    "manifest: sensors[0].intrinsics.model: camera model \"fisheye\" is not known"},
         BadManifest{"0.0,0.6,0.0,0.8", "0.0,0.6,0.0,0.7",
                     "manifest: sensors[0].T_ref_nominal.q_xyzw: must have unit length (it is 0.921954)"},
         BadManifest{"\"inner_corners\":[9,6]", "\"inner_corners\":[9]",
                     "manifest: targets[0].inner_corners: must be two integers: columns and rows"},
-        BadManifest{"\"checkerboard\"", "\"charuco\"", "manifest: targets[0].type: must be \"checkerboard\""},
+        BadManifest{"\"checkerboard\"", "\"charuco\"", "manifest: targets[0]: \"dictionary\" is missing"},
         BadManifest{"\"sees\":\"board\"", "\"sees\":\"b\"",
                     "sensor right: it sees target \"b\", which the session does not list"},
         BadManifest{"left/01.png", "left/../../etc/passwd",
                     "manifest: payloads[0].path: file \"left/../../etc/passwd\": it is not in a sensor's folder"},
         BadManifest{"left/01.png", "left/01.exe",
-                    "manifest: payloads[0].path: file \"left/01.exe\": its name does not end in .png, .jpg or .jpeg"},
+                    "manifest: payloads[0].path: file \"left/01.exe\": its name does not end in .png, .jpg, "
+                    ".jpeg, .pcd, .ply or .bin"},
         BadManifest{"left/01.png", "left/.png",
                     "manifest: payloads[0].path: file \"left/.png\": capture id \"\" is not a valid name"},
         BadManifest{"left/01.png", "up/01.png", "file \"up/01.png\": sensor up is not in the session"},

@@ -41,7 +41,7 @@ inline Manifest SampleManifest() {
   Sensor right;
   right.id = SensorId("right");
   right.sees = TargetId("board");
-  right.intrinsics = PinholeRadtan{535.4, 539.25, 327.125, 1.0 / 3.0, {-0.29, 0.11, 0.0013, -0.0003, 0.0}};
+  right.intrinsics = CameraIntrinsics{535.4, 539.25, 327.125, 1.0 / 3.0, {-0.29, 0.11, 0.0013, -0.0003, 0.0}};
   right.intrinsics_sigma = {0.8, 0.8, 1.1, 1.0, 0.005, 0.03, 0.0002, 0.0002, 1e-7};
   right.T_ref_nominal = Se3{{0.083, 0.0, -0.0}, Eigen::Quaterniond(0.8, 0.0, 0.6, 0.0)};
   Sensor left;

@@ -121,10 +121,10 @@ TEST_F(SessionFolder, RefusesFilesThatDoNotBelong) {
   ExpectRefused("file \"README.txt\": it does not belong to a session");
   fs::remove(folder_ / "README.txt");
   Write("left/notes.txt", "x");
-  ExpectRefused("file \"left/notes.txt\": its name does not end in .png, .jpg or .jpeg");
+  ExpectRefused("file \"left/notes.txt\": its name does not end in .png, .jpg, .jpeg, .pcd, .ply or .bin");
   fs::remove(folder_ / "left/notes.txt");
   Write("left/02.PNG", kPng);
-  ExpectRefused("file \"left/02.PNG\": its name does not end in .png, .jpg or .jpeg");
+  ExpectRefused("file \"left/02.PNG\": its name does not end in .png, .jpg, .jpeg, .pcd, .ply or .bin");
   fs::remove(folder_ / "left/02.PNG");
   Write("left/deep/01.png", kPng);
   ExpectRefused("file \"left/deep\": it is not a file");
@@ -144,12 +144,12 @@ TEST_F(SessionFolder, RefusesEmptyAndRenamedPictures) {
   Write("left/02.png", "");
   ExpectRefused("file \"left/02.png\": it is empty");
   Write("left/02.png", kJpeg);
-  ExpectRefused("file \"left/02.png\": it is a JPEG, not a PNG picture");
+  ExpectRefused("file \"left/02.png\": it is a JPEG picture, not a PNG picture");
   Write("left/02.png", "\x89P");
   ExpectRefused("file \"left/02.png\": it is not a PNG picture");
   fs::remove(folder_ / "left/02.png");
   Write("left/02.jpg", kPng);
-  ExpectRefused("file \"left/02.jpg\": it is a PNG, not a JPEG picture");
+  ExpectRefused("file \"left/02.jpg\": it is a PNG picture, not a JPEG picture");
 }
 
 TEST_F(SessionFolder, RefusesTwoFilesOfOneCapture) {

@@ -1,10 +1,18 @@
-rigcal_program(graph_bench SOURCES bench/graph_bench.cc DEPS rigcal_graph rigcal_formats)
+rigcal_program(graph_bench SOURCES bench/graph_bench.cc bench/graph_reference.cc
+  DEPS rigcal_graph rigcal_formats Ceres::ceres)
 
 rigcal_test(graph_test
   SOURCES unit/graph_solve_test.cc unit/graph_uncertainty_test.cc unit/graph_observability_test.cc
-          unit/graph_of_test.cc unit/graph_g2o_test.cc unit/graph_data_test.cc
+          unit/graph_of_test.cc unit/graph_g2o_test.cc unit/graph_data_test.cc unit/graph_live_test.cc
   DEPS rigcal_graph rigcal_formats)
 
 rigcal_test(graph_numbers_test
   SOURCES unit/graph_numbers_test.cc
+  DEPS rigcal_graph rigcal_formats Ceres::ceres)
+
+rigcal_test(graph_honesty_test
+  SOURCES unit/graph_jackknife_test.cc unit/graph_suspects_test.cc
+  DEPS rigcal_graph rigcal_formats)
+rigcal_test(graph_property_test
+  SOURCES unit/graph_property_test.cc
   DEPS rigcal_graph rigcal_formats Ceres::ceres)

@@ -88,6 +88,8 @@ TEST(G2o, RefusesByLineAndEdge) {
   EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 nan 1")), "line 1: edge 4 - 5: \"nan\" is not a finite number");
   EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 0 0 0 1 0 0 0 0 -1 0 0 0 4 0 0 4 0 4")),
             "line 1: edge 4 - 5: the information matrix is indefinite");
+  EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 1 1 0 0 0 5 1 0 0 0 0 1 0 0 1 0 0 8.9e27")),
+            "line 1: edge 4 - 5: information holds 2.22e+27, more than the limit of 1e+18");
   EXPECT_EQ(Refusal(EdgeLine("4 5", "0 0 0 1", "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0")),
             "line 1: edge 4 - 5: the information matrix is zero");
   EXPECT_THAT(Refusal(EdgeLine("4 5", "0 0 0 1", "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 4 0 0 4 0 4 9")),

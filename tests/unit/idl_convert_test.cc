@@ -88,6 +88,8 @@ TEST(ReceiptConversion, RefusesAStateItDoesNotKnow) {
   const auto back = FromReceipt(owned->sample);
   ASSERT_FALSE(back);
   EXPECT_EQ(back.error().code, ErrorCode::kUnsupported);
+  std::strcpy(owned->sample.state, "\x1b[2J");
+  EXPECT_THAT(FromReceipt(owned->sample).error().what, HasSubstr(R"("\x1b[2J")"));
 }
 
 TEST(EdgeConversion, KeepsEveryNumberBitByBit) {

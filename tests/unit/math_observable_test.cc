@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "server/math/covariance.h"
 
@@ -85,6 +86,36 @@ TEST(IsPositiveSemidefinite, Judges) {
   Matrix6d infinite = Matrix6d::Identity();
   infinite(5, 5) = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(IsPositiveSemidefinite(infinite));
+}
+
+// 10 um beside 1 rad: a correlation of 1.1 between two rotations is wrong however large the other entries are.
+TEST(IsPositiveSemidefinite, MetresDoNotHideTheRadians) {
+  Matrix6d Omega = Diagonal(1e10, 1e10, 1e10, 1, 1, 1);
+  EXPECT_TRUE(IsPositiveSemidefinite(Omega));
+  Omega(3, 4) = Omega(4, 3) = 1.1;
+  EXPECT_FALSE(IsPositiveSemidefinite(Omega));
+  Omega(3, 4) = Omega(4, 3) = 1.0 + 1e-3;
+  EXPECT_FALSE(IsPositiveSemidefinite(Omega));
+  Omega(3, 4) = Omega(4, 3) = 1.0;
+  EXPECT_TRUE(IsPositiveSemidefinite(Omega));
+  Omega(3, 4) = 1.0, Omega(4, 3) = 0.5;
+  EXPECT_FALSE(IsPositiveSemidefinite(Omega));
+}
+
+// A change of frame leaves rounding noise where nothing is known; that is no wrong matrix.
+TEST(IsPositiveSemidefinite, ForgivesRoundingAfterChangesOfFrame) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-2.0, 2.0);
+  for (int k = 0; k < 500; ++k) {
+    Vector6d xi;
+    for (double& value : xi) value = uniform(random);
+    Matrix6d Omega = Matrix6d::Zero();
+    for (int axis = 0; axis < 6; ++axis)
+      Omega(axis, axis) = (k >> axis) % 2 == 0 ? std::pow(10.0, 8.0 * (axis < 3)) : 0;
+    const Matrix6d there = InverseInformation(Se3::Exp(xi), Omega);
+    EXPECT_TRUE(IsPositiveSemidefinite(there)) << k;
+    EXPECT_TRUE(IsPositiveSemidefinite(InverseInformation(Se3::Exp(xi).Inverse(), there))) << k;
+  }
 }
 
 }  // namespace

@@ -54,6 +54,21 @@ TEST(ValidateEdge, NamesEdgeAndField) {
   EXPECT_THAT(RefusalAfter([](Edge& e) { e.epoch = 0; }), HasSubstr("epoch"));
 }
 
+TEST(ValidateEdge, RefusesNumbersThatNoRigHasWhereTheyWerePushed) {
+  const auto far = [](Edge& e) { e.T_a_b.p_m.z() = -1.1e6; };
+  const auto sure = [](Edge& e) {
+    e.uncertainty = FromInformation(1.1e18 * Matrix6d::Identity(), e.uncertainty.source, 0);
+  };
+  EXPECT_THAT(RefusalAfter(far), HasSubstr("left - right: p_m holds 1.1e+06 m"));
+  EXPECT_THAT(RefusalAfter(sure), HasSubstr("left - right: information holds 1.1e+18"));
+  EXPECT_EQ(RefusalAfter([](Edge& e) { e.T_a_b.p_m.setConstant(1e6); }), "");
+  EXPECT_EQ(RefusalAfter([&](Edge& e) {
+              sure(e);
+              e.session = SessionId(std::string(64, 'a'));  // of our own making
+            }),
+            "");
+}
+
 TEST(ValidateEdge, ChecksNames) {
   EXPECT_THAT(RefusalAfter([](Edge& e) { e.frame_b = e.frame_a; }), HasSubstr("the same"));
   EXPECT_THAT(RefusalAfter([](Edge& e) { e.frame_a = SensorId(); }), HasSubstr("sensor id"));

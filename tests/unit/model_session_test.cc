@@ -47,6 +47,8 @@ TEST(ValidateHeader, NamesWhatIsMissingOrDouble) {
   EXPECT_THAT(RefusalAfter([](auto& h) { h.reference = SensorId("top"); }).what, HasSubstr("\"top\""));
   EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.push_back(Camera("left")); }).what,
               HasSubstr("left is listed twice"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors.push_back(Camera("LEFT")); }).what,
+              HasSubstr("sensor LEFT differs from left only in case"));
   EXPECT_THAT(RefusalAfter([](auto& h) { h.targets.push_back(h.targets[0]); }).what,
               HasSubstr("board is listed twice"));
   EXPECT_THAT(RefusalAfter([](auto& h) { h.sensors[1].sees = TargetId("wall"); }).what,
@@ -64,7 +66,7 @@ TEST(ValidateHeader, RefusesNewerFormats) {
 }
 
 TEST(ValidateHeader, RefusesKindsThatAreNotSupported) {
-  for (SensorKind kind : {SensorKind::kLidar, SensorKind::kTracker, SensorKind::kPoseStream}) {
+  for (SensorKind kind : {SensorKind::kTracker, SensorKind::kPoseStream}) {
     const Error error = RefusalAfter([&](auto& h) { h.sensors[1].kind = kind; });
     EXPECT_EQ(error.code, ErrorCode::kUnsupported);
     EXPECT_THAT(error.what, HasSubstr("sensor right: kind " + NameOf(kind)));
@@ -82,7 +84,7 @@ TEST(ValidateHeader, TextsMustBeReadable) {
 TEST(ValidateSensor, IntrinsicsAreInRange) {
   const auto refusal = [](const std::function<void(Sensor&)>& change) {
     return RefusalAfter([&](SessionHeader& header) {
-             header.sensors[1].intrinsics = PinholeRadtan{530, 530, 320, 240, {}};
+             header.sensors[1].intrinsics = CameraIntrinsics{530, 530, 320, 240};
              change(header.sensors[1]);
            })
         .what;
@@ -91,6 +93,11 @@ TEST(ValidateSensor, IntrinsicsAreInRange) {
   EXPECT_EQ(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(9, 0.1); }), "");
   EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics->fy_px = 0; }), HasSubstr("sensor right: intrinsics"));
   EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics->distortion[4] = kNaN; }), HasSubstr("sensor right: intrinsics"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics->distortion.pop_back(); }),
+              HasSubstr("fit the model pinhole_radtan"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.camera_model = CameraModel::kFisheyeKb4; }), HasSubstr("model fisheye_kb4"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.range_bias_sigma_m = 0.01; }), HasSubstr("for lidars only"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.kind = SensorKind::kLidar; }), HasSubstr("a lidar has no intrinsics"));
   EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(8, 0.1); }), HasSubstr("9 finite"));
   EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(9, -0.1); }), HasSubstr("9 finite"));
   EXPECT_THAT(refusal([](Sensor& s) {
@@ -112,18 +119,64 @@ TEST(ValidateSensor, NominalPoseIsAPose) {
               HasSubstr("sensor right: nominal q_xyzw"));
 }
 
-Checkerboard Board(int cols, int rows) { return {TargetId("board"), cols, rows, 0.025, 0.0, ""}; }
+Target Board(int cols, int rows) { return {TargetId("board"), cols, rows, 0.025, 0.0, ""}; }
 
-TEST(ValidateTarget, OneCountIsOddAndOneIsEven) {
-  EXPECT_TRUE(Validate(Board(9, 6)).has_value());
-  EXPECT_TRUE(Validate(Board(6, 9)).has_value());
-  for (const Checkerboard& board : {Board(9, 7), Board(8, 6), Board(5, 5), Board(6, 6)}) {
-    const Status status = Validate(board);
-    ASSERT_FALSE(status.has_value());
-    EXPECT_THAT(status.error().what, HasSubstr("target board"));
-    EXPECT_THAT(status.error().what, HasSubstr("180 degrees"));
-    EXPECT_THAT(status.error().cure, HasSubstr("one odd and one even"));
+TEST(Target, LooksTheSameTurned) {
+  EXPECT_EQ(SymmetryOf(Board(9, 6)), 1);
+  EXPECT_EQ(SymmetryOf(Board(7, 5)), 2);
+  EXPECT_EQ(SymmetryOf(Board(8, 6)), 2);
+  EXPECT_EQ(SymmetryOf(Board(7, 7)), 2);
+  EXPECT_EQ(SymmetryOf(Board(6, 6)), 4);
+}
+
+// Turning the board about its centre carries each point onto the one that takes its index.
+TEST(Target, TurnedIndexIsTheRotationAboutTheCentre) {
+  for (const Target& board : {Board(7, 5), Board(6, 6), Board(8, 6), Board(9, 6)}) {
+    const auto points = TargetPoints(board);
+    for (int turn = 0; turn < SymmetryOf(board); ++turn) {
+      const Eigen::Rotation2Dd back(-2 * M_PI * turn / SymmetryOf(board));
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const Eigen::Vector2d moved = back * (points[i] - CentreOf(board)).head<2>() + CentreOf(board).head<2>();
+        const auto at = static_cast<std::size_t>(TurnedIndex(board, static_cast<int>(i), turn));
+        EXPECT_LT((points[at].head<2>() - moved).norm(), 1e-12) << board.cols << " turn " << turn << " point " << i;
+      }
+    }
   }
+}
+
+TEST(Target, TagsAreNumberedFromTheTopOrTheBottom) {
+  Target grid = Board(3, 2);
+  grid.kind = TargetKind::kArucoGrid;
+  grid.square_m = 0.1;
+  grid.spacing_ratio = 0.5;
+  EXPECT_EQ(TargetPoints(grid).size(), 24u);
+  EXPECT_LT((TargetPoints(grid)[4 * 3] - Eigen::Vector3d(0, 0.15, 0)).norm(), 1e-12);
+  EXPECT_LT((PatternSize_m(grid) - Eigen::Vector2d(0.4, 0.25)).norm(), 1e-12);
+  EXPECT_LT((CentreOf(grid) - Eigen::Vector3d(0.2, 0.125, 0)).norm(), 1e-12);
+  grid.kind = TargetKind::kAprilGrid;
+  EXPECT_LT((TargetPoints(grid)[0] - Eigen::Vector3d(0, 0.15, 0)).norm(), 1e-12);
+  EXPECT_LT((TargetPoints(grid)[4 * 5 + 2] - Eigen::Vector3d(0.4, 0.1, 0)).norm(), 1e-12);
+}
+
+TEST(ValidateTarget, MarkersAndPlateFitTheKind) {
+  const auto refusal = [](const auto& change) {
+    Target target = Board(4, 3);
+    target.kind = TargetKind::kCharuco;
+    target.dictionary = "DICT_4X4_50";
+    target.marker_m = 0.018;
+    change(target);
+    const Status status = Validate(target);
+    return status ? std::string() : status.error().what;
+  };
+  EXPECT_EQ(refusal([](Target&) {}), "");
+  EXPECT_THAT(refusal([](Target& t) { t.dictionary = "DICT_9X9"; }), HasSubstr("dictionary \"DICT_9X9\" is not known"));
+  EXPECT_THAT(refusal([](Target& t) { t.marker_m = 0.025; }), HasSubstr("marker_size_m"));
+  EXPECT_THAT(refusal([](Target& t) { t.marker_m = kNaN; }), HasSubstr("marker_size_m"));
+  EXPECT_THAT(refusal([](Target& t) { t.kind = TargetKind::kAprilGrid; }), HasSubstr("spacing_ratio"));
+  EXPECT_THAT(refusal([](Target& t) { t.kind = TargetKind::kCheckerboard; }), HasSubstr("has no dictionary"));
+  EXPECT_EQ(refusal([](Target& t) { t.plate_m = {0.125, 0.1}; }), "");
+  EXPECT_THAT(refusal([](Target& t) { t.plate_m = {0.1, 0.125}; }), HasSubstr("plate_size_m 0.100000 does not fit"));
+  EXPECT_THAT(refusal([](Target& t) { t.plate_m = {kNaN, 0.125}; }), HasSubstr("plate_size_m"));
 }
 
 TEST(ValidateTarget, CountsAndSizesAreInRange) {
@@ -132,7 +185,7 @@ TEST(ValidateTarget, CountsAndSizesAreInRange) {
   EXPECT_FALSE(Validate(Board(101, 6)).has_value());
   EXPECT_FALSE(Validate(Board(9, -6)).has_value());
   const auto accepts = [](double square_m, double sigma_m) {
-    Checkerboard board = Board(9, 6);
+    Target board = Board(9, 6);
     board.square_m = square_m;
     board.square_sigma_m = sigma_m;
     return Validate(board).has_value();
@@ -153,14 +206,17 @@ TEST(SensorKind, NamesRoundTrip) {
   EXPECT_FALSE(SensorKindOf("nose").has_value());
 }
 
-TEST(PairsToCalibrate, AreCamerasThatMaySeeTheSameTarget) {
+TEST(PairsToCalibrate, HoldACameraAndMaySeeTheSameTarget) {
   SessionHeader header = GoodHeader();
   header.sensors = {Camera("d"), Camera("c"), Camera("b"), Camera("a")};
   header.sensors[0].sees = header.sensors[1].sees = TargetId("board");
   header.sensors[2].sees = TargetId("wall");
   header.sensors[3].kind = SensorKind::kLidar;
   const auto pair = [](const char* a, const char* b) { return SensorPair{SensorId(a), SensorId(b)}; };
-  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c")));
+  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a"), pair("b", "a")));
+  header.sensors[2].kind = SensorKind::kLidar;
+  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a")));
+  header.sensors[2].kind = SensorKind::kCamera;
   header.sensors[3].kind = SensorKind::kCamera;  // sees any target
   EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a"), pair("b", "a")));
   header.sensors.resize(1);

@@ -71,10 +71,10 @@ class PipelineTest : public testing::Test {
     manifest.header.robot = RobotId(robot);
     manifest.header.reference = SensorId("left");
     manifest.header.captured_at = clock_.now;
-    Checkerboard board;
+    Target board;
     board.id = TargetId("board");
-    board.inner_cols = 9;
-    board.inner_rows = 6;
+    board.cols = 9;
+    board.rows = 6;
     board.square_m = 0.025;
     manifest.header.targets = {board};
     for (const char* name : {"left", "right"}) {

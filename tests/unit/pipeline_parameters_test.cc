@@ -16,6 +16,7 @@ TEST(Parameters, FlatObjectsOnly) {
   for (const char* bad : {"[]", "1", "{", R"({"a":{"b":1}})", R"({"a":[1]})", R"({"a":1.5})", R"({"a":null})"})
     EXPECT_FALSE(Parameters::Read(bad)) << bad;
   EXPECT_FALSE(Parameters::Read(std::string(100'000, '[')));
+  EXPECT_NE(Parameters::Read(R"({"\u001b[2J":null})").error().what.find(R"("\x1b[2J")"), std::string::npos);
 }
 
 TEST(Parameters, QueryStringsAreDecoded) {

@@ -90,6 +90,21 @@ TEST_F(PipelineTest, RealPairsGiveAnEdgeARevisionAndAReport) {
                                       (edge.evidence[0].digest.str() + ".jpg")));
 }
 
+TEST_F(PipelineTest, OneFileForBothCamerasIsNoMeasurement) {
+  auto files = RealPictures();
+  if (files.empty()) GTEST_SKIP() << "no stereo_opencv in ../shared/data";
+  files["right/01.jpg"] = files["left/01.jpg"];
+  StoreSession("r", files);
+  StepAll();
+  const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
+  ASSERT_TRUE(edges && edges->size() == 1);
+  ASSERT_EQ(edges->front().diagnoses.front().code, "same_picture");
+  EXPECT_NE(edges->front().diagnoses.front().what.find("which are not used: 01."), std::string::npos);
+  EXPECT_EQ(edges->front().captures.front().capture.str(), "01");
+  EXPECT_FALSE(edges->front().captures.front().used);
+  EXPECT_EQ(edges->front().captures.size(), files.size() / 2);
+}
+
 TEST_F(PipelineTest, ACorrectedSessionSupersedesTheOneItRepeats) {
   const std::map<std::string, std::string> files = {{"left/01.png", "one"}, {"right/01.png", "two"}};
   StoreSession("r", files);
@@ -117,9 +132,9 @@ TEST_F(PipelineTest, ASensorInNoPairIsUnknownNotAbsent) {
   manifest.header.reference = SensorId("left");
   manifest.header.captured_at = clock_.now;
   for (const char* name : {"near", "far"}) {
-    Checkerboard board;
+    Target board;
     board.id = TargetId(name);
-    board.inner_cols = 9, board.inner_rows = 6, board.square_m = 0.025;
+    board.cols = 9, board.rows = 6, board.square_m = 0.025;
     manifest.header.targets.push_back(board);
   }
   for (const auto& [name, target] : {std::pair("left", "near"), {"right", "near"}, {"side", "far"}}) {
@@ -138,7 +153,8 @@ TEST_F(PipelineTest, ASensorInNoPairIsUnknownNotAbsent) {
   Close(manifest);
   StepAll();
   ASSERT_EQ(poses_.size(), 3u);
-  const auto side = std::find_if(poses_.begin(), poses_.end(), [](const SensorPose& p) { return p.sensor.str() == "side"; });
+  const auto side =
+      std::find_if(poses_.begin(), poses_.end(), [](const SensorPose& p) { return p.sensor.str() == "side"; });
   ASSERT_NE(side, poses_.end());
   EXPECT_FALSE(side->known);
 }

@@ -1,10 +1,13 @@
-// Reprojection of one board view in camera a. Blocks: intrinsics of a [9], T_a_board [7]. Residuals in px: projected
-// minus seen, u and v of every corner in turn.
+// Reprojection of one board view in camera a. Blocks: intrinsics of a [IntrinsicsCount(model)], T_a_board [7].
+// Residuals in px: projected minus seen, u and v of every corner in turn.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
 #include <vector>
+
+#include "server/calib/seen_corners.h"
+#include "server/model/camera.h"
 
 namespace ceres {
 class CostFunction;
@@ -12,8 +15,9 @@ class CostFunction;
 
 namespace rigcal::calib {
 
-// Keeps references to both lists, of equal length. Evaluation fails where a corner is not in front of the camera.
+// Keeps references to both lists; `seen` indexes `corners_board`. Evaluation fails where the camera cannot see a
+// corner.
 [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeReferenceViewCost(
-    const std::vector<Eigen::Vector3d>& corners_board, const std::vector<Eigen::Vector2d>& corners_px);
+    CameraModel model, const std::vector<Eigen::Vector3d>& corners_board, const SeenCorners& seen);
 
 }  // namespace rigcal::calib

@@ -44,7 +44,7 @@
 {{/PARTS}}
 </div>
 {{#CAPTURES}}
-<h3>Residual of each capture <span class="soft">rms, px</span></h3>
+<h3>Residual of each capture <span class="soft">rms, {{UNIT}}</span></h3>
 <div class="scroll" tabindex="0" role="region" aria-label="Residual of each capture">
 {{>BARS}}
 </div>

@@ -1,0 +1,26 @@
+# Runs at install time, when the prefix is known: settings, unit, changelog. file(INSTALL) obeys DESTDIR.
+cmake_path(ABSOLUTE_PATH CMAKE_INSTALL_PREFIX NORMALIZE OUTPUT_VARIABLE prefix)
+if(prefix STREQUAL "/usr")
+  set(settings /etc/rigcal)
+  set(units /lib/systemd/system)
+else()
+  set(settings ${prefix}/etc/rigcal)
+  set(units ${prefix}/lib/systemd/system)
+  file(INSTALL ${rigcal_sources}/../LICENSE DESTINATION ${prefix}/share/doc/rigcal)  # Debian has it already
+endif()
+
+foreach(name rigcald.service packaging/rigcald.env packaging/limits.yaml packaging/changelog.in)
+  file(READ ${rigcal_sources}/${name} text)
+  string(REPLACE "/usr/" "${prefix}/" text "${text}")
+  string(REPLACE "/etc/rigcal" "${settings}" text "${text}")
+  string(REPLACE "@VERSION@" "${rigcal_version}" text "${text}")
+  get_filename_component(file ${name} NAME)
+  file(WRITE ${rigcal_staging}/${file} "${text}")
+endforeach()
+file(RENAME ${rigcal_staging}/changelog.in ${rigcal_staging}/changelog)
+execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${rigcal_staging} COMMAND_ERROR_IS_FATAL ANY)
+
+set(mode OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+file(INSTALL ${rigcal_staging}/rigcald.service DESTINATION ${units} PERMISSIONS ${mode})
+file(INSTALL ${rigcal_staging}/rigcald.env ${rigcal_staging}/limits.yaml DESTINATION ${settings} PERMISSIONS ${mode})
+file(INSTALL ${rigcal_staging}/changelog.gz DESTINATION ${prefix}/share/doc/rigcal PERMISSIONS ${mode})

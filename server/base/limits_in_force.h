@@ -1,0 +1,40 @@
+// The limits that an operator may set when a program starts. limits.h holds their defaults, docs/limits.md explains
+// them. They are judged where something enters; what is stored stays readable whatever is set later.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "server/base/limits.h"
+
+namespace rigcal::limits {
+
+struct Limits {
+  std::int64_t payload_bytes = kPayloadBytesMax;
+  std::int64_t session_bytes = kSessionBytesMax;
+  std::int64_t payloads_per_session = kPayloadsPerSessionMax;
+  std::int64_t sensors_per_session = kSensorsPerSessionMax;
+  std::int64_t window_bytes = kWindowBytes;
+  std::int64_t intake_bytes = kIntakeBytesMax;
+  std::int64_t open_sessions = kOpenSessionsMax;
+  std::int64_t image_pixels = kImagePixelsMax;
+  std::int64_t http_connections = kHttpConnectionsMax;
+
+  friend bool operator==(const Limits&, const Limits&) = default;
+};
+
+// `name` is the member's name; a value lies in [least, ceiling]. The ceilings are what the code is built for.
+struct Setting {
+  std::string_view name;
+  std::int64_t Limits::*value;
+  std::int64_t least, ceiling;
+};
+[[nodiscard]] std::span<const Setting> Settings();
+
+// What holds in this process: the defaults until Enforce.
+[[nodiscard]] const Limits& InForce();
+// At start-up, before there are threads: readers do not lock.
+void Enforce(const Limits& limits);
+
+}  // namespace rigcal::limits

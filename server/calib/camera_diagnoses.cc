@@ -1,0 +1,50 @@
+#include "server/calib/camera_diagnoses.h"
+
+#include <cstdio>
+
+namespace rigcal::calib {
+namespace {
+
+std::string Number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+}  // namespace
+
+Diagnosis TooFewViews(const CameraProblem& problem, std::size_t usable, std::size_t needed, const std::string& why) {
+  return {"too_few_captures",
+          problem.camera.id.str() + " sees target '" + problem.board.id.str() + "' in only " + std::to_string(usable) +
+              " of " + std::to_string(problem.views.size()) + " captures; at least " + std::to_string(needed) +
+              " are needed." + (why.empty() ? "" : " The first of the others: " + why + "."),
+          "Take 10 to 20 captures that show the board sharp and evenly lit, tilted in different directions."};
+}
+
+Diagnosis CameraHighResidual(const CameraProblem& problem, double rms_px, double limit_px) {
+  return {
+      "high_residual",
+      problem.camera.id.str() + " fits the corners of target '" + problem.board.id.str() + "' to " + Number(rms_px) +
+          " px rms, more than " + Number(limit_px) + " px.",
+      "Check that the board is flat, that its counts and square size are right, and that given intrinsics belong to "
+      "this camera and name its model."};
+}
+
+Diagnosis CameraIllConditioned(const SensorId& camera, const std::string& why) {
+  return {"ill_conditioned", camera.str() + ": its intrinsics have no usable uncertainty (" + why + ").",
+          "Take more captures with the board tilted in different directions, near and far, in all corners."};
+}
+
+Diagnosis DistortionOpen(const SensorId& camera, CameraModel model, const std::string& name) {
+  return {
+      "distortion_not_observable",
+      "The views of " + camera.str() + " do not tell the distortion " + name + " of the model " + NameOf(model) + ".",
+      std::string("Take captures with the board in all corners of the picture") +
+          (model == CameraModel::kPinholeRational ? ", or use the model pinhole_radtan." : ".")};
+}
+
+Diagnosis CameraError(const SensorId& camera, const std::string& code, const Error& error) {
+  return {code, camera.str() + ": " + error.what + ".", error.cure};
+}
+
+}  // namespace rigcal::calib

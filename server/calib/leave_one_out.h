@@ -1,0 +1,33 @@
+// What every estimator does with its captures and given constants: leave one out, move one, put the uncertainty
+// together.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/model/uncertainty.h"
+
+namespace rigcal::calib {
+
+// d = Log(T^-1 T_(i)) of the answer without block i.
+using WithoutBlock = std::function<Result<Vector6d>(std::size_t block_idx)>;
+// Of every block, in parallel; in the order of the names. The error names the block without which there is no answer.
+[[nodiscard]] Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids,
+                                                           const WithoutBlock& without);
+
+// A constant that was given with a sigma.
+struct GivenConstant {
+  std::string name;                                // constants of one name, side by side, are one contribution
+  std::function<Result<Se3>(double steps)> T_a_b;  // the answer with the constant moved by `steps` sigma
+};
+// Sum of (dT/dtheta) sigma^2 (dT/dtheta)^T per name, by central differences over one sigma either way; in parallel.
+[[nodiscard]] Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants);
+
+// Jackknife shrunk towards the model, or the model alone where there are no blocks, and the contributions. `captures`
+// is the number of captures that carry T_a_b: its degrees of freedom count them also for the model, whose residuals are
+// not independent.
+[[nodiscard]] Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
+                                                std::vector<Contribution> contributions, std::size_t captures);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,13 @@
+// Errors that leave the server: a client must not look for a full disk at its own side.
+#pragma once
+
+#include "server/base/result.h"
+
+namespace rigcal::dds {
+
+[[nodiscard]] inline Error ToldToClient(Error error) {
+  if (error.code == ErrorCode::kStorage) error.what = "the server's disk: " + error.what;
+  return error;
+}
+
+}  // namespace rigcal::dds

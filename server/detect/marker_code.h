@@ -1,0 +1,21 @@
+// Reads the code in a square. Shows OpenCV, and is for markers.cc only.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/aruco/dictionary.hpp>
+#include <optional>
+
+namespace rigcal::detect {
+
+struct ReadMarker {
+  int id = 0;
+  std::array<Eigen::Vector2d, 4> corners_px;  // the first is the top left one of the marker as OpenCV draws it
+};
+
+// Of a dark or light border of `border_bits` cells around a code of the dictionary, within `corners_px` (clockwise from
+// any corner). Nothing if the border is broken or the code is not in the dictionary. Throws what OpenCV throws.
+[[nodiscard]] std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
+                                                 const cv::aruco::Dictionary& dictionary, int border_bits);
+
+}  // namespace rigcal::detect

@@ -1,0 +1,166 @@
+#include "server/detect/markers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <opencv2/aruco.hpp>
+#include <opencv2/imgproc.hpp>
+#include <tuple>
+
+#include "server/detect/marker_code.h"
+
+namespace rigcal::detect {
+namespace {
+
+// In the order of OpenCV's PREDEFINED_DICTIONARY_NAME. `distance`: Hamming distance of the AprilTag families, for which
+// OpenCV 4.6 corrects no bits; 0: as OpenCV has it.
+struct KnownDictionary {
+  const char* name;
+  int distance;
+};
+constexpr std::array<KnownDictionary, 21> kDictionaries = {
+    {{"DICT_4X4_50", 0},         {"DICT_4X4_100", 0},       {"DICT_4X4_250", 0},       {"DICT_4X4_1000", 0},
+     {"DICT_5X5_50", 0},         {"DICT_5X5_100", 0},       {"DICT_5X5_250", 0},       {"DICT_5X5_1000", 0},
+     {"DICT_6X6_50", 0},         {"DICT_6X6_100", 0},       {"DICT_6X6_250", 0},       {"DICT_6X6_1000", 0},
+     {"DICT_7X7_50", 0},         {"DICT_7X7_100", 0},       {"DICT_7X7_250", 0},       {"DICT_7X7_1000", 0},
+     {"DICT_ARUCO_ORIGINAL", 0}, {"DICT_APRILTAG_16h5", 5}, {"DICT_APRILTAG_25h9", 9}, {"DICT_APRILTAG_36h10", 10},
+     {"DICT_APRILTAG_36h11", 11}}};
+
+constexpr double kSideMin_px = 12;
+constexpr double kSideMinRatio = 0.01;  // of a large picture's longer side: a bound on the number of candidates
+constexpr int kEnlargeSide_px = 1600, kReduceSide_px = 2400, kFullSide_px = 6000;
+
+using Quad = std::array<Eigen::Vector2d, 4>;
+
+cv::Ptr<cv::aruco::Dictionary> DictionaryOf(const std::string& name) {
+  const auto known = std::find_if(kDictionaries.begin(), kDictionaries.end(),
+                                  [&](const KnownDictionary& dictionary) { return name == dictionary.name; });
+  if (known == kDictionaries.end()) return {};
+  const auto dictionary = cv::aruco::getPredefinedDictionary(static_cast<int>(known - kDictionaries.begin()));
+  const int corrected = known->distance > 0 ? (known->distance - 1) / 2 : dictionary->maxCorrectionBits;
+  return cv::makePtr<cv::aruco::Dictionary>(dictionary->bytesList, dictionary->markerSize, corrected);
+}
+
+cv::Ptr<cv::aruco::DetectorParameters> Parameters(const MarkerSearch& search, int side_px) {
+  auto parameters = cv::aruco::DetectorParameters::create();
+  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
+  parameters->detectInvertedMarker = true;
+  parameters->markerBorderBits = search.border_bits;
+  parameters->minMarkerPerimeterRate = 4 * std::max(kSideMin_px * search.scale / side_px, kSideMinRatio);
+  parameters->minDistanceToBorder = 1;
+  return parameters;
+}
+
+cv::Mat Searched(const GreyImage& image, const MarkerSearch& search) {
+  // OpenCV only reads, yet its wrapper for memory takes a mutable pointer.
+  const cv::Mat grey(image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  cv::Mat searched = grey;
+  if (search.scale != 1.0)
+    cv::resize(grey, searched, {}, search.scale, search.scale, search.scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  if (search.from_behind) {
+    cv::Mat mirrored;
+    cv::flip(searched, mirrored, 1);
+    searched = mirrored;
+  }
+  return searched;
+}
+
+cv::Mat Parted(const cv::Mat& searched, int separate_px) {
+  if (separate_px <= 0) return searched;
+  cv::Mat parted;
+  const int side_px = 2 * separate_px + 1;
+  cv::dilate(searched, parted, cv::getStructuringElement(cv::MORPH_RECT, {side_px, side_px}));
+  return parted;
+}
+
+// From the middles of the outermost dark pixels to where the dark ends.
+Quad Grown(const std::vector<cv::Point2f>& corners, int separate_px) {
+  Quad quad;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < 4; ++i) {
+    quad[i] = {corners[i].x, corners[i].y};
+    centre += quad[i] / 4;
+  }
+  const double side_px = ((quad[0] - quad[2]).norm() + (quad[1] - quad[3]).norm()) / (2 * std::sqrt(2.0));
+  const double lost_px = 1 + 2 * separate_px;
+  for (Eigen::Vector2d& corner : quad) corner = centre + (corner - centre) * (1 + lost_px / side_px);
+  return quad;
+}
+
+// Back to the picture's pixels; `width_px` of the searched one.
+SeenMarker Unscaled(int id, const Quad& quad, const MarkerSearch& search, int width_px) {
+  SeenMarker marker{id, quad};
+  for (Eigen::Vector2d& corner : marker.corners_px) {
+    if (search.from_behind) corner.x() = width_px - 1 - corner.x();
+    corner = (corner.array() + 0.5) / search.scale - 0.5;
+  }
+  return marker;
+}
+
+Eigen::Vector2d CentreOf(const SeenMarker& marker) {
+  return (marker.corners_px[0] + marker.corners_px[1] + marker.corners_px[2] + marker.corners_px[3]) / 4;
+}
+
+}  // namespace
+
+std::optional<int> BitsAcross(const std::string& dictionary) {
+  const auto known = DictionaryOf(dictionary);
+  return known ? std::optional<int>(known->markerSize) : std::nullopt;
+}
+
+int IdCount(const std::string& dictionary) {
+  const auto known = DictionaryOf(dictionary);
+  return known ? known->bytesList.rows : 0;
+}
+
+std::vector<double> MarkerScales(const GreyImage& image) {
+  const int side_px = std::max(image.width_px, image.height_px);
+  std::vector<double> scales;
+  if (side_px <= kFullSide_px) scales.push_back(1.0);
+  if (side_px <= kEnlargeSide_px) scales.push_back(2.0);
+  if (side_px > kReduceSide_px) scales.push_back(static_cast<double>(kEnlargeSide_px) / side_px);
+  return scales;
+}
+
+FoundMarkers FindMarkers(const GreyImage& image, const MarkerSearch& search) {
+  const auto dictionary = DictionaryOf(search.dictionary);
+  FoundMarkers found;
+  if (!dictionary) return found;
+  const cv::Mat searched = Searched(image, search);
+  std::vector<std::vector<cv::Point2f>> corners, unread;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(Parted(searched, search.separate_px), dictionary, corners, ids,
+                           Parameters(search, std::max(searched.cols, searched.rows)), unread);
+  const auto keep = [&](int id, const Quad& quad) {
+    if (id < 0 || id >= search.id_count)
+      ++found.strangers;
+    else
+      found.markers.push_back(Unscaled(id, quad, search, searched.cols));
+  };
+  for (std::size_t i = 0; i < ids.size(); ++i) keep(ids[i], Grown(corners[i], search.separate_px));
+  // Squares whose codes OpenCV did not read. Parting thins the dark cells of a code: it is read where nothing was
+  // parted.
+  for (const auto& quad : unread)
+    if (const auto code = ReadCode(searched, Grown(quad, search.separate_px), *dictionary, search.border_bits))
+      keep(code->id, code->corners_px);
+  const auto order = [](const SeenMarker& marker) {
+    return std::make_tuple(marker.id, marker.corners_px[0].y(), marker.corners_px[0].x());
+  };
+  std::sort(found.markers.begin(), found.markers.end(),
+            [&](const SeenMarker& a, const SeenMarker& b) { return order(a) < order(b); });
+  return found;
+}
+
+void Join(std::vector<SeenMarker>& markers, const std::vector<SeenMarker>& more) {
+  const std::size_t before = markers.size();
+  for (const SeenMarker& marker : more) {
+    const double near_px = (marker.corners_px[0] - marker.corners_px[2]).norm() / 2;
+    const bool known = std::any_of(
+        markers.begin(), markers.begin() + static_cast<std::ptrdiff_t>(before), [&](const SeenMarker& other) {
+          return other.id == marker.id && (CentreOf(other) - CentreOf(marker)).norm() < near_px;
+        });
+    if (!known) markers.push_back(marker);
+  }
+}
+
+}  // namespace rigcal::detect

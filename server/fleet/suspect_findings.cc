@@ -1,0 +1,74 @@
+#include <map>
+
+#include "server/fleet/findings.h"
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+namespace {
+
+std::map<EdgeId, const Edge*> ById(const std::vector<Edge>& edges) {
+  std::map<EdgeId, const Edge*> by_id;
+  for (const Edge& edge : edges) by_id.emplace(edge.id, &edge);
+  return by_id;
+}
+
+std::vector<std::string> NamesOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
+  std::vector<std::string> names;
+  for (const EdgeId& id : ids) {
+    const auto edge = by_id.find(id);
+    names.push_back(edge == by_id.end() ? id.str().substr(0, 12) : NameOfEdge(*edge->second));
+  }
+  return names;
+}
+
+const SuspectEdge& WorstOf(const std::vector<SuspectEdge>& suspects) {
+  const SuspectEdge* worst = &suspects.front();
+  for (const SuspectEdge& suspect : suspects)
+    if (suspect.statistic * worst->limit > worst->statistic * suspect.limit) worst = &suspect;
+  return *worst;
+}
+
+std::string NameOf(const SuspectEdge& suspect) { return suspect.frame_a.str() + " - " + suspect.frame_b.str(); }
+
+// A loop does not say which of its edges is wrong.
+Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
+  std::vector<std::string> names = NamesOf(suspect.alternatives, ById(edges));
+  names.insert(names.begin(), NameOf(suspect));
+  return {"the loop of edges " + List(names) + " does not close: it is off by " + OffText(suspect.e) +
+              ", and one of them is wrong",
+          "Repeat the sessions of these edges, or calibrate one more pair of their sensors to see which"};
+}
+
+}  // namespace
+
+std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (solution.suspects.two_poses.empty()) return std::nullopt;
+  const TwoPoses& two = solution.suspects.two_poses.front();
+  const auto by_id = ById(edges);
+  std::string why = "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) + " apart: edges " +
+                    List(NamesOf(two.group_a, by_id)) + " agree on one, " + List(NamesOf(two.group_b, by_id)) +
+                    " on the other";
+  const std::size_t more = solution.suspects.two_poses.size() - 1;
+  if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
+  return Finding{why, "Find out whether " + two.sensor.str() +
+                          " was moved between these sessions, and withdraw or repeat those from before"};
+}
+
+std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  const std::vector<SuspectEdge>& suspects = solution.suspects.edges;
+  if (suspects.empty()) return std::nullopt;
+  const SuspectEdge& worst = WorstOf(suspects);
+  if (suspects.size() == 1 && !worst.alternatives.empty()) return OpenLoop(worst, edges);
+  std::vector<std::string> names = {NameOf(worst)};
+  for (const SuspectEdge& suspect : suspects)
+    if (&suspect != &worst) names.push_back(NameOf(suspect));
+  const std::string them = names.size() == 1 ? "it is" : "worst is the first,";
+  return Finding{(names.size() == 1 ? "edge " : "edges ") + List(names) +
+                     (names.size() == 1 ? " contradicts" : " contradict") + " the other edges: " + them + " off by " +
+                     OffText(worst.e) + ", " + Number(worst.statistic / worst.limit, "times") +
+                     " the limit of its test",
+                 "Check that " + worst.frame_a.str() + " and " + worst.frame_b.str() +
+                     " have not moved and are named right, then repeat their session"};
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,21 @@
+// Numbers and lists as sentences show them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/model/edge.h"
+
+namespace rigcal::fleet {
+
+[[nodiscard]] std::string Number(double value, const char* unit);  // three digits and the unit
+[[nodiscard]] std::string LimitText(double value);                 // without a unit
+// "a", "a and b", "a, b and c", "a, b, c, d, e, f and 3 more".
+[[nodiscard]] std::string List(const std::vector<std::string>& names);
+[[nodiscard]] std::string NameOfEdge(const Edge& edge);
+// "30 mm and 0.2 deg": the lengths of both halves of a tangent vector.
+[[nodiscard]] std::string OffText(const Vector6d& e);
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+}  // namespace rigcal::fleet

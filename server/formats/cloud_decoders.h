@@ -1,0 +1,18 @@
+// One decoder per cloud format; contract: ReadCloud (cloud.h).
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "server/base/result.h"
+#include "server/model/cloud.h"
+
+namespace rigcal::formats {
+
+[[nodiscard]] Result<Cloud> ReadPcd(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<Cloud> ReadPly(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<Cloud> ReadKitti(std::string_view bytes, const std::string& name);
+
+}  // namespace rigcal::formats

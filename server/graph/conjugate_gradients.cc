@@ -1,0 +1,107 @@
+#include "server/graph/conjugate_gradients.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "server/graph/cholesky_kinds.h"
+
+namespace rigcal::graph {
+namespace {
+
+constexpr double kResidualRatio = 1e-2;
+constexpr int kIterationsMax = 100;
+
+}  // namespace
+
+bool ConjugateGradients::Factor(const BlockMatrix<6>& matrix, double lambda) {
+  matrix_ = &matrix;
+  lambda_ = lambda;
+  stalled_ = false;
+  diagonal_ = matrix.diagonal;
+  for (Block& block : diagonal_) {
+    block.diagonal() *= 1.0 + lambda;
+    if (!FactorBlock<6>(block)) return false;
+  }
+  return true;
+}
+
+void ConjugateGradients::SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) {
+  Eigen::VectorXd x;
+  for (Eigen::Index column = 0; column < rhs.cols() && !stalled_; ++column) {
+    if (Iterate(rhs.col(column), x)) {
+      rhs.col(column) = x;
+    } else {
+      stalled_ = true;
+      if (!FactorExactly()) return rhs.setConstant(std::numeric_limits<double>::quiet_NaN()), void();
+      return exact_->SolveInPlace(rhs.rightCols(rhs.cols() - column));
+    }
+  }
+  if (stalled_ && exact_ != nullptr) exact_->SolveInPlace(rhs);
+}
+
+std::vector<ConjugateGradients::Block> ConjugateGradients::InverseDiagonal() {
+  if (!stalled_ && !FactorExactly()) return {};
+  return exact_->InverseDiagonal();
+}
+
+bool ConjugateGradients::FactorExactly() {
+  const auto before = [](BlockPosition a, BlockPosition b) { return std::tie(a.col, a.row) < std::tie(b.col, b.row); };
+  if (!std::is_sorted(pattern_.off_diagonal.begin(), pattern_.off_diagonal.end(), before)) return false;
+  if (exact_ == nullptr) exact_ = MakeSparseCholesky<6>(pattern_);
+  return exact_ != nullptr && exact_->Factor(*matrix_, lambda_);
+}
+
+bool ConjugateGradients::Iterate(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
+  x.setZero(rhs.size());
+  r_ = rhs;
+  Precondition(r_, z_);
+  p_ = z_;
+  double rz = r_.dot(z_);
+  const double enough = kResidualRatio * kResidualRatio * rz;
+  for (int iteration = 0; iteration < kIterationsMax; ++iteration) {
+    if (rz <= enough) return true;
+    Multiply(p_, Hp_);
+    const double curvature = p_.dot(Hp_);
+    if (!(curvature > 0.0)) return false;
+    const double length = rz / curvature;
+    x += length * p_;
+    r_ -= length * Hp_;
+    Precondition(r_, z_);
+    const double rz_before = std::exchange(rz, r_.dot(z_));
+    p_ = z_ + (rz / rz_before) * p_;
+  }
+  return false;
+}
+
+void ConjugateGradients::Multiply(const Eigen::VectorXd& x, Eigen::VectorXd& product) const {
+  product.resize(x.size());
+  for (std::size_t v = 0; v < diagonal_.size(); ++v) {
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(v);
+    const Vector6d x_v = x.segment<6>(row);
+    Vector6d y = matrix_->diagonal[v] * x_v;
+    if (lambda_ > 0.0) y += lambda_ * matrix_->diagonal[v].diagonal().cwiseProduct(x_v);
+    product.segment<6>(row) = y;
+  }
+  for (std::size_t s = 0; s < pattern_.off_diagonal.size(); ++s) {
+    const Block& block = matrix_->off_diagonal[s];
+    const Eigen::Index row = 6 * pattern_.off_diagonal[s].row, col = 6 * pattern_.off_diagonal[s].col;
+    const Vector6d x_row = x.segment<6>(row), x_col = x.segment<6>(col);
+    product.segment<6>(row) += block * x_col;
+    product.segment<6>(col) += block.transpose() * x_row;
+  }
+}
+
+void ConjugateGradients::Precondition(const Eigen::VectorXd& residual, Eigen::VectorXd& z) const {
+  z.resize(residual.size());
+  for (std::size_t v = 0; v < diagonal_.size(); ++v) {
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(v);
+    Vector6d part = residual.segment<6>(row);
+    SolveLower<6>(diagonal_[v], part);
+    SolveLowerTransposed<6>(diagonal_[v], part);
+    z.segment<6>(row) = part;
+  }
+}
+
+}  // namespace rigcal::graph

@@ -1,0 +1,43 @@
+// Conjugate gradients under the inverse of the diagonal blocks, in the place of a Cholesky factor: solutions are right
+// to kResidualRatio of the right-hand side, which is enough for the steps of a descent. Where they do not get there,
+// and for inverses, a factor is made after all.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "server/graph/block_kernels.h"
+#include "server/graph/block_matrix.h"
+#include "server/math/tangent.h"
+
+namespace rigcal::graph {
+
+class ConjugateGradients final : public BlockCholesky<6> {
+ public:
+  // Reads `pattern` as long as it lives; blocks off the diagonal may be added between calls.
+  explicit ConjugateGradients(const BlockPattern& pattern) : pattern_(pattern) {}
+
+  // False if a diagonal block is not positive definite. Reads `matrix` until the next call.
+  bool Factor(const BlockMatrix<6>& matrix, double lambda) override;
+  // NaN where neither way finds a solution.
+  void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) override;
+  // Empty if the factor is too large or does not exist.
+  std::vector<Block> InverseDiagonal() override;
+
+ private:
+  using Map = Eigen::Map<Eigen::VectorXd>;
+  bool Iterate(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
+  bool FactorExactly();
+  void Multiply(const Eigen::VectorXd& x, Eigen::VectorXd& product) const;
+  void Precondition(const Eigen::VectorXd& residual, Eigen::VectorXd& z) const;
+
+  const BlockPattern& pattern_;
+  const BlockMatrix<6>* matrix_ = nullptr;
+  double lambda_ = 0.0;
+  std::vector<Block> diagonal_;  // Cholesky factors of the damped diagonal blocks
+  std::unique_ptr<BlockCholesky<6>> exact_;
+  bool stalled_ = false;  // on the matrix at hand: exact_ is its factor
+  Eigen::VectorXd r_, z_, p_, Hp_;
+};
+
+}  // namespace rigcal::graph

@@ -1,0 +1,180 @@
+#include "server/graph/graph_jackknife.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/graph/jackknife_sources.h"
+#include "server/graph/observability.h"
+#include "server/graph/solved_poses.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::graph {
+namespace {
+
+using Eigen::MatrixXd;
+
+// Adds up what the sources bring, a batch of columns at a time.
+class Accumulator {
+ public:
+  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky)
+      : work_(work),
+        cholesky_(cholesky),
+        C_e_(work.problem.constraints.size(), Matrix6d::Zero()),
+        dof_sum_(C_e_.size(), 0.0) {
+    joint_ = MatrixXd::Zero(6 * work.problem.free_count(), 6 * work.problem.free_count());
+  }
+
+  void Add(const std::vector<ErrorSource>& sources) {
+    constexpr Eigen::Index kColumnsMin = 256;
+    std::size_t first = 0;
+    Eigen::Index columns = 0;
+    for (std::size_t k = 0; k < sources.size(); ++k) {
+      columns += sources[k].column_count;
+      if (columns < kColumnsMin && k + 1 < sources.size()) continue;
+      AddBatch(sources.data() + first, sources.data() + k + 1, columns);
+      first = k + 1, columns = 0;
+    }
+  }
+
+  [[nodiscard]] MatrixXd Joint() const { return joint_.selfadjointView<Eigen::Lower>(); }
+  [[nodiscard]] const Matrix6d& C_e(std::size_t constraint) const { return C_e_[constraint]; }
+  [[nodiscard]] double Dof(std::size_t constraint) const {
+    const double trace = Trace(constraint, C_e_[constraint]);
+    return dof_sum_[constraint] > 0.0 && trace > 0.0 ? trace * trace / dof_sum_[constraint] : 0.0;
+  }
+
+ private:
+  [[nodiscard]] double Trace(std::size_t constraint, const Matrix6d& C) const {
+    return work_.problem.constraints[constraint].Omega.cwiseProduct(C).sum();
+  }
+
+  void AddBatch(const ErrorSource* begin, const ErrorSource* end, Eigen::Index column_count) {
+    MatrixXd columns = MatrixXd::Zero(joint_.rows(), column_count);
+    Eigen::Index at = 0;
+    for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source)
+      for (const ErrorPart& part : source->parts)
+        AddToGradient(work_.problem.constraints[part.constraint], work_.jacobians[part.constraint], part.de,
+                      columns.middleCols(at, source->column_count));
+    cholesky_.SolveInPlace(columns);
+    columns = -columns;
+    joint_.selfadjointView<Eigen::Lower>().rankUpdate(columns);
+    AddResiduals(begin, end, columns);
+  }
+
+  void AddResiduals(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns) {
+    std::vector<MatrixXd> changes(C_e_.size());
+    for (std::size_t k = 0; k < C_e_.size(); ++k)
+      changes[k] = ResidualChange(work_.problem.constraints[k], work_.jacobians[k], columns);
+    Eigen::Index at = 0;
+    for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source)
+      for (const ErrorPart& part : source->parts)
+        changes[part.constraint].middleCols(at, source->column_count) += part.de;
+    for (std::size_t k = 0; k < C_e_.size(); ++k) {
+      C_e_[k] += changes[k] * changes[k].transpose();
+      const Eigen::RowVectorXd weights =
+          changes[k].cwiseProduct(work_.problem.constraints[k].Omega * changes[k]).colwise().sum();
+      at = 0;
+      for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source)
+        if (source->dof > 0) dof_sum_[k] += std::pow(weights.segment(at, source->column_count).sum(), 2) / source->dof;
+    }
+  }
+
+  const JackknifeWork& work_;
+  BlockCholesky<6>& cholesky_;
+  MatrixXd joint_;
+  std::vector<Matrix6d> C_e_;
+  std::vector<double> dof_sum_;
+};
+
+void FillSensors(const JackknifeWork& work, const GraphSolution& solution, BlockCholesky<6>& cholesky,
+                 GraphJackknife& jackknife) {
+  const std::vector<Matrix6d> analytic = cholesky.InverseDiagonal();
+  const std::size_t count = work.graph.sensors.size();
+  jackknife.sensors = work.graph.sensors;
+  jackknife.row_of_sensor.assign(count, -1);
+  jackknife.known.assign(count, false);
+  jackknife.analytic.assign(count, Matrix6d::Zero());
+  for (std::size_t s = 0; s < count; ++s) {
+    const int vertex = work.problem.vertex_of_sensor[s];
+    jackknife.known[s] = vertex >= 0 && solution.poses[s].known;
+    if (!jackknife.known[s] || vertex == 0) continue;
+    jackknife.row_of_sensor[s] = 6 * (vertex - 1);
+    jackknife.analytic[s] = Symmetrized(analytic[static_cast<std::size_t>(vertex - 1)]);
+  }
+}
+
+bool Usable(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
+  return solution.converged && problem.free_count() > 0 && problem.free_count() < kJackknifeSensorsMax &&
+         solution.poses.size() == graph.sensors.size() && solution.residuals.size() == graph.edges.size();
+}
+
+Result<std::size_t> FindKnown(const GraphJackknife& jackknife, const SensorId& sensor) {
+  const auto found = std::find(jackknife.sensors.begin(), jackknife.sensors.end(), sensor);
+  if (found == jackknife.sensors.end())
+    return Fail(ErrorCode::kNotFound, "sensor " + sensor.str() + " has no jackknife covariance in this graph",
+                "Check the name; sessions with block vectors are needed.");
+  const auto index = static_cast<std::size_t>(found - jackknife.sensors.begin());
+  if (!jackknife.known[index])
+    return Fail(ErrorCode::kInvalidInput, "the pose of sensor " + sensor.str() + " is not known in this solution",
+                "Add an edge that connects it with the reference.");
+  return index;
+}
+
+Matrix6d Block(const GraphJackknife& jackknife, std::size_t a, std::size_t b) {
+  const int row = jackknife.row_of_sensor[a], col = jackknife.row_of_sensor[b];
+  if (row < 0 || col < 0) return Matrix6d::Zero();
+  return jackknife.joint.block<6, 6>(row, col);
+}
+
+}  // namespace
+
+GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution, const BlocksByEdge& blocks) {
+  GraphJackknife jackknife;
+  if (blocks.empty()) return jackknife;
+  const Problem problem = MakeProblem(graph);
+  JackknifeWork work{graph, problem, blocks, {}};
+  if (!Usable(graph, problem, solution) || !AnySession(work)) return jackknife;
+  const Poses T_ref = SolvedPoses(graph, problem, solution);
+  for (const Constraint& constraint : problem.constraints) work.jacobians.push_back(JacobianOf(constraint, T_ref));
+  NormalEquations equations;
+  Linearize(problem, T_ref, equations);
+  AddPins(Observe(problem, T_ref).pins, equations.H);
+  const auto cholesky = MakeCholesky<6>(problem.pattern);
+  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return jackknife;
+  Accumulator accumulator(work, *cholesky);
+  accumulator.Add(SourcesOf(work));
+  jackknife.joint = accumulator.Joint();
+  if (!jackknife.joint.allFinite()) return jackknife;
+  FillSensors(work, solution, *cholesky, jackknife);
+  jackknife.residuals.resize(solution.residuals.size());
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k)
+    jackknife.residuals[problem.constraints[k].edge] = {true, accumulator.C_e(k), accumulator.Dof(k)};
+  jackknife.available = true;
+  return jackknife;
+}
+
+Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorId& sensor) {
+  RIGCAL_ASSIGN(const std::size_t index, FindKnown(jackknife, sensor));
+  return Symmetrized(Block(jackknife, index, index));
+}
+
+Result<RelativePose> HonestRelative(const GraphJackknife& jackknife, const GraphSolution& solution, const SensorId& a,
+                                    const SensorId& b) {
+  RIGCAL_ASSIGN(const std::size_t index_a, FindKnown(jackknife, a));
+  RIGCAL_ASSIGN(const std::size_t index_b, FindKnown(jackknife, b));
+  RelativePose relative;
+  if (a == b) return relative;
+  relative.T_A_B = (solution.poses[index_a].T_ref_sensor.Inverse() * solution.poses[index_b].T_ref_sensor).Normalized();
+  relative.covariance = RelativeCovariance(relative.T_A_B, Block(jackknife, index_a, index_a),
+                                           Block(jackknife, index_b, index_b), Block(jackknife, index_a, index_b));
+  return relative;
+}
+
+Vector6d SigmaRatio(const Matrix6d& honest, const Matrix6d& analytic) {
+  Vector6d ratio = Vector6d::Ones();
+  for (int axis = 0; axis < 6; ++axis)
+    if (analytic(axis, axis) > 0.0) ratio(axis) = std::sqrt(std::max(0.0, honest(axis, axis)) / analytic(axis, axis));
+  return ratio;
+}
+
+}  // namespace rigcal::graph

@@ -1,0 +1,115 @@
+#include "server/graph/jackknife_sources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/math/covariance.h"
+#include "server/math/jackknife.h"
+
+namespace rigcal::graph {
+namespace {
+
+using Eigen::MatrixXd;
+
+// The session's key; an edge that belongs to none stands for itself. '/' is in no id.
+std::string SessionKey(const GraphEdge& edge) {
+  return edge.session.empty() ? "/" + edge.id.str() : edge.session.str();
+}
+
+const EdgeBlocks* FindBlocks(const BlocksByEdge& blocks, const EdgeId& edge) {
+  const auto found = blocks.find(edge);
+  return found == blocks.end() || found->second.blocks.size() < kJackknifeBlocksMin ? nullptr : &found->second;
+}
+
+// d of every block of the session, centred and scaled so that columns * columns^T is the jackknife's sum. A block that
+// an edge does not have changes nothing in it.
+MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<std::string>& ids) {
+  const auto m = static_cast<double>(ids.size());
+  MatrixXd d = MatrixXd::Zero(6, static_cast<Eigen::Index>(ids.size()));
+  for (const BlockVector& block : own)
+    d.col(std::lower_bound(ids.begin(), ids.end(), block.block_id) - ids.begin()) = block.d;
+  const Vector6d mean = d.rowwise().sum() / m;
+  return std::sqrt((m - 1.0) / m) * (d.colwise() - mean);
+}
+
+ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size_t>& members) {
+  std::set<std::string> unique;
+  int dof = 0;
+  for (const std::size_t k : members) {
+    const EdgeBlocks& own = *FindBlocks(work.blocks, work.EdgeOf(k).id);
+    for (const BlockVector& block : own.blocks) unique.insert(block.block_id);
+    if (own.dof > 0) dof = dof == 0 ? own.dof : std::min(dof, own.dof);
+  }
+  const std::vector<std::string> ids(unique.begin(), unique.end());
+  ErrorSource source;
+  source.dof = dof > 0 ? dof : static_cast<int>(ids.size()) - 1;
+  source.column_count = static_cast<Eigen::Index>(ids.size());
+  for (const std::size_t k : members) {
+    const EdgeBlocks& own = *FindBlocks(work.blocks, work.EdgeOf(k).id);
+    source.parts.push_back({k, work.jacobians[k].D * CentredBlocks(own.blocks, ids)});
+  }
+  return source;
+}
+
+ErrorSource OwnError(std::size_t constraint, const MatrixXd& de, int dof) {
+  ErrorSource source;
+  source.dof = dof;
+  source.column_count = de.cols();
+  source.parts.push_back({constraint, de});
+  return source;
+}
+
+// Block vectors that say something in every direction that the edge sees, each for a block of its own.
+bool SpeakForTheirEdge(const Uncertainty& uncertainty) {
+  if (uncertainty.blocks.size() < kJackknifeBlocksMin) return false;
+  std::set<std::string> ids;
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : uncertainty.blocks) {
+    if (!block.d.allFinite() || !ids.insert(block.block_id).second) return false;
+    d.push_back(block.d);
+  }
+  return Observable(JackknifeCovariance(d)).rank >= uncertainty.rank;
+}
+
+}  // namespace
+
+BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
+  BlocksByEdge blocks;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood || !SpeakForTheirEdge(edge.uncertainty)) continue;
+    EdgeBlocks& own = blocks[edge.id];
+    own.blocks = edge.uncertainty.blocks;
+    own.dof = edge.uncertainty.dof;
+    for (const Contribution& part : edge.uncertainty.contributions) own.C_given += part.covariance;
+  }
+  return blocks;
+}
+
+std::vector<ErrorSource> SourcesOf(const JackknifeWork& work) {
+  std::map<std::string, std::vector<std::size_t>> sessions;
+  std::vector<ErrorSource> own;
+  for (std::size_t k = 0; k < work.problem.constraints.size(); ++k) {
+    const GraphEdge& edge = work.EdgeOf(k);
+    if (const EdgeBlocks* blocks = FindBlocks(work.blocks, edge.id); blocks != nullptr) {
+      sessions[SessionKey(edge)].push_back(k);
+      if (!blocks->C_given.isZero(0.0))
+        own.push_back(OwnError(k, work.jacobians[k].D * SquareRoot(blocks->C_given), 0));
+    } else {
+      own.push_back(OwnError(k, SquareRoot(Observable(work.problem.constraints[k].Omega).covariance), edge.dof));
+    }
+  }
+  std::vector<ErrorSource> sources;
+  for (const auto& [key, members] : sessions) sources.push_back(SessionSource(work, members));
+  std::move(own.begin(), own.end(), std::back_inserter(sources));
+  return sources;
+}
+
+bool AnySession(const JackknifeWork& work) {
+  const auto& constraints = work.problem.constraints;
+  for (std::size_t k = 0; k < constraints.size(); ++k)
+    if (FindBlocks(work.blocks, work.EdgeOf(k).id) != nullptr) return true;
+  return false;
+}
+
+}  // namespace rigcal::graph

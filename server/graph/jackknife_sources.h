@@ -1,0 +1,39 @@
+// What makes the edges of a graph err: the blocks of each session, and each other edge by itself.
+#pragma once
+
+#include "server/graph/edge_jacobian.h"
+#include "server/graph/graph_jackknife.h"
+
+namespace rigcal::graph {
+
+// Changes of one constraint's residual, one column per independent cause.
+struct ErrorPart {
+  std::size_t constraint = 0;
+  Eigen::MatrixXd de;
+};
+
+// Causes that are estimated together: the blocks of a session, or one edge's own error. C of it is
+// (columns)(columns)^T.
+struct ErrorSource {
+  int dof = 0;  // 0: known
+  Eigen::Index column_count = 0;
+  std::vector<ErrorPart> parts;
+};
+
+struct JackknifeWork {
+  const Graph& graph;
+  const Problem& problem;
+  const BlocksByEdge& blocks;
+  std::vector<EdgeJacobian> jacobians;  // by constraint
+
+  [[nodiscard]] const GraphEdge& EdgeOf(std::size_t constraint) const {
+    return graph.edges[problem.edges_by_id[problem.constraints[constraint].edge]];
+  }
+};
+
+// Whether any edge that takes part has blocks enough.
+[[nodiscard]] bool AnySession(const JackknifeWork& work);
+// Sessions by id, then edges by id.
+[[nodiscard]] std::vector<ErrorSource> SourcesOf(const JackknifeWork& work);
+
+}  // namespace rigcal::graph

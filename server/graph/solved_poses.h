@@ -1,0 +1,11 @@
+// A stored solution's poses as the numerical core wants them.
+#pragma once
+
+#include "server/graph/linearize.h"
+
+namespace rigcal::graph {
+
+// By vertex of `problem`. Sensors that the solution does not know hang on the known ones by their best edges.
+[[nodiscard]] Poses SolvedPoses(const Graph& graph, const Problem& problem, const GraphSolution& solution);
+
+}  // namespace rigcal::graph

@@ -1,0 +1,33 @@
+#include "server/model/plausible.h"
+
+#include <cstdio>
+#include <string>
+
+namespace rigcal {
+namespace {
+
+std::string NumberText(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+}  // namespace
+
+Status CheckPlausible(const Eigen::Vector3d& p_m) {
+  const double largest_m = p_m.cwiseAbs().maxCoeff();
+  if (largest_m <= kPositionMax_m) return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "p_m holds " + NumberText(largest_m) + " m, more than the limit of " + NumberText(kPositionMax_m) + " m",
+              "Give the position in metres.");
+}
+
+Status CheckPlausible(const Matrix6d& Omega) {
+  const double largest = Omega.cwiseAbs().maxCoeff();
+  if (largest <= kInformationMax) return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "information holds " + NumberText(largest) + ", more than the limit of " + NumberText(kInformationMax),
+              "Give the inverse of a covariance in m and rad; a sigma below 1 nm or 1 nrad is not believed.");
+}
+
+}  // namespace rigcal

@@ -1,0 +1,24 @@
+// The captures of one sensor pair as calib wants them, and the pictures that show what was found.
+#pragma once
+
+#include <vector>
+
+#include "server/calib/lidar_camera.h"
+#include "server/calib/stereo.h"
+#include "server/pipeline/sightings.h"
+
+namespace rigcal::pipeline {
+
+template <typename Problem>
+struct PairInputs {
+  Problem problem;
+  std::vector<Evidence> evidence;  // annotated pictures, in capture order, sensor a before sensor b
+};
+// Of the targets that both may see, the one found by both in most captures (the first, if equal).
+[[nodiscard]] Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const Manifest& manifest,
+                                                                  const SensorPair& pair);
+[[nodiscard]] Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& store,
+                                                                            const Manifest& manifest,
+                                                                            const SensorPair& pair);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,156 @@
+#include "server/pipeline/sightings.h"
+
+#include <algorithm>
+#include <span>
+
+#include "server/base/limits.h"
+#include "server/base/parallel_for.h"
+#include "server/detect/board.h"
+#include "server/detect/cloud_board.h"
+#include "server/formats/cloud.h"
+#include "server/formats/payload_path.h"
+#include "storage/blobs.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+template <typename Stored>
+struct Found {
+  const Payload* payload = nullptr;
+  Stored stored;
+  bool fresh = false;  // detected now, not yet in the store
+  Status status;
+};
+
+// How one kind of sensor is searched: the key of its detector, and what finds, loads and keeps.
+template <typename Stored>
+struct Search {
+  std::string key;
+  Result<std::optional<Stored>> (*load)(storage::Store&, const Digest&, const std::string&);
+  Status (*append)(storage::Store&, const Digest&, const std::string&, const Stored&);
+  // The view, and its picture encoded.
+  std::pair<Stored, std::string> (*detect)(const std::string& bytes, const Payload&, const Target&);
+};
+
+// A cloud is what its suffix says: the same bytes under another suffix are another cloud.
+template <typename Stored>
+std::string KeyOf(const Search<Stored>& search, const Payload& payload) {
+  if constexpr (std::is_same_v<Stored, storage::StoredView>) return search.key;
+  return search.key + "/" + std::string(formats::SuffixOf(payload.path));
+}
+
+// Detection is the costly part, so it is read from the cache where it can be.
+template <typename Stored>
+Result<std::vector<Found<Stored>>> LoadKnown(storage::Store& store, const Manifest& manifest, const SensorId& sensor,
+                                             const Search<Stored>& search) {
+  std::vector<Found<Stored>> all;
+  for (const Payload& payload : manifest.payloads) {
+    if (payload.sensor != sensor) continue;
+    RIGCAL_ASSIGN(auto cached, search.load(store, payload.digest, KeyOf(search, payload)));
+    Found<Stored> found;
+    found.payload = &payload;
+    found.fresh = !cached.has_value();
+    if (cached) found.stored = std::move(*cached);
+    all.push_back(std::move(found));
+  }
+  return all;
+}
+
+bool IsReadable(const storage::StoredView& stored) { return stored.view.image_width_px > 0; }
+bool IsReadable(const storage::StoredCloud& stored) { return stored.view.points > 0; }
+
+template <typename Stored>
+Status DetectFresh(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+                   Found<Stored>& found) {
+  const auto bytes =
+      storage::LoadBlob(blobs, found.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
+  if (!bytes) {  // a damaged disk costs this capture, not the robot: and it is looked for again next time
+    found.fresh = false;
+    found.stored.view.why_not = Sentence(bytes.error());
+    return {};
+  }
+  auto [stored, picture] = search.detect(*bytes, *found.payload, target);
+  found.stored = std::move(stored);
+  // Whatever could not be read may be readable under another name, limit or amount of memory: it is looked at again.
+  found.fresh = IsReadable(found.stored);
+  if (picture.empty()) return {};
+  // Stored at once, so that memory does not grow with the number of captures.
+  RIGCAL_ASSIGN(found.stored.picture, storage::AppendBlob(blobs, picture));
+  return {};
+}
+
+template <typename Stored>
+Result<Sightings<Stored>> SearchAll(storage::Store& store, const Manifest& manifest, const SensorId& sensor,
+                                    const Target& target, const Search<Stored>& search) {
+  RIGCAL_ASSIGN(std::vector<Found<Stored>> all, LoadKnown(store, manifest, sensor, search));
+  const std::filesystem::path blobs = store.BlobFolder();
+  ParallelFor(all.size(), [&](std::size_t i) {
+    if (all[i].fresh) all[i].status = DetectFresh(blobs, target, search, all[i]);
+  });
+  for (const Found<Stored>& found : all) RIGCAL_TRY(found.status);
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    for (const Found<Stored>& found : all)
+      if (found.fresh)
+        RIGCAL_TRY(search.append(store, found.payload->digest, KeyOf(search, *found.payload), found.stored));
+    return {};
+  }));
+  Sightings<Stored> sightings;
+  for (Found<Stored>& found : all) sightings[found.payload->capture] = std::move(found.stored);
+  return sightings;
+}
+
+std::pair<storage::StoredView, std::string> DetectPicture(const std::string& bytes, const Payload&,
+                                                          const Target& target) {
+  AnnotatedView found = detect::Detect(std::as_bytes(std::span(bytes)), target);
+  return {{std::move(found.view), {}}, std::move(found.picture)};
+}
+
+std::pair<storage::StoredCloud, std::string> DetectCloud(const std::string& bytes, const Payload& payload,
+                                                         const Target& target) {
+  const auto cloud = formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(payload.path), payload.path);
+  if (!cloud) {
+    storage::StoredCloud unreadable;
+    unreadable.view.target = target.id;
+    unreadable.view.why_not = Sentence(cloud.error());
+    return {std::move(unreadable), {}};
+  }
+  AnnotatedCloud found = detect::DetectPlate(*cloud, target);
+  return {{std::move(found.view), {}}, std::move(found.picture)};
+}
+
+bool MaySee(const Sensor& sensor, const Target& target) { return !sensor.sees || *sensor.sees == target.id; }
+
+}  // namespace
+
+Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const Manifest& manifest,
+                                                   const SensorId& camera, const Target& target) {
+  return SearchAll<storage::StoredView>(
+      store, manifest, camera, target,
+      {detect::DetectorKey(target), storage::LoadView, storage::AppendView, DetectPicture});
+}
+
+Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const Manifest& manifest,
+                                                  const SensorId& lidar, const Target& target) {
+  return SearchAll<storage::StoredCloud>(
+      store, manifest, lidar, target,
+      {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud, DetectCloud});
+}
+
+const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {
+  const auto it =
+      std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
+  return it == header.sensors.end() ? nullptr : &*it;
+}
+
+std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b) {
+  std::vector<const Target*> targets;
+  for (const Target& target : header.targets)
+    if (MaySee(a, target) && MaySee(b, target)) targets.push_back(&target);
+  return targets;
+}
+
+std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found) {
+  return sensor.str() + " / " + capture.str() + ": " + found;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,26 @@
+// READ and detect: where a sensor saw a target. Searched once per content, ever; then read from the store.
+#pragma once
+
+#include <map>
+
+#include "server/model/session.h"
+#include "storage/detections.h"
+
+namespace rigcal::pipeline {
+
+template <typename Stored>
+using Sightings = std::map<CaptureId, Stored>;
+
+[[nodiscard]] Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const Manifest& manifest,
+                                                                 const SensorId& camera, const Target& target);
+[[nodiscard]] Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const Manifest& manifest,
+                                                                const SensorId& lidar, const Target& target);
+
+// The sensor of this name; null: the session has none.
+[[nodiscard]] const Sensor* SensorOf(const SessionHeader& header, const SensorId& id);
+// The targets that both may see.
+[[nodiscard]] std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b);
+// For reports: "left / 003: 54 corners".
+[[nodiscard]] std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,38 @@
+# rigcal_fuzz(NAME DEPS ... [SOURCES ...])   fuzz_<name>: with the preset "fuzz" libFuzzer (build the target `fuzzers`); else
+# a program that runs the corpus through the same function, as a test. SOURCES: decoders whose library would bring in much
+# that is not fuzzed (the verbs, the database).
+if(RIGCAL_FUZZ)
+  add_custom_target(fuzzers)
+else()
+  add_library(rigcal_replay OBJECT fuzz/replay_main.cc)
+  rigcal_settings(rigcal_replay)
+endif()
+
+function(rigcal_fuzz name)
+  cmake_parse_arguments(arg "" "" "DEPS;SOURCES" ${ARGN})
+  list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/)
+  rigcal_program(fuzz_${name} SOURCES fuzz/${name}_fuzz.cc ${arg_SOURCES} DEPS ${arg_DEPS})
+  if(RIGCAL_FUZZ)
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+    add_dependencies(fuzzers fuzz_${name})
+  else()
+    target_link_libraries(fuzz_${name} PRIVATE rigcal_replay)
+    add_test(NAME fuzz.${name} COMMAND fuzz_${name} ${PROJECT_SOURCE_DIR}/tests/fuzz/corpus/${name})
+    set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT 120 LABELS fuzz)
+  endif()
+endfunction()
+
+rigcal_fuzz(clouds DEPS rigcal_formats)
+rigcal_fuzz(session_yaml DEPS rigcal_formats)
+rigcal_fuzz(manifest DEPS rigcal_formats)
+rigcal_fuzz(edge DEPS rigcal_formats)
+rigcal_fuzz(edge_file DEPS rigcal_formats)
+rigcal_fuzz(revision DEPS rigcal_formats)
+rigcal_fuzz(g2o DEPS rigcal_formats)
+rigcal_fuzz(parameters DEPS rigcal_formats)
+rigcal_fuzz(names DEPS rigcal_formats)
+rigcal_fuzz(picture DEPS rigcal_detect)
+rigcal_fuzz(http DEPS rigcal_http)
+rigcal_fuzz(document DEPS rigcal_math
+  SOURCES client/document.cc client/edge_table.cc client/pose_text.cc client/reply_parts.cc client/table.cc)
+rigcal_fuzz(wire DEPS rigcal_formats rigcal_idl SOURCES server/dds/from_idl.cc server/dds/arrival.cc)

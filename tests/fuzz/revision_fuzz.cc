@@ -1,0 +1,14 @@
+#include "tests/fuzz/document_checks.h"
+
+using namespace rigcal;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto revision = formats::ReadRevisionDocument(fuzz::TextOf(data, size));
+  if (!fuzz::RequireGoodError(revision)) return 0;
+  for (const SensorPose& pose : revision->solution.poses) {
+    fuzz::RequireFinite(pose.T_ref_sensor.p_m, "position");
+    fuzz::RequireFinite(pose.covariance, "covariance");
+  }
+  fuzz::RequireRoundTrip(*revision, formats::WriteRevisionDocument, formats::ReadRevisionDocument);
+  return 0;
+}

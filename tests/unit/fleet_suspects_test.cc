@@ -1,0 +1,121 @@
+#include <gmock/gmock.h>
+
+#include "server/fleet/assess.h"
+#include "server/math/statistics.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::HasSubstr;
+
+Edge MakeEdge(char letter, const std::string& a, const std::string& b) {
+  Edge edge;
+  edge.id = EdgeId(std::string(64, letter));
+  edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
+  edge.uncertainty = FromInformation(1e6 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
+  edge.state = EdgeState::kGood;
+  return edge;
+}
+
+// A triangle in which all is well.
+struct Rig {
+  std::vector<Edge> edges = {MakeEdge('a', "left", "right"), MakeEdge('b', "right", "top"),
+                             MakeEdge('c', "left", "top")};
+  GraphSolution solution;
+  Rig() {
+    solution.converged = true;
+    solution.dof = 6;
+    for (const char* name : {"left", "right", "top"}) {
+      SensorPose pose;
+      pose.sensor = SensorId(name);
+      pose.known = true;
+      if (solution.poses.size() > 0) pose.covariance = 1e-6 * Matrix6d::Identity();
+      solution.poses.push_back(pose);
+    }
+    for (const Edge& edge : edges) {
+      EdgeResidual residual;
+      residual.edge = edge.id;
+      residual.in_solution = true;
+      solution.residuals.push_back(residual);
+    }
+    solution.suspects.judged = true;
+  }
+  void Suspect(std::size_t k, double off_m) {
+    SuspectEdge suspect;
+    suspect.edge = edges[k].id, suspect.frame_a = edges[k].frame_a, suspect.frame_b = edges[k].frame_b;
+    suspect.e(0) = off_m;
+    suspect.statistic = 100.0 * off_m * off_m / 1e-4, suspect.limit = 25.0;
+    solution.suspects.edges.push_back(suspect);
+  }
+  [[nodiscard]] Verdict Judge() const { return Assess(edges, solution); }
+};
+
+TEST(AssessSuspects, NamesTheEdgeAndByHowMuchItIsOff) {
+  Rig rig;
+  rig.Suspect(1, 0.02);
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("Edge right - top contradicts the other edges: it is off by 20 mm and 0 deg, 16 "
+                                     "times the limit of its test"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("right and top have not moved"));
+}
+
+TEST(AssessSuspects, NamesTheWorstFirst) {
+  Rig rig;
+  rig.Suspect(0, 0.02);
+  rig.Suspect(2, 0.03);
+  EXPECT_THAT(rig.Judge().why, HasSubstr("Edges left - top and left - right contradict the other edges: worst is the "
+                                         "first, off by 30 mm"));
+}
+
+TEST(AssessSuspects, ALoopIsNamedWhole) {
+  Rig rig;
+  rig.Suspect(1, 0.02);
+  rig.solution.suspects.edges[0].alternatives = {rig.edges[0].id, rig.edges[2].id};
+  const Verdict verdict = rig.Judge();
+  EXPECT_THAT(verdict.why, HasSubstr("The loop of edges right - top, left - right and left - top does not close: it is "
+                                     "off by 20 mm and 0 deg, and one of them is wrong"));
+}
+
+TEST(AssessSuspects, TwoPosesTakeNoSide) {
+  Rig rig;
+  TwoPoses two;
+  two.sensor = SensorId("top");
+  two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[2].id};
+  two.difference << 0.04, 0, 0, 0, 0, 0;
+  rig.solution.suspects.two_poses.push_back(two);
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("Sensor top has two poses, 40 mm and 0 deg apart: edges right - top agree on one, "
+                                     "left - top on the other"));
+}
+
+TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
+  Rig rig;
+  rig.Suspect(1, 0.02);
+  for (EdgeResidual& residual : rig.solution.residuals)
+    residual.by_jackknife = true, residual.rank = 6, residual.dof = 39.0, residual.t_squared = 6.0;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  rig.solution.residuals[0].t_squared = 200.0;
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("Edge right - top contradicts"));
+}
+
+TEST(TestResidual, UsesTheJackknifeWhereThereIsOne) {
+  const Rig rig;
+  EdgeResidual residual = rig.solution.residuals[0];
+  residual.weighted = 500.0;
+  EXPECT_DOUBLE_EQ(TestResidual(rig.edges[0], residual, 1).statistic, 500.0);
+  residual.by_jackknife = true, residual.t_squared = 3.0, residual.rank = 5, residual.dof = 38.2;
+  const EdgeTest test = TestResidual(rig.edges[0], residual, 1);
+  EXPECT_DOUBLE_EQ(test.statistic, 3.0);
+  EXPECT_DOUBLE_EQ(test.limit, HotellingLimit(39, 5, 0.999));
+  residual.dof = 0.0;
+  EXPECT_DOUBLE_EQ(TestResidual(rig.edges[0], residual, 1).limit, ChiSquareQuantile(0.999, 5));
+  residual.rank = 0;
+  EXPECT_EQ(TestResidual(rig.edges[0], residual, 1).limit, 0.0);
+}
+
+}  // namespace
+}  // namespace rigcal::fleet

@@ -1,0 +1,74 @@
+// The recorded clouds beside the project, all of them.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/unit/formats_cloud_samples.h"
+
+namespace rigcal::formats {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kData = fs::path(RIGCAL_SOURCE_DIR) / ".." / "shared" / "data";
+
+std::string BytesOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<fs::path> CloudsIn(const std::string& folder) {
+  std::vector<fs::path> paths;
+  if (!fs::exists(kData / folder)) return paths;
+  for (const auto& entry : fs::recursive_directory_iterator(kData / folder))
+    if (entry.path().extension() == ".pcd" || entry.path().extension() == ".ply") paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+// The number behind `key` in the header.
+std::size_t Claimed(const std::string& bytes, const std::string& key) {
+  return std::stoul(bytes.substr(bytes.find("\n" + key + " ") + key.size() + 2, 12));
+}
+
+class RecordedClouds : public testing::TestWithParam<std::pair<const char*, std::size_t>> {};
+
+TEST_P(RecordedClouds, HaveThePointsOfTheirHeaders) {
+  const auto [folder, count] = GetParam();
+  const auto paths = CloudsIn(folder);
+  if (paths.empty()) GTEST_SKIP() << "the recording " << folder << " is not in shared/data beside the project";
+  EXPECT_EQ(paths.size(), count);
+  for (const fs::path& path : paths) {
+    const std::string suffix = path.extension().string().substr(1), bytes = BytesOf(path);
+    const auto cloud = ReadText(bytes, suffix);
+    ASSERT_TRUE(cloud) << path << ": " << Sentence(cloud.error());
+    EXPECT_EQ(cloud->points_m.size() + cloud->dropped, Claimed(bytes, suffix == "pcd" ? "POINTS" : "element vertex"))
+        << path;
+    EXPECT_EQ(cloud->left_out, std::vector<std::string>()) << path;
+    ASSERT_FALSE(cloud->fields.empty()) << path;
+    for (const CloudField& field : cloud->fields) EXPECT_EQ(field.values.size(), cloud->points_m.size()) << path;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, RecordedClouds,
+                         testing::Values(std::pair("lidarcam_acfr_vlp16/pcd", 40),
+                                         std::pair("lidarlidar_small_gicp", 2), std::pair("lidarcam_opencalib_road", 2),
+                                         std::pair("lidarlidar_opencalib", 3)));
+
+TEST(RecordedCloud, FirstAndLastLineOfText) {
+  const fs::path path = kData / "lidarcam_acfr_vlp16/pcd/pose1_full.pcd";
+  if (!fs::exists(path)) GTEST_SKIP() << "the recording is not in shared/data beside the project";
+  const std::string bytes = BytesOf(path);
+  const auto cloud = ReadText(bytes, "pcd");
+  ASSERT_TRUE(cloud) << Sentence(cloud.error());
+  EXPECT_EQ(cloud->points_m.size(), 23969u);
+  double x = 0, y = 0, z = 0, intensity = 0, ring = 0;
+  const std::size_t body = bytes.find("DATA ascii\n") + 11;
+  ASSERT_EQ(std::sscanf(bytes.c_str() + body, "%lf %lf %lf %lf %lf", &x, &y, &z, &intensity, &ring), 5);
+  EXPECT_TRUE(cloud->points_m.front().isApprox(Eigen::Vector3d(x, y, z).cast<float>()));
+  EXPECT_EQ(cloud->fields.at(0).values.front(), intensity);
+  EXPECT_EQ(cloud->fields.at(1).values.front(), ring);
+  EXPECT_LT(*std::max_element(cloud->fields[1].values.begin(), cloud->fields[1].values.end()), 16.0);
+}
+
+}  // namespace
+}  // namespace rigcal::formats

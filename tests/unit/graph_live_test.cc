@@ -1,0 +1,134 @@
+// The live state: every change ends at the batch optimum of the edges that are left.
+#include <gtest/gtest.h>
+
+#include "server/graph/live_solver.h"
+#include "tests/unit/graph_fixture.h"
+
+namespace rigcal::graph {
+namespace {
+
+void ExpectOptimum(const LiveSolver& live) {
+  const GraphSolution batch = Solve(live.graph());
+  EXPECT_NEAR(live.Cost(), batch.cost, 1e-9 * std::max(batch.cost, 1e-3));
+  for (const SensorPose& pose : batch.poses) {
+    const std::optional<Se3> T = live.PoseOf(pose.sensor);
+    ASSERT_EQ(T.has_value(), pose.known) << pose.sensor.str();
+    if (!T) continue;
+    EXPECT_LT(Distance(*T, pose.T_ref_sensor), 1e-6) << pose.sensor.str();
+  }
+}
+
+LiveSolver Fed(const Graph& graph) {
+  LiveSolver live(graph.reference);
+  for (const GraphEdge& edge : graph.edges) live.Add(edge);
+  return live;
+}
+
+TEST(GraphLive, ALargeWellConnectedGraphStaysAtTheOptimum) {
+  const RandomRig rig = MakeRig(90, 400, 70);
+  LiveSolver live(rig.graph.reference);
+  for (std::size_t k = 0; k < rig.graph.edges.size(); ++k) {
+    live.Add(rig.graph.edges[k]);
+    if (k % 40 == 39 || k + 1 == rig.graph.edges.size()) ExpectOptimum(live);
+  }
+}
+
+TEST(GraphLive, ADeepGraphStaysAtTheOptimum) {
+  RandomRig rig = MakeRig(60, 60, 71);
+  rig.graph.edges.clear();
+  std::mt19937 random(72);
+  const Matrix6d Omega = 1e4 * Matrix6d::Identity();
+  const auto add = [&](std::size_t a, std::size_t b) {
+    const Se3 T_a_b = rig.truth[a].Inverse() * rig.truth[b] * Se3::Exp(RandomVector(random, 0.01, 0.01));
+    rig.graph.edges.push_back(MakeEdge(rig.graph.edges.size(), a, b, T_a_b.Normalized(), Omega));
+  };
+  for (std::size_t v = 1; v < 60; ++v) add(v - 1, v);
+  for (std::size_t v = 10; v < 60; v += 10) add(v - 10, v);
+  ExpectOptimum(Fed(rig.graph));
+}
+
+TEST(GraphLive, RemovedAndReweightedEdgesCount) {
+  const RandomRig rig = MakeRig(10, 30, 73);
+  LiveSolver live = Fed(rig.graph);
+  EXPECT_TRUE(live.Remove(rig.graph.edges[20].id).batch);
+  EXPECT_EQ(live.graph().edges.size(), 29U);
+  ExpectOptimum(live);
+  EXPECT_TRUE(live.Reweight(rig.graph.edges[3].id, 0.1 * rig.graph.edges[3].Omega, 6).batch);
+  ExpectOptimum(live);
+  EXPECT_FALSE(live.Remove(IdOf(999)).batch);
+  EXPECT_FALSE(live.Reweight(IdOf(999), Matrix6d::Identity(), 6).batch);
+  live.Add(rig.graph.edges[20]);
+  ExpectOptimum(live);
+}
+
+TEST(GraphLive, PartsThatMeetLaterAreJoined) {
+  RandomRig rig = MakeRig(12, 40, 74);
+  std::reverse(rig.graph.edges.begin(), rig.graph.edges.end());
+  LiveSolver live(rig.graph.reference);
+  for (const GraphEdge& edge : rig.graph.edges) {
+    live.Add(edge);
+    ExpectOptimum(live);
+  }
+}
+
+TEST(GraphLive, AGrossErrorIsFollowedToo) {
+  RandomRig rig = MakeRig(8, 25, 75);
+  Vector6d turn = Vector6d::Zero();
+  turn(tangent::kRz) = 2.0;
+  rig.graph.edges[20].T_a_b = rig.graph.edges[20].T_a_b * Se3::Exp(turn);
+  ExpectOptimum(Fed(rig.graph));
+}
+
+TEST(GraphLive, DeficientUnusableAndSelfEdgesBehave) {
+  const RandomRig rig = MakeRig(6, 12, 76);
+  LiveSolver live = Fed(rig.graph);
+  GraphEdge edge = rig.graph.edges[0];
+  edge.id = IdOf(100);
+  edge.Omega(2, 2) = -1.0;
+  live.Add(edge);
+  ExpectOptimum(live);
+  edge = rig.graph.edges[1];
+  edge.id = IdOf(101);
+  edge.frame_b = edge.frame_a;
+  live.Add(edge);
+  ExpectOptimum(live);
+  edge = rig.graph.edges[2];
+  edge.id = IdOf(102);
+  edge.Omega.row(0).setZero();
+  edge.Omega.col(0).setZero();
+  edge.rank = 5;
+  EXPECT_TRUE(live.Add(edge).batch);
+  ExpectOptimum(live);
+  edge = rig.graph.edges[3];
+  edge.id = IdOf(103);
+  edge.frame_b = SensorId("new");
+  live.Add(edge);
+  ExpectOptimum(live);
+  EXPECT_FALSE(live.Solution().poses.empty());
+}
+
+TEST(GraphLive, AnEmptyStateAnswers) {
+  const LiveSolver live{SensorId("a")};
+  EXPECT_EQ(live.Cost(), 0.0);
+  EXPECT_FALSE(live.PoseOf(SensorId("a")).has_value());
+  LiveSolver lonely{SensorId("a")};
+  lonely.AddSensor(SensorId("a"));
+  EXPECT_TRUE(lonely.PoseOf(SensorId("a")).has_value());
+  lonely.AddSensor(SensorId("b"));
+  EXPECT_FALSE(lonely.PoseOf(SensorId("b")).has_value());
+}
+
+TEST(GraphLive, MarginalsAreThoseOfTheBatch) {
+  const RandomRig rig = MakeRig(12, 59, 77);
+  const LiveSolver live = Fed(rig.graph);
+  const GraphSolution batch = Solve(rig.graph);
+  const auto marginals = live.Marginals();
+  ASSERT_EQ(marginals.size(), 12U);
+  for (const auto& [sensor, covariance] : marginals) {
+    const Matrix6d& expected = batch.poses[std::stoul(sensor.str())].covariance;
+    EXPECT_LE((covariance - expected).norm(), 1e-6 * expected.norm()) << sensor.str();
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::graph
