@@ -84,6 +84,8 @@ Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded) {
   RIGCAL_ASSIGN(const ImageSize claimed, ReadImageSize(encoded));
   if (encoded.size() > static_cast<std::size_t>(INT32_MAX)) return Undecodable();
   RIGCAL_TRY(CheckPlausible(encoded, claimed));
+  if (IsCutOff(encoded))
+    return Fail(ErrorCode::kInvalidInput, "the picture is cut off", "save or copy the picture again");
   try {
     return AsGrey(Decoded(encoded), claimed);
   } catch (const std::exception&) {  // cv::Exception and bad_alloc: both mean that this picture gives no pixels

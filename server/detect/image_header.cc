@@ -47,7 +47,8 @@ bool IsStartOfFrame(std::uint8_t marker) {
 // Markers without a length: TEM and the restart markers.
 bool IsBare(std::uint8_t marker) { return marker == 0x01 || (marker >= 0xD0 && marker <= 0xD7); }
 
-Result<ImageSize> ReadJpeg(Bytes bytes) {
+// Of the first start-of-frame segment.
+Result<std::size_t> FrameOffset(Bytes bytes) {
   std::size_t offset = 2;
   while (offset + 4 <= bytes.size() && At(bytes, offset) == 0xFF) {
     const std::uint8_t marker = At(bytes, offset + 1);
@@ -57,7 +58,7 @@ Result<ImageSize> ReadJpeg(Bytes bytes) {
       offset += 2;
     } else if (IsStartOfFrame(marker)) {
       if (bytes.size() < offset + 9) return CutOff();
-      return ImageSize{BigEndian(bytes, offset + 7, 2), BigEndian(bytes, offset + 5, 2)};
+      return offset;
     } else {
       offset += 2 + static_cast<std::size_t>(std::max<std::int64_t>(2, BigEndian(bytes, offset + 2, 2)));
     }
@@ -65,9 +66,16 @@ Result<ImageSize> ReadJpeg(Bytes bytes) {
   return CutOff();
 }
 
+Result<ImageSize> ReadJpeg(Bytes bytes) {
+  RIGCAL_ASSIGN(const std::size_t offset, FrameOffset(bytes));
+  return ImageSize{BigEndian(bytes, offset + 7, 2), BigEndian(bytes, offset + 5, 2)};
+}
+
+bool IsJpeg(Bytes bytes) { return HasAt(bytes, 0, std::array<std::uint8_t, 3>{0xFF, 0xD8, 0xFF}); }
+
 Result<ImageSize> ReadUnchecked(Bytes bytes) {
   if (HasAt(bytes, 0, kPngSignature)) return ReadPng(bytes);
-  if (HasAt(bytes, 0, std::array<std::uint8_t, 3>{0xFF, 0xD8, 0xFF})) return ReadJpeg(bytes);
+  if (IsJpeg(bytes)) return ReadJpeg(bytes);
   return Fail(ErrorCode::kInvalidInput, "the picture is neither PNG nor JPEG", "export it as PNG or JPEG");
 }
 
@@ -85,6 +93,16 @@ Result<ImageSize> ReadImageSize(Bytes encoded) {
                 "the picture claims " + text + ", more than the limit of " + std::to_string(pixels_max) + " pixels",
                 "use smaller pictures");
   return size;
+}
+
+bool IsCutOff(Bytes encoded) {
+  if (!IsJpeg(encoded)) return false;
+  const auto frame = FrameOffset(encoded);
+  if (!frame) return true;
+  // A preview in front of the frame has an end of its own; within compressed data the two bytes cannot occur.
+  for (std::size_t offset = encoded.size() - 2; offset > *frame; --offset)
+    if (At(encoded, offset) == 0xFF && At(encoded, offset + 1) == 0xD9) return false;
+  return true;
 }
 
 }  // namespace rigcal::detect

@@ -17,5 +17,7 @@ struct ImageSize {
 // PNG (IHDR) or JPEG (first SOF segment). Reads within `encoded` only. Fails on any other format, on a header that is
 // cut off, and on sizes that are zero or beyond the limit image_pixels.
 [[nodiscard]] Result<ImageSize> ReadImageSize(std::span<const std::byte> encoded);
+// A JPEG without its end: decoders would fill the rest with grey and say nothing. PNG decoders notice it themselves.
+[[nodiscard]] bool IsCutOff(std::span<const std::byte> encoded);
 
 }  // namespace rigcal::detect

@@ -28,6 +28,14 @@ std::string SizeText(const Target& target) {
          (IsTagGrid(target.kind) ? " tags" : " inner corners");
 }
 
+// A pose needs six corners, or two tags.
+Status CheckEnough(const Target& target) {
+  const int count = target.cols * target.rows, needed = IsTagGrid(target.kind) ? 2 : 6;
+  if (count >= needed) return {};
+  return Refuse(target, SizeText(target) + " are too few for a pose",
+                "Use a board with " + std::to_string(needed) + " or more.");
+}
+
 Status CheckCounts(const Target& target) {
   const int count_min = IsTagGrid(target.kind)                ? kTagsMin
                         : target.kind == TargetKind::kCharuco ? kCharucoCornersMin
@@ -38,7 +46,7 @@ Status CheckCounts(const Target& target) {
                     IsTagGrid(target.kind) ? "Count the tags, 1 to 100 each way."
                                            : "Count the corners where four squares meet, " + std::to_string(count_min) +
                                                  " to " + std::to_string(kCountMax) + " each way.");
-  return {};
+  return CheckEnough(target);
 }
 
 Status CheckSquare(const Target& target) {

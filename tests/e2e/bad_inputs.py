@@ -133,6 +133,8 @@ PICTURES = [
     file_case("truncated PNG", r"1 picture of left cannot be read and take no part: 01\.", "left/01.png", GOOD["left/01.png"][:600], kind="noted"),
     file_case("PNG cut in its header", r"1 picture of left cannot be read .*header is cut off", "left/01.png", GOOD["left/01.png"][:20], kind="noted"),
     file_case("truncated JPEG", r"1 picture of left cannot be read .*header is cut off", "left/07.jpg", b"\xff\xd8\xff\xe0\x00\x10JFIF\x00\x01\x01\x00", kind="noted"),
+    file_case("JPEG without its end", r"1 picture of left cannot be read .*the picture is cut off", "left/07.jpg",
+              b"\xff\xd8\xff\xc0\x00\x0b\x08\x00\x40\x00\x40\x01\x01\x11\x00\xff\xda\x00\x08\x01\x01\x00\x00\x3f\x00" + b"x" * 200, kind="noted"),
     file_case("PNG of 100000 x 100000", r"1 picture of left cannot be read .*the picture claims 100000 x 100000 pixels", "left/01.png", png(100_000, 100_000, [b"\0" * 10]), kind="noted"),
     file_case("PNG of 2^31 x 2^31", r"1 picture of left cannot be read .*the picture claims 2147483648 x 2147483648", "left/01.png", png(2**31, 2**31, []), kind="noted"),
     file_case("PNG of 0 x 0", r"1 picture of left cannot be read .*the picture claims 0 x 0 pixels", "left/01.png", png(0, 0, []), kind="noted"),

@@ -40,6 +40,18 @@ TEST(ImageHeader, ReadsJpegBehindOtherSegments) {
   EXPECT_EQ(*SizeOf(kJpeg + Segment('\xE1', "Exif") + table + "\xFF" + Frame('\xC2', 640, 480)), (ImageSize{640, 480}));
 }
 
+bool CutOff(const std::string& bytes) { return IsCutOff(std::as_bytes(std::span(bytes))); }
+
+TEST(ImageHeader, AJpegNeedsItsEnd) {
+  const std::string end = "\xFF\xD9", frame = Frame('\xC0', 640, 480), data(100, 'x');
+  EXPECT_FALSE(CutOff(kJpeg + frame + data + end));
+  EXPECT_FALSE(CutOff(kJpeg + frame + data + end + "behind it"));
+  EXPECT_TRUE(CutOff(kJpeg + frame + data));
+  EXPECT_TRUE(CutOff(kJpeg + frame + data + "\xFF"));
+  EXPECT_TRUE(CutOff(kJpeg + Segment('\xE1', "preview" + end) + frame + data));
+  EXPECT_TRUE(CutOff(kJpeg + "\xFF"));
+}
+
 TEST(ImageHeader, RefusesMoreThanTheLimit) {
   const auto size = SizeOf(Png(0xFFFFFFFF, 0xFFFFFFFF));
   ASSERT_FALSE(size);
