@@ -20,6 +20,7 @@ void AddStatus(CLI::App& app, Context& context);
 void AddWatch(CLI::App& app, Context& context);
 void AddReport(CLI::App& app, Context& context);
 void AddDue(CLI::App& app, Context& context);
+void AddCompare(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 
 }  // namespace rigcal::client

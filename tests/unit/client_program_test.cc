@@ -33,8 +33,8 @@ Ran Rigcal(const std::string& arguments) {
   return ran;
 }
 
-const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges", "show",
-                                         "lookup", "status",     "watch",  "report",   "due",   "doctor"};
+const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges",   "show",  "lookup",
+                                         "status", "watch",      "report", "due",      "compare", "doctor"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");

@@ -76,6 +76,29 @@ TEST(Verbs, AVerdictOfFailIsExitCodeOne) {
   EXPECT_EQ(Rigcal({"lookup", "r", "left", "right", "--json"}).code, 1);
 }
 
+TEST(Verbs, CompareAsksForBothRevisionsAndJudgesBySigmas) {
+  FakeServer server("r", [](const std::string&, const std::string& json) -> Result<std::string> {
+    const bool old = json.find("\"revision\":1") != std::string::npos;
+    return R"({"revision":)" + std::string(old ? "1" : "2") +
+           R"(,"document":{"reference":"a","sensors":[{"id":"a","T_ref_sensor":{"p_m":[0,0,0],"q_xyzw":[0,0,0,1]}},)"
+           R"({"id":"b","T_ref_sensor":{"p_m":[)" +
+           (old ? "1" : "1.002") +
+           R"(,0,0],"q_xyzw":[0,0,0,1]},"sigma_m":[0.001,0.001,0.001],"sigma_rad":[0.1,0.1,0.1]}]}})";
+  });
+  const Ran ran = Rigcal({"compare", "r", "--with", "1"});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_NE(ran.out.find("r, revision 2, against revision 1, in a"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("2.000"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("2.0 sigma"), std::string::npos) << ran.out;
+  EXPECT_EQ(Rigcal({"compare", "r", "--with", "1", "--sigmas-max", "1.9"}).code, 1);
+  EXPECT_EQ(Rigcal({"compare", "r", "--with", "1", "--sigmas-max", "2.1"}).code, 0);
+  EXPECT_EQ(Rigcal({"compare", "r"}).code, 2);
+  EXPECT_EQ(Rigcal({"compare", "r", "--poses", "/does/not/exist"}).code, 4);
+  const auto json = Document::Parse(Rigcal({"compare", "r", "--with", "1", "--json"}).out, "compare");
+  ASSERT_TRUE(json);
+  EXPECT_NEAR(*(*json)["sensors"][0]["e"][0].Number(), 0.002, 1e-12);
+}
+
 TEST(Verbs, AnErrorIsASentenceAndExitCodeFour) {
   FakeServer server("r", [](const std::string&, const std::string&) -> Result<std::string> {
     return Fail(ErrorCode::kNotFound, "robot 'x' is not known", "`rigcal robots` lists those that are");
