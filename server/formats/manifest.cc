@@ -7,7 +7,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr std::size_t kConditionsMax = 256;
+constexpr std::size_t kConditionsMax = 256, kSkipPairsMax = 65'536;
 
 JsonKind ManifestKind() {
   return {"manifest", "Push the session again with a client of the server's version.",
@@ -87,6 +87,15 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   out.List("sensors", [&] {
     for (const Sensor& sensor : header.sensors) WriteSensor(out, sensor);
   });
+  // As a sensor's optional members: a session that skips nothing keeps its bytes.
+  if (!header.skip_pairs.empty())
+    out.List("skip_pairs", [&] {
+      for (const SensorPair& pair : header.skip_pairs)
+        out.List([&] {
+          out.Text(pair.a.str());
+          out.Text(pair.b.str());
+        });
+    });
   out.List("targets", [&] {
     for (const Target& board : header.targets) WriteTarget(out, board);
   });
@@ -167,6 +176,13 @@ Target ReadTarget(const JsonField& field) {
   return board;
 }
 
+SensorPair ReadSkipPair(const JsonField& field) {
+  const std::vector<JsonField> names = field.Items(2);
+  if (names.size() == 2) return {ReadId<SensorId>(names[0]), ReadId<SensorId>(names[1])};
+  field.Refuse("must be two names of sensors");
+  return {};
+}
+
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
   header.format = static_cast<int>(root.At("format").Integer(1, 1));
@@ -179,6 +195,8 @@ SessionHeader ReadHeader(const JsonField& root) {
     header.targets.push_back(ReadTarget(target));
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerSessionMax))
     header.sensors.push_back(ReadSensor(sensor));
+  if (const auto pairs = root.Find("skip_pairs"))
+    for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
   return header;

@@ -42,7 +42,7 @@ Status CheckPayloadKind(const std::filesystem::path& file, const std::string& pa
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     return Fail(ErrorCode::kInvalidInput, "file " + Quoted(path) + ": it cannot be opened", "Check its permissions.");
-  if (SuffixOf(path) == "bin") return {};
+  if (SuffixOf(path) == "bin" || SuffixOf(path) == "csv") return {};
   std::array<char, kMarkBytesMax> head{};
   stream.read(head.data(), head.size());
   const std::string kind = KindOf({head.data(), static_cast<std::size_t>(stream.gcount())});

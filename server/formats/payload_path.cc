@@ -8,14 +8,15 @@ namespace rigcal::formats {
 namespace {
 
 constexpr const char* kCure =
-    "Payloads are <sensor>/<capture>.png, .jpg or .jpeg of a camera, .pcd, .ply or .bin of a lidar, in lower case.";
+    "Payloads are <sensor>/<capture>.png, .jpg or .jpeg of a camera, .pcd, .ply or .bin of a lidar, and "
+    "<sensor>/poses.csv of a tracker or pose stream, in lower case.";
 
 bool IsKnown(std::string_view suffix) {
   const auto is_of = [&](SensorKind kind) {
     const auto& suffixes = SuffixesOf(kind);
     return std::find(suffixes.begin(), suffixes.end(), suffix) != suffixes.end();
   };
-  return is_of(SensorKind::kCamera) || is_of(SensorKind::kLidar);
+  return is_of(SensorKind::kCamera) || is_of(SensorKind::kLidar) || is_of(SensorKind::kTracker);
 }
 
 }  // namespace
@@ -34,7 +35,7 @@ Result<Payload> PayloadAt(std::string_view path) {
   if (slash == std::string_view::npos || path.find('/', slash + 1) != std::string_view::npos)
     return bad("it is not in a sensor's folder");
   const std::string_view suffix = SuffixOf(path);
-  if (!IsKnown(suffix)) return bad("its name does not end in .png, .jpg, .jpeg, .pcd, .ply or .bin");
+  if (!IsKnown(suffix)) return bad("its name does not end in .png, .jpg, .jpeg, .pcd, .ply, .bin or .csv");
   auto sensor = SensorId::Parse(path.substr(0, slash));
   if (!sensor) return bad(sensor.error().what, sensor.error().cure);
   auto capture = CaptureId::Parse(path.substr(slash + 1, path.size() - slash - suffix.size() - 2));

@@ -1,6 +1,7 @@
 #include "server/formats/session_folder.h"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 #include <set>
 
@@ -13,6 +14,7 @@
 #include "server/formats/nearest.h"
 #include "server/formats/payload_path.h"
 #include "server/formats/payload_kind.h"
+#include "server/formats/poses.h"
 
 namespace rigcal::formats {
 namespace {
@@ -20,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSessionYaml = "session.yaml";
+constexpr const char* kTableSuffix = "csv";
 constexpr const char* kIgnoredHint = "Move it out of the folder, or begin its name with a '.': such files are ignored.";
 
 using Progress = std::function<void(std::int64_t, std::int64_t)>;
@@ -93,6 +96,38 @@ Result<std::vector<Payload>> ListPayloads(const fs::path& folder, const SessionH
   return payloads;
 }
 
+// The captures that sensors other than `tracker` have: names of files, and of rows of other trackers.
+std::set<CaptureId> OtherCaptures(const std::map<SensorId, PoseTable>& tables, const std::vector<Payload>& payloads,
+                                  const SensorId& tracker) {
+  std::set<CaptureId> captures;
+  for (const Payload& payload : payloads)
+    if (SuffixOf(payload.path) != kTableSuffix) captures.insert(payload.capture);
+  for (const auto& [sensor, table] : tables)
+    if (sensor != tracker)
+      for (const TimedPose& pose : table) captures.insert(pose.capture);
+  return captures;
+}
+
+// A picture that is bad costs one capture; a table of poses is all that its sensor has, so it is read before it is sent.
+Status CheckPoseTables(const fs::path& folder, const Manifest& manifest) {
+  std::map<SensorId, std::string> texts;
+  std::map<SensorId, PoseTable> tables;
+  for (const Payload& payload : manifest.payloads) {
+    if (SuffixOf(payload.path) != kTableSuffix) continue;
+    const auto sensor = std::find_if(manifest.header.sensors.begin(), manifest.header.sensors.end(),
+                                     [&](const Sensor& s) { return s.id == payload.sensor; });
+    RIGCAL_ASSIGN(std::string text, ReadFile(folder / payload.path, limits::kPoseTableBytesMax));
+    RIGCAL_ASSIGN(PoseTable table, ReadPoses(text, sensor->kind, payload.path));
+    if (sensor->kind != SensorKind::kTracker) continue;
+    tables[payload.sensor] = std::move(table);
+    texts[payload.sensor] = std::move(text);
+  }
+  for (const auto& [sensor, text] : texts)
+    RIGCAL_TRY(ReadPosesOf(OtherCaptures(tables, manifest.payloads, sensor), text,
+                           sensor.str() + "/" + std::string(kPoseTableStem) + "." + kTableSuffix));
+  return {};
+}
+
 Status HashPayloads(const fs::path& folder, const Progress& progress, std::vector<Payload>& payloads) {
   std::int64_t bytes_in_all = 0, bytes_hashed = 0;
   for (const Payload& payload : payloads) bytes_in_all += payload.size_bytes;
@@ -126,6 +161,7 @@ Result<Manifest> ReadSessionFolder(const fs::path& folder, const Progress& progr
   RIGCAL_ASSIGN(manifest.payloads, ListPayloads(folder, manifest.header));
   RIGCAL_TRY(HashPayloads(folder, progress, manifest.payloads));
   RIGCAL_TRY(Validate(manifest));
+  RIGCAL_TRY(CheckPoseTables(folder, manifest));
   return manifest;
 }
 

@@ -155,23 +155,33 @@ Target ReadTarget(const YamlField& field) {
   return board;
 }
 
+SensorPair ReadSkipPair(const YamlField& field) {
+  const std::vector<YamlField> names = field.Items();
+  if (names.size() == 2) return {ReadId<SensorId>(names[0]), ReadId<SensorId>(names[1])};
+  field.Refuse("must be two names of sensors, [a, b]");
+  return {};
+}
+
 SessionHeader ReadHeader(const YamlField& root) {
-  root.AllowOnly(
-      {"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors", "conditions"});
+  root.AllowOnly({"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors",
+                  "skip_pairs", "conditions"});
   SessionHeader header;
   header.format = static_cast<int>(root.At("format").Integer(1, 1));
   header.robot = ReadId<RobotId>(root.At("robot"));
   header.rig_model = TextOr(root, "rig_model", "");
   header.captured_at = ReadCapturedAt(root.At("captured_at"));
   header.operator_name = TextOr(root, "operator", "");
-  for (const YamlField& target : root.At("targets").Members())
-    header.targets.push_back(ReadTarget(target.Called(Title("target", target.Key()))));
+  if (const auto targets = root.Find("targets"))
+    for (const YamlField& target : targets->Members())
+      header.targets.push_back(ReadTarget(target.Called(Title("target", target.Key()))));
   for (const YamlField& sensor : root.At("sensors").Members())
     header.sensors.push_back(ReadSensor(sensor.Called(Title("sensor", sensor.Key()))));
   if (const auto reference = root.Find("reference"))
     header.reference = ReadId<SensorId>(*reference);
   else if (!header.sensors.empty())
     header.reference = header.sensors.front().id;
+  if (const auto pairs = root.Find("skip_pairs"))
+    for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto conditions = root.Find("conditions"))
     for (const YamlField& condition : conditions->Members())
       header.conditions.emplace(condition.Key(), condition.Text());
@@ -180,10 +190,17 @@ SessionHeader ReadHeader(const YamlField& root) {
 
 // Which line a rule that spans the file is about.
 YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
+  const auto is_sensor = [&](const std::string& id) { return root.At("sensors").Find(id).has_value(); };
+  const auto targets = root.Find("targets");
   for (const YamlField& sensor : root.At("sensors").Members()) {
     const auto sees = sensor.Find("sees");
-    if (sees && !root.At("targets").Find(sees->Text())) return *sees;
+    if (sees && !(targets && targets->Find(sees->Text()))) return *sees;
   }
+  if (const auto pairs = root.Find("skip_pairs"))
+    for (const YamlField& pair : pairs->Items()) {
+      const std::string a = pair.Items()[0].Text(), b = pair.Items()[1].Text();
+      if (a == b || !is_sensor(a) || !is_sensor(b)) return pair;
+    }
   const auto reference = root.Find("reference");
   return reference && !root.At("sensors").Find(header.reference.str()) ? *reference : root;
 }

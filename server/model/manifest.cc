@@ -14,16 +14,25 @@ Status Refuse(const Payload& payload, const std::string& what, const std::string
   return Fail(ErrorCode::kInvalidInput, "file " + Quoted(payload.path) + ": " + what, cure);
 }
 
+struct PathRule {
+  const char *form, *suffix;  // what a path must look like, and an example's end
+};
+PathRule RuleOf(SensorKind kind) {
+  if (kind == SensorKind::kCamera) return {"<sensor>/<capture>.png, .jpg or .jpeg", ".png"};
+  if (kind == SensorKind::kLidar) return {"<sensor>/<capture>.pcd, .ply or .bin", ".pcd"};
+  return {"<sensor>/poses.csv", ".csv"};
+}
+
 // The path follows from sensor and capture: what could leave the session's folder cannot be written down at all.
 Status CheckPath(const Payload& payload, SensorKind kind) {
-  const std::string stem = payload.sensor.str() + "/" + payload.capture.str();
+  const bool table = kind == SensorKind::kTracker || kind == SensorKind::kPoseStream;
+  const std::string stem = payload.sensor.str() + "/" + (table ? std::string(kPoseTableStem) : payload.capture.str());
   for (std::string_view suffix : SuffixesOf(kind))
-    if (payload.path == stem + "." + std::string(suffix)) return {};
-  const bool lidar = kind == SensorKind::kLidar;
-  return Refuse(payload,
-                lidar ? "the path is not <sensor>/<capture>.pcd, .ply or .bin"
-                      : "the path is not <sensor>/<capture>.png, .jpg or .jpeg",
-                "Name the file after its sensor and capture: " + Quoted(stem + (lidar ? ".pcd" : ".png")) + ".");
+    if (payload.path == stem + "." + std::string(suffix) && (!table || payload.capture.str() == kPoseTableStem)) return {};
+  const PathRule rule = RuleOf(kind);
+  return Refuse(payload, std::string("the path is not ") + rule.form,
+                (table ? "Name the file " : "Name the file after its sensor and capture: ") + Quoted(stem + rule.suffix) +
+                    ".");
 }
 
 Status CheckPayload(const Payload& payload, const std::unordered_map<SensorId, SensorKind>& sensors) {
@@ -71,9 +80,10 @@ Status CheckTotal(const std::vector<Payload>& payloads) {
 }  // namespace
 
 const std::vector<std::string_view>& SuffixesOf(SensorKind kind) {
-  static const std::vector<std::string_view> kPictures = {"png", "jpg", "jpeg"}, kClouds = {"pcd", "ply", "bin"}, kNone;
+  static const std::vector<std::string_view> kPictures = {"png", "jpg", "jpeg"}, kClouds = {"pcd", "ply", "bin"},
+                                             kTables = {"csv"};
   if (kind == SensorKind::kCamera) return kPictures;
-  return kind == SensorKind::kLidar ? kClouds : kNone;
+  return kind == SensorKind::kLidar ? kClouds : kTables;
 }
 
 Status Validate(const Manifest& manifest) {

@@ -11,13 +11,14 @@ Status Refuse(const Sensor& sensor, const std::string& what, const std::string& 
   return Fail(ErrorCode::kInvalidInput, "sensor " + sensor.id.str() + ": " + what, cure);
 }
 
+// What a kind of sensor does not have would be believed and have no effect.
 Status CheckKind(const Sensor& sensor) {
-  if (sensor.kind != SensorKind::kCamera && sensor.kind != SensorKind::kLidar)
-    return Fail(ErrorCode::kUnsupported,
-                "sensor " + sensor.id.str() + ": kind " + NameOf(sensor.kind) + " is not supported",
-                "This version calibrates sensors of kind camera and lidar; leave the sensor away.");
-  if (sensor.kind == SensorKind::kCamera || (!sensor.intrinsics && !sensor.intrinsics_sigma)) return {};
-  return Refuse(sensor, "a " + NameOf(sensor.kind) + " has no intrinsics", "Leave 'intrinsics' away.");
+  const std::string kind = "a " + std::string(sensor.kind == SensorKind::kPoseStream ? "pose stream" : NameOf(sensor.kind));
+  const bool looks = sensor.kind == SensorKind::kCamera || sensor.kind == SensorKind::kLidar;
+  if (sensor.kind != SensorKind::kCamera && (sensor.intrinsics || sensor.intrinsics_sigma))
+    return Refuse(sensor, kind + " has no intrinsics", "Leave 'intrinsics' away.");
+  if (!looks && sensor.sees) return Refuse(sensor, kind + " sees no target", "Leave 'sees' away.");
+  return {};
 }
 
 std::string NamesOf(CameraModel model) {

@@ -20,12 +20,6 @@ bool HasSensor(const SessionHeader& header, const SensorId& id) {
   return std::any_of(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
 }
 
-// Two lidars need no target, and no way to calibrate them from one is known here.
-bool MayShareTarget(const Sensor& a, const Sensor& b) {
-  if (a.kind != SensorKind::kCamera && b.kind != SensorKind::kCamera) return false;
-  return !a.sees || !b.sees || *a.sees == *b.sees;
-}
-
 bool HasTarget(const SessionHeader& header, const TargetId& id) {
   return std::any_of(header.targets.begin(), header.targets.end(), [&](const Target& t) { return t.id == id; });
 }
@@ -44,6 +38,34 @@ Status CheckCount(const std::string& things, std::size_t count, std::size_t coun
   if (count >= 1 && count <= count_max) return {};
   return Fail(ErrorCode::kInvalidInput, things + ": the session has " + std::to_string(count),
               "Give 1 to " + std::to_string(count_max) + ".");
+}
+
+// Pictures show a target; poses by themselves need none.
+Status CheckTargetCount(const SessionHeader& header) {
+  const bool any_camera = std::any_of(header.sensors.begin(), header.sensors.end(),
+                                      [](const Sensor& sensor) { return sensor.kind == SensorKind::kCamera; });
+  if (header.targets.empty() && !any_camera) return {};
+  return CheckCount("targets", header.targets.size(), limits::kTargetsPerSessionMax);
+}
+
+Status CheckSkipPair(const SessionHeader& header, const SensorPair& pair) {
+  const std::string title = "skip_pairs: [" + pair.a.str() + ", " + pair.b.str() + "]: ";
+  for (const SensorId& id : {pair.a, pair.b})
+    if (!HasSensor(header, id))
+      return Fail(ErrorCode::kInvalidInput, title + Quoted(id.str()) + " is not a sensor",
+                  "Name two of the session's sensors.");
+  if (pair.a != pair.b) return {};
+  return Fail(ErrorCode::kInvalidInput, title + "a sensor is no pair with itself", "Name two different sensors.");
+}
+
+Status CheckSkipPairs(const SessionHeader& header) {
+  constexpr std::size_t kSkipPairsMax = 65'536;
+  if (header.skip_pairs.size() > kSkipPairsMax)
+    return Fail(ErrorCode::kInvalidInput,
+                "skip_pairs: the session has " + std::to_string(header.skip_pairs.size()) + " of them",
+                "Give at most " + std::to_string(kSkipPairsMax) + ".");
+  for (const SensorPair& pair : header.skip_pairs) RIGCAL_TRY(CheckSkipPair(header, pair));
+  return {};
 }
 
 Status CheckReference(const SessionHeader& header) {
@@ -116,21 +138,14 @@ Status Validate(const SessionHeader& header) {
   if (header.captured_at.ns < 0)
     return Fail(ErrorCode::kInvalidInput, "captured_at lies before 1970", "Give the time of the capture.");
   RIGCAL_TRY(CheckCount("sensors", header.sensors.size(), limits::kSensorsPerSessionMax));
-  RIGCAL_TRY(CheckCount("targets", header.targets.size(), limits::kTargetsPerSessionMax));
+  RIGCAL_TRY(CheckTargetCount(header));
   for (const Target& target : header.targets) RIGCAL_TRY(Validate(target));
   RIGCAL_TRY(CheckUnique("target", header.targets));
   for (const Sensor& sensor : header.sensors) RIGCAL_TRY(Validate(sensor));
   RIGCAL_TRY(CheckUnique("sensor", header.sensors));
   RIGCAL_TRY(CheckSightings(header));
+  RIGCAL_TRY(CheckSkipPairs(header));
   return CheckReference(header);
-}
-
-std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
-  std::vector<SensorPair> pairs;
-  for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
-    for (auto b = a + 1; b != header.sensors.end(); ++b)
-      if (MayShareTarget(*a, *b)) pairs.push_back({a->id, b->id});
-  return pairs;
 }
 
 }  // namespace rigcal

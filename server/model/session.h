@@ -15,11 +15,14 @@
 
 namespace rigcal {
 
+// A tracker and a pose stream have one file, "<sensor>/poses.csv": as a payload its capture has this name.
+inline constexpr std::string_view kPoseTableStem = "poses";
+
 enum class SensorKind { kCamera, kLidar, kTracker, kPoseStream };  // "camera" | "lidar" | "tracker" | "pose_stream"
 [[nodiscard]] std::string NameOf(SensorKind kind);
 [[nodiscard]] Result<SensorKind> SensorKindOf(const std::string& name);
 
-// Of the files that a sensor of this kind has, without the dot: "png", ...; "pcd", ... Empty: none yet.
+// Of the files that a sensor of this kind has, without the dot: "png", ...; "pcd", ...; "csv".
 [[nodiscard]] const std::vector<std::string_view>& SuffixesOf(SensorKind kind);
 
 struct Sensor {
@@ -34,6 +37,11 @@ struct Sensor {
   std::optional<Se3> T_ref_nominal;  // CAD pose of the sensor in the reference sensor
 };
 
+struct SensorPair {
+  SensorId a, b;
+  friend auto operator<=>(const SensorPair&, const SensorPair&) = default;
+};
+
 struct SessionHeader {
   int format = 1;
   RobotId robot;
@@ -43,10 +51,11 @@ struct SessionHeader {
   SensorId reference;
   std::vector<Target> targets;
   std::vector<Sensor> sensors;
+  std::vector<SensorPair> skip_pairs;  // not to be calibrated; in either order
   std::map<std::string, std::string> conditions;
 };
 
-// One file of the session. `path` is relative, '/'-separated, "<sensor>/<capture>.<suffix>".
+// One file of the session. `path` is relative, '/'-separated, "<sensor>/<capture>.<suffix>" or "<sensor>/poses.csv".
 struct Payload {
   std::string path;
   SensorId sensor;
@@ -61,20 +70,18 @@ struct Manifest {
   std::vector<Payload> payloads;
 };
 
-// One sensor by itself: a camera or a lidar (no other kind is accepted yet), intrinsics in range and of a camera,
-// nominal pose finite and unit.
+// One sensor by itself: what its kind does not have is absent, intrinsics in range, nominal pose finite and unit.
 [[nodiscard]] Status Validate(const Sensor& sensor);
 // Reference and targets exist, names unique, counts and sizes in range, payloads of known sensors. The error names
 // the sensor, target or file.
 [[nodiscard]] Status Validate(const SessionHeader& header);
 [[nodiscard]] Status Validate(const Manifest& manifest);
 
-struct SensorPair {
-  SensorId a, b;
-  friend auto operator<=>(const SensorPair&, const SensorPair&) = default;
-};
-// All pairs of sensors of a session that this version can calibrate: two cameras, or a camera and a lidar, that
-// may see the same target; a < b in the order of the session's sensors.
+// "stereo", "non_overlapping", "lidar_camera", "tracker_camera", "tracker_lidar", "pose_streams"; empty: this pair
+// cannot be calibrated. `a` and `b` in either order.
+[[nodiscard]] std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const Sensor& b);
+// All pairs of sensors of a session that there is a method for and that are not to be skipped; a < b in the order of
+// the session's sensors.
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
 
 }  // namespace rigcal

@@ -19,7 +19,7 @@ Edge FailedEdge(const SensorPair& pair, const std::string& method, const Error& 
 
 // A method from its loader and its estimator. What cannot be loaded is a failed edge, unless the store failed.
 template <typename Inputs, typename Estimate>
-Result<Edge> EdgeFrom(const SensorPair& pair, const char* method, Result<Inputs> inputs, const Estimate& estimate) {
+Result<Edge> EdgeFrom(const SensorPair& pair, const std::string& method, Result<Inputs> inputs, const Estimate& estimate) {
   if (!inputs) {
     if (inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
     return FailedEdge(pair, method, inputs.error());
@@ -29,9 +29,13 @@ Result<Edge> EdgeFrom(const SensorPair& pair, const char* method, Result<Inputs>
   return edge;
 }
 
-bool IsLidar(const Manifest& manifest, const SensorId& id) {
-  const Sensor* sensor = SensorOf(manifest.header, id);
-  return sensor != nullptr && sensor->kind == SensorKind::kLidar;
+Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
+  const std::vector<CaptureId> same = SamePictures(manifest, pair);
+  auto inputs = LoadStereo(store, manifest, pair);
+  if (inputs) LeaveOut(same, inputs->problem);
+  RIGCAL_ASSIGN(Edge edge, EdgeFrom(pair, "stereo", std::move(inputs), calib::EstimateEdge));
+  TellLeftOut(same, edge);
+  return edge;
 }
 
 Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
@@ -40,15 +44,15 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
     return FailedEdge(
         job.pair, "stereo",
         {ErrorCode::kNotFound, "session " + job.session.str() + " is not in the store", "Push the session again."});
-  if (IsLidar(*manifest, job.pair.a) || IsLidar(*manifest, job.pair.b))
-    return EdgeFrom(job.pair, "lidar_camera", LoadLidarCamera(store, *manifest, job.pair),
-                    calib::EstimateLidarCameraEdge);
-  const std::vector<CaptureId> same = SamePictures(*manifest, job.pair);
-  auto inputs = LoadStereo(store, *manifest, job.pair);
-  if (inputs) LeaveOut(same, inputs->problem);
-  RIGCAL_ASSIGN(Edge edge, EdgeFrom(job.pair, "stereo", std::move(inputs), calib::EstimateEdge));
-  TellLeftOut(same, edge);
-  return edge;
+  const Sensor *a = SensorOf(manifest->header, job.pair.a), *b = SensorOf(manifest->header, job.pair.b);
+  const std::string method(a && b ? MethodFor(manifest->header, *a, *b) : "stereo");
+  if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
+  if (method == "lidar_camera")
+    return EdgeFrom(job.pair, method, LoadLidarCamera(store, *manifest, job.pair), calib::EstimateLidarCameraEdge);
+  return FailedEdge(job.pair, method.empty() ? "none" : method,
+                    {ErrorCode::kUnsupported,
+                     "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),
+                     "Update the server and push the session again."});
 }
 
 }  // namespace

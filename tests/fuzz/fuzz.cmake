@@ -23,6 +23,7 @@ function(rigcal_fuzz name)
 endfunction()
 
 rigcal_fuzz(clouds DEPS rigcal_formats)
+rigcal_fuzz(poses DEPS rigcal_formats)
 rigcal_fuzz(session_yaml DEPS rigcal_formats)
 rigcal_fuzz(manifest DEPS rigcal_formats)
 rigcal_fuzz(edge DEPS rigcal_formats)

@@ -10,9 +10,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Require(Validate(*header).has_value(), "a session is valid");
   const Sensor& sensor = header->sensors.front();
   const auto& suffixes = SuffixesOf(sensor.kind);
-  if (suffixes.empty()) return 0;
-  const std::string path = sensor.id.str() + "/01." + std::string(suffixes.front());
-  const Manifest manifest{*header, {{path, sensor.id, CaptureId("01"), Digest(std::string(64, 'a')), 1}}};
+  const bool table = suffixes.front() == "csv";
+  const CaptureId capture(table ? std::string(kPoseTableStem) : "01");
+  const std::string path = sensor.id.str() + "/" + capture.str() + "." + std::string(suffixes.front());
+  const Manifest manifest{*header, {{path, sensor.id, capture, Digest(std::string(64, 'a')), 1}}};
   fuzz::RequireRoundTrip(manifest, formats::WriteManifest, formats::ReadManifest);
   return 0;
 }

@@ -6,6 +6,7 @@ rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc DEPS rig
 rigcal_test(formats_answers_test SOURCES unit/formats_answers_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_yaml_test SOURCES unit/formats_session_yaml_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_folder_test SOURCES unit/formats_session_folder_test.cc DEPS rigcal_formats)
+rigcal_test(formats_poses_test SOURCES unit/formats_poses_test.cc DEPS rigcal_formats)
 rigcal_test(formats_cloud_test SOURCES unit/formats_cloud_test.cc DEPS rigcal_formats)
 rigcal_test(formats_cloud_refusals_test SOURCES unit/formats_cloud_refusals_test.cc DEPS rigcal_formats)
 rigcal_test(formats_cloud_data_test SOURCES unit/formats_cloud_data_test.cc DEPS rigcal_formats)

@@ -29,6 +29,30 @@ TEST(ManifestDocument, ComesBackWhole) {
   EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));
 }
 
+TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
+  Manifest manifest = SampleManifest();
+  EXPECT_EQ(WriteManifest(manifest).find("skip_pairs"), std::string::npos);
+  Sensor vicon;
+  vicon.id = SensorId("vicon");
+  vicon.kind = SensorKind::kTracker;
+  manifest.header.sensors.push_back(vicon);
+  manifest.header.skip_pairs = {{SensorId("vicon"), SensorId("left")}, {SensorId("left"), SensorId("right")}};
+  Payload table = manifest.payloads.back();
+  table.path = "vicon/poses.csv";
+  table.sensor = SensorId("vicon");
+  table.capture = CaptureId("poses");
+  manifest.payloads.push_back(table);
+  const Result<Manifest> read = ReadManifest(WriteManifest(manifest));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->header.skip_pairs, manifest.header.skip_pairs);
+  EXPECT_EQ(read->header.sensors.back().kind, SensorKind::kTracker);
+  EXPECT_EQ(read->payloads.back().capture, CaptureId("poses"));
+  EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));
+  manifest.payloads.back().path = "vicon/01.csv";
+  manifest.payloads.back().capture = CaptureId("01");
+  EXPECT_EQ(Validate(manifest).error().what, "file \"vicon/01.csv\": the path is not <sensor>/poses.csv");
+}
+
 struct BadManifest {
   std::string from, to, what;
 };
@@ -54,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "manifest: robot: robot id \"../x\" is not a valid name"},
         BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",
                     "manifest: sensors[0].type: sensor kind \"camra\" is not known"},
-        BadManifest{"\"type\":\"camera\"", "\"type\":\"tracker\"", "sensor right: kind tracker is not supported"},
+        BadManifest{"\"type\":\"camera\"", "\"type\":\"tracker\"", "sensor right: a tracker has no intrinsics"},
         BadManifest{"pinhole_radtan", "fisheye",
                     "manifest: sensors[0].intrinsics.model: camera model \"fisheye\" is not known"},
         BadManifest{"0.0,0.6,0.0,0.8", "0.0,0.6,0.0,0.7",
@@ -68,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "manifest: payloads[0].path: file \"left/../../etc/passwd\": it is not in a sensor's folder"},
         BadManifest{"left/01.png", "left/01.exe",
                     "manifest: payloads[0].path: file \"left/01.exe\": its name does not end in .png, .jpg, "
-                    ".jpeg, .pcd, .ply or .bin"},
+                    ".jpeg, .pcd, .ply, .bin or .csv"},
         BadManifest{"left/01.png", "left/.png",
                     "manifest: payloads[0].path: file \"left/.png\": capture id \"\" is not a valid name"},
         BadManifest{"left/01.png", "up/01.png", "file \"up/01.png\": sensor up is not in the session"},

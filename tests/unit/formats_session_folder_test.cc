@@ -121,10 +121,10 @@ TEST_F(SessionFolder, RefusesFilesThatDoNotBelong) {
   ExpectRefused("file \"README.txt\": it does not belong to a session");
   fs::remove(folder_ / "README.txt");
   Write("left/notes.txt", "x");
-  ExpectRefused("file \"left/notes.txt\": its name does not end in .png, .jpg, .jpeg, .pcd, .ply or .bin");
+  ExpectRefused("file \"left/notes.txt\": its name does not end in .png, .jpg, .jpeg, .pcd, .ply, .bin or .csv");
   fs::remove(folder_ / "left/notes.txt");
   Write("left/02.PNG", kPng);
-  ExpectRefused("file \"left/02.PNG\": its name does not end in .png, .jpg, .jpeg, .pcd, .ply or .bin");
+  ExpectRefused("file \"left/02.PNG\": its name does not end in .png, .jpg, .jpeg, .pcd, .ply, .bin or .csv");
   fs::remove(folder_ / "left/02.PNG");
   Write("left/deep/01.png", kPng);
   ExpectRefused("file \"left/deep\": it is not a file");
@@ -161,6 +161,26 @@ TEST_F(SessionFolder, RefusesAFolderWithoutCaptures) {
   for (const char* sensor : {"left", "right"})
     for (const auto& entry : fs::directory_iterator(folder_ / sensor)) fs::remove(entry.path());
   ExpectRefused("it has no captures");
+}
+
+TEST_F(SessionFolder, ReadsTablesOfPosesBeforeTheyAreSent) {
+  std::ifstream before(folder_ / "session.yaml");
+  const std::string yaml((std::istreambuf_iterator<char>(before)), {});
+  Write("session.yaml", yaml + "  body: {type: tracker}\n  vio: {type: pose_stream}\n");
+  const std::string header = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n";
+  Write("body/poses.csv", header + "01,0,0,0,0,0,0,0,1\n02,1,0,0,0,0,0,0,1\n");
+  Write("vio/poses.csv", header.substr(8) + "0,0,0,0,0,0,0,1\n");
+  const auto manifest = Read();
+  ASSERT_TRUE(manifest) << Sentence(manifest.error());
+  EXPECT_EQ(manifest->payloads[0].path, "body/poses.csv");
+  EXPECT_EQ(manifest->payloads[0].capture, CaptureId("poses"));
+  Write("body/poses.csv", header + "01,0,0,0,0,0,0,0,1\n03,1,0,0,0,0,0,0,1\n");
+  ExpectRefused("body/poses.csv line 3: no other sensor has a capture 03");
+  Write("body/poses.csv", header + "01,0,0,0,0,0,0,0,1\n");
+  Write("vio/poses.csv", header);
+  ExpectRefused("vio/poses.csv line 1: the header is \"capture,stamp_ns");
+  fs::rename(folder_ / "vio/poses.csv", folder_ / "vio/pose.csv");
+  ExpectRefused("file \"vio/pose.csv\": the path is not <sensor>/poses.csv");
 }
 
 TEST_F(SessionFolder, RefusesWhatIsNoSession) {

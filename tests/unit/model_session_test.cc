@@ -20,6 +20,13 @@ Sensor Camera(const char* id) {
   return sensor;
 }
 
+Sensor Of(const char* id, SensorKind kind, const char* sees = nullptr) {
+  Sensor sensor = Camera(id);
+  sensor.kind = kind;
+  if (sees) sensor.sees = TargetId(sees);
+  return sensor;
+}
+
 SessionHeader GoodHeader() {
   SessionHeader header;
   header.robot = RobotId("mapper-01");
@@ -65,13 +72,33 @@ TEST(ValidateHeader, RefusesNewerFormats) {
   EXPECT_THAT(error.what, HasSubstr("format 2"));
 }
 
-TEST(ValidateHeader, RefusesKindsThatAreNotSupported) {
+TEST(ValidateHeader, PosesHaveNeitherIntrinsicsNorATarget) {
   for (SensorKind kind : {SensorKind::kTracker, SensorKind::kPoseStream}) {
-    const Error error = RefusalAfter([&](auto& h) { h.sensors[1].kind = kind; });
-    EXPECT_EQ(error.code, ErrorCode::kUnsupported);
-    EXPECT_THAT(error.what, HasSubstr("sensor right: kind " + NameOf(kind)));
-    EXPECT_THAT(error.cure, HasSubstr("camera"));
+    SessionHeader header = GoodHeader();
+    header.sensors[1] = Of("right", kind);
+    EXPECT_TRUE(Validate(header).has_value());
+    header.sensors[1].sees = header.targets[0].id;
+    EXPECT_THAT(Validate(header).error().what, HasSubstr("sees no target"));
+    header.sensors[1].sees.reset();
+    header.sensors[1].intrinsics = CameraIntrinsics{};
+    EXPECT_THAT(Validate(header).error().what, HasSubstr("has no intrinsics"));
   }
+}
+
+TEST(ValidateHeader, TargetsAreNeededByCamerasOnly) {
+  SessionHeader header = GoodHeader();
+  header.targets.clear();
+  for (Sensor& sensor : header.sensors) sensor.sees.reset();
+  EXPECT_THAT(Validate(header).error().what, HasSubstr("targets: the session has 0"));
+  for (Sensor& sensor : header.sensors) sensor.kind = SensorKind::kPoseStream;
+  EXPECT_TRUE(Validate(header).has_value());
+}
+
+TEST(ValidateHeader, SkippedPairsAreOfTwoSensors) {
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.skip_pairs = {{SensorId("left"), SensorId("top")}}; }).what,
+              HasSubstr("skip_pairs: [left, top]: \"top\" is not a sensor"));
+  EXPECT_THAT(RefusalAfter([](auto& h) { h.skip_pairs = {{SensorId("left"), SensorId("left")}}; }).what,
+              HasSubstr("no pair with itself"));
 }
 
 TEST(ValidateHeader, TextsMustBeReadable) {
@@ -206,21 +233,47 @@ TEST(SensorKind, NamesRoundTrip) {
   EXPECT_FALSE(SensorKindOf("nose").has_value());
 }
 
-TEST(PairsToCalibrate, HoldACameraAndMaySeeTheSameTarget) {
+// "d c stereo; d a lidar_camera"
+std::string PairsOf(const SessionHeader& header) {
+  std::string text;
+  const auto sensor = [&](const SensorId& id) {
+    return *std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
+  };
+  for (const SensorPair& pair : PairsToCalibrate(header))
+    text += (text.empty() ? "" : "; ") + pair.a.str() + " " + pair.b.str() + " " +
+            std::string(MethodFor(header, sensor(pair.a), sensor(pair.b)));
+  return text;
+}
+
+TEST(PairsToCalibrate, OfCamerasAndLidars) {
   SessionHeader header = GoodHeader();
-  header.sensors = {Camera("d"), Camera("c"), Camera("b"), Camera("a")};
-  header.sensors[0].sees = header.sensors[1].sees = TargetId("board");
-  header.sensors[2].sees = TargetId("wall");
-  header.sensors[3].kind = SensorKind::kLidar;
-  const auto pair = [](const char* a, const char* b) { return SensorPair{SensorId(a), SensorId(b)}; };
-  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a"), pair("b", "a")));
-  header.sensors[2].kind = SensorKind::kLidar;
-  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a")));
-  header.sensors[2].kind = SensorKind::kCamera;
-  header.sensors[3].kind = SensorKind::kCamera;  // sees any target
-  EXPECT_THAT(PairsToCalibrate(header), ElementsAre(pair("d", "c"), pair("d", "a"), pair("c", "a"), pair("b", "a")));
+  constexpr auto kCamera = SensorKind::kCamera, kLidar = SensorKind::kLidar;
+  header.sensors = {Of("d", kCamera, "board"), Of("c", kCamera, "board"), Of("b", kCamera, "wall"), Of("a", kLidar)};
+  EXPECT_EQ(PairsOf(header),
+            "d c stereo; d b non_overlapping; d a lidar_camera; c b non_overlapping; c a lidar_camera; "
+            "b a lidar_camera");
+  header.sensors[2] = Of("b", kLidar, "wall");  // b sees another board than the cameras
+  EXPECT_EQ(PairsOf(header), "d c stereo; d a lidar_camera; c a lidar_camera");
+  header.sensors[2] = Of("b", kCamera);
+  header.sensors.pop_back();
+  EXPECT_EQ(PairsOf(header), "d c stereo; d b stereo; c b stereo");
   header.sensors.resize(1);
-  EXPECT_THAT(PairsToCalibrate(header), IsEmpty());
+  EXPECT_EQ(PairsOf(header), "");
+}
+
+TEST(PairsToCalibrate, OfTrackersAndPoseStreams) {
+  SessionHeader header = GoodHeader();
+  constexpr auto kCamera = SensorKind::kCamera, kLidar = SensorKind::kLidar, kTracker = SensorKind::kTracker,
+                 kStream = SensorKind::kPoseStream;
+  header.sensors = {Of("body", kTracker), Of("d", kCamera), Of("top", kLidar), Of("vio", kStream), Of("odo", kStream)};
+  EXPECT_EQ(PairsOf(header),
+            "body d tracker_camera; body top tracker_lidar; d top lidar_camera; vio odo pose_streams");
+  header.targets.push_back(header.targets.front());
+  header.targets.back().id = TargetId("wall");  // which of the two a cloud shows is not known
+  EXPECT_EQ(PairsOf(header), "body d tracker_camera; d top lidar_camera; vio odo pose_streams");
+  header.sensors[2].sees = TargetId("wall");
+  header.skip_pairs = {{SensorId("odo"), SensorId("vio")}, {SensorId("body"), SensorId("d")}};
+  EXPECT_EQ(PairsOf(header), "body top tracker_lidar; d top lidar_camera");
 }
 
 }  // namespace
