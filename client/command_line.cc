@@ -47,7 +47,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 
 void AddVerbs(CLI::App& app, Context& context) {
   for (const auto add : {AddPush, AddPushEdges, AddRobots, AddSessions, AddEdges, AddShow, AddLookup, AddStatus,
-                         AddWatch, AddReport, AddDue, AddCompare, AddDoctor})
+                         AddWatch, AddReport, AddDue, AddCompare, AddDoctor, AddSimulate})
     add(app, context);
   app.require_subcommand(1);
 }

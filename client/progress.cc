@@ -28,7 +28,7 @@ Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::
       unit_(unit) {}
 
 std::string Progress::Amount(double amount) const {
-  return unit_ == Unit::kBytes ? ByteText(amount) : Fixed(amount, 0) + " edges";
+  return unit_ == Unit::kBytes ? ByteText(amount) : Fixed(amount, 0) + (unit_ == Unit::kEdges ? " edges" : " files");
 }
 
 std::string Progress::LineOf(const ProgressState& state, std::int64_t now_ns) const {

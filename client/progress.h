@@ -16,7 +16,7 @@ struct ProgressState {
 class Progress {
  public:
   // Times are nanoseconds of a steady clock.
-  enum class Unit { kBytes, kEdges };
+  enum class Unit { kBytes, kEdges, kFiles };
   Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns, Unit unit = Unit::kBytes);
   [[nodiscard]] bool IsDue(std::int64_t now_ns) const;
   // Draws if something is due; cheap to call often.

@@ -22,5 +22,6 @@ void AddReport(CLI::App& app, Context& context);
 void AddDue(CLI::App& app, Context& context);
 void AddCompare(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
+void AddSimulate(CLI::App& app, Context& context);
 
 }  // namespace rigcal::client

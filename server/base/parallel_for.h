@@ -6,7 +6,8 @@
 
 namespace rigcal {
 
-// Calls body(0..count-1), in any order, on as many threads as the machine has. Exceptions of a body propagate.
-void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
+// Calls body(0..count-1), in any order, on as many threads as the machine has, or at most `threads_max` if that is not
+// 0. Exceptions of a body propagate.
+void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body, int threads_max = 0);
 
 }  // namespace rigcal

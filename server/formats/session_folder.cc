@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSessionYaml = "session.yaml";
 constexpr const char* kTableSuffix = "csv";
+constexpr const char* kTruthYaml = "truth.yaml";  // of a simulated session: not for those who calibrate it
 constexpr const char* kIgnoredHint = "Move it out of the folder, or begin its name with a '.': such files are ignored.";
 
 using Progress = std::function<void(std::int64_t, std::int64_t)>;
@@ -82,7 +83,7 @@ Result<std::vector<Payload>> ListPayloads(const fs::path& folder, const SessionH
   RIGCAL_ASSIGN(const std::vector<ListedEntry> entries, ListFolder(folder, folder));
   std::vector<Payload> payloads;
   for (const ListedEntry& entry : entries) {
-    if (entry.name == kSessionYaml) continue;
+    if (entry.name == kSessionYaml || entry.name == kTruthYaml) continue;
     if (entry.kind != ListedEntry::Kind::kFolder)
       return Fail(ErrorCode::kInvalidInput, "file " + Quoted(entry.name) + ": it does not belong to a session",
                   kIgnoredHint);

@@ -1,0 +1,145 @@
+#include "client/sim/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "client/sim/declared.h"
+#include "client/sim/facing.h"
+#include "client/sim/lens.h"
+#include "client/sim/random.h"
+
+namespace rigcal::sim {
+namespace {
+
+constexpr double kTiltMax = 2.5;  // of one axis, in its standard deviations: no robot falls over
+constexpr std::int64_t kBetweenCaptures_ns = 10'000'000'000;
+
+double ClampedNormal(Random& random) { return std::clamp(random.Normal(), -kTiltMax, kTiltMax); }
+
+Se3 DrawPose(const MotionPlan& plan, MotionKind kind, std::uint64_t key) {
+  Random random(key);
+  Eigen::Vector3d offset_m, rpy_rad;
+  for (int k = 0; k < 3; ++k) offset_m[k] = plan.position_range_m[k] * random.Uniform(-1, 1);
+  // The angle of the tilt has two axes of its own share each.
+  for (int k = 0; k < 2; ++k) rpy_rad[k] = plan.tilt_rms_rad / std::sqrt(2.0) * ClampedNormal(random);
+  rpy_rad[2] = plan.yaw_range_rad * random.Uniform(-1, 1);
+  if (kind == MotionKind::kSpot) offset_m.setZero();
+  if (kind == MotionKind::kPlanar) offset_m.z() = 0;
+  return (plan.T_world_body_start * Turned(offset_m, rpy_rad)).Normalized();
+}
+
+std::string CaptureName(std::size_t idx, std::size_t count) {
+  const std::size_t digits = std::max<std::size_t>(2, std::to_string(count).size());
+  const std::string number = std::to_string(idx + 1);
+  return std::string(digits - std::min(digits, number.size()), '0') + number;
+}
+
+void PlaceCaptures(Experiment& experiment, Stamp start) {
+  MotionPlan plan = experiment.rig.motion;
+  // Level motions stay level unless a tilt is asked for.
+  if (experiment.options.motion != MotionKind::kFree) plan.tilt_rms_rad = 0;
+  plan.tilt_rms_rad = experiment.options.tilt_rms_rad.value_or(plan.tilt_rms_rad);
+  const auto count = static_cast<std::size_t>(experiment.options.captures.value_or(plan.captures));
+  for (std::size_t k = 0; k < count; ++k) {
+    experiment.captures.push_back(CaptureId(CaptureName(k, count)));
+    experiment.stamps_ns.push_back(start.ns + static_cast<std::int64_t>(k) * kBetweenCaptures_ns);
+    experiment.T_world_body.push_back(
+        DrawPose(plan, experiment.options.motion, KeyOf(experiment.options.seed, "pose", {}, k)));
+  }
+}
+
+void Bump(Experiment& experiment) {
+  if (!experiment.options.bump) return;
+  const SensorId& id = *experiment.options.bump;
+  Random random(KeyOf(experiment.options.seed, "bump", id.str()));
+  Vector6d xi;
+  xi << experiment.options.bump_m * random.Normals<3>().normalized(),
+      experiment.options.bump_rad * random.Normals<3>().normalized();
+  experiment.T_body_bumped[id] = (experiment.rig.SensorOf(id).T_body_sensor * Se3::Exp(xi)).Normalized();
+}
+
+void DrawBeamBiases(Experiment& experiment) {
+  for (const RigSensor& sensor : experiment.rig.sensors) {
+    if (sensor.kind != SensorKind::kLidar) continue;
+    Random random(KeyOf(experiment.options.seed, "beam bias", sensor.id.str()));
+    std::vector<double>& biases_m = experiment.beam_bias_m[sensor.id];
+    for (std::size_t beam = 0; beam < sensor.lidar.elevations_rad.size(); ++beam)
+      biases_m.push_back(experiment.options.lidar_bias_sigma_m * random.Normal());
+  }
+}
+
+void ScaleAndSoil(const Options& options, Rig& rig) {
+  for (RigBoard& board : rig.boards) board.target.square_m *= options.board_scale_ratio;
+  for (RigSensor& sensor : rig.sensors) {
+    CameraTruth& camera = sensor.camera;
+    if (sensor.kind == SensorKind::kCamera) {
+      camera.intrinsics = Scaled(camera.intrinsics, options.scale_ratio);
+      camera.width_px = static_cast<int>(std::lround(camera.width_px * options.scale_ratio));
+      camera.height_px = static_cast<int>(std::lround(camera.height_px * options.scale_ratio));
+      for (std::size_t i = 0; i < std::min<std::size_t>(4, camera.intrinsics_sigma.size()); ++i)
+        camera.intrinsics_sigma[i] *= options.scale_ratio;
+    }
+    for (double& sigma : camera.intrinsics_sigma) sigma *= options.noise_factor;
+    for (double* sigma : {&camera.noise_grey, &camera.corner_sigma_px, &sensor.lidar.range_sigma_m,
+                          &sensor.tracker.sigma_m, &sensor.tracker.sigma_rad})
+      *sigma *= options.noise_factor;
+  }
+}
+
+Status CheckOptions(const Rig& rig, const Options& options) {
+  const auto refuse = [](const std::string& what, const std::string& cure) {
+    return Fail(ErrorCode::kInvalidInput, what, cure);
+  };
+  if (options.bump && std::none_of(rig.sensors.begin(), rig.sensors.end(),
+                                   [&](const RigSensor& sensor) { return sensor.id == *options.bump; }))
+    return refuse("sensor " + options.bump->str() + " cannot be bumped: the rig has none of this name",
+                  "Name one of the rig's sensors.");
+  if (!(options.scale_ratio >= 0.05 && options.scale_ratio <= 2)) return refuse("scale is out of range", "Give 0.05 to 2.");
+  if (!(options.noise_factor >= 0 && options.noise_factor <= 1000))
+    return refuse("noise is out of range", "Give 0 to 1000.");
+  if (!(options.dropout_ratio >= 0 && options.dropout_ratio < 1)) return refuse("dropouts is out of range", "Give 0 to 0.99.");
+  if (!(options.board_scale_ratio > 0.5 && options.board_scale_ratio < 2))
+    return refuse("board-scale is out of range", "Give 0.5 to 2; 1.001 is a board 0.1 % too large.");
+  if (options.captures && (*options.captures < 1 || *options.captures > 10'000))
+    return refuse("captures is out of range", "Give 1 to 10000.");
+  return {};
+}
+
+}  // namespace
+
+Se3 Experiment::T_body_sensor(const SensorId& id, std::size_t capture_idx) const {
+  const auto bumped = T_body_bumped.find(id);
+  if (bumped != T_body_bumped.end() && capture_idx >= captures.size() / 2) return bumped->second;
+  return rig.SensorOf(id).T_body_sensor;
+}
+
+Se3 Experiment::T_world_sensor(const SensorId& id, std::size_t capture_idx) const {
+  return T_world_body[capture_idx] * T_body_sensor(id, capture_idx);
+}
+
+Se3 Experiment::T_ref_sensor(const SensorId& id) const {
+  if (id == rig.reference) return {};
+  return (rig.SensorOf(rig.reference).T_body_sensor.Inverse() * rig.SensorOf(id).T_body_sensor).Normalized();
+}
+
+bool Experiment::IsRecorded(const SensorId& id, std::size_t capture_idx) const {
+  return Random(KeyOf(options.seed, "dropout", id.str(), capture_idx)).Uniform() >= options.dropout_ratio;
+}
+
+Result<Experiment> Prepare(Rig rig, const Options& options) {
+  RIGCAL_TRY(Validate(rig));
+  RIGCAL_TRY(CheckOptions(rig, options));
+  RIGCAL_ASSIGN(const Stamp start, ParseIso(options.captured_at));
+  Experiment experiment;
+  experiment.options = options;
+  experiment.rig = std::move(rig);
+  const std::vector<RigBoard> boards_as_declared = experiment.rig.boards;
+  ScaleAndSoil(options, experiment.rig);
+  PlaceCaptures(experiment, start);
+  Bump(experiment);
+  DrawBeamBiases(experiment);
+  experiment.declared = Declare(experiment, boards_as_declared, start);
+  return experiment;
+}
+
+}  // namespace rigcal::sim

@@ -1,0 +1,71 @@
+#include "client/sim/scan.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "client/sim/random.h"
+
+namespace rigcal::sim {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "a binary PCD is little endian");
+
+// Noise is drawn firing by firing, so that a part of a scan has the whole scan's.
+double Noise(std::uint64_t key, int firing, int ring) {
+  return Random(key + static_cast<std::uint64_t>(firing) * 4096 + static_cast<std::uint64_t>(ring)).Normal();
+}
+
+template <typename T>
+void Append(std::string& bytes, const T& value) {
+  const std::size_t at = bytes.size();
+  bytes.resize(at + sizeof(T));
+  std::memcpy(bytes.data() + at, &value, sizeof(T));
+}
+
+}  // namespace
+
+Eigen::Vector3d BeamDirection(const LidarTruth& lidar, int firing, int ring) {
+  const double azimuth = -2 * M_PI * firing / lidar.firings_per_turn;  // clockwise, as seen from above
+  const double elevation = lidar.elevations_rad[static_cast<std::size_t>(ring)];
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+}
+
+std::vector<ScanPoint> Scan(const Scene& scene, const LidarTruth& lidar, const Se3& T_world_lidar,
+                            const std::vector<double>& beam_bias_m, std::uint64_t key,
+                            const std::optional<Cone>& towards) {
+  std::vector<ScanPoint> points;
+  const Eigen::Matrix3d R = T_world_lidar.R();
+  const int rings = static_cast<int>(lidar.elevations_rad.size());
+  for (int firing = 0; firing < lidar.firings_per_turn; ++firing)
+    for (int ring = 0; ring < rings; ++ring) {
+      const Eigen::Vector3d direction = BeamDirection(lidar, firing, ring);
+      if (towards && direction.dot(towards->axis) < towards->cosine) continue;
+      const Hit hit = NearestHit(scene, T_world_lidar.p_m, R * direction);
+      if (hit.panel_idx < 0 || hit.distance < lidar.range_min_m || hit.distance > lidar.range_max_m) continue;
+      const double bias_m = beam_bias_m.empty() ? 0.0 : beam_bias_m[static_cast<std::size_t>(ring)];
+      const double measured_m = hit.distance + bias_m + lidar.range_sigma_m * Noise(key, firing, ring);
+      const Panel& panel = scene.panels[static_cast<std::size_t>(hit.panel_idx)];
+      points.push_back({measured_m * direction, hit.distance,
+                        static_cast<float>(std::floor(255 * AlbedoAt(scene, panel, hit.ab_m).mean())), ring,
+                        hit.panel_idx});
+    }
+  return points;
+}
+
+std::string PcdOf(const std::vector<ScanPoint>& points) {
+  const std::string count = std::to_string(points.size());
+  std::string bytes =
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity ring\nSIZE 4 4 4 4 2\n"
+      "TYPE F F F F U\nCOUNT 1 1 1 1 1\nWIDTH " +
+      count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count + "\nDATA binary\n";
+  bytes.reserve(bytes.size() + 18 * points.size());
+  for (const ScanPoint& point : points) {
+    for (int k = 0; k < 3; ++k) Append(bytes, static_cast<float>(point.p_lidar[k]));
+    Append(bytes, point.intensity);
+    Append(bytes, static_cast<std::uint16_t>(point.ring));
+  }
+  return bytes;
+}
+
+}  // namespace rigcal::sim

@@ -1,0 +1,38 @@
+// One turn of a lidar: every beam's nearest surface, with range noise.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/sim/scene.h"
+#include "server/math/se3.h"
+
+namespace rigcal::sim {
+
+struct ScanPoint {
+  Eigen::Vector3d p_lidar;  // metres, with noise
+  double range_m = 0;       // true
+  float intensity = 0;      // 0 to 255, of the surface
+  int ring = 0;             // beam, 0 the lowest
+  int panel_idx = -1;       // of the scene: what it lies on
+};
+
+// Which way a beam goes at a firing.
+[[nodiscard]] Eigen::Vector3d BeamDirection(const LidarTruth& lidar, int firing, int ring);
+// All returns, firing by firing, rings rising. `beam_bias_m`: per ring, added to every range. `key`: of the noise.
+// `towards`: only beams within the cone (a unit direction in the lidar's frame, and the cosine of half its width); their
+// points are those of the whole scan.
+struct Cone {
+  Eigen::Vector3d axis;
+  double cosine = -1;
+};
+[[nodiscard]] std::vector<ScanPoint> Scan(const Scene& scene, const LidarTruth& lidar, const Se3& T_world_lidar,
+                                          const std::vector<double>& beam_bias_m, std::uint64_t key,
+                                          const std::optional<Cone>& towards = {});
+
+// PCD 0.7, binary: x y z intensity as float32, ring as uint16.
+[[nodiscard]] std::string PcdOf(const std::vector<ScanPoint>& points);
+
+}  // namespace rigcal::sim

@@ -1,0 +1,141 @@
+#include "client/sim/truth.h"
+
+#include <cmath>
+
+#include "client/sim/yaml_text.h"
+#include "server/formats/yaml_field.h"
+
+namespace rigcal::sim {
+namespace {
+
+using formats::YamlField;
+
+constexpr std::size_t kTruthBytesMax = 64 << 20;
+constexpr const char* kUnknown = "unknown";
+
+std::string BoundText(const BoundSigma& bound) {
+  std::string text;
+  for (const std::optional<double>& sigma : bound) text += (text.empty() ? "" : ", ") + (sigma ? Text(*sigma) : kUnknown);
+  return "[" + text + "]";
+}
+
+std::string SensorText(const SensorId& id, const SensorTruth& sensor) {
+  std::string text = "  " + id.str() + ":\n    type: " + NameOf(sensor.kind) +
+                     "\n    T_ref_sensor: " + Text(sensor.T_ref_sensor) + "\n";
+  if (sensor.T_ref_bumped) text += "    T_ref_bumped: " + Text(*sensor.T_ref_bumped) + "\n";
+  if (sensor.intrinsics) text += "    intrinsics: " + Text(*sensor.intrinsics, nullptr) + "\n";
+  if (sensor.bound) text += "    bound_sigma: " + BoundText(*sensor.bound) + "\n";
+  return text;
+}
+
+Se3 ReadPose(const YamlField& field) {
+  Se3 T;
+  field.At("p_m").Numbers(T.p_m.data(), 3);
+  field.At("q_xyzw").Numbers(T.q.coeffs().data(), 4);
+  if (!(std::abs(T.q.norm() - 1) < 1e-6)) field.Refuse("q_xyzw must have unit length");
+  return T;
+}
+
+CameraIntrinsics ReadIntrinsics(const YamlField& field) {
+  CameraIntrinsics camera;
+  const YamlField model = field.At("model");
+  if (const auto known = CameraModelOf(model.Text()))
+    camera.model = *known;
+  else
+    model.Refuse(known.error());
+  camera.fx_px = field.At("fx_px").Number();
+  camera.fy_px = field.At("fy_px").Number();
+  camera.cx_px = field.At("cx_px").Number();
+  camera.cy_px = field.At("cy_px").Number();
+  camera.distortion.assign(DistortionCount(camera.model), 0.0);
+  field.At("distortion").Numbers(camera.distortion.data(), camera.distortion.size());
+  return camera;
+}
+
+BoundSigma ReadBound(const YamlField& field) {
+  BoundSigma bound;
+  const std::vector<YamlField> items = field.Items();
+  if (items.size() != bound.size()) field.Refuse("must be six numbers");
+  for (std::size_t i = 0; i < std::min(items.size(), bound.size()); ++i)
+    if (items[i].Text() != kUnknown) bound[i] = items[i].Number();
+  return bound;
+}
+
+SensorTruth ReadSensor(const YamlField& field) {
+  SensorTruth sensor;
+  const YamlField type = field.At("type");
+  if (const auto kind = SensorKindOf(type.Text()))
+    sensor.kind = *kind;
+  else
+    type.Refuse(kind.error());
+  sensor.T_ref_sensor = ReadPose(field.At("T_ref_sensor"));
+  if (const auto T = field.Find("T_ref_bumped")) sensor.T_ref_bumped = ReadPose(*T);
+  if (const auto intrinsics = field.Find("intrinsics")) sensor.intrinsics = ReadIntrinsics(*intrinsics);
+  if (const auto bound = field.Find("bound_sigma")) sensor.bound = ReadBound(*bound);
+  return sensor;
+}
+
+Truth ReadTree(const YamlField& root) {
+  Truth truth;
+  truth.rig = root.At("rig").Text();
+  truth.seed = static_cast<std::uint64_t>(root.At("seed").Integer(0, INT64_MAX));
+  truth.reference = SensorId(root.At("reference").Text());
+  truth.bumped_from_idx = static_cast<std::size_t>(root.At("bumped_from_idx").Integer(0, 1'000'000));
+  for (const YamlField& sensor : root.At("sensors").Members())
+    truth.sensors[SensorId(sensor.Key())] = ReadSensor(sensor.Called("sensor '" + sensor.Key() + "'"));
+  for (const YamlField& board : root.At("boards").Members())
+    truth.boards[TargetId(board.Key())] = {board.At("square_size_m").Number(), ReadPose(board.At("T_world_board"))};
+  for (const YamlField& capture : root.At("captures").Items())
+    truth.captures.push_back({CaptureId(capture.At("capture").Text()), ReadPose(capture.At("T_world_ref"))});
+  return truth;
+}
+
+}  // namespace
+
+Truth TruthOf(const Experiment& experiment) {
+  const Rig& rig = experiment.rig;
+  Truth truth{rig.name, experiment.options.seed, rig.reference, experiment.captures.size() / 2, {}, {}, {}};
+  const Se3 T_ref_body = rig.SensorOf(rig.reference).T_body_sensor.Inverse();
+  for (const RigSensor& sensor : rig.sensors) {
+    SensorTruth& entry = truth.sensors[sensor.id];
+    entry.kind = sensor.kind;
+    entry.T_ref_sensor = experiment.T_ref_sensor(sensor.id);
+    if (const auto bumped = experiment.T_body_bumped.find(sensor.id); bumped != experiment.T_body_bumped.end())
+      entry.T_ref_bumped = (T_ref_body * bumped->second).Normalized();
+    if (sensor.kind == SensorKind::kCamera) entry.intrinsics = sensor.camera.intrinsics;
+  }
+  for (const RigBoard& board : rig.boards)
+    truth.boards[board.target.id] = {board.target.square_m, board.T_world_board().Normalized()};
+  for (std::size_t k = 0; k < experiment.captures.size(); ++k)
+    truth.captures.push_back(
+        {experiment.captures[k], (experiment.T_world_body[k] * rig.SensorOf(rig.reference).T_body_sensor).Normalized()});
+  return truth;
+}
+
+std::string WriteTruth(const Truth& truth) {
+  std::string text =
+      "# What was true. T_ref_sensor: pose of the sensor in the reference; p_ref = T_ref_sensor * p_sensor. World: the tracker's.\n"
+      "# bound_sigma: x y z rx ry rz of the sensor (m, rad), the Cramer-Rao bound of all boards, clouds and tracker poses.\n"
+      "format: 1\nrig: " +
+      truth.rig + "\nseed: " + std::to_string(truth.seed) + "\nreference: " + truth.reference.str() +
+      "\nbumped_from_idx: " + std::to_string(truth.bumped_from_idx) + "\nsensors:\n";
+  for (const auto& [id, sensor] : truth.sensors) text += SensorText(id, sensor);
+  text += "boards:\n";
+  for (const auto& [id, board] : truth.boards)
+    text += "  " + id.str() + ": {square_size_m: " + Text(board.square_m) + ", T_world_board: " + Text(board.T_world_board) +
+            "}\n";
+  text += "captures:\n";
+  for (const CaptureTruth& capture : truth.captures)
+    text += "  - {capture: \"" + capture.capture.str() + "\", T_world_ref: " + Text(capture.T_world_ref) + "}\n";
+  return text;
+}
+
+Result<Truth> ReadTruth(std::string_view text, const std::string& name) {
+  RIGCAL_ASSIGN(const std::unique_ptr<formats::YamlTree> tree,
+                formats::ParseYaml(text, name, "Simulate again.", kTruthBytesMax));
+  Truth truth = ReadTree(YamlField(*tree));
+  if (tree->error) return Fail(*tree->error);
+  return truth;
+}
+
+}  // namespace rigcal::sim
