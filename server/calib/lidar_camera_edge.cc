@@ -3,7 +3,7 @@
 #include "server/calib/diagnoses.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_camera_diagnoses.h"
-#include "server/calib/lidar_camera_work.h"
+#include "server/calib/systematics.h"
 
 namespace rigcal::calib {
 namespace {
@@ -110,8 +110,10 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
 
 Edge Solved(const LidarCameraProblem& problem) {
   std::vector<Diagnosis> notes;
-  const auto estimate = EstimateLidarCamera(problem, nullptr, &notes);
+  auto estimate = EstimateLidarCamera(problem, nullptr, &notes);
   if (!estimate) return FailedEdge(problem, {estimate.error()});
+  if (const Status widened = WidenSystematics(problem, *estimate); !widened)
+    return FailedEdge(problem, {NotSolvable(problem, widened.error())});
   if (std::abs(estimate->board_scale_ratio) > kScaleMax_ratio && estimate->SuspectsBoardSize())
     return FailedEdge(problem, {BoardSizeSuspected(problem, *estimate)});
   if (std::abs(estimate->range_bias_m) > kBiasMax_m && estimate->SuspectsRangeBias())

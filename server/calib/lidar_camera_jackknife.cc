@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "server/calib/leave_one_out.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_camera_diagnoses.h"
+#include "server/calib/lidar_camera_variants.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::calib {
@@ -14,46 +14,16 @@ Se3 EdgePose(const LidarCameraProblem& problem, const Se3& T_cam_lidar) {
   return problem.camera_is_a ? T_cam_lidar : T_cam_lidar.Inverse();
 }
 
-Error Reason(const Diagnosis& diagnosis) { return {ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure}; }
-
-// Poses of the boards from the pictures, intrinsics as `sensor` gives them or estimated from these views.
-tl::expected<CameraEstimate, Diagnosis> CameraAgain(const LidarCameraProblem& problem, const Sensor& sensor,
-                                                    const LidarCameraEstimate& estimate, const CaptureId* without) {
-  CameraProblem camera{sensor, problem.board, {}};
-  for (const LidarCameraCapture& capture : problem.captures) {
-    if (!estimate.camera.T_cam_board.contains(capture.capture)) continue;
-    if (without == nullptr || capture.capture != *without) camera.views.emplace_back(capture.capture, *capture.view);
-  }
-  return EstimateCamera(camera, &estimate.camera);
-}
-
 Result<Se3> PoseFrom(const LidarCameraProblem& problem, const LidarCameraEstimate& start) {
-  const auto estimate = EstimateLidarCamera(problem, &start, nullptr);
-  if (!estimate) return Fail(Reason(estimate.error()));
-  return EdgePose(problem, estimate->T_cam_lidar);
+  RIGCAL_ASSIGN(const LidarCameraEstimate estimate, SolvedAgain(problem, start));
+  return EdgePose(problem, estimate.T_cam_lidar);
 }
 
 Result<Vector6d> WithoutCapture(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
                                 const CaptureId& capture) {
-  LidarCameraEstimate start = estimate;
-  start.patch_idx.erase(capture);
-  if (!problem.camera.intrinsics) {
-    auto camera = CameraAgain(problem, problem.camera, estimate, &capture);
-    if (!camera) return Fail(Reason(camera.error()));
-    start.camera = std::move(*camera);
-  }
-  RIGCAL_ASSIGN(const Se3 without, PoseFrom(problem, start));
-  return Vector6d((EdgePose(problem, estimate.T_cam_lidar).Inverse() * without).Log());
-}
-
-// Captures that carry the answer: those of both, and where intrinsics are estimated every picture.
-std::vector<CaptureId> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  std::vector<CaptureId> blocks;
-  for (const LidarCameraCapture& capture : problem.captures)
-    if (estimate.patch_idx.contains(capture.capture) ||
-        (!problem.camera.intrinsics && estimate.camera.T_cam_board.contains(capture.capture)))
-      blocks.push_back(capture.capture);
-  return blocks;
+  RIGCAL_ASSIGN(const LidarCameraEstimate without, SolvedWithout(problem, estimate, capture));
+  const Se3 T_a_b = EdgePose(problem, estimate.T_cam_lidar);
+  return Vector6d((T_a_b.Inverse() * EdgePose(problem, without.T_cam_lidar)).Log());
 }
 
 void AddBoardSize(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
@@ -71,22 +41,12 @@ void AddBoardSize(const LidarCameraProblem& problem, const LidarCameraEstimate& 
 
 void AddIntrinsics(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
                    std::vector<GivenConstant>& constants) {
-  if (!problem.camera.intrinsics || !problem.camera.intrinsics_sigma) return;
-  for (std::size_t i = 0; i < problem.camera.intrinsics_sigma->size(); ++i) {
-    const double sigma = (*problem.camera.intrinsics_sigma)[i];
-    if (!(sigma > 0)) continue;
+  for (const std::size_t i : UncertainIntrinsics(problem))
     constants.push_back(
-        {"intrinsics of " + problem.camera.id.str(), [&problem, &estimate, i, sigma](double steps) -> Result<Se3> {
-           Sensor moved = problem.camera;
-           CameraIntrinsics& k = *moved.intrinsics;
-           (i < 4 ? *std::array{&k.fx_px, &k.fy_px, &k.cx_px, &k.cy_px}[i] : k.distortion[i - 4]) += steps * sigma;
-           auto camera = CameraAgain(problem, moved, estimate, nullptr);
-           if (!camera) return Fail(Reason(camera.error()));
-           LidarCameraEstimate start = estimate;
-           start.camera = std::move(*camera);
-           return PoseFrom(problem, start);
+        {"intrinsics of " + problem.camera.id.str(), [&problem, &estimate, i](double sigmas) -> Result<Se3> {
+           RIGCAL_ASSIGN(const LidarCameraEstimate moved, SolvedWithIntrinsic(problem, estimate, i, sigmas));
+           return EdgePose(problem, moved.T_cam_lidar);
          }});
-  }
 }
 
 // What was given, and no less than what the captures show.

@@ -42,8 +42,12 @@ PlaneMoments MomentsOf(const PlanePatch& patch, double range_sigma_m) {
     const double sigma_m = range_sigma_m * CosineAt(p, patch.normal);
     Vector7d row;
     row << p, p.normalized(), 1.0;
-    moments.sum += row * row.transpose() / (sigma_m * sigma_m);
-    moments.weight_per_m2 += 1 / (sigma_m * sigma_m);
+    const double weight_per_m2 = 1 / (sigma_m * sigma_m);
+    moments.sum += weight_per_m2 * row * row.transpose();
+    // What range noise alone adds is largest for a plane that faces the ray: left in, it would tilt every plane away.
+    moments.sum.topLeftCorner<3, 3>() -=
+        weight_per_m2 * range_sigma_m * range_sigma_m * row.segment<3>(3) * row.segment<3>(3).transpose();
+    moments.weight_per_m2 += weight_per_m2;
   }
   moments.points = static_cast<int>(patch.points_m.size());
   return moments;
@@ -52,7 +56,7 @@ PlaneMoments MomentsOf(const PlanePatch& patch, double range_sigma_m) {
 double LeastSquares(const PlaneMoments& moments) {
   const Eigen::Vector3d mean = moments.sum.block<3, 1>(0, 6) / moments.weight_per_m2;
   const Eigen::Matrix3d scatter = moments.sum.topLeftCorner<3, 3>() - moments.weight_per_m2 * mean * mean.transpose();
-  return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[0]);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues()[0];
 }
 
 double RangeSigma_m(const std::vector<const PlanePatch*>& patches) {

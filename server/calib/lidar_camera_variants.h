@@ -1,0 +1,24 @@
+// A lidar-camera problem with one thing changed, solved again from an estimate of the whole.
+#pragma once
+
+#include <vector>
+
+#include "server/calib/lidar_camera.h"
+
+namespace rigcal::calib {
+
+// Captures that carry the answer: those of both, and where intrinsics are estimated every picture.
+[[nodiscard]] std::vector<CaptureId> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem,
+                                                      const LidarCameraEstimate& start);
+// Everything estimated anew, intrinsics too unless they are given.
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem,
+                                                        const LidarCameraEstimate& estimate, const CaptureId& capture);
+// Of given intrinsics with sigmas: fx fy cx cy and the distortion, the idx-th moved by so many of its sigmas.
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& problem,
+                                                              const LidarCameraEstimate& estimate, std::size_t idx,
+                                                              double sigmas);
+// Indices of those whose sigma is above zero; none if the intrinsics are not given or exact.
+[[nodiscard]] std::vector<std::size_t> UncertainIntrinsics(const LidarCameraProblem& problem);
+
+}  // namespace rigcal::calib
