@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/progress.h"
+#include "client/sim/bound.h"
 #include "client/sim/rig_yaml.h"
 #include "client/sim/simulate.h"
 #include "client/table.h"
@@ -43,6 +44,7 @@ Result<Done> Record(const Context& context, const Options& options) {
   RIGCAL_ASSIGN(const sim::Experiment experiment, sim::Prepare(std::move(rig), Simulation(options)));
   Done done;
   done.truth = sim::TruthOf(experiment);
+  for (const auto& [id, bound] : sim::CramerRaoBound(experiment)) done.truth.sensors.at(id).bound = bound;
   const std::int64_t start_ns = SteadyNow_ns();
   Progress progress(context.err, context.err_is_terminal, "Simulating", start_ns, Progress::Unit::kFiles);
   const sim::WriteOptions write{options.format == "png" ? sim::PictureFormat::kPng : sim::PictureFormat::kJpeg,

@@ -16,8 +16,10 @@ std::vector<PanelView> PanelViews(const Scene& scene, const Se3& T_world_cam) {
     const auto numerator = [&](const Eigen::Vector3d& axis) {
       return Eigen::Vector3f((R_cam_world * (-axis.dot(offset) * n + std::abs(plane_m) * axis)).cast<float>());
     };
+    const double farthest_m = offset.norm() + panel.half_m.norm();
     views.push_back({&panel, numerator(panel.u), numerator(panel.v), (R_cam_world * n).cast<float>(),
-                     static_cast<float>(std::abs(plane_m)), plane_m > 0});
+                     static_cast<float>(std::abs(plane_m)), static_cast<float>(0.5 * std::abs(plane_m) / farthest_m),
+                     plane_m > 0});
   }
   return views;
 }
@@ -27,7 +29,7 @@ Cover CoverOf(const PanelView& view, const Eigen::Vector3f (&rays)[9], float pit
   int before = 0;
   for (const Eigen::Vector3f& ray : rays) {
     const float d = view.D.dot(ray);
-    if (!(d > 1e-4f * ray.norm())) continue;
+    if (!(d > view.least)) continue;
     ++before;
     const Eigen::Array2f ab(view.Na.dot(ray) / d, view.Nb.dot(ray) / d);
     low = low.min(ab), high = high.max(ab);

@@ -25,10 +25,12 @@ void Append(std::string& bytes, const T& value) {
 
 }  // namespace
 
-Eigen::Vector3d BeamDirection(const LidarTruth& lidar, int firing, int ring) {
-  const double azimuth = -2 * M_PI * firing / lidar.firings_per_turn;  // clockwise, as seen from above
-  const double elevation = lidar.elevations_rad[static_cast<std::size_t>(ring)];
-  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+Beams::Beams(const LidarTruth& lidar) {
+  for (const double elevation : lidar.elevations_rad) rings.emplace_back(std::cos(elevation), std::sin(elevation));
+  for (int firing = 0; firing < lidar.firings_per_turn; ++firing) {
+    const double azimuth = -2 * M_PI * firing / lidar.firings_per_turn;  // clockwise, as seen from above
+    firings.emplace_back(std::cos(azimuth), std::sin(azimuth));
+  }
 }
 
 std::vector<ScanPoint> Scan(const Scene& scene, const LidarTruth& lidar, const Se3& T_world_lidar,
@@ -36,10 +38,11 @@ std::vector<ScanPoint> Scan(const Scene& scene, const LidarTruth& lidar, const S
                             const std::optional<Cone>& towards) {
   std::vector<ScanPoint> points;
   const Eigen::Matrix3d R = T_world_lidar.R();
+  const Beams beams(lidar);
   const int rings = static_cast<int>(lidar.elevations_rad.size());
   for (int firing = 0; firing < lidar.firings_per_turn; ++firing)
     for (int ring = 0; ring < rings; ++ring) {
-      const Eigen::Vector3d direction = BeamDirection(lidar, firing, ring);
+      const Eigen::Vector3d direction = beams.Direction(firing, ring);
       if (towards && direction.dot(towards->axis) < towards->cosine) continue;
       const Hit hit = NearestHit(scene, T_world_lidar.p_m, R * direction);
       if (hit.panel_idx < 0 || hit.distance < lidar.range_min_m || hit.distance > lidar.range_max_m) continue;

@@ -19,8 +19,16 @@ struct ScanPoint {
   int panel_idx = -1;       // of the scene: what it lies on
 };
 
-// Which way a beam goes at a firing.
-[[nodiscard]] Eigen::Vector3d BeamDirection(const LidarTruth& lidar, int firing, int ring);
+// Which way each beam goes at each firing.
+struct Beams {
+  std::vector<Eigen::Vector2d> rings, firings;  // cosine and sine of elevation, of azimuth
+
+  explicit Beams(const LidarTruth& lidar);
+  [[nodiscard]] Eigen::Vector3d Direction(int firing, int ring) const {
+    const Eigen::Vector2d &e = rings[static_cast<std::size_t>(ring)], &a = firings[static_cast<std::size_t>(firing)];
+    return {e.x() * a.x(), e.x() * a.y(), e.y()};
+  }
+};
 // All returns, firing by firing, rings rising. `beam_bias_m`: per ring, added to every range. `key`: of the noise.
 // `towards`: only beams within the cone (a unit direction in the lidar's frame, and the cosine of half its width); their
 // points are those of the whole scan.

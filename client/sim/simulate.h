@@ -17,7 +17,7 @@ struct WriteOptions {
 struct WriteSummary {
   std::size_t pictures = 0, clouds = 0, points = 0;
   std::int64_t pixels = 0, bytes = 0;
-  double pictures_s = 0.0;  // on all threads together: drawing and encoding
+  double pictures_s = 0.0;  // of processor time, all threads together: drawing and encoding
   int threads = 1;
 
   // Of one thread.

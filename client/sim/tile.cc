@@ -47,7 +47,7 @@ struct Piece {
 
 Piece PieceOf(const Painter& painter, const PanelView& view, const Rays& rays, Cover cover) {
   const auto at = [&](int i) {
-    const float d = std::max(view.D.dot(rays[i]), 1e-6f);
+    const float d = std::max(view.D.dot(rays[i]), view.least);
     return Eigen::Array2f(view.Na.dot(rays[i]) / d, view.Nb.dot(rays[i]) / d);
   };
   const Eigen::Array2f along_x = (at(5) - at(3)) / kTile, along_y = (at(7) - at(1)) / kTile;
@@ -81,7 +81,7 @@ std::vector<Piece> PiecesOf(const Painter& painter, const std::vector<const Pane
 Quadratic ShadeOf(const Painter& painter, const PanelView& view, const Rays& rays, const float (&brightness)[9]) {
   float nodes[9];
   for (int i = 0; i < 9; ++i) {
-    const double distance = view.plane_m / std::max(view.D.dot(rays[i]), 1e-3f);
+    const double distance = view.plane_m / std::max(view.D.dot(rays[i]), view.least);
     const Eigen::Vector3d point_m = painter.from_m + painter.R_world_cam * rays[i].cast<double>() * distance;
     nodes[i] = brightness[i] * static_cast<float>(ShadeAt(painter.scene, point_m, view.panel->outward));
   }
@@ -150,15 +150,16 @@ void FillPlain(const Colour& colour, const Quadratic& shade, Tile& tile) {
 // Plane coordinates of one row of pixels.
 struct Coordinates {
   Quadratic Na, Nb, D;
+  float least;
   Row a_m, b_m;
 
   Coordinates(const PanelView& view, const Rays& rays)
-      : Na(Along(view.Na, rays)), Nb(Along(view.Nb, rays)), D(Along(view.D, rays)), a_m{}, b_m{} {}
+      : Na(Along(view.Na, rays)), Nb(Along(view.Nb, rays)), D(Along(view.D, rays)), least(view.least), a_m{}, b_m{} {}
   void Fill(float y) {
     Row d;
     Na.Fill(y, a_m), Nb.Fill(y, b_m), D.Fill(y, d);
     for (std::size_t x = 0; x < kTile; ++x) {
-      const float inverse = 1 / std::max(d[x], 1e-6f);
+      const float inverse = 1 / std::max(d[x], least);
       a_m[x] *= inverse, b_m[x] *= inverse;
     }
   }

@@ -8,7 +8,7 @@ TABLE = "docs/includes.md"
 FOLDERS = {"base", "math", "model", "formats", "detect", "calib", "graph", "fleet", "cloud", "report"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 IDL_GENERATED = "rigcal.h"
-POSIX = re.compile(r"(sys|linux/sched|net|netinet|arpa)/\w+\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc)\.h")
+POSIX = re.compile(r"(sys|linux/sched|net|netinet|arpa)/\w+\.h|(unistd|fcntl|signal|ifaddrs|poll|termios|netdb|pthread|spawn|dlfcn|malloc|time)\.h")
 LIBRARIES = [
     ("tl/expected.hpp", "expected"), ("Eigen/", "Eigen"), ("unsupported/Eigen/", "Eigen"), ("openssl/", "OpenSSL"),
     ("spdlog/", "spdlog"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),
