@@ -35,6 +35,7 @@ sim::Options Simulation(const Options& options) {
 
 struct Done {
   sim::Truth truth;
+  bool is_written = false;  // what follows is of the folder
   sim::WriteSummary summary;
   double seconds = 0.0;
 };
@@ -45,6 +46,7 @@ Result<Done> Record(const Context& context, const Options& options) {
   Done done;
   done.truth = sim::TruthOf(experiment);
   for (const auto& [id, bound] : sim::CramerRaoBound(experiment)) done.truth.sensors.at(id).bound = bound;
+  if (options.out.empty()) return done;
   const std::int64_t start_ns = SteadyNow_ns();
   Progress progress(context.err, context.err_is_terminal, "Simulating", start_ns, Progress::Unit::kFiles);
   const sim::WriteOptions write{options.format == "png" ? sim::PictureFormat::kPng : sim::PictureFormat::kJpeg,
@@ -55,6 +57,7 @@ Result<Done> Record(const Context& context, const Options& options) {
   progress.Clear();
   if (!summary) return Fail(summary.error());
   done.summary = *summary;
+  done.is_written = true;
   done.seconds = static_cast<double>(SteadyNow_ns() - start_ns) * 1e-9;
   return done;
 }
@@ -77,7 +80,7 @@ void PrintJson(const Options& options, const Done& done, std::ostream& out) {
   nlohmann::json sensors = nlohmann::json::object();
   for (const auto& [id, sensor] : done.truth.sensors) sensors[id.str()] = JsonOf(sensor);
   out << nlohmann::json{{"rig", done.truth.rig},
-                        {"folder", options.out},
+                        {"folder", done.is_written ? nlohmann::json(options.out) : nlohmann::json()},
                         {"reference", done.truth.reference.str()},
                         {"captures", done.truth.captures.size()},
                         {"pictures", done.summary.pictures},
@@ -101,10 +104,12 @@ std::string SigmaText(const sim::BoundSigma& bound, std::size_t first, double sc
 }
 
 void PrintText(const Options& options, const Done& done, std::ostream& out) {
-  out << done.truth.rig << ": " << done.truth.captures.size() << " captures, " << done.summary.pictures << " pictures, "
-      << done.summary.clouds << " clouds in " << options.out << '\n'
-      << ByteText(static_cast<double>(done.summary.bytes)) << " in " << DurationText(done.seconds) << ", "
-      << Fixed(done.summary.MegapixelsPerSecond(), 1) << " Mpx/s on each thread\n";
+  out << done.truth.rig << ": " << done.truth.captures.size() << " captures";
+  if (done.is_written)
+    out << ", " << done.summary.pictures << " pictures, " << done.summary.clouds << " clouds in " << options.out << '\n'
+        << ByteText(static_cast<double>(done.summary.bytes)) << " in " << DurationText(done.seconds) << ", "
+        << Fixed(done.summary.MegapixelsPerSecond(), 1) << " Mpx/s on each thread";
+  out << '\n';
   Table table({{"sensor"}, {"bound mm, x y z"}, {"bound deg, x y z"}});
   for (const auto& [id, sensor] : done.truth.sensors)
     if (sensor.bound)
@@ -120,9 +125,8 @@ Status Run(const Context& context, const Options& options) {
     context.out << text;
     return {};
   }
-  if (options.rig.empty() || options.out.empty())
-    return Fail(ErrorCode::kInvalidInput, "RIG and --out are needed",
-                "For example: rigcal simulate mars-mapper --out visit/");
+  if (options.rig.empty())
+    return Fail(ErrorCode::kInvalidInput, "the rig is not named", "For example: rigcal simulate mars-mapper --out visit/");
   RIGCAL_ASSIGN(const Done done, Record(context, options));
   if (context.json)
     PrintJson(options, done, context.out);
@@ -134,7 +138,7 @@ Status Run(const Context& context, const Options& options) {
 void AddOptions(CLI::App& verb, Options& options) {
   sim::Options& simulation = options.simulation;
   verb.add_option("RIG", options.rig, "mars-mapper, or a YAML file (see --print-rig)");
-  verb.add_option("--out", options.out, "Folder to write, new or empty")->type_name("DIR");
+  verb.add_option("--out", options.out, "Folder to write, new or empty; without it only the bound is printed")->type_name("DIR");
   verb.add_option("--print-rig", options.print_rig, "Print a built-in rig's YAML and stop")->type_name("NAME");
   verb.add_option("--captures", options.captures, "How many (default: the rig's)")->type_name("N")->check(CLI::Range(1, 10'000));
   verb.add_option("--scale", simulation.scale_ratio, "Size of the pictures, 1 is full")->type_name("RATIO");
@@ -173,6 +177,7 @@ void AddSimulate(CLI::App& app, Context& context) {
       "Examples:\n"
       "  rigcal simulate mars-mapper --out visit/                              40 captures of 9 cameras, full size\n"
       "  rigcal simulate mars-mapper --out small/ --scale 0.4 --captures 16    the same in seconds\n"
+      "  rigcal simulate mars-mapper --captures 20                             how well can it be known at all?\n"
       "  rigcal simulate mars-mapper --out level/ --motion planar --seed 7\n"
       "  rigcal simulate --print-rig mars-mapper > mine.yaml                   to begin a rig of your own\n"
       "  rigcal simulate mine.yaml --out visit/ --json\n");
