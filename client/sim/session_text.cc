@@ -1,5 +1,7 @@
 #include "client/sim/session_text.h"
 
+#include <algorithm>
+
 #include "client/sim/random.h"
 #include "client/sim/yaml_text.h"
 
@@ -25,6 +27,14 @@ std::string SensorLines(const Sensor& sensor) {
   return lines;
 }
 
+// A row of the tracker belongs to what others saw at that instant.
+bool HasFile(const Experiment& experiment, std::size_t capture_idx) {
+  const auto& sensors = experiment.rig.sensors;
+  return std::any_of(sensors.begin(), sensors.end(), [&](const RigSensor& sensor) {
+    return sensor.kind != SensorKind::kTracker && experiment.IsRecorded(sensor.id, capture_idx);
+  });
+}
+
 }  // namespace
 
 std::string SessionYaml(const Experiment& experiment) {
@@ -45,7 +55,7 @@ std::string SessionYaml(const Experiment& experiment) {
 std::vector<TrackerRow> TrackerRows(const Experiment& experiment, const RigSensor& tracker) {
   std::vector<TrackerRow> rows;
   for (std::size_t k = 0; k < experiment.captures.size(); ++k) {
-    if (!experiment.IsRecorded(tracker.id, k)) continue;
+    if (!experiment.IsRecorded(tracker.id, k) || !HasFile(experiment, k)) continue;
     Random random(KeyOf(experiment.options.seed, "tracker", tracker.id.str(), k));
     Vector6d xi;
     xi << tracker.tracker.sigma_m * random.Normals<3>(), tracker.tracker.sigma_rad * random.Normals<3>();

@@ -3,5 +3,5 @@ rigcal_test(sim_test
           unit/sim_sample.cc
   DEPS rigcal_sim rigcal_formats rigcal_calib)
 rigcal_test(sim_picture_test
-  SOURCES unit/sim_picture_test.cc unit/sim_sample.cc
+  SOURCES unit/sim_picture_test.cc unit/sim_plate_test.cc unit/sim_sample.cc
   DEPS rigcal_sim rigcal_detect)

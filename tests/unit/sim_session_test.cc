@@ -116,7 +116,8 @@ TEST(SimSession, LeavesOutWhatDropsOutAndRefusesFoldersInUse) {
   const WriteSummary summary = Written(experiment, folder, 2);
   EXPECT_GT(summary.pictures, 5u);
   EXPECT_LT(summary.pictures, 35u);
-  EXPECT_TRUE(formats::ReadSessionFolder(folder, {}));
+  const auto manifest = formats::ReadSessionFolder(folder, {});
+  EXPECT_TRUE(manifest) << Sentence(manifest.error());
   const auto again = WriteSession(experiment, TruthOf(experiment), folder, {}, {});
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().code, ErrorCode::kConflict);
