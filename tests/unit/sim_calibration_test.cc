@@ -1,0 +1,71 @@
+// Observations without pictures through the product's estimators: their answers must be the truth within their own sigmas.
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "client/sim/observe.h"
+#include "server/calib/lidar_camera.h"
+#include "server/calib/stereo.h"
+#include "server/math/statistics.h"
+#include "tests/unit/sim_sample.h"
+
+namespace rigcal::sim {
+namespace {
+
+constexpr double kFalseAlarm = 1e-8;
+
+const Sensor& DeclaredOf(const Experiment& experiment, const char* id) {
+  for (const Sensor& sensor : experiment.declared.sensors)
+    if (sensor.id.str() == id) return sensor;
+  throw std::out_of_range(id);
+}
+
+const Target& TargetOf(const Experiment& experiment, const TargetId& id) {
+  for (const Target& target : experiment.declared.targets)
+    if (target.id == id) return target;
+  throw std::out_of_range(id.str());
+}
+
+void ExpectTruth(const Experiment& experiment, const Edge& edge) {
+  ASSERT_EQ(edge.state, EdgeState::kGood) << (edge.diagnoses.empty() ? "" : edge.diagnoses[0].what);
+  const Se3 truth = experiment.T_ref_sensor(edge.frame_a).Inverse() * experiment.T_ref_sensor(edge.frame_b);
+  const Vector6d error = (edge.T_a_b.Inverse() * truth).Log();
+  const double statistic = error.dot(edge.uncertainty.Omega * error);
+  std::cout << edge.frame_a.str() << " " << edge.frame_b.str() << ": " << error.head<3>().norm() * 1e3 << " mm, "
+            << error.tail<3>().norm() * 180 / M_PI << " deg, T^2 " << statistic << "\n";
+  EXPECT_LT(statistic, HotellingLimit(edge.uncertainty.dof + 1, 6, 1 - kFalseAlarm)) << edge.frame_b.str();
+}
+
+TEST(SimCalibration, StereoPairsGiveTheTruthWithinTheirSigmas) {
+  const Experiment experiment = Prepared(MarsMapper());
+  const Observations seen = Observe(experiment);
+  for (const auto& [a, b] : {std::pair("front_left", "front_right"), std::pair("up_left", "up_right")}) {
+    calib::StereoProblem problem{DeclaredOf(experiment, a), DeclaredOf(experiment, b), {}, {}};
+    problem.board = TargetOf(experiment, *problem.camera_a.sees);
+    for (const CaptureId& capture : experiment.captures)
+      problem.captures.push_back(
+          {capture, seen.views.at(SensorId(a)).at(capture), seen.views.at(SensorId(b)).at(capture)});
+    ExpectTruth(experiment, calib::EstimateEdge(problem));
+  }
+}
+
+TEST(SimCalibration, LidarCameraPairsGiveTheTruthWithinTheirSigmas) {
+  const Experiment experiment = Prepared(MarsMapper());
+  const Observations seen = Observe(experiment);
+  for (const auto& [camera, lidar] :
+       {std::pair("front_left", "lidar_horizontal"), std::pair("back", "lidar_horizontal"), std::pair("left_front", "lidar_vertical"), std::pair("up_left", "lidar_vertical")}) {
+    calib::LidarCameraProblem problem;
+    problem.camera = DeclaredOf(experiment, camera);
+    problem.lidar = DeclaredOf(experiment, lidar);
+    problem.board = TargetOf(experiment, *problem.camera.sees);
+    const Se3 T_ref_cam = problem.camera.T_ref_nominal.value_or(Se3{});
+    problem.T_cam_lidar_nominal = T_ref_cam.Inverse() * *problem.lidar.T_ref_nominal;
+    for (const CaptureId& capture : experiment.captures)
+      problem.captures.push_back({capture, seen.views.at(SensorId(camera)).at(capture),
+                                  seen.clouds.at(SensorId(lidar)).at(capture).at(problem.board.id)});
+    ExpectTruth(experiment, calib::EstimateLidarCameraEdge(problem));
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::sim
