@@ -1,5 +1,6 @@
 #include "server/calib/leave_one_out.h"
 
+#include <Eigen/Cholesky>
 #include <optional>
 
 #include "server/base/parallel_for.h"
@@ -54,6 +55,35 @@ Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVect
   for (const Contribution& contribution : contributions) C += contribution.covariance;
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
   RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, m - 1));
+  uncertainty.blocks = std::move(blocks);
+  uncertainty.contributions = std::move(contributions);
+  return uncertainty;
+}
+
+Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
+                                     const Eigen::MatrixXd& C_model_along, std::vector<BlockVector> blocks,
+                                     std::vector<Contribution> contributions, std::size_t captures) {
+  const Matrix6d onto = free * free.transpose(), C_model = free * C_model_along * free.transpose();
+  for (BlockVector& block : blocks) block.d = onto * block.d;
+  for (Contribution& contribution : contributions)
+    contribution.covariance = Symmetrized(onto * contribution.covariance * onto);
+  if (free.cols() == 6) return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
+  const int m = static_cast<int>(captures);
+  Matrix6d C = C_model;
+  if (!blocks.empty()) {
+    std::vector<Vector6d> d;
+    for (const BlockVector& block : blocks) d.push_back(block.d);
+    C = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
+  }
+  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  const Eigen::MatrixXd along = free.transpose() * C * free;
+  const Eigen::LLT<Eigen::MatrixXd> llt(along);
+  if (llt.info() != Eigen::Success || !along.allFinite())
+    return Fail(ErrorCode::kInvalidInput, "the covariance is not positive definite",
+                "Take more captures from different places.");
+  const Eigen::MatrixXd information = llt.solve(Eigen::MatrixXd::Identity(free.cols(), free.cols()));
+  const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
+  Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, m - 1);
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
   return uncertainty;

@@ -30,4 +30,11 @@ struct GivenConstant {
 [[nodiscard]] Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
                                                 std::vector<Contribution> contributions, std::size_t captures);
 
+// The same where the answer is estimated along some directions only (orthonormal columns, right tangent at b): the rest
+// carries no information.
+[[nodiscard]] Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
+                                                   const Eigen::MatrixXd& C_model_along,
+                                                   std::vector<BlockVector> blocks,
+                                                   std::vector<Contribution> contributions, std::size_t captures);
+
 }  // namespace rigcal::calib

@@ -64,7 +64,11 @@ Status CheckFigures(const Edge& edge) {
 
 }  // namespace
 
-std::string ResidualUnitOf(const std::string& method) { return method == "lidar_camera" ? "m" : "px"; }
+std::string ResidualUnitOf(const std::string& method) {
+  for (const char* in_metres : {"lidar_camera", "non_overlapping", "tracker_camera", "tracker_lidar", "pose_streams"})
+    if (method == in_metres) return "m";
+  return "px";
+}
 
 // Fields: robot, session, method, frame_a, frame_b.
 EdgeId EstimatedEdgeId(const RobotId& robot, const SessionId& session, const std::string& method,

@@ -49,7 +49,8 @@ struct Edge {
   std::vector<Evidence> evidence;
 };
 
-// "px" (reprojection error), or "m" for lidar_camera (distance of the points from the board).
+// "px" (reprojection error), or "m": distance of the points from the board (lidar_camera), or of where the two sensors
+// of a moving body put it (non_overlapping, tracker_camera, tracker_lidar, pose_streams).
 [[nodiscard]] std::string ResidualUnitOf(const std::string& method);
 
 // id = sha256 over robot, source digest and index (design, words). For an estimated edge the source is its session and

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "server/calib/hand_eye.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/stereo.h"
 #include "server/pipeline/sightings.h"
@@ -20,5 +21,8 @@ struct PairInputs {
 [[nodiscard]] Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& store,
                                                                             const Manifest& manifest,
                                                                             const SensorPair& pair);
+// Of the targets that a camera may see, the one found in most captures. A table of poses that cannot be read is an error.
+[[nodiscard]] Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, const Manifest& manifest,
+                                                                    const SensorPair& pair);
 
 }  // namespace rigcal::pipeline

@@ -49,6 +49,8 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
     return EdgeFrom(job.pair, method, LoadLidarCamera(store, *manifest, job.pair), calib::EstimateLidarCameraEdge);
+  if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
+    return EdgeFrom(job.pair, method, LoadHandEye(store, *manifest, job.pair), calib::EstimateHandEyeEdge);
   return FailedEdge(job.pair, method.empty() ? "none" : method,
                     {ErrorCode::kUnsupported,
                      "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),

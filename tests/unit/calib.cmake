@@ -20,3 +20,6 @@ rigcal_test(calib_lidar_camera_test
 rigcal_program(lidar_camera_measure
   SOURCES bench/lidar_camera_measure.cc
   DEPS rigcal_calib rigcal_detect rigcal_formats)
+rigcal_program(hand_eye_measure
+  SOURCES bench/hand_eye_measure.cc
+  DEPS rigcal_calib rigcal_detect rigcal_formats)

@@ -1,0 +1,41 @@
+// A camera that looks at a board that stands still: its poses in the board's frame, with what they share.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "server/calib/intrinsics.h"
+#include "server/calib/motion_problem.h"
+#include "server/calib/projection.h"
+
+namespace rigcal::calib {
+
+// One view near a pose of its board: normal matrix and gradient over [intrinsics, board pose (right tangent)], px^2.
+struct ViewMoments {
+  Se3 T_cam_board;
+  Eigen::Matrix<double, kIntrinsicsMax + 6, kIntrinsicsMax + 6> normal;
+  Eigen::Matrix<double, kIntrinsicsMax + 6, 1> gradient;
+  double ssr_px2 = 0;
+};
+
+// A camera's views as side of a motion. Intrinsics that are estimated are the side's shared parameters; the camera's
+// pose in the frame of the board is T_world_sensor.
+struct CameraMotion {
+  CameraEstimate camera;
+  bool estimates_intrinsics = false;
+  int intrinsics_count = 0;
+  // Per capture: the poses that its view allows, the likeliest first.
+  std::map<CaptureId, std::vector<ViewMoments>> views;
+  int turns = 1;               // orientations in which the board looks alike
+  Eigen::Vector3d centre_board_m = Eigen::Vector3d::Zero();  // about which it is turned
+};
+
+[[nodiscard]] tl::expected<CameraMotion, Diagnosis> CameraMotionOf(const CameraProblem& problem);
+
+// The pose and what the intrinsics do to it. `turn`: the board taken as turned by that many of its symmetric turns.
+[[nodiscard]] SidePose PoseOf(const CameraMotion& motion, const ViewMoments& view, int turn);
+// What all views but `without` (may be null) say of the intrinsics, each with the first of its poses.
+void FillShared(const CameraMotion& motion, const std::map<CaptureId, std::size_t>& chosen, const CaptureId* without,
+                MotionSide& side);
+
+}  // namespace rigcal::calib

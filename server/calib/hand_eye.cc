@@ -1,0 +1,138 @@
+#include "server/calib/hand_eye.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/calib/hand_eye_diagnoses.h"
+#include "server/calib/hand_eye_work.h"
+#include "server/calib/stream_motion.h"
+
+namespace rigcal::calib {
+namespace {
+
+template <typename T>
+using OrDiagnosis = tl::expected<T, Diagnosis>;
+
+// What a stream's poses are taken to be good for until their residuals say.
+constexpr double kStreamSigma_m = 0.005, kStreamSigma_rad = 0.005;
+constexpr double kCorrelationLeast_ratio = 0.3;
+constexpr int kOffsetRoundsMax = 6;
+constexpr double kOffsetSame_s = 1e-5;
+constexpr std::size_t kStreamBlocks = 20;  // stretches of time that are left out one at a time
+
+SideNoise NoiseOf(const MotionSide& side, const std::vector<char>& used, double factor) {
+  MotionProblem one;
+  one.a = side;
+  one.b.poses.assign(side.poses.size(), {});
+  for (SidePose& pose : one.b.poses) pose.covariance.setZero();
+  one.used = used;
+  const MotionNoise noise = NoiseOf(one);
+  return {noise.translation_m, noise.rotation_rad, factor};
+}
+
+HandEyeEstimate EstimateOf(const HandEyeWork& work) {
+  HandEyeEstimate estimate;
+  estimate.T_a_b = work.state.X;
+  estimate.T_world_a_world_b = work.state.Z;
+  estimate.reach = work.reach;
+  estimate.noise_a = NoiseOf(work.problem.a, work.problem.used, work.factor_a.translation);
+  estimate.noise_b = NoiseOf(work.problem.b, work.problem.used, work.factor_b.translation);
+  estimate.unused = work.unused;
+  estimate.captures = work.problem.UsedCount();
+  double sum_m2 = 0, sum_rad2 = 0;
+  for (std::size_t k = 0; k < work.captures.size(); ++k) {
+    const Vector6d r = MotionResidual(work.problem, work.state, k);
+    if (!work.problem.used[k]) {
+      estimate.unused[work.captures[k]] = "contradicts the other captures";
+      continue;
+    }
+    estimate.residuals[work.captures[k]] = r;
+    sum_m2 += r.head<3>().squaredNorm();
+    sum_rad2 += r.tail<3>().squaredNorm();
+  }
+  const double count = static_cast<double>(std::max<std::size_t>(1, estimate.captures));
+  estimate.rms_m = std::sqrt(sum_m2 / count);
+  estimate.rms_rad = std::sqrt(sum_rad2 / count);
+  return estimate;
+}
+
+OrDiagnosis<HandEyeResult> ResultOf(const HandEyeProblem& problem, const HandEyeWork& work,
+                                    const std::vector<std::size_t>& block_of_pose) {
+  auto uncertainty = JackknifeMotion(problem, work, block_of_pose);
+  if (!uncertainty) return tl::unexpected(MotionNotSolvable(problem, uncertainty.error()));
+  return HandEyeResult{EstimateOf(work), std::move(*uncertainty), OpenDirections(problem, work.reach)};
+}
+
+OrDiagnosis<HandEyeResult> FromCaptures(const HandEyeProblem& problem) {
+  auto work = CollectMotion(problem);
+  if (!work) return tl::unexpected(work.error());
+  if (auto fitted = FitMotion(problem, *work); !fitted) return tl::unexpected(fitted.error());
+  if (2 * work->problem.UsedCount() < work->captures.size())
+    return tl::unexpected(MotionsContradict(problem, work->captures.size()));
+  auto result = ResultOf(problem, *work, {});
+  if (!result) return result;
+  std::vector<CaptureId> contradicting;
+  for (std::size_t k = 0; k < work->captures.size(); ++k)
+    if (!work->problem.used[k]) contradicting.push_back(work->captures[k]);
+  if (!contradicting.empty()) result->notes.push_back(CapturesContradict(problem, contradicting));
+  return result;
+}
+
+std::string SampleName(std::size_t k) {
+  std::string digits = std::to_string(k);
+  return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
+}
+
+void SetSamples(const CommonPoses& common, HandEyeWork& work) {
+  work.captures.clear();
+  work.candidates.clear();
+  Vector6d variances;
+  variances << Eigen::Vector3d::Constant(kStreamSigma_m * kStreamSigma_m),
+      Eigen::Vector3d::Constant(kStreamSigma_rad * kStreamSigma_rad);
+  const Matrix6d covariance = variances.asDiagonal();
+  for (std::size_t k = 0; k < common.a.size(); ++k) {
+    work.captures.emplace_back(SampleName(k));
+    MotionCandidates sample;
+    sample.a.push_back({{common.a[k], covariance, SharedJacobian(6, 0)}});
+    // A larger offset looks at b earlier.
+    sample.b.push_back({{common.b[k].T_world_body, covariance, SharedJacobian(-common.b[k].twist)}});
+    work.candidates.push_back(std::move(sample));
+  }
+}
+
+// Contiguous stretches with equally many samples.
+std::vector<std::size_t> BlocksOf(std::size_t samples) {
+  std::vector<std::size_t> blocks;
+  for (std::size_t k = 0; k < samples; ++k) blocks.push_back(k * kStreamBlocks / samples);
+  return blocks;
+}
+
+OrDiagnosis<HandEyeResult> FromStreams(const HandEyeProblem& problem) {
+  const PoseTable &a = problem.a.poses, &b = problem.b.poses;
+  const auto clocks = CorrelateClocks(a, b);
+  if (!clocks || clocks->correlation_ratio < kCorrelationLeast_ratio)
+    return tl::unexpected(NoCommonTime(problem, clocks ? clocks->correlation_ratio : 0.0));
+  double offset_s = clocks->offset_s;
+  HandEyeWork work;
+  work.estimates_offset = true;
+  for (int round = 0; round < kOffsetRoundsMax; ++round) {
+    SetSamples(PosesInCommon(a, b, offset_s), work);
+    if (work.captures.size() < 2 * kStreamBlocks) return tl::unexpected(TooFewMotions(problem, work.captures.size()));
+    if (auto fitted = FitMotion(problem, work); !fitted) return tl::unexpected(fitted.error());
+    offset_s += work.state.shared_b[0];
+    if (std::abs(work.state.shared_b[0]) < kOffsetSame_s) break;
+  }
+  auto result = ResultOf(problem, work, BlocksOf(work.captures.size()));
+  if (!result) return result;
+  result->estimate.offset_s = offset_s + 1e-9 * static_cast<double>(a.front().stamp.ns - b.front().stamp.ns);
+  result->estimate.offset_sigma_s = work.fit.offset_sigma_s;
+  return result;
+}
+
+}  // namespace
+
+OrDiagnosis<HandEyeResult> EstimateHandEye(const HandEyeProblem& problem) {
+  return problem.method == "pose_streams" ? FromStreams(problem) : FromCaptures(problem);
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/calib/hand_eye_work.h"
+#include "server/calib/leave_one_out.h"
+
+namespace rigcal::calib {
+namespace {
+
+// What is left out together: poses of the problem, and a view that only tells a camera's intrinsics.
+struct Block {
+  std::string id;
+  std::vector<std::size_t> poses;
+  std::optional<CaptureId> capture;
+};
+
+void AddSingleViews(const std::optional<CameraMotion>& camera, std::set<CaptureId>& known,
+                    std::vector<Block>& blocks) {
+  if (!camera || !camera->estimates_intrinsics) return;
+  for (const auto& [capture, views] : camera->views)
+    if (known.insert(capture).second) blocks.push_back({capture.str(), {}, capture});
+}
+
+std::vector<Block> BlocksOf(const HandEyeWork& work, const std::vector<std::size_t>& block_of_pose) {
+  std::vector<Block> blocks;
+  std::set<CaptureId> known;
+  for (std::size_t k = 0; k < work.captures.size(); ++k) {
+    known.insert(work.captures[k]);
+    if (!block_of_pose.empty()) {
+      if (blocks.size() <= block_of_pose[k]) blocks.push_back({"part " + std::to_string(blocks.size() + 1), {}, {}});
+      blocks[block_of_pose[k]].poses.push_back(k);
+    } else if (work.problem.used[k]) {
+      blocks.push_back({work.captures[k].str(), {k}, work.captures[k]});
+    }
+  }
+  AddSingleViews(work.camera_a, known, blocks);
+  AddSingleViews(work.camera_b, known, blocks);
+  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& x, const Block& y) { return x.capture < y.capture; });
+  return blocks;
+}
+
+Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
+  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, start));
+  return solution.state.X;
+}
+
+Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block) {
+  MotionProblem problem = work.problem;
+  for (const std::size_t k : block.poses) problem.used[k] = 0;
+  if (block.capture) SetShared(work, &*block.capture, problem);
+  RIGCAL_ASSIGN(const Se3 X, SolvedPose(problem, work.state));
+  return Vector6d((work.state.X.Inverse() * X).Log());
+}
+
+// A board that is larger than given puts its camera farther away.
+void AddBoardSize(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
+                  std::vector<GivenConstant>& constants) {
+  if (!side.board || !(side.board->square_sigma_m > 0)) return;
+  const double ratio = side.board->square_sigma_m / side.board->square_m;
+  constants.push_back({"size of board " + side.board->id.str(), [&work, poses, ratio](double steps) {
+                         MotionProblem moved = work.problem;
+                         for (SidePose& pose : (moved.*poses).poses) pose.T_world_sensor.p_m *= 1 + steps * ratio;
+                         return SolvedPose(moved, work.state);
+                       }});
+}
+
+void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
+                   std::vector<GivenConstant>& constants) {
+  if (!side.sensor.intrinsics || !side.sensor.intrinsics_sigma) return;
+  for (std::size_t i = 0; i < side.sensor.intrinsics_sigma->size(); ++i) {
+    const double sigma = (*side.sensor.intrinsics_sigma)[i];
+    if (!(sigma > 0)) continue;
+    constants.push_back({"intrinsics of " + side.sensor.id.str(), [&work, poses, i, sigma](double steps) {
+                           MotionProblem moved = work.problem;
+                           for (SidePose& pose : (moved.*poses).poses)
+                             pose.T_world_sensor = pose.T_world_sensor *
+                                                   Se3::Exp(steps * sigma * pose.d_shared.col(static_cast<Eigen::Index>(i)));
+                           return SolvedPose(moved, work.state);
+                         }});
+  }
+}
+
+}  // namespace
+
+Result<Uncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
+                                    const std::vector<std::size_t>& block_of_pose) {
+  std::vector<GivenConstant> constants;
+  AddBoardSize(work, problem.a, &MotionProblem::a, constants);
+  AddBoardSize(work, problem.b, &MotionProblem::b, constants);
+  AddIntrinsics(work, problem.a, &MotionProblem::a, constants);
+  AddIntrinsics(work, problem.b, &MotionProblem::b, constants);
+  RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(constants));
+  const std::vector<Block> blocks = BlocksOf(work, block_of_pose);
+  const std::size_t carrying = block_of_pose.empty() ? work.problem.UsedCount() : blocks.size();
+  std::vector<BlockVector> vectors;
+  if (carrying >= kHandEyeForJackknife) {
+    std::vector<std::string> ids;
+    for (const Block& block : blocks) ids.push_back(block.id);
+    RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, [&](std::size_t i) { return WithoutBlockOf(work, blocks[i]); }));
+  }
+  return UncertaintyAlong(work.problem.free, work.fit.C_X, std::move(vectors), std::move(contributions), carrying);
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,50 @@
+// The numbers of a hand-eye problem as they shrink and improve, for hand_eye*.cc.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/calib/camera_motion.h"
+#include "server/calib/hand_eye.h"
+#include "server/calib/motion_consensus.h"
+
+namespace rigcal::calib {
+
+constexpr std::size_t kHandEyeMin = 4;            // captures of both
+constexpr std::size_t kHandEyeForJackknife = 5;   // fewer: the uncertainty is the model's
+constexpr std::size_t kHandEyeEnough = 10;        // fewer: a note says so
+
+// On the variances that a side's source lets expect.
+struct SideFactor {
+  double translation = 1.0, rotation = 1.0;
+};
+
+struct HandEyeWork {
+  std::vector<CaptureId> captures;
+  std::vector<MotionCandidates> candidates;  // side by side with the captures; covariances as their sources say
+  std::optional<CameraMotion> camera_a, camera_b;
+  bool estimates_offset = false;             // side b's one shared parameter, seconds
+  std::map<CaptureId, std::string> unused;
+  SideFactor factor_a, factor_b;
+  std::vector<MotionChoice> choices;
+  MotionProblem problem;                     // what was chosen, covariances with their factors
+  MotionState state;
+  MotionReach reach;
+  MotionFit fit;
+};
+
+// The captures in which both sides have a pose. `unused` says why the others have none.
+[[nodiscard]] tl::expected<HandEyeWork, Diagnosis> CollectMotion(const HandEyeProblem& problem);
+// Sets the shared parameters of both sides, without one capture if `without` is not null.
+void SetShared(const HandEyeWork& work, const CaptureId* without, MotionProblem& problem);
+// Chooses, solves, finds the noise and what contradicts, until nothing changes. Poses that contradict are not used.
+[[nodiscard]] tl::expected<void, Diagnosis> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
+[[nodiscard]] MotionNoise NoiseOf(const MotionProblem& problem);
+
+// The uncertainty of X along the free directions.
+[[nodiscard]] Result<Uncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
+                                                  const std::vector<std::size_t>& block_of_pose);
+
+}  // namespace rigcal::calib

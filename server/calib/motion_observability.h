@@ -1,0 +1,39 @@
+// Which directions of T_a_b a motion tells. A rotation away from a common axis counts only where it is beyond the noise:
+// singular values alone would take noise for information.
+#pragma once
+
+#include <vector>
+
+#include "server/math/se3.h"
+
+namespace rigcal::calib {
+
+enum class MotionKind {
+  kGeneral,        // turned about different axes: everything is told
+  kOneAxis,        // turned about one axis, as on a flat floor: nothing along it
+  kOnTheSpot,      // turned about one fixed line: nothing along it, nor about it
+  kNoRotation,     // only moved: no translation
+  kOneLine,        // only moved, along one line: nothing about it either
+  kStill,          // nothing at all
+};
+
+struct MotionNoise {
+  double translation_m = 0.0, rotation_rad = 0.0;  // one sigma per axis of what one pose is known to
+};
+
+struct MotionReach {
+  MotionKind kind = MotionKind::kGeneral;
+  Eigen::Vector3d axis_a = Eigen::Vector3d::UnitZ();   // unit, in frame a: the common axis, or the line
+  Eigen::Vector3d point_a_m = Eigen::Vector3d::Zero();  // of kOnTheSpot: on the axis
+  double tilt_rad = 0.0;    // rms rotation away from the axis
+  double tilt_noise_rad = 0.0;
+  double turn_rad = 0.0;    // rms rotation about it
+  double travel_m = 0.0;    // rms way of the point of the body that moves least across the axis
+  // Orthonormal columns, right tangent at b: what is open, and what is not.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> open, free;
+};
+
+// `T_world_a`: poses of the body; X = T_a_b.
+[[nodiscard]] MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise);
+
+}  // namespace rigcal::calib
