@@ -23,3 +23,9 @@ rigcal_program(lidar_camera_measure
 rigcal_program(hand_eye_measure
   SOURCES bench/hand_eye_measure.cc
   DEPS rigcal_calib rigcal_detect rigcal_formats)
+rigcal_test(calib_lidar_lidar_test
+  SOURCES unit/calib_lidar_lidar_test.cc unit/calib_lidar_lidar_statistics_test.cc unit/calib_virtual_room.cc
+  DEPS rigcal_calib TBB::tbb)
+rigcal_program(lidar_lidar_measure
+  SOURCES bench/lidar_lidar_measure.cc
+  DEPS rigcal_calib rigcal_formats TBB::tbb)

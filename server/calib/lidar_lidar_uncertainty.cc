@@ -1,0 +1,72 @@
+#include "server/calib/lidar_lidar_uncertainty.h"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include "server/calib/leave_one_out.h"
+#include "server/math/jackknife.h"
+
+namespace rigcal::calib {
+namespace {
+
+// Columns that span what is known.
+Directions Known(const Directions& unknown) {
+  if (unknown.cols() == 0) return Matrix6d::Identity();
+  const Eigen::HouseholderQR<Directions> qr(unknown);
+  const Matrix6d Q = qr.householderQ();
+  return Q.rightCols(6 - unknown.cols());
+}
+
+Result<std::vector<Contribution>> RangeContributions(const LidarLidarProblem& problem, const Se3& T_map_moving,
+                                                     const Directions& unknown) {
+  std::vector<GivenConstant> constants;
+  const auto add = [&](const Sensor& lidar, double RangeShift::*shift_m) {
+    const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
+    if (!(sigma_m > 0)) return;
+    constants.push_back({"range bias of " + lidar.id.str(), [&, shift_m, sigma_m](double steps) -> Result<Se3> {
+                           RangeShift shift;
+                           shift.*shift_m = steps * sigma_m;
+                           return FitFrom(WorkOf(problem, shift), T_map_moving, kNdtLevels - 1, unknown).T;
+                         }});
+  };
+  add(problem.lidar_a, &RangeShift::a_m);
+  add(problem.lidar_b, &RangeShift::b_m);
+  return ContributionsOf(constants);
+}
+
+}  // namespace
+
+Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
+                                          const Se3& T_map_moving, const Directions& unknown,
+                                          const std::vector<SurfacePairs>& pairs, const std::vector<Vector6d>& d) {
+  const PairInformation model = InformationOf(pairs, T_map_moving, unknown, work.voxel_m);
+  const Directions B = Known(unknown);
+  const auto failed = [] {
+    return Fail(ErrorCode::kInvalidInput, "the common surroundings fix the pose too weakly",
+                "Take captures where both see walls or objects facing three different ways.");
+  };
+  const Eigen::MatrixXd known = B.transpose() * model.Omega * B;
+  if (!known.allFinite() || !(known.diagonal().minCoeff() > 0)) return failed();
+  const Matrix6d C_model = B * known.inverse() * B.transpose();
+  const std::size_t m = work.used.size();
+  const bool jackknife = m >= kCloudsForJackknife;
+  Matrix6d C = jackknife ? ShrinkTowardsModel(JackknifeCovariance(d), C_model, static_cast<int>(m)) : C_model;
+  RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
+  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  Matrix6d Omega = Symmetrized(B * (B.transpose() * C * B).inverse() * B.transpose());
+  if (!Omega.allFinite()) return failed();
+  const Matrix6d Ad = Adjoint(T_map_moving);
+  if (!work.a_is_map) Omega = Symmetrized(InverseInformation(T_map_moving, Omega));
+  const int dof = static_cast<int>(jackknife ? m : model.blocks) - 1;
+  Uncertainty uncertainty =
+      FromInformation(Omega, jackknife ? UncertaintySource::kJackknife : UncertaintySource::kModel, dof);
+  if (uncertainty.rank != B.cols()) return failed();
+  for (Contribution& contribution : contributions)
+    if (!work.a_is_map) contribution.covariance = InverseCovariance(T_map_moving, contribution.covariance);
+  uncertainty.contributions = std::move(contributions);
+  for (std::size_t k = 0; jackknife && k < m; ++k)
+    uncertainty.blocks.push_back({problem.captures[work.used[k]].capture.str(), work.a_is_map ? d[k] : Vector6d(-Ad * d[k])});
+  return uncertainty;
+}
+
+}  // namespace rigcal::calib

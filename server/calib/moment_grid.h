@@ -1,0 +1,75 @@
+// The points of a cloud gathered in cubic cells: how many, their sum and the sum of their products. Cells of twice the
+// size are sums of eight, so that one pass over the points serves every level of a search from coarse to fine.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace rigcal::calib {
+
+// Of a cell: floor(p / cell_m) on each axis, packed into 64 bits.
+using CellKey = std::uint64_t;
+constexpr double kCellsMax = 1 << 20;  // from the origin, each way, per axis
+
+[[nodiscard]] inline CellKey CellKeyOf(int x, int y, int z) {
+  constexpr int kOffset = 1 << 20;
+  return (static_cast<CellKey>(x + kOffset) << 42) | (static_cast<CellKey>(y + kOffset) << 21) |
+         static_cast<CellKey>(z + kOffset);
+}
+[[nodiscard]] Eigen::Vector3i CellOf(CellKey key);
+
+// From keys to 0, 1, 2, ... in the order of their first appearance; open addressing.
+class CellIndex {
+ public:
+  explicit CellIndex(std::size_t expected = 0);
+  // The number of this key, a new one if it is new.
+  std::uint32_t Add(CellKey key);
+  [[nodiscard]] int Find(CellKey key) const {
+    for (std::size_t slot = SlotOf(key);; slot = (slot + 1) & mask_) {
+      const Entry& entry = entries_[slot];
+      if (entry.number < 0 || entry.key == key) return entry.number;
+    }
+  }
+  [[nodiscard]] const std::vector<CellKey>& keys() const { return keys_; }  // in the order of their numbers
+
+ private:
+  struct Entry {
+    CellKey key = 0;
+    std::int32_t number = -1;
+  };
+  [[nodiscard]] std::size_t SlotOf(CellKey key) const {
+    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> shift_) & mask_;
+  }
+  void Grow(std::size_t slots);
+
+  std::vector<Entry> entries_;
+  std::vector<CellKey> keys_;
+  std::size_t mask_ = 0;
+  int shift_ = 32;
+};
+
+struct Moments {
+  double count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 6, 1> products = Eigen::Matrix<double, 6, 1>::Zero();  // xx xy xz yy yz zz
+
+  void Add(const Eigen::Vector3d& p);
+  void Add(const Moments& other);
+  [[nodiscard]] Eigen::Vector3d Mean() const { return sum / count; }
+  [[nodiscard]] Eigen::Matrix3d Covariance() const;  // count >= 2
+};
+
+struct MomentGrid {
+  double cell_m = 1;
+  CellIndex index;
+  std::vector<Moments> cells;  // by the index's numbers
+
+  // Cells of twice the size.
+  [[nodiscard]] MomentGrid Coarser() const;
+};
+
+// Deterministic: sums run in the order of the points. Points farther than kCellsMax cells are left out.
+[[nodiscard]] MomentGrid GridOf(const std::vector<Eigen::Vector3f>& points_m, double cell_m);
+
+}  // namespace rigcal::calib
