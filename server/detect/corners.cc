@@ -6,30 +6,22 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "server/detect/board_search.h"
+
 namespace rigcal::detect {
 namespace {
 
 using Points = std::vector<cv::Point2f>;
 
-// The search is about squares of some tens of pixels: very large pictures are searched reduced, and those in which the
-// squares may be tiny are searched enlarged.
-constexpr int kSearchSidePx = 1600;
-constexpr int kFullSearchSidePx = 4000;
-constexpr int kEnlargeSidePx = 1400;
+constexpr int kSmallSide_px = 1400;
+constexpr double kMoveRatio = 0.2, kMoveMin_px = 2;  // by the refinement, of the distance to the nearest corner
+constexpr double kMarginSquares = 2.5;
+constexpr double kSquare_px = 24;  // side of a square in the picture that is searched thoroughly
 // Half window of the refinement as a part of the distance to the nearest corner: of 0.16 ... 0.34 the one that stays
 // clear of the next corners on tilted boards; on real pairs the joint rms is 0.196 px, against 0.284 px for the
 // sector-based search.
 constexpr double kWindowRatio = 0.25;
 constexpr int kWindowMinPx = 2, kWindowMaxPx = 20;
-
-std::vector<double> SearchScales(const cv::Mat& image) {
-  const int side = std::max(image.cols, image.rows);
-  std::vector<double> scales;
-  if (side > kSearchSidePx) scales.push_back(static_cast<double>(kSearchSidePx) / side);
-  if (side <= kFullSearchSidePx) scales.push_back(1.0);
-  if (side <= kEnlargeSidePx) scales.push_back(2.0);
-  return scales;
-}
 
 cv::Mat Scaled(const cv::Mat& image, double scale) {
   if (scale == 1.0) return image;
@@ -54,15 +46,54 @@ bool SearchBySectors(const cv::Mat& image, const cv::Size& counts, Points& point
   return cv::findChessboardCornersSB(image, counts, points, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
 }
 
-bool Search(const cv::Mat& image, const cv::Size& counts, Points& points) {
+bool SearchAt(const cv::Mat& image, const std::vector<double>& scales, const cv::Size& counts, Points& points) {
   for (const auto search : {SearchByQuads, SearchBySectors}) {
-    for (const double scale : SearchScales(image)) {
+    for (const double scale : scales) {
       if (!search(Scaled(image, scale), counts, points)) continue;
       Unscale(points, scale);
       return true;
     }
   }
   return false;
+}
+
+// What a whole board may cover of which a part was seen.
+cv::Rect Around(const GridPart& part, const cv::Mat& image, const cv::Size& counts) {
+  const double whole_px = (std::max(counts.width, counts.height) + 1) * part.square_px;
+  const Eigen::Array2d seen_px = part.max_px - part.min_px;
+  const Eigen::Array2d margin_px = (whole_px - seen_px).max(kMarginSquares * part.square_px);
+  const Eigen::Array2i first = (part.min_px.array() - margin_px).cast<int>();
+  const Eigen::Array2i last = (part.max_px.array() + margin_px).cast<int>();
+  return cv::Rect(first.x(), first.y(), last.x() - first.x(), last.y() - first.y()) &
+         cv::Rect(0, 0, image.cols, image.rows);
+}
+
+bool SearchPart(const cv::Mat& image, const GridPart& part, const cv::Size& counts, Points& points) {
+  const cv::Rect around = Around(part, image, counts);
+  if (!SearchAt(image(around), {std::min(2.0, kSquare_px / part.square_px)}, counts, points)) return false;
+  for (cv::Point2f& point : points) point += cv::Point2f(around.tl());
+  return true;
+}
+
+// OpenCV only reads, yet its wrapper for memory takes a mutable pointer.
+cv::Mat Wrapped(const GreyImage& image) {
+  return {image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+// The quick search first. Where it saw a part of a board only, the thorough ones: over all of a small picture, over
+// what is around that part in a large one.
+std::vector<Eigen::Vector2d> Search(const GreyImage& image, const cv::Size& counts) {
+  const BoardSearch quick = SearchBoard(image, counts.width, counts.height);
+  if (!quick.corners_px.empty() || quick.parts.empty()) return quick.corners_px;
+  const cv::Mat grey = Wrapped(image);
+  Points points;
+  const bool found = std::max(grey.cols, grey.rows) <= kSmallSide_px
+                         ? SearchAt(grey, {1.0, 2.0}, counts, points)
+                         : SearchPart(grey, quick.parts.front(), counts, points);
+  std::vector<Eigen::Vector2d> corners;
+  if (found)
+    for (const cv::Point2f& point : points) corners.emplace_back(point.x, point.y);
+  return corners;
 }
 
 double NearestNeighbourPx(const Points& points, const cv::Size& counts, int corner_idx) {
@@ -93,17 +124,38 @@ Points Refined(const cv::Mat& image, const cv::Size& counts, const Points& point
   return refined;
 }
 
+// Where blur and noise are too much for the refinement, it runs away from corners that were found.
+bool Stayed(const std::vector<Eigen::Vector2d>& found, const std::vector<Eigen::Vector2d>& refined,
+            const cv::Size& counts) {
+  Points points;
+  for (const Eigen::Vector2d& corner : found)
+    points.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+  for (int i = 0; i < counts.area(); ++i) {
+    const auto idx = static_cast<std::size_t>(i);
+    const double move_max_px = std::max(kMoveMin_px, kMoveRatio * NearestNeighbourPx(points, counts, i));
+    if (!((refined[idx] - found[idx]).norm() <= move_max_px)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int cols, int rows) {
-  // OpenCV only reads, yet its wrapper for memory takes a mutable pointer.
-  const cv::Mat grey(image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
-  const cv::Size counts(cols, rows);
+std::vector<Eigen::Vector2d> RefinedCorners(const GreyImage& image, int cols, int rows,
+                                            const std::vector<Eigen::Vector2d>& corners) {
   Points points;
-  if (!Search(grey, counts, points)) return std::nullopt;
-  std::vector<Eigen::Vector2d> corners;
-  for (const cv::Point2f& point : Refined(grey, counts, points)) corners.emplace_back(point.x, point.y);
-  return corners;
+  for (const Eigen::Vector2d& corner : corners)
+    points.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+  std::vector<Eigen::Vector2d> refined;
+  for (const cv::Point2f& point : Refined(Wrapped(image), {cols, rows}, points)) refined.emplace_back(point.x, point.y);
+  return refined;
+}
+
+std::optional<std::vector<Eigen::Vector2d>> FindCorners(const GreyImage& image, int cols, int rows) {
+  const auto found = Search(image, {cols, rows});
+  if (found.empty()) return std::nullopt;
+  auto refined = RefinedCorners(image, cols, rows, found);
+  if (!Stayed(found, refined, {cols, rows})) return std::nullopt;
+  return refined;
 }
 
 }  // namespace rigcal::detect

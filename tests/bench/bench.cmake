@@ -4,3 +4,4 @@ rigcal_program(receipt_recorder SOURCES bench/receipt_recorder.cc DEPS rigcal_id
 rigcal_program(query_bench SOURCES bench/query_bench.cc DEPS rigcal_client)
 rigcal_program(graph_honesty_measure SOURCES bench/graph_honesty_measure.cc DEPS rigcal_graph)
 rigcal_program(graph_faults_measure SOURCES bench/graph_faults_measure.cc DEPS rigcal_graph)
+rigcal_program(board_speed_measure SOURCES bench/board_speed_measure.cc bench/board_pictures.cc DEPS rigcal_detect)

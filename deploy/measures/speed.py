@@ -1,0 +1,18 @@
+"""Processor time of one thread from a grey picture of 2448 x 2048 to the corners of a board, and whether they are right."""
+from .measure import at_least, at_most, equal, info
+
+
+def run(context):
+    result = context.run_json("board_speed_measure", context.data, 3000 if context.full else 300, timeout=3600)
+    yield at_most("board_found_5mp_ms", result["found_median_ms"], 40.0, "ms")
+    yield info("board_found_5mp_max_ms", result["found_max_ms"], "ms")
+    yield at_most("board_none_5mp_ms", result["none_median_ms"], 150.0, "ms")
+    yield info("board_none_5mp_max_ms", result["none_max_ms"], "ms")
+    yield info("decode_png_5mp_ms", result["decode_png_ms"], "ms")
+    yield info("decode_jpeg_5mp_ms", result["decode_jpeg_ms"], "ms")
+    if result["reference_corners"] > 0:
+        yield at_most("corners_rms_px", result["reference_rms_px"], 0.05, "px")
+    yield equal("boards_found_drawn", "%d/%d" % (result["drawn_found"], result["drawn"]), "%d/%d" % (result["drawn"], result["drawn"]))
+    yield equal("boards_found_real", "%d/%d" % (result["real_found"], result["real"]), "%d/%d" % (result["real"], result["real"]))
+    yield equal("wrong_boards", result["wrong"], 0)
+    yield at_least("boards_found_small_ratio", result["small_found"] / max(1, result["small"]), 0.9)
