@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "server/detect/image_header.h"
 
@@ -52,11 +53,11 @@ Status CheckPlausible(std::span<const std::byte> encoded, const ImageSize& claim
               "save or copy the picture again");
 }
 
-cv::Mat Decoded(std::span<const std::byte> encoded) {
+cv::Mat Decoded(std::span<const std::byte> encoded, cv::ImreadModes colour) {
   // imdecode only reads, yet its wrapper for memory takes a mutable pointer.
   auto* bytes = const_cast<std::byte*>(encoded.data());
   const cv::Mat buffer(1, static_cast<int>(encoded.size()), CV_8U, bytes);
-  return cv::imdecode(buffer, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+  return cv::imdecode(buffer, colour | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
 Result<GreyImage> AsGrey(const cv::Mat& decoded, const ImageSize& claimed) {
@@ -70,6 +71,33 @@ Result<GreyImage> AsGrey(const cv::Mat& decoded, const ImageSize& claimed) {
   return image;
 }
 
+// All three colours by one stretch, so that the hue stays.
+Result<Picture> AsColour(const cv::Mat& decoded, const ImageSize& claimed) {
+  if (decoded.empty() || decoded.channels() != 3) return Undecodable();
+  if (ImageSize{decoded.cols, decoded.rows} != claimed) return Undecodable();
+  const cv::Mat bgr = decoded.depth() == CV_16U ? Stretched(decoded.reshape(1)).reshape(3) : decoded;
+  if (bgr.type() != CV_8UC3) return Undecodable();
+  Picture picture{bgr.cols, bgr.rows, std::vector<std::uint8_t>(3 * bgr.total())};
+  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, picture.rgb.data());
+  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  return picture;
+}
+
+template <typename Image>
+Result<Image> Decode(std::span<const std::byte> encoded, cv::ImreadModes colour,
+                     Result<Image> (*as_image)(const cv::Mat&, const ImageSize&)) {
+  RIGCAL_ASSIGN(const ImageSize claimed, ReadImageSize(encoded));
+  if (encoded.size() > static_cast<std::size_t>(INT32_MAX)) return Undecodable();
+  RIGCAL_TRY(CheckPlausible(encoded, claimed));
+  if (IsCutOff(encoded))
+    return Fail(ErrorCode::kInvalidInput, "the picture is cut off", "save or copy the picture again");
+  try {
+    return as_image(Decoded(encoded, colour), claimed);
+  } catch (const std::exception&) {  // cv::Exception and bad_alloc: both mean that this picture gives no pixels
+    return Undecodable();
+  }
+}
+
 }  // namespace
 
 double GreyImage::Between(double x, double y) const {
@@ -81,16 +109,11 @@ double GreyImage::Between(double x, double y) const {
 }
 
 Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded) {
-  RIGCAL_ASSIGN(const ImageSize claimed, ReadImageSize(encoded));
-  if (encoded.size() > static_cast<std::size_t>(INT32_MAX)) return Undecodable();
-  RIGCAL_TRY(CheckPlausible(encoded, claimed));
-  if (IsCutOff(encoded))
-    return Fail(ErrorCode::kInvalidInput, "the picture is cut off", "save or copy the picture again");
-  try {
-    return AsGrey(Decoded(encoded), claimed);
-  } catch (const std::exception&) {  // cv::Exception and bad_alloc: both mean that this picture gives no pixels
-    return Undecodable();
-  }
+  return Decode<GreyImage>(encoded, cv::IMREAD_GRAYSCALE, AsGrey);
+}
+
+Result<Picture> DecodeColour(std::span<const std::byte> encoded) {
+  return Decode<Picture>(encoded, cv::IMREAD_COLOR, AsColour);
 }
 
 }  // namespace rigcal::detect

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/model/picture.h"
 
 namespace rigcal::detect {
 
@@ -26,5 +27,7 @@ struct GreyImage {
 // stretched between its 0.1 % and 99.9 % quantiles. A size that the bytes cannot hold is refused before anything is
 // allocated. Fails in words; throws nothing.
 [[nodiscard]] Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded);
+// The same in colour; a grey picture has three equal colours.
+[[nodiscard]] Result<Picture> DecodeColour(std::span<const std::byte> encoded);
 
 }  // namespace rigcal::detect

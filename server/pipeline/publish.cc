@@ -7,6 +7,7 @@
 #include "server/base/durable_file.h"
 #include "server/base/version.h"
 #include "server/formats/documents.h"
+#include "server/pipeline/clouds.h"
 #include "server/report/render.h"
 #include "storage/blobs.h"
 
@@ -82,6 +83,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   std::error_code error;
   fs::remove_all(temporary, error);
   RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
+  RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary));
   RIGCAL_ASSIGN(const auto files, report::RenderRevision(input, revision->document));
   RIGCAL_TRY(WriteFiles(files, temporary));
   RIGCAL_TRY(MoveInPlace(temporary, folder));

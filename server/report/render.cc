@@ -61,6 +61,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillPoses(page, input.revision);
   FillEdges(page, input.revision, edges);
   FillSections(page, input, edges);
+  FillClouds(page, input.clouds);
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
   return std::map<std::string, std::string>{

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/report/cloud_section.h"
 
 namespace rigcal::report {
 
@@ -16,6 +17,7 @@ struct ReportInput {
   formats::RevisionInput revision;  // edges with evidence
   std::string software_version;
   std::vector<Digest> evidence;  // digests whose pictures exist; the rest is shown as missing
+  CloudSection clouds;           // its files are put there by pipeline, too
 };
 
 // File name (relative, '/'-separated) -> contents. Contains index.html, revision.json (= document), style.css.

@@ -55,6 +55,9 @@
 {{#MORE_POSES}}<p class="hint">{{COUNT}} more sensors are in <a href="revision.json">revision.json</a>.</p>{{/MORE_POSES}}
 <p class="hint">Rotation R = Rz(yaw) Ry(pitch) Rx(roll). &sigma; is one standard deviation along the sensor's own axes.</p>
 </section>
+{{#CLOUDS_SECTION}}
+{{>CLOUDS}}
+{{/CLOUDS_SECTION}}
 <section class="card">
 <h2 id="edges">Edges <span class="soft">failed first, then the worst fit</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">

@@ -1,0 +1,55 @@
+// Projection of very many points: single precision, no derivatives, one camera's constants worked out once.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+#include "server/model/camera.h"
+
+namespace rigcal::cloud {
+
+// The same formulas as calib::Project (tests hold the two against each other). Where the lens folds over is found once
+// per camera here, by walking outwards from the axis, instead of once per point.
+class Lens {
+ public:
+  explicit Lens(const CameraIntrinsics& intrinsics);
+
+  // False: behind the camera or beyond the fold; then uv_px says nothing.
+  [[nodiscard]] bool Project(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
+    return fisheye_ ? ProjectFisheye(p_cam, uv_px) : ProjectPinhole(p_cam, uv_px);
+  }
+  // Pixels per radian on the axis, the larger of the two.
+  [[nodiscard]] float focal_px() const { return std::max(focal_.x(), focal_.y()); }
+
+ private:
+  [[nodiscard]] bool ProjectPinhole(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
+    if (!(p_cam.z() > kNearest_m)) return false;
+    const float inverse_z = 1 / p_cam.z(), x = p_cam.x() * inverse_z, y = p_cam.y() * inverse_z, s = x * x + y * y;
+    if (!(s < limit_)) return false;
+    const float above = 1 + s * (k_[0] + s * (k_[1] + s * k_[2])), below = 1 + s * (k_[3] + s * (k_[4] + s * k_[5]));
+    const float radial = above / below, xy2 = 2 * x * y;
+    uv_px.x() = focal_.x() * (x * radial + p1_ * xy2 + p2_ * (s + 2 * x * x)) + centre_.x();
+    uv_px.y() = focal_.y() * (y * radial + p1_ * (s + 2 * y * y) + p2_ * xy2) + centre_.y();
+    return true;
+  }
+  [[nodiscard]] bool ProjectFisheye(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
+    const float r = p_cam.head<2>().norm(), theta = std::atan2(r, p_cam.z());
+    if (!(theta < limit_) || !(r + std::abs(p_cam.z()) > kNearest_m)) return false;
+    const float s = theta * theta;
+    const float theta_d = theta * (1 + s * (k_[0] + s * (k_[1] + s * (k_[2] + s * k_[3]))));
+    const float scale = r > 0 ? theta_d / r : 0;
+    uv_px = focal_.cwiseProduct(scale * p_cam.head<2>()) + centre_;
+    return true;
+  }
+
+  static constexpr float kNearest_m = 0.02F;  // nearer than this a point is on the lens
+
+  bool fisheye_ = false;
+  Eigen::Vector2f focal_, centre_;
+  std::array<float, 6> k_{};  // pinholes: k1 k2 k3, k4 k5 k6; fisheye: k1 to k4
+  float p1_ = 0, p2_ = 0;
+  float limit_ = 0;  // pinholes: x^2 + y^2; fisheye: the angle from the axis, radians
+};
+
+}  // namespace rigcal::cloud

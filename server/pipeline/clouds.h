@@ -1,0 +1,19 @@
+// The coloured clouds of a revision, as files in its folder.
+#pragma once
+
+#include <filesystem>
+
+#include "server/formats/documents.h"
+#include "server/report/cloud_section.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Writes cloud/<lidar>/{front,top,oblique}.png, cloud.ply, points.bin and overlay/<camera>.jpg, <camera>_picture.jpg
+// below `folder`, for every lidar that ChooseClouds finds. One picture is in memory at a time. A camera that several
+// lidars meet is shown with the one that has the most points in its picture. What cannot be read is a note of the
+// section; only a disk that cannot be written fails. The same store and revision give the same bytes.
+[[nodiscard]] Result<report::CloudSection> WriteClouds(storage::Store& store, const formats::RevisionInput& revision,
+                                                       const std::filesystem::path& folder);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,33 @@
+// The section of a revision page that shows the coloured clouds and the overlays.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "server/report/page.h"
+
+namespace rigcal::report {
+
+// File names are relative to the revision's folder; they hold ids and fixed words only.
+struct ColouredLidar {
+  std::string lidar, capture;
+  std::string front_png, top_png, oblique_png, ply, viewer_points;
+  std::size_t points = 0, covered = 0;  // covered: seen by at least one camera
+  std::size_t cameras = 0;              // whose pictures were used
+};
+struct CameraOverlay {
+  std::string camera, lidar, capture;
+  std::string points_jpg, picture_jpg;
+  std::size_t points = 0;  // of the lidar, in the picture
+};
+struct CloudSection {
+  std::vector<ColouredLidar> lidars;
+  std::vector<CameraOverlay> overlays;
+  std::vector<std::string> notes;  // whole sentences: what could not be shown, and why
+};
+
+// Nothing is shown where the section is empty.
+void FillClouds(Dictionary& page, const CloudSection& section);
+
+}  // namespace rigcal::report
