@@ -145,6 +145,7 @@ Beams BeamsOf(const Cloud& cloud) {
   Beams beams;
   TakePoints(cloud, beams);
   FindSteps(beams);
+  beams.facing = Facing(beams.points_m, beams.MeanStep_rad());
   return beams;
 }
 

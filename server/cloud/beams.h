@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "server/cloud/facing.h"
 #include "server/model/cloud.h"
 
 namespace rigcal::cloud {
@@ -21,17 +22,32 @@ struct Beams {
   static constexpr int kHeights = 1024;
   std::vector<float> steps_up_rad = std::vector<float>(kHeights, 0.01F);
 
+  Facing facing;
+
   // Halves of a step, and sideways a little more, so that neighbours at one distance leave no chink. Not so upwards: the
   // next ring on the ground is much further and must not be hidden.
   static constexpr float kLevel = 0.75F, kUpright = 0.5F;
 
-  // The half sides of the patch that a beam stands for: across the ray, level and upright.
+  // The half sides of the patch of surface that a beam stands for, one level and one upright as the lidar sees them. It
+  // lies in the surface: else, on a floor seen at a low angle, every ring would hide the next from a lower camera.
   void PatchOf(const Eigen::Vector3f& point_m, Eigen::Vector3f& level_m, Eigen::Vector3f& upright_m) const {
     const float level = point_m.head<2>().norm(), range = point_m.norm();
     const Eigen::Vector3f across =
         level > 0 ? Eigen::Vector3f(-point_m.y() / level, point_m.x() / level, 0) : Eigen::Vector3f(0, 1, 0);
-    level_m = (kLevel * azimuth_step_rad * std::max(level, 0.5F * range)) * across;
-    upright_m = (kUpright * StepUp_rad(point_m.z() / std::max(range, 1e-6F))) * point_m.cross(across);
+    const Eigen::Vector3f up = point_m.cross(across);
+    const float level_half = kLevel * azimuth_step_rad * std::max(level, 0.5F * range);
+    level_m = level_half * across;
+    upright_m = kUpright * StepUp_rad(point_m.z() / std::max(range, 1e-6F)) * up;
+    LayInSurface(point_m, level_m, upright_m);
+  }
+  // Along the ray, until they lie in the plane; hardly longer than kSteepest times.
+  void LayInSurface(const Eigen::Vector3f& point_m, Eigen::Vector3f& level_m, Eigen::Vector3f& upright_m) const {
+    constexpr float kSteepest = 12;
+    const Eigen::Vector3f normal = facing.At(point_m);
+    const float towards = -normal.dot(point_m);
+    if (!(towards > 0)) return;
+    const float along = 1 / std::max(towards, point_m.norm() / kSteepest);
+    level_m += (normal.dot(level_m) * along) * point_m, upright_m += (normal.dot(upright_m) * along) * point_m;
   }
   [[nodiscard]] float StepUp_rad(float sine) const {
     const int height = static_cast<int>((sine + 1) * (0.5F * kHeights));

@@ -56,6 +56,7 @@ ColouredCloud Blend(Beams beams, std::span<const CameraView> views) {
   ColouredCloud cloud;
   cloud.gains = BalancedGains(views);
   cloud.step_rad = beams.MeanStep_rad();
+  cloud.facing = std::move(beams.facing);
   cloud.points_m = std::move(beams.points_m);
   cloud.intensity = std::move(beams.intensity);
   cloud.rgb.assign(cloud.points_m.size(), kUncovered);

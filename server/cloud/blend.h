@@ -18,6 +18,7 @@ struct ColouredCloud {
   std::vector<std::uint8_t> camera_idx;  // the camera with the most weight; kNoCamera
   std::vector<std::uint8_t> intensity;
   float step_rad = 0.01F;  // mean spacing of the beams
+  Facing facing;
   std::vector<Gain> gains;  // by camera
   std::size_t covered = 0;
 };

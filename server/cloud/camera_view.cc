@@ -23,6 +23,7 @@ constexpr float kBorderLeast = 0.01F, kAngleLeast = 0.05F;
 struct Candidate {
   std::uint32_t point_idx;
   Patch patch;
+  float depth_m;  // of the surface between this beam and its neighbours
   float weight;
 };
 using Candidates = std::vector<std::vector<Candidate>>;
@@ -61,14 +62,15 @@ Eigen::Vector2f Extent(const Camera& camera, const Eigen::Vector3f& p_cam, const
 }
 
 void SetSize(const Camera& camera, const Beams& beams, const Eigen::Vector3f& point, const Eigen::Vector3f& p_cam,
-             const Eigen::Vector2f& uv_px, Patch& patch) {
+             const Eigen::Vector2f& uv_px, Candidate& candidate) {
   Eigen::Vector3f level, upright;
   beams.PatchOf(point, level, upright);
   Eigen::Vector2f half = Extent(camera, p_cam, level, uv_px) + Extent(camera, p_cam, upright, uv_px);
+  candidate.depth_m = 2 * (std::abs(level.dot(point)) + std::abs(upright.dot(point))) / std::max(point.norm(), 1e-6F);
   half = half.cwiseMin(kPatchHalfMax);
   const float cells = 4 * half.x() * half.y();
   if (cells > kPatchCellsMax) half *= std::sqrt(kPatchCellsMax / cells);
-  patch.half_x = half.x(), patch.half_y = half.y();
+  candidate.patch.half_x = half.x(), candidate.patch.half_y = half.y();
 }
 
 float WeightOf(const Camera& camera, const Eigen::Vector3f& point, const Eigen::Vector3f& p_cam, float range_m,
@@ -91,7 +93,7 @@ void ProjectPart(const Camera& camera, const Beams& beams, std::size_t part, std
     candidate.point_idx = static_cast<std::uint32_t>(i);
     candidate.patch.x = (uv_px.x() + 0.5F) / camera.cell_px, candidate.patch.y = (uv_px.y() + 0.5F) / camera.cell_px;
     candidate.patch.range_m = p_cam.norm();
-    SetSize(camera, beams, point, p_cam, uv_px, candidate.patch);
+    SetSize(camera, beams, point, p_cam, uv_px, candidate);
     candidate.weight = WeightOf(camera, point, p_cam, candidate.patch.range_m, uv_px);
     found.push_back(candidate);
   }
@@ -137,7 +139,7 @@ std::vector<SeenPoint> NotHidden(const Camera& camera, const Beams& beams, const
   seen.reserve(candidates.size());
   for (const Candidate& candidate : candidates) {
     const Patch& patch = candidate.patch;
-    const float slack_m = kHidden_m + kHiddenPerRange * patch.range_m +
+    const float slack_m = kHidden_m + kHiddenPerRange * patch.range_m + candidate.depth_m +
                           kHiddenPerSpacing * beams.SpacingAt_m(beams.points_m[candidate.point_idx]);
     if (patch.range_m > buffer.NearestAt(patch.x, patch.y) + slack_m) continue;
     const float u = std::clamp(patch.x * camera.cell_px - 0.5F, 0.0F, camera.width_px - 1);

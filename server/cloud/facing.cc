@@ -1,8 +1,8 @@
 #include "server/cloud/facing.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
-#include <cmath>
+
+#include "server/base/parallel_for.h"
 
 namespace rigcal::cloud {
 namespace {
@@ -19,18 +19,10 @@ struct Bundle {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 };
 
-struct Raster {
-  int columns, rows;
-  float size_rad;
+constexpr std::size_t kParts = 8;             // summed in their order, whatever thread did which
+constexpr std::size_t kPointsWanted = 300'000;  // of a larger cloud every n-th point is enough
 
-  [[nodiscard]] std::size_t IndexOf(const Eigen::Vector3f& point) const {
-    const float azimuth = std::atan2(point.y(), point.x()) + static_cast<float>(M_PI);
-    const float elevation = std::atan2(point.z(), point.head<2>().norm()) + static_cast<float>(M_PI_2);
-    const int column = std::clamp(static_cast<int>(azimuth / size_rad), 0, columns - 1);
-    const int row = std::clamp(static_cast<int>(elevation / size_rad), 0, rows - 1);
-    return static_cast<std::size_t>(row * columns + column);
-  }
-};
+using Bundles = std::vector<Bundle>;
 
 Eigen::Vector3f NormalOf(const Bundle& bundle) {
   if (bundle.count < kPointsMin) return Eigen::Vector3f::Zero();
@@ -44,23 +36,43 @@ Eigen::Vector3f NormalOf(const Bundle& bundle) {
   return (normal.dot(mean) > 0 ? Eigen::Vector3d(-normal) : normal).cast<float>();
 }
 
+void Add(const Eigen::Vector3f& point_m, Bundle& bundle) {
+  const Eigen::Vector3d point = point_m.cast<double>();
+  ++bundle.count, bundle.sum += point, bundle.squares += point * point.transpose();
+}
+
+void Add(const Bundle& other, Bundle& bundle) {
+  bundle.count += other.count, bundle.sum += other.sum, bundle.squares += other.squares;
+}
+
 }  // namespace
 
-std::vector<Eigen::Vector3f> FacingOf(const std::vector<Eigen::Vector3f>& points_m, float step_rad) {
-  const float size_rad = std::clamp(kBundleSteps * step_rad, kBundleMin_rad, kBundleMax_rad);
-  const Raster raster{static_cast<int>(2 * M_PI / size_rad) + 1, static_cast<int>(M_PI / size_rad) + 1, size_rad};
-  std::vector<Bundle> bundles(static_cast<std::size_t>(raster.columns * raster.rows));
-  std::vector<std::uint32_t> own(points_m.size());
-  for (std::size_t i = 0; i < points_m.size(); ++i) {
-    own[i] = static_cast<std::uint32_t>(raster.IndexOf(points_m[i]));
-    Bundle& bundle = bundles[own[i]];
-    const Eigen::Vector3d point = points_m[i].cast<double>();
-    ++bundle.count, bundle.sum += point, bundle.squares += point * point.transpose();
-  }
-  std::vector<Eigen::Vector3f> normals(bundles.size()), facing(points_m.size());
-  for (std::size_t b = 0; b < bundles.size(); ++b) normals[b] = NormalOf(bundles[b]);
-  for (std::size_t i = 0; i < points_m.size(); ++i) facing[i] = normals[own[i]];
-  return facing;
+std::size_t Facing::IndexOf(const Eigen::Vector3f& point_m) const {
+  const float azimuth = std::atan2(point_m.y(), point_m.x()) + static_cast<float>(M_PI);
+  const float elevation = std::atan2(point_m.z(), point_m.head<2>().norm()) + static_cast<float>(M_PI_2);
+  const int column = std::clamp(static_cast<int>(azimuth / size_rad_), 0, columns_ - 1);
+  const int row = std::clamp(static_cast<int>(elevation / size_rad_), 0, rows_ - 1);
+  return static_cast<std::size_t>(row * columns_ + column);
+}
+
+Facing::Facing(const std::vector<Eigen::Vector3f>& points_m, float step_rad)
+    : size_rad_(std::clamp(kBundleSteps * step_rad, kBundleMin_rad, kBundleMax_rad)) {
+  columns_ = static_cast<int>(2 * M_PI / size_rad_) + 1, rows_ = static_cast<int>(M_PI / size_rad_) + 1;
+  const auto count = static_cast<std::size_t>(columns_ * rows_);
+  const std::size_t stride = std::max<std::size_t>(1, points_m.size() / kPointsWanted);
+  std::vector<Bundles> parts(kParts, Bundles(count));
+  ParallelFor(kParts, [&](std::size_t part) {
+    for (std::size_t i = part * stride; i < points_m.size(); i += kParts * stride)
+      Add(points_m[i], parts[part][IndexOf(points_m[i])]);
+  });
+  normals_.resize(count);
+  ParallelFor(static_cast<std::size_t>(rows_), [&](std::size_t row) {
+    for (std::size_t b = row * static_cast<std::size_t>(columns_); b < (row + 1) * static_cast<std::size_t>(columns_); ++b) {
+      Bundle whole;
+      for (const Bundles& part : parts) Add(part[b], whole);
+      normals_[b] = NormalOf(whole);
+    }
+  });
 }
 
 }  // namespace rigcal::cloud

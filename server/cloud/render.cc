@@ -6,7 +6,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "server/cloud/facing.h"
 #include "server/cloud/raster.h"
 
 namespace rigcal::cloud {
@@ -78,14 +77,13 @@ std::vector<Eigen::Vector3f> Subject(const ColouredCloud& cloud) {
 
 Raster Splatted(const ColouredCloud& cloud, const Viewpoint& view, int width_px, int height_px) {
   Raster raster(width_px, height_px);
-  const std::vector<Eigen::Vector3f> facing = FacingOf(cloud.points_m, cloud.step_rad);
   const float disc_rad =
       std::max(kDiscPerStepLeast * cloud.step_rad, std::min(kDiscPerStep * cloud.step_rad, kDisc_rad));
   const Eigen::Vector3f into = view.R_view_lidar.row(2);
   for (std::size_t i = 0; i < cloud.points_m.size(); ++i) {
     const Eigen::Vector3f& point = cloud.points_m[i];
     const Eigen::Vector3f p_view = view.R_view_lidar * point;
-    if (view.perspective ? p_view.z() < kNearest_m : facing[i].dot(-into) < kFacingAway) continue;
+    if (view.perspective ? p_view.z() < kNearest_m : cloud.facing.At(point).dot(-into) < kFacingAway) continue;
     const Eigen::Vector3f place = view.Place(p_view, width_px, height_px);
     const float radius_m = disc_rad * point.norm();
     const float radius_px =

@@ -62,7 +62,7 @@ TEST(Colour, WhatAPlateHidesIsNotPaintedAndNothingElseIsLost) {
       continue;
     const bool on_plate = surfaces[i] >= CloudRoom::kWallColours;
     if (!on_plate && IsHidden(smaller, camera, beams.points_m[i])) ++hidden, hidden_seen += seen.count(i);
-    if (on_plate || !IsHidden(larger, camera, beams.points_m[i])) {++free, free_lost += 1 - seen.count(i); if(!seen.count(i)) std::printf("%d %.3f %.3f %.3f uv %.0f %.0f\n",surfaces[i],beams.points_m[i].x(),beams.points_m[i].y(),beams.points_m[i].z(),inside.uv_px.x(),inside.uv_px.y());}
+    if (on_plate || !IsHidden(larger, camera, beams.points_m[i])) ++free, free_lost += 1 - seen.count(i);
   }
   EXPECT_GT(hidden, 500u);
   EXPECT_EQ(hidden_seen, 0u);
