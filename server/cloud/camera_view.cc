@@ -14,6 +14,7 @@ constexpr float kCellMin_px = 1, kCellMax_px = 16;
 constexpr float kCells = 1.5e6F;         // of a buffer, at most about
 constexpr float kPatchCellsMax = 1024;   // that one beam covers: a bound on work, beyond any lidar's spacing
 constexpr float kPatchHalfMax = 48;      // cells
+constexpr std::size_t kAhead = 12;       // candidates
 constexpr int kBands = 16;               // of rows, one thread each
 constexpr float kHidden_m = 0.03F, kHiddenPerRange = 0.005F, kHiddenPerSpacing = 0.5F;
 constexpr float kBorderShare = 0.08F;    // of the shorter side, in which the weight falls
@@ -117,11 +118,30 @@ DepthBuffer Splatted(const Camera& camera, const Candidates& candidates) {
   return buffer;
 }
 
+std::size_t OffsetOf(const Picture& picture, int x, int y) {
+  return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width_px) + static_cast<std::size_t>(x));
+}
+
+// Where a candidate's pixel is.
+Eigen::Vector2f PixelOf(const Camera& camera, const Patch& patch) {
+  return {std::clamp(patch.x * camera.cell_px - 0.5F, 0.0F, camera.width_px - 1),
+          std::clamp(patch.y * camera.cell_px - 0.5F, 0.0F, camera.height_px - 1)};
+}
+
+// The order of a scan is not the order of a picture: most of the time would go into waiting for memory.
+void FetchAhead(const Camera& camera, const DepthBuffer& buffer, const Picture& picture, const Patch& patch) {
+  const Eigen::Vector2f uv_px = PixelOf(camera, patch);
+  const int x = static_cast<int>(uv_px.x()), y = static_cast<int>(uv_px.y());
+  __builtin_prefetch(&buffer.NearestAt(patch.x, patch.y));
+  __builtin_prefetch(&picture.rgb[OffsetOf(picture, x, y)]);
+  __builtin_prefetch(&picture.rgb[OffsetOf(picture, x, std::min(y + 1, picture.height_px - 1))]);
+}
+
 Rgb Between(const Picture& picture, float u, float v) {
   const int x0 = static_cast<int>(u), y0 = static_cast<int>(v);
   const int right = x0 + 1 < picture.width_px ? 3 : 0;
   const std::size_t row = 3 * static_cast<std::size_t>(picture.width_px);
-  const std::uint8_t* top = &picture.rgb[static_cast<std::size_t>(y0) * row + 3 * static_cast<std::size_t>(x0)];
+  const std::uint8_t* top = &picture.rgb[OffsetOf(picture, x0, y0)];
   const std::uint8_t* low = y0 + 1 < picture.height_px ? top + row : top;
   const float fx = u - static_cast<float>(x0), fy = v - static_cast<float>(y0);
   Rgb rgb;
@@ -137,14 +157,16 @@ std::vector<SeenPoint> NotHidden(const Camera& camera, const Beams& beams, const
                                  const std::vector<Candidate>& candidates, const Picture& picture) {
   std::vector<SeenPoint> seen;
   seen.reserve(candidates.size());
-  for (const Candidate& candidate : candidates) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
     const Patch& patch = candidate.patch;
+    if (i + kAhead < candidates.size()) FetchAhead(camera, buffer, picture, candidates[i + kAhead].patch);
     const float slack_m = kHidden_m + kHiddenPerRange * patch.range_m + candidate.depth_m +
                           kHiddenPerSpacing * beams.SpacingAt_m(beams.points_m[candidate.point_idx]);
     if (patch.range_m > buffer.NearestAt(patch.x, patch.y) + slack_m) continue;
-    const float u = std::clamp(patch.x * camera.cell_px - 0.5F, 0.0F, camera.width_px - 1);
-    const float v = std::clamp(patch.y * camera.cell_px - 0.5F, 0.0F, camera.height_px - 1);
-    seen.push_back({candidate.point_idx, u, v, patch.range_m, candidate.weight, Between(picture, u, v)});
+    const Eigen::Vector2f uv_px = PixelOf(camera, patch);
+    seen.push_back({candidate.point_idx, uv_px.x(), uv_px.y(), patch.range_m, candidate.weight,
+                    Between(picture, uv_px.x(), uv_px.y())});
   }
   return seen;
 }

@@ -35,7 +35,7 @@ class DepthBuffer {
     }
   }
   // Of the cell that the place lies in.
-  [[nodiscard]] float NearestAt(float x, float y) const {
+  [[nodiscard]] const float& NearestAt(float x, float y) const {
     return nearest_m_[static_cast<std::size_t>(static_cast<int>(y)) * static_cast<std::size_t>(width_) +
                       static_cast<std::size_t>(static_cast<int>(x))];
   }
