@@ -3,6 +3,7 @@
 # rigcal_manpage(NAME SECTION)                          build/.../man/NAME.SECTION.gz, from its --help
 # rigcal_test(NAME SOURCES ... DEPS ... [LABELS ...])     one GoogleTest program, one ctest per case
 # rigcal_embed(TARGET NAMESPACE ns FILES ...)             files as string_view constants: "<ns>/embedded.h"
+# rigcal_embed_built(TARGET NAMESPACE ns OUTPUT x.h FILES ...)  the same for large files that the build makes
 
 find_program(CCACHE ccache)
 if(CCACHE)
@@ -91,4 +92,38 @@ function(rigcal_embed target)
     DEPENDS ${paths} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake VERBATIM)
   target_sources(${target} PRIVATE ${header})
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/embedded)
+endfunction()
+
+# By the assembler's .incbin: megabytes cost the compiler nothing.
+function(rigcal_embed_built target)
+  cmake_parse_arguments(arg "" "NAMESPACE;OUTPUT" "FILES" ${ARGN})
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/embedded)
+  set(declarations "")
+  set(table "")
+  set(assembly "    .section .rodata\n")
+  foreach(path ${arg_FILES})
+    get_filename_component(name ${path} NAME)
+    string(MAKE_C_IDENTIFIER "rigcal_built_${name}" symbol)
+    string(APPEND assembly "    .global ${symbol}\n${symbol}:\n    .incbin \"${path}\"\n")
+    string(APPEND assembly "    .global ${symbol}_end\n${symbol}_end:\n    .byte 0\n")
+    string(APPEND declarations "extern \"C\" const char ${symbol}[];\nextern \"C\" const char ${symbol}_end[];\n")
+    string(APPEND table
+           "  {\"${name}\", {${symbol}, static_cast<std::size_t>(${symbol}_end - ${symbol})}},\n")
+  endforeach()
+  string(APPEND assembly "    .section .note.GNU-stack,\"\",%progbits\n")
+  list(LENGTH arg_FILES count)
+  file(CONFIGURE OUTPUT ${folder}/${arg_OUTPUT} @ONLY CONTENT
+"#pragma once
+#include <array>
+#include <string_view>
+#include <utility>
+${declarations}namespace ${arg_NAMESPACE} {
+inline const std::array<std::pair<std::string_view, std::string_view>, ${count}> kBuiltFiles = {{
+${table}}};
+}
+")
+  file(CONFIGURE OUTPUT ${folder}/${arg_OUTPUT}.S @ONLY CONTENT "${assembly}")
+  set_source_files_properties(${folder}/${arg_OUTPUT}.S PROPERTIES OBJECT_DEPENDS "${arg_FILES}")
+  target_sources(${target} PRIVATE ${folder}/${arg_OUTPUT}.S)
+  target_include_directories(${target} PRIVATE ${folder})
 endfunction()

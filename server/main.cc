@@ -60,7 +60,7 @@ http::Answer PagesOf(const std::filesystem::path& folder, pipeline::RevisionCach
     if (!store) return Fail(store.error());
     RIGCAL_ASSIGN(auto page,
                   pipeline::AnswerPage({*store, SystemClock(), revisions, started_at, address.get()}, path, query));
-    return http::Page{std::move(page.body), std::move(page.content_type)};
+    return http::Page{std::move(page.body), std::move(page.content_type), {}, page.immutable};
   };
 }
 

@@ -9,10 +9,10 @@
 namespace rigcal::http {
 namespace {
 
-// The pages need nothing from elsewhere and run no script of their own pages: so nothing else is allowed.
+// The pages need nothing from elsewhere, and their scripts and styles are files: so nothing else is allowed.
 constexpr const char* kContentPolicy =
     "default-src 'none'; style-src 'self'; img-src 'self' data:; script-src 'self'; connect-src 'self'; "
-    "font-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "font-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
 void Add(mg_connection* connection, const char* name, const std::string& value) {
   mg_response_header_add(connection, name, value.c_str(), static_cast<int>(value.size()));
@@ -51,9 +51,12 @@ bool SendBytes(mg_connection* connection, std::string_view bytes) {
   return true;
 }
 
-int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type) {
+const char* CacheControlOf(bool immutable) { return immutable ? "private, max-age=31536000, immutable" : "no-cache"; }
+
+int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type, bool immutable) {
   const std::string etag = "\"" + Sha256Of(body).str().substr(0, 32) + "\"";
-  const Headers headers = {{"ETag", etag}, {"Cache-Control", "no-cache"}, {"Content-Type", content_type}};
+  const Headers headers = {
+      {"ETag", etag}, {"Cache-Control", CacheControlOf(immutable)}, {"Content-Type", content_type}};
   if (MatchesTag(HeaderOf(connection, "If-None-Match"), etag)) {
     SendHead(connection, 304, 0, headers);
     return 304;

@@ -18,8 +18,11 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, const Headers& headers);
 // False once the client has gone or stopped taking.
 [[nodiscard]] bool SendBytes(mg_connection* connection, std::string_view bytes);
+// What never changes is kept by the browser; the rest is asked for again, with its tag.
+[[nodiscard]] const char* CacheControlOf(bool immutable);
 // Head and body; 304 if the client has this very body.
-int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type);
+int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type,
+             bool immutable = false);
 int SendRedirect(mg_connection* connection, int status, const std::string& location);
 // A small page, or below /api the document {"error": {code, cure, what}}. Returns the status.
 int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers = {});

@@ -52,7 +52,7 @@ int ServePath(mg_connection* connection, const Site& site, const std::string& pa
   const auto page = Ask(site, path, query);
   if (!page) return SendError(connection, StatusOf(page.error().code), page.error(), IsApi(path));
   if (!page->location.empty()) return SendRedirect(connection, 302, page->location);
-  return SendBody(connection, page->body, page->content_type);
+  return SendBody(connection, page->body, page->content_type, page->immutable);
 }
 
 int Serve(mg_connection* connection, const Site& site) {

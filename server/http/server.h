@@ -23,6 +23,7 @@ struct Page {
   std::string body;
   std::string content_type;
   std::string location = {};  // not empty: a temporary redirect to this path instead of the body
+  bool immutable = false;     // named by its content: a browser may keep it for ever
 };
 // `path` is decoded and normalised ("/", "/robots/x/", "/api/v1/robots", "/metrics", "/healthz"), `query` the raw query
 // string. Called from server threads, several at once. Not asked for the files of a numbered revision.

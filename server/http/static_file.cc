@@ -50,10 +50,9 @@ std::string ContentType(const std::string& file) {
   return is_text ? type + "; charset=utf-8" : type;
 }
 
-// Pictures are named by their digest: they never change. The rest may be rendered anew by a newer version.
+// Pictures and scripts are named by their digest: they never change. The rest may be rendered anew by a newer version.
 std::string CacheControl(const std::string& file) {
-  const bool named_by_digest = file.find("/evidence/") != std::string::npos;
-  return named_by_digest ? "private, max-age=31536000, immutable" : "no-cache";
+  return CacheControlOf(file.find("/evidence/") != std::string::npos || file.find("/assets/") != std::string::npos);
 }
 
 void SendRange(mg_connection* connection, const OpenFile& open, ByteRange range) {

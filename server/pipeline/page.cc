@@ -4,6 +4,7 @@
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/report/assets.h"
 #include "server/report/render.h"
 #include "storage/revisions.h"
 
@@ -11,6 +12,7 @@ namespace rigcal::pipeline {
 namespace {
 
 constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kJson = "application/json; charset=utf-8";
 
 report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
@@ -41,6 +43,12 @@ Result<PageText> RobotPage(const AnswerContext& context, const std::string& name
   RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(FleetRowOf(rows.front()), revisions, now));
   return PageText{std::move(body), kHtml};
+}
+
+Result<PageText> Script(const std::string& name) {
+  for (const report::Asset& asset : report::Assets())
+    if (asset.name == name) return PageText{std::string(asset.bytes), kScript, true};
+  return Fail(ErrorCode::kNotFound, "there is no script " + name, "Reload the page: a newer version has other names.");
 }
 
 Result<PageText> Api(const AnswerContext& context, const std::string& verb, const std::string& query) {
@@ -77,9 +85,10 @@ Result<PageText> Healthz(const AnswerContext& context) {
 }  // namespace
 
 Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
-  const std::string api = "/api/v1/", robots = "/robots/";
+  const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/";
   if (path == "/") return FleetPage(context);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
+  if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);
   if (path == "/metrics") return Metrics(context);
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);

@@ -5,9 +5,9 @@
 #include <set>
 
 #include "server/base/durable_file.h"
-#include "server/base/version.h"
-#include "server/formats/documents.h"
 #include "server/pipeline/clouds.h"
+#include "server/pipeline/report_input.h"
+#include "server/report/assets.h"
 #include "server/report/render.h"
 #include "storage/blobs.h"
 
@@ -21,6 +21,14 @@ Error DiskError(const fs::path& path, const std::error_code& error) {
           "Check free space and permissions of the data folder."};
 }
 
+Status LinkFile(const fs::path& from, const fs::path& file) {
+  std::error_code error;
+  fs::create_directories(file.parent_path(), error);
+  if (!error) fs::create_hard_link(from, file, error);
+  if (error) fs::copy_file(from, file, fs::copy_options::overwrite_existing, error);
+  return error ? Status(Fail(DiskError(file, error))) : Status();
+}
+
 // Pictures are hard links to their blobs: no copy, and a blob never changes.
 Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges, const fs::path& folder,
                     std::vector<Digest>& present) {
@@ -31,13 +39,25 @@ Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges,
   for (const Edge& edge : edges)
     for (const Evidence& item : edge.evidence) {
       if (!done.insert(item.digest).second || !storage::HasBlob(store.BlobFolder(), item.digest)) continue;
-      const fs::path from = storage::BlobPath(store.BlobFolder(), item.digest);
-      const fs::path file = folder / (item.digest.str() + "." + item.suffix);
-      fs::create_hard_link(from, file, error);
-      if (error) fs::copy_file(from, file, fs::copy_options::overwrite_existing, error);
-      if (error) return Fail(DiskError(file, error));
+      RIGCAL_TRY(LinkFile(storage::BlobPath(store.BlobFolder(), item.digest),
+                          folder / (item.digest.str() + "." + item.suffix)));
       present.push_back(item.digest);
     }
+  return {};
+}
+
+// The scripts exist once below the report folder; each report holds links to them, so that it also opens from disk.
+Status LinkAssets(const fs::path& report_folder, const fs::path& folder) {
+  for (const report::Asset& asset : report::Assets()) {
+    const fs::path kept = report_folder / ".assets" / asset.name;
+    std::error_code error;
+    if (fs::file_size(kept, error) != asset.bytes.size() || error) {
+      fs::create_directories(kept.parent_path(), error);
+      if (error) return Fail(DiskError(kept, error));
+      RIGCAL_TRY(WriteDurably(kept, asset.bytes));
+    }
+    RIGCAL_TRY(LinkFile(kept, folder / asset.name));
+  }
   return {};
 }
 
@@ -59,16 +79,6 @@ Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
   return SyncFolder(folder.parent_path());
 }
 
-Result<report::ReportInput> ReportOf(const Revision& revision) {
-  report::ReportInput input;
-  input.number = revision.number;
-  input.created_at = revision.created_at;
-  input.digest = revision.digest;
-  input.software_version = std::string(Version());
-  RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
-  return input;
-}
-
 }  // namespace
 
 Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key, const Clock& clock) {
@@ -76,7 +86,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   if (!revision)
     return Fail(ErrorCode::kNotFound, "robot " + key.robot.str() + " has no revision " + std::to_string(key.number),
                 "See its revisions with: rigcal show " + key.robot.str());
-  RIGCAL_ASSIGN(report::ReportInput input, ReportOf(*revision));
+  RIGCAL_ASSIGN(report::ReportInput input, LoadReportInput(store, *revision));
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
   const fs::path temporary = robot_folder / (".new-" + std::to_string(key.number));
@@ -84,6 +94,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   fs::remove_all(temporary, error);
   RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
   RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary));
+  RIGCAL_TRY(LinkAssets(store.ReportFolder(), temporary / "assets"));
   RIGCAL_ASSIGN(const auto files, report::RenderRevision(input, revision->document));
   RIGCAL_TRY(WriteFiles(files, temporary));
   RIGCAL_TRY(MoveInPlace(temporary, folder));

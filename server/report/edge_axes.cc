@@ -46,6 +46,21 @@ std::string AxisSigmaText(const Uncertainty& uncertainty, int axis) {
   return sigma.known && std::isfinite(sigma.value) ? InUnit(sigma.value, axis) : "free";
 }
 
+std::string ThreeSigmas(const Uncertainty& uncertainty, int first_axis) {
+  std::string text;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis)
+    text += (text.empty() ? "" : " / ") + AxisSigmaText(uncertainty, axis);
+  return text;
+}
+
+std::string SigmaKey(const Uncertainty& uncertainty, int first_axis) {
+  double largest = -1.0;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis)
+    if (const AxisSigma sigma = SigmaOf(uncertainty, axis); sigma.known && std::isfinite(sigma.value))
+      largest = std::max(largest, sigma.value * (axis < tangent::kRotation ? kMmPerMetre : kDegPerRad));
+  return largest < 0.0 ? "" : Significant(largest, 6);
+}
+
 std::string LargestSigma(const Uncertainty& uncertainty, int first_axis, const std::string& unit) {
   double largest = -1.0;
   std::string free;

@@ -18,8 +18,10 @@ bool HasDetails(const Edge& edge) {
 }
 
 double InSigmas(const Edge& edge, const EdgeResidual* residual) {
-  if (!residual || edge.uncertainty.rank < 1 || !(residual->weighted > 0.0)) return 0.0;
-  return std::sqrt(residual->weighted / edge.uncertainty.rank);
+  if (!residual) return 0.0;
+  const double statistic = residual->by_jackknife ? residual->t_squared : residual->weighted;
+  const int rank = residual->by_jackknife ? residual->rank : edge.uncertainty.rank;
+  return rank > 0 && statistic > 0.0 ? std::sqrt(statistic / rank) : 0.0;
 }
 
 bool Before(const ShownEdge& left, const ShownEdge& right) {

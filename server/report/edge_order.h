@@ -11,7 +11,7 @@ struct ShownEdge {
   const Edge* edge = nullptr;
   const EdgeResidual* residual = nullptr;  // nullptr: not in the solution
   bool detailed = false;                   // has a section of its own
-  double in_sigmas = 0.0;                  // sqrt(e^T Omega e / rank)
+  double in_sigmas = 0.0;  // sqrt(T^2 / rank) by the covariance of this residual, else sqrt(e^T Omega e / rank)
   std::string anchor;                      // of the section
 };
 [[nodiscard]] std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision);

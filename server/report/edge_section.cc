@@ -6,6 +6,7 @@
 
 #include "server/report/bars.h"
 #include "server/report/edge_axes.h"
+#include "server/report/influence.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -61,12 +62,12 @@ void FillParts(Dictionary& section, const Edge& edge) {
   }
 }
 
-void FillUnused(Dictionary& captures, const Edge& edge) {
+void FillUnused(Dictionary& notes, const Edge& edge) {
   constexpr std::size_t kUnusedMax = 30;
   std::size_t shown = 0;
   for (const CaptureResidual& capture : edge.captures) {
     if (capture.used || shown++ >= kUnusedMax) continue;
-    Dictionary* row = captures.AddSectionDictionary("UNUSED");
+    Dictionary* row = notes.AddSectionDictionary("UNUSED");
     row->SetValue("CAPTURE", capture.capture.str());
     if (!capture.note.empty()) ShowValue(*row, "REASON", "NOTE", capture.note);
   }
@@ -87,8 +88,16 @@ void FillCaptures(Dictionary& section, const Edge& edge) {
   const std::string unit = IsMetric(edge) ? "mm" : "px";
   captures->SetValue("UNIT", unit);
   const std::string cut = FillBars(*captures, Shown(edge), unit);
-  if (!cut.empty()) ShowValue(*captures, "BARS_CUT", "TEXT", cut);
-  FillUnused(*captures, edge);
+  Dictionary* notes = section.AddSectionDictionary("CAPTURE_NOTES");
+  if (!cut.empty()) ShowValue(*notes, "BARS_CUT", "TEXT", cut);
+  FillUnused(*notes, edge);
+}
+
+void FillInfluence(Dictionary& section, const ReportInput& input, const Edge& edge) {
+  const auto blocks = input.blocks.find(edge.id);
+  if (edge.state == EdgeState::kFailed || blocks == input.blocks.end()) return;
+  const std::string text = InfluenceText(LargestInfluence(blocks->second, edge.uncertainty));
+  if (!text.empty()) ShowValue(section, "INFLUENCE", "TEXT", text);
 }
 
 // The suffix becomes part of an address: only what we write ourselves.
@@ -114,7 +123,8 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 
 }  // namespace
 
-void FillEdgeSection(Dictionary& section, const ShownEdge& shown, const std::set<Digest>& stored, bool open) {
+void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownEdge& shown,
+                     const std::set<Digest>& stored, bool open) {
   const Edge& edge = *shown.edge;
   const bool failed = edge.state == EdgeState::kFailed;
   section.SetValue("STATE", failed ? "failed" : "good");
@@ -132,6 +142,7 @@ void FillEdgeSection(Dictionary& section, const ShownEdge& shown, const std::set
   FillFigures(section, edge);
   if (!failed) FillParts(section, edge);
   FillCaptures(section, edge);
+  FillInfluence(section, input, edge);
   FillPictures(section, edge, stored);
 }
 

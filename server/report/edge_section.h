@@ -9,6 +9,7 @@
 namespace rigcal::report {
 
 // `stored`: digests of pictures that exist. `open`: unfolded.
-void FillEdgeSection(Dictionary& section, const ShownEdge& shown, const std::set<Digest>& stored, bool open);
+void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownEdge& shown,
+                     const std::set<Digest>& stored, bool open);
 
 }  // namespace rigcal::report

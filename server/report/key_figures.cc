@@ -23,6 +23,11 @@ void Add(Dictionary& page, const Figure& figure) {
   for (const std::string& detail : figure.details) ShowValue(*card, "DETAIL", "TEXT", detail);
 }
 
+std::size_t FailedCount(const std::vector<ShownEdge>& edges) {
+  return static_cast<std::size_t>(std::count_if(
+      edges.begin(), edges.end(), [](const ShownEdge& shown) { return shown.edge->state == EdgeState::kFailed; }));
+}
+
 std::string RmsText(double square, double scale) { return Significant(std::sqrt(std::max(square, 0.0)) * scale, 3); }
 
 Figure GlobalErrorFigure(const GraphSolution& solution) {
@@ -48,7 +53,7 @@ Figure GlobalErrorFigure(const GraphSolution& solution) {
 }
 
 Figure CostFigure(const GraphSolution& solution) {
-  const std::string name = "Weighted cost per degree of freedom";
+  const std::string name = "\xCF\x87\xC2\xB2 per degree of freedom";
   if (!solution.converged) return {name, "not converged", "fail", {"The numbers of this revision are not an optimum."}};
   if (solution.dof <= 0) return {name, "no loop", "warn", {"Nothing is measured twice."}};
   return {name,
@@ -58,50 +63,58 @@ Figure CostFigure(const GraphSolution& solution) {
            "; near 1 where edges are independent. Edges of one session share captures: then it is no verdict."}};
 }
 
-Figure EdgeFigure(const std::vector<Edge>& edges) {
-  const auto failed = static_cast<std::size_t>(
-      std::count_if(edges.begin(), edges.end(), [](const Edge& edge) { return edge.state == EdgeState::kFailed; }));
-  return {"Edges",
-          std::to_string(edges.size() - failed) + " good, " + std::to_string(failed) + " failed",
-          failed > 0 ? "fail" : "pass",
-          {}};
+std::string PairText(const Edge& edge) { return edge.frame_a.str() + kArrow + edge.frame_b.str(); }
+
+// The first in the page's order: a failed one, else the worst fit.
+Figure WorstEdgeFigure(const std::vector<ShownEdge>& edges, int dof) {
+  const std::size_t failed = FailedCount(edges);
+  const std::string counts = std::to_string(edges.size() - failed) + " good, " + std::to_string(failed) + " failed";
+  if (edges.empty()) return {"Worst edge", "no edges", "warn", {}};
+  const ShownEdge& worst = edges.front();
+  if (failed > 0) return {"Worst edge", PairText(*worst.edge), "fail", {"failed", counts}};
+  if (dof <= 0) return {"Worst edge", "none is checked", "warn", {"Without a loop every edge fits.", counts}};
+  const char* tone = worst.in_sigmas < 3.0 ? "pass" : "warn";
+  return {"Worst edge", PairText(*worst.edge), tone, {Fixed(worst.in_sigmas, 1) + " \xCF\x83 off the solution", counts}};
 }
 
-Figure SensorFigure(const std::vector<SensorPose>& poses) {
-  const auto known = static_cast<std::size_t>(
-      std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.known; }));
-  return {"Sensors",
-          std::to_string(known) + " known, " + std::to_string(poses.size() - known) + " unknown",
-          known < poses.size() ? "warn" : "pass",
-          {}};
-}
-
-Figure SigmaFigure(const formats::RevisionInput& revision) {
-  double sigma_m = 0.0, sigma_rad = 0.0;
+// The sensor whose position is least certain.
+const SensorPose* LeastCertain(const formats::RevisionInput& revision) {
   const SensorPose* worst = nullptr;
+  double sigma_m = 0.0;
   for (const SensorPose& pose : revision.solution.poses) {
     if (!pose.known || pose.sensor == revision.reference) continue;
-    const auto sigma = pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt().eval();
-    const double here_m = sigma.head<3>().maxCoeff();
-    sigma_rad = std::max(sigma_rad, sigma.tail<3>().maxCoeff());
+    const double here_m = std::sqrt(std::max(pose.covariance.diagonal().head<3>().maxCoeff(), 0.0));
     if (!worst || here_m > sigma_m) worst = &pose;
     sigma_m = std::max(sigma_m, here_m);
   }
-  if (!worst) return {"Largest \xCF\x83 of a sensor", "none known", "warn", {}};
-  return {"Largest \xCF\x83 of a sensor",
-          SigmaMm(sigma_m) + " mm, " + SigmaDeg(sigma_rad) + " deg",
-          "",
-          {"position: " + worst->sensor.str()}};
+  return worst;
+}
+
+Figure WorstSensorFigure(const formats::RevisionInput& revision) {
+  const auto& poses = revision.solution.poses;
+  const auto known = static_cast<std::size_t>(
+      std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.known; }));
+  const std::string counts = std::to_string(known) + " known, " + std::to_string(poses.size() - known) + " unknown";
+  const auto lost = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return !pose.known; });
+  if (lost != poses.end()) return {"Worst sensor", lost->sensor.str(), "warn", {"its pose is not known", counts}};
+  const SensorPose* worst = LeastCertain(revision);
+  if (!worst) return {"Worst sensor", "none known", "warn", {counts}};
+  const Vector6d sigma = worst->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return {"Worst sensor",
+          worst->sensor.str(),
+          "pass",
+          {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm, \xC2\xB1 " + SigmaDeg(sigma.tail<3>().maxCoeff()) +
+               " deg (1 \xCF\x83)",
+           counts}};
 }
 
 }  // namespace
 
-void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision) {
-  Add(page, SensorFigure(revision.solution.poses));
-  Add(page, EdgeFigure(revision.edges));
-  Add(page, SigmaFigure(revision));
+void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
   Add(page, GlobalErrorFigure(revision.solution));
   Add(page, CostFigure(revision.solution));
+  Add(page, WorstEdgeFigure(edges, revision.solution.dof));
+  Add(page, WorstSensorFigure(revision));
 }
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {

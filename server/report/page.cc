@@ -40,6 +40,8 @@ void FillHead(Dictionary& page, const std::string& title, const std::string& roo
   head->SetValue("ROOT", root);
 }
 
+void AddScript(Dictionary& page, const std::string& path) { ShowValue(page, "SCRIPT", "PATH", path); }
+
 void ShowValue(Dictionary& parent, const char* section, const char* variable, const std::string& value) {
   parent.AddSectionDictionary(section)->SetValue(variable, value);
 }

@@ -20,6 +20,8 @@ using Dictionary = ctemplate::TemplateDictionary;
 
 // The <head> of a page: `root` is the relative path to the folder that holds style.css ("" or "../../").
 void FillHead(Dictionary& page, const std::string& title, const std::string& root);
+// A script at the end of the page; `path` is relative to the page.
+void AddScript(Dictionary& page, const std::string& path);
 // {{#section}} with one value in it.
 void ShowValue(Dictionary& parent, const char* section, const char* variable, const std::string& value);
 

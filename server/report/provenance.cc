@@ -6,6 +6,22 @@
 
 namespace rigcal::report {
 
+namespace {
+
+void FillFacts(Dictionary& row, const ReportInput& input, const SessionId& session) {
+  for (const SessionFacts& facts : input.sessions) {
+    if (facts.id != session) continue;
+    Dictionary* shown = row.AddSectionDictionary("FACTS");
+    shown->SetValue("CAPTURED", TimeText(facts.captured_at));
+    shown->SetValue("FILES", Count(facts.files, "file", "files"));
+    if (!facts.operator_name.empty()) ShowValue(*shown, "OPERATOR", "NAME", facts.operator_name);
+    if (!facts.rig_model.empty()) ShowValue(*shown, "RIG", "NAME", facts.rig_model);
+    for (const std::string& board : facts.boards) ShowValue(*shown, "BOARD", "NAME", board);
+  }
+}
+
+}  // namespace
+
 void FillProvenance(Dictionary& page, const ReportInput& input) {
   constexpr std::size_t kSessionsMax = 100;
   std::map<SessionId, std::size_t> sessions;
@@ -22,6 +38,7 @@ void FillProvenance(Dictionary& page, const ReportInput& input) {
     Dictionary* row = page.AddSectionDictionary("SESSION");
     row->SetValue("ID", session.str());
     row->SetValue("EDGES", Count(count, "edge", "edges"));
+    FillFacts(*row, input, session);
   }
   if (sessions.size() > kSessionsMax)
     ShowValue(page, "MORE_SESSIONS", "COUNT", std::to_string(sessions.size() - kSessionsMax));

@@ -3,10 +3,13 @@
 #include <set>
 
 #include "report_embedded.h"
+#include "server/report/assets.h"
 #include "server/report/banner.h"
+#include "server/report/change_section.h"
 #include "server/report/drawing.h"
 #include "server/report/edge_section.h"
 #include "server/report/key_figures.h"
+#include "server/report/page_data.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 
@@ -21,6 +24,8 @@ void FillTitle(Dictionary& page, const ReportInput& input) {
   page.SetValue("NUMBER", std::to_string(input.number));
   page.SetValue("TIME", TimeText(input.created_at));
   page.SetValue("REFERENCE", input.revision.reference.str());
+  AddScript(page, "data.js");
+  for (const char* bundle : {"tables.js", "charts.js", "rig.js"}) AddScript(page, AssetPath(bundle));
 }
 
 void FillDrawing(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
@@ -43,7 +48,7 @@ void FillSections(Dictionary& page, const ReportInput& input, const std::vector<
     const bool failed = edge.state == EdgeState::kFailed;
     Dictionary* section = page.AddSectionDictionary("DETAIL_SECTION")->AddIncludeDictionary("DETAIL");
     section->SetFilename("edge.tpl");
-    FillEdgeSection(*section, shown, stored, detailed <= kOpenMax || (failed && shown_sections++ < kOpenMax));
+    FillEdgeSection(*section, input, shown, stored, detailed <= kOpenMax || (failed && shown_sections++ < kOpenMax));
   }
   if (left > 0) ShowValue(page, "MORE_DETAILS", "COUNT", std::to_string(left));
 }
@@ -56,16 +61,20 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillTitle(page, input);
   FillBanner(page, input.revision.verdict);
   FillNotes(page, input.revision);
+  FillKeyFigures(page, input.revision, edges);
+  FillChanges(page, input);
   FillDrawing(page, input.revision, edges);
-  FillKeyFigures(page, input.revision);
   FillPoses(page, input.revision);
-  FillEdges(page, input.revision, edges);
+  FillEdges(page, input, edges);
   FillSections(page, input, edges);
   FillClouds(page, input.clouds);
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
-  return std::map<std::string, std::string>{
-      {"index.html", std::move(html)}, {"revision.json", document}, {"style.css", StyleSheet()}};
+  return std::map<std::string, std::string>{{"index.html", std::move(html)},
+                                            {"revision.json", document},
+                                            {"edges.csv", EdgeCsv(input, edges)},
+                                            {"data.js", PageData(input, edges)},
+                                            {"style.css", StyleSheet()}};
 }
 
 std::string StyleSheet() { return std::string(embedded::kstyle_css); }

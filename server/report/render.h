@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,27 @@
 #include "server/report/cloud_section.h"
 
 namespace rigcal::report {
+
+// What sessions say of a sensor.
+struct SensorFacts {
+  SensorKind kind = SensorKind::kCamera;
+  std::optional<Se3> T_ref_nominal;  // in the revision's reference
+};
+struct SessionFacts {
+  SessionId id;
+  Stamp captured_at;
+  std::string operator_name, rig_model;
+  std::vector<std::string> boards;  // "board: checkerboard 9 x 6, 25 mm"
+  std::size_t files = 0;
+};
+// The test of an edge's residual: beyond `limit` it contradicts; limit 0: nothing tests it.
+struct EdgeLimit {
+  double statistic = 0.0, limit = 0.0;
+};
+struct PastRevision {
+  int number = 0;
+  formats::RevisionInput revision;
+};
 
 struct ReportInput {
   int number = 0;
@@ -18,10 +40,17 @@ struct ReportInput {
   std::string software_version;
   std::vector<Digest> evidence;  // digests whose pictures exist; the rest is shown as missing
   CloudSection clouds;           // its files are put there by pipeline, too
+  // What the document does not hold; each may be absent.
+  std::map<SensorId, SensorFacts> sensors;
+  std::vector<SessionFacts> sessions;
+  std::map<EdgeId, EdgeLimit> limits;
+  std::map<EdgeId, std::vector<BlockVector>> blocks;
+  std::optional<PastRevision> previous;
 };
 
-// File name (relative, '/'-separated) -> contents. Contains index.html, revision.json (= document), style.css.
-// Pictures are referenced as "evidence/<digest>.<suffix>"; pipeline puts them there.
+// File name (relative, '/'-separated) -> contents: index.html, revision.json (= document), edges.csv, style.css, and
+// data.js (what scripts draw, as a script, because a page from disk may not fetch). Pipeline adds the pictures that the
+// page names ("evidence/<digest>.<suffix>") and the scripts ("assets/...", assets.h).
 [[nodiscard]] Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input,
                                                                         const std::string& document);
 

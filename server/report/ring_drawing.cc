@@ -3,6 +3,7 @@
 
 #include "server/report/drawing.h"
 #include "server/report/edge_axes.h"
+#include "server/report/edge_fit.h"
 #include "server/report/ring.h"
 #include "server/report/text.h"
 
@@ -19,19 +20,26 @@ std::string TagText(const Edge& edge) {
   return "\xC2\xB1 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm");
 }
 
-std::string TitleOf(const Edge& edge) {
+std::string TitleOf(const ShownEdge& shown) {
+  const Edge& edge = *shown.edge;
   const std::string pair = edge.frame_a.str() + " \xE2\x86\x92 " + edge.frame_b.str() + ": ";
   if (edge.state == EdgeState::kFailed)
     return pair + "failed. " + (edge.diagnoses.empty() ? std::string() : edge.diagnoses.front().what);
-  return pair + "\xCF\x83 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm") + "; " +
-         LargestSigma(edge.uncertainty, tangent::kRotation, " deg");
+  const std::string sigma = pair + "\xCF\x83 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm") + "; " +
+                            LargestSigma(edge.uncertainty, tangent::kRotation, " deg");
+  if (!shown.residual) return sigma;
+  return sigma + "; residual " + Significant(shown.residual->e.head<3>().norm() * kMmPerMetre, 2) + " mm, " +
+         Significant(shown.residual->e.tail<3>().norm() * kDegPerRad, 2) + " deg, " + Fixed(shown.in_sigmas, 1) +
+         " \xCF\x83";
 }
 
 struct Ring {
   Dictionary& svg;
   std::map<SensorId, Eigen::Vector2d> places;
-  bool named = false;
-  std::vector<std::pair<const ShownEdge*, Curve>> links;
+  bool named = false, checked = false;
+  InformationScale widths;
+  Contradictions contradictions;
+  std::vector<std::pair<const ShownEdge*, Curve>> links = {};
   TagPlaces tags = {};
 };
 
@@ -51,11 +59,11 @@ void PlaceLinks(Ring& ring, const std::vector<ShownEdge>& edges) {
 void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
   const bool failed = shown.edge->state == EdgeState::kFailed;
   Dictionary* link = ring.svg.AddSectionDictionary("LINK");
-  link->SetValue("STATE", failed ? "failed" : "good");
+  link->SetValue("STATE", FitClass(shown, ring.checked));
   link->SetValue("STROKE", failed ? kFailedStroke : kGoodStroke);
-  link->SetValue("THICK", ring.named ? "3" : "1");
+  link->SetValue("THICK", ring.named ? Fixed(ring.widths.Width_px(*shown.edge), 1) : "1");
   link->SetValue("D", std::string("M").append(Point(curve.a)) + "Q" + Point(curve.control) + " " + Point(curve.b));
-  link->SetValue("TITLE", TitleOf(*shown.edge));
+  link->SetValue("TITLE", TitleOf(shown));
   if (failed) link->ShowSection("DASHED");
   if (!shown.detailed) return;
   ShowValue(*link, "JUMP", "ANCHOR", shown.anchor);
@@ -63,11 +71,12 @@ void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
 }
 
 void DrawTag(Ring& ring, const ShownEdge& shown, const Curve& curve) {
-  const std::string text = TagText(*shown.edge);
+  const bool suspect = ring.contradictions.suspects.contains(shown.edge->id);
+  const std::string text = suspect ? "\xE2\x9A\xA0 contradicts the rest" : TagText(*shown.edge);
   const auto place = ring.tags.Take(curve, {7.0 * static_cast<double>(text.size()), 18.0});
   if (!place) return;
   Dictionary* tag = ring.svg.AddSectionDictionary("TAG");
-  tag->SetValue("STATE", shown.edge->state == EdgeState::kFailed ? "failed" : "good");
+  tag->SetValue("STATE", suspect || shown.edge->state == EdgeState::kFailed ? "failed" : "good");
   tag->SetValue("X", Fixed(place->x(), 1));
   tag->SetValue("Y", Fixed(place->y(), 1));
   tag->SetValue("TEXT", text);
@@ -109,13 +118,18 @@ std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, co
   const RingSize size = RingSizeOf(poses.size(), longest);
   svg.SetValue("WIDTH", Fixed(size.width_px, 0));
   svg.SetValue("HEIGHT", Fixed(size.height_px, 0));
-  Ring ring{svg, RingPlaces(poses, revision.reference, size), poses.size() <= kNamedMax, {}};
+  Ring ring{svg,
+            RingPlaces(poses, revision.reference, size),
+            poses.size() <= kNamedMax,
+            revision.solution.dof > 0,
+            InformationScale(edges),
+            ContradictionsOf(revision.solution.suspects)};
   for (const auto& [sensor, place] : ring.places) ring.tags.Block(place, {26, 26});
   PlaceLinks(ring, edges);
   for (const auto& [shown, curve] : ring.links) DrawLink(ring, *shown, curve);
   const bool tagged = ring.named && ring.links.size() <= kTagsMax;
   for (const auto& [shown, curve] : ring.links)
-    if (tagged) DrawTag(ring, *shown, curve);
+    if (tagged || ring.contradictions.suspects.contains(shown->edge->id)) DrawTag(ring, *shown, curve);
   const Eigen::Vector2d centre(size.width_px / 2, size.height_px / 2);
   for (const SensorPose& pose : poses) DrawNode(ring, pose, pose.sensor == revision.reference, centre);
   if (!ring.named) return "Too many sensors for names: point at a dot or a line to read what it is.";

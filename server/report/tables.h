@@ -9,7 +9,7 @@
 namespace rigcal::report {
 
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision);
-void FillEdges(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);
+void FillEdges(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges);
 void FillProvenance(Dictionary& page, const ReportInput& input);
 
 }  // namespace rigcal::report

@@ -30,7 +30,7 @@ formats::RevisionInput RingOf(int sensors) {
 
 TEST(GraphSvg, FailedEdgeIsDashedAndUnknownSensorGrey) {
   const std::string svg = RenderGraphSvg(SampleReport().revision);
-  EXPECT_EQ(CountOf(svg, "<path class=\"link good\""), 5);
+  EXPECT_EQ(CountOf(svg, "<path class=\"link fit"), 5);
   EXPECT_EQ(CountOf(svg, "<path class=\"link failed\""), 1);
   EXPECT_EQ(CountOf(svg, "stroke-dasharray"), 1);
   EXPECT_EQ(CountOf(svg, "<circle class=\"node unknown\""), 1);

@@ -43,15 +43,22 @@
 </div>
 {{/PARTS}}
 </div>
+<div class="plots" data-edge-charts="{{ANCHOR}}">
 {{#CAPTURES}}
+<div data-fallback>
 <h3>Residual of each capture <span class="soft">rms, {{UNIT}}</span></h3>
 <div class="scroll" tabindex="0" role="region" aria-label="Residual of each capture">
 {{>BARS}}
 </div>
+</div>
+{{/CAPTURES}}
+</div>
+{{#CAPTURE_NOTES}}
 {{#BARS_CUT}}<p class="hint">{{TEXT}}</p>{{/BARS_CUT}}
 {{#UNUSED}}<p class="hint" dir="auto"><strong>{{CAPTURE}}</strong> was not used{{#REASON}}: {{NOTE}}{{/REASON}}.</p>
 {{/UNUSED}}
-{{/CAPTURES}}
+{{/CAPTURE_NOTES}}
+{{#INFLUENCE}}<p class="hint">{{TEXT}}</p>{{/INFLUENCE}}
 {{#PICTURES}}
 <h3>Pictures</h3>
 <div class="pictures">

@@ -1,0 +1,115 @@
+#include "server/pipeline/report_input.h"
+
+#include <algorithm>
+#include <set>
+
+#include "server/base/version.h"
+#include "server/fleet/assess.h"
+#include "storage/edges.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+std::string BoardText(const Target& target) {
+  const auto size_um = static_cast<long long>(target.square_m * 1e6 + 0.5);
+  std::string size = std::to_string(size_um / 1000);
+  if (size_um % 1000 != 0) size += "." + std::to_string(1000 + size_um % 1000).substr(1);
+  return target.id.str() + ": " + NameOf(target.kind) + " " + std::to_string(target.cols) + " x " +
+         std::to_string(target.rows) + ", " + size + " mm" +
+         (target.serial.empty() ? "" : ", serial " + target.serial);
+}
+
+report::SessionFacts FactsOf(const SessionId& id, const Manifest& manifest) {
+  report::SessionFacts facts;
+  facts.id = id;
+  facts.captured_at = manifest.header.captured_at;
+  facts.operator_name = manifest.header.operator_name;
+  facts.rig_model = manifest.header.rig_model;
+  facts.files = manifest.payloads.size();
+  for (const Target& target : manifest.header.targets) facts.boards.push_back(BoardText(target));
+  return facts;
+}
+
+// Of the reference itself the nominal pose is known without being said.
+void TakeSensors(const SessionHeader& header, report::ReportInput& input) {
+  for (const Sensor& sensor : header.sensors) {
+    report::SensorFacts facts;
+    facts.kind = sensor.kind;
+    if (header.reference == input.revision.reference) facts.T_ref_nominal = sensor.T_ref_nominal;
+    input.sensors.emplace(sensor.id, facts);
+  }
+}
+
+// The newest session that names a sensor says what it is.
+Status TakeSessions(storage::Store& store, report::ReportInput& input) {
+  std::set<SessionId> ids;
+  for (const Edge& edge : input.revision.edges)
+    if (!edge.session.empty()) ids.insert(edge.session);
+  std::vector<SessionHeader> headers;
+  for (const SessionId& id : ids) {
+    RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, id));
+    if (!manifest) continue;
+    input.sessions.push_back(FactsOf(id, *manifest));
+    headers.push_back(std::move(manifest->header));
+  }
+  std::stable_sort(headers.begin(), headers.end(), [](const SessionHeader& a, const SessionHeader& b) {
+    return a.captured_at > b.captured_at;
+  });
+  for (const SessionHeader& header : headers) TakeSensors(header, input);
+  return {};
+}
+
+Status TakeBlocks(storage::Store& store, report::ReportInput& input) {
+  std::set<EdgeId> shown;
+  for (const Edge& edge : input.revision.edges)
+    if (edge.state == EdgeState::kGood) shown.insert(edge.id);
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, input.revision.robot, true));
+  for (Edge& edge : edges)
+    if (shown.contains(edge.id) && !edge.uncertainty.blocks.empty())
+      input.blocks.emplace(edge.id, std::move(edge.uncertainty.blocks));
+  return {};
+}
+
+void TakeLimits(report::ReportInput& input) {
+  std::map<EdgeId, const Edge*> edges;
+  for (const Edge& edge : input.revision.edges) edges.emplace(edge.id, &edge);
+  if (input.revision.solution.dof <= 0) return;
+  const auto& residuals = input.revision.solution.residuals;
+  for (const EdgeResidual& residual : residuals) {
+    const auto edge = edges.find(residual.edge);
+    if (edge == edges.end()) continue;
+    const fleet::EdgeTest test = fleet::TestResidual(*edge->second, residual, residuals.size());
+    input.limits.emplace(residual.edge, report::EdgeLimit{test.statistic, test.limit});
+  }
+}
+
+Status TakePrevious(storage::Store& store, report::ReportInput& input) {
+  if (input.number <= 1) return {};
+  RIGCAL_ASSIGN(const auto before, storage::LoadRevision(store, input.revision.robot, input.number - 1));
+  if (!before) return {};
+  report::PastRevision past;
+  past.number = before->number;
+  RIGCAL_ASSIGN(past.revision, formats::ReadRevisionDocument(before->document));
+  input.previous = std::move(past);
+  return {};
+}
+
+}  // namespace
+
+Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision) {
+  report::ReportInput input;
+  input.number = revision.number;
+  input.created_at = revision.created_at;
+  input.digest = revision.digest;
+  input.software_version = std::string(Version());
+  RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
+  RIGCAL_TRY(TakeSessions(store, input));
+  RIGCAL_TRY(TakeBlocks(store, input));
+  RIGCAL_TRY(TakePrevious(store, input));
+  TakeLimits(input);
+  return input;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,75 @@
+#include "server/report/changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace rigcal::report {
+namespace {
+
+using Poses = std::map<SensorId, const SensorPose*>;
+
+Poses KnownPoses(const formats::RevisionInput& revision) {
+  Poses known;
+  for (const SensorPose& pose : revision.solution.poses)
+    if (pose.known) known.emplace(pose.sensor, &pose);
+  return known;
+}
+
+Vector6d SigmaOf(const SensorPose& pose) { return pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
+
+SensorMove MoveOf(const SensorPose& before, const SensorPose& now) {
+  SensorMove move;
+  move.sensor = now.sensor;
+  move.d = (before.T_ref_sensor.Inverse() * now.T_ref_sensor).Log();
+  move.sigma = SigmaOf(before).cwiseMax(SigmaOf(now));
+  move.distance_m = (now.T_ref_sensor.p_m - before.T_ref_sensor.p_m).norm();
+  move.angle_rad = move.d.tail<3>().norm();
+  for (int axis = 0; axis < 6; ++axis)
+    if (move.sigma(axis) > 0.0) move.in_sigmas = std::max(move.in_sigmas, std::abs(move.d(axis)) / move.sigma(axis));
+  return move;
+}
+
+std::vector<SensorId> Missing(const Poses& of, const Poses& in) {
+  std::vector<SensorId> missing;
+  for (const auto& [sensor, pose] : of)
+    if (!in.contains(sensor)) missing.push_back(sensor);
+  return missing;
+}
+
+std::vector<const Edge*> MissingEdges(const formats::RevisionInput& of, const formats::RevisionInput& in) {
+  std::set<EdgeId> held;
+  for (const Edge& edge : in.edges) held.insert(edge.id);
+  std::vector<const Edge*> missing;
+  for (const Edge& edge : of.edges)
+    if (!held.contains(edge.id)) missing.push_back(&edge);
+  return missing;
+}
+
+void CompareSensors(const formats::RevisionInput& before, const formats::RevisionInput& now, Changes& changes) {
+  const Poses old = KnownPoses(before), current = KnownPoses(now);
+  changes.sensors_gained = Missing(current, old);
+  changes.sensors_lost = Missing(old, current);
+  changes.same_reference = before.reference == now.reference;
+  if (!changes.same_reference) return;
+  for (const auto& [sensor, pose] : current)
+    if (const auto found = old.find(sensor); found != old.end() && sensor != now.reference)
+      changes.moves.push_back(MoveOf(*found->second, *pose));
+  std::stable_sort(changes.moves.begin(), changes.moves.end(),
+                   [](const SensorMove& a, const SensorMove& b) { return a.in_sigmas > b.in_sigmas; });
+}
+
+}  // namespace
+
+Changes Compare(const formats::RevisionInput& before, const formats::RevisionInput& now) {
+  Changes changes;
+  CompareSensors(before, now, changes);
+  changes.edges_gained = MissingEdges(now, before);
+  changes.edges_lost = MissingEdges(before, now);
+  for (const Edge* edge : changes.edges_gained)
+    if (edge->state == EdgeState::kFailed) changes.edges_failed.push_back(edge);
+  return changes;
+}
+
+}  // namespace rigcal::report

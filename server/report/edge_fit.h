@@ -1,0 +1,31 @@
+// How an edge fits, as the drawing and the table show it: a class for its colour, a width for its information.
+#pragma once
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "server/report/edge_order.h"
+
+namespace rigcal::report {
+
+// "fit0" (below 1 sigma), "fit1" (2), "fit2" (3), "fit3" (beyond); "unchecked" without a loop; "failed".
+[[nodiscard]] const char* FitClass(const ShownEdge& shown, bool checked);
+
+// Edges that the others speak against, and those that may be wrong instead.
+struct Contradictions {
+  std::set<EdgeId> suspects, alternatives;
+};
+[[nodiscard]] Contradictions ContradictionsOf(const Suspects& suspects);
+
+// Stroke widths between the least and the most certain edge, by the logarithm of the largest sigma of the position.
+class InformationScale {
+ public:
+  explicit InformationScale(const std::vector<ShownEdge>& edges);
+  [[nodiscard]] double Width_px(const Edge& edge) const;
+
+ private:
+  double least_ = 0.0, most_ = 0.0;
+};
+
+}  // namespace rigcal::report

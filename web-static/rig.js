@@ -1,0 +1,105 @@
+// The rig in 3D: sensors where they are, how sure that is, where they were meant to be and where they were before.
+import { Group, Raycaster, Vector2 } from "three";
+import { Box3, Vector3, View, hasWebGl } from "./rig/scene.js";
+import { makeGhost, makeSensor, poseMatrix, scaleEllipsoid } from "./rig/sensor_shapes.js";
+import { button, choice, element, number, showSensor, slider, toggle } from "./rig/panel.js";
+import { pageColor } from "./rig/colors.js";
+import { showClouds } from "./rig/cloud_view.js";
+
+const GHOSTS = [["nominal", "Nominal poses", "ghost"], ["previous", "Last revision", "second"]];
+
+function boxOf(sensors) {
+  const box = new Box3();
+  for (const sensor of sensors) box.expandByPoint(new Vector3(...sensor.p));
+  const size = Math.max(box.getSize(new Vector3()).length(), 0.05);
+  return { box: box.expandByScalar(size * 0.16), size };
+}
+
+// A round number of times, such that the largest ellipsoid is a tenth of the rig.
+function startScale(sensors, size) {
+  const largest = Math.max(...sensors.map((sensor) => (sensor.sigma ? Math.max(...sensor.sigma.slice(0, 3)) : 0)));
+  if (!(largest > 0)) return 1;
+  const exact = (0.1 * size) / largest;
+  const decade = 10 ** Math.floor(Math.log10(exact));
+  return Math.max(1, [5, 2, 1].map((step) => step * decade).find((step) => step <= exact) ?? decade);
+}
+
+function addGhosts(view, sensors, size, bar) {
+  for (const [key, name, color] of GHOSTS) {
+    const moved = sensors.filter((sensor) => sensor[key]);
+    if (!moved.length) continue;
+    const group = new Group();
+    for (const sensor of moved) group.add(makeGhost(sensor, sensor[key], size * 0.8, color));
+    view.scene.add(group);
+    bar.append(toggle(name, true, (shown) => {
+      group.visible = shown;
+      view.request();
+    }));
+  }
+}
+
+function addPicking(view, shapes, select) {
+  const ray = new Raycaster(), pointer = new Vector2();
+  let start = null;
+  view.canvas.addEventListener("pointerdown", (event) => { start = [event.clientX, event.clientY]; });
+  view.canvas.addEventListener("pointerup", (event) => {
+    if (!start || Math.hypot(event.clientX - start[0], event.clientY - start[1]) > 5) return;
+    const bounds = view.canvas.getBoundingClientRect();
+    pointer.set(((event.clientX - bounds.left) / bounds.width) * 2 - 1, 1 - ((event.clientY - bounds.top) / bounds.height) * 2);
+    ray.setFromCamera(pointer, view.camera);
+    const hit = ray.intersectObjects(shapes.map((shape) => shape.target))[0];
+    if (hit) select(hit.object.userData.sensor);
+  });
+}
+
+function addScale(view, shapes, sensors, size, bar) {
+  const blobs = shapes.map((shape) => shape.blob).filter(Boolean);
+  if (!blobs.length) return;
+  const update = (exponent) => {
+    const scale = 10 ** exponent;
+    for (const blob of blobs) scaleEllipsoid(blob, scale);
+    view.request();
+    return `${number(scale, 2)} \u03c3`;
+  };
+  bar.append(slider("Ellipsoids", { min: 0, max: 5, step: 0.05, value: Math.log10(startScale(sensors, size)) }, update));
+}
+
+function showRig(section, data) {
+  const sensors = data.sensors.filter((sensor) => sensor.p);
+  const place = section.querySelector(".view"), panel = section.querySelector(".panel"), bar = section.querySelector(".bar");
+  const { box, size } = boxOf(sensors);
+  const reference = sensors.find((sensor) => sensor.reference);
+  const view = new View(place, reference?.kind === "camera" ? "-y" : "z");
+  view.canvas.setAttribute("aria-label", `The rig in 3D: ${sensors.length} sensors. Arrow keys turn it, plus and minus zoom. The table of sensors has the same numbers.`);
+  const shapeSize = size * (sensors.length > 40 ? 0.03 : 0.11);
+  const shapes = sensors.map((sensor) => makeSensor(sensor, shapeSize));
+  for (const shape of shapes) view.scene.add(shape.group);
+  const floor = view.up === "z" ? [0, 0, box.min.z] : [0, box.max.y, 0];
+  const step = view.addGrid(size, floor);
+  const list = choice("Sensor", sensors.map((sensor) => [sensor.id, sensor.id]), (id) => select(id));
+  const select = (id) => {
+    const chosen = sensors.findIndex((sensor) => sensor.id === id);
+    shapes.forEach((shape, index) => shape.outline.color.copy(pageColor(index === chosen ? "select" : sensors[index].reference ? "accent" : "text")));
+    list.field.value = id;
+    showSensor(panel, sensors[chosen]);
+    view.request();
+  };
+  for (const [key, name] of [["oblique", "All"], ["front", "Front"], ["top", "Top"], ["side", "Side"]])
+    bar.append(button(name, () => view.look(key)));
+  bar.append(list);
+  addScale(view, shapes, sensors, size, bar);
+  addGhosts(view, sensors, shapeSize, bar);
+  bar.append(element("span", { className: "soft", textContent: `grid ${number(step)} m` }));
+  addPicking(view, shapes, select);
+  view.resize();
+  view.fit(box);
+  select((sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
+}
+
+const section = document.getElementById("rig");
+if (section && window.rigcal?.sensors.some((sensor) => sensor.p) && hasWebGl()) {
+  section.hidden = false;
+  showRig(section, window.rigcal);
+}
+showClouds();
+export { poseMatrix };
