@@ -124,6 +124,20 @@ std::string WriteStatus(const StatusAnswer& answer, Stamp now) {
   });
 }
 
+std::string WriteLive(const LiveAnswer& answer) {
+  return WriteObject([&](JsonWriter& out) {
+    answer.robot.empty() ? out.Null("robot") : out.Text("robot", answer.robot.str());
+    out.Integer("robots", answer.robots);
+    out.Integer("sessions", answer.sessions);
+    out.Integer("edges", answer.edges);
+    out.Integer("unfinished", answer.unfinished);
+    WriteRevisionNumber(out, answer.revision);
+    out.List("open_sessions", [&] {
+      for (const SessionAnswer& session : answer.open_sessions) out.Object([&] { WriteSessionMembers(out, session); });
+    });
+  });
+}
+
 std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_ns, Stamp now) {
   const auto write_row = [&](JsonWriter& out, const DueAnswer& robot) {
     out.Text("robot", robot.robot.str());

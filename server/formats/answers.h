@@ -68,6 +68,16 @@ struct StatusAnswer {
 };
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);
 
+// verb live: changes whenever something arrived or was finished, and at no other time.
+struct LiveAnswer {
+  RobotId robot;  // empty: all
+  std::int64_t robots = 0, sessions = 0, edges = 0;
+  std::int64_t unfinished = 0;  // robots to solve and reports to publish
+  int revision = 0;             // of one robot; 0: none yet
+  std::vector<SessionAnswer> open_sessions;
+};
+[[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
+
 // verb due: every robot; overdue = older than max_age_ns, or never calibrated.
 struct DueAnswer {
   RobotId robot;

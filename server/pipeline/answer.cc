@@ -10,6 +10,7 @@
 #include "server/formats/parameters.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/solve.h"
+#include "server/pipeline/live.h"
 #include "server/pipeline/robot_rows.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -154,6 +155,12 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   return formats::WriteStatus(answer, now);
 }
 
+Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
+  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
+  return LiveDocument(context.store, robot);
+}
+
 Result<std::string> Due(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", kDefaultMaxAge_ns));
   if (max_age_ns < 0)
@@ -193,6 +200,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"robots", Robots},   {"sessions", Sessions}, {"session", Session}, {"edges", Edges},
       {"edge", OneEdge},    {"show", Show},         {"lookup", Lookup},   {"revisions", Revisions},
       {"status", OfStatus}, {"due", Due},           {"health", Health},
+      {"live", Live},
   };
   return verbs;
 }

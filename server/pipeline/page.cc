@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include "server/formats/answers.h"
@@ -27,12 +28,26 @@ report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
   return fleet;
 }
 
-Result<PageText> FleetPage(const AnswerContext& context) {
+Result<report::FleetQuery> FleetQueryOf(const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  report::FleetQuery asked;
+  asked.search = parameters.Text("q").value_or("");
+  asked.verdict = parameters.Text("verdict").value_or("");
+  asked.sort = parameters.Text("sort").value_or("");
+  asked.descending = parameters.Text("order") == "down";
+  RIGCAL_ASSIGN(const std::int64_t page, parameters.IntegerOr("page", 1));
+  asked.page = static_cast<std::size_t>(std::max<std::int64_t>(page, 1));
+  return asked;
+}
+
+Result<PageText> FleetPage(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const report::FleetQuery asked, FleetQueryOf(query));
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
   std::vector<report::FleetRow> fleet;
   for (const auto& row : rows) fleet.push_back(FleetRowOf(row));
-  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now));
+  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now, asked));
   return PageText{std::move(body), kHtml};
 }
 
@@ -86,7 +101,7 @@ Result<PageText> Healthz(const AnswerContext& context) {
 
 Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
   const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/";
-  if (path == "/") return FleetPage(context);
+  if (path == "/") return FleetPage(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);

@@ -1,26 +1,15 @@
 #include <algorithm>
-#include <tuple>
+#include <array>
+#include <utility>
 
+#include "server/report/assets.h"
 #include "server/report/banner.h"
+#include "server/report/fleet_view.h"
 #include "server/report/render.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
 namespace {
-
-int Urgency(VerdictLevel level) {
-  switch (level) {
-    case VerdictLevel::kFail:
-      return 0;
-    case VerdictLevel::kUnknown:
-      return 1;
-    case VerdictLevel::kWarn:
-      return 2;
-    case VerdictLevel::kPass:
-      break;
-  }
-  return 3;
-}
 
 std::string AgeOf(Stamp then, Stamp now) {
   return then.ns > now.ns ? "in the future: check the clock" : AgeText(now.ns - then.ns) + " ago";
@@ -61,6 +50,66 @@ void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   revision->SetValue("ROBOT", robot.robot.str());
 }
 
+constexpr std::array<std::pair<const char*, const char*>, 6> kChoices = {
+    {{"", "all"}, {"fail", "fail"}, {"unknown", "unknown"}, {"warn", "warn"}, {"pass", "pass"}, {"overdue", "overdue"}}};
+constexpr std::array<std::pair<const char*, const char*>, 6> kColumns = {{{"robot", "Robot"},
+                                                                          {"", "Verdict"},
+                                                                          {"calibrated", "Calibrated"},
+                                                                          {"revision", "Revision"},
+                                                                          {"sessions", "Sessions"},
+                                                                          {"edges", "Edges"}}};
+
+void FillForm(Dictionary& list, const FleetQuery& query) {
+  list.SetValue("SEARCH", query.search);
+  list.SetValue("SORT", query.sort);
+  list.SetValue("ORDER", query.descending ? "down" : "");
+  for (const auto& [value, name] : kChoices) {
+    Dictionary* choice = list.AddSectionDictionary("CHOICE");
+    choice->SetValue("VALUE", value);
+    choice->SetValue("NAME", name);
+    if (query.verdict == value) choice->ShowSection("CHOSEN");
+  }
+}
+
+// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE.
+void FillAddress(Dictionary& link, const FleetQuery& query) {
+  link.SetValue("SEARCH", query.search);
+  link.SetValue("VERDICT", query.verdict);
+  link.SetValue("SORT", query.sort);
+  link.SetValue("ORDER", query.descending ? "down" : "");
+  link.SetValue("PAGE", std::to_string(query.page));
+}
+
+void FillColumns(Dictionary& list, const FleetQuery& query) {
+  for (const auto& [sort, name] : kColumns) {
+    Dictionary* column = list.AddSectionDictionary("COLUMN");
+    const bool chosen = query.sort == sort;
+    FleetQuery next = query;
+    next.sort = sort;
+    next.page = 1;
+    next.descending = chosen && !query.descending;
+    FillAddress(*column, next);
+    column->SetValue("NAME", name);
+    if (chosen) ShowValue(*column, "SORTED", "DIRECTION", query.descending ? "descending" : "ascending");
+    column->SetValue("ARROW", !chosen ? "\xE2\x86\x95" : query.descending ? "\xE2\x86\x93" : "\xE2\x86\x91");
+  }
+}
+
+void FillPager(Dictionary& list, FleetQuery query, const FleetSlice& slice, std::size_t robots) {
+  list.SetValue("COUNT", slice.matches == robots ? Count(robots, "robot", "robots")
+                                                 : std::to_string(slice.matches) + " of " +
+                                                       Count(robots, "robot", "robots"));
+  if (slice.matches == 0) list.ShowSection("NOTHING");
+  if (slice.pages < 2) return;
+  Dictionary* pager = list.AddSectionDictionary("PAGER");
+  pager->SetValue("PAGE", std::to_string(slice.page));
+  pager->SetValue("PAGES", std::to_string(slice.pages));
+  query.page = slice.page - 1;
+  if (slice.page > 1) FillAddress(*pager->AddSectionDictionary("BEFORE"), query);
+  query.page = slice.page + 1;
+  if (slice.page < slice.pages) FillAddress(*pager->AddSectionDictionary("NEXT"), query);
+}
+
 void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now) {
   constexpr std::size_t kRevisionsMax = 500;
   if (revisions.empty()) return;
@@ -82,20 +131,21 @@ void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now)
 
 }  // namespace
 
-Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now) {
+Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, const FleetQuery& query) {
   Dictionary page("fleet");
   FillHead(page, "Fleet", "");
-  if (rows.empty())
+  AddScript(page, AssetPath("live.js"));
+  if (rows.empty()) {
     page.ShowSection("EMPTY");
-  else
-    page.SetValue("SUMMARY", FleetSummary(rows));
-  std::vector<FleetRow> sorted = rows;
-  std::sort(sorted.begin(), sorted.end(), [](const FleetRow& a, const FleetRow& b) {
-    return std::make_tuple(Urgency(a.verdict.level), !a.overdue, a.robot) <
-           std::make_tuple(Urgency(b.verdict.level), !b.overdue, b.robot);
-  });
-  Dictionary* list = rows.empty() ? nullptr : page.AddSectionDictionary("ROBOTS");
-  for (const FleetRow& row : sorted) FillRow(*list->AddSectionDictionary("ROW"), row, now);
+    return Expand("fleet.tpl", page);
+  }
+  page.SetValue("SUMMARY", FleetSummary(rows));
+  const FleetSlice slice = SliceOf(rows, query);
+  Dictionary* list = page.AddSectionDictionary("ROBOTS");
+  FillForm(*list, query);
+  FillColumns(*list, query);
+  FillPager(*list, query, slice, rows.size());
+  for (const FleetRow* row : slice.rows) FillRow(*list->AddSectionDictionary("ROW"), *row, now);
   return Expand("fleet.tpl", page);
 }
 

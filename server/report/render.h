@@ -62,8 +62,17 @@ struct FleetRow {
   std::int64_t sessions = 0, edges = 0;
   bool overdue = false;
 };
-// Fleet index "/" and robot page "/robots/<id>/" (its revisions, newest first).
-[[nodiscard]] Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now);
+// What the fleet's page is asked for; each part comes from its address and may be anything.
+struct FleetQuery {
+  std::string search;   // words that a robot's row must hold
+  std::string verdict;  // "pass", "warn", "fail", "unknown", "overdue"; empty: all
+  std::string sort;     // "robot", "calibrated", "revision", "sessions", "edges"; else by urgency
+  bool descending = false;
+  std::size_t page = 1;
+};
+// Fleet index "/" (a page of it) and robot page "/robots/<id>/" (its revisions, newest first).
+[[nodiscard]] Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now,
+                                              const FleetQuery& query = {});
 [[nodiscard]] Result<std::string> RenderRobot(const FleetRow& row, const std::vector<Revision>& revisions, Stamp now);
 // Drawing of the sensor graph alone: circles and edges, labels escaped, failed edges dashed.
 [[nodiscard]] std::string RenderGraphSvg(const formats::RevisionInput& revision);

@@ -22,10 +22,10 @@
 </div>
 {{/POSE}}
 {{#FIGURES}}
-<div>
+<div class="wide">
 <h3>Figures</h3>
 <dl class="pairs">
-{{#FIGURE}}<dt><bdi>{{NAME}}</bdi></dt><dd>{{VALUE}}</dd>
+{{#FIGURE}}<div><dt><bdi>{{NAME}}</bdi></dt><dd>{{VALUE}}</dd></div>
 {{/FIGURE}}
 </dl>
 </div>

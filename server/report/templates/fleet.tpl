@@ -7,10 +7,17 @@
 <p class="meta">{{SUMMARY}}</p>
 </header>
 {{#ROBOTS}}
-<section class="card">
+<form class="search" role="search" action="./" method="get">
+<label>Search <input type="search" name="q" value="{{SEARCH}}"></label>
+<label>Verdict <select name="verdict">{{#CHOICE}}<option value="{{VALUE}}"{{#CHOSEN}} selected{{/CHOSEN}}>{{NAME}}</option>{{/CHOICE}}</select></label>
+<input type="hidden" name="sort" value="{{SORT}}"><input type="hidden" name="order" value="{{ORDER}}">
+<button>Show</button>
+</form>
+<section class="card" id="live" data-live="api/v1/live">
+<p class="count" role="status">{{COUNT}}</p>
 <div class="scroll" tabindex="0" role="region" aria-label="Robots">
 <table class="list">
-<thead><tr><th scope="col">Robot</th><th scope="col">Verdict</th><th scope="col">Calibrated</th><th scope="col">Revision</th><th scope="col">Sessions</th><th scope="col">Edges</th></tr></thead>
+<thead><tr>{{#COLUMN}}<th scope="col"{{#SORTED}} aria-sort="{{DIRECTION}}"{{/SORTED}}><a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}">{{NAME}} <span aria-hidden="true">{{ARROW}}</span></a></th>{{/COLUMN}}</tr></thead>
 <tbody>
 {{#ROW}}
 <tr><th scope="row"><a href="robots/{{ROBOT}}/">{{ROBOT}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{AGE}}{{#OVERDUE}} <span class="badge fail">overdue</span>{{/OVERDUE}}</td><td>{{#REVISION}}<a href="robots/{{ROBOT}}/revisions/{{NUMBER}}/">{{NUMBER}}</a>{{/REVISION}}{{#NO_REVISION}}none{{/NO_REVISION}}</td><td>{{SESSIONS}}</td><td>{{EDGES}}</td></tr>
@@ -18,6 +25,8 @@
 </tbody>
 </table>
 </div>
+{{#NOTHING}}<p class="hint">No robot is like that.</p>{{/NOTHING}}
+{{#PAGER}}<nav class="pager" aria-label="Pages">{{#BEFORE}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}">Previous</a>{{/BEFORE}} <span>page {{PAGE}} of {{PAGES}}</span> {{#NEXT}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}">Next</a>{{/NEXT}}</nav>{{/PAGER}}
 </section>
 {{/ROBOTS}}
 {{#EMPTY}}
@@ -30,5 +39,7 @@
 </section>
 {{/EMPTY}}
 </main>
+{{#SCRIPT}}<script defer src="{{PATH}}"></script>
+{{/SCRIPT}}
 </body>
 </html>

@@ -1,0 +1,81 @@
+#include "server/report/fleet_view.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace rigcal::report {
+namespace {
+
+char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+std::string Lowered(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), Lower);
+  return text;
+}
+
+std::vector<std::string> WordsOf(const std::string& search) {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : Lowered(search) + " ") {
+    if (c != ' ')
+      word.push_back(c);
+    else if (!word.empty())
+      words.push_back(std::exchange(word, {}));
+  }
+  return words;
+}
+
+bool Matches(const FleetRow& row, const std::vector<std::string>& words, const std::string& verdict) {
+  if (verdict == "overdue" && !row.overdue) return false;
+  if (!verdict.empty() && verdict != "overdue" && NameOf(row.verdict.level) != verdict) return false;
+  if (words.empty()) return true;
+  const std::string text = Lowered(row.robot.str() + " " + NameOf(row.verdict.level) + " " + row.verdict.why);
+  return std::all_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return text.find(word) != std::string::npos; });
+}
+
+int Urgency(VerdictLevel level) {
+  switch (level) {
+    case VerdictLevel::kFail:
+      return 0;
+    case VerdictLevel::kUnknown:
+      return 1;
+    case VerdictLevel::kWarn:
+      return 2;
+    case VerdictLevel::kPass:
+      break;
+  }
+  return 3;
+}
+
+// A number to sort by, the smallest first; equal ones by name.
+std::int64_t KeyOf(const FleetRow& row, const std::string& sort) {
+  if (sort == "robot") return 0;
+  if (sort == "calibrated") return row.calibrated_at.ns;
+  if (sort == "revision") return -row.revision;
+  if (sort == "sessions") return -row.sessions;
+  if (sort == "edges") return -row.edges;
+  return 2 * Urgency(row.verdict.level) + (row.overdue ? 0 : 1);
+}
+
+}  // namespace
+
+FleetSlice SliceOf(const std::vector<FleetRow>& rows, const FleetQuery& query) {
+  const std::vector<std::string> words = WordsOf(query.search);
+  FleetSlice slice;
+  for (const FleetRow& row : rows)
+    if (Matches(row, words, query.verdict)) slice.rows.push_back(&row);
+  std::sort(slice.rows.begin(), slice.rows.end(), [&](const FleetRow* a, const FleetRow* b) {
+    const std::int64_t left = KeyOf(*a, query.sort), right = KeyOf(*b, query.sort);
+    return left != right ? (left < right) != query.descending : a->robot < b->robot;
+  });
+  slice.matches = slice.rows.size();
+  slice.pages = std::max<std::size_t>(1, (slice.matches + kFleetRowsMax - 1) / kFleetRowsMax);
+  slice.page = std::clamp<std::size_t>(query.page, 1, slice.pages);
+  const auto first = slice.rows.begin() + static_cast<std::ptrdiff_t>((slice.page - 1) * kFleetRowsMax);
+  const auto last = slice.rows.begin() + static_cast<std::ptrdiff_t>(std::min(slice.page * kFleetRowsMax, slice.matches));
+  slice.rows = std::vector<const FleetRow*>(first, last);
+  return slice;
+}
+
+}  // namespace rigcal::report
