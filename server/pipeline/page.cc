@@ -4,10 +4,10 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/robot_pages.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/report/assets.h"
 #include "server/report/render.h"
-#include "storage/revisions.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -15,18 +15,6 @@ namespace {
 constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kJson = "application/json; charset=utf-8";
-
-report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
-  report::FleetRow fleet;
-  fleet.robot = row.robot;
-  fleet.revision = row.revision;
-  fleet.verdict = row.verdict;
-  fleet.calibrated_at = row.calibrated_at.value_or(Stamp{});
-  fleet.sessions = row.sessions;
-  fleet.edges = row.edges;
-  fleet.overdue = row.overdue;
-  return fleet;
-}
 
 Result<report::FleetQuery> FleetQueryOf(const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
@@ -48,15 +36,6 @@ Result<PageText> FleetPage(const AnswerContext& context, const std::string& quer
   std::vector<report::FleetRow> fleet;
   for (const auto& row : rows) fleet.push_back(FleetRowOf(row));
   RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now, asked));
-  return PageText{std::move(body), kHtml};
-}
-
-Result<PageText> RobotPage(const AnswerContext& context, const std::string& name) {
-  RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(name));
-  const Stamp now = context.clock.Now();
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
-  RIGCAL_ASSIGN(std::string body, report::RenderRobot(FleetRowOf(rows.front()), revisions, now));
   return PageText{std::move(body), kHtml};
 }
 
@@ -107,8 +86,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path == "/healthz") return Healthz(context);
   if (path == "/metrics") return Metrics(context);
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
-  if (path.rfind(robots, 0) == 0 && path.back() == '/' && path.size() > robots.size())
-    return RobotPage(context, path.substr(robots.size(), path.size() - robots.size() - 1));
+  if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);
   return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots: /");
 }
 

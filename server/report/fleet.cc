@@ -2,6 +2,7 @@
 #include <array>
 #include <utility>
 
+#include "server/report/age.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
 #include "server/report/fleet_view.h"
@@ -9,11 +10,15 @@
 #include "server/report/text.h"
 
 namespace rigcal::report {
-namespace {
 
 std::string AgeOf(Stamp then, Stamp now) {
   return then.ns > now.ns ? "in the future: check the clock" : AgeText(now.ns - then.ns) + " ago";
 }
+
+// A revision may hold failed edges only.
+bool IsNever(const FleetRow& robot) { return robot.revision == 0 || robot.calibrated_at.ns == 0; }
+
+namespace {
 
 std::string FleetSummary(const std::vector<FleetRow>& rows) {
   std::size_t overdue = 0;
@@ -32,9 +37,6 @@ std::string FleetSummary(const std::vector<FleetRow>& rows) {
   }
   return text + (overdue > 0 ? "; " + std::to_string(overdue) + " overdue" : "");
 }
-
-// A revision may hold failed edges only.
-bool IsNever(const FleetRow& robot) { return robot.revision == 0 || robot.calibrated_at.ns == 0; }
 
 void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
@@ -110,25 +112,6 @@ void FillPager(Dictionary& list, FleetQuery query, const FleetSlice& slice, std:
   if (slice.page < slice.pages) FillAddress(*pager->AddSectionDictionary("NEXT"), query);
 }
 
-void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now) {
-  constexpr std::size_t kRevisionsMax = 500;
-  if (revisions.empty()) return;
-  std::stable_sort(revisions.begin(), revisions.end(),
-                   [](const Revision& a, const Revision& b) { return a.number > b.number; });
-  Dictionary* list = page.AddSectionDictionary("REVISIONS");
-  for (std::size_t i = 0; i < std::min(revisions.size(), kRevisionsMax); ++i) {
-    Dictionary* row = list->AddSectionDictionary("REVISION");
-    row->SetValue("NUMBER", std::to_string(revisions[i].number));
-    FillBadge(*row, revisions[i].verdict.level);
-    row->SetValue("WHY", revisions[i].verdict.why);
-    row->SetValue("TIME", TimeText(revisions[i].created_at));
-    row->SetValue("AGE", AgeOf(revisions[i].created_at, now));
-    row->SetValue("DIGEST", ShortDigest(revisions[i].digest.str()));
-  }
-  if (revisions.size() > kRevisionsMax)
-    ShowValue(*list, "MORE", "COUNT", std::to_string(revisions.size() - kRevisionsMax));
-}
-
 }  // namespace
 
 Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, const FleetQuery& query) {
@@ -147,20 +130,6 @@ Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, co
   FillPager(*list, query, slice, rows.size());
   for (const FleetRow* row : slice.rows) FillRow(*list->AddSectionDictionary("ROW"), *row, now);
   return Expand("fleet.tpl", page);
-}
-
-Result<std::string> RenderRobot(const FleetRow& row, const std::vector<Revision>& revisions, Stamp now) {
-  Dictionary page("robot");
-  FillHead(page, row.robot.str() + ": " + VerdictWord(row.verdict.level), "../../");
-  page.SetValue("ROBOT", row.robot.str());
-  page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
-                                              : "Calibrated " + AgeOf(row.calibrated_at, now)) +
-                               ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
-                               Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
-  if (row.overdue) page.ShowSection("OVERDUE");
-  FillBanner(page, row.verdict);
-  FillRevisions(page, revisions, now);
-  return Expand("robot.tpl", page);
 }
 
 }  // namespace rigcal::report

@@ -70,10 +70,9 @@ struct FleetQuery {
   bool descending = false;
   std::size_t page = 1;
 };
-// Fleet index "/" (a page of it) and robot page "/robots/<id>/" (its revisions, newest first).
+// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h.
 [[nodiscard]] Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now,
                                               const FleetQuery& query = {});
-[[nodiscard]] Result<std::string> RenderRobot(const FleetRow& row, const std::vector<Revision>& revisions, Stamp now);
 // Drawing of the sensor graph alone: circles and edges, labels escaped, failed edges dashed.
 [[nodiscard]] std::string RenderGraphSvg(const formats::RevisionInput& revision);
 [[nodiscard]] std::string StyleSheet();

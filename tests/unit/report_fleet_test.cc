@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
 
 namespace rigcal::report {
@@ -55,7 +56,7 @@ TEST(ReportRobot, RevisionsNewestFirst) {
     revision.verdict.level = VerdictLevel::kPass;
   }
   const std::string page =
-      RenderRobot(RowOf("mapper", VerdictLevel::kPass, 3), revisions, Stamp{101 * kDay_ns}).value();
+      RenderRobot({RowOf("mapper", VerdictLevel::kPass, 3), revisions, {}, {}}, Stamp{101 * kDay_ns}).value();
   EXPECT_LT(page.find("revisions/3/"), page.find("revisions/2/"));
   EXPECT_LT(page.find("revisions/2/"), page.find("revisions/1/"));
   EXPECT_THAT(page, HasSubstr(Sha256Of("3").str().substr(0, 12)));

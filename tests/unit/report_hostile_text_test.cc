@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "server/report/page_data.h"
+#include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
 
 namespace rigcal::report {
@@ -73,7 +75,38 @@ TEST(HostileTextElsewhere, FleetAndRobotPage) {
   revision.number = 3;
   revision.verdict = row.verdict;
   ExpectHarmless(RenderFleet({row}, Stamp{2}).value(), "fleet");
-  ExpectHarmless(RenderRobot(row, {revision}, Stamp{2}).value(), "robot");
+  const SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
+  ExpectHarmless(RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}}, Stamp{2}).value(), "robot");
+}
+
+TEST(HostileTextElsewhere, SessionPage) {
+  SessionInput input;
+  input.robot = RobotId(kHostile);
+  input.row = {SessionId(kHostile), Stamp{1}, kHostile, true, 1, 1, 1, 0};
+  input.manifest.header.conditions = {{kHostile, kHostile}};
+  Sensor sensor;
+  sensor.id = SensorId(kHostile);
+  input.manifest.header.sensors = {sensor};
+  input.manifest.payloads = {{"a/b.png", sensor.id, CaptureId(kHostile), Digest(), 1}};
+  input.edges = {SampleReport().revision.edges[0]};
+  input.edges[0].captures[0] = {CaptureId(kHostile), 0.1, false, kHostile};
+  input.edges[0].evidence[0] = {kHostile, sensor.id, CaptureId(kHostile), Sha256Of("x"), "jpg"};
+  ExpectHarmless(RenderSession(input).value(), "session");
+}
+
+TEST(HostileTextElsewhere, Comparison) {
+  auto revision = std::make_shared<formats::RevisionInput>(SampleReport().revision);
+  revision->solution.poses[1].sensor = SensorId(kHostile);
+  revision->edges[0].method = kHostile;
+  ExpectHarmless(RenderCompare({RobotId(kHostile), {1, revision}, {2, revision}, {1, 2}}).value(), "compare");
+}
+
+// A spreadsheet runs what begins like a formula.
+TEST(HostileTextElsewhere, CsvHoldsNoFormula) {
+  EXPECT_EQ(CsvField("=HYPERLINK(\"x\")"), "\"'=HYPERLINK(\"\"x\"\")\"");
+  EXPECT_EQ(CsvField("@a"), "'@a");
+  EXPECT_EQ(CsvField("a,b"), "\"a,b\"");
+  EXPECT_EQ(CsvField("front_left"), "front_left");
 }
 
 TEST(HostileTextElsewhere, Drawing) {
@@ -92,7 +125,7 @@ TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
     EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
     ++templates;
   }
-  EXPECT_EQ(templates, 8);
+  EXPECT_EQ(templates, 10);
 }
 
 TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {

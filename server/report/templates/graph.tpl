@@ -1,9 +1,9 @@
 {{%AUTOESCAPE context="HTML"}}
-<svg xmlns="http://www.w3.org/2000/svg" class="graph" viewBox="0 0 {{WIDTH}} {{HEIGHT}}" role="img" aria-label="{{LABEL}}" font-family="system-ui, sans-serif">
+<svg xmlns="http://www.w3.org/2000/svg" class="graph" viewBox="0 0 {{WIDTH}} {{HEIGHT}}" role="{{ROLE}}" aria-label="{{LABEL}}" font-family="system-ui, sans-serif">
 {{#TRACE}}<path class="trace {{STATE}}" d="{{D}}" fill="none" stroke="{{STROKE}}" stroke-width="{{THICK}}" stroke-linecap="round"/>
 {{/TRACE}}
 {{#LINK}}
-{{#JUMP}}<a href="#{{ANCHOR}}">{{/JUMP}}
+{{#JUMP}}<a href="#{{ANCHOR}}" aria-label="{{TITLE}}">{{/JUMP}}
 <path class="link {{STATE}}" d="{{D}}" fill="none" stroke="{{STROKE}}" stroke-width="{{THICK}}"{{#DASHED}} stroke-dasharray="6 5"{{/DASHED}}><title>{{TITLE}}</title></path>
 {{#JUMPED}}</a>{{/JUMPED}}
 {{/LINK}}

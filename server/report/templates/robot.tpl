@@ -3,11 +3,15 @@
 <body>
 <main>
 <nav class="crumbs" aria-label="Where you are"><a href="../../">Fleet</a> / <span>{{ROBOT}}</span></nav>
+<div id="live" data-live="../../api/v1/live?robot={{ROBOT}}">
 <header>
 <h1>{{ROBOT}}</h1>
 <p class="meta">{{SUMMARY}}{{#OVERDUE}} <span class="badge fail">overdue</span>{{/OVERDUE}}</p>
 </header>
 {{>BANNER}}
+{{#OPEN}}
+<p class="working"><a href="sessions/{{ID}}/">Session {{SHORT}}</a> {{STATE}}: {{DONE}} of {{ALL}} {{UNIT}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress of session {{SHORT}}"></progress></p>
+{{/OPEN}}
 {{#REVISIONS}}
 <section class="card">
 <h2 id="revisions">Revisions <span class="soft">newest first</span></h2>
@@ -24,6 +28,40 @@
 {{#MORE}}<p class="hint">{{COUNT}} older revisions are kept: <code>rigcal show</code> names them.</p>{{/MORE}}
 </section>
 {{/REVISIONS}}
+{{#SESSIONS}}
+<section class="card">
+<h2 id="sessions">Sessions <span class="soft">newest first</span></h2>
+<div class="scroll" tabindex="0" role="region" aria-labelledby="sessions">
+<table class="list">
+<thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Files</th><th scope="col">Pairs</th></tr></thead>
+<tbody>
+{{#SESSION}}
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td>{{FILES}}</td><td>{{PAIRS}}</td></tr>
+{{/SESSION}}
+</tbody>
+</table>
+</div>
+</section>
+{{/SESSIONS}}
+</div>
+{{#COMPARE}}
+<form class="search card" action="compare" method="get">
+<h2>Compare</h2>
+<label>Revision <select name="a">{{#CHOICE_A}}<option{{#CHOSEN}} selected{{/CHOSEN}}>{{NUMBER}}</option>{{/CHOICE_A}}</select></label>
+<label>with <select name="b">{{#CHOICE_B}}<option{{#CHOSEN}} selected{{/CHOSEN}}>{{NUMBER}}</option>{{/CHOICE_B}}</select></label>
+<button>Compare</button>
+</form>
+{{/COMPARE}}
+{{#TRENDS}}
+<section class="card" aria-labelledby="trends">
+<h2 id="trends">History of each sensor</h2>
+<noscript><p class="hint">The charts need a script. Compare two revisions to read how far each sensor moved.</p></noscript>
+{{#TREND}}<div class="plots trend" data-trend="{{SENSOR}}"></div>
+{{/TREND}}
+</section>
+{{/TRENDS}}
 </main>
+{{#SCRIPT}}<script defer src="{{PATH}}"></script>
+{{/SCRIPT}}
 </body>
 </html>

@@ -1,0 +1,160 @@
+#include "server/pipeline/robot_pages.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "server/formats/parameters.h"
+#include "server/pipeline/robot_rows.h"
+#include "server/report/robot_pages.h"
+#include "storage/blobs.h"
+#include "storage/edges.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr std::size_t kTrendRevisionsMax = 24, kTrendBytesMax = 64u << 20, kTrendSensorsMax = 60;
+constexpr std::size_t kPictureBytesMax = 64u << 20;
+
+tl::unexpected<Error> NoPage(const std::string& rest) {
+  return Fail(ErrorCode::kNotFound, "there is no page /robots/" + rest, "Start at the list of robots: /");
+}
+
+report::SessionRow SessionRowOf(const formats::SessionAnswer& answer) {
+  report::SessionRow row;
+  row.id = answer.session;
+  row.captured_at = answer.captured_at.value_or(Stamp{});
+  row.operator_name = answer.operator_name;
+  row.closed = answer.closed;
+  row.files = answer.payloads;
+  row.files_held = answer.payloads_held;
+  row.pairs = answer.jobs_total;
+  row.pairs_waiting = answer.jobs_waiting;
+  return row;
+}
+
+// Of the newest revision; none if there are more than charts would show.
+Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const RobotId& robot, std::size_t revisions) {
+  std::vector<SensorId> sensors;
+  if (revisions < 2) return sensors;
+  RIGCAL_ASSIGN(const ParsedRevision newest, context.revisions.Load(context.store, robot, 0));
+  for (const SensorPose& pose : newest.document->solution.poses)
+    if (pose.known && pose.sensor != newest.document->reference) sensors.push_back(pose.sensor);
+  if (sensors.size() > kTrendSensorsMax) sensors.clear();
+  return sensors;
+}
+
+Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
+  const Stamp now = context.clock.Now();
+  report::RobotInput input;
+  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
+  input.row = FleetRowOf(rows.front());
+  RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot));
+  RIGCAL_ASSIGN(const auto sessions, LoadSessionRows(context.store, robot));
+  for (const auto& session : sessions) input.sessions.push_back(SessionRowOf(session));
+  RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.revisions.size()));
+  RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
+  return PageText{std::move(body), kHtml};
+}
+
+// The newest revisions, as many as stay within bounds.
+Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
+  std::vector<report::SolvedRevision> solved;
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < std::min(revisions.size(), kTrendRevisionsMax) && bytes < kTrendBytesMax; ++i) {
+    RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(context.store, robot, revisions[i].number));
+    RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(whole.document));
+    bytes += whole.document.size();
+    solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document))});
+  }
+  std::reverse(solved.begin(), solved.end());
+  return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
+}
+
+Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
+  const int newest = revisions.empty() ? 0 : revisions.front().number;
+  RIGCAL_ASSIGN(const std::int64_t now, parameters.IntegerOr("a", newest));
+  RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("b", std::max(newest - 1, 1)));
+  report::CompareInput input;
+  input.robot = robot;
+  for (const Revision& revision : revisions) input.numbers.push_back(revision.number);
+  RIGCAL_ASSIGN(const ParsedRevision first, context.revisions.Load(context.store, robot, std::min(before, now)));
+  RIGCAL_ASSIGN(const ParsedRevision second, context.revisions.Load(context.store, robot, std::max(before, now)));
+  input.before = {first.summary.number, first.document};
+  input.now = {second.summary.number, second.document};
+  RIGCAL_ASSIGN(std::string body, report::RenderCompare(input));
+  return PageText{std::move(body), kHtml};
+}
+
+Result<formats::SessionAnswer> SessionOf(const AnswerContext& context, const RobotId& robot, const std::string& name) {
+  RIGCAL_ASSIGN(const SessionId id, SessionId::Parse(name));
+  RIGCAL_ASSIGN(auto row, LoadSessionRow(context.store, id));
+  if (row.robot == robot) return row;
+  return Fail(ErrorCode::kNotFound, "session " + name + " is of another robot", "See /robots/" + row.robot.str() + "/");
+}
+
+Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot, const std::string& name) {
+  RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
+  report::SessionInput input;
+  input.robot = robot;
+  input.row = SessionRowOf(row);
+  RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
+  if (manifest) input.manifest = std::move(*manifest);
+  RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
+  RIGCAL_ASSIGN(std::string body, report::RenderSession(input));
+  return PageText{std::move(body), kHtml};
+}
+
+// Only pictures that an edge of this session names: the blobs of others are not handed out.
+Result<PageText> SessionPicture(const AnswerContext& context, const RobotId& robot, const std::string& name,
+                                const std::string& file) {
+  RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
+  RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, row.session));
+  for (const Edge& edge : edges)
+    for (const Evidence& evidence : edge.evidence) {
+      if (evidence.digest.str() + "." + evidence.suffix != file) continue;
+      RIGCAL_ASSIGN(std::string bytes,
+                    storage::LoadBlob(context.store.BlobFolder(), evidence.digest, kPictureBytesMax));
+      return PageText{std::move(bytes), evidence.suffix == "png" ? "image/png" : "image/jpeg", true};
+    }
+  return Fail(ErrorCode::kNotFound, "session " + name + " has no picture " + file, "Open the session's page.");
+}
+
+}  // namespace
+
+report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
+  report::FleetRow fleet;
+  fleet.robot = row.robot;
+  fleet.revision = row.revision;
+  fleet.verdict = row.verdict;
+  fleet.calibrated_at = row.calibrated_at.value_or(Stamp{});
+  fleet.sessions = row.sessions;
+  fleet.edges = row.edges;
+  fleet.overdue = row.overdue;
+  return fleet;
+}
+
+Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string& rest, const std::string& query) {
+  std::vector<std::string> parts;  // the last is empty for an address that ends in '/'
+  for (std::size_t start = 0; start <= rest.size();) {
+    const std::size_t end = std::min(rest.find('/', start), rest.size());
+    parts.push_back(rest.substr(start, end - start));
+    start = end + 1;
+  }
+  RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(parts[0]));
+  if (parts.size() == 2 && parts[1].empty()) return RobotPage(context, robot);
+  if (parts.size() == 2 && parts[1] == "trend.js") return Trend(context, robot);
+  if (parts.size() == 2 && parts[1] == "compare") return ComparePage(context, robot, query);
+  if (parts.size() < 4 || parts[1] != "sessions") return NoPage(rest);
+  if (parts.size() == 4 && parts[3].empty()) return SessionPage(context, robot, parts[2]);
+  if (parts.size() == 5 && parts[3] == "evidence") return SessionPicture(context, robot, parts[2], parts[4]);
+  return NoPage(rest);
+}
+
+}  // namespace rigcal::pipeline

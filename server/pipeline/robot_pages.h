@@ -1,0 +1,19 @@
+// The pages about one robot that are made when asked for.
+#pragma once
+
+#include <string>
+
+#include "server/formats/answers.h"
+#include "server/pipeline/answer.h"
+#include "server/report/render.h"
+
+namespace rigcal::pipeline {
+
+[[nodiscard]] report::FleetRow FleetRowOf(const formats::RobotAnswer& row);
+
+// `rest` is what follows "/robots/": "<id>/", "<id>/trend.js", "<id>/compare", "<id>/sessions/<id>/",
+// "<id>/sessions/<id>/evidence/<digest>.<suffix>". kNotFound for everything else.
+[[nodiscard]] Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string& rest,
+                                               const std::string& query);
+
+}  // namespace rigcal::pipeline

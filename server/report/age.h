@@ -1,0 +1,14 @@
+// How long ago, in words.
+#pragma once
+
+#include <string>
+
+#include "server/report/render.h"
+
+namespace rigcal::report {
+
+[[nodiscard]] std::string AgeOf(Stamp then, Stamp now);
+// Not calibrated yet: no revision, or one of failed edges only.
+[[nodiscard]] bool IsNever(const FleetRow& robot);
+
+}  // namespace rigcal::report

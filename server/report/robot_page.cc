@@ -1,0 +1,104 @@
+#include <algorithm>
+
+#include "server/report/age.h"
+#include "server/report/assets.h"
+#include "server/report/banner.h"
+#include "server/report/page.h"
+#include "server/report/robot_pages.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kSessionsMax = 200;
+
+void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now) {
+  constexpr std::size_t kRevisionsMax = 500;
+  if (revisions.empty()) return;
+  std::stable_sort(revisions.begin(), revisions.end(),
+                   [](const Revision& a, const Revision& b) { return a.number > b.number; });
+  Dictionary* list = page.AddSectionDictionary("REVISIONS");
+  for (std::size_t i = 0; i < std::min(revisions.size(), kRevisionsMax); ++i) {
+    Dictionary* row = list->AddSectionDictionary("REVISION");
+    row->SetValue("NUMBER", std::to_string(revisions[i].number));
+    FillBadge(*row, revisions[i].verdict.level);
+    row->SetValue("WHY", revisions[i].verdict.why);
+    row->SetValue("TIME", TimeText(revisions[i].created_at));
+    row->SetValue("AGE", AgeOf(revisions[i].created_at, now));
+    row->SetValue("DIGEST", ShortDigest(revisions[i].digest.str()));
+  }
+  if (revisions.size() > kRevisionsMax)
+    ShowValue(*list, "MORE", "COUNT", std::to_string(revisions.size() - kRevisionsMax));
+}
+
+void FillOpen(Dictionary& page, const SessionRow& session) {
+  Dictionary* open = page.AddSectionDictionary("OPEN");
+  open->SetValue("ID", session.id.str());
+  open->SetValue("SHORT", ShortDigest(session.id.str()));
+  const bool arriving = !session.closed;
+  open->SetValue("STATE", arriving ? "is arriving" : "is being calibrated");
+  open->SetValue("DONE", std::to_string(arriving ? session.files_held : session.pairs - session.pairs_waiting));
+  open->SetValue("ALL", std::to_string(arriving ? session.files : session.pairs));
+  open->SetValue("UNIT", arriving ? "files" : "pairs");
+}
+
+void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Stamp now) {
+  for (const SessionRow& session : sessions)
+    if (!session.closed || session.pairs_waiting > 0) FillOpen(page, session);
+  if (sessions.empty()) return;
+  Dictionary* list = page.AddSectionDictionary("SESSIONS");
+  for (std::size_t i = 0; i < std::min(sessions.size(), kSessionsMax); ++i) {
+    const SessionRow& session = sessions[i];
+    Dictionary* row = list->AddSectionDictionary("SESSION");
+    row->SetValue("ID", session.id.str());
+    row->SetValue("SHORT", ShortDigest(session.id.str()));
+    row->SetValue("TIME", TimeText(session.captured_at));
+    row->SetValue("AGE", AgeOf(session.captured_at, now));
+    row->SetValue("OPERATOR", session.operator_name);
+    row->SetValue("FILES", std::to_string(session.files));
+    row->SetValue("PAIRS", std::to_string(session.pairs));
+  }
+}
+
+// Two revisions to compare: the newest and the one before it.
+void FillCompare(Dictionary& page, const std::vector<Revision>& revisions) {
+  constexpr std::size_t kChoicesMax = 500;
+  if (revisions.size() < 2) return;
+  std::vector<int> numbers;
+  for (const Revision& revision : revisions) numbers.push_back(revision.number);
+  std::sort(numbers.rbegin(), numbers.rend());
+  Dictionary* compare = page.AddSectionDictionary("COMPARE");
+  for (std::size_t i = 0; i < std::min(numbers.size(), kChoicesMax); ++i)
+    for (const char* section : {"CHOICE_A", "CHOICE_B"}) {
+      Dictionary* option = compare->AddSectionDictionary(section);
+      option->SetValue("NUMBER", std::to_string(numbers[i]));
+      if (i == (section == std::string("CHOICE_A") ? 1U : 0U)) option->ShowSection("CHOSEN");
+    }
+}
+
+}  // namespace
+
+Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
+  Dictionary page("robot");
+  const FleetRow& row = input.row;
+  FillHead(page, row.robot.str() + ": " + VerdictWord(row.verdict.level), "../../");
+  page.SetValue("ROBOT", row.robot.str());
+  page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
+                                         : "Calibrated " + AgeOf(row.calibrated_at, now)) +
+                               ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
+                               Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
+  if (row.overdue) page.ShowSection("OVERDUE");
+  FillBanner(page, row.verdict);
+  FillSessions(page, input.sessions, now);
+  FillRevisions(page, input.revisions, now);
+  FillCompare(page, input.revisions);
+  AddScript(page, "../../" + AssetPath("live.js"));
+  if (input.revisions.size() < 2 || input.sensors.empty()) return Expand("robot.tpl", page);
+  Dictionary* trends = page.AddSectionDictionary("TRENDS");
+  for (const SensorId& sensor : input.sensors) ShowValue(*trends, "TREND", "SENSOR", sensor.str());
+  AddScript(page, "trend.js");
+  AddScript(page, "../../" + AssetPath("charts.js"));
+  return Expand("robot.tpl", page);
+}
+
+}  // namespace rigcal::report

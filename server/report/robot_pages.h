@@ -1,0 +1,51 @@
+// The pages about one robot that are made when asked for: its history, a comparison of two revisions, a session.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/report/render.h"
+
+namespace rigcal::report {
+
+// A session as the robot's page lists it.
+struct SessionRow {
+  SessionId id;
+  Stamp captured_at;
+  std::string operator_name;
+  bool closed = false;
+  std::int64_t files = 0, files_held = 0, pairs = 0, pairs_waiting = 0;
+};
+struct RobotInput {
+  FleetRow row;
+  std::vector<Revision> revisions;
+  std::vector<SessionRow> sessions;  // the newest first
+  std::vector<SensorId> sensors;     // whose history is drawn
+};
+[[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);
+
+// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one.
+struct SolvedRevision {
+  int number = 0;
+  std::shared_ptr<const formats::RevisionInput> revision;
+};
+[[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
+
+struct CompareInput {
+  RobotId robot;
+  SolvedRevision before, now;
+  std::vector<int> numbers;  // of all revisions, to choose from
+};
+[[nodiscard]] Result<std::string> RenderCompare(const CompareInput& input);
+
+struct SessionInput {
+  RobotId robot;
+  SessionRow row;
+  Manifest manifest;
+  std::vector<Edge> edges;  // that it gave
+};
+// Pictures are "evidence/<digest>.<suffix>" below the page.
+[[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);
+
+}  // namespace rigcal::report

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "server/report/robot_pages.h"
+#include "server/report/page.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kCapturesMax = 1000;
+
+using Place = std::pair<CaptureId, SensorId>;
+
+// The first picture of each: several edges may show the same one.
+std::map<Place, const Evidence*> PicturesOf(const std::vector<Edge>& edges) {
+  std::map<Place, const Evidence*> pictures;
+  for (const Edge& edge : edges)
+    for (const Evidence& evidence : edge.evidence)
+      if (evidence.suffix == "jpg" || evidence.suffix == "png")
+        pictures.emplace(Place{evidence.capture, evidence.sensor}, &evidence);
+  return pictures;
+}
+
+std::map<CaptureId, std::set<SensorId>> CapturesOf(const Manifest& manifest) {
+  std::map<CaptureId, std::set<SensorId>> captures;
+  for (const Payload& payload : manifest.payloads)
+    if (!payload.capture.empty()) captures[payload.capture].insert(payload.sensor);
+  return captures;
+}
+
+void FillCell(Dictionary& cell, const SensorId& sensor, const Evidence* picture, bool has_file) {
+  if (picture) {
+    Dictionary* shown = cell.AddSectionDictionary("PICTURE");
+    shown->SetValue("FILE", picture->digest.str() + "." + picture->suffix);
+    shown->SetValue("ALT", picture->title.empty() ? sensor.str() : picture->title);
+    return;
+  }
+  ShowValue(cell, "BLANK", "TEXT", has_file ? "not looked at" : "no file");
+}
+
+// What each pair of sensors did with the capture.
+void FillUses(Dictionary& row, const std::vector<Edge>& edges, const CaptureId& capture) {
+  for (const Edge& edge : edges)
+    for (const CaptureResidual& residual : edge.captures) {
+      if (residual.capture != capture) continue;
+      Dictionary* use = row.AddSectionDictionary("USE");
+      use->SetValue("LEVEL", residual.used ? "pass" : "unknown");
+      use->SetValue("WORD", residual.used ? "used" : "not used");
+      use->SetValue("FROM", edge.frame_a.str());
+      use->SetValue("TO", edge.frame_b.str());
+      if (!residual.note.empty()) ShowValue(*use, "NOTE", "TEXT", residual.note);
+    }
+}
+
+void FillCaptures(Dictionary& page, const SessionInput& input) {
+  const auto pictures = PicturesOf(input.edges);
+  const auto captures = CapturesOf(input.manifest);
+  for (const Sensor& sensor : input.manifest.header.sensors)
+    ShowValue(page, "SENSOR", "NAME", sensor.id.str() + " (" + NameOf(sensor.kind) + ")");
+  std::size_t shown = 0;
+  for (const auto& [capture, sensors] : captures) {
+    if (shown++ == kCapturesMax) break;
+    Dictionary* row = page.AddSectionDictionary("CAPTURE");
+    row->SetValue("NAME", capture.str());
+    for (const Sensor& sensor : input.manifest.header.sensors) {
+      const auto picture = pictures.find({capture, sensor.id});
+      FillCell(*row->AddSectionDictionary("CELL"), sensor.id, picture == pictures.end() ? nullptr : picture->second,
+               sensors.contains(sensor.id));
+    }
+    FillUses(*row, input.edges, capture);
+  }
+  if (captures.size() > kCapturesMax) ShowValue(page, "MORE", "COUNT", std::to_string(captures.size() - kCapturesMax));
+}
+
+void FillEdges(Dictionary& page, const std::vector<Edge>& edges) {
+  for (const Edge& edge : edges) {
+    Dictionary* row = page.AddSectionDictionary("EDGE");
+    const bool good = edge.state == EdgeState::kGood;
+    row->SetValue("FROM", edge.frame_a.str());
+    row->SetValue("TO", edge.frame_b.str());
+    row->SetValue("METHOD", edge.method);
+    row->SetValue("LEVEL", good ? "pass" : "fail");
+    row->SetValue("STATE", good ? "good" : "failed");
+    if (!edge.diagnoses.empty()) row->SetValue("WHY", edge.diagnoses.front().what);
+  }
+}
+
+}  // namespace
+
+Result<std::string> RenderSession(const SessionInput& input) {
+  Dictionary page("session");
+  const std::string short_id = ShortDigest(input.row.id.str());
+  FillHead(page, input.robot.str() + ", session " + short_id, "../../../../");
+  page.SetValue("ROBOT", input.robot.str());
+  page.SetValue("SHORT", short_id);
+  page.SetValue("ID", input.row.id.str());
+  page.SetValue("TIME", TimeText(input.row.captured_at));
+  page.SetValue("FILES", std::to_string(input.row.files_held) + " of " +
+                             Count(static_cast<std::size_t>(input.row.files), "file", "files"));
+  if (!input.row.operator_name.empty()) ShowValue(page, "OPERATOR", "NAME", input.row.operator_name);
+  if (input.row.pairs_waiting > 0) ShowValue(page, "WAITING", "COUNT", std::to_string(input.row.pairs_waiting));
+  for (const auto& [name, value] : input.manifest.header.conditions) {
+    Dictionary* condition = page.AddSectionDictionary("CONDITION");
+    condition->SetValue("NAME", name);
+    condition->SetValue("VALUE", value);
+  }
+  FillEdges(page, input.edges);
+  FillCaptures(page, input);
+  return Expand("session.tpl", page);
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,131 @@
+// What people do with the pages. Run by pages_test.py.
+const { accessible, assert, close, colors, drawn, facts, open, withBrowser } = require("./browser.cjs");
+
+const at = (path) => facts.address + path;
+
+async function everyPage(browser) {
+  const paths = ["/", "/?q=rover&sort=edges&order=down", "/robots/rover/", "/robots/rover/revisions/2/", "/robots/rover/compare?a=2&b=1", "/robots/broken/revisions/1/"];
+  if (facts.pictures) {
+    const reply = await (await fetch(at("/api/v1/sessions?robot=stereo"))).json();
+    paths.push("/robots/stereo/revisions/1/", "/robots/stereo/", `/robots/stereo/sessions/${reply.sessions[0].session}/`);
+  }
+  for (const path of paths) {
+    const page = await open(browser, at(path));
+    await accessible(page);
+    await page.emulateMedia({ colorScheme: "dark" });
+    await accessible(page);
+    await page.setViewportSize({ width: 390, height: 844 });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= 390, `${path} is ${wide} px wide on a phone`);
+    await close(page);
+  }
+}
+
+async function fleet(browser) {
+  const page = await open(browser, at("/"));
+  const robots = () => page.$$eval("#live tbody th", (cells) => cells.map((cell) => cell.textContent.trim()));
+  assert.strictEqual((await robots())[0], "broken", "what fails comes first");
+  await page.waitForSelector("form[data-ready]");
+  await page.fill('input[type="search"]', "ROVER");
+  await page.waitForFunction(() => document.querySelectorAll("#live tbody tr").length === 1);
+  assert.deepStrictEqual(await robots(), ["rover"]);
+  assert.ok(page.url().includes("q=ROVER"), "the address says what is shown");
+  await page.fill('input[type="search"]', "");
+  await page.selectOption("select[name=verdict]", "fail");
+  await page.waitForFunction(() => document.querySelector("#live tbody")?.textContent.includes("broken"));
+  await page.goto(at("/"));
+  await page.click("thead a:has-text('Robot')");
+  await page.waitForURL(/sort=robot/);
+  assert.deepStrictEqual(await robots(), [...(await robots())].sort(), "sorted by name");
+  await close(page);
+}
+
+async function edgeTable(browser) {
+  const page = await open(browser, at("/robots/rover/revisions/2/"));
+  const column = (index) => page.$$eval("table.edges tbody tr", (rows, cell) => rows.filter((row) => !row.hidden).map((row) => Number(row.cells[cell].textContent)), index);
+  await page.click("table.edges th[data-column='6'] button");
+  const up = await column(6);
+  assert.deepStrictEqual(up, [...up].sort((a, b) => a - b));
+  await page.focus("table.edges th[data-column='6'] button");
+  await page.keyboard.press("Enter");
+  assert.deepStrictEqual(await column(6), [...up].reverse().sort((a, b) => b - a));
+  assert.strictEqual(await page.getAttribute("table.edges th[data-column='6']", "aria-sort"), "descending");
+  await page.fill(".filter input", "front rear");
+  assert.strictEqual((await column(6)).length, 1);
+  const csv = await (await fetch(at("/robots/rover/revisions/2/edges.csv"))).text();
+  assert.strictEqual(csv.trim().split("\r\n").length, 5, "a heading and four edges");
+  await close(page);
+}
+
+async function rig(browser) {
+  const page = await open(browser, at("/robots/rover/revisions/2/"));
+  await drawn(page, "#rig canvas");
+  await page.waitForSelector("#rig .view[data-frames]");
+  assert.ok((await colors(page, "#rig canvas")) > 10, "the rig is drawn");
+  const picture = () => page.$eval("#rig canvas", (canvas) => canvas.toDataURL());
+  const changes = async (act, what) => {
+    const before = await picture();
+    await act();
+    await page.waitForFunction((old) => document.querySelector("#rig canvas").toDataURL() !== old, before).catch(() => assert.fail(what + " changes nothing"));
+  };
+  await page.focus("#rig canvas");
+  await changes(() => page.keyboard.press("ArrowLeft"), "an arrow key");
+  await changes(() => page.click("#rig button:has-text('Top')"), "the button Top");
+  await changes(() => page.$eval("#rig input[type=range]", (slider) => { slider.value = slider.max; slider.dispatchEvent(new Event("input")); }), "the slider");
+  await changes(() => page.uncheck("#rig .toggle input"), "the ghosts' switch");
+  await page.selectOption("#rig select", "rear");
+  assert.ok((await page.textContent("#rig .panel")).includes("rear"));
+  const box = await page.locator("#rig canvas").boundingBox();
+  await page.click("#rig button:has-text('All')");
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await close(page);
+}
+
+async function charts(browser) {
+  if (!facts.pictures) return;
+  const page = await open(browser, at("/robots/stereo/revisions/1/"));
+  await page.locator("[data-edge-charts]").first().scrollIntoViewIfNeeded();
+  await drawn(page, "[data-edge-charts] canvas");
+  assert.ok((await colors(page, "[data-edge-charts] canvas")) > 5, "the residuals are drawn");
+  assert.strictEqual(await page.locator("[data-edge-charts] .plot").count(), 3);
+  await page.hover("[data-edge-charts] canvas");
+  const shown = await page.$$eval("img[src^='evidence/']", (pictures) => pictures.length);
+  assert.ok(shown >= 10, "pictures of detections");
+  assert.ok((await page.textContent(".provenance")).includes("<script>window.ran=1</script>"), "the operator's name is text");
+  await close(page);
+  const robot = await open(browser, at("/robots/rover/"));
+  await robot.locator("[data-trend]").first().scrollIntoViewIfNeeded();
+  await drawn(robot, "[data-trend] canvas");
+  assert.ok((await colors(robot, "[data-trend] canvas")) > 5, "the history is drawn");
+  await close(robot);
+}
+
+async function withoutScript(browser) {
+  const page = await open(browser, at("/robots/rover/revisions/2/"), { javaScriptEnabled: false });
+  for (const part of [".banner .why", ".figures", ".changes", "svg.graph", "table.edges", ".provenance"])
+    assert.ok(await page.locator(part).first().isVisible(), part + " without a script");
+  assert.ok(!(await page.locator("#rig").isVisible()), "no empty frame where a script would draw");
+  await page.goto(at("/?q=rover"));
+  assert.strictEqual(await page.locator("#live tbody tr").count(), 1, "the search works without a script");
+  await page.context().close();
+}
+
+async function fromDisk(browser) {
+  const page = await open(browser, "file://" + facts.copy + "/index.html");
+  await drawn(page, "#rig canvas");
+  assert.ok((await colors(page, "#rig canvas")) > 10, "the rig is drawn from disk");
+  await page.click("table.edges th[data-column='0'] button");
+  assert.ok((await page.pdf()).length > 20000, "it prints");
+  await close(page);
+}
+
+withBrowser(async (browser) => {
+  for (const work of [everyPage, fleet, edgeTable, rig, charts, withoutScript, fromDisk]) {
+    const start = Date.now();
+    await work(browser);
+    console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);
+  }
+}).catch((error) => {
+  console.error(error);
+  process.exit(1);
+});
