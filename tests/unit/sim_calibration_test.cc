@@ -1,6 +1,7 @@
 // Observations without pictures through the product's estimators: their answers must be the truth within their own sigmas.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 
 #include "client/sim/observe.h"
@@ -49,22 +50,44 @@ TEST(SimCalibration, StereoPairsGiveTheTruthWithinTheirSigmas) {
   }
 }
 
+calib::LidarCameraProblem ProblemOf(const Experiment& experiment, const Observations& seen, const char* camera,
+                                    const char* lidar) {
+  calib::LidarCameraProblem problem;
+  problem.camera = DeclaredOf(experiment, camera);
+  problem.lidar = DeclaredOf(experiment, lidar);
+  problem.board = TargetOf(experiment, *problem.camera.sees);
+  const Se3 T_ref_cam = problem.camera.T_ref_nominal.value_or(Se3{});
+  problem.T_cam_lidar_nominal = T_ref_cam.Inverse() * *problem.lidar.T_ref_nominal;
+  for (const CaptureId& capture : experiment.captures)
+    problem.captures.push_back({capture, seen.views.at(SensorId(camera)).at(capture),
+                                seen.clouds.at(SensorId(lidar)).at(capture).at(problem.board.id)});
+  return problem;
+}
+
 TEST(SimCalibration, LidarCameraPairsGiveTheTruthWithinTheirSigmas) {
   const Experiment experiment = Prepared(MarsMapper());
   const Observations seen = Observe(experiment);
   for (const auto& [camera, lidar] :
-       {std::pair("front_left", "lidar_horizontal"), std::pair("back", "lidar_horizontal"), std::pair("left_front", "lidar_vertical"), std::pair("up_left", "lidar_vertical")}) {
-    calib::LidarCameraProblem problem;
-    problem.camera = DeclaredOf(experiment, camera);
-    problem.lidar = DeclaredOf(experiment, lidar);
-    problem.board = TargetOf(experiment, *problem.camera.sees);
-    const Se3 T_ref_cam = problem.camera.T_ref_nominal.value_or(Se3{});
-    problem.T_cam_lidar_nominal = T_ref_cam.Inverse() * *problem.lidar.T_ref_nominal;
-    for (const CaptureId& capture : experiment.captures)
-      problem.captures.push_back({capture, seen.views.at(SensorId(camera)).at(capture),
-                                  seen.clouds.at(SensorId(lidar)).at(capture).at(problem.board.id)});
-    ExpectTruth(experiment, calib::EstimateLidarCameraEdge(problem));
+       {std::pair("front_left", "lidar_horizontal"), std::pair("back", "lidar_horizontal"),
+        std::pair("left_front", "lidar_vertical"), std::pair("up_left", "lidar_vertical")})
+    ExpectTruth(experiment, calib::EstimateLidarCameraEdge(ProblemOf(experiment, seen, camera, lidar)));
+}
+
+// Range noise bends and tilts a plane that is fitted without regard to the rays: it then looks like a bias.
+TEST(SimCalibration, RangeNoiseIsNotTakenForARangeBias) {
+  constexpr int kSeeds = 4;
+  double sigmas = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Options options;
+    options.seed = static_cast<std::uint64_t>(seed);
+    options.intrinsics = IntrinsicsKind::kExact;
+    const Experiment experiment = Prepared(MarsMapper(), options);
+    const auto problem = ProblemOf(experiment, Observe(experiment), "front_left", "lidar_horizontal");
+    const auto estimate = calib::EstimateLidarCamera(problem, nullptr, nullptr);
+    ASSERT_TRUE(estimate) << estimate.error().what;
+    sigmas += estimate->range_bias_m / estimate->range_bias_sigma_m;
   }
+  EXPECT_LT(std::abs(sigmas) / std::sqrt(kSeeds), 5.5);
 }
 
 }  // namespace
