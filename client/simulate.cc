@@ -1,3 +1,5 @@
+#include "client/sim/simulate.h"
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
@@ -6,7 +8,6 @@
 #include "client/progress.h"
 #include "client/sim/bound.h"
 #include "client/sim/rig_yaml.h"
-#include "client/sim/simulate.h"
 #include "client/table.h"
 #include "client/transfer.h"
 #include "client/verbs.h"
@@ -115,7 +116,8 @@ void PrintText(const Options& options, const Done& done, std::ostream& out) {
     if (sensor.bound)
       table.Add({id.str(), SigmaText(*sensor.bound, 0, 1e3, 3), SigmaText(*sensor.bound, 3, 180 / M_PI, 4)});
   if (table.empty()) return;
-  out << "Cramer-Rao bound of the poses in " << done.truth.reference.str() << ", one sigma along and about each sensor's axes:\n";
+  out << "Cramer-Rao bound of the poses in " << done.truth.reference.str()
+      << ", one sigma along and about each sensor's axes:\n";
   table.Print(out);
 }
 
@@ -126,7 +128,8 @@ Status Run(const Context& context, const Options& options) {
     return {};
   }
   if (options.rig.empty())
-    return Fail(ErrorCode::kInvalidInput, "the rig is not named", "For example: rigcal simulate mars-mapper --out visit/");
+    return Fail(ErrorCode::kInvalidInput, "the rig is not named",
+                "For example: rigcal simulate mars-mapper --out visit/");
   RIGCAL_ASSIGN(const Done done, Record(context, options));
   if (context.json)
     PrintJson(options, done, context.out);
@@ -138,25 +141,32 @@ Status Run(const Context& context, const Options& options) {
 void AddOptions(CLI::App& verb, Options& options) {
   sim::Options& simulation = options.simulation;
   verb.add_option("RIG", options.rig, "mars-mapper, or a YAML file (see --print-rig)");
-  verb.add_option("--out", options.out, "Folder to write, new or empty; without it only the bound is printed")->type_name("DIR");
+  verb.add_option("--out", options.out, "Folder to write, new or empty; without it only the bound is printed")
+      ->type_name("DIR");
   verb.add_option("--print-rig", options.print_rig, "Print a built-in rig's YAML and stop")->type_name("NAME");
-  verb.add_option("--captures", options.captures, "How many (default: the rig's)")->type_name("N")->check(CLI::Range(1, 10'000));
+  verb.add_option("--captures", options.captures, "How many (default: the rig's)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10'000));
   verb.add_option("--scale", simulation.scale_ratio, "Size of the pictures, 1 is full")->type_name("RATIO");
   verb.add_option("--seed", simulation.seed, "Of everything that is drawn at random (default 1)")->type_name("N");
   verb.add_option("--noise", simulation.noise_factor, "Factor on all noise (default 1)")->type_name("FACTOR");
   verb.add_option("--dropouts", simulation.dropout_ratio, "Part of the files that is missing")->type_name("RATIO");
-  verb.add_option("--bump", options.bump, "A sensor that is moved by 5 mm and 0.5 deg halfway through")->type_name("SENSOR");
+  verb.add_option("--bump", options.bump, "A sensor that is moved by 5 mm and 0.5 deg halfway through")
+      ->type_name("SENSOR");
   verb.add_option("--motion", options.motion, "free; planar: level; spot: turning about one upright axis")
       ->check(CLI::IsMember({"free", "planar", "spot"}));
   verb.add_option("--tilt-deg", options.tilt_deg, "Tilt of the poses, rms (default: the rig's; 0 if planar or spot)")
-      ->type_name("DEG")->check(CLI::Range(0.0, 45.0));
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 45.0));
   verb.add_option("--board-scale", simulation.board_scale_ratio, "True size of the boards over the declared one")
       ->type_name("RATIO");
   verb.add_option("--lidar-bias-m", simulation.lidar_bias_sigma_m, "Sigma of a constant error that each beam has")
-      ->type_name("M")->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--intrinsics", options.intrinsics,
-                  "What session.yaml says of the lenses: exact; calibrated: with the errors and sigmas of a calibration "
-                  "beforehand (default); absent: to be estimated")
+      ->type_name("M")
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_option(
+          "--intrinsics", options.intrinsics,
+          "What session.yaml says of the lenses: exact; calibrated: with the errors and sigmas of a calibration "
+          "beforehand (default); absent: to be estimated")
       ->check(CLI::IsMember({"exact", "calibrated", "absent"}));
   verb.add_option("--format", options.format, "Of pictures: jpg (quality 90, default) or png")
       ->check(CLI::IsMember({"jpg", "png"}));
@@ -172,7 +182,8 @@ void AddSimulate(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   AddOptions(*verb, *options);
   verb->footer(
-      "Needs no server. The same rig, options and seed give the same bytes. truth.yaml holds the true poses; `rigcal push`\n"
+      "Needs no server. The same rig, options and seed give the same bytes. truth.yaml holds the true poses; `rigcal "
+      "push`\n"
       "leaves it away.\n"
       "Examples:\n"
       "  rigcal simulate mars-mapper --out visit/                              40 captures of 9 cameras, full size\n"

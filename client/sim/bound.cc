@@ -133,12 +133,12 @@ class Builder {
     for (const Vector3d& p : points) points_cam.push_back(T_cam_ref * (T_ref_board * p));
     const std::vector<LensPoint> pixels = PixelsWithDerivatives(camera.camera.intrinsics, points_cam);
     const int lens_count = static_cast<int>(4 + camera.camera.intrinsics.distortion.size());
-    Rows rows{MatrixXd(2 * static_cast<Eigen::Index>(points.size()), 18 + lens_count),
-              {{layout_.pose.at(camera.id), 6}, {layout_.board.at(board_id), 6}, {layout_.lens.at(camera.id), lens_count}}};
+    Rows rows{
+        MatrixXd(2 * static_cast<Eigen::Index>(points.size()), 18 + lens_count),
+        {{layout_.pose.at(camera.id), 6}, {layout_.board.at(board_id), 6}, {layout_.lens.at(camera.id), lens_count}}};
     const Matrix3d R_cam_ref = T_cam_ref.R(), R_cam_board = R_cam_ref * T_ref_board.R();
     for (std::size_t i = 0; i < points.size(); ++i)
-      rows.J.middleRows<2>(2 * static_cast<Eigen::Index>(i))
-          << -pixels[i].d_point * Moved(points_cam[i]),
+      rows.J.middleRows<2>(2 * static_cast<Eigen::Index>(i)) << -pixels[i].d_point * Moved(points_cam[i]),
           pixels[i].d_point * R_cam_board * Moved(points[i]), pixels[i].d_intrinsics,
           -pixels[i].d_point * R_cam_ref * Moved(T_ref_board * points[i]);
     rows.J /= camera.camera.corner_sigma_px;
@@ -215,7 +215,8 @@ bool HasNoise(const Rig& rig) {
   for (const RigSensor& sensor : rig.sensors) {
     if (sensor.kind == SensorKind::kCamera && !(sensor.camera.corner_sigma_px > 0)) return false;
     if (sensor.kind == SensorKind::kLidar && !(sensor.lidar.range_sigma_m > 0)) return false;
-    if (sensor.kind == SensorKind::kTracker && !(sensor.tracker.sigma_m > 0 && sensor.tracker.sigma_rad > 0)) return false;
+    if (sensor.kind == SensorKind::kTracker && !(sensor.tracker.sigma_m > 0 && sensor.tracker.sigma_rad > 0))
+      return false;
   }
   return true;
 }

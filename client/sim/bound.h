@@ -8,11 +8,11 @@
 namespace rigcal::sim {
 
 // Fisher information of all sensor poses in the reference, given the noise of corners, ranges and tracker, with what
-// else is unknown eliminated (Schur complement): the robot's pose at each capture, the boards' poses and, unless they are
-// exact, the lenses (with a calibration's sigmas as what is known beforehand). Enters what the pairs of the session use:
-// corners of each camera's board where it is seen whole; points of each lidar on the boards of the cameras that
-// it is calibrated with; tracker poses. The room's walls do not enter: they would tell two lidars more.
-// Without noise there is no bound: empty. A bumped sensor is taken as never bumped.
+// else is unknown eliminated (Schur complement): the robot's pose at each capture, the boards' poses and, unless they
+// are exact, the lenses (with a calibration's sigmas as what is known beforehand). Enters what the pairs of the session
+// use: corners of each camera's board where it is seen whole; points of each lidar on the boards of the cameras that it
+// is calibrated with; tracker poses. The room's walls do not enter: they would tell two lidars more. Without noise
+// there is no bound: empty. A bumped sensor is taken as never bumped.
 [[nodiscard]] std::map<SensorId, BoundSigma> CramerRaoBound(const Experiment& experiment);
 
 }  // namespace rigcal::sim

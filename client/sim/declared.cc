@@ -63,8 +63,7 @@ SessionHeader Declare(const Experiment& experiment, const std::vector<RigBoard>&
   header.reference = experiment.rig.reference;
   for (const RigBoard& board : boards)
     header.targets.push_back(DeclaredTarget(board, experiment.options.board_scale_ratio));
-  for (const RigSensor& sensor : experiment.rig.sensors)
-    header.sensors.push_back(DeclaredSensor(experiment, sensor));
+  for (const RigSensor& sensor : experiment.rig.sensors) header.sensors.push_back(DeclaredSensor(experiment, sensor));
   header.conditions = {{"simulated", "seed " + std::to_string(experiment.options.seed)}};
   return header;
 }

@@ -94,10 +94,12 @@ Status CheckOptions(const Rig& rig, const Options& options) {
                                    [&](const RigSensor& sensor) { return sensor.id == *options.bump; }))
     return refuse("sensor " + options.bump->str() + " cannot be bumped: the rig has none of this name",
                   "Name one of the rig's sensors.");
-  if (!(options.scale_ratio >= 0.05 && options.scale_ratio <= 2)) return refuse("scale is out of range", "Give 0.05 to 2.");
+  if (!(options.scale_ratio >= 0.05 && options.scale_ratio <= 2))
+    return refuse("scale is out of range", "Give 0.05 to 2.");
   if (!(options.noise_factor >= 0 && options.noise_factor <= 1000))
     return refuse("noise is out of range", "Give 0 to 1000.");
-  if (!(options.dropout_ratio >= 0 && options.dropout_ratio < 1)) return refuse("dropouts is out of range", "Give 0 to 0.99.");
+  if (!(options.dropout_ratio >= 0 && options.dropout_ratio < 1))
+    return refuse("dropouts is out of range", "Give 0 to 0.99.");
   if (!(options.board_scale_ratio > 0.5 && options.board_scale_ratio < 2))
     return refuse("board-scale is out of range", "Give 0.5 to 2; 1.001 is a board 0.1 % too large.");
   if (options.captures && (*options.captures < 1 || *options.captures > 10'000))

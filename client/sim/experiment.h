@@ -10,33 +10,33 @@
 
 namespace rigcal::sim {
 
-enum class MotionKind { kFree, kPlanar, kSpot };          // all directions; level; turning about one upright axis
+enum class MotionKind { kFree, kPlanar, kSpot };             // all directions; level; turning about one upright axis
 enum class IntrinsicsKind { kExact, kCalibrated, kAbsent };  // what session.yaml says of the lenses
 
 struct Options {
   std::uint64_t seed = 1;
-  std::optional<int> captures;      // otherwise the rig's
-  double scale_ratio = 1.0;         // of the pictures' size
-  double noise_factor = 1.0;        // on grey values, corners, ranges, tracker and intrinsics
-  double dropout_ratio = 0.0;       // of the files that are missing
-  std::optional<SensorId> bump;     // moved halfway through, by bump_m and bump_rad
+  std::optional<int> captures;   // otherwise the rig's
+  double scale_ratio = 1.0;      // of the pictures' size
+  double noise_factor = 1.0;     // on grey values, corners, ranges, tracker and intrinsics
+  double dropout_ratio = 0.0;    // of the files that are missing
+  std::optional<SensorId> bump;  // moved halfway through, by bump_m and bump_rad
   double bump_m = 0.005, bump_rad = 0.00873;
   MotionKind motion = MotionKind::kFree;
   std::optional<double> tilt_rms_rad;  // otherwise the rig's
-  double board_scale_ratio = 1.0;   // true size of the boards over what session.yaml says
-  double lidar_bias_sigma_m = 0.0;  // of each beam's own constant error
+  double board_scale_ratio = 1.0;      // true size of the boards over what session.yaml says
+  double lidar_bias_sigma_m = 0.0;     // of each beam's own constant error
   IntrinsicsKind intrinsics = IntrinsicsKind::kCalibrated;
   std::string captured_at = "2026-01-31T12:00:00Z";
 };
 
 struct Experiment {
   Options options;
-  Rig rig;                      // true: lenses at their scale, boards at their true size
-  SessionHeader declared;       // what session.yaml says
+  Rig rig;                 // true: lenses at their scale, boards at their true size
+  SessionHeader declared;  // what session.yaml says
   std::vector<CaptureId> captures;
-  std::vector<std::int64_t> stamps_ns;           // of the tracker's clock
-  std::vector<Se3> T_world_body;                 // per capture
-  std::map<SensorId, Se3> T_body_bumped;         // of a bumped sensor, for the second half
+  std::vector<std::int64_t> stamps_ns;                  // of the tracker's clock
+  std::vector<Se3> T_world_body;                        // per capture
+  std::map<SensorId, Se3> T_body_bumped;                // of a bumped sensor, for the second half
   std::map<SensorId, std::vector<double>> beam_bias_m;  // per lidar and beam
 
   [[nodiscard]] Se3 T_body_sensor(const SensorId& id, std::size_t capture_idx) const;

@@ -16,15 +16,16 @@ namespace rigcal::sim {
 // Which boards a lidar's points count of: those of the cameras that it is calibrated with.
 [[nodiscard]] std::vector<TargetId> BoardsOf(const Experiment& experiment, const SensorId& lidar);
 
-// Every inner corner without noise, in the order of TargetPoints(); nothing where the board is not seen whole: cut by the
-// picture's border, hidden, from behind or at more than 75 degrees.
+// Every inner corner without noise, in the order of TargetPoints(); nothing where the board is not seen whole: cut by
+// the picture's border, hidden, from behind or at more than 75 degrees.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experiment, const Scene& scene,
                                                                       const RigSensor& camera, std::size_t capture_idx);
 // The same with noise of corner_sigma_px on each coordinate, as detection tells it.
 [[nodiscard]] BoardView ObserveBoard(const Experiment& experiment, const Scene& scene, const RigSensor& camera,
                                      std::size_t capture_idx);
-// The scan's points on a board, kPlateMargin_m and more inside the plate's edge, as a search gives them: one candidate, or none
-// where less than four beams or twenty points meet the plate. They are points of the scan that a cloud file would hold.
+// The scan's points on a board, kPlateMargin_m and more inside the plate's edge, as a search gives them: one candidate,
+// or none where less than four beams or twenty points meet the plate. They are points of the scan that a cloud file
+// would hold.
 constexpr double kPlateMargin_m = 0.03;
 [[nodiscard]] std::vector<ScanPoint> PlatePoints(const Experiment& experiment, const Scene& scene,
                                                  const RigSensor& lidar, const TargetId& board,

@@ -12,11 +12,11 @@ namespace rigcal::sim {
 
 struct PanelView {
   const Panel* panel = nullptr;
-  Eigen::Vector3f Na, Nb, D;   // D.r is positive before the camera
-  float plane_m = 0;           // distance of the plane: depth along r is plane_m / D.r
-  float least = 0;             // half of the smallest D.r of a ray that meets the panel: below it, near the plane's
-                               // horizon, coordinates are far beyond the panel with it as well
-  bool is_back = false;        // of a plate
+  Eigen::Vector3f Na, Nb, D;  // D.r is positive before the camera
+  float plane_m = 0;          // distance of the plane: depth along r is plane_m / D.r
+  float least = 0;            // half of the smallest D.r of a ray that meets the panel: below it, near the plane's
+                              // horizon, coordinates are far beyond the panel with it as well
+  bool is_back = false;       // of a plate
 };
 
 // Panels that face the camera.

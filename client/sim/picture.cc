@@ -28,9 +28,8 @@ std::vector<const PanelView*> ViewsInBlock(const Painter& painter, const std::ve
   const auto clipped = [](int node, int tiles) { return std::min(node, 2 * tiles); };
   Eigen::Vector3f rays[9];
   for (int i = 0; i < 9; ++i)
-    rays[i] = painter.grid.rays[painter.grid.NodeIndex(
-        clipped((2 * x + i % 3) * kBlockTiles, painter.grid.tiles_x),
-        clipped((2 * y + i / 3) * kBlockTiles, painter.grid.tiles_y))];
+    rays[i] = painter.grid.rays[painter.grid.NodeIndex(clipped((2 * x + i % 3) * kBlockTiles, painter.grid.tiles_x),
+                                                       clipped((2 * y + i / 3) * kBlockTiles, painter.grid.tiles_y))];
   std::vector<const PanelView*> chosen;
   for (const PanelView& view : views)
     if (CoverOf(view, rays, kTile, SoftEdge::kReach * painter.blur_px) != Cover::kNone) chosen.push_back(&view);
@@ -54,8 +53,9 @@ void Develop(const Tile& tile, int tile_x, int tile_y, float noise_grey, Random&
       row[3 * x + 1] = 255 * tile.green[at + x] + shift;
       row[3 * x + 2] = 255 * tile.red[at + x] + shift;
     }
-    std::uint8_t* to = picture.bgr.data() + 3 * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(picture.width_px) +
-                                                 static_cast<std::size_t>(x0));
+    std::uint8_t* to =
+        picture.bgr.data() + 3 * (static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(picture.width_px) +
+                                  static_cast<std::size_t>(x0));
     for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(width); ++i) to[i] = Grey(row[i]);
   }
 }

@@ -1,5 +1,5 @@
-// A camera's lens on a grid of pixels: where each looks and how dark the border is. Pictures are drawn in tiles of 16 x 16
-// pixels, in which everything is taken as quadratic between the grid's nodes, 8 pixels apart (1e-3 px).
+// A camera's lens on a grid of pixels: where each looks and how dark the border is. Pictures are drawn in tiles of 16 x
+// 16 pixels, in which everything is taken as quadratic between the grid's nodes, 8 pixels apart (1e-3 px).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,13 +9,13 @@
 
 namespace rigcal::sim {
 
-constexpr int kTile = 16;        // pixels
+constexpr int kTile = 16;         // pixels
 constexpr int kNode = kTile / 2;  // pixels between nodes
 
 struct RayGrid {
   int tiles_x = 0, tiles_y = 0;
-  std::vector<Eigen::Vector3f> rays;   // in the camera's frame, row by row
-  std::vector<float> brightness;       // 0 to 1
+  std::vector<Eigen::Vector3f> rays;  // in the camera's frame, row by row
+  std::vector<float> brightness;      // 0 to 1
 
   explicit RayGrid(const CameraTruth& camera);
   [[nodiscard]] std::size_t NodeIndex(int node_x, int node_y) const {

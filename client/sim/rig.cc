@@ -25,7 +25,8 @@ Status CheckBoards(const Rig& rig) {
       return Refuse("board " + board.target.id.str() + ": its plate is smaller than its pattern");
     const Eigen::Vector3d& p_m = board.T_world_plate.p_m;
     const Eigen::Vector3d half_m = rig.room.size_m / 2;
-    if (std::abs(p_m.x()) > half_m.x() || std::abs(p_m.y()) > half_m.y() || p_m.z() < 0 || p_m.z() > rig.room.size_m.z())
+    if (std::abs(p_m.x()) > half_m.x() || std::abs(p_m.y()) > half_m.y() || p_m.z() < 0 ||
+        p_m.z() > rig.room.size_m.z())
       return Refuse("board " + board.target.id.str() + ": it hangs outside the room");
   }
   return {};

@@ -38,10 +38,10 @@ struct RigBoard {
 struct CameraTruth {
   CameraIntrinsics intrinsics;
   int width_px = 0, height_px = 0;
-  double blur_px = 0.7;           // standard deviation of the point spread
-  double noise_grey = 2.0;        // of one pixel, in 1/255
-  double vignetting_ratio = 0.3;  // of the natural fall of light (fourth power of the cosine)
-  double corner_sigma_px = 0.05;  // what finding a corner is expected to add: for feature level and the bound
+  double blur_px = 0.7;                  // standard deviation of the point spread
+  double noise_grey = 2.0;               // of one pixel, in 1/255
+  double vignetting_ratio = 0.3;         // of the natural fall of light (fourth power of the cosine)
+  double corner_sigma_px = 0.05;         // what finding a corner is expected to add: for feature level and the bound
   std::vector<double> intrinsics_sigma;  // of a calibration beforehand: fx fy cx cy and the distortion
 };
 

@@ -155,8 +155,8 @@ Shared ReadShared(const YamlField& root) {
 }
 
 RigSensor ReadSensor(const YamlField& field, const Shared& shared) {
-  RigSensor sensor{ReadId<SensorId>(field, field.Key()), SensorKind::kCamera, {}, {}, shared.camera, shared.lidar,
-                   shared.tracker};
+  RigSensor sensor{
+      ReadId<SensorId>(field, field.Key()), SensorKind::kCamera, {}, {}, shared.camera, shared.lidar, shared.tracker};
   const YamlField type = field.At("type");
   if (const auto kind = SensorKindOf(type.Text()); kind && *kind != SensorKind::kPoseStream)
     sensor.kind = *kind;

@@ -30,8 +30,8 @@ struct Beams {
   }
 };
 // All returns, firing by firing, rings rising. `beam_bias_m`: per ring, added to every range. `key`: of the noise.
-// `towards`: only beams within the cone (a unit direction in the lidar's frame, and the cosine of half its width); their
-// points are those of the whole scan.
+// `towards`: only beams within the cone (a unit direction in the lidar's frame, and the cosine of half its width);
+// their points are those of the whole scan.
 struct Cone {
   Eigen::Vector3d axis;
   double cosine = -1;

@@ -18,10 +18,12 @@ std::string TargetLine(const Target& target) {
 std::string SensorLines(const Sensor& sensor) {
   std::string lines = "  " + sensor.id.str() + ":\n    type: " + NameOf(sensor.kind) + "\n";
   if (sensor.sees) lines += "    sees: " + sensor.sees->str() + "\n";
-  if (sensor.kind == SensorKind::kCamera && !sensor.intrinsics) lines += "    model: " + NameOf(sensor.camera_model) + "\n";
+  if (sensor.kind == SensorKind::kCamera && !sensor.intrinsics)
+    lines += "    model: " + NameOf(sensor.camera_model) + "\n";
   if (sensor.intrinsics)
-    lines += "    intrinsics: " +
-             Text(*sensor.intrinsics, sensor.intrinsics_sigma ? &*sensor.intrinsics_sigma : nullptr) + "\n";
+    lines +=
+        "    intrinsics: " + Text(*sensor.intrinsics, sensor.intrinsics_sigma ? &*sensor.intrinsics_sigma : nullptr) +
+        "\n";
   if (sensor.range_bias_sigma_m) lines += "    range_bias_sigma_m: " + Text(*sensor.range_bias_sigma_m) + "\n";
   if (sensor.T_ref_nominal) lines += "    T_ref_nominal: " + Text(*sensor.T_ref_nominal) + "\n";
   return lines;

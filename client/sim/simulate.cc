@@ -22,7 +22,8 @@ Result<std::int64_t> Write(const fs::path& path, const std::string& bytes) {
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   if (file) return static_cast<std::int64_t>(bytes.size());
-  return Fail(ErrorCode::kStorage, "file " + path.string() + " cannot be written", "Make room, or choose another folder.");
+  return Fail(ErrorCode::kStorage, "file " + path.string() + " cannot be written",
+              "Make room, or choose another folder.");
 }
 
 Status MakeFolders(const Experiment& experiment, const fs::path& folder) {
@@ -62,20 +63,25 @@ class Recorder {
  public:
   Recorder(const Experiment& experiment, const fs::path& folder, const WriteOptions& options,
            const FilesProgress& progress)
-      : experiment_(experiment), folder_(folder), options_(options), progress_(progress),
-        scene_(SceneOf(experiment.rig)), shots_(ShotsOf(experiment)) {
+      : experiment_(experiment),
+        folder_(folder),
+        options_(options),
+        progress_(progress),
+        scene_(SceneOf(experiment.rig)),
+        shots_(ShotsOf(experiment)) {
     summary_.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   }
 
   Result<WriteSummary> Run() {
     MakeGrids();
     std::vector<Status> outcomes(shots_.size());
-    ParallelFor(shots_.size(), [&](std::size_t i) { outcomes[i] = Record(shots_[i]); }, summary_.threads);
+    ParallelFor(
+        shots_.size(), [&](std::size_t i) { outcomes[i] = Record(shots_[i]); }, summary_.threads);
     for (const Status& outcome : outcomes) RIGCAL_TRY(outcome);
     for (const RigSensor& sensor : experiment_.rig.sensors)
       if (sensor.kind == SensorKind::kTracker)
-        RIGCAL_TRY(Write(folder_ / sensor.id.str() / "poses.csv",
-                         PosesCsv(experiment_, TrackerRows(experiment_, sensor))));
+        RIGCAL_TRY(
+            Write(folder_ / sensor.id.str() / "poses.csv", PosesCsv(experiment_, TrackerRows(experiment_, sensor))));
     return summary_;
   }
 
@@ -91,7 +97,9 @@ class Recorder {
         summary_.threads);
   }
 
-  Status Record(const Shot& shot) { return shot.sensor->kind == SensorKind::kCamera ? Photograph(shot) : Measure(shot); }
+  Status Record(const Shot& shot) {
+    return shot.sensor->kind == SensorKind::kCamera ? Photograph(shot) : Measure(shot);
+  }
 
   Status Photograph(const Shot& shot) {
     const double start_s = ThreadSeconds();

@@ -1,4 +1,5 @@
-// Writes what a virtual robot records as a session folder (docs/session-format.md), with truth.yaml beside session.yaml.
+// Writes what a virtual robot records as a session folder (docs/session-format.md), with truth.yaml beside
+// session.yaml.
 #pragma once
 
 #include <filesystem>

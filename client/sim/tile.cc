@@ -41,8 +41,8 @@ Quadratic Along(const Eigen::Vector3f& direction, const Rays& rays) {
 struct Piece {
   const PanelView* view;
   Cover cover;
-  float depth_m;                      // of its point nearest to the tile's middle: its plane may come nearer beside it
-  Eigen::Array2f blur_m;              // of the point spread along u and v
+  float depth_m;          // of its point nearest to the tile's middle: its plane may come nearer beside it
+  Eigen::Array2f blur_m;  // of the point spread along u and v
 };
 
 Piece PieceOf(const Painter& painter, const PanelView& view, const Rays& rays, Cover cover) {
@@ -55,8 +55,7 @@ Piece PieceOf(const Painter& painter, const PanelView& view, const Rays& rays, C
   const Eigen::Array2f half = panel.half_m.cast<float>().array(), nearest = at(4).max(-half).min(half);
   const Eigen::Vector3d point_m = panel.middle_m + nearest.x() * panel.u + nearest.y() * panel.v;
   const Eigen::Array2f per_px = (along_x.square() + along_y.square()).sqrt();
-  return {&view, cover, static_cast<float>((point_m - painter.from_m).norm()),
-          (painter.blur_px * per_px).max(1e-7f)};
+  return {&view, cover, static_cast<float>((point_m - painter.from_m).norm()), (painter.blur_px * per_px).max(1e-7f)};
 }
 
 bool IsBefore(const Piece& a, const Piece& b) {
@@ -72,7 +71,8 @@ std::vector<Piece> PiecesOf(const Painter& painter, const std::vector<const Pane
     if (cover != Cover::kNone) pieces.push_back(PieceOf(painter, *view, rays, cover));
   }
   std::stable_sort(pieces.begin(), pieces.end(), IsBefore);
-  const auto filling = std::find_if(pieces.begin(), pieces.end(), [](const Piece& p) { return p.cover == Cover::kWhole; });
+  const auto filling =
+      std::find_if(pieces.begin(), pieces.end(), [](const Piece& p) { return p.cover == Cover::kWhole; });
   if (filling != pieces.end()) pieces.erase(filling + 1, pieces.end());
   return pieces;
 }
@@ -122,7 +122,8 @@ struct Board {
   Board(const Target& target, const Eigen::Array2f& blur_m)
       : x(target.cols, target.square_m, blur_m.x()), y(target.rows, target.square_m, blur_m.y()), edge(Edge()) {}
   [[nodiscard]] float Grey(float a_m, float b_m) const {
-    constexpr auto kMiddle = static_cast<float>((kWhite + kBlack) / 2), kHalf = static_cast<float>((kWhite - kBlack) / 2);
+    constexpr auto kMiddle = static_cast<float>((kWhite + kBlack) / 2),
+                   kHalf = static_cast<float>((kWhite - kBlack) / 2);
     const float s = x.Place(a_m), t = y.Place(b_m);
     const float squares = kMiddle - kHalf * x.Parity(s, edge) * y.Parity(t, edge);
     return static_cast<float>(kWhite) + x.Within(s, edge) * y.Within(t, edge) * (squares - static_cast<float>(kWhite));
@@ -169,7 +170,8 @@ void CoverRow(const Piece& piece, const Coordinates& at, const SoftEdge& edge, R
   const Eigen::Array2f half = piece.view->panel->half_m.cast<float>().array();
   const Eigen::Array2f per_blur = piece.blur_m.inverse();
   for (std::size_t x = 0; x < kTile; ++x)
-    cover[x] = edge((half.x() - std::abs(at.a_m[x])) * per_blur.x()) * edge((half.y() - std::abs(at.b_m[x])) * per_blur.y());
+    cover[x] =
+        edge((half.x() - std::abs(at.a_m[x])) * per_blur.x()) * edge((half.y() - std::abs(at.b_m[x])) * per_blur.y());
 }
 
 void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Quadratic& shade, bool fills,
@@ -182,7 +184,8 @@ void Paint(const Painter& painter, const Piece& piece, const Rays& rays, const Q
     target.square_m = 1;
     return target;
   }();
-  const Board board(is_board ? painter.scene.boards[static_cast<std::size_t>(panel.board_idx)] : kNoBoard, piece.blur_m);
+  const Board board(is_board ? painter.scene.boards[static_cast<std::size_t>(panel.board_idx)] : kNoBoard,
+                    piece.blur_m);
   Coordinates at(*piece.view, rays);
   Row light, cover;
   cover.fill(1);

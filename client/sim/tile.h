@@ -19,7 +19,7 @@ struct Tile {
 struct Painter {
   const Scene& scene;
   const RayGrid& grid;
-  const Eigen::Vector3d from_m;       // the camera's place
+  const Eigen::Vector3d from_m;  // the camera's place
   const Eigen::Matrix3d R_world_cam;
   float blur_px;
 };

@@ -15,7 +15,8 @@ constexpr const char* kUnknown = "unknown";
 
 std::string BoundText(const BoundSigma& bound) {
   std::string text;
-  for (const std::optional<double>& sigma : bound) text += (text.empty() ? "" : ", ") + (sigma ? Text(*sigma) : kUnknown);
+  for (const std::optional<double>& sigma : bound)
+    text += (text.empty() ? "" : ", ") + (sigma ? Text(*sigma) : kUnknown);
   return "[" + text + "]";
 }
 
@@ -107,23 +108,25 @@ Truth TruthOf(const Experiment& experiment) {
   for (const RigBoard& board : rig.boards)
     truth.boards[board.target.id] = {board.target.square_m, board.T_world_board().Normalized()};
   for (std::size_t k = 0; k < experiment.captures.size(); ++k)
-    truth.captures.push_back(
-        {experiment.captures[k], (experiment.T_world_body[k] * rig.SensorOf(rig.reference).T_body_sensor).Normalized()});
+    truth.captures.push_back({experiment.captures[k],
+                              (experiment.T_world_body[k] * rig.SensorOf(rig.reference).T_body_sensor).Normalized()});
   return truth;
 }
 
 std::string WriteTruth(const Truth& truth) {
   std::string text =
-      "# What was true. T_ref_sensor: pose of the sensor in the reference; p_ref = T_ref_sensor * p_sensor. World: the tracker's.\n"
-      "# bound_sigma: x y z rx ry rz of the sensor (m, rad), the Cramer-Rao bound of all boards, clouds and tracker poses.\n"
+      "# What was true. T_ref_sensor: pose of the sensor in the reference; p_ref = T_ref_sensor * p_sensor. World: the "
+      "tracker's.\n"
+      "# bound_sigma: x y z rx ry rz of the sensor (m, rad), the Cramer-Rao bound of all boards, clouds and tracker "
+      "poses.\n"
       "format: 1\nrig: " +
       truth.rig + "\nseed: " + std::to_string(truth.seed) + "\nreference: " + truth.reference.str() +
       "\nbumped_from_idx: " + std::to_string(truth.bumped_from_idx) + "\nsensors:\n";
   for (const auto& [id, sensor] : truth.sensors) text += SensorText(id, sensor);
   text += "boards:\n";
   for (const auto& [id, board] : truth.boards)
-    text += "  " + id.str() + ": {square_size_m: " + Text(board.square_m) + ", T_world_board: " + Text(board.T_world_board) +
-            "}\n";
+    text += "  " + id.str() + ": {square_size_m: " + Text(board.square_m) +
+            ", T_world_board: " + Text(board.T_world_board) + "}\n";
   text += "captures:\n";
   for (const CaptureTruth& capture : truth.captures)
     text += "  - {capture: \"" + capture.capture.str() + "\", T_world_ref: " + Text(capture.T_world_ref) + "}\n";

@@ -12,8 +12,8 @@
 
 namespace rigcal::sim {
 
-// Standard deviations that no unbiased estimate from these data can undercut (Cramer & Rao), along and about the axes of
-// the sensor (right tangent); nothing where the data do not tell that coordinate.
+// Standard deviations that no unbiased estimate from these data can undercut (Cramer & Rao), along and about the axes
+// of the sensor (right tangent); nothing where the data do not tell that coordinate.
 using BoundSigma = std::array<std::optional<double>, 6>;
 
 struct SensorTruth {

@@ -1,5 +1,5 @@
-// The bound against what an estimator reaches: maximum likelihood by Gauss-Newton with numerical derivatives of a forward
-// model of the test's own, on the noisy observations of many seeds.
+// The bound against what an estimator reaches: maximum likelihood by Gauss-Newton with numerical derivatives of a
+// forward model of the test's own, on the noisy observations of many seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,8 @@ class Problem {
       AddView("side", T_world_ref * poses[0], poses[4], k, r);
       AddCloud("front", T_world_ref * poses[1], poses[3], k, r);
       AddCloud("side", T_world_ref * poses[1], poses[4], k, r);
-      const Vector6d error = (seen_.tracker.at(SensorId("body"))[k].T_world_body.Inverse() * T_world_ref * poses[2]).Log();
+      const Vector6d error =
+          (seen_.tracker.at(SensorId("body"))[k].T_world_body.Inverse() * T_world_ref * poses[2]).Log();
       const TrackerTruth& tracker = experiment_.rig.SensorOf(SensorId("body")).tracker;
       for (int i = 0; i < 6; ++i) r.push_back(error[i] / (i < 3 ? tracker.sigma_m : tracker.sigma_rad));
     }
@@ -69,8 +70,8 @@ class Problem {
     const RigSensor& lidar = experiment_.rig.SensorOf(SensorId("top"));
     const CloudView& view = seen_.clouds.at(lidar.id).at(experiment_.captures[k]).at(TargetId(board));
     if (!view.found) return;
-    const Se3 T_true = experiment_.rig.BoardOf(TargetId(board)).T_world_board().Inverse() *
-                       experiment_.T_world_sensor(lidar.id, k);
+    const Se3 T_true =
+        experiment_.rig.BoardOf(TargetId(board)).T_world_board().Inverse() * experiment_.T_world_sensor(lidar.id, k);
     const Se3 T_board_lidar = T_world_board.Inverse() * T_world_lidar;
     for (const Eigen::Vector3f& point : view.candidates[0].points_m) {
       const Eigen::Vector3d p = point.cast<double>();
@@ -144,10 +145,8 @@ TEST(SimBound, LevelMotionLeavesTheTrackersHeightUnknownAndNothingElse) {
   Options options;
   options.captures = 12;
   options.motion = MotionKind::kPlanar;
-  const Rig rig = SmallRig();
-  Rig level = rig;
-  // The body upright: its z axis is the one that cannot be told.
-  const auto bound = CramerRaoBound(Prepared(level, options));
+  // The body's z axis is upright: along it nothing can be told.
+  const auto bound = CramerRaoBound(Prepared(SmallRig(), options));
   const BoundSigma& body = bound.at(SensorId("body"));
   for (const std::size_t axis : {0, 1, 3, 4, 5}) EXPECT_TRUE(body[axis]) << axis;
   EXPECT_FALSE(body[2]);
@@ -174,7 +173,8 @@ TEST(SimBound, HalfTheNoiseHalvesItAndNoNoiseHasNone) {
   options.noise_factor = 0.5;
   const auto half = CramerRaoBound(Prepared(SmallRig(), options));
   for (const auto& [id, sigma] : whole)
-    for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(half.at(id)[i].value(), sigma[i].value() / 2, 0.01 * sigma[i].value());
+    for (std::size_t i = 0; i < 6; ++i)
+      EXPECT_NEAR(half.at(id)[i].value(), sigma[i].value() / 2, 0.01 * sigma[i].value());
   options.noise_factor = 0;
   EXPECT_TRUE(CramerRaoBound(Prepared(SmallRig(), options)).empty());
 }

@@ -1,4 +1,5 @@
-// Observations without pictures through the product's estimators: their answers must be the truth within their own sigmas.
+// Observations without pictures through the product's estimators: their answers must be the truth within their own
+// sigmas.
 #include <gtest/gtest.h>
 
 #include <cmath>

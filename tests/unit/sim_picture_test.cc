@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "client/sim/observe.h"
 #include "client/sim/lens.h"
+#include "client/sim/observe.h"
 #include "client/sim/picture.h"
 #include "client/sim/random.h"
 #include "server/detect/board.h"
@@ -26,15 +26,17 @@ void Compare(const Experiment& experiment, const Scene& scene, const RigSensor& 
              PictureFormat format, Errors& errors) {
   const auto truth = TrueCorners(experiment, scene, camera, capture_idx);
   if (!truth) return;
-  const Picture picture = TakePicture(scene, camera.camera, RayGrid(camera.camera),
-                                      experiment.T_world_sensor(camera.id, capture_idx), KeyOf(7, "test", camera.id.str()));
+  const Picture picture =
+      TakePicture(scene, camera.camera, RayGrid(camera.camera), experiment.T_world_sensor(camera.id, capture_idx),
+                  KeyOf(7, "test", camera.id.str()));
   const auto bytes = Encoded(picture, format);
   ASSERT_TRUE(bytes);
   const auto found = detect::Detect(std::as_bytes(std::span(*bytes)), experiment.rig.BoardOf(*camera.sees).target);
   ++errors.boards;
   if (!found.view.found) ++errors.missed;
   for (std::size_t i = 0; i < found.view.corners_px.size(); ++i) {
-    const Eigen::Vector2d error = found.view.corners_px[i] - (*truth)[static_cast<std::size_t>(found.view.corner_idx[i])];
+    const Eigen::Vector2d error =
+        found.view.corners_px[i] - (*truth)[static_cast<std::size_t>(found.view.corner_idx[i])];
     errors.squares += error.squaredNorm();
     errors.sum += error;
     ++errors.count;
@@ -48,8 +50,7 @@ Errors ErrorsOf(const Rig& rig, const Options& options, PictureFormat format, st
   for (std::size_t i = 0; i < std::min(cameras, experiment.rig.sensors.size()); ++i) {
     const RigSensor& sensor = experiment.rig.sensors[i];
     if (sensor.kind != SensorKind::kCamera) continue;
-    for (std::size_t k = 0; k < experiment.captures.size(); ++k)
-      Compare(experiment, scene, sensor, k, format, errors);
+    for (std::size_t k = 0; k < experiment.captures.size(); ++k) Compare(experiment, scene, sensor, k, format, errors);
   }
   std::cout << errors.boards << " boards, " << errors.missed << " missed, rms " << errors.Rms_px() << " px, mean "
             << (errors.sum / std::max(1, errors.count)).transpose() << " px\n";
@@ -110,7 +111,8 @@ TEST(SimPicture, WhatIsNearerHidesWhatIsFarther) {
                                       experiment.T_world_sensor(camera.id, 0), 1);
   for (const double z : {0.9, 1.0, 1.1}) {
     const Eigen::Vector2d uv = PixelsOf(camera.camera.intrinsics, {T_cam_world * Eigen::Vector3d(1.475, 0, z)})[0];
-    const std::size_t at = 3 * (static_cast<std::size_t>(std::lround(uv.y())) * 640 + static_cast<std::size_t>(std::lround(uv.x())));
+    const std::size_t at =
+        3 * (static_cast<std::size_t>(std::lround(uv.y())) * 640 + static_cast<std::size_t>(std::lround(uv.x())));
     EXPECT_GT(picture.bgr[at + 2], 4 * picture.bgr[at]) << z;
     EXPECT_GT(picture.bgr[at + 2], 100) << z;
   }

@@ -94,7 +94,8 @@ TEST(SimRig, EveryMarsMapperPairHasCapturesEnough) {
       for (const auto& [capture, boards] : captures)
         for (const auto& [board, view] : boards) count[board] += view.found;
       EXPECT_EQ(count.size(), lidar.str() == "lidar_vertical" ? 3u : 4u);
-      for (const auto& [board, captures_seen] : count) EXPECT_GE(captures_seen, 12) << lidar.str() << " " << board.str();
+      for (const auto& [board, captures_seen] : count)
+        EXPECT_GE(captures_seen, 12) << lidar.str() << " " << board.str();
     }
   }
 }
@@ -124,7 +125,10 @@ TEST(SimExperiment, BumpMovesOneSensorHalfwayThrough) {
   const Vector6d xi = (before.Inverse() * after).Log();
   EXPECT_NEAR(xi.tail<3>().norm(), options.bump_rad, 1e-9);
   EXPECT_NEAR(xi.head<3>().norm(), options.bump_m, 1e-9);
-  EXPECT_LT((experiment.T_body_sensor(SensorId("left"), 0).Inverse() * experiment.T_body_sensor(SensorId("left"), 5)).Log().norm(), 1e-15);
+  EXPECT_LT((experiment.T_body_sensor(SensorId("left"), 0).Inverse() * experiment.T_body_sensor(SensorId("left"), 5))
+                .Log()
+                .norm(),
+            1e-15);
   options.bump = SensorId("nobody");
   EXPECT_FALSE(Prepare(SmallRig(), options));
 }
