@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "server/detect/saddle_grid.h"
 
@@ -96,14 +97,6 @@ Corners SearchLevel(const GreyLevel& level, float reach_px, const Counts& counts
   return {};
 }
 
-// Parts of another pattern are none of the board. Texture of much smaller squares says nothing about them.
-bool IsPartOf(const GridPart& part, const GridPart& other) {
-  constexpr double kSquareRatio = 0.6;
-  const Eigen::Array2d middle = (part.min_px + part.max_px) / 2;
-  return (middle > other.min_px.array()).all() && (middle < other.max_px.array()).all() &&
-         other.square_px > kSquareRatio * part.square_px;
-}
-
 std::vector<GridPart> PartsOf(const Seen& seen) {
   std::vector<GridPart> parts;
   for (const GridPart& part : seen.parts)
@@ -142,7 +135,15 @@ BoardSearch SearchBoard(const GreyImage& image, int cols, int rows) {
     return search;
   }
   search.parts = PartsOf(seen);
+  search.others = std::move(seen.others);
   return search;
+}
+
+bool IsPartOf(const GridPart& part, const GridPart& other) {
+  constexpr double kSquareRatio = 0.6;
+  const Eigen::Array2d middle = (part.min_px + part.max_px) / 2;
+  return (middle > other.min_px.array()).all() && (middle < other.max_px.array()).all() &&
+         other.square_px > kSquareRatio * part.square_px && other.corners >= part.corners;
 }
 
 }  // namespace rigcal::detect

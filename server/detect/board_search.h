@@ -19,12 +19,16 @@ struct BoardSearch {
   // Empty: no grid of exactly these counts.
   std::vector<Eigen::Vector2d> corners_px;
   // Without corners: where the board may be all the same, because a part of such a grid is there; the largest part
-  // first. Where a whole grid of other counts is, or a larger one, there is none.
-  std::vector<GridPart> parts;
+  // first. `others`: whole grids of other counts, or larger ones: there is none.
+  std::vector<GridPart> parts, others;
 };
 
 // Boards from about 7 pixels a square. A larger pattern is no board, nor is a board of which corners cannot be seen.
 // The same for any number of threads.
 [[nodiscard]] BoardSearch SearchBoard(const GreyImage& image, int cols, int rows);
+
+// Is it in the place of the other one, which has as many corners at least? Texture of much smaller squares says
+// nothing.
+[[nodiscard]] bool IsPartOf(const GridPart& part, const GridPart& other);
 
 }  // namespace rigcal::detect

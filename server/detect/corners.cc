@@ -57,45 +57,6 @@ bool SearchAt(const cv::Mat& image, const std::vector<double>& scales, const cv:
   return false;
 }
 
-// What a whole board may cover of which a part was seen.
-cv::Rect Around(const GridPart& part, const cv::Mat& image, const cv::Size& counts) {
-  const double whole_px = (std::max(counts.width, counts.height) + 1) * part.square_px;
-  const Eigen::Array2d seen_px = part.max_px - part.min_px;
-  const Eigen::Array2d margin_px = (whole_px - seen_px).max(kMarginSquares * part.square_px);
-  const Eigen::Array2i first = (part.min_px.array() - margin_px).cast<int>();
-  const Eigen::Array2i last = (part.max_px.array() + margin_px).cast<int>();
-  return cv::Rect(first.x(), first.y(), last.x() - first.x(), last.y() - first.y()) &
-         cv::Rect(0, 0, image.cols, image.rows);
-}
-
-bool SearchPart(const cv::Mat& image, const GridPart& part, const cv::Size& counts, Points& points) {
-  const cv::Rect around = Around(part, image, counts);
-  if (!SearchAt(image(around), {std::min(2.0, kSquare_px / part.square_px)}, counts, points)) return false;
-  for (cv::Point2f& point : points) point += cv::Point2f(around.tl());
-  return true;
-}
-
-// OpenCV only reads, yet its wrapper for memory takes a mutable pointer.
-cv::Mat Wrapped(const GreyImage& image) {
-  return {image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
-}
-
-// The quick search first. Where it saw a part of a board only, the thorough ones: over all of a small picture, over
-// what is around that part in a large one.
-std::vector<Eigen::Vector2d> Search(const GreyImage& image, const cv::Size& counts) {
-  const BoardSearch quick = SearchBoard(image, counts.width, counts.height);
-  if (!quick.corners_px.empty() || quick.parts.empty()) return quick.corners_px;
-  const cv::Mat grey = Wrapped(image);
-  Points points;
-  const bool found = std::max(grey.cols, grey.rows) <= kSmallSide_px
-                         ? SearchAt(grey, {1.0, 2.0}, counts, points)
-                         : SearchPart(grey, quick.parts.front(), counts, points);
-  std::vector<Eigen::Vector2d> corners;
-  if (found)
-    for (const cv::Point2f& point : points) corners.emplace_back(point.x, point.y);
-  return corners;
-}
-
 double NearestNeighbourPx(const Points& points, const cv::Size& counts, int corner_idx) {
   const int row = corner_idx / counts.width, col = corner_idx % counts.width;
   double nearest = HUGE_VAL;
@@ -109,6 +70,57 @@ double NearestNeighbourPx(const Points& points, const cv::Size& counts, int corn
   consider(row, col - 1);
   consider(row, col + 1);
   return nearest;
+}
+
+// What a whole board may cover of which a part was seen.
+cv::Rect Around(const GridPart& part, const cv::Mat& image, const cv::Size& counts) {
+  const double whole_px = (std::max(counts.width, counts.height) + 1) * part.square_px;
+  const Eigen::Array2d seen_px = part.max_px - part.min_px;
+  const Eigen::Array2d margin_px = (whole_px - seen_px).max(kMarginSquares * part.square_px);
+  const Eigen::Array2i first = (part.min_px.array() - margin_px).cast<int>();
+  const Eigen::Array2i last = (part.max_px.array() + margin_px).cast<int>();
+  return cv::Rect(first.x(), first.y(), last.x() - first.x(), last.y() - first.y()) &
+         cv::Rect(0, 0, image.cols, image.rows);
+}
+
+bool SearchPart(const cv::Mat& image, const GridPart& part, const cv::Size& counts, Points& points) {
+  const cv::Rect around = Around(part, image, counts);
+  std::vector<double> scales = {1.0, 2.0};
+  if (std::max(image.cols, image.rows) > kSmallSide_px) scales = {std::min(2.0, kSquare_px / part.square_px)};
+  if (!SearchAt(image(around), scales, counts, points)) return false;
+  for (cv::Point2f& point : points) point += cv::Point2f(around.tl());
+  return true;
+}
+
+GridPart GridOf(const Points& points, const cv::Size& counts) {
+  GridPart grid{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, 0, points.size()};
+  for (int i = 0; i < counts.area(); ++i) {
+    const Eigen::Vector2d at_px(points[static_cast<std::size_t>(i)].x, points[static_cast<std::size_t>(i)].y);
+    grid.min_px = grid.min_px.cwiseMin(at_px), grid.max_px = grid.max_px.cwiseMax(at_px);
+    grid.square_px += NearestNeighbourPx(points, counts, i) / counts.area();
+  }
+  return grid;
+}
+
+// OpenCV only reads, yet its wrapper for memory takes a mutable pointer.
+cv::Mat Wrapped(const GreyImage& image) {
+  return {image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
+}
+
+// The quick search first. Where it saw a part of a board only, the thorough ones around that part; they would take a
+// part of a larger pattern for a board.
+std::vector<Eigen::Vector2d> Search(const GreyImage& image, const cv::Size& counts) {
+  const BoardSearch quick = SearchBoard(image, counts.width, counts.height);
+  if (!quick.corners_px.empty() || quick.parts.empty()) return quick.corners_px;
+  Points points;
+  if (!SearchPart(Wrapped(image), quick.parts.front(), counts, points)) return {};
+  const GridPart grid = GridOf(points, counts);
+  if (std::any_of(quick.others.begin(), quick.others.end(),
+                  [&](const GridPart& other) { return IsPartOf(grid, other); }))
+    return {};
+  std::vector<Eigen::Vector2d> corners;
+  for (const cv::Point2f& point : points) corners.emplace_back(point.x, point.y);
+  return corners;
 }
 
 Points Refined(const cv::Mat& image, const cv::Size& counts, const Points& points) {
