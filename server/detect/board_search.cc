@@ -16,7 +16,8 @@ constexpr float kReach_px = 56, kReachFull_px = 32;
 constexpr std::size_t kGridsMax = 12;
 constexpr std::size_t kPartMin = 4;
 constexpr double kPartRatio = 0.15;  // of the corners, that make a grid worth growing
-constexpr double kHopeRatio = 0.4;   // of the corners, that make it likely that all are there
+// Of the corners, and of the places among those seen: what makes it likely that all are there. Mosaics have gaps.
+constexpr double kHopeRatio = 0.4, kHopeFilledRatio = 0.65;
 
 struct Counts {
   int cols = 0, rows = 0;
@@ -39,11 +40,16 @@ Corners CornersOf(const SaddleGrid& grid, const GridBox& box, const Counts& coun
   return corners;
 }
 
+// Part of the places in the box that have a corner.
+double FilledRatio(const SaddleGrid& grid, const GridBox& box) {
+  const auto filled = std::count_if(grid.begin(), grid.end(), [&](const auto& node) { return box.Has(node.first); });
+  return static_cast<double>(filled) / std::max(1, box.Cols() * box.Rows());
+}
+
 // Larger than the board, or whole, and of other counts.
 bool IsOther(const SaddleGrid& grid, const GridBox& box, const Counts& counts) {
   constexpr int kSideMin = 3;
-  const auto in_box = std::count_if(grid.begin(), grid.end(), [&](const auto& node) { return box.Has(node.first); });
-  if (in_box == box.Cols() * box.Rows() && std::min(box.Cols(), box.Rows()) >= kSideMin) return true;
+  if (FilledRatio(grid, box) == 1.0 && std::min(box.Cols(), box.Rows()) >= kSideMin) return true;
   return std::max(box.Cols(), box.Rows()) > std::max(counts.cols, counts.rows) ||
          std::min(box.Cols(), box.Rows()) > std::min(counts.cols, counts.rows);
 }
@@ -91,7 +97,8 @@ Corners SearchLevel(const GreyLevel& level, float reach_px, const Counts& counts
     if (!corners.empty()) return corners;
     if (IsOther(grid, box, counts))
       seen.others.push_back(PartOf(level, grid));
-    else if (static_cast<double>(grid.size()) > kHopeRatio * static_cast<double>(counts.All()))
+    else if (static_cast<double>(grid.size()) > kHopeRatio * static_cast<double>(counts.All()) &&
+             FilledRatio(grid, box) > kHopeFilledRatio)
       seen.parts.push_back(PartOf(level, grid));
   }
   return {};
