@@ -13,6 +13,8 @@ constexpr int kSideMin_px = 72;        // of a level worth searching
 constexpr int kEnlargeSide_px = 1400;  // pictures up to this size are also searched enlarged
 // Squares reach from 7 pixels to this on a level, so that each is within reach on several.
 constexpr float kReach_px = 56, kReachFull_px = 32;
+// From this size on no row is lost on a level; smaller squares may be a part of a pattern that finer levels show whole.
+constexpr float kSureSquare_px = 9;
 constexpr std::size_t kGridsMax = 12;
 constexpr std::size_t kPartMin = 4;
 constexpr double kPartRatio = 0.15;  // of the corners, that make a grid worth growing
@@ -124,6 +126,32 @@ std::vector<GreyLevel> LevelsOf(const GreyImage& image) {
   return levels;
 }
 
+// From the level where they were found to the picture.
+std::vector<Eigen::Vector2d> Followed(const std::vector<GreyLevel>& levels, std::size_t at, Corners corners) {
+  while (levels[at].scale < 1) Follow(levels[--at], corners);
+  std::vector<Eigen::Vector2d> corners_px;
+  for (const Eigen::Vector2f& corner : corners) corners_px.push_back(levels[at].InPicture(corner));
+  return corners_px;
+}
+
+float ShortestStep_px(const Corners& corners, const Counts& counts) {
+  float shortest = HUGE_VALF;
+  const auto cols = static_cast<std::size_t>(counts.cols);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if ((i + 1) % cols != 0) shortest = std::min(shortest, (corners[i + 1] - corners[i]).norm());
+    if (i + cols < corners.size()) shortest = std::min(shortest, (corners[i + cols] - corners[i]).norm());
+  }
+  return shortest;
+}
+
+bool InAnother(const std::vector<Eigen::Vector2d>& corners_px, const std::vector<GridPart>& others) {
+  GridPart grid{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, 0, corners_px.size()};
+  for (const Eigen::Vector2d& corner : corners_px)
+    grid.min_px = grid.min_px.cwiseMin(corner), grid.max_px = grid.max_px.cwiseMax(corner);
+  grid.square_px = (corners_px[1] - corners_px[0]).norm();
+  return std::any_of(others.begin(), others.end(), [&](const GridPart& other) { return IsPartOf(grid, other); });
+}
+
 }  // namespace
 
 BoardSearch SearchBoard(const GreyImage& image, int cols, int rows) {
@@ -131,18 +159,22 @@ BoardSearch SearchBoard(const GreyImage& image, int cols, int rows) {
   const std::vector<GreyLevel> levels = LevelsOf(image);
   BoardSearch search;
   Seen seen;
+  std::vector<Eigen::Vector2d> unsure_px;
   // From coarse to fine: coarse levels cost little, and clutter and noise are gone there.
   for (std::size_t i = levels.size(); i-- > 0;) {
     const bool finest = i == 0 && levels.size() > 1;
-    Corners corners = SearchLevel(levels[i], finest ? kReachFull_px : kReach_px, counts, seen);
+    const Corners corners = SearchLevel(levels[i], finest ? kReachFull_px : kReach_px, counts, seen);
     if (corners.empty()) continue;
-    std::size_t at = i;
-    while (levels[at].scale < 1) Follow(levels[--at], corners);
-    for (const Eigen::Vector2f& corner : corners) search.corners_px.push_back(levels[at].InPicture(corner));
-    return search;
+    auto followed_px = Followed(levels, i, corners);
+    if (i == 0 || ShortestStep_px(corners, counts) >= kSureSquare_px) {
+      search.corners_px = std::move(followed_px);
+      return search;
+    }
+    unsure_px = std::move(followed_px);
   }
   search.parts = PartsOf(seen);
   search.others = std::move(seen.others);
+  if (!unsure_px.empty() && !InAnother(unsure_px, search.others)) search.corners_px = std::move(unsure_px);
   return search;
 }
 
