@@ -19,7 +19,9 @@ constexpr std::size_t kGridsMax = 12;
 constexpr std::size_t kPartMin = 4;
 constexpr double kPartRatio = 0.15;  // of the corners, that make a grid worth growing
 // Of the corners, and of the places among those seen: what makes it likely that all are there. Mosaics have gaps.
+// A few corners are a part of anything.
 constexpr double kHopeRatio = 0.4, kHopeFilledRatio = 0.65;
+constexpr std::size_t kHopeMin = 14;
 
 struct Counts {
   int cols = 0, rows = 0;
@@ -99,7 +101,8 @@ Corners SearchLevel(const GreyLevel& level, float reach_px, const Counts& counts
     if (!corners.empty()) return corners;
     if (IsOther(grid, box, counts))
       seen.others.push_back(PartOf(level, grid));
-    else if (static_cast<double>(grid.size()) > kHopeRatio * static_cast<double>(counts.All()) &&
+    else if (grid.size() >= kHopeMin &&
+             static_cast<double>(grid.size()) > kHopeRatio * static_cast<double>(counts.All()) &&
              FilledRatio(grid, box) > kHopeFilledRatio)
       seen.parts.push_back(PartOf(level, grid));
   }
