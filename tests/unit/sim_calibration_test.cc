@@ -69,8 +69,8 @@ TEST(SimCalibration, LidarCameraPairsGiveTheTruthWithinTheirSigmas) {
   const Experiment experiment = Prepared(MarsMapper());
   const Observations seen = Observe(experiment);
   for (const auto& [camera, lidar] :
-       {std::pair("front_left", "lidar_horizontal"), std::pair("back", "lidar_horizontal"),
-        std::pair("left_front", "lidar_vertical"), std::pair("up_left", "lidar_vertical")})
+       {std::pair("front_left", "lidar_vertical"), std::pair("back", "lidar_vertical"),
+        std::pair("left_front", "lidar_horizontal"), std::pair("up_left", "lidar_horizontal")})
     ExpectTruth(experiment, calib::EstimateLidarCameraEdge(ProblemOf(experiment, seen, camera, lidar)));
 }
 
@@ -83,7 +83,7 @@ TEST(SimCalibration, RangeNoiseIsNotTakenForARangeBias) {
     options.seed = static_cast<std::uint64_t>(seed);
     options.intrinsics = IntrinsicsKind::kExact;
     const Experiment experiment = Prepared(MarsMapper(), options);
-    const auto problem = ProblemOf(experiment, Observe(experiment), "front_left", "lidar_horizontal");
+    const auto problem = ProblemOf(experiment, Observe(experiment), "front_left", "lidar_vertical");
     const auto estimate = calib::EstimateLidarCamera(problem, nullptr, nullptr);
     ASSERT_TRUE(estimate) << estimate.error().what;
     sigmas += estimate->range_bias_m / estimate->range_bias_sigma_m;

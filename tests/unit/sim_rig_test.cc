@@ -56,12 +56,12 @@ TEST(SimRig, MarsMapperIsTheRobotOfThePaper) {
   EXPECT_EQ(kinds[SensorKind::kTracker], 1);
   EXPECT_EQ(rig.boards.size(), 5u);
   for (const RigBoard& board : rig.boards) EXPECT_EQ(SymmetryOf(board.target), 1) << board.target.id.str();
-  const RigSensor& lidar = rig.SensorOf(SensorId("lidar_vertical"));
+  const RigSensor& lidar = rig.SensorOf(SensorId("lidar_horizontal"));
   ASSERT_EQ(lidar.lidar.elevations_rad.size(), 32u);
   EXPECT_NEAR(lidar.lidar.elevations_rad.front(), -30.67 * kRadPerDeg, 1e-12);
   EXPECT_NEAR(lidar.lidar.elevations_rad.back(), 10.67 * kRadPerDeg, 1e-12);
   // One turns about an upright axis, one about a level one.
-  EXPECT_GT(rig.SensorOf(SensorId("lidar_horizontal")).T_body_sensor.R()(2, 2), 0.99);
+  EXPECT_GT(rig.SensorOf(SensorId("lidar_vertical")).T_body_sensor.R()(2, 2), 0.99);
   EXPECT_LT(std::abs(lidar.T_body_sensor.R()(2, 2)), 0.05);
 }
 
@@ -93,7 +93,7 @@ TEST(SimRig, EveryMarsMapperPairHasCapturesEnough) {
       std::map<TargetId, int> count;
       for (const auto& [capture, boards] : captures)
         for (const auto& [board, view] : boards) count[board] += view.found;
-      EXPECT_EQ(count.size(), lidar.str() == "lidar_vertical" ? 3u : 4u);
+      EXPECT_EQ(count.size(), lidar.str() == "lidar_horizontal" ? 3u : 4u);
       for (const auto& [board, captures_seen] : count)
         EXPECT_GE(captures_seen, 12) << lidar.str() << " " << board.str();
     }
