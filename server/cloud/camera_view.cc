@@ -15,7 +15,7 @@ constexpr float kCells = 1.5e6F;         // of a buffer, at most about
 constexpr float kPatchCellsMax = 1024;   // that one beam covers: a bound on work, beyond any lidar's spacing
 constexpr float kPatchHalfMax = 48;      // cells
 constexpr std::size_t kAhead = 12;       // candidates
-constexpr int kBands = 16;               // of rows, one thread each
+constexpr int kBands = 8;                // of rows, one thread each
 constexpr float kHidden_m = 0.03F, kHiddenPerRange = 0.005F, kHiddenPerSpacing = 0.5F;
 constexpr float kBorderShare = 0.08F;    // of the shorter side, in which the weight falls
 constexpr float kBorderLeast = 0.01F, kAngleLeast = 0.05F;
@@ -44,7 +44,8 @@ float CellOf(const Lens& lens, const Beams& beams, const Picture& picture) {
 }
 
 Camera CameraOf(const Beams& beams, const CloudCamera& camera, const Picture& picture) {
-  Camera ready{Lens(camera.intrinsics), camera.T_cam_lidar.R().cast<float>(), camera.T_cam_lidar.p_m.cast<float>(),
+  Camera ready{Lens(camera.intrinsics, picture.width_px, picture.height_px),
+               camera.T_cam_lidar.R().cast<float>(), camera.T_cam_lidar.p_m.cast<float>(),
                static_cast<float>(picture.width_px), static_cast<float>(picture.height_px), 1};
   ready.cell_px = CellOf(ready.lens, beams, picture);
   return ready;
@@ -83,15 +84,34 @@ float WeightOf(const Camera& camera, const Eigen::Vector3f& point, const Eigen::
          BorderWeight(uv_px.x(), uv_px.y(), static_cast<int>(camera.width_px), static_cast<int>(camera.height_px));
 }
 
+Eigen::Vector3f InCamera(const Camera& camera, const Eigen::Vector3f& point) {
+  return camera.R_cam_lidar * point + camera.p_cam_lidar_m;
+}
+
+// Points that may be in the picture. Nothing is decided in the loop: guessing wrong would cost more than the arithmetic.
+std::vector<std::uint32_t> NearlyInside(const Camera& camera, const Beams& beams, std::size_t part) {
+  const std::size_t first = part * CameraView::kPart;
+  const std::size_t end = std::min(beams.points_m.size(), first + CameraView::kPart);
+  std::vector<std::uint32_t> inside(end - first + 1);
+  std::size_t count = 0;
+  for (std::size_t i = first; i < end; ++i) {
+    inside[count] = static_cast<std::uint32_t>(i);
+    count += camera.lens.MayProject(InCamera(camera, beams.points_m[i])) ? 1 : 0;
+  }
+  inside.resize(count);
+  return inside;
+}
+
 void ProjectPart(const Camera& camera, const Beams& beams, std::size_t part, std::vector<Candidate>& found) {
-  const std::size_t end = std::min(beams.points_m.size(), (part + 1) * CameraView::kPart);
-  for (std::size_t i = part * CameraView::kPart; i < end; ++i) {
+  const std::vector<std::uint32_t> nearly = NearlyInside(camera, beams, part);
+  found.reserve(nearly.size());
+  for (const std::uint32_t i : nearly) {
     const Eigen::Vector3f& point = beams.points_m[i];
-    const Eigen::Vector3f p_cam = camera.R_cam_lidar * point + camera.p_cam_lidar_m;
+    const Eigen::Vector3f p_cam = InCamera(camera, point);
     Eigen::Vector2f uv_px;
     if (!camera.lens.Project(p_cam, uv_px) || !Inside(camera, uv_px)) continue;
     Candidate candidate;
-    candidate.point_idx = static_cast<std::uint32_t>(i);
+    candidate.point_idx = i;
     candidate.patch.x = (uv_px.x() + 0.5F) / camera.cell_px, candidate.patch.y = (uv_px.y() + 0.5F) / camera.cell_px;
     candidate.patch.range_m = p_cam.norm();
     SetSize(camera, beams, point, p_cam, uv_px, candidate);

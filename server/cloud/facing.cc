@@ -47,17 +47,9 @@ void Add(const Bundle& other, Bundle& bundle) {
 
 }  // namespace
 
-std::size_t Facing::IndexOf(const Eigen::Vector3f& point_m) const {
-  const float azimuth = std::atan2(point_m.y(), point_m.x()) + static_cast<float>(M_PI);
-  const float elevation = std::atan2(point_m.z(), point_m.head<2>().norm()) + static_cast<float>(M_PI_2);
-  const int column = std::clamp(static_cast<int>(azimuth / size_rad_), 0, columns_ - 1);
-  const int row = std::clamp(static_cast<int>(elevation / size_rad_), 0, rows_ - 1);
-  return static_cast<std::size_t>(row * columns_ + column);
-}
-
 Facing::Facing(const std::vector<Eigen::Vector3f>& points_m, float step_rad)
-    : size_rad_(std::clamp(kBundleSteps * step_rad, kBundleMin_rad, kBundleMax_rad)) {
-  columns_ = static_cast<int>(2 * M_PI / size_rad_) + 1, rows_ = static_cast<int>(M_PI / size_rad_) + 1;
+    : per_quarter_(static_cast<float>(M_PI_2) / std::clamp(kBundleSteps * step_rad, kBundleMin_rad, kBundleMax_rad)) {
+  columns_ = static_cast<int>(4 * per_quarter_) + 1, rows_ = static_cast<int>(2 * per_quarter_) + 1;
   const auto count = static_cast<std::size_t>(columns_ * rows_);
   const std::size_t stride = std::max<std::size_t>(1, points_m.size() / kPointsWanted);
   std::vector<Bundles> parts(kParts, Bundles(count));

@@ -22,10 +22,19 @@ class Facing {
   }
 
  private:
-  [[nodiscard]] std::size_t IndexOf(const Eigen::Vector3f& point_m) const;
+  // Azimuth and elevation along squares instead of circles: bundles of about one size, found without arc tangents.
+  [[nodiscard]] std::size_t IndexOf(const Eigen::Vector3f& point_m) const {
+    const float level = point_m.head<2>().norm(), across = std::abs(point_m.x()) + std::abs(point_m.y());
+    const float share = across > 0 ? point_m.y() / across : 0, height = level + std::abs(point_m.z());
+    const float around = point_m.x() < 0 ? 3 - share : 1 + share;         // 0 to 4
+    const float up = 1 + (height > 0 ? point_m.z() / height : 0);         // 0 to 2
+    const int column = std::min(static_cast<int>(around * per_quarter_), columns_ - 1);
+    const int row = std::min(static_cast<int>(up * per_quarter_), rows_ - 1);
+    return static_cast<std::size_t>(row * columns_ + column);
+  }
 
   int columns_ = 0, rows_ = 0;
-  float size_rad_ = 1;
+  float per_quarter_ = 1;  // bundles in a quarter of the way round
   std::vector<Eigen::Vector3f> normals_;
 };
 

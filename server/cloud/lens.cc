@@ -51,4 +51,19 @@ Lens::Lens(const CameraIntrinsics& intrinsics)
   limit_ = static_cast<float>(std::tan(widest_rad) * std::tan(widest_rad));
 }
 
+Lens::Lens(const CameraIntrinsics& intrinsics, int width_px, int height_px) : Lens(intrinsics) {
+  if (fisheye_) return;
+  const Eigen::Vector2f size(static_cast<float>(width_px), static_cast<float>(height_px));
+  const float corner_px = 1.2F * (centre_.cwiseAbs().cwiseMax((size - centre_).cwiseAbs())).norm();
+  const float focal = std::min(focal_.x(), focal_.y());
+  const double widest_rad = std::atan(std::sqrt(limit_));
+  for (double angle = 0; angle < widest_rad; angle += kStep_rad) {
+    const auto x = static_cast<float>(std::tan(angle)), s = x * x;
+    const float above = 1 + s * (k_[0] + s * (k_[1] + s * k_[2])), below = 1 + s * (k_[3] + s * (k_[4] + s * k_[5]));
+    if (focal * x * above / below < corner_px) continue;
+    limit_ = std::min(limit_, s);
+    return;
+  }
+}
+
 }  // namespace rigcal::cloud

@@ -14,19 +14,25 @@ namespace rigcal::cloud {
 class Lens {
  public:
   explicit Lens(const CameraIntrinsics& intrinsics);
+  // For a picture of this size: what lies well outside of it may count as not seen.
+  Lens(const CameraIntrinsics& intrinsics, int width_px, int height_px);
 
   // False: behind the camera or beyond the fold; then uv_px says nothing.
   [[nodiscard]] bool Project(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
     return fisheye_ ? ProjectFisheye(p_cam, uv_px) : ProjectPinhole(p_cam, uv_px);
+  }
+  // False only where Project says so too; without a branch, for the many points that a camera does not see.
+  [[nodiscard]] bool MayProject(const Eigen::Vector3f& p_cam) const {
+    const bool ahead = p_cam.z() > kNearest_m, near = p_cam.head<2>().squaredNorm() < limit_ * p_cam.z() * p_cam.z();
+    return fisheye_ | (ahead & near);
   }
   // Pixels per radian on the axis, the larger of the two.
   [[nodiscard]] float focal_px() const { return std::max(focal_.x(), focal_.y()); }
 
  private:
   [[nodiscard]] bool ProjectPinhole(const Eigen::Vector3f& p_cam, Eigen::Vector2f& uv_px) const {
-    if (!(p_cam.z() > kNearest_m)) return false;
+    if (!MayProject(p_cam)) return false;
     const float inverse_z = 1 / p_cam.z(), x = p_cam.x() * inverse_z, y = p_cam.y() * inverse_z, s = x * x + y * y;
-    if (!(s < limit_)) return false;
     const float above = 1 + s * (k_[0] + s * (k_[1] + s * k_[2])), below = 1 + s * (k_[3] + s * (k_[4] + s * k_[5]));
     const float radial = above / below, xy2 = 2 * x * y;
     uv_px.x() = focal_.x() * (x * radial + p1_ * xy2 + p2_ * (s + 2 * x * x)) + centre_.x();

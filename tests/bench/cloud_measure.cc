@@ -64,7 +64,7 @@ Coloured Colour(const Scene& scene) {
 double Processor_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Times {
-  double median_ms = 0, processor_ms = 0;  // the latter of all threads together
+  double best_ms = 0, median_ms = 0, processor_ms = 0;  // the latter of all threads together
 };
 Times TimesOf(const Scene& scene) {
   std::vector<double> times_ms;
@@ -75,7 +75,7 @@ Times TimesOf(const Scene& scene) {
     times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
   std::sort(times_ms.begin(), times_ms.end());
-  return {times_ms[kRuns / 2], (Processor_ms() - before_ms) / kRuns};
+  return {times_ms[0], times_ms[kRuns / 2], (Processor_ms() - before_ms) / kRuns};
 }
 
 // Which surface's colour it is, whatever the exposure: the hue's nearest.
@@ -133,10 +133,10 @@ int Run(int argc, char** argv) {
   const Times times = TimesOf(scene);
   const bool same = Bytes(scene, 1) == Bytes(scene, 2);
   std::printf(
-      "{\"colour_ms\": %.1f, \"processor_ms\": %.1f, \"files_ms\": %.0f, \"same_bytes\": %s, \"covered_ratio\": %.4f, "
+      "{\"best_ms\": %.1f, \"colour_ms\": %.1f, \"processor_ms\": %.1f, \"files_ms\": %.0f, \"same_bytes\": %s, \"covered_ratio\": %.4f, "
       "\"painted_as_plate\": %zu, \"plate_points\": %zu, \"plate_missed\": %zu, \"azimuth_step_deg\": %.3f, "
       "\"elevation_step_deg\": %.3f}\n",
-      times.median_ms, times.processor_ms, files_ms, same ? "true" : "false",
+      times.best_ms, times.median_ms, times.processor_ms, files_ms, same ? "true" : "false",
       static_cast<double>(coloured.cloud.covered) / static_cast<double>(kPoints), judgement.painted_as_plate,
       judgement.plate, judgement.plate_missed, BeamsOf(scene.cloud).azimuth_step_rad * 180 / M_PI,
       BeamsOf(scene.cloud).elevation_step_rad * 180 / M_PI);

@@ -48,6 +48,21 @@ TEST(Lens, AgreesWithCalibOnEveryModel) {
   }
 }
 
+TEST(Lens, ForAPictureOnlyWhatLiesOutsideIsLeftOut) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> side(-6, 6);
+  for (const LensCase& lens_case : Cases()) {
+    const Lens all(lens_case.intrinsics), some(lens_case.intrinsics, 1280, 960);
+    for (int i = 0; i < 20000; ++i) {
+      const Eigen::Vector3f p(side(random), side(random), side(random));
+      Eigen::Vector2f a, b;
+      if (!all.Project(p, a) || a.minCoeff() < 0 || a.x() > 1280 || a.y() > 960) continue;
+      ASSERT_TRUE(some.Project(p, b)) << lens_case.name << " " << p.transpose();
+      EXPECT_EQ(a, b);
+    }
+  }
+}
+
 TEST(Lens, WhatIsNoPointIsNotSeen) {
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   for (const LensCase& lens_case : Cases()) {
