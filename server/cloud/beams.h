@@ -24,8 +24,8 @@ struct Beams {
 
   Facing facing;
 
-  // Halves of a step, and sideways a little more, so that neighbours at one distance leave no chink. Not so upwards: the
-  // next ring on the ground is much further and must not be hidden.
+  // Halves of a step, and sideways a little more, so that neighbours at one distance leave no chink. Not so upwards:
+  // the next ring on the ground is much further and must not be hidden.
   static constexpr float kLevel = 0.75F, kUpright = 0.5F;
 
   // The half sides of the patch of surface that a beam stands for, one level and one upright as the lidar sees them. It

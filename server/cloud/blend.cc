@@ -30,8 +30,7 @@ void AddView(const std::vector<SeenPoint>& seen, const Gain& gain, std::uint8_t 
 Rgb ColourOf(const Mix& mix) {
   Rgb rgb;
   for (int c = 0; c < 3; ++c)
-    rgb[static_cast<std::size_t>(c)] =
-        static_cast<std::uint8_t>(std::min(mix.colour[c] / mix.weight + 0.5F, 255.0F));
+    rgb[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::min(mix.colour[c] / mix.weight + 0.5F, 255.0F));
   return rgb;
 }
 

@@ -11,13 +11,13 @@ namespace rigcal::cloud {
 namespace {
 
 constexpr float kCellMin_px = 1, kCellMax_px = 16;
-constexpr float kCells = 1.5e6F;         // of a buffer, at most about
-constexpr float kPatchCellsMax = 1024;   // that one beam covers: a bound on work, beyond any lidar's spacing
-constexpr float kPatchHalfMax = 48;      // cells
-constexpr std::size_t kAhead = 12;       // candidates
-constexpr int kBands = 8;                // of rows, one thread each
+constexpr float kCells = 1.5e6F;        // of a buffer, at most about
+constexpr float kPatchCellsMax = 1024;  // that one beam covers: a bound on work, beyond any lidar's spacing
+constexpr float kPatchHalfMax = 48;     // cells
+constexpr std::size_t kAhead = 12;      // candidates
+constexpr int kBands = 8;               // of rows, one thread each
 constexpr float kHidden_m = 0.03F, kHiddenPerRange = 0.005F, kHiddenPerSpacing = 0.5F;
-constexpr float kBorderShare = 0.08F;    // of the shorter side, in which the weight falls
+constexpr float kBorderShare = 0.08F;  // of the shorter side, in which the weight falls
 constexpr float kBorderLeast = 0.01F, kAngleLeast = 0.05F;
 
 // A point inside the picture, before it is known whether it is hidden.
@@ -45,8 +45,11 @@ float CellOf(const Lens& lens, const Beams& beams, const Picture& picture) {
 
 Camera CameraOf(const Beams& beams, const CloudCamera& camera, const Picture& picture) {
   Camera ready{Lens(camera.intrinsics, picture.width_px, picture.height_px),
-               camera.T_cam_lidar.R().cast<float>(), camera.T_cam_lidar.p_m.cast<float>(),
-               static_cast<float>(picture.width_px), static_cast<float>(picture.height_px), 1};
+               camera.T_cam_lidar.R().cast<float>(),
+               camera.T_cam_lidar.p_m.cast<float>(),
+               static_cast<float>(picture.width_px),
+               static_cast<float>(picture.height_px),
+               1};
   ready.cell_px = CellOf(ready.lens, beams, picture);
   return ready;
 }
@@ -88,7 +91,8 @@ Eigen::Vector3f InCamera(const Camera& camera, const Eigen::Vector3f& point) {
   return camera.R_cam_lidar * point + camera.p_cam_lidar_m;
 }
 
-// Points that may be in the picture. Nothing is decided in the loop: guessing wrong would cost more than the arithmetic.
+// Points that may be in the picture. Nothing is decided in the loop: guessing wrong would cost more than the
+// arithmetic.
 std::vector<std::uint32_t> NearlyInside(const Camera& camera, const Beams& beams, std::size_t part) {
   const std::size_t first = part * CameraView::kPart;
   const std::size_t end = std::min(beams.points_m.size(), first + CameraView::kPart);
@@ -208,9 +212,8 @@ CameraView See(const Beams& beams, const CloudCamera& camera, const Picture& pic
   Candidates candidates(view.parts.size());
   ParallelFor(candidates.size(), [&](std::size_t part) { ProjectPart(ready, beams, part, candidates[part]); });
   const DepthBuffer buffer = Splatted(ready, candidates);
-  ParallelFor(candidates.size(), [&](std::size_t part) {
-    view.parts[part] = NotHidden(ready, beams, buffer, candidates[part], picture);
-  });
+  ParallelFor(candidates.size(),
+              [&](std::size_t part) { view.parts[part] = NotHidden(ready, beams, buffer, candidates[part], picture); });
   return view;
 }
 

@@ -22,9 +22,9 @@ struct CloudCamera {
 struct SeenPoint {
   std::uint32_t point_idx = 0;
   float u_px = 0, v_px = 0;
-  float range_m = 0;   // from the camera
-  float weight = 0;    // of its colour among cameras; positive
-  Rgb rgb{};           // between pixels, bilinear
+  float range_m = 0;  // from the camera
+  float weight = 0;   // of its colour among cameras; positive
+  Rgb rgb{};          // between pixels, bilinear
 };
 
 // Points that nothing hides, ascending, in parts: part k holds points kPart * k to kPart * (k + 1) - 1.

@@ -16,7 +16,8 @@ struct Patch {
 class DepthBuffer {
  public:
   DepthBuffer(int width, int height)
-      : width_(width), height_(height),
+      : width_(width),
+        height_(height),
         nearest_m_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                    std::numeric_limits<float>::infinity()) {}
 

@@ -19,7 +19,7 @@ struct Bundle {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
 };
 
-constexpr std::size_t kParts = 8;             // summed in their order, whatever thread did which
+constexpr std::size_t kParts = 8;               // summed in their order, whatever thread did which
 constexpr std::size_t kPointsWanted = 300'000;  // of a larger cloud every n-th point is enough
 
 using Bundles = std::vector<Bundle>;
@@ -59,7 +59,8 @@ Facing::Facing(const std::vector<Eigen::Vector3f>& points_m, float step_rad)
   });
   normals_.resize(count);
   ParallelFor(static_cast<std::size_t>(rows_), [&](std::size_t row) {
-    for (std::size_t b = row * static_cast<std::size_t>(columns_); b < (row + 1) * static_cast<std::size_t>(columns_); ++b) {
+    for (std::size_t b = row * static_cast<std::size_t>(columns_); b < (row + 1) * static_cast<std::size_t>(columns_);
+         ++b) {
       Bundle whole;
       for (const Bundles& part : parts) Add(part[b], whole);
       normals_[b] = NormalOf(whole);

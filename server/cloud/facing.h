@@ -26,8 +26,8 @@ class Facing {
   [[nodiscard]] std::size_t IndexOf(const Eigen::Vector3f& point_m) const {
     const float level = point_m.head<2>().norm(), across = std::abs(point_m.x()) + std::abs(point_m.y());
     const float share = across > 0 ? point_m.y() / across : 0, height = level + std::abs(point_m.z());
-    const float around = point_m.x() < 0 ? 3 - share : 1 + share;         // 0 to 4
-    const float up = 1 + (height > 0 ? point_m.z() / height : 0);         // 0 to 2
+    const float around = point_m.x() < 0 ? 3 - share : 1 + share;  // 0 to 4
+    const float up = 1 + (height > 0 ? point_m.z() / height : 0);  // 0 to 2
     const int column = std::min(static_cast<int>(around * per_quarter_), columns_ - 1);
     const int row = std::min(static_cast<int>(up * per_quarter_), rows_ - 1);
     return static_cast<std::size_t>(row * columns_ + column);

@@ -45,9 +45,8 @@ Lens::Lens(const CameraIntrinsics& intrinsics)
   const bool rational = intrinsics.model == CameraModel::kPinholeRational;
   k_ = {at(0), at(1), at(4), rational ? at(5) : 0, rational ? at(6) : 0, rational ? at(7) : 0};
   p1_ = at(2), p2_ = at(3);
-  const double widest_rad = LastGrowing_rad(kPinholeWidest_rad, [&](double angle) {
-    return PinholeSlope(k_, std::tan(angle) * std::tan(angle));
-  });
+  const double widest_rad = LastGrowing_rad(
+      kPinholeWidest_rad, [&](double angle) { return PinholeSlope(k_, std::tan(angle) * std::tan(angle)); });
   limit_ = static_cast<float>(std::tan(widest_rad) * std::tan(widest_rad));
 }
 

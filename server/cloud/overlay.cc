@@ -73,7 +73,8 @@ std::vector<SeenPoint> FarthestFirst(const CameraView& view) {
 
 // Smaller where there are many, so that the picture shows between them.
 double RadiusOf(std::size_t points, const cv::Mat& picture) {
-  const double spacing_px = std::sqrt(static_cast<double>(picture.total()) / std::max<double>(1, static_cast<double>(points)));
+  const double spacing_px =
+      std::sqrt(static_cast<double>(picture.total()) / std::max<double>(1, static_cast<double>(points)));
   return std::clamp(0.28 * spacing_px, 0.9, 2.6);
 }
 

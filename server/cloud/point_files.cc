@@ -56,7 +56,8 @@ std::int16_t Step(const Grid& grid, float value_m, int axis) {
 std::string WritePly(const ColouredCloud& cloud) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment in the lidar's frame, metres; camera 255: covered by none\n"
-      "element vertex " + std::to_string(cloud.points_m.size()) +
+      "element vertex " +
+      std::to_string(cloud.points_m.size()) +
       "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
       "property uchar blue\nproperty uchar camera\nproperty uchar intensity\nend_header\n";
   bytes.reserve(bytes.size() + 17 * cloud.points_m.size());

@@ -14,8 +14,8 @@ class Raster {
 
   // A disc of pixels, of those that lie nearer than what is there. `place`: x, y in pixels, depth.
   void Disc(const Eigen::Vector3f& place, float radius_px, const Rgb& rgb);
-  // Darkens what lies behind its neighbours: edges of depth are seen, even surfaces stay as they are. `unit_m`: the depth
-  // at which half of the light is lost.
+  // Darkens what lies behind its neighbours: edges of depth are seen, even surfaces stay as they are. `unit_m`: the
+  // depth at which half of the light is lost.
   void ShadeEdges(float unit_m, int reach_px);
   // The points over the background, in BGR, halved in size: each pixel the mean of four.
   [[nodiscard]] cv::Mat Halved(const cv::Scalar& top, const cv::Scalar& bottom) const;

@@ -7,8 +7,8 @@
 namespace rigcal::cloud {
 namespace {
 
-constexpr float kTurn_rad = 0.62F, kDown_rad = 0.62F;    // of the oblique view
-constexpr float kFrontHalfWidth = 1.15F;                 // x / z at the edge of the front view: 98 degrees across
+constexpr float kTurn_rad = 0.62F, kDown_rad = 0.62F;  // of the oblique view
+constexpr float kFrontHalfWidth = 1.15F;               // x / z at the edge of the front view: 98 degrees across
 constexpr float kMargin = 1.12F;
 constexpr double kFarShare = 0.75;
 

@@ -16,11 +16,11 @@ struct Stand {
 enum class Angle { kFront, kTop, kOblique };
 
 struct Viewpoint {
-  Eigen::Matrix3f R_view_lidar;  // x right, y down, z into the picture
-  bool perspective = false;      // from the lidar itself; else parallel
-  float scale_px = 1;            // per metre, or per unit of x / z
+  Eigen::Matrix3f R_view_lidar;                      // x right, y down, z into the picture
+  bool perspective = false;                          // from the lidar itself; else parallel
+  float scale_px = 1;                                // per metre, or per unit of x / z
   Eigen::Vector2f middle = Eigen::Vector2f::Zero();  // of the picture: metres, or x / z
-  float reach_m = 10;            // what the picture is made for: most points lie nearer
+  float reach_m = 10;                                // what the picture is made for: most points lie nearer
 
   // Place in the picture (width x height), and the depth along the view.
   [[nodiscard]] Eigen::Vector3f Place(const Eigen::Vector3f& p_view, int width_px, int height_px) const {

@@ -30,9 +30,8 @@ Result<std::vector<SessionId>> SessionsOf(storage::Store& store, const formats::
     RIGCAL_ASSIGN(const auto row, storage::LoadSession(store, id));
     if (row) dated.emplace_back(row->captured_at, id);
   }
-  std::sort(dated.begin(), dated.end(), [](const auto& x, const auto& y) {
-    return x.first != y.first ? y.first < x.first : x.second < y.second;
-  });
+  std::sort(dated.begin(), dated.end(),
+            [](const auto& x, const auto& y) { return x.first != y.first ? y.first < x.first : x.second < y.second; });
   std::vector<SessionId> sorted;
   for (const auto& [stamp, id] : dated) sorted.push_back(id);
   return sorted;
@@ -85,9 +84,8 @@ std::vector<PlacedCamera> PlacedAt(const CaptureId& capture, const Se3& T_ref_li
   for (const ReadyCamera& camera : cameras) {
     const auto own = payloads.find(camera.id);
     if (own == payloads.end() || !own->second.contains(capture)) continue;
-    placed.push_back({camera.id,
-                      {camera.intrinsics, camera.T_ref_camera.Inverse() * T_ref_lidar},
-                      own->second.at(capture)});
+    placed.push_back(
+        {camera.id, {camera.intrinsics, camera.T_ref_camera.Inverse() * T_ref_lidar}, own->second.at(capture)});
   }
   return placed;
 }

@@ -38,7 +38,8 @@ struct CloudChoices {
 // session estimated.
 [[nodiscard]] Result<CloudChoices> ChooseClouds(storage::Store& store, const formats::RevisionInput& revision);
 
-// Of an edge's figures, as the estimators write them: of `sensor`, if it is a camera of this edge and they are all there.
+// Of an edge's figures, as the estimators write them: of `sensor`, if it is a camera of this edge and they are all
+// there.
 [[nodiscard]] std::optional<CameraIntrinsics> EstimatedIntrinsics(const Edge& edge, const SensorId& sensor,
                                                                   CameraModel model);
 

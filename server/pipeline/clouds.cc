@@ -64,8 +64,12 @@ Status WriteOverlay(Work& work, const CloudChoice& choice, const PlacedCamera& c
   const std::size_t points = view.Count();
   if (!fresh && points <= shown.points) return {};
   const cloud::Overlay overlay = cloud::OverlayOf(picture, view);
-  shown = {camera.id.str(), choice.lidar.str(), choice.cloud->capture.str(), "overlay/" + camera.id.str() + ".jpg",
-           "overlay/" + camera.id.str() + "_picture.jpg", points};
+  shown = {camera.id.str(),
+           choice.lidar.str(),
+           choice.cloud->capture.str(),
+           "overlay/" + camera.id.str() + ".jpg",
+           "overlay/" + camera.id.str() + "_picture.jpg",
+           points};
   RIGCAL_TRY(WriteBelow(work.folder, shown.points_jpg, overlay.points_jpg));
   return WriteBelow(work.folder, shown.picture_jpg, overlay.picture_jpg);
 }
@@ -116,7 +120,8 @@ report::ColouredLidar NamesOf(const CloudChoice& choice) {
   report::ColouredLidar names;
   names.lidar = choice.lidar.str(), names.capture = choice.cloud->capture.str();
   const std::string folder = "cloud/" + names.lidar + "/";
-  names.front_png = folder + "front.png", names.top_png = folder + "top.png", names.oblique_png = folder + "oblique.png";
+  names.front_png = folder + "front.png", names.top_png = folder + "top.png",
+  names.oblique_png = folder + "oblique.png";
   names.ply = folder + "cloud.ply", names.viewer_points = folder + "points.bin";
   return names;
 }
@@ -124,8 +129,8 @@ report::ColouredLidar NamesOf(const CloudChoice& choice) {
 void NoteLimits(Work& work, const CloudChoice& choice, const cloud::Beams& beams) {
   if (beams.stride > 1)
     work.section.notes.push_back("Of " + choice.cloud->path + " every " + std::to_string(beams.stride) +
-                                 "th point is shown: it has more than " +
-                                 std::to_string(limits::kColouredPointsMax) + ".");
+                                 "th point is shown: it has more than " + std::to_string(limits::kColouredPointsMax) +
+                                 ".");
   if (choice.cameras_left_out > 0)
     work.section.notes.push_back("The first " + std::to_string(limits::kCloudCamerasMax) +
                                  " cameras of the session colour the cloud of " + choice.lidar.str() + "; " +

@@ -1,5 +1,6 @@
 #include "server/report/cloud_section.h"
 
+#include "server/report/tables.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {

@@ -1,11 +1,9 @@
-// The section of a revision page that shows the coloured clouds and the overlays.
+// What the section of coloured clouds and overlays shows on a revision page. Nothing is shown where it is empty.
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <vector>
-
-#include "server/report/page.h"
 
 namespace rigcal::report {
 
@@ -26,8 +24,5 @@ struct CloudSection {
   std::vector<CameraOverlay> overlays;
   std::vector<std::string> notes;  // whole sentences: what could not be shown, and why
 };
-
-// Nothing is shown where the section is empty.
-void FillClouds(Dictionary& page, const CloudSection& section);
 
 }  // namespace rigcal::report

@@ -1,4 +1,4 @@
-// The tables of a revision page: poses in the reference frame, edges, provenance.
+// The parts of a revision page: poses in the reference frame, edges, coloured clouds, provenance.
 #pragma once
 
 #include <vector>
@@ -10,6 +10,7 @@ namespace rigcal::report {
 
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision);
 void FillEdges(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges);
+void FillClouds(Dictionary& page, const CloudSection& section);
 void FillProvenance(Dictionary& page, const ReportInput& input);
 
 }  // namespace rigcal::report

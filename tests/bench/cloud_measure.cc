@@ -34,8 +34,10 @@ Scene MakeScene() {
   for (int i = 0; i < 4; ++i) {
     const double yaw = M_PI / 2 * i + 0.3;
     const Eigen::Vector3d ahead(std::cos(yaw), std::sin(yaw), 0), side(-std::sin(yaw), std::cos(yaw), 0);
-    scene.room.plates.push_back(
-        {1.8 * ahead + Eigen::Vector3d(0, 0, 0.1), 0.4 * side, {0, 0, 0.3}, {250, 250, static_cast<std::uint8_t>(40 * i)}});
+    scene.room.plates.push_back({1.8 * ahead + Eigen::Vector3d(0, 0, 0.1),
+                                 0.4 * side,
+                                 {0, 0, 0.3},
+                                 {250, 250, static_cast<std::uint8_t>(40 * i)}});
   }
   scene.cloud = scene.room.Scan(kPoints, scene.surfaces);
   for (int i = 0; i < kCameras; ++i) {
@@ -80,9 +82,7 @@ Times TimesOf(const Scene& scene) {
 
 // Which surface's colour it is, whatever the exposure: the hue's nearest.
 bool IsColourOf(const CloudRoom& room, int surface, const Rgb& rgb) {
-  const auto unit = [](const Rgb& c) {
-    return Eigen::Vector3d(c[0], c[1], c[2]).normalized();
-  };
+  const auto unit = [](const Rgb& c) { return Eigen::Vector3d(c[0], c[1], c[2]).normalized(); };
   return (unit(room.ColourOf(surface)) - unit(rgb)).norm() < 0.06;
 }
 
@@ -133,7 +133,8 @@ int Run(int argc, char** argv) {
   const Times times = TimesOf(scene);
   const bool same = Bytes(scene, 1) == Bytes(scene, 2);
   std::printf(
-      "{\"best_ms\": %.1f, \"colour_ms\": %.1f, \"processor_ms\": %.1f, \"files_ms\": %.0f, \"same_bytes\": %s, \"covered_ratio\": %.4f, "
+      "{\"best_ms\": %.1f, \"colour_ms\": %.1f, \"processor_ms\": %.1f, \"files_ms\": %.0f, \"same_bytes\": %s, "
+      "\"covered_ratio\": %.4f, "
       "\"painted_as_plate\": %zu, \"plate_points\": %zu, \"plate_missed\": %zu, \"azimuth_step_deg\": %.3f, "
       "\"elevation_step_deg\": %.3f}\n",
       times.best_ms, times.median_ms, times.processor_ms, files_ms, same ? "true" : "false",

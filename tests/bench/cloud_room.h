@@ -22,7 +22,7 @@ struct CloudRoom {
 
   static constexpr int kWallColours = 6;
   [[nodiscard]] static Rgb WallColour(int wall) {
-    constexpr std::uint8_t kColours[kWallColours][3] = {{200, 90, 90},  {90, 90, 200},  {200, 180, 80},
+    constexpr std::uint8_t kColours[kWallColours][3] = {{200, 90, 90},  {90, 90, 200},   {200, 180, 80},
                                                         {120, 70, 160}, {110, 110, 110}, {180, 180, 190}};
     return {kColours[wall][0], kColours[wall][1], kColours[wall][2]};
   }
@@ -71,8 +71,9 @@ struct CloudRoom {
 
   // What a pinhole camera without distortion takes, times `gain`.
   [[nodiscard]] Picture Take(const CloudCamera& camera, int width_px, int height_px, double gain) const {
-    Picture picture{width_px, height_px,
-                    std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px))};
+    Picture picture{
+        width_px, height_px,
+        std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px))};
     const Se3 T_lidar_cam = camera.T_cam_lidar.Inverse();
     const Eigen::Matrix3d R = T_lidar_cam.R();
     ParallelFor(static_cast<std::size_t>(height_px), [&](std::size_t y) {
@@ -89,7 +90,8 @@ struct CloudRoom {
 };
 
 // A camera at `p_m` that looks along (cos yaw, sin yaw, 0), upright, with the principal point in the middle.
-inline CloudCamera RoomCamera(const Eigen::Vector3d& p_m, double yaw_rad, int width_px, int height_px, double focal_px) {
+inline CloudCamera RoomCamera(const Eigen::Vector3d& p_m, double yaw_rad, int width_px, int height_px,
+                              double focal_px) {
   CloudCamera camera;
   camera.intrinsics.fx_px = camera.intrinsics.fy_px = focal_px;
   camera.intrinsics.cx_px = 0.5 * (width_px - 1), camera.intrinsics.cy_px = 0.5 * (height_px - 1);

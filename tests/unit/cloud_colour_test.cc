@@ -98,9 +98,7 @@ TEST(Colour, EveryLensPaintsEveryPointInItsSurfacesColour) {
   }
 }
 
-Picture Even(std::uint8_t value) {
-  return {kWidth, kHeight, std::vector<std::uint8_t>(3 * kWidth * kHeight, value)};
-}
+Picture Even(std::uint8_t value) { return {kWidth, kHeight, std::vector<std::uint8_t>(3 * kWidth * kHeight, value)}; }
 
 // A few points before the cameras: too few for a balance, so the gains stay 1.
 Beams FewPoints() {
@@ -122,8 +120,8 @@ TEST(Colour, BlendsByTheWeights) {
     EXPECT_NEAR(cloud.rgb[i][0], expected, 0.51);
     EXPECT_EQ(cloud.camera_idx[i], a >= b ? 0 : 1);
   }
-  EXPECT_NEAR(cloud.rgb[4][1], 150, 1);           // midway between the two
-  EXPECT_LT(cloud.rgb[8][1], cloud.rgb[0][1]);    // the left end is nearer to the axis of the left camera
+  EXPECT_NEAR(cloud.rgb[4][1], 150, 1);         // midway between the two
+  EXPECT_LT(cloud.rgb[8][1], cloud.rgb[0][1]);  // the left end is nearer to the axis of the left camera
   EXPECT_EQ(cloud.covered, 9u);
 }
 

@@ -18,7 +18,8 @@ std::vector<LensCase> Cases() {
   return {
       {"plain", {900, 910, 640, 480, {0, 0, 0, 0, 0}, CameraModel::kPinholeRadtan}},
       {"radtan", {900, 910, 640, 480, {-0.31, 0.12, 0.001, -0.002, -0.02}, CameraModel::kPinholeRadtan}},
-      {"rational", {500, 505, 640, 480, {0.9, 0.2, 0.0004, -0.0003, 0.01, 1.2, 0.45, 0.04}, CameraModel::kPinholeRational}},
+      {"rational",
+       {500, 505, 640, 480, {0.9, 0.2, 0.0004, -0.0003, 0.01, 1.2, 0.45, 0.04}, CameraModel::kPinholeRational}},
       {"fisheye", {420, 421, 960, 600, {-0.02, 0.005, -0.003, 0.0006}, CameraModel::kFisheyeKb4}},
       {"missing", {900, 900, 640, 480, {}, CameraModel::kPinholeRadtan}},
   };
@@ -68,8 +69,8 @@ TEST(Lens, WhatIsNoPointIsNotSeen) {
   for (const LensCase& lens_case : Cases()) {
     const Lens lens(lens_case.intrinsics);
     Eigen::Vector2f uv;
-    for (const Eigen::Vector3f& p : {Eigen::Vector3f(nan, 0, 1), Eigen::Vector3f(0, 0, nan), Eigen::Vector3f(0, 0, 0),
-                                     Eigen::Vector3f(inf, 0, 1)})
+    for (const Eigen::Vector3f& p :
+         {Eigen::Vector3f(nan, 0, 1), Eigen::Vector3f(0, 0, nan), Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(inf, 0, 1)})
       EXPECT_FALSE(lens.Project(p, uv) && uv.allFinite() && uv.norm() < 1e4F) << lens_case.name << " " << p.transpose();
     ASSERT_TRUE(lens.Project({0, 0, 1}, uv));
     EXPECT_NEAR(uv.x(), lens_case.intrinsics.cx_px, 1e-3);

@@ -55,7 +55,8 @@ class PipelineCloudsTest : public PipelineTest {
       Sensor sensor;
       sensor.id = SensorId(name);
       if (sensor.id.str() == "lidar") sensor.kind = SensorKind::kLidar;
-      if (sensor.kind == SensorKind::kCamera) sensor.intrinsics = {100, 100, 79.5, 59.5, {0, 0, 0, 0, 0}, CameraModel::kPinholeRadtan};
+      if (sensor.kind == SensorKind::kCamera)
+        sensor.intrinsics = {100, 100, 79.5, 59.5, {0, 0, 0, 0, 0}, CameraModel::kPinholeRadtan};
       manifest.header.sensors.push_back(sensor);
     }
     for (const auto& [path, bytes] : files) {
@@ -102,8 +103,11 @@ const cv::Scalar kRed(30, 30, 220), kBlue(220, 40, 40);
 TEST_F(PipelineCloudsTest, APublishedRevisionHoldsTheColouredCloud) {
   StorePoses();
   // Capture 02 has the pictures of both cameras: it is chosen.
-  StoreRig({{"near/01.png", PngOf(kBlue, kBlue)}, {"lidar/01.ply", WallPly()},
-            {"near/02.png", PngOf(kRed, kBlue)}, {"far/02.png", PngOf(kRed, kBlue)}, {"lidar/02.ply", WallPly()}});
+  StoreRig({{"near/01.png", PngOf(kBlue, kBlue)},
+            {"lidar/01.ply", WallPly()},
+            {"near/02.png", PngOf(kRed, kBlue)},
+            {"far/02.png", PngOf(kRed, kBlue)},
+            {"lidar/02.ply", WallPly()}});
   StepAll();
   const std::filesystem::path folder = Newest();
   for (const char* file : {"cloud/lidar/front.png", "cloud/lidar/top.png", "cloud/lidar/oblique.png",
@@ -180,8 +184,9 @@ TEST_F(PipelineCloudsTest, PicturesOfOtherMomentsDoNotColour) {
 TEST(EstimatedIntrinsics, AreReadOfEitherKindOfEdge) {
   Edge edge;
   edge.frame_a = SensorId("l"), edge.frame_b = SensorId("r");
-  edge.figures = {{"fx_b_px", 500}, {"fy_b_px", 501}, {"cx_b_px", 320}, {"cy_b_px", 240}, {"k1_b_ratio", 0.1},
-                  {"k2_b_ratio", 0.2}, {"p1_b_ratio", 0.3}, {"p2_b_ratio", 0.4}, {"k3_b_ratio", 0.5}};
+  edge.figures = {{"fx_b_px", 500},    {"fy_b_px", 501},    {"cx_b_px", 320},
+                  {"cy_b_px", 240},    {"k1_b_ratio", 0.1}, {"k2_b_ratio", 0.2},
+                  {"p1_b_ratio", 0.3}, {"p2_b_ratio", 0.4}, {"k3_b_ratio", 0.5}};
   const auto right = EstimatedIntrinsics(edge, SensorId("r"), CameraModel::kPinholeRadtan);
   ASSERT_TRUE(right);
   EXPECT_EQ(right->fy_px, 501);
@@ -189,8 +194,8 @@ TEST(EstimatedIntrinsics, AreReadOfEitherKindOfEdge) {
   EXPECT_FALSE(EstimatedIntrinsics(edge, SensorId("l"), CameraModel::kPinholeRadtan));
   EXPECT_FALSE(EstimatedIntrinsics(edge, SensorId("x"), CameraModel::kPinholeRadtan));
   EXPECT_FALSE(EstimatedIntrinsics(edge, SensorId("r"), CameraModel::kPinholeRational));  // k4 is missing
-  edge.figures = {{"fx_px", 400}, {"fy_px", 401}, {"cx_px", 320}, {"cy_px", 240}, {"k1_ratio", 0.1},
-                  {"k2_ratio", 0.2}, {"k3_ratio", 0.3}, {"k4_ratio", 0.4}};
+  edge.figures = {{"fx_px", 400},    {"fy_px", 401},    {"cx_px", 320},    {"cy_px", 240},
+                  {"k1_ratio", 0.1}, {"k2_ratio", 0.2}, {"k3_ratio", 0.3}, {"k4_ratio", 0.4}};
   const auto fisheye = EstimatedIntrinsics(edge, SensorId("r"), CameraModel::kFisheyeKb4);
   ASSERT_TRUE(fisheye);
   EXPECT_EQ(fisheye->fx_px, 400);

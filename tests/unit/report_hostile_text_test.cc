@@ -50,6 +50,13 @@ INSTANTIATE_TEST_SUITE_P(
               [](ReportInput& in) {
                 in.revision.solution.diagnoses = {{"c", kHostile, kHostile}};
               }},
+        Field{"cloud_note", [](ReportInput& in) { in.clouds.notes = {kHostile}; }},
+        Field{"cloud_lidar",
+              [](ReportInput& in) {
+                in.clouds.lidars = {{kHostile, kHostile, kHostile, kHostile, kHostile, kHostile, kHostile, 9, 3, 1}};
+              }},
+        Field{"overlay",
+              [](ReportInput& in) { in.clouds.overlays = {{kHostile, kHostile, kHostile, kHostile, kHostile, 5}}; }},
         Field{"method", [](ReportInput& in) { in.revision.edges[0].method = kHostile; }},
         Field{"capture_note", [](ReportInput& in) { in.revision.edges[0].captures[4].note = kHostile; }},
         Field{"picture_title", [](ReportInput& in) { in.revision.edges[0].evidence[0].title = kHostile; }},
@@ -125,7 +132,7 @@ TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
     EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
     ++templates;
   }
-  EXPECT_EQ(templates, 10);
+  EXPECT_EQ(templates, 11);
 }
 
 TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {
