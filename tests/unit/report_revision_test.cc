@@ -208,6 +208,23 @@ double RenderSeconds(const ReportInput& input, std::size_t& bytes) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+TEST(ReportRevision, ShowsCloudsAndOverlaysOnlyWhereThereAreSome) {
+  ReportInput input = SampleReport();
+  EXPECT_THAT(PageOf(input), Not(HasSubstr("Coloured clouds")));
+  input.clouds.lidars = {{"top", "003", "cloud/top/front.png", "cloud/top/top.png", "cloud/top/oblique.png",
+                          "cloud/top/cloud.ply", "cloud/top/points.bin", 2000, 1500, 3}};
+  input.clouds.overlays = {{"left", "top", "003", "overlay/left.jpg", "overlay/left_picture.jpg", 1}};
+  input.clouds.notes = {"right/003.png is not shown: it cannot be decoded."};
+  const std::string page = PageOf(input);
+  EXPECT_THAT(page, HasSubstr("capture 003: 2000 points, 75 % seen by 3 cameras"));
+  for (const char* file : {"cloud/top/front.png", "cloud/top/top.png", "cloud/top/oblique.png", "overlay/left.jpg"})
+    EXPECT_THAT(page, HasSubstr("src=\"" + std::string(file) + "\"")) << file;
+  EXPECT_THAT(page, HasSubstr("href=\"cloud/top/cloud.ply\""));
+  EXPECT_THAT(page, HasSubstr("href=\"overlay/left_picture.jpg\""));
+  EXPECT_THAT(page, HasSubstr("1 point of top"));
+  EXPECT_THAT(page, HasSubstr("right/003.png is not shown"));
+}
+
 TEST(ReportRevision, LargeGraphStaysSmallAndFast) {
   std::size_t bytes = 0;
   const double seconds = RenderSeconds(BigReport(2500, 5000), bytes);
