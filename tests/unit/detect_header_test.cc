@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "server/detect/grey_image.h"
@@ -90,6 +91,46 @@ TEST(ImageHeader, RefusesOtherFormats) {
   const auto size = SizeOf("BM this is a bitmap");
   ASSERT_FALSE(size);
   EXPECT_THAT(size.error().what, HasSubstr("neither PNG nor JPEG"));
+}
+
+Result<Picture> ColourOf(const cv::Mat& picture) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", picture, bytes);
+  return DecodeColour(std::as_bytes(std::span(bytes)));
+}
+
+TEST(ColourPicture, KeepsColoursAndTheirOrder) {
+  cv::Mat3b bgr(2, 3, cv::Vec3b(10, 20, 30));
+  bgr(1, 2) = {1, 2, 250};
+  const auto picture = ColourOf(bgr);
+  ASSERT_TRUE(picture) << Sentence(picture.error());
+  EXPECT_EQ(picture->width_px, 3);
+  EXPECT_EQ(picture->height_px, 2);
+  ASSERT_EQ(picture->rgb.size(), 18u);
+  EXPECT_EQ(std::vector<std::uint8_t>(picture->rgb.begin(), picture->rgb.begin() + 3),
+            (std::vector<std::uint8_t>{30, 20, 10}));
+  EXPECT_EQ(picture->rgb[15], 250);
+}
+
+TEST(ColourPicture, GreyHasThreeEqualColours) {
+  const auto picture = ColourOf(cv::Mat1b(4, 4, 77));
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->rgb, std::vector<std::uint8_t>(48, 77));
+}
+
+// 12 bits of 16, as cameras leave them: stretched, red stays red.
+TEST(ColourPicture, DeepPicturesAreStretchedByOneScale) {
+  cv::Mat deep(10, 10, CV_16UC3, cv::Scalar(0, 1000, 4000));
+  const auto picture = ColourOf(deep);
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->rgb[0], 255);
+  EXPECT_NEAR(picture->rgb[1], 64, 1);
+  EXPECT_EQ(picture->rgb[2], 0);
+}
+
+TEST(ColourPicture, RefusesWhatIsNone) {
+  const std::string bytes = Png(640, 480);
+  EXPECT_FALSE(DecodeColour(std::as_bytes(std::span(bytes))));
 }
 
 }  // namespace
