@@ -14,6 +14,8 @@ namespace {
 template <typename T>
 using OrDiagnosis = tl::expected<T, Diagnosis>;
 
+constexpr int kLockingsMax = 2;
+constexpr double kAgreeingMin_ratio = 0.3;  // of the starts; fewer: the answer is a matter of luck
 constexpr double kSamePose_rad = 0.03, kSamePoseVoxels = 0.25;
 constexpr double kOtherPoseVoxels = 0.6, kOtherPose_rad = 0.06;
 constexpr double kOtherScoreRatio = 0.985;  // of the best: another pose fits as well
@@ -48,15 +50,21 @@ Se3 BackToNominal(const Se3& T, const Se3& nominal, const Directions& unknown) {
   return (T * Se3::Exp(unknown * (unknown.transpose() * off))).Normalized();
 }
 
-Solved SolveFrom(const LidarLidarWork& work, const Se3& start) {
-  Solved solved;
+void Refit(const LidarLidarWork& work, const Se3& start, Solved& solved) {
   solved.pose = FitFrom(work, start, 0, solved.unknown);
   solved.pairs = AllPairs(work, solved.pose.T);
-  solved.unknown = Unknown(solved.pairs, solved.pose.T);
-  if (solved.unknown.cols() == 0 || solved.unknown.cols() == 6) return solved;
-  const Se3 back = BackToNominal(solved.pose.ndt, work.nominal, solved.unknown);
-  solved.pose = FitFrom(work, back, kNdtLevels - 1, solved.unknown);
-  solved.pairs = AllPairs(work, solved.pose.T);
+}
+
+// What is unknown is found at a pose that may have slid along it: so once more, held at the nominal pose there, and
+// again with the directions as they are then.
+Solved SolveFrom(const LidarLidarWork& work, const Se3& start) {
+  Solved solved;
+  Refit(work, start, solved);
+  for (int round = 0; round < kLockingsMax; ++round) {
+    solved.unknown = Unknown(solved.pairs, solved.pose.T);
+    if (solved.unknown.cols() == 0 || solved.unknown.cols() == 6) return solved;
+    Refit(work, BackToNominal(solved.pose.ndt, work.nominal, solved.unknown), solved);
+  }
   return solved;
 }
 
@@ -98,6 +106,8 @@ OrDiagnosis<void> Judge(const LidarLidarProblem& problem, const LidarLidarWork& 
     const Vector6d d = Difference(best.T, other->T, solved.unknown);
     return tl::unexpected(StartsDisagree(problem, d.head<3>().norm(), d.tail<3>().norm()));
   }
+  if (const double agreeing = AgreeingRatio(ends, best, solved.unknown, work.voxel_m); agreeing < kAgreeingMin_ratio)
+    return tl::unexpected(StartsScatter(problem, agreeing));
   return {};
 }
 
@@ -177,13 +187,14 @@ OrDiagnosis<LidarLidarEstimate> Finished(const LidarLidarProblem& problem, const
   LidarLidarEstimate estimate;
   estimate.T_a_b = work.a_is_map ? T : T.Inverse().Normalized();
   estimate.T_a_b_ndt = work.a_is_map ? solved.pose.ndt : solved.pose.ndt.Inverse().Normalized();
+  estimate.T_a_b_polished = work.a_is_map ? solved.pose.polished : solved.pose.polished.Inverse().Normalized();
   estimate.polished = work.polish;
   estimate.voxel_m = work.voxel_m;
   estimate.last_step = solved.pose.last_step;
   estimate.overlap_ratio = solved.pose.met_ratio;
   estimate.match_ratio = MatchRatio(solved.pairs);
   FillChecks(problem, work, T, blocks, estimate);
-  auto uncertainty = LidarLidarUncertainty(problem, work, T, solved.unknown, solved.pairs, blocks.d);
+  auto uncertainty = LidarLidarUncertainty(problem, work, solved.pose, solved.unknown, solved.pairs, blocks.d);
   if (!uncertainty) return tl::unexpected(LidarLidarError(problem, uncertainty.error()));
   estimate.uncertainty = std::move(*uncertainty);
   return estimate;

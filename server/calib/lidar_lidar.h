@@ -1,5 +1,7 @@
 // Two 3D lidars from what both see of their surroundings, no target: NDT from the nominal pose, coarse to fine, from
-// several starts; then, if asked for, a polish by generalised ICP. Every capture brings its own map; the pose is common.
+// several starts; then a polish by generalised ICP, which is the answer if asked for. How far it moves the pose goes into
+// the uncertainty in any case: errors of the method are the same in every capture, so no jackknife sees them. Every
+// capture brings its own map; the pose is common.
 #pragma once
 
 #include <optional>
@@ -22,7 +24,7 @@ struct LidarLidarProblem {
   Sensor lidar_a, lidar_b;
   std::optional<Se3> T_a_b_nominal;  // no search without it
   std::vector<LidarLidarCapture> captures;
-  bool polish = true;
+  bool polish = false;               // the answer is the polished pose, not NDT's
 };
 
 // How well a pose fits clouds that it was not made from, by flat voxels of NDT's finest size.
@@ -37,7 +39,7 @@ struct SurfaceCheck {
 
 struct LidarLidarEstimate {
   Se3 T_a_b;
-  Se3 T_a_b_ndt;             // before the polish; the same where there is none
+  Se3 T_a_b_ndt, T_a_b_polished;  // T_a_b is one of them
   bool polished = false;
   double voxel_m = 1;        // of NDT's finest level
   double last_step = 0;      // m and rad, of the last stage

@@ -87,6 +87,13 @@ Diagnosis StartsDisagree(const LidarLidarProblem& problem, double other_m, doubl
           "Take captures in a place that does not repeat itself, and give a better nominal pose."};
 }
 
+Diagnosis StartsScatter(const LidarLidarProblem& problem, double agreeing_ratio) {
+  return {"starts_disagree",
+          PairOf(problem) + ": only " + Percent(agreeing_ratio) +
+              " of the searches that started about the nominal pose ended at the best pose found.",
+          "Give a better nominal pose, and take captures where both see walls or objects facing three different ways."};
+}
+
 Diagnosis NotConverged(const LidarLidarProblem& problem, double last_step) {
   return {"not_converged",
           PairOf(problem) + ": the pose still moved by " + Formatted("%.1e", last_step) + " (m, rad) in its last step.",

@@ -15,6 +15,7 @@ constexpr std::size_t kPairsMin = 40;
 [[nodiscard]] Diagnosis LowOverlap(const LidarLidarProblem& problem, double overlap_ratio, std::size_t pairs);
 [[nodiscard]] Diagnosis PoorFit(const LidarLidarProblem& problem, double match_ratio);
 [[nodiscard]] Diagnosis StartsDisagree(const LidarLidarProblem& problem, double other_m, double other_rad);
+[[nodiscard]] Diagnosis StartsScatter(const LidarLidarProblem& problem, double agreeing_ratio);
 [[nodiscard]] Diagnosis NotConverged(const LidarLidarProblem& problem, double last_step);
 [[nodiscard]] Diagnosis NoStructure(const LidarLidarProblem& problem);
 [[nodiscard]] Diagnosis LidarLidarError(const LidarLidarProblem& problem, const Error& error);

@@ -45,8 +45,8 @@ void AddFigures(const LidarLidarEstimate& estimate, Edge& edge) {
     edge.figures["halves_differ_m"] = estimate.halves_m;
     edge.figures["halves_differ_rad"] = estimate.halves_rad;
   }
-  if (!estimate.polished) return;
-  const Vector6d moved = (estimate.T_a_b_ndt.Inverse() * estimate.T_a_b).Log();
+  edge.figures["polished"] = estimate.polished ? 1 : 0;
+  const Vector6d moved = (estimate.T_a_b_ndt.Inverse() * estimate.T_a_b_polished).Log();
   edge.figures["polish_moved_m"] = moved.head<3>().norm();
   edge.figures["polish_moved_rad"] = moved.tail<3>().norm();
 }

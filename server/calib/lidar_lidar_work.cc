@@ -103,7 +103,7 @@ bool IsUsable(const LidarLidarCapture& capture) {
   return std::min(capture.a_m.size(), capture.b_m.size()) >= kCloudPointsMin;
 }
 
-LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift) {
+LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift, bool with_cells) {
   LidarLidarWork work;
   work.a_is_map = AIsMap(problem);
   work.polish = problem.polish;
@@ -119,7 +119,7 @@ LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift)
   ParallelFor(work.used.size(), [&](std::size_t k) {
     const LidarLidarCapture& capture = problem.captures[work.used[k]];
     const auto a = Shifted(capture.a_m, shift.a_m), b = Shifted(capture.b_m, shift.b_m);
-    work.clouds[k] = work.a_is_map ? CloudsOf(a, b, work.voxel_m, work.polish) : CloudsOf(b, a, work.voxel_m, work.polish);
+    work.clouds[k] = work.a_is_map ? CloudsOf(a, b, work.voxel_m, with_cells) : CloudsOf(b, a, work.voxel_m, with_cells);
   });
   return work;
 }
@@ -135,14 +135,12 @@ LidarLidarPose FitFrom(const LidarLidarWork& work, const Se3& start, std::size_t
     pose.met_ratio = fit.score.points_met / std::max(fit.score.points, 1.0);
   }
   const NdtFit last = FitNdt(SurfaceTerms(work), pose.ndt, kStepLast, locked);
-  pose.ndt = pose.T = last.T_a_b;
-  pose.last_step = last.last_step;
-  pose.converged = last.last_step <= kNdtStepMax;
-  if (!work.polish) return pose;
-  const Polished polished = Polish(PolishTerms(work), pose.ndt, locked);
-  pose.T = polished.T_a_b;
-  pose.last_step = polished.last_step;
-  pose.converged = polished.converged;
+  const Polished polished = Polish(PolishTerms(work), last.T_a_b, locked);
+  pose.ndt = last.T_a_b;
+  pose.polished = polished.T_a_b;
+  pose.T = work.polish ? pose.polished : pose.ndt;
+  pose.last_step = work.polish ? polished.last_step : last.last_step;
+  pose.converged = pose.last_step <= kNdtStepMax;
   return pose;
 }
 

@@ -11,7 +11,7 @@
 namespace rigcal::calib {
 
 struct LidarLidarWork {
-  bool a_is_map = true, polish = true;
+  bool a_is_map = true, polish = false;
   double voxel_m = 1;
   std::vector<std::size_t> used;     // indices of the problem's captures
   std::vector<LidarClouds> clouds;   // side by side with `used`
@@ -24,11 +24,14 @@ struct RangeShift {
 };
 constexpr std::size_t kCloudPointsMin = 500;
 [[nodiscard]] bool IsUsable(const LidarLidarCapture& capture);
-[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {});
+// Without cells: nothing to polish with; FitFrom() then gives NDT's pose twice.
+[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {},
+                                    bool with_cells = true);
 
 struct LidarLidarPose {
-  Se3 ndt, T;            // before and after the polish; T_map_moving
-  double last_step = 0;  // of the last stage
+  Se3 ndt, polished;     // T_map_moving
+  Se3 T;                 // whichever of them is asked for
+  double last_step = 0;  // of its last stage
   bool converged = false;
   double met_ratio = 0;  // part of the moving points with a voxel about them, at the finest level
 };

@@ -17,11 +17,11 @@ constexpr double kAlikeCos = 0.94;            // 20 degrees between the normals 
 constexpr double kNearVoxels = 0.9;           // along the surface
 constexpr double kMatchVoxels = 0.15;         // across it
 constexpr double kNormalFloor_rad = 0.0175;   // no normal is better than this
-constexpr double kKnownRatio = 9;             // squared: three times the response of noise
+constexpr double kKnownRatio = 25;            // squared: five times; rooms and roads have 75 and more, corridors 10 at most
 constexpr double kDistanceFloor_m = 0.003;
 constexpr double kMadSigma = 1.4826;
 constexpr double kBlockVoxels = 2;            // edge of a block that shares its errors
-constexpr double kModelFactor = 2.0;          // variance over the blocks' own, from simulated rooms
+constexpr double kModelFactor = 3.0;          // variance over the blocks' own, from simulated rooms
 
 const NdtVoxel* NearestFlat(const NdtMap& map, const Eigen::Vector3d& q_m) {
   const Eigen::Vector3d scaled = q_m / map.voxel_m;

@@ -28,7 +28,7 @@ struct SurfacePairs {
 [[nodiscard]] SurfacePairs PairsOf(const LidarClouds& clouds, const Se3& T_map_moving);
 
 // Orthonormal directions of T * Exp(xi) that the pairs say nothing about (a corridor's axis, a plane's two shifts and
-// turn). A direction counts as known if the distances respond to it at least three times as much as they would if all
+// turn). A direction counts as known if the distances respond to it at least five times as much as they would if all
 // surfaces were parallel to it and their normals noisy.
 [[nodiscard]] Directions Unknown(const std::vector<SurfacePairs>& captures, const Se3& T_map_moving);
 

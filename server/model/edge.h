@@ -17,7 +17,7 @@ enum class EdgeState { kGood, kFailed };  // "good" | "failed"
 
 // A picture that shows how the edge was made: content-addressed, JPEG or PNG.
 struct Evidence {
-  std::string title;   // "front_left / 003: 54 corners"
+  std::string title;  // "front_left / 003: 54 corners"
   SensorId sensor;
   CaptureId capture;
   Digest digest;       // of the encoded picture in the blob store
@@ -37,20 +37,21 @@ struct Edge {
   RobotId robot;
   SensorId frame_a;
   SensorId frame_b;
-  Se3 T_a_b;                          // meaningful only if state is kGood
-  Uncertainty uncertainty;            // likewise
-  std::string method;                 // "stereo", "given", ...
-  SessionId session;                  // empty: pushed as a finished edge
+  Se3 T_a_b;                // meaningful only if state is kGood
+  Uncertainty uncertainty;  // likewise
+  std::string method;       // "stereo", "given", ...
+  SessionId session;        // empty: pushed as a finished edge
   int epoch = 1;
   EdgeState state = EdgeState::kFailed;
-  std::vector<Diagnosis> diagnoses;   // why it failed, or what a reader should know about a good edge
+  std::vector<Diagnosis> diagnoses;       // why it failed, or what a reader should know about a good edge
   std::map<std::string, double> figures;  // the method's own checks, unit last: "rms_px", "captures", ...
   std::vector<CaptureResidual> captures;
   std::vector<Evidence> evidence;
 };
 
-// "px" (reprojection error), or "m": distance of the points from the board (lidar_camera), or of where the two sensors
-// of a moving body put it (non_overlapping, tracker_camera, tracker_lidar, pose_streams).
+// "px" (reprojection error), or "m": distance of the points from the board (lidar_camera) or of held-out points from
+// the other lidar's surfaces (lidar_lidar), or of where the two sensors of a moving body put it (non_overlapping,
+// tracker_camera, tracker_lidar, pose_streams).
 [[nodiscard]] std::string ResidualUnitOf(const std::string& method);
 
 // id = sha256 over robot, source digest and index (design, words). For an estimated edge the source is its session and

@@ -31,8 +31,8 @@ std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const S
     return MayShareTarget(a, b) ? "stereo" : "non_overlapping";
   if (kinds == Kinds{SensorKind::kCamera, SensorKind::kLidar}) return MayShareTarget(a, b) ? "lidar_camera" : "";
   if (kinds == Kinds{SensorKind::kCamera, SensorKind::kTracker}) return "tracker_camera";
-  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kTracker})
-    return KnowsItsBoard(header, a) ? "tracker_lidar" : "";
+  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kTracker}) return KnowsItsBoard(header, a) ? "tracker_lidar" : "";
+  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kLidar}) return "lidar_lidar";
   if (kinds == Kinds{SensorKind::kPoseStream, SensorKind::kPoseStream}) return "pose_streams";
   return "";
 }

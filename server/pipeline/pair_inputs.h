@@ -5,6 +5,7 @@
 
 #include "server/calib/hand_eye.h"
 #include "server/calib/lidar_camera.h"
+#include "server/calib/lidar_lidar.h"
 #include "server/calib/stereo.h"
 #include "server/pipeline/sightings.h"
 
@@ -24,5 +25,9 @@ struct PairInputs {
 // Of the targets that a camera may see, the one found in most captures. A table of poses that cannot be read is an error.
 [[nodiscard]] Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, const Manifest& manifest,
                                                                     const SensorPair& pair);
+// No target: every capture of either, with both clouds as they were decoded.
+[[nodiscard]] Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store,
+                                                                          const Manifest& manifest,
+                                                                          const SensorPair& pair);
 
 }  // namespace rigcal::pipeline

@@ -19,7 +19,8 @@ Edge FailedEdge(const SensorPair& pair, const std::string& method, const Error& 
 
 // A method from its loader and its estimator. What cannot be loaded is a failed edge, unless the store failed.
 template <typename Inputs, typename Estimate>
-Result<Edge> EdgeFrom(const SensorPair& pair, const std::string& method, Result<Inputs> inputs, const Estimate& estimate) {
+Result<Edge> EdgeFrom(const SensorPair& pair, const std::string& method, Result<Inputs> inputs,
+                      const Estimate& estimate) {
   if (!inputs) {
     if (inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
     return FailedEdge(pair, method, inputs.error());
@@ -49,12 +50,14 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
     return EdgeFrom(job.pair, method, LoadLidarCamera(store, *manifest, job.pair), calib::EstimateLidarCameraEdge);
+  if (method == "lidar_lidar")
+    return EdgeFrom(job.pair, method, LoadLidarLidar(store, *manifest, job.pair), calib::EstimateLidarLidarEdge);
   if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
     return EdgeFrom(job.pair, method, LoadHandEye(store, *manifest, job.pair), calib::EstimateHandEyeEdge);
-  return FailedEdge(job.pair, method.empty() ? "none" : method,
-                    {ErrorCode::kUnsupported,
-                     "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),
-                     "Update the server and push the session again."});
+  return FailedEdge(
+      job.pair, method.empty() ? "none" : method,
+      {ErrorCode::kUnsupported, "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),
+       "Update the server and push the session again."});
 }
 
 }  // namespace

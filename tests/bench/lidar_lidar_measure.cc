@@ -46,15 +46,17 @@ void Print(const char* name, const Se3& T) {
 }
 
 // NDT alone, from points in memory to the converged pose, on so many threads.
-double NdtMedian_ms(LidarLidarProblem problem, std::size_t threads, int repeats, Se3& T_a_b) {
+double NdtMedian_ms(const LidarLidarProblem& problem, std::size_t threads, int repeats, Se3& T_a_b,
+                    double& last_step) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  problem.polish = false;
   std::vector<double> times_ms;
   for (int i = 0; i < repeats; ++i) {
     const auto start = std::chrono::steady_clock::now();
-    const calib::LidarLidarWork work = calib::WorkOf(problem);
-    const Se3 T = calib::FitFrom(work, work.nominal, 0, calib::Directions(6, 0)).ndt;
+    const calib::LidarLidarWork work = calib::WorkOf(problem, {}, false);
+    const calib::LidarLidarPose pose = calib::FitFrom(work, work.nominal, 0, calib::Directions(6, 0));
+    const Se3& T = pose.ndt;
     times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    last_step = pose.last_step;
     T_a_b = work.a_is_map ? T : T.Inverse().Normalized();
   }
   std::sort(times_ms.begin(), times_ms.end());
@@ -68,20 +70,21 @@ int Measure(char** argv, int repeats) {
   problem.captures.push_back({CaptureId("1"), PointsIn(argv[1]), PointsIn(argv[2]), {}});
   problem.T_a_b_nominal = PoseOf(argv + 3);
   Se3 one_thread, two_threads;
-  const double one_ms = NdtMedian_ms(problem, 1, repeats, one_thread);
-  const double two_ms = NdtMedian_ms(problem, 2, repeats, two_threads);
+  double last_step = 0;
+  const double one_ms = NdtMedian_ms(problem, 1, repeats, one_thread, last_step);
+  const double two_ms = NdtMedian_ms(problem, 2, repeats, two_threads, last_step);
   const auto start = std::chrono::steady_clock::now();
   const Edge edge = calib::EstimateLidarLidarEdge(problem);
   const double edge_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   std::printf("{");
   Print("ndt_from_nominal", two_threads);
-  problem.polish = false;
-  const Edge ndt = calib::EstimateLidarLidarEdge(problem);
-  Print("ndt", ndt.T_a_b);
-  Print("polished", edge.T_a_b);
-  std::printf("\"ndt_good\": %s, \"polished_good\": %s, ", ndt.state == EdgeState::kGood ? "true" : "false",
-              edge.state == EdgeState::kGood ? "true" : "false");
+  Print("ndt", edge.T_a_b);
+  problem.polish = true;
+  const Edge polished = calib::EstimateLidarLidarEdge(problem);
+  Print("polished", polished.T_a_b);
+  std::printf("\"ndt_good\": %s, \"polished_good\": %s, ", edge.state == EdgeState::kGood ? "true" : "false",
+              polished.state == EdgeState::kGood ? "true" : "false");
   for (const auto& [name, value] : edge.figures) std::printf("\"%s\": %.9g, ", name.c_str(), value);
   std::printf("\"sigma\": [");
   for (int axis = 0; axis < 6; ++axis)
@@ -89,7 +92,7 @@ int Measure(char** argv, int repeats) {
   const bool same = one_thread.p_m == two_threads.p_m && one_thread.q.coeffs() == two_threads.q.coeffs();
   std::printf("], \"rank\": %d, \"why\": \"%s\", \"same_bits\": %s, ", edge.uncertainty.rank,
               edge.diagnoses.empty() ? "" : edge.diagnoses.front().code.c_str(), same ? "true" : "false");
-  std::printf("\"ndt_ms\": %.2f, \"ndt_one_thread_ms\": %.2f, \"edge_ms\": %.1f}\n", two_ms, one_ms, edge_ms);
+  std::printf("\"ndt_last_step\": %.3e, \"ndt_ms\": %.2f, \"ndt_one_thread_ms\": %.2f, \"edge_ms\": %.1f}\n", last_step, two_ms, one_ms, edge_ms);
   return edge.state == EdgeState::kGood ? 0 : 1;
 }
 

@@ -1,11 +1,14 @@
 #include "tests/unit/calib_virtual_room.h"
 
+#include <algorithm>
 #include <random>
 
 namespace rigcal::calib {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr double kRangeMax_m = 100;
 
 Panel Seen(const Panel& panel, const Se3& T_lidar_room) {
   return {T_lidar_room * panel.centre_m, T_lidar_room.R() * panel.u, T_lidar_room.R() * panel.v, panel.half_m};
@@ -36,18 +39,33 @@ std::vector<Panel> PanelsOf(RoomKind kind) {
   return room;
 }
 
-std::vector<Eigen::Vector3f> ScanFrom(const std::vector<Panel>& room, const Se3& T_room_lidar, const Beams& beams,
-                                      unsigned seed) {
-  std::vector<Panel> seen;
-  for (const Panel& panel : room) seen.push_back(Seen(panel, T_room_lidar.Inverse()));
-  return Scan(seen, beams, seed).points_m;
-}
-
 // Sums of uniform numbers: the same on every standard library.
 double Noise(std::mt19937& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) sum += static_cast<double>(random()) / 4294967296.0;
   return sum;
+}
+
+// Nearest hits with noise along the beams. No pixels that are mixed of two surfaces: Scan() looks for those on one side
+// only, which turns every edge by the same small angle.
+std::vector<Eigen::Vector3f> ScanFrom(const std::vector<Panel>& room, const Se3& T_room_lidar, const Beams& beams,
+                                      unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Panel> seen;
+  for (const Panel& panel : room) seen.push_back(Seen(panel, T_room_lidar.Inverse()));
+  std::vector<Eigen::Vector3f> points_m;
+  for (double azimuth = beams.from_deg; azimuth < beams.till_deg; azimuth += beams.step_deg)
+    for (int ring = 0; ring < beams.rings; ++ring) {
+      const double a = azimuth * M_PI / 180,
+                   e = (beams.bottom_deg + (beams.top_deg - beams.bottom_deg) * ring / (beams.rings - 1)) * M_PI / 180;
+      const Vector3d direction(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      double range_m = kRangeMax_m;
+      for (const Panel& panel : seen)
+        if (const auto hit = panel.Hit(direction)) range_m = std::min(range_m, *hit);
+      const double noise_m = beams.noise_m * Noise(random);
+      if (range_m < kRangeMax_m) points_m.push_back((direction * (range_m + noise_m)).cast<float>());
+    }
+  return points_m;
 }
 
 }  // namespace

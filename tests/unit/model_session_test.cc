@@ -253,7 +253,7 @@ TEST(PairsToCalibrate, OfCamerasAndLidars) {
             "d c stereo; d b non_overlapping; d a lidar_camera; c b non_overlapping; c a lidar_camera; "
             "b a lidar_camera");
   header.sensors[2] = Of("b", kLidar, "wall");  // b sees another board than the cameras
-  EXPECT_EQ(PairsOf(header), "d c stereo; d a lidar_camera; c a lidar_camera");
+  EXPECT_EQ(PairsOf(header), "d c stereo; d a lidar_camera; c a lidar_camera; b a lidar_lidar");
   header.sensors[2] = Of("b", kCamera);
   header.sensors.pop_back();
   EXPECT_EQ(PairsOf(header), "d c stereo; d b stereo; c b stereo");

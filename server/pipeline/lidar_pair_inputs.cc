@@ -1,0 +1,74 @@
+#include <span>
+
+#include "server/base/limits.h"
+#include "server/base/parallel_for.h"
+#include "server/formats/cloud.h"
+#include "server/formats/payload_path.h"
+#include "server/pipeline/pair_inputs.h"
+#include "storage/blobs.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using calib::LidarLidarCapture;
+
+struct CloudFile {
+  const Payload* payload = nullptr;
+  LidarLidarCapture* capture = nullptr;
+  std::vector<Eigen::Vector3f> LidarLidarCapture::*points_m = nullptr;
+  std::string why_not;
+};
+
+// A cloud that is lost or cannot be read costs its capture, not the pair.
+void Read(const std::filesystem::path& blobs, CloudFile& file) {
+  const auto bytes =
+      storage::LoadBlob(blobs, file.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
+  if (!bytes) {
+    file.why_not = Sentence(bytes.error());
+    return;
+  }
+  auto cloud = formats::ReadCloud(std::as_bytes(std::span(*bytes)), formats::SuffixOf(file.payload->path),
+                                  file.payload->path);
+  if (cloud)
+    file.capture->*file.points_m = std::move(cloud->points_m);
+  else
+    file.why_not = Sentence(cloud.error());
+}
+
+std::vector<CloudFile> FilesOf(const Manifest& manifest, const SensorPair& ids,
+                               std::map<CaptureId, LidarLidarCapture>& captures) {
+  std::vector<CloudFile> files;
+  for (const Payload& payload : manifest.payloads) {
+    if (payload.sensor != ids.a && payload.sensor != ids.b) continue;
+    const bool is_a = payload.sensor == ids.a;
+    LidarLidarCapture& capture = captures[payload.capture];
+    capture.capture = payload.capture;
+    files.push_back({&payload, &capture, is_a ? &LidarLidarCapture::a_m : &LidarLidarCapture::b_m, {}});
+  }
+  return files;
+}
+
+}  // namespace
+
+Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store, const Manifest& manifest,
+                                                            const SensorPair& ids) {
+  const Sensor *a = SensorOf(manifest.header, ids.a), *b = SensorOf(manifest.header, ids.b);
+  if (a == nullptr || b == nullptr)
+    return Fail(ErrorCode::kInternal, "the session has no sensor '" + (a ? ids.b : ids.a).str() + "'",
+                "Push the session again under its own manifest.");
+  std::map<CaptureId, LidarLidarCapture> captures;
+  std::vector<CloudFile> files = FilesOf(manifest, ids, captures);
+  const std::filesystem::path blobs = store.BlobFolder();
+  ParallelFor(files.size(), [&](std::size_t i) { Read(blobs, files[i]); });
+  for (const CloudFile& file : files)
+    if (file.capture->why_not.empty()) file.capture->why_not = file.why_not;
+  PairInputs<calib::LidarLidarProblem> inputs;
+  inputs.problem.lidar_a = *a;
+  inputs.problem.lidar_b = *b;
+  if (a->T_ref_nominal && b->T_ref_nominal)
+    inputs.problem.T_a_b_nominal = a->T_ref_nominal->Inverse() * *b->T_ref_nominal;
+  for (auto& [id, capture] : captures) inputs.problem.captures.push_back(std::move(capture));
+  return inputs;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,97 @@
+#include <cstring>
+
+#include "tests/unit/calib_virtual_room.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+std::string Kitti(const std::vector<Eigen::Vector3f>& points_m) {
+  std::string bytes(points_m.size() * 16, '\0');
+  for (std::size_t i = 0; i < points_m.size(); ++i) std::memcpy(&bytes[16 * i], points_m[i].data(), 12);
+  return bytes;
+}
+
+class LidarPipelineTest : public PipelineTest {
+ protected:
+  void AddFile(const SensorId& sensor, const CaptureId& capture, const std::string& bytes, Manifest& manifest) {
+    Payload payload;
+    payload.path = sensor.str() + "/" + capture.str() + ".bin";
+    payload.sensor = sensor;
+    payload.capture = capture;
+    payload.digest = *storage::AppendBlob(store_->BlobFolder(), bytes);
+    payload.size_bytes = static_cast<std::int64_t>(bytes.size());
+    manifest.payloads.push_back(payload);
+  }
+
+  void StoreRoom(const calib::LidarLidarProblem& problem, bool with_nominal) {
+    Manifest manifest;
+    manifest.header.robot = RobotId("r");
+    manifest.header.reference = problem.lidar_a.id;
+    manifest.header.captured_at = clock_.now;
+    Target board;
+    board.id = TargetId("board");
+    board.cols = 9, board.rows = 6, board.square_m = 0.025;
+    manifest.header.targets = {board};
+    manifest.header.sensors = {problem.lidar_a, problem.lidar_b};
+    if (with_nominal) {
+      manifest.header.sensors[0].T_ref_nominal = Se3();
+      manifest.header.sensors[1].T_ref_nominal = problem.T_a_b_nominal;
+    }
+    for (const auto& capture : problem.captures) AddFile(problem.lidar_a.id, capture.capture, Kitti(capture.a_m), manifest);
+    for (const auto& capture : problem.captures) AddFile(problem.lidar_b.id, capture.capture, Kitti(capture.b_m), manifest);
+    Close(manifest);
+  }
+
+  Edge OnlyEdge() {
+    const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
+    EXPECT_TRUE(edges && edges->size() == 1);
+    return edges && !edges->empty() ? edges->front() : Edge{};
+  }
+};
+
+TEST_F(LidarPipelineTest, TwoCloudsGiveAnEdgeARevisionAndAReport) {
+  const calib::VirtualRoom room;
+  const calib::LidarLidarProblem problem = calib::RecordedIn(room, 1, 41);
+  StoreRoom(problem, true);
+  EXPECT_EQ(StepAll(), 3);  // job, revise, publish
+  const Edge edge = OnlyEdge();
+  ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses[0].what;
+  EXPECT_EQ(edge.method, "lidar_lidar");
+  const Vector6d error = (room.T_a_b.Inverse() * edge.T_a_b).Log();
+  EXPECT_LT(error.head<3>().norm(), 0.01);
+  EXPECT_LT(error.tail<3>().norm(), 0.005);
+  EXPECT_EQ(edge.uncertainty.source, UncertaintySource::kModel);
+  ASSERT_EQ(poses_.size(), 2u);
+  EXPECT_TRUE(poses_[1].known);
+  EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "index.html"));
+  // What is stored is what the estimator says of the same clouds.
+  EXPECT_EQ(edge.T_a_b.p_m, calib::EstimateLidarLidarEdge(problem).T_a_b.p_m);
+}
+
+TEST_F(LidarPipelineTest, WithoutNominalPosesTheEdgeSaysWhatToGive) {
+  StoreRoom(calib::RecordedIn(calib::VirtualRoom(), 1, 43), false);
+  StepAll();
+  const Edge edge = OnlyEdge();
+  EXPECT_EQ(edge.state, EdgeState::kFailed);
+  ASSERT_FALSE(edge.diagnoses.empty());
+  EXPECT_EQ(edge.diagnoses[0].code, "no_nominal_pose");
+  EXPECT_NE(edge.diagnoses[0].cure.find("T_ref_nominal"), std::string::npos);
+}
+
+TEST_F(LidarPipelineTest, ALostCloudCostsItsCaptureOnly) {
+  calib::LidarLidarProblem problem = calib::RecordedIn(calib::VirtualRoom(), 2, 47);
+  StoreRoom(problem, true);
+  std::filesystem::remove(
+      storage::BlobPath(store_->BlobFolder(), Sha256Of(Kitti(problem.captures[0].b_m))));
+  StepAll();
+  const Edge edge = OnlyEdge();
+  ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses[0].what;
+  ASSERT_EQ(edge.captures.size(), 2u);
+  EXPECT_FALSE(edge.captures[0].used);
+  EXPECT_FALSE(edge.captures[0].note.empty());
+  EXPECT_TRUE(edge.captures[1].used);
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
