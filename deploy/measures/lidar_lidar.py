@@ -38,7 +38,7 @@ def off(pose, rotation, t_m):
 
 def small_gicp(context, folder):
     result = context.run_json("lidar_lidar_measure", folder / "target.ply", folder / "source.ply", 0, 0, 0, 0, 0, 0, 21)
-    for name, pose, limit_mm, limit_deg in (("ndt", "ndt", 25, 0.35), ("polished", "polished", 15, 0.15)):
+    for name, pose, limit_mm, limit_deg in (("ndt", "T_ndt", 25, 0.35), ("polished", "T_polished", 15, 0.15)):
         mm, deg = off(result[pose], SMALL_GICP, SMALL_GICP_T_M)
         yield at_most("small_gicp_%s_from_author" % name, mm, limit_mm, "mm")
         yield at_most("small_gicp_%s_turned_from_author" % name, deg, limit_deg, "deg")
@@ -55,7 +55,7 @@ def opencalib(context, folder):
                                   0, 0, 0, 3)
         yield at_least("opencalib_%s_good" % side, int(result["ndt_good"]), 1)
         for pose in ("ndt", "polished"):
-            mm, deg = off(result[pose], from_rpy(rpy_deg), t_m)
+            mm, deg = off(result["T_" + pose], from_rpy(rpy_deg), t_m)
             yield at_most("opencalib_%s_%s" % (side, pose), mm, 50, "mm")
             yield at_most("opencalib_%s_%s_turned" % (side, pose), deg, 0.5, "deg")
         yield info("opencalib_%s_sigma" % side, 1e3 * max(result["sigma"][:3]), "mm")

@@ -13,7 +13,7 @@
 
 namespace rigcal::calib {
 
-// Points in each lidar's own frame; an empty cloud was not there or could not be read (`why_not`).
+// Sorted by id. Points in each lidar's own frame; an empty cloud was not there or could not be read (`why_not`).
 struct LidarLidarCapture {
   CaptureId capture;
   std::vector<Eigen::Vector3f> a_m, b_m;

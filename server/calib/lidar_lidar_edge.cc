@@ -45,7 +45,7 @@ void AddFigures(const LidarLidarEstimate& estimate, Edge& edge) {
     edge.figures["halves_differ_m"] = estimate.halves_m;
     edge.figures["halves_differ_rad"] = estimate.halves_rad;
   }
-  edge.figures["polished"] = estimate.polished ? 1 : 0;
+  edge.figures["polished_ratio"] = estimate.polished ? 1 : 0;
   const Vector6d moved = (estimate.T_a_b_ndt.Inverse() * estimate.T_a_b_polished).Log();
   edge.figures["polish_moved_m"] = moved.head<3>().norm();
   edge.figures["polish_moved_rad"] = moved.tail<3>().norm();

@@ -78,11 +78,11 @@ int Measure(char** argv, int repeats) {
   const double edge_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   std::printf("{");
-  Print("ndt_from_nominal", two_threads);
-  Print("ndt", edge.T_a_b);
+  Print("T_ndt_from_nominal", two_threads);
+  Print("T_ndt", edge.T_a_b);
   problem.polish = true;
   const Edge polished = calib::EstimateLidarLidarEdge(problem);
-  Print("polished", polished.T_a_b);
+  Print("T_polished", polished.T_a_b);
   std::printf("\"ndt_good\": %s, \"polished_good\": %s, ", edge.state == EdgeState::kGood ? "true" : "false",
               polished.state == EdgeState::kGood ? "true" : "false");
   for (const auto& [name, value] : edge.figures) std::printf("\"%s\": %.9g, ", name.c_str(), value);
