@@ -2,6 +2,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/parallel_for.h"
+#include "server/detect/overlaid_clouds.h"
 #include "server/formats/cloud.h"
 #include "server/formats/payload_path.h"
 #include "server/pipeline/pair_inputs.h"
@@ -11,6 +12,8 @@ namespace rigcal::pipeline {
 namespace {
 
 using calib::LidarLidarCapture;
+
+constexpr std::size_t kOverlaysMax = 3;
 
 struct CloudFile {
   const Payload* payload = nullptr;
@@ -69,6 +72,20 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
     inputs.problem.T_a_b_nominal = a->T_ref_nominal->Inverse() * *b->T_ref_nominal;
   for (auto& [id, capture] : captures) inputs.problem.captures.push_back(std::move(capture));
   return inputs;
+}
+
+Status AddOverlays(storage::Store& store, const calib::LidarLidarProblem& problem, Edge& edge) {
+  if (edge.state != EdgeState::kGood || !problem.T_a_b_nominal) return {};
+  for (std::size_t i = 0; i < problem.captures.size() && edge.evidence.size() < kOverlaysMax; ++i) {
+    const LidarLidarCapture& capture = problem.captures[i];
+    if (i >= edge.captures.size() || !edge.captures[i].used) continue;
+    const std::string jpeg =
+        detect::OverlaidClouds(capture.a_m, capture.b_m, *problem.T_a_b_nominal, edge.T_a_b);
+    RIGCAL_ASSIGN(const Digest digest, storage::AppendBlob(store.BlobFolder(), jpeg));
+    const std::string words = "with " + edge.frame_b.str() + ", from above, nominal pose and found";
+    edge.evidence.push_back({EvidenceTitle(edge.frame_a, capture.capture, words), edge.frame_a, capture.capture, digest, "jpg"});
+  }
+  return {};
 }
 
 }  // namespace rigcal::pipeline

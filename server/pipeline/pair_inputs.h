@@ -29,5 +29,8 @@ struct PairInputs {
 [[nodiscard]] Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store,
                                                                           const Manifest& manifest,
                                                                           const SensorPair& pair);
+// How a pair of lidars came to fit, in its first used captures: stored, and added to the edge as evidence. Nothing for
+// an edge without a pose.
+[[nodiscard]] Status AddOverlays(storage::Store& store, const calib::LidarLidarProblem& problem, Edge& edge);
 
 }  // namespace rigcal::pipeline

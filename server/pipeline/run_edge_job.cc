@@ -39,6 +39,16 @@ Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const S
   return edge;
 }
 
+// The pictures show the answer, so they are made after it.
+Result<Edge> LidarLidarEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
+  const auto inputs = LoadLidarLidar(store, manifest, pair);
+  if (!inputs && inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
+  if (!inputs) return FailedEdge(pair, "lidar_lidar", inputs.error());
+  Edge edge = calib::EstimateLidarLidarEdge(inputs->problem);
+  RIGCAL_TRY(AddOverlays(store, inputs->problem, edge));
+  return edge;
+}
+
 Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, job.session));
   if (!manifest)
@@ -50,8 +60,7 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
     return EdgeFrom(job.pair, method, LoadLidarCamera(store, *manifest, job.pair), calib::EstimateLidarCameraEdge);
-  if (method == "lidar_lidar")
-    return EdgeFrom(job.pair, method, LoadLidarLidar(store, *manifest, job.pair), calib::EstimateLidarLidarEdge);
+  if (method == "lidar_lidar") return LidarLidarEdge(store, *manifest, job.pair);
   if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
     return EdgeFrom(job.pair, method, LoadHandEye(store, *manifest, job.pair), calib::EstimateHandEyeEdge);
   return FailedEdge(

@@ -65,6 +65,9 @@ TEST_F(LidarPipelineTest, TwoCloudsGiveAnEdgeARevisionAndAReport) {
   ASSERT_EQ(poses_.size(), 2u);
   EXPECT_TRUE(poses_[1].known);
   EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "index.html"));
+  ASSERT_EQ(edge.evidence.size(), 1u);
+  EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "evidence" /
+                                      (edge.evidence[0].digest.str() + ".jpg")));
   // What is stored is what the estimator says of the same clouds.
   EXPECT_EQ(edge.T_a_b.p_m, calib::EstimateLidarLidarEdge(problem).T_a_b.p_m);
 }
