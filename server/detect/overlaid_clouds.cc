@@ -13,7 +13,7 @@ constexpr int kSide_px = 620, kGap_px = 8, kBarHeight_px = 34, kJpegQuality = 90
 const cv::Scalar kDark(28, 24, 22), kText(215, 215, 215);
 const cv::Vec3b kBlue(235, 150, 60), kOrange(40, 140, 255);
 
-// Half the side of the square about a that holds nine tenths of its points.
+// Half the side of the square about a sensor that holds nine tenths of its points.
 double Half_m(const std::vector<Eigen::Vector3f>& points_m) {
   if (points_m.empty()) return 10;
   std::vector<float> reach_m;
@@ -45,7 +45,7 @@ void Caption(const std::string& text, int x_px, cv::Mat& picture) {
 std::string OverlaidClouds(const std::vector<Eigen::Vector3f>& a_m, const std::vector<Eigen::Vector3f>& b_m,
                            const Se3& T_a_b_before, const Se3& T_a_b_after) {
   cv::Mat picture(kSide_px + kBarHeight_px, 2 * kSide_px + kGap_px, CV_8UC3, kDark);
-  const double half_m = Half_m(a_m);
+  const double half_m = std::min(Half_m(a_m), Half_m(b_m));  // what both see is about the one that sees less far
   int x_px = 0;
   for (const Se3* T_a_b : {&T_a_b_before, &T_a_b_after}) {
     cv::Mat side = picture(cv::Rect(x_px, 0, kSide_px, kSide_px));
