@@ -51,7 +51,7 @@ struct Edge {
 
 // "px" (reprojection error), or "m": distance of the points from the board (lidar_camera) or of held-out points from
 // the other lidar's surfaces (lidar_lidar), or of where the two sensors of a moving body put it (non_overlapping,
-// tracker_camera, tracker_lidar, pose_streams).
+// tracker_camera, pose_streams).
 [[nodiscard]] std::string ResidualUnitOf(const std::string& method);
 
 // id = sha256 over robot, source digest and index (design, words). For an estimated edge the source is its session and

@@ -9,12 +9,6 @@ namespace {
 
 bool MayShareTarget(const Sensor& a, const Sensor& b) { return !a.sees || !b.sees || *a.sees == *b.sees; }
 
-// A cloud shows no pattern: which of several boards a patch is cannot be told where the lidar's own poses are all
-// there is to go by.
-bool KnowsItsBoard(const SessionHeader& header, const Sensor& lidar) {
-  return lidar.sees.has_value() || header.targets.size() == 1;
-}
-
 bool IsSkipped(const SessionHeader& header, const Sensor& a, const Sensor& b) {
   return std::any_of(header.skip_pairs.begin(), header.skip_pairs.end(), [&](const SensorPair& pair) {
     return (pair.a == a.id && pair.b == b.id) || (pair.a == b.id && pair.b == a.id);
@@ -31,7 +25,6 @@ std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const S
     return MayShareTarget(a, b) ? "stereo" : "non_overlapping";
   if (kinds == Kinds{SensorKind::kCamera, SensorKind::kLidar}) return MayShareTarget(a, b) ? "lidar_camera" : "";
   if (kinds == Kinds{SensorKind::kCamera, SensorKind::kTracker}) return "tracker_camera";
-  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kTracker}) return KnowsItsBoard(header, a) ? "tracker_lidar" : "";
   if (kinds == Kinds{SensorKind::kLidar, SensorKind::kLidar}) return "lidar_lidar";
   if (kinds == Kinds{SensorKind::kPoseStream, SensorKind::kPoseStream}) return "pose_streams";
   return "";

@@ -29,3 +29,9 @@ rigcal_test(calib_lidar_lidar_test
 rigcal_program(lidar_lidar_measure
   SOURCES bench/lidar_lidar_measure.cc
   DEPS rigcal_calib rigcal_formats TBB::tbb)
+rigcal_program(hand_eye_simulation
+  SOURCES bench/hand_eye_simulation.cc unit/calib_virtual_motion.cc
+  DEPS rigcal_calib)
+rigcal_test(calib_hand_eye_test
+  SOURCES unit/calib_hand_eye_test.cc unit/calib_hand_eye_statistics_test.cc unit/calib_virtual_motion.cc
+  DEPS rigcal_calib)
