@@ -29,7 +29,7 @@ class Server:
         return [word for word in line.split() if word.startswith("http://")][0].rstrip("/")
 
     def wait_ready(self):
-        self.wait_address()
+        self.address = self.wait_address()
         return self
 
     def kill(self):

@@ -19,7 +19,7 @@ struct ShownEdge {
 // How much of a very large graph goes into one page; the rest is in revision.json.
 inline constexpr std::size_t kPoseRowsMax = 3000;
 inline constexpr std::size_t kEdgeRowsMax = 6000;
-inline constexpr std::size_t kDetailItemsMax = 4000;  // captures + pictures + diagnoses, all sections together
-inline constexpr std::size_t kPicturesPerEdgeMax = 200;
+inline constexpr std::size_t kDetailItemsMax = 6000;  // captures + pictures + diagnoses, all sections together
+inline constexpr std::size_t kPicturesPerEdgeMax = 24;  // the session's page has all
 
 }  // namespace rigcal::report

@@ -108,8 +108,7 @@ void FillPicture(Dictionary& picture, const Evidence& evidence, const std::set<D
   if (!IsPicture(evidence) || stored.count(evidence.digest) == 0) return picture.ShowSection("MISSING");
   Dictionary* shown = picture.AddSectionDictionary("STORED");
   shown->SetValue("FILE", evidence.digest.str() + "." + evidence.suffix);
-  shown->SetValue("ALT",
-                  evidence.title.empty() ? evidence.sensor.str() + " " + evidence.capture.str() : evidence.title);
+  if (evidence.title.empty()) shown->SetValue("TITLE", evidence.sensor.str() + " " + evidence.capture.str());
 }
 
 void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>& stored) {

@@ -88,12 +88,21 @@ void WriteSensors(JsonWriter& out, const ReportInput& input) {
     });
 }
 
+// What is drawn needs no more digits.
+double Rounded(double value) {
+  std::array<char, 32> text{};
+  const char* end =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3).ptr;
+  std::from_chars(text.data(), end, value);
+  return value;
+}
+
 void WriteCaptures(JsonWriter& out, const Edge& edge) {
   out.List("captures", [&] {
     for (const CaptureResidual& capture : edge.captures)
       out.Object([&] {
         out.Text("capture", capture.capture.str());
-        out.Number("rms", capture.rms);
+        out.Number("rms", Rounded(capture.rms));
         out.Flag("used", capture.used);
         if (!capture.used) out.Text("note", capture.note);
       });
@@ -107,7 +116,7 @@ void WriteBlocks(JsonWriter& out, const ReportInput& input, const EdgeId& edge) 
     for (const BlockVector& block : found->second)
       out.Object([&] {
         out.Text("id", block.block_id);
-        WriteNumbers(out, "d", block.d);
+        WriteNumbers(out, "d", block.d.unaryExpr(&Rounded).eval());
       });
   });
 }

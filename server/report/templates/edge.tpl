@@ -63,10 +63,10 @@
 <h3>Pictures</h3>
 <div class="pictures">
 {{#PICTURE}}
-<figure>{{#STORED}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" src="evidence/{{FILE}}" alt="{{ALT}}"></a>{{/STORED}}{{#MISSING}}<span class="missing">picture not stored</span>{{/MISSING}}<figcaption dir="auto">{{TITLE}}</figcaption></figure>
+<figure>{{#STORED}}<a href="evidence/{{FILE}}"><img loading="lazy" src="evidence/{{FILE}}" alt=""><span dir="auto">{{TITLE}}</span></a>{{/STORED}}{{#MISSING}}<span class="missing">picture not stored</span><figcaption dir="auto">{{TITLE}}</figcaption>{{/MISSING}}</figure>
 {{/PICTURE}}
 </div>
-{{#MORE}}<p class="hint">{{COUNT}} more pictures are named in <a href="revision.json">revision.json</a>.</p>{{/MORE}}
+{{#MORE}}<p class="hint">{{COUNT}} more pictures are on the page of the session, and named in <a href="revision.json">revision.json</a>.</p>{{/MORE}}
 {{/PICTURES}}
 <p class="hint">{{PROVENANCE}} <code>edge {{ID}}</code></p>
 </div>

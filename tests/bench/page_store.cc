@@ -1,0 +1,162 @@
+// Stores for measuring pages.  `page_store render DIR`: a rig of 12 sensors, 59 edges of 40 captures with two pictures
+// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT`: robots.  `page_store serve DIR`: pages alone, without
+// DDS, until its input ends.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "server/formats/documents.h"
+#include "server/http/server.h"
+#include "server/pipeline/answer.h"
+#include "server/pipeline/publish.h"
+#include "server/pipeline/revise.h"
+#include "storage/blobs.h"
+#include "storage/edges.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+#include "tests/unit/graph_random.h"
+
+namespace rigcal {
+namespace {
+
+constexpr int kCaptures = 40;
+constexpr std::size_t kPictureBytes = 30'000;
+
+std::string Name(const char* prefix, int number) {
+  std::string digits = std::to_string(number);
+  return prefix + std::string(digits.size() < 2 ? 1 : 0, '0') + digits;
+}
+
+// Content that nobody else has, of the size of a JPEG.
+Digest AppendPicture(const storage::Store& store, int number) {
+  std::string bytes = "picture " + std::to_string(number);
+  bytes.resize(kPictureBytes, static_cast<char>('a' + number % 26));
+  return storage::AppendBlob(store.BlobFolder(), bytes).value();
+}
+
+Edge EdgeFrom(const GraphEdge& measured, const RobotId& robot, int number) {
+  Edge edge;
+  edge.id = EdgeId(Sha256Of("edge " + robot.str() + std::to_string(number)).str());
+  edge.robot = robot;
+  edge.frame_a = SensorId("sensor_" + measured.frame_a.str());
+  edge.frame_b = SensorId("sensor_" + measured.frame_b.str());
+  edge.T_a_b = measured.T_a_b;
+  edge.state = EdgeState::kGood;
+  edge.method = "stereo";
+  edge.uncertainty = FromInformation(measured.Omega, UncertaintySource::kJackknife, kCaptures - 1);
+  edge.figures = {{"rms_px", 0.2}, {"fx_a_px", 640.0}, {"fy_a_px", 640.0}, {"cx_a_px", 640.0}, {"cy_a_px", 360.0}};
+  return edge;
+}
+
+// 200 pictures serve all edges: what costs time is their number in the report.
+void AddCaptures(Edge& edge, const std::vector<Digest>& pictures, int number, std::mt19937& random) {
+  for (int i = 0; i < kCaptures; ++i) {
+    const CaptureId capture(Name("c", i));
+    edge.captures.push_back({capture, 0.2 + 0.001 * i, true, ""});
+    edge.uncertainty.blocks.push_back({capture.str(), graph::RandomVector(random, 1e-4, 1e-4)});
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      edge.evidence.push_back({sensor.str() + " / " + capture.str() + ": 54 corners", sensor, capture,
+                               pictures[static_cast<std::size_t>(number * 7 + i * 2) % pictures.size()], "jpg"});
+  }
+}
+
+double PublishSeconds(storage::Store& store, const RobotId& robot) {
+  const Revision revision = pipeline::Revise(store, robot, SystemClock()).value();
+  const auto start = std::chrono::steady_clock::now();
+  (void)pipeline::Publish(store, {robot, revision.number}, SystemClock()).value();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+int Render(const char* folder) {
+  storage::Store store = storage::Store::Open(folder).value();
+  const graph::RandomRig rig = graph::MakeRig(12, 59, 77, 0.001, 0.0005);
+  std::mt19937 random(1);
+  std::vector<Digest> pictures;
+  for (int i = 0; i < 200; ++i) pictures.push_back(AppendPicture(store, i));
+  const RobotId robot("mars");
+  const auto append = [&](int first, int last) {
+    return store.Write([&]() -> Status {
+      for (int i = first; i < last; ++i) {
+        Edge edge = EdgeFrom(rig.graph.edges[static_cast<std::size_t>(i)], robot, i);
+        AddCaptures(edge, pictures, i, random);
+        RIGCAL_TRY(storage::AppendEdge(store, edge, SystemClock().Now()));
+      }
+      return {};
+    });
+  };
+  if (!append(0, 58)) return 1;
+  (void)PublishSeconds(store, robot);  // so that the next one has a revision to be compared with
+  if (!append(58, 59)) return 1;
+  const double changed_s = PublishSeconds(store, robot);
+  std::filesystem::remove_all(store.ReportFolder());
+  const auto start = std::chrono::steady_clock::now();
+  (void)pipeline::Publish(store, {robot, 2}, SystemClock()).value();
+  const double whole_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::printf("{\"whole_s\": %.4f, \"changed_s\": %.4f}\n", whole_s, changed_s);
+  return 0;
+}
+
+Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int number) {
+  const RobotId robot(Name("robot-", number));
+  const Stamp now = SystemClock().Now();
+  RIGCAL_TRY(storage::AppendRobot(store, robot, now));
+  formats::RevisionInput input;
+  input.robot = robot;
+  for (int i = 0; i < 3; ++i) {
+    input.edges.push_back(EdgeFrom(rig.graph.edges[static_cast<std::size_t>(i)], robot, i));
+    RIGCAL_TRY(storage::AppendEdge(store, input.edges.back(), now));
+  }
+  input.reference = input.edges.front().frame_a;
+  Revision revision;
+  revision.robot = robot;
+  revision.created_at = now;
+  revision.verdict = {static_cast<VerdictLevel>(number % 4), "Sentence " + std::to_string(number) + " says why.", ""};
+  revision.document = formats::WriteRevisionDocument(input);
+  revision.digest = Sha256Of(revision.document);
+  RIGCAL_ASSIGN(revision.edge_watermark, storage::LoadEdgeWatermark(store, robot));
+  RIGCAL_ASSIGN(const int added, storage::AppendRevision(store, revision));
+  return storage::AppendPublication(store, {robot, added}, now);
+}
+
+int FillFleet(const char* folder, int count) {
+  storage::Store store = storage::Store::Open(folder).value();
+  const graph::RandomRig rig = graph::MakeRig(12, 59, 77, 0.001, 0.0005);
+  const Status filled = store.Write([&]() -> Status {
+    for (int i = 0; i < count; ++i) RIGCAL_TRY(AppendSmallRobot(store, rig, i));
+    return {};
+  });
+  if (!filled) std::fprintf(stderr, "%s\n", filled.error().what.c_str());
+  return filled ? 0 : 1;
+}
+
+int Serve(const char* folder) {
+  pipeline::RevisionCache revisions;
+  const auto answer = [&](const std::string& path, const std::string& query) -> Result<http::Page> {
+    thread_local Result<storage::Store> store = storage::Store::Open(folder);
+    if (!store) return Fail(store.error());
+    RIGCAL_ASSIGN(auto page, pipeline::AnswerPage({*store, SystemClock(), revisions, {}, ""}, path, query));
+    return http::Page{std::move(page.body), std::move(page.content_type), {}, page.immutable};
+  };
+  http::Options options;
+  options.folder = std::filesystem::path(folder) / "reports";
+  const auto server = http::Server::Start(options, answer);
+  if (!server) return 1;
+  std::printf("ready http://127.0.0.1:%d\n", server->port());
+  std::fflush(stdout);
+  while (std::getchar() != EOF) {
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace rigcal
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 2 ? argv[1] : "";
+  if (mode == "render") return rigcal::Render(argv[2]);
+  if (mode == "fleet" && argc > 3) return rigcal::FillFleet(argv[2], std::atoi(argv[3]));
+  if (mode == "serve") return rigcal::Serve(argv[2]);
+  std::fprintf(stderr, "usage: page_store render DIR | page_store fleet DIR COUNT | page_store serve DIR\n");
+  return 2;
+}

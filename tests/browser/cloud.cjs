@@ -1,0 +1,27 @@
+// Turns a cloud of two million points. Run by cloud_test.py.
+const { accessible, assert, close, colors, facts, open, withBrowser } = require("./browser.cjs");
+
+withBrowser(async (browser) => {
+  const page = await open(browser, facts.address + facts.path);
+  const start = Date.now();
+  await page.click("text=Turn the cloud of top");
+  await page.waitForSelector(".cloud .view[data-frames]");
+  console.log(JSON.stringify({ visible_s: (Date.now() - start) / 1000 }));
+  assert.ok((await colors(page, ".cloud canvas")) > 100, "the points are drawn in their colours");
+  assert.ok((await page.textContent(".cloud .bar")).includes("2 million points"));
+  const seen = new Set([await page.$eval(".cloud canvas", (canvas) => canvas.toDataURL())]);
+  for (const mode of ["camera", "depth", "intensity", "uncovered"]) {
+    const frames = await page.getAttribute(".cloud .view", "data-frames");
+    await page.selectOption(".cloud select", mode);
+    await page.waitForFunction((before) => document.querySelector(".cloud .view").dataset.frames !== before, frames);
+    seen.add(await page.$eval(".cloud canvas", (canvas) => canvas.toDataURL()));
+  }
+  assert.strictEqual(seen.size, 5, "each way of colouring looks different");
+  await page.$eval(".blend input", (field) => { field.value = 0; field.dispatchEvent(new Event("input")); });
+  assert.strictEqual(await page.$eval(".overlay img + img", (image) => getComputedStyle(image).opacity), "0");
+  await accessible(page);
+  await close(page);
+}).catch((error) => {
+  console.error(error);
+  process.exit(1);
+});
