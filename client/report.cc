@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
+#include "client/report_zip.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -8,13 +10,14 @@ namespace rigcal::client {
 namespace {
 
 struct Options {
-  std::string robot;
+  std::string robot, out;
   int revision = 0;
 };
 
 struct Place {
   std::int64_t revision = 0;
   std::string address, file;
+  std::optional<ZipSummary> zip;
 };
 
 Result<std::int64_t> KnownRevision(Connection& connection, const Context& context, const Options& options) {
@@ -40,6 +43,8 @@ Result<Place> Find(const Context& context, const Options& options) {
   RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", "{}", context.timeout));
   place.address = ReportAddress(status, options.robot, place.revision);
   place.file = "reports/" + options.robot + "/" + std::to_string(place.revision) + "/index.html";
+  if (options.out.empty()) return place;
+  RIGCAL_ASSIGN(place.zip, WriteReportZip(connection, context.timeout, options.robot, place.revision, options.out));
   return place;
 }
 
@@ -49,6 +54,7 @@ ExitCode Run(const Context& context, const Options& options) {
   if (context.json) {
     context.out << JsonObject({{"address", place->address},
                                {"file_in_data_folder", place->file},
+                               options.out.empty() ? Field::Raw("zip", "null") : Field("zip", options.out),
                                {"revision", place->revision},
                                {"robot", options.robot}})
                 << std::endl;
@@ -59,22 +65,27 @@ ExitCode Run(const Context& context, const Options& options) {
   else
     context.out << "address  " << place->address << '\n';
   context.out << "file     " << place->file << "  (in the server's data folder; opens from disk)\n";
+  if (place->zip)
+    context.out << "zip      " << options.out << "  (" << place->zip->files << " files; unpack it and open index.html)\n";
   return ExitCode::kGood;
 }
 
 }  // namespace
 
 void AddReport(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("report", "Tell where a robot's report is: its address and its file");
+  CLI::App* verb = app.add_subcommand("report", "Tell where a robot's report is, or fetch it as a zip");
   auto options = std::make_shared<Options>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  verb->add_option("--out", options->out, "Write the whole report into this zip: it opens without the server")
+      ->type_name("FILE.zip");
   verb->footer(
       "Examples:\n"
       "  rigcal report mapper-01\n"
       "  rigcal report mapper-01 --revision 3\n"
+      "  rigcal report mapper-01 --out mapper-01.zip\n"
       "  xdg-open \"$(rigcal report mapper-01 --json | jq -r .address)\"\n");
   verb->callback([&context, options] { context.exit_code = Run(context, *options); });
 }

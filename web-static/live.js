@@ -2,7 +2,7 @@
 // fleet's page it also searches while one types.
 const PERIOD_MS = 3000;
 const live = document.getElementById("live");
-const form = document.querySelector("form.search");
+const form = document.querySelector('form[role="search"]');
 let seen = null, turn = 0;
 
 async function refresh(address) {

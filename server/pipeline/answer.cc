@@ -11,6 +11,7 @@
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/solve.h"
 #include "server/pipeline/live.h"
+#include "server/pipeline/report_files.h"
 #include "server/pipeline/robot_rows.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -161,6 +162,26 @@ Result<std::string> Live(const AnswerContext& context, const Parameters& paramet
   return LiveDocument(context.store, robot);
 }
 
+// 0, or none: the newest.
+Result<int> ReportNumber(const AnswerContext& context, const RobotId& robot, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
+  RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, number));
+  return revision.number;
+}
+
+Result<std::string> FilesOfReport(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
+  return ReportFiles(context.store, robot, number);
+}
+
+Result<std::string> FileOfReport(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
+  RIGCAL_ASSIGN(const std::int64_t offset, parameters.IntegerOr("offset", 0));
+  return ReportFile(context.store, robot, number, parameters.Text("path").value_or(""), offset);
+}
+
 Result<std::string> Due(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", kDefaultMaxAge_ns));
   if (max_age_ns < 0)
@@ -200,7 +221,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"robots", Robots},   {"sessions", Sessions}, {"session", Session}, {"edges", Edges},
       {"edge", OneEdge},    {"show", Show},         {"lookup", Lookup},   {"revisions", Revisions},
       {"status", OfStatus}, {"due", Due},           {"health", Health},
-      {"live", Live},
+      {"live", Live},       {"report_files", FilesOfReport}, {"report_file", FileOfReport},
   };
   return verbs;
 }

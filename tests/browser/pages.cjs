@@ -1,4 +1,5 @@
 // What people do with the pages. Run by pages_test.py.
+const { spawnSync } = require("node:child_process");
 const { accessible, assert, close, colors, drawn, facts, open, withBrowser } = require("./browser.cjs");
 
 const at = (path) => facts.address + path;
@@ -119,8 +120,23 @@ async function fromDisk(browser) {
   await close(page);
 }
 
+// A page that is open tells what arrives meanwhile.
+async function live(browser) {
+  const page = await open(browser, at("/robots/rover/"));
+  const rows = () => page.locator("#live table a[href^='revisions/']").count();
+  const before = await rows();
+  await page.waitForResponse((reply) => reply.url().includes("/api/v1/live"));
+  const pushed = spawnSync(facts.push[0], facts.push.slice(1));
+  assert.strictEqual(pushed.status, 0, String(pushed.stderr));
+  await page.waitForFunction((old) => document.querySelectorAll("#live table a[href^='revisions/']").length > old, before);
+  const first = await fetch(at("/api/v1/live?robot=rover"));
+  const again = await fetch(at("/api/v1/live?robot=rover"), { headers: { "If-None-Match": first.headers.get("etag") } });
+  assert.strictEqual(again.status, 304, "nothing new costs nothing");
+  await close(page);
+}
+
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, edgeTable, rig, charts, withoutScript, fromDisk]) {
+  for (const work of [everyPage, fleet, edgeTable, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

@@ -32,10 +32,14 @@ def edge(a, b, x_m, sigma=1e-3, method="given"):
     return {"frame_a": a, "frame_b": b, "T_a_b": {"p_m": x_m, "q_xyzw": [0.0, 0.0, 0.0, 1.0]}, "information": information, "method": method}
 
 
-def push_edges(flow, robot, edges, exit_code=0):
+def edge_file(flow, robot, edges):
     path = flow.folder / (robot + ".json")
     path.write_text(json.dumps({"format": 1, "edges": edges}))
-    flow.rigcal("push-edges", path, "--robot", robot, exit_code=exit_code)
+    return path
+
+
+def push_edges(flow, robot, edges, exit_code=0):
+    flow.rigcal("push-edges", edge_file(flow, robot, edges), "--robot", robot, exit_code=exit_code)
 
 
 def push_session(flow):
@@ -73,7 +77,8 @@ def fill(flow):
 
 def run_script(flow, name, **facts):
     facts = {"address": flow.address, "chromium": chromium(), "scratch": str(flow.folder), **facts}
-    done = subprocess.run(["node", str(HERE / name), json.dumps(facts)], capture_output=True, text=True, timeout=170)
+    done = subprocess.run(["node", str(HERE / name), json.dumps(facts)], capture_output=True, text=True, timeout=170,
+                          env=flow.server.environment())
     print(done.stdout, end="")
     exited = flow.server.process.poll()
     check(exited is None, "rigcald ended with %r" % exited)

@@ -86,7 +86,7 @@ function show(place, name, buffer) {
   if (!cloud.count) throw new Error("The cloud holds no point.");
   const frame = element("div", { className: "view" }), bar = element("div", { className: "bar" });
   place.replaceChildren(frame, bar);
-  const box = boxOf(cloud), points = pointsOf(cloud, box), view = new View(frame, "z");
+  const box = boxOf(cloud), points = pointsOf(cloud, box), view = new View(frame, "z", false);
   view.canvas.setAttribute("aria-label", `Coloured cloud of ${name}: ${cloud.count} points. Arrow keys turn it, plus and minus zoom.`);
   view.scene.add(points);
   for (const [key, text] of [["oblique", "All"], ["front", "Front"], ["top", "Top"], ["side", "Side"]]) bar.append(button(text, () => view.look(key)));

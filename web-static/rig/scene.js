@@ -15,14 +15,14 @@ const DIRECTIONS = { oblique: [0.55, -0.6, -0.75], front: [0, 0, -1], top: [0, -
 const Z_UP = { oblique: [-0.75, -0.75, 0.55], front: [-1, 0, 0], top: [-0.001, 0, 1], side: [0, -1, 0] };
 
 export class View {
-  // `up`: "-y" where the reference is a camera (y down), else "z".
-  constructor(place, up) {
+  // `up`: "-y" where the reference is a camera (y down), else "z". Millions of points need no antialiasing.
+  constructor(place, up, antialias = true) {
     this.place = place;
     this.up = up;
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(38, 1, 0.001, 1000);
     this.camera.up.set(...(up === "z" ? [0, 0, 1] : [0, -1, 0]));
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new WebGLRenderer({ antialias, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;

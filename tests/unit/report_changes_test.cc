@@ -1,0 +1,160 @@
+// What changed between two revisions, which robots a page of the fleet shows, and what the scripts are given.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/report/changes.h"
+#include "server/report/edge_fit.h"
+#include "server/report/fleet_view.h"
+#include "server/report/influence.h"
+#include "server/report/page_data.h"
+#include "server/report/robot_pages.h"
+#include "tests/unit/report_sample.h"
+
+namespace rigcal::report {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ReportChanges, MoveIsMeasuredAlongTheSensorsOwnAxes) {
+  for (int axis = 0; axis < 6; ++axis) {
+    const formats::RevisionInput before = SampleReport().revision;
+    formats::RevisionInput now = before;
+    Vector6d step = Vector6d::Zero();
+    step(axis) = 0.004;
+    now.solution.poses[3].T_ref_sensor = before.solution.poses[3].T_ref_sensor * Se3::Exp(step);  // rear: turned by 3.1
+    const Changes changes = Compare(before, now);
+    ASSERT_FALSE(changes.moves.empty());
+    EXPECT_EQ(changes.moves[0].sensor, SensorId("rear"));
+    EXPECT_LT((changes.moves[0].d - step).norm(), 1e-12) << axis;
+    EXPECT_NEAR(changes.moves[0].in_sigmas, 0.004 / changes.moves[0].sigma(axis), 1e-9);
+    EXPECT_NEAR(changes.moves[0].distance_m, axis < 3 ? 0.004 : 0.0, 1e-12);
+  }
+}
+
+TEST(ReportChanges, NamesWhatCameAndWhatWent) {
+  const formats::RevisionInput before = SampleReport().revision;
+  formats::RevisionInput now = before;
+  now.solution.poses[4].known = false;
+  now.solution.poses[5].known = true;
+  now.edges[1].id = EdgeId(Sha256Of("new").str());
+  const Changes changes = Compare(before, now);
+  EXPECT_THAT(changes.sensors_lost, ElementsAre(SensorId("top")));
+  EXPECT_THAT(changes.sensors_gained, ElementsAre(SensorId("tracker")));
+  ASSERT_EQ(changes.edges_gained.size(), 1U);
+  EXPECT_EQ(changes.edges_gained[0], &now.edges[1]);
+  ASSERT_EQ(changes.edges_lost.size(), 1U);
+  EXPECT_EQ(changes.edges_lost[0], &before.edges[1]);
+}
+
+TEST(ReportChanges, PosesInDifferentFramesAreNotCompared) {
+  formats::RevisionInput now = SampleReport().revision;
+  now.reference = SensorId("lidar");
+  const Changes changes = Compare(SampleReport().revision, now);
+  EXPECT_FALSE(changes.same_reference);
+  EXPECT_TRUE(changes.moves.empty());
+}
+
+TEST(ReportChanges, PageSaysWhatMoved) {
+  ReportInput input = SampleReport();
+  input.previous = PastRevision{6, input.revision};
+  input.previous->revision.verdict.level = VerdictLevel::kPass;
+  input.revision.solution.poses[2].T_ref_sensor.p_m.x() += 0.05;  // lidar: 45 sigma
+  const std::string page = RenderRevision(input, "{}").value().at("index.html");
+  EXPECT_THAT(page, HasSubstr("The verdict went from pass to warn."));
+  EXPECT_THAT(page, HasSubstr("1 sensor moved by more than 3 \xCF\x83."));
+  EXPECT_THAT(page, HasSubstr("<bdi>lidar</bdi></th><td>50.0</td>"));
+}
+
+TEST(ReportInfluence, NamesTheCaptureThatMovesThePositionMost) {
+  const Uncertainty uncertainty = SampleUncertainty(0.001, 0.001, 8);
+  std::vector<BlockVector> blocks(3);
+  for (int i = 0; i < 3; ++i) blocks[static_cast<std::size_t>(i)].block_id = "0" + std::to_string(i);
+  blocks[1].d << 0, 0.0025, 0, 0.0001, 0, 0;
+  blocks[2].d << 0.002, 0, 0, 0, 0, 0.9;
+  const Influence largest = LargestInfluence(blocks, uncertainty);
+  EXPECT_EQ(largest.block_id, "01");
+  EXPECT_DOUBLE_EQ(largest.position_m, 0.0025);
+  EXPECT_NEAR(largest.in_sigmas, 0.0025 / 0.00125, 1e-9);  // sigma of y is 1.25 times that of x
+  EXPECT_EQ(InfluenceText(LargestInfluence({}, uncertainty)), "");
+}
+
+TEST(ReportEdgeFit, ColourFollowsTheResidualAndWidthTheInformation) {
+  ShownEdge shown;
+  Edge edge = SampleEdge("a", "b", Se3());
+  EdgeResidual residual;
+  shown.edge = &edge;
+  EXPECT_STREQ(FitClass(shown, true), "unchecked");
+  shown.residual = &residual;
+  EXPECT_STREQ(FitClass(shown, false), "unchecked");
+  for (const auto& [in_sigmas, name] : std::vector<std::pair<double, const char*>>{{0.5, "fit0"}, {1.5, "fit1"}, {2.5, "fit2"}, {9.0, "fit3"}}) {
+    shown.in_sigmas = in_sigmas;
+    EXPECT_STREQ(FitClass(shown, true), name);
+  }
+  Edge sure = edge;
+  sure.uncertainty = SampleUncertainty(0.00001, 0.0001, 8);
+  ShownEdge other;
+  other.edge = &sure;
+  const InformationScale scale({shown, other});
+  EXPECT_GT(scale.Width_px(sure), 2 * scale.Width_px(edge));
+}
+
+TEST(ReportData, HoldsPosesSigmasAndBlocks) {
+  ReportInput input = SampleReport();
+  const Edge& edge = input.revision.edges[0];
+  BlockVector block{"01", Vector6d::Zero()};
+  block.d(tangent::kRz) = 0.000123456;
+  input.blocks[edge.id] = {block};
+  SensorFacts facts;
+  facts.T_ref_nominal = SamplePose(0.5, 0, 0, 0);
+  input.sensors[SensorId("front_right")] = facts;
+  const std::string data = PageData(input, InOrder(input.revision));
+  EXPECT_THAT(data, HasSubstr("\"blocks\":[{\"d\":[0.0,0.0,0.0,0.0,0.0,0.0001235],\"id\":\"01\"}]"));
+  EXPECT_THAT(data, HasSubstr("\"nominal\":{\"p\":[0.5,0.0,0.0],\"q\":[0.0,0.0,0.0,1.0]}"));
+  EXPECT_THAT(data, Not(HasSubstr("nan")));
+  const std::string csv = EdgeCsv(input, InOrder(input.revision));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);  // a heading and six edges
+  EXPECT_THAT(csv, HasSubstr("front_left,rear,failed,stereo,,,,,,,,,,,,,,"));
+}
+
+FleetRow Robot(const std::string& name, VerdictLevel level, std::int64_t edges) {
+  return {RobotId(name), 1, {level, "why of " + name, ""}, Stamp{1}, 0, edges, false};
+}
+
+std::vector<std::string> Names(const FleetSlice& slice) {
+  std::vector<std::string> names;
+  for (const FleetRow* row : slice.rows) names.push_back(row->robot.str());
+  return names;
+}
+
+TEST(FleetView, SearchesFiltersSortsAndTurnsPages) {
+  std::vector<FleetRow> rows = {Robot("alpha-1", VerdictLevel::kPass, 5), Robot("beta-2", VerdictLevel::kFail, 9),
+                                Robot("Alpha-3", VerdictLevel::kWarn, 7)};
+  EXPECT_THAT(Names(SliceOf(rows, {})), ElementsAre("beta-2", "Alpha-3", "alpha-1"));
+  EXPECT_THAT(Names(SliceOf(rows, {"ALPHA why", "", "robot", false, 1})), ElementsAre("Alpha-3", "alpha-1"));
+  EXPECT_THAT(Names(SliceOf(rows, {"", "fail", "", false, 1})), ElementsAre("beta-2"));
+  EXPECT_THAT(Names(SliceOf(rows, {"", "", "edges", true, 1})), ElementsAre("alpha-1", "Alpha-3", "beta-2"));
+  EXPECT_EQ(SliceOf(rows, {"nobody", "", "", false, 1}).matches, 0U);
+  for (int i = 0; i < 250; ++i) rows.push_back(Robot("more-" + std::to_string(1000 + i), VerdictLevel::kPass, 1));
+  const FleetSlice last = SliceOf(rows, {"", "", "robot", false, 99});
+  EXPECT_EQ(last.pages, 3U);
+  EXPECT_EQ(last.page, 3U);
+  EXPECT_EQ(last.rows.size(), 53U);
+  EXPECT_EQ(last.rows.back()->robot.str(), "more-1249");
+}
+
+TEST(Trend, CountsFromTheFirstPoseAndBeginsAnewWithANewReference) {
+  const auto at = [](double x_m, const char* reference) {
+    auto revision = std::make_shared<formats::RevisionInput>();
+    revision->reference = SensorId(reference);
+    AddPose(*revision, "cam", true, SamplePose(x_m, 0, 0, 0), 0.001);
+    return revision;
+  };
+  const std::string data = TrendData({{1, at(1.0, "a")}, {2, at(1.5, "a")}});
+  EXPECT_THAT(data, HasSubstr("\"d\":[0.5,0.0,0.0,0.0,0.0,0.0],\"revision\":2"));
+  EXPECT_THAT(TrendData({{1, at(1.0, "a")}, {2, at(1.5, "b")}}), Not(HasSubstr("\"revision\":1")));
+}
+
+}  // namespace
+}  // namespace rigcal::report
