@@ -4,6 +4,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 from .measure import at_most, equal, skip
 from .server import Server
@@ -27,14 +28,22 @@ class PageServer:
         self.process.communicate(timeout=30)
 
 
-def weigh(context, address, path, scratch):
+def browse(context, script, address, path, scratch):
     facts = {"address": address, "chromium": browser(), "scratch": str(scratch), "path": path}
     environment = {**os.environ, "NODE_PATH": str(context.root / "build" / "release" / "web-static" / "node_modules")}
-    done = subprocess.run(["node", str(context.root / "tests" / "browser" / "weigh.cjs"), json.dumps(facts)],
+    done = subprocess.run(["node", str(context.root / "tests" / "browser" / script), json.dumps(facts)],
                           capture_output=True, text=True, timeout=120, env=environment)
     if done.returncode != 0:
-        raise RuntimeError("weigh.cjs: " + done.stderr[-500:])
+        raise RuntimeError(script + ": " + done.stderr[-500:])
     return json.loads(done.stdout)
+
+
+def cloud_seconds(context, server, store):
+    """Two million points on the report's page, from the click until they are drawn."""
+    sys.path.insert(0, str(context.root / "tests" / "browser"))
+    from made_cloud import write_cloud
+    write_cloud(store / "reports" / "mars" / "2", 2_000_000)
+    return browse(context, "cloud.cjs", server.address, "/robots/mars/revisions/2/", store)["visible_s"]
 
 
 def run(context):
@@ -46,12 +55,13 @@ def run(context):
         for mode, arguments in (("render", []), ("fleet", ["5000"])):
             subprocess.run([str(context.bin / "page_store"), mode, str(folder / mode), *arguments], check=True, stdout=subprocess.DEVNULL)
         with Server(context, folder / "render") as server:
-            report = weigh(context, "", server.address + "/robots/mars/revisions/2/", folder)
+            report = browse(context, "weigh.cjs", "", server.address + "/robots/mars/revisions/2/", folder)
             yield at_most("report_weight_MB", report["bytes"] / 1e6, 2.5, "MB")
             yield at_most("report_first_content_s", report["first_content_s"], 1.0, "s")
             yield at_most("report_rig_drawn_s", report["ready_s"], 5.0, "s")
+            yield at_most("cloud_2M_visible_s", cloud_seconds(context, server, folder / "render"), 4.0, "s")
         with PageServer(context, folder / "fleet") as address:
-            fleet = weigh(context, "", address + "/", folder)
+            fleet = browse(context, "weigh.cjs", "", address + "/", folder)
             yield equal("fleet_robots", fleet["count"], "5000 robots")
             yield at_most("fleet_5000_interactive_s", fleet["ready_s"], 1.5, "s")
             yield at_most("fleet_5000_search_s", fleet["search_s"], 1.5, "s")

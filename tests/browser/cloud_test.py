@@ -1,39 +1,6 @@
 """The coloured cloud in Chromium: two million points, made here, on a page of a real server."""
-import os
-import pathlib
-import random
-import struct
-
+from made_cloud import write_cloud
 from stage import Flow, edge, push_edges, run_script, skip_without_browser, wait_published
-
-PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360f8cf500f00038301"
-                      "80b5d7a5fc0000000049454e44ae426082")
-SECTION = """<section class="card"><h2>Coloured clouds</h2>
-<p class="hint"><a href="cloud/top/cloud.ply">The cloud as PLY</a></p>
-<figure><a href="overlay/front.jpg"><img src="overlay/front.jpg" alt="top in the picture of front"></a>
-<figcaption>front (<a href="overlay/front_picture.jpg">picture alone</a>)</figcaption></figure></section>"""
-
-
-def records(count, seed):
-    """Points of a box of 20 m; a thousand different ones, again and again: what costs is their number."""
-    draw = random.Random(seed)
-    one = [struct.pack("<hhhBBBBBB", draw.randint(-10000, 10000), draw.randint(-10000, 10000), draw.randint(-1500, 1500), draw.randrange(256),
-                       draw.randrange(256), draw.randrange(256), draw.choice([0, 1, 2, 255]), draw.randrange(256), 0) for _ in range(min(count, 1000))]
-    return b"".join(one) * (count // len(one))
-
-
-def write_cloud(folder, count):
-    (folder / "cloud" / "top").mkdir(parents=True)
-    (folder / "overlay").mkdir()
-    header = b"RCLD" + struct.pack("<II4f", 1, count, 1.0, 2.0, 3.0, 0.001)
-    (folder / "cloud" / "top" / "points.bin").write_bytes(header + records(count, 5))
-    (folder / "cloud" / "top" / "cloud.ply").write_bytes(b"ply\n")
-    for name in ("front.jpg", "front_picture.jpg"):
-        (folder / "overlay" / name).write_bytes(PIXEL)
-    page = folder / "index.html"
-    text = page.read_text().replace("</main>", SECTION + "</main>")
-    os.unlink(page)
-    page.write_text(text)
 
 
 def main():
@@ -41,7 +8,7 @@ def main():
     with Flow() as flow:
         push_edges(flow, "rover", [edge("base", "top", [1, 0, 0])])
         wait_published(flow)
-        write_cloud(pathlib.Path(flow.folder) / "store" / "reports" / "rover" / "1", 2_000_000)
+        write_cloud(flow.folder / "store" / "reports" / "rover" / "1", 2_000_000)
         run_script(flow, "cloud.cjs", path="/robots/rover/revisions/1/")
     print("cloud: good")
 

@@ -1,7 +1,9 @@
 #include <cmath>
 
+#include "server/base/base64.h"
 #include "server/formats/documents.h"
 #include "server/pipeline/answer.h"
+#include "server/report/assets.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {
@@ -106,6 +108,70 @@ TEST_F(AnswerTest, PagesOfFleetAndRobotAreHtmlAndTheApiIsJson) {
   EXPECT_EQ(AnswerPage(context, "/robots/nobody/", "").error().code, ErrorCode::kNotFound);
   EXPECT_EQ(AnswerPage(context, "/robots//", "").error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(AnswerPage(context, "/nowhere", "").error().code, ErrorCode::kNotFound);
+}
+
+TEST_F(AnswerTest, PagesOfOneRobot) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  const AnswerContext context{*store_, clock_, revisions_cache_, clock_.now, ""};
+  const auto compare = AnswerPage(context, "/robots/r/compare", "a=1&b=1");
+  ASSERT_TRUE(compare) << Sentence(compare.error());
+  EXPECT_NE(compare->body.find("revision 1 and 1"), std::string::npos);
+  const auto trend = AnswerPage(context, "/robots/r/trend.js", "");
+  ASSERT_TRUE(trend) << Sentence(trend.error());
+  EXPECT_EQ(trend->body.rfind("window.rigcal = {\"trends\":[{", 0), 0u);
+  const auto filtered = AnswerPage(context, "/", "q=nobody&page=7");
+  ASSERT_TRUE(filtered) << Sentence(filtered.error());
+  EXPECT_NE(filtered->body.find("0 of 1 robot"), std::string::npos);
+  EXPECT_EQ(AnswerPage(context, "/robots/r/compare", "a=1&b=9").error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(AnswerPage(context, "/", "page=x").error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(AnswerPage(context, "/robots/r/sessions/x/", "").error().code, ErrorCode::kInvalidInput);
+  const std::string unknown = Sha256Of("no session").str();
+  EXPECT_EQ(AnswerPage(context, "/robots/r/sessions/" + unknown + "/", "").error().code, ErrorCode::kNotFound);
+  EXPECT_EQ(AnswerPage(context, "/robots/r/nothing", "").error().code, ErrorCode::kNotFound);
+}
+
+TEST_F(AnswerTest, ScriptsAreKeptForEverUnderTheNameOfTheirContent) {
+  const AnswerContext context{*store_, clock_, revisions_cache_, clock_.now, ""};
+  for (const report::Asset& asset : report::Assets()) {
+    const auto script = AnswerPage(context, "/assets/" + asset.name, "");
+    ASSERT_TRUE(script) << asset.name;
+    EXPECT_TRUE(script->immutable);
+    EXPECT_EQ(script->body, asset.bytes);
+    EXPECT_NE(asset.name.find(Sha256Of(asset.bytes).str().substr(0, 12)), std::string::npos);
+  }
+  EXPECT_EQ(AnswerPage(context, "/assets/rig.js", "").error().code, ErrorCode::kNotFound);
+}
+
+TEST_F(AnswerTest, LiveChangesOnlyWithTheState) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  const std::string first = *Ask("live", R"({"robot":"r"})");
+  clock_.now.ns += 1'000'000'000;
+  EXPECT_EQ(*Ask("live", R"({"robot":"r"})"), first);
+  EXPECT_NE(first.find("\"revision\":1"), std::string::npos);
+  StoreEdges(Triangle("other"));
+  EXPECT_EQ(*Ask("live", R"({"robot":"r"})"), first);
+  EXPECT_NE(Ask("live", "{}")->find("\"unfinished\":1"), std::string::npos);
+}
+
+// What the pieces make is the published file; nothing outside the folder is handed out.
+TEST_F(AnswerTest, FilesOfAReport) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  const std::string list = *Ask("report_files", R"({"robot":"r"})");
+  for (const char* file : {"\"index.html\"", "\"data.js\"", "\"edges.csv\"", "\"assets/rig-"})
+    EXPECT_NE(list.find(file), std::string::npos) << file;
+  std::ifstream stored(store_->ReportFolder() / "r" / "1" / "index.html", std::ios::binary);
+  const std::string page((std::istreambuf_iterator<char>(stored)), {});
+  const std::string piece = *Ask("report_file", R"({"robot":"r","path":"index.html","offset":0})");
+  EXPECT_NE(piece.find("\"base64\":\"" + ToBase64(page) + "\""), std::string::npos);
+  for (const char* path : {"../../../rigcal.db", "/etc/passwd", "..", "", "assets", "index.html/."})
+    EXPECT_EQ(Ask("report_file", R"({"robot":"r","path":")" + std::string(path) + R"(","offset":0})").error().code,
+              ErrorCode::kNotFound)
+        << path;
+  EXPECT_FALSE(Ask("report_file", R"({"robot":"r","path":"index.html","offset":-1})"));
+  EXPECT_FALSE(Ask("report_file", R"({"robot":"r","path":"index.html","offset":99999999})"));
 }
 
 }  // namespace
