@@ -102,7 +102,7 @@ Figure WorstSensorFigure(const formats::RevisionInput& revision) {
   const Vector6d sigma = worst->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   return {"Worst sensor",
           worst->sensor.str(),
-          "pass",
+          "",
           {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm, \xC2\xB1 " + SigmaDeg(sigma.tail<3>().maxCoeff()) +
                " deg (1 \xCF\x83)",
            counts}};

@@ -49,6 +49,7 @@ function row(list, name, value) {
   list.append(element("dt", { textContent: name }), element("dd", { textContent: value }));
 }
 
+const fixed = (values, scale, decimals) => values.map((value) => (value * scale).toFixed(decimals)).join(", ");
 const triple = (values, scale, digits) => values.map((value) => number(value * scale, digits)).join(", ");
 
 // Roll, pitch, yaw of a unit quaternion, R = Rz(yaw) Ry(pitch) Rx(roll).
@@ -69,8 +70,8 @@ export function angleBetween(a, b) {
 export function showSensor(panel, sensor) {
   const list = element("dl", { className: "pairs" });
   row(list, "kind", sensor.kind || "not known");
-  row(list, "x, y, z", triple(sensor.p, MM, 6) + " mm");
-  row(list, "roll, pitch, yaw", triple(rollPitchYaw(sensor.q), DEG, 5) + " deg");
+  row(list, "x, y, z", fixed(sensor.p, MM, 2) + " mm");
+  row(list, "roll, pitch, yaw", fixed(rollPitchYaw(sensor.q), DEG, 3) + " deg");
   if (sensor.reference) row(list, "\u03c3", "reference: fixed");
   if (sensor.sigma) {
     row(list, "\u03c3 x, y, z", triple(sensor.sigma.slice(0, 3), MM, 2) + " mm");

@@ -120,7 +120,7 @@
 <dt>Solved at</dt><dd>{{TIME}}</dd>
 <dt>Software</dt><dd>rigcald <bdi>{{SOFTWARE}}</bdi></dd>
 <dt>Document</dt><dd><a href="revision.json">revision.json</a> <code>sha256 {{DIGEST}}</code></dd>
-<dt>Sessions</dt><dd>{{#SESSION}}<code>{{ID}}</code> <span class="soft">{{EDGES}}</span>{{#FACTS}}<br>captured {{CAPTURED}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{#BOARD}}; <bdi>{{NAME}}</bdi>{{/BOARD}}{{/FACTS}}<br>{{/SESSION}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
+<dt>Sessions</dt><dd>{{#SESSION}}<a href="../../sessions/{{ID}}/"><code>{{ID}}</code></a> <span class="soft">{{EDGES}}</span>{{#FACTS}}<br>captured {{CAPTURED}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{#BOARD}}; <bdi>{{NAME}}</bdi>{{/BOARD}}{{/FACTS}}<br>{{/SESSION}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
 </dl>
 <p class="downloads"><a href="revision.json" download>revision.json</a> <a href="edges.csv" download>edges.csv</a></p>
 </section>
