@@ -28,6 +28,18 @@ TEST_F(HttpFixture, PicturesAreKeptByTheBrowserPagesAreNot) {
   EXPECT_EQ(Get(port, kRevision).headers.at("cache-control"), "no-cache");
 }
 
+TEST_F(HttpFixture, ScriptsNamedByTheirContentAreKept) {
+  Write("reports/mapper-01/7/assets/rig-0123456789ab.js", "1");
+  const int port = Start([](const std::string& path, const std::string&) -> Result<Page> {
+    return Page{"2", "text/javascript; charset=utf-8", {}, path == "/assets/x.js"};
+  });
+  const Reply published = Get(port, kRevision + "assets/rig-0123456789ab.js");
+  EXPECT_THAT(published.headers.at("cache-control"), HasSubstr("immutable"));
+  EXPECT_THAT(published.headers.at("content-type"), HasSubstr("javascript"));
+  EXPECT_THAT(Get(port, "/assets/x.js").headers.at("cache-control"), HasSubstr("immutable"));
+  EXPECT_EQ(Get(port, "/other").headers.at("cache-control"), "no-cache");
+}
+
 TEST_F(HttpFixture, FileIsRevalidatedByItsTag) {
   const int port = Start();
   const std::string tag = Get(port, kRevision).headers.at("etag");
