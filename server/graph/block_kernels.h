@@ -48,6 +48,16 @@ inline void DivideByTransposed(const BlockOf<B>& L, BlockOf<B>& C) {
   }
 }
 
+// C <- C^-1; false if C is not positive definite.
+template <int B>
+[[nodiscard]] inline bool InvertBlock(BlockOf<B>& C) {
+  if (!FactorBlock<B>(C)) return false;
+  BlockOf<B> rows = BlockOf<B>::Identity();  // L^-T
+  DivideByTransposed<B>(C, rows);
+  C.noalias() = rows * rows.transpose();
+  return true;
+}
+
 // x <- L^-1 x with L of FactorBlock.
 template <int B>
 inline void SolveLower(const BlockOf<B>& L, BlockColumn<B>& x) {

@@ -22,7 +22,7 @@ bool ConjugateGradients::Factor(const BlockMatrix<6>& matrix, double lambda) {
   diagonal_ = matrix.diagonal;
   for (Block& block : diagonal_) {
     block.diagonal() *= 1.0 + lambda;
-    if (!FactorBlock<6>(block)) return false;
+    if (!InvertBlock<6>(block)) return false;
   }
   return true;
 }
@@ -97,10 +97,8 @@ void ConjugateGradients::Precondition(const Eigen::VectorXd& residual, Eigen::Ve
   z.resize(residual.size());
   for (std::size_t v = 0; v < diagonal_.size(); ++v) {
     const Eigen::Index row = 6 * static_cast<Eigen::Index>(v);
-    Vector6d part = residual.segment<6>(row);
-    SolveLower<6>(diagonal_[v], part);
-    SolveLowerTransposed<6>(diagonal_[v], part);
-    z.segment<6>(row) = part;
+    const Vector6d part = residual.segment<6>(row);
+    z.segment<6>(row).noalias() = diagonal_[v] * part;
   }
 }
 

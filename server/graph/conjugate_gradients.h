@@ -34,7 +34,7 @@ class ConjugateGradients final : public BlockCholesky<6> {
   const BlockPattern& pattern_;
   const BlockMatrix<6>* matrix_ = nullptr;
   double lambda_ = 0.0;
-  std::vector<Block> diagonal_;  // Cholesky factors of the damped diagonal blocks
+  std::vector<Block> diagonal_;  // inverses of the damped diagonal blocks
   std::unique_ptr<BlockCholesky<6>> exact_;
   bool stalled_ = false;  // on the matrix at hand: exact_ is its factor
   Eigen::VectorXd r_, z_, p_, Hp_;

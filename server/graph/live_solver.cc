@@ -4,19 +4,15 @@
 #include <cmath>
 #include <limits>
 
-#include "server/graph/conjugate_gradients.h"
-#include "server/graph/dense_cholesky.h"
+#include "server/graph/optimize_graph.h"
 #include "server/graph/sensor_order.h"
+#include "server/graph/spanning_tree.h"
 
 namespace rigcal::graph {
 namespace {
 
-constexpr int kLevelsMax = 12;           // deeper graphs are badly conditioned for conjugate gradients
-constexpr double kStepMax = 0.05;        // m and rad: a larger step may leave the basin, so the batch decides
-constexpr double kRestRelative = 1e-11;  // of the cost: what may be left to gain
-constexpr double kShrink = 0.1;          // what a gain must be of the one before
-constexpr double kShrinkLeast = 0.01;    // one good step does not promise that the next shrinks as well
-constexpr int kStepsMax = 12, kStepsFresh = 5;
+constexpr int kLevelsMax = 12;  // deeper graphs are badly conditioned for conjugate gradients
+constexpr int kIterationsLeast = 5, kIterationsMost = 100;  // of a batch within an update
 
 }  // namespace
 
@@ -31,7 +27,8 @@ UpdateWork LiveSolver::Add(const GraphEdge& edge) {
   UpdateWork work;
   if (was_known) {
     Place(edge, constraint);
-    return constraint.i != constraint.j && Relax(constraint, work) ? work : Rebuild();
+    if (constraint.i == constraint.j) return Rebuild();
+    return (deep() ? RelaxDeep(constraint, work) : Relax(constraint, work)) ? work : Rebuild();
   }
   return Connect(edge, constraint) ? work : Rebuild();
 }
@@ -58,6 +55,23 @@ UpdateWork LiveSolver::Reweight(const EdgeId& edge, const Matrix6d& Omega, int r
     found = true;
   }
   return found ? Rebuild() : UpdateWork{};
+}
+
+GraphSolution LiveSolver::Glance() const {
+  if (!fast_) return solution_;
+  GraphSolution glance;
+  glance.converged = solution_.converged || settled_;
+  for (const SensorId& sensor : graph_.sensors) {
+    const std::optional<Se3> T = PoseOf(sensor);
+    glance.poses.push_back({sensor, T.has_value(), T.value_or(Se3()), Matrix6d::Zero()});
+  }
+  const std::vector<Vector6d> e = Residuals(*problem_, T_ref_);
+  glance.cost = graph::Cost(*problem_, e);
+  glance.after = MeanSquares(e);
+  const Problem canonical = MakeProblem(graph_);  // edges of equal certainty count in the order of their ids
+  if (canonical.vertex_count > 0) glance.before = MeanSquares(Residuals(canonical, SpanningTreePoses(canonical)));
+  glance.dof = 6 * (static_cast<int>(e.size()) - problem_->free_count());
+  return glance;
 }
 
 GraphSolution LiveSolver::Solution(const SolveOptions& options) const {
@@ -96,28 +110,43 @@ std::vector<std::pair<SensorId, Matrix6d>> LiveSolver::Marginals() const {
   return marginals;
 }
 
+UpdateWork LiveSolver::Settle() {
+  const UpdateBudget budget = std::exchange(budget_, UpdateBudget{std::numeric_limits<int>::max()});
+  const UpdateWork work = Rebuild();
+  budget_ = budget;
+  return work;
+}
+
 UpdateWork LiveSolver::Rebuild() {
   UpdateWork work;
   work.batch = true;
   SolveOptions options;
   options.marginals = false;
+  if (large() && growing_.products_of_factor() > 0.0)
+    options.iterations_max = std::clamp(static_cast<int>(budget_.products_max / growing_.products_of_factor()),
+                                        kIterationsLeast, kIterationsMost);
   solution_ = Solve(graph_, options);
   work.iterations = solution_.iterations;
   work.edges_evaluated = static_cast<int>(graph_.edges.size()) * (solution_.iterations + 1);
-  fast_ = AdoptSolution();
+  work.products = solution_.iterations * growing_.products_of_factor();
+  settled_ = solution_.converged;
+  fast_ = AdoptSolution(solution_.iterations >= options.iterations_max);
   return work;
 }
 
-// Breadth first from the reference, so that levels are right. False if the fast way does not apply.
-bool LiveSolver::AdoptSolution() {
+// Breadth first from the reference, so that levels are right. False if the fast way does not apply. A batch that was
+// `stopped` is a state to go on from.
+bool LiveSolver::AdoptSolution(bool stopped) {
   vertex_of_sensor_.clear(), sensor_of_vertex_.clear(), level_.clear(), slot_of_pair_.clear();
+  level_max_ = 0;
+  growing_holds_ = false;
   *problem_ = Problem();
   T_ref_.clear();
   equations_ = NormalEquations();
   solver_.reset();
   stale_ = true;
   factored_count_ = 0;
-  if (!solution_.converged) return graph_.edges.empty();
+  if (!solution_.converged && !stopped) return graph_.edges.empty();
   std::unordered_map<std::string, const SensorPose*> known;
   for (const SensorPose& pose : solution_.poses)
     if (pose.known) known.emplace(pose.sensor.str(), &pose);
@@ -142,9 +171,11 @@ bool LiveSolver::AdoptSolution() {
     Place(edge, constraint);
     problem_->constraints.push_back(constraint);
   }
-  return full &&
-         (problem_->free_count() <= kBlocksDenseMax || *std::max_element(level_.begin(), level_.end()) <= kLevelsMax);
+  LinearizeGradient(*problem_, T_ref_, equations_);
+  return full;
 }
+
+bool LiveSolver::deep() const { return problem_->free_count() > kBlocksDenseMax && level_max_ > kLevelsMax; }
 
 int LiveSolver::VertexOf(const SensorId& sensor) const {
   const auto found = vertex_of_sensor_.find(sensor.str());
@@ -157,6 +188,7 @@ int LiveSolver::AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int l
   vertex_of_sensor_.emplace(sensor.str(), vertex);
   sensor_of_vertex_.push_back(sensor);
   level_.push_back(level);
+  level_max_ = std::max(level_max_, level);
   T_ref_.push_back(T_ref_sensor);
   if (vertex > 0) equations_.H.diagonal.push_back(Matrix6d::Zero());
   return vertex;
@@ -196,61 +228,15 @@ bool LiveSolver::Connect(const GraphEdge& edge, Constraint& constraint) {
     return other.frame_a == sensor || other.frame_b == sensor;
   });
   const int level = level_[static_cast<std::size_t>(std::max(a, b))] + 1;
-  if (waiting > 1 || (problem_->free_count() >= kBlocksDenseMax && level > kLevelsMax)) return false;
+  if (waiting > 1) return false;
   const Se3& T_ref_known = T_ref_[static_cast<std::size_t>(std::max(a, b))];
   AddVertex(sensor, (T_ref_known * (a < 0 ? constraint.T_j_i : constraint.T_i_j)).Normalized(), level);
   Place(edge, constraint);
   problem_->constraints.push_back(constraint);
   LinearizeEdge(constraint, T_ref_, equations_.H);
+  GrowLeaf(constraint);
   dirty_from_ = std::min(dirty_from_, std::max(std::min(constraint.i, constraint.j) - 1, 0));
   return true;
-}
-
-bool LiveSolver::FactorNow(UpdateWork& work) {
-  const int count = problem_->free_count();
-  if (stale_) Linearize(*problem_, T_ref_, equations_);
-  if (stale_ || count != factored_count_) dirty_from_ = 0;
-  stale_ = false;
-  work.columns_factored += count - dirty_from_;
-  const int first = std::exchange(dirty_from_, count);
-  if (count > kBlocksDenseMax) {
-    if (count != factored_count_) solver_ = std::make_unique<ConjugateGradients>(problem_->pattern);
-    factored_count_ = count;
-    return solver_->Factor(equations_.H, 0.0);
-  }
-  if (count != factored_count_) solver_ = std::make_unique<DenseCholesky<6>>(problem_->pattern);
-  factored_count_ = count;
-  return static_cast<DenseCholesky<6>&>(*solver_).FactorFrom(static_cast<std::size_t>(first), equations_.H, 0.0);
-}
-
-// Before the edge the gradient was zero, so the first step needs the edge's own alone.
-bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
-  equations_.g.setZero(6 * problem_->free_count());
-  LinearizeEdge(added, T_ref_, equations_.H, &equations_.g);
-  problem_->constraints.push_back(added);
-  dirty_from_ = std::min(dirty_from_, std::max(std::min(added.i, added.j) - 1, 0));
-  if (!FactorNow(work)) return false;
-  secants_.Clear();
-  double gain_before = std::numeric_limits<double>::infinity();
-  for (work.iterations = 1; work.iterations <= kStepsMax; ++work.iterations) {
-    step_ = -equations_.g;
-    secants_.Apply(step_, [this](Eigen::VectorXd& x) { solver_->SolveInPlace(x); });
-    const double gain = -step_.dot(equations_.g);
-    if (!std::isfinite(gain) || step_.cwiseAbs().maxCoeff() > kStepMax) return false;
-    Retract(T_ref_, step_, trial_);
-    std::swap(T_ref_, trial_);
-    const double ratio = gain / gain_before;
-    if (work.iterations > 2 && ratio > kShrink && gain > kRestRelative * equations_.cost) return false;
-    if (work.iterations > 1 && std::clamp(ratio, kShrinkLeast, kShrink) * gain <= kRestRelative * equations_.cost)
-      break;
-    gain_before = gain;
-    g_before_ = equations_.g;
-    LinearizeGradient(*problem_, T_ref_, equations_);
-    work.edges_evaluated += static_cast<int>(problem_->constraints.size());
-    if (work.iterations > 1) secants_.Remember(step_, equations_.g - g_before_);
-  }
-  stale_ = work.iterations > kStepsFresh;
-  return work.iterations <= kStepsMax;
 }
 
 }  // namespace rigcal::graph

@@ -1,5 +1,7 @@
 // The live state of one robot's graph, kept at the optimum while edges come and go. It remembers poses, H and its
 // factor between updates, so that an edge costs a few passes over the residuals. One thread.
+//
+// Small graphs have a dense factor, shallow ones are solved by conjugate gradients, deep ones have a factor that grows.
 #pragma once
 
 #include <memory>
@@ -8,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "server/graph/growing_factor.h"
 #include "server/graph/linearize.h"
 #include "server/graph/secant_pairs.h"
 #include "server/graph/solve.h"
@@ -19,24 +22,40 @@ struct UpdateWork {
   int iterations = 0;        // steps taken
   int edges_evaluated = 0;   // residuals with their gradients
   int columns_factored = 0;  // block columns of the factor that were renewed
-  bool batch = false;        // solved from the ground up: a removed edge, a large step, a deficient edge, a deep graph
+  double products = 0.0;     // of 6x6 blocks, in factors and solves: what the budget counts
+  double rest_ratio = 0.0;   // of the cost: what is left to gain, as far as is known
+  bool batch = false;        // solved from the ground up: a removed edge, a large step, a deficient edge
+};
+
+// How far an update goes. Counts of work and not of time, so that the same edges give the same poses everywhere.
+struct UpdateBudget {
+  int sensors_exact_max = 200;  // up to this many, every update ends at the optimum to 1e-9 of the cost
+  double rest_ratio = 3e-4;     // of the cost: beyond, an update stops where no more than this is left to gain,
+  double products_max = 4e6;    // or before the step that would take more (about a second)
 };
 
 class LiveSolver {
  public:
-  explicit LiveSolver(const SensorId& reference) { graph_.reference = reference; }
+  explicit LiveSolver(const SensorId& reference, const UpdateBudget& budget = {}) : budget_(budget) {
+    graph_.reference = reference;
+  }
   // The state of a store: solved at once.
-  explicit LiveSolver(Graph graph) : graph_(std::move(graph)) { Rebuild(); }
+  explicit LiveSolver(Graph graph, const UpdateBudget& budget = {}) : budget_(budget), graph_(std::move(graph)) {
+    Rebuild();
+  }
 
-  // After each of these the poses are the optimum of the cost to 1e-9 of it. An edge may bring sensors with it; one
-  // that cannot be used is kept for the diagnoses of Solution() and takes no part.
+  // After each of these the poses are the optimum of the cost to 1e-9 of it, or as near as the budget of a large graph
+  // says. An edge may bring sensors with it; one that cannot be used is kept for the diagnoses of Solution() and takes
+  // no part.
   UpdateWork Add(const GraphEdge& edge);
   UpdateWork AddSensor(const SensorId& sensor);
   // Nothing happens if there is no such edge.
   UpdateWork Remove(const EdgeId& edge);
   UpdateWork Reweight(const EdgeId& edge, const Matrix6d& Omega, int rank);
-  // The canonical batch solution of the edges as they are; the state continues from it.
-  UpdateWork Settle() { return Rebuild(); }
+  // The canonical batch solution of the edges as they are, whatever it takes; the state continues from it.
+  UpdateWork Settle();
+  // False once an update has stopped short of the optimum: Settle when there is time.
+  [[nodiscard]] bool settled() const { return settled_; }
 
   [[nodiscard]] const Graph& graph() const { return graph_; }
   // sum e^T Omega e at the poses at hand, and these poses (none for a sensor that is not connected).
@@ -44,27 +63,45 @@ class LiveSolver {
   [[nodiscard]] std::optional<Se3> PoseOf(const SensorId& sensor) const;
   // Poses, residuals and diagnoses as Solve would give them, from the poses at hand.
   [[nodiscard]] GraphSolution Solution(const SolveOptions& options = {}) const;
+  // What can be said at once: poses, cost, degrees of freedom, mean squares before and after; no diagnoses.
+  [[nodiscard]] GraphSolution Glance() const;
   // Of the sensors connected to the reference, by name (the reference's is zero). Empty where Solve gives none.
   [[nodiscard]] std::vector<std::pair<SensorId, Matrix6d>> Marginals() const;
 
  private:
   UpdateWork Rebuild();
-  [[nodiscard]] bool AdoptSolution();
+  [[nodiscard]] bool AdoptSolution(bool stopped);
   [[nodiscard]] int VertexOf(const SensorId& sensor) const;
   int AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int level);
   void InsertSensor(const SensorId& sensor);
   int SlotOf(int i, int j);
   void Place(const GraphEdge& edge, Constraint& constraint);
   bool Connect(const GraphEdge& edge, Constraint& constraint);
+  [[nodiscard]] bool large() const { return problem_->vertex_count > budget_.sensors_exact_max; }
+  [[nodiscard]] bool deep() const;
   bool FactorNow(UpdateWork& work);
+  void BeginGradient();
   bool Relax(const Constraint& added, UpdateWork& work);
+  void LeaveRest(double rest_ratio, UpdateWork& work);
+  bool RelaxDeep(const Constraint& added, UpdateWork& work);
+  struct EdgeRoot;
+  [[nodiscard]] static EdgeRoot RootAt(const Constraint& constraint, const Se3& T_i_j);
+  [[nodiscard]] Se3 RelativePose(const Constraint& constraint) const;
+  bool Correct(double sign, const Constraint& constraint, const Se3& T_i_j, UpdateWork& work);
+  bool Straighten(UpdateWork& work);
+  bool RenewDeep(UpdateWork& work);
+  bool JoinDeep(const Constraint& added, UpdateWork& work);
+  bool StepDeep(UpdateWork& work);
+  void GrowLeaf(const Constraint& constraint);
 
+  UpdateBudget budget_;
   Graph graph_;
   bool fast_ = true;        // the state below holds; otherwise solution_ does
   GraphSolution solution_;  // of the last Rebuild
   std::unordered_map<std::string, int> vertex_of_sensor_;
   std::vector<SensorId> sensor_of_vertex_;
   std::vector<int> level_;  // of a vertex: edges from the reference when it came
+  int level_max_ = 0;
   std::unordered_map<std::int64_t, int> slot_of_pair_;
   std::unique_ptr<Problem> problem_ = std::make_unique<Problem>();  // where solver_ reads it; vertices in order of
                                                                     // arrival; constraints and pattern only
@@ -76,6 +113,10 @@ class LiveSolver {
   bool stale_ = true;       // H is to be linearised anew
   SecantPairs secants_;
   Eigen::VectorXd step_, g_before_;
+  GrowingFactor growing_;           // of a deep graph,
+  bool growing_holds_ = false;      // if it is of this graph
+  std::vector<Se3> linearized_at_;  // T_i_j of every constraint as growing_ knows it
+  bool settled_ = true;
 };
 
 }  // namespace rigcal::graph

@@ -11,20 +11,6 @@ bool SamePins(const std::vector<Pin>& a, const std::vector<Pin>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Pin p, Pin q) { return p.row == q.row; });
 }
 
-GlobalError MeanSquares(const std::vector<Vector6d>& residuals) {
-  GlobalError error;
-  if (residuals.empty()) return error;
-  for (const Vector6d& e : residuals) {
-    error.translation_m2 += e.head<3>().squaredNorm();
-    error.rotation_rad2 += e.tail<3>().squaredNorm();
-  }
-  const auto count = static_cast<double>(residuals.size());
-  error.translation_m2 /= count;
-  error.rotation_rad2 /= count;
-  error.total = error.translation_m2 + error.rotation_rad2;
-  return error;
-}
-
 int DegreesOfFreedom(const Problem& problem, const Observability& observability) {
   if (!observability.judged) return 0;  // the rank of H is not known
   int rank_sum = 0;
@@ -130,6 +116,20 @@ GraphSolution TooLarge(const Graph& graph, const Problem& problem) {
 }
 
 }  // namespace
+
+GlobalError MeanSquares(const std::vector<Vector6d>& residuals) {
+  GlobalError error;
+  if (residuals.empty()) return error;
+  for (const Vector6d& e : residuals) {
+    error.translation_m2 += e.head<3>().squaredNorm();
+    error.rotation_rad2 += e.tail<3>().squaredNorm();
+  }
+  const auto count = static_cast<double>(residuals.size());
+  error.translation_m2 /= count;
+  error.rotation_rad2 /= count;
+  error.total = error.translation_m2 + error.rotation_rad2;
+  return error;
+}
 
 Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cholesky, int iterations_max) {
   Settled settled;

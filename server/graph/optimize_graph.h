@@ -6,6 +6,8 @@
 
 namespace rigcal::graph {
 
+[[nodiscard]] GlobalError MeanSquares(const std::vector<Vector6d>& residuals);
+
 // The optimum with the free directions held, and the factor of H at it.
 struct Settled {
   Optimum optimum;

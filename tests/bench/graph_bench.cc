@@ -78,6 +78,9 @@ struct Run {
   std::vector<double> times_us, cpu_times_us;
   GraphSolution solution;
   int batches = 0;  // updates that were solved from the ground up
+  int steps = 0;    // of all updates
+  double products = 0.0, rest_ratio_max = 0.0;
+  double settle_us = 0.0, cost_before_settling = 0.0;  // of large graphs, after the last update
 
   template <typename Body>
   void Time(const Body& body) {
@@ -111,7 +114,14 @@ Run RunIncremental(const Graph& graph) {
     graph::UpdateWork work;
     run.Time([&] { work = live.Add(edge); });
     run.batches += work.batch ? 1 : 0;
+    run.steps += work.iterations;
+    run.products += work.products;
+    run.rest_ratio_max = std::max(run.rest_ratio_max, work.rest_ratio);
   }
+  run.cost_before_settling = live.Cost();
+  const double begin_us = Now_us();
+  if (!live.settled()) live.Settle();
+  run.settle_us = Now_us() - begin_us;
   graph::SolveOptions options;
   options.marginals = false;
   run.solution = live.Solution(options);
@@ -144,7 +154,7 @@ double PeakRss_mb() {
 }
 
 nlohmann::json Summary(const Graph& graph, Run run) {
-  const double total_us = std::accumulate(run.times_us.begin(), run.times_us.end(), 0.0);
+  const double total_us = std::accumulate(run.times_us.begin(), run.times_us.end(), run.settle_us);
   std::sort(run.times_us.begin(), run.times_us.end());
   std::sort(run.cpu_times_us.begin(), run.cpu_times_us.end());
   const auto last = run.times_us.size() - 1;
@@ -153,8 +163,13 @@ nlohmann::json Summary(const Graph& graph, Run run) {
           {"max_us", run.times_us[last]},
           {"min_us", run.times_us[0]},
           {"batches", run.batches},
+          {"steps", run.steps},
+          {"products", run.products},
+          {"rest_ratio_max", run.rest_ratio_max},
           {"cpu_median_us", run.cpu_times_us[last / 2]},
           {"total_ms", total_us / 1e3},
+          {"settle_ms", run.settle_us / 1e3},
+          {"cost_before_settling", run.cost_before_settling},
           {"runs", run.times_us.size()},
           {"iterations", run.solution.iterations},
           {"converged", run.solution.converged},

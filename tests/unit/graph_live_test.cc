@@ -130,5 +130,74 @@ TEST(GraphLive, MarginalsAreThoseOfTheBatch) {
   }
 }
 
+// A cylinder: a long chain, closed to the row before at every vertex; deep, and larger than what is kept exact.
+Graph Cylinder(std::size_t count, std::size_t around, unsigned seed, std::vector<Se3>& truth) {
+  std::mt19937 random(seed);
+  Graph graph;
+  truth.assign(1, Se3());
+  for (std::size_t v = 1; v < count; ++v)
+    truth.push_back((truth.back() * Se3::Exp(RandomVector(random, 0.3, 0.1))).Normalized());
+  const Matrix6d Omega = 1e4 * Matrix6d::Identity();
+  const auto add = [&](std::size_t a, std::size_t b) {
+    const Se3 T_a_b = truth[a].Inverse() * truth[b] * Se3::Exp(RandomVector(random, 0.01, 0.01));
+    graph.edges.push_back(MakeEdge(graph.edges.size(), a, b, T_a_b.Normalized(), Omega));
+  };
+  for (std::size_t v = 1; v < count; ++v) {
+    add(v - 1, v);
+    if (v >= around) add(v - around, v);
+  }
+  graph.reference = graph.edges[0].frame_a;
+  return graph;
+}
+
+TEST(GraphLive, ALargeDeepGraphKeepsToItsBudgetAndSettles) {
+  std::vector<Se3> truth;
+  const Graph graph = Cylinder(320, 12, 78, truth);
+  LiveSolver live(graph.reference);
+  int stopped_short = 0;
+  for (std::size_t k = 0; k < graph.edges.size(); ++k) {
+    const UpdateWork work = live.Add(graph.edges[k]);
+    EXPECT_LE(work.products, 4e6);
+    EXPECT_LE(work.rest_ratio, 3e-4);
+    EXPECT_TRUE(work.rest_ratio <= 1e-9 || !live.settled());
+    stopped_short += live.settled() ? 0 : 1;
+    if (k % 30 != 0) continue;
+    const double optimum = Solve(live.graph()).cost;
+    const bool exact = live.graph().sensors.size() <= 200;
+    EXPECT_LE(live.Cost(), (1.0 + (exact ? 1e-9 : 1e-3)) * optimum + 1e-12) << k;
+  }
+  EXPECT_GT(stopped_short, 0);
+  live.Settle();
+  EXPECT_TRUE(live.settled());
+  ExpectOptimum(live);
+}
+
+TEST(GraphLive, TheSameEdgesGiveTheSamePosesAndTheSameWork) {
+  std::vector<Se3> truth;
+  const Graph graph = Cylinder(260, 10, 79, truth);
+  LiveSolver first(graph.reference), second(graph.reference);
+  for (const GraphEdge& edge : graph.edges) {
+    const std::vector<char> odd(static_cast<std::size_t>(first.graph().edges.size() % 37 + 1));
+    const UpdateWork work = first.Add(edge), again = second.Add(edge);
+    EXPECT_EQ(work.products, again.products);
+    EXPECT_EQ(work.rest_ratio, again.rest_ratio);
+    EXPECT_FALSE(odd.empty());
+  }
+  EXPECT_EQ(first.Cost(), second.Cost());
+}
+
+TEST(GraphLive, ATinyBudgetStopsEarlyAndSettlingMakesUpForIt) {
+  std::vector<Se3> truth;
+  const Graph graph = Cylinder(260, 10, 80, truth);
+  UpdateBudget budget;
+  budget.sensors_exact_max = 60;
+  budget.rest_ratio = 0.0;
+  budget.products_max = 2e4;
+  LiveSolver live(graph.reference, budget);
+  for (const GraphEdge& edge : graph.edges) live.Add(edge);
+  live.Settle();
+  ExpectOptimum(live);
+}
+
 }  // namespace
 }  // namespace rigcal::graph
