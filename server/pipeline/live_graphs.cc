@@ -1,16 +1,51 @@
 #include "server/pipeline/live_graphs.h"
 
-namespace rigcal::pipeline {
+#include <algorithm>
+#include <vector>
 
-std::optional<LiveGraph> LiveGraphs::Get(const RobotId& robot) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = graphs_.find(robot);
-  return found == graphs_.end() ? std::nullopt : std::optional(found->second);
+namespace rigcal::pipeline {
+namespace {
+
+// A burst larger than this, and than the graph at hand, is solved at once.
+constexpr std::size_t kOneByOneMax = 32;
+
+std::vector<EdgeId> SortedIds(const std::vector<GraphEdge>& edges) {
+  std::vector<EdgeId> ids;
+  ids.reserve(edges.size());
+  for (const GraphEdge& edge : edges) ids.push_back(edge.id);
+  std::sort(ids.begin(), ids.end());
+  return ids;
 }
 
-void LiveGraphs::Set(const RobotId& robot, LiveGraph live) {
+// Ids of a that are not in b; both sorted.
+std::vector<EdgeId> Without(const std::vector<EdgeId>& a, const std::vector<EdgeId>& b) {
+  std::vector<EdgeId> rest;
+  std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+  return rest;
+}
+
+}  // namespace
+
+void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live) {
+  live.watermark = loaded.watermark;
+  const graph::LiveSolver* solver = live.solver.get();
+  const std::vector<EdgeId> held = solver == nullptr ? std::vector<EdgeId>() : SortedIds(solver->graph().edges);
+  const std::vector<EdgeId> wanted = SortedIds(loaded.graph.edges);
+  const std::vector<EdgeId> added = Without(wanted, held), removed = Without(held, wanted);
+  if (solver == nullptr || solver->graph().reference != loaded.graph.reference ||
+      added.size() > std::max(kOneByOneMax, held.size())) {
+    live.solver = std::make_unique<graph::LiveSolver>(loaded.graph);
+    return;
+  }
+  for (const SensorId& sensor : loaded.graph.sensors) live.solver->AddSensor(sensor);
+  for (const EdgeId& id : removed) live.solver->Remove(id);
+  for (const GraphEdge& edge : loaded.graph.edges)
+    if (std::binary_search(added.begin(), added.end(), edge.id)) live.solver->Add(edge);
+}
+
+LiveGraph& LiveGraphs::Of(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
-  graphs_[robot] = std::move(live);
+  return graphs_[robot];
 }
 
 }  // namespace rigcal::pipeline

@@ -4,7 +4,6 @@
 
 #include "server/base/log.h"
 #include "server/formats/answers.h"
-#include "server/graph/solve.h"
 #include "server/pipeline/publish.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/run_edge_job.h"
@@ -36,19 +35,19 @@ class Claim {
 
 Status UpdateLive(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const RobotGraph loaded, LoadRobotGraph(context.store, robot));
-  const auto previous = context.live.Get(robot);
-  if (previous && previous->watermark >= loaded.watermark) return {};
-  graph::SolveOptions options;
-  options.marginals = false;
-  LiveGraph live;
-  live.watermark = loaded.watermark;
-  live.solution =
-      previous ? graph::Update(loaded.graph, previous->solution, options) : graph::Solve(loaded.graph, options);
+  LiveGraph& live = context.live.Of(robot);
+  if (live.watermark >= loaded.watermark) return {};
+  TakeNewEdges(loaded, live);
   context.announcer.event(
       robot, "graph_update", robot.str(),
-      formats::WriteGraphEvent(robot, static_cast<std::int64_t>(loaded.edges.size()), live.solution));
-  context.live.Set(robot, std::move(live));
+      formats::WriteGraphEvent(robot, static_cast<std::int64_t>(loaded.edges.size()), live.solver->Glance()));
   return {};
+}
+
+// What an update left undone to keep to its budget is made up for once the robot is at rest.
+void SettleLive(const StepContext& context, const RobotId& robot) {
+  const LiveGraph& live = context.live.Of(robot);
+  if (live.solver != nullptr && !live.solver->settled()) live.solver->Settle();
 }
 
 // A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
@@ -98,7 +97,9 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
 Result<Burst> WorkOn(const StepContext& context, const RobotId& robot) {
   RIGCAL_TRY(UpdateLive(context, robot));
   RIGCAL_ASSIGN(const Burst burst, BurstOf(context, robot));
-  if (burst.over) RIGCAL_TRY(ReviseAndTell(context, robot));
+  if (!burst.over) return burst;
+  RIGCAL_TRY(ReviseAndTell(context, robot));
+  SettleLive(context, robot);
   return burst;
 }
 
