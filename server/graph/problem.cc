@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <string_view>
 #include <tuple>
 
-#include "server/graph/block_kernels.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/union_find.h"
 #include "server/math/covariance.h"
@@ -66,23 +66,44 @@ std::string WhyUnusable(const GraphEdge& edge) {
   return {};
 }
 
+// The smallest pivot of L D L^T as a part of its diagonal entry, and the product of all; no square roots, for it is
+// asked of every edge of every solve. Zero if the matrix is not positive definite.
+struct Pivots {
+  double least_ratio = std::numeric_limits<double>::infinity(), product = 1.0;
+};
+Pivots PivotsOf(const Matrix6d& matrix) {
+  Pivots pivots;
+  Matrix6d columns = matrix;  // of L D
+  Vector6d inverse;
+  for (int c = 0; c < 6; ++c) {
+    Vector6d column = matrix.col(c);
+    for (int k = 0; k < c; ++k) column -= columns.col(k) * (columns(c, k) * inverse(k));
+    columns.col(c) = column;
+    if (!(column(c) > 0.0)) {
+      pivots.least_ratio = 0.0;
+      break;
+    }
+    inverse(c) = 1.0 / column(c);
+    pivots.product *= column(c);
+    pivots.least_ratio = std::min(pivots.least_ratio, column(c) / matrix(c, c));
+  }
+  return pivots;
+}
+
 // Log det Omega and rank, cheaply where Omega is clearly positive definite; false if it is indefinite, asymmetric or
 // zero.
 bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
   constraint.Omega = 0.5 * edge.Omega + 0.5 * edge.Omega.transpose();
-  Matrix6d L = constraint.Omega;
-  const bool definite = FactorBlock<6>(L);  // inverse pivots; then no entry is larger than the largest of the diagonal
-  const double scale = definite ? constraint.Omega.diagonal().maxCoeff() : edge.Omega.cwiseAbs().maxCoeff();
-  if (!(scale >= kInformationMin && scale <= kInformationMax) || (!definite && !edge.Omega.allFinite())) return false;
+  constexpr double kClearPivotRatio = 1e-10;  // far above the tolerance of a rank
+  const Pivots pivots = PivotsOf(constraint.Omega);
+  const bool clear = pivots.least_ratio > kClearPivotRatio && std::isfinite(pivots.product);
+  // Of a positive definite matrix no entry is larger than the largest of the diagonal.
+  const double scale = clear ? constraint.Omega.diagonal().maxCoeff() : edge.Omega.cwiseAbs().maxCoeff();
+  if (!(scale >= kInformationMin && scale <= kInformationMax) || (!clear && !edge.Omega.allFinite())) return false;
   if (!((edge.Omega - constraint.Omega).cwiseAbs().maxCoeff() <= 0.5e-9 * scale)) return false;
-  constexpr double kClearPivotRatio = 1e-5;  // of square roots, after scaling: far above the tolerance of a rank
-  const Vector6d inverse_pivots = L.diagonal();
-  if (edge.rank == 6 && definite &&
-      (inverse_pivots.array().square() * constraint.Omega.diagonal().array() <
-       1.0 / (kClearPivotRatio * kClearPivotRatio))
-          .all()) {
+  if (edge.rank == 6 && clear) {
     constraint.rank = 6;
-    constraint.log_det_Omega = -2.0 * std::log(inverse_pivots.prod());
+    constraint.log_det_Omega = std::log(pivots.product);
     return true;
   }
   if (!IsPositiveSemidefinite(constraint.Omega)) return false;
