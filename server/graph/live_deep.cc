@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kCorrectionsMax = 64;  // then a new factor is cheaper than the corrections of the old one
 constexpr double kBent_rad = 0.02, kBent_ratio = 0.04;  // turned, or moved, as a part of its length
+constexpr int kBentMax = 5;                             // more at once: a new factor is cheaper
 constexpr double kTurnMax_rad = 0.5;     // an edge that disagrees by more may lead to another basin: the batch decides
 constexpr double kRestRelative = 1e-11;  // of the cost: what may be left to gain
 constexpr double kSettledRelative = 1e-9;
@@ -93,7 +94,8 @@ bool LiveSolver::Straighten(UpdateWork& work) {
       bent.push_back(k);
   }
   if (bent.empty()) return false;
-  if (growing_.corrections() + 2 * static_cast<int>(bent.size()) > kCorrectionsMax) return RenewDeep(work);
+  if (static_cast<int>(bent.size()) > kBentMax || growing_.corrections() + 2 * kBentMax > kCorrectionsMax)
+    return RenewDeep(work);
   for (const std::size_t k : bent) {
     const Constraint& constraint = problem_->constraints[k];
     const Se3 before = std::exchange(linearized_at_[k], RelativePose(constraint));
