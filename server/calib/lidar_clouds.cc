@@ -8,7 +8,8 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kReachPerVoxel = 8;  // the finest voxel is this part of the distance that a quarter of the points exceed
+constexpr double kReachPerVoxel =
+    8;  // the finest voxel is this part of the distance that a quarter of the points exceed
 constexpr double kVoxelMin_m = 0.25, kVoxelMax_m = 1.0;
 constexpr int kCellHalvings = 2;  // points are means of cells of a quarter of the voxel
 

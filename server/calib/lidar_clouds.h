@@ -13,7 +13,7 @@ constexpr std::size_t kNdtLevels = 3;  // voxels of 4, 2 and 1 times the finest
 struct LidarClouds {
   std::array<NdtMap, kNdtLevels> maps;  // the coarsest first
   std::array<std::vector<NdtPoint>, kNdtLevels> points;
-  NdtMap surfaces;       // of the map's finest voxels
+  NdtMap surfaces;  // of the map's finest voxels
   NdtMap surfaces_moving;
   SurfaceCells cells, cells_moving;  // for the polish; empty without
 };

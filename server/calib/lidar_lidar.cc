@@ -158,7 +158,8 @@ void FillChecks(const LidarLidarProblem& problem, const LidarLidarWork& work, co
       estimate.residuals.push_back({capture.capture, at->second, true, {}});
     else
       estimate.residuals.push_back(
-          {capture.capture, 0.0, false, capture.why_not.empty() ? "one of its clouds has too few points" : capture.why_not});
+          {capture.capture, 0.0, false,
+           capture.why_not.empty() ? "one of its clouds has too few points" : capture.why_not});
   }
 }
 

@@ -1,7 +1,7 @@
 // Two 3D lidars from what both see of their surroundings, no target: NDT from the nominal pose, coarse to fine, from
-// several starts; then a polish by generalised ICP, which is the answer if asked for. How far it moves the pose goes into
-// the uncertainty in any case: errors of the method are the same in every capture, so no jackknife sees them. Every
-// capture brings its own map; the pose is common.
+// several starts; then a polish by generalised ICP, which is the answer if asked for. How far it moves the pose goes
+// into the uncertainty in any case: errors of the method are the same in every capture, so no jackknife sees them.
+// Every capture brings its own map; the pose is common.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct LidarLidarProblem {
   Sensor lidar_a, lidar_b;
   std::optional<Se3> T_a_b_nominal;  // no search without it
   std::vector<LidarLidarCapture> captures;
-  bool polish = false;               // the answer is the polished pose, not NDT's
+  bool polish = false;  // the answer is the polished pose, not NDT's
 };
 
 // How well a pose fits clouds that it was not made from, by flat voxels of NDT's finest size.
@@ -41,15 +41,15 @@ struct LidarLidarEstimate {
   Se3 T_a_b;
   Se3 T_a_b_ndt, T_a_b_polished;  // T_a_b is one of them
   bool polished = false;
-  double voxel_m = 1;        // of NDT's finest level
-  double last_step = 0;      // m and rad, of the last stage
-  Uncertainty uncertainty;   // of T_a_b
-  SurfaceCheck check;        // held out: each capture by the pose without it; with one capture, each half of its points
+  double voxel_m = 1;       // of NDT's finest level
+  double last_step = 0;     // m and rad, of the last stage
+  Uncertainty uncertainty;  // of T_a_b
+  SurfaceCheck check;       // held out: each capture by the pose without it; with one capture, each half of its points
   bool check_on_captures = false;
-  double overlap_ratio = 0;  // part of the moving cloud that has a voxel of the map about it
-  double match_ratio = 0;    // part of the points beside a flat voxel that lie on it
-  double agreeing_ratio = 0; // part of the starts that ended at this pose
-  double halves_m = 0, halves_rad = 0;  // difference of the answers from either half, one capture
+  double overlap_ratio = 0;                // part of the moving cloud that has a voxel of the map about it
+  double match_ratio = 0;                  // part of the points beside a flat voxel that lie on it
+  double agreeing_ratio = 0;               // part of the starts that ended at this pose
+  double halves_m = 0, halves_rad = 0;     // difference of the answers from either half, one capture
   std::vector<CaptureResidual> residuals;  // per capture: rms of held-out distances, metres
 };
 

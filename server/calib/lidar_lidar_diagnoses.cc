@@ -121,13 +121,15 @@ Diagnosis DirectionsUnknown(const LidarLidarProblem& problem, const Directions& 
 
 Diagnosis SingleCapture(const LidarLidarProblem& problem) {
   return {"single_capture",
-          PairOf(problem) + " have one capture together: sigma is the model's, and the checks are on halves of its "
-                            "points, each with the pose from the other half.",
+          PairOf(problem) +
+              " have one capture together: sigma is the model's, and the checks are on halves of its "
+              "points, each with the pose from the other half.",
           "Take 8 or more captures in different places."};
 }
 
 Diagnosis FewClouds(const LidarLidarProblem& problem, std::size_t used) {
-  return {"few_captures", PairOf(problem) + " have only " + Captures(used) + " together; the uncertainty itself is rough.",
+  return {"few_captures",
+          PairOf(problem) + " have only " + Captures(used) + " together; the uncertainty itself is rough.",
           "Take 8 or more captures in different places."};
 }
 
@@ -139,8 +141,9 @@ Diagnosis CloudsLeftOut(const LidarLidarProblem& problem, const std::vector<Capt
 
 Diagnosis RangesTakenAsExact(const LidarLidarProblem& problem) {
   return {"range_taken_as_exact",
-          PairOf(problem) + ": for at least one of them no range_bias_sigma_m is given, so its ranges are taken to be "
-                            "right on average.",
+          PairOf(problem) +
+              ": for at least one of them no range_bias_sigma_m is given, so its ranges are taken to be "
+              "right on average.",
           "Give range_bias_sigma_m of both lidars in session.yaml: 0.02 is usual."};
 }
 

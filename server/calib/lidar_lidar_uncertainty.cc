@@ -76,7 +76,8 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
     if (!work.a_is_map) contribution.covariance = InverseCovariance(T_map_moving, contribution.covariance);
   uncertainty.contributions = std::move(contributions);
   for (std::size_t k = 0; jackknife && k < m; ++k)
-    uncertainty.blocks.push_back({problem.captures[work.used[k]].capture.str(), work.a_is_map ? d[k] : Vector6d(-Ad * d[k])});
+    uncertainty.blocks.push_back(
+        {problem.captures[work.used[k]].capture.str(), work.a_is_map ? d[k] : Vector6d(-Ad * d[k])});
   return uncertainty;
 }
 

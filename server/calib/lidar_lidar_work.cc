@@ -119,7 +119,8 @@ LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift,
   ParallelFor(work.used.size(), [&](std::size_t k) {
     const LidarLidarCapture& capture = problem.captures[work.used[k]];
     const auto a = Shifted(capture.a_m, shift.a_m), b = Shifted(capture.b_m, shift.b_m);
-    work.clouds[k] = work.a_is_map ? CloudsOf(a, b, work.voxel_m, with_cells) : CloudsOf(b, a, work.voxel_m, with_cells);
+    work.clouds[k] =
+        work.a_is_map ? CloudsOf(a, b, work.voxel_m, with_cells) : CloudsOf(b, a, work.voxel_m, with_cells);
   });
   return work;
 }
@@ -167,8 +168,7 @@ LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const 
   const Matrix6d keep = Matrix6d::Identity() - locked * locked.transpose();
   const auto step_without = [&](const Matrix6d& H, const Vector6d& g) -> Vector6d {
     const double largest = std::max(H.diagonal().maxCoeff(), 1e-9);
-    const Matrix6d solvable =
-        keep * H * keep + largest * (locked * locked.transpose() + 1e-9 * Matrix6d::Identity());
+    const Matrix6d solvable = keep * H * keep + largest * (locked * locked.transpose() + 1e-9 * Matrix6d::Identity());
     return -solvable.ldlt().solve(keep * g);
   };
   // What is left of the gradient at the common pose is no block's doing.

@@ -13,9 +13,9 @@ namespace rigcal::calib {
 struct LidarLidarWork {
   bool a_is_map = true, polish = false;
   double voxel_m = 1;
-  std::vector<std::size_t> used;     // indices of the problem's captures
-  std::vector<LidarClouds> clouds;   // side by side with `used`
-  Se3 nominal;                       // T_map_moving
+  std::vector<std::size_t> used;    // indices of the problem's captures
+  std::vector<LidarClouds> clouds;  // side by side with `used`
+  Se3 nominal;                      // T_map_moving
 };
 
 // Ranges longer by so much.
@@ -50,8 +50,8 @@ struct StartEnd {
 // The pose without each block: the captures, or with one capture either half of its points. One Gauss-Newton step of
 // the last stage from the common pose, whose pairs it keeps.
 struct LidarLidarBlocks {
-  std::vector<Vector6d> d;           // Log(T^-1 T_(i))
-  std::vector<SurfacePairs> pairs;   // of the block left out, by the pose without it
+  std::vector<Vector6d> d;          // Log(T^-1 T_(i))
+  std::vector<SurfacePairs> pairs;  // of the block left out, by the pose without it
 };
 [[nodiscard]] LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const Directions& locked);
 

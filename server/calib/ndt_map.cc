@@ -7,10 +7,10 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kThinnestRatio = 0.01;   // of the largest variance: no Gaussian is thinner (Magnusson)
-constexpr double kFlatRatio = 0.06;       // of the middle variance: a surface is thinner than this,
-constexpr double kLineRatio = 0.04;       // and its middle variance more than this part of the largest: one row is none
-constexpr double kSurfaceMin_m = 0.01;    // no surface is known better than this
+constexpr double kThinnestRatio = 0.01;  // of the largest variance: no Gaussian is thinner (Magnusson)
+constexpr double kFlatRatio = 0.06;      // of the middle variance: a surface is thinner than this,
+constexpr double kLineRatio = 0.04;      // and its middle variance more than this part of the largest: one row is none
+constexpr double kSurfaceMin_m = 0.01;   // no surface is known better than this
 
 void FillDistribution(const Eigen::Vector3d& variances, const Eigen::Matrix3d& axes, NdtVoxel& voxel) {
   const Eigen::Vector3d clamped = variances.cwiseMax(std::max(kThinnestRatio * variances[2], 1e-6));

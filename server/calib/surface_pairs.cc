@@ -13,15 +13,15 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kAlikeCos = 0.94;            // 20 degrees between the normals of a pair
-constexpr double kNearVoxels = 0.9;           // along the surface
-constexpr double kMatchVoxels = 0.15;         // across it
-constexpr double kNormalFloor_rad = 0.0175;   // no normal is better than this
-constexpr double kKnownRatio = 25;            // squared: five times; rooms and roads have 75 and more, corridors 10 at most
+constexpr double kAlikeCos = 0.94;           // 20 degrees between the normals of a pair
+constexpr double kNearVoxels = 0.9;          // along the surface
+constexpr double kMatchVoxels = 0.15;        // across it
+constexpr double kNormalFloor_rad = 0.0175;  // no normal is better than this
+constexpr double kKnownRatio = 25;  // squared: five times; rooms and roads have 75 and more, corridors 10 at most
 constexpr double kDistanceFloor_m = 0.003;
 constexpr double kMadSigma = 1.4826;
-constexpr double kBlockVoxels = 2;            // edge of a block that shares its errors
-constexpr double kModelFactor = 3.0;          // variance over the blocks' own, from simulated rooms
+constexpr double kBlockVoxels = 2;    // edge of a block that shares its errors
+constexpr double kModelFactor = 3.0;  // variance over the blocks' own, from simulated rooms
 
 const NdtVoxel* NearestFlat(const NdtMap& map, const Eigen::Vector3d& q_m) {
   const Eigen::Vector3d scaled = q_m / map.voxel_m;
@@ -166,8 +166,7 @@ PairInformation InformationOf(const std::vector<SurfacePairs>& captures, const S
   if (B.cols() == 0 || blocks < rank + 2) return information;
   const Eigen::MatrixXd H = B.transpose() * sums.H * B;
   const Eigen::MatrixXd inverse = H.inverse();
-  const Eigen::MatrixXd C =
-      kModelFactor * blocks / (blocks - rank) * inverse * (B.transpose() * sums.M * B) * inverse;
+  const Eigen::MatrixXd C = kModelFactor * blocks / (blocks - rank) * inverse * (B.transpose() * sums.M * B) * inverse;
   information.Omega = Symmetrized(B * C.inverse() * B.transpose());
   return information;
 }

@@ -11,7 +11,7 @@ namespace rigcal::calib {
 struct SurfacePair {
   Eigen::Vector3d normal_map;  // towards the map's sensor
   Eigen::Vector3d mean_moving_m;
-  double distance_m = 0;            // of the point from the surface, along the normal
+  double distance_m = 0;  // of the point from the surface, along the normal
   double normal_variance_rad2 = 0;
 };
 // Flat voxels of both clouds on one surface: normals in their own frames, each towards its own sensor.

@@ -9,8 +9,8 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kThinRatio = 1e-3;      // of a piece of surface: variance across against variance along
-constexpr double kKernelCells = 3.0;     // half the pull at this distance across, in cells
+constexpr double kThinRatio = 1e-3;   // of a piece of surface: variance across against variance along
+constexpr double kKernelCells = 3.0;  // half the pull at this distance across, in cells
 constexpr std::size_t kChunk = 512;
 constexpr int kIterationsMax = 60;
 
@@ -71,9 +71,7 @@ NormalSums SumOf(const std::vector<PolishTerm>& terms, const Se3& T_a_b) {
 
 }  // namespace
 
-NormalSums SumsOf(const PolishTerm& term, const Se3& T_a_b) {
-  return SumOf(std::vector<PolishTerm>{term}, T_a_b);
-}
+NormalSums SumsOf(const PolishTerm& term, const Se3& T_a_b) { return SumOf(std::vector<PolishTerm>{term}, T_a_b); }
 
 Polished Polish(const std::vector<PolishTerm>& terms, const Se3& start, const Directions& locked) {
   Polished polished{start, 0, 0, false};

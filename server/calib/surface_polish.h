@@ -30,6 +30,7 @@ struct NormalSums {
 [[nodiscard]] NormalSums SumsOf(const PolishTerm& term, const Se3& T_a_b);
 
 // From the pose of NDT; `locked` as for FitNdt. The same bits on any number of threads.
-[[nodiscard]] Polished Polish(const std::vector<PolishTerm>& terms, const Se3& start, const Directions& locked = Directions(6, 0));
+[[nodiscard]] Polished Polish(const std::vector<PolishTerm>& terms, const Se3& start,
+                              const Directions& locked = Directions(6, 0));
 
 }  // namespace rigcal::calib

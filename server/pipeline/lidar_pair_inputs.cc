@@ -24,14 +24,13 @@ struct CloudFile {
 
 // A cloud that is lost or cannot be read costs its capture, not the pair.
 void Read(const std::filesystem::path& blobs, CloudFile& file) {
-  const auto bytes =
-      storage::LoadBlob(blobs, file.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
+  const auto bytes = storage::LoadBlob(blobs, file.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
   if (!bytes) {
     file.why_not = Sentence(bytes.error());
     return;
   }
-  auto cloud = formats::ReadCloud(std::as_bytes(std::span(*bytes)), formats::SuffixOf(file.payload->path),
-                                  file.payload->path);
+  auto cloud =
+      formats::ReadCloud(std::as_bytes(std::span(*bytes)), formats::SuffixOf(file.payload->path), file.payload->path);
   if (cloud)
     file.capture->*file.points_m = std::move(cloud->points_m);
   else
@@ -79,11 +78,11 @@ Status AddOverlays(storage::Store& store, const calib::LidarLidarProblem& proble
   for (std::size_t i = 0; i < problem.captures.size() && edge.evidence.size() < kOverlaysMax; ++i) {
     const LidarLidarCapture& capture = problem.captures[i];
     if (i >= edge.captures.size() || !edge.captures[i].used) continue;
-    const std::string jpeg =
-        detect::OverlaidClouds(capture.a_m, capture.b_m, *problem.T_a_b_nominal, edge.T_a_b);
+    const std::string jpeg = detect::OverlaidClouds(capture.a_m, capture.b_m, *problem.T_a_b_nominal, edge.T_a_b);
     RIGCAL_ASSIGN(const Digest digest, storage::AppendBlob(store.BlobFolder(), jpeg));
     const std::string words = "with " + edge.frame_b.str() + ", from above, nominal pose and found";
-    edge.evidence.push_back({EvidenceTitle(edge.frame_a, capture.capture, words), edge.frame_a, capture.capture, digest, "jpg"});
+    edge.evidence.push_back(
+        {EvidenceTitle(edge.frame_a, capture.capture, words), edge.frame_a, capture.capture, digest, "jpg"});
   }
   return {};
 }

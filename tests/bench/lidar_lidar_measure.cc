@@ -46,8 +46,7 @@ void Print(const char* name, const Se3& T) {
 }
 
 // NDT alone, from points in memory to the converged pose, on so many threads.
-double NdtMedian_ms(const LidarLidarProblem& problem, std::size_t threads, int repeats, Se3& T_a_b,
-                    double& last_step) {
+double NdtMedian_ms(const LidarLidarProblem& problem, std::size_t threads, int repeats, Se3& T_a_b, double& last_step) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   std::vector<double> times_ms;
   for (int i = 0; i < repeats; ++i) {
@@ -75,8 +74,7 @@ int Measure(char** argv, int repeats) {
   const double two_ms = NdtMedian_ms(problem, 2, repeats, two_threads, last_step);
   const auto start = std::chrono::steady_clock::now();
   const Edge edge = calib::EstimateLidarLidarEdge(problem);
-  const double edge_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const double edge_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   std::printf("{");
   Print("T_ndt_from_nominal", two_threads);
   Print("T_ndt", edge.T_a_b);
@@ -92,7 +90,8 @@ int Measure(char** argv, int repeats) {
   const bool same = one_thread.p_m == two_threads.p_m && one_thread.q.coeffs() == two_threads.q.coeffs();
   std::printf("], \"rank\": %d, \"why\": \"%s\", \"same_bits\": %s, ", edge.uncertainty.rank,
               edge.diagnoses.empty() ? "" : edge.diagnoses.front().code.c_str(), same ? "true" : "false");
-  std::printf("\"ndt_last_step\": %.3e, \"ndt_ms\": %.2f, \"ndt_one_thread_ms\": %.2f, \"edge_ms\": %.1f}\n", last_step, two_ms, one_ms, edge_ms);
+  std::printf("\"ndt_last_step\": %.3e, \"ndt_ms\": %.2f, \"ndt_one_thread_ms\": %.2f, \"edge_ms\": %.1f}\n", last_step,
+              two_ms, one_ms, edge_ms);
   return edge.state == EdgeState::kGood ? 0 : 1;
 }
 
@@ -101,7 +100,8 @@ int Measure(char** argv, int repeats) {
 
 int main(int argc, char** argv) {
   if (argc != 9 && argc != 10) {
-    std::fprintf(stderr, "usage: lidar_lidar_measure CLOUD_A CLOUD_B ROLL_DEG PITCH_DEG YAW_DEG X_M Y_M Z_M [REPEATS]\n");
+    std::fprintf(stderr,
+                 "usage: lidar_lidar_measure CLOUD_A CLOUD_B ROLL_DEG PITCH_DEG YAW_DEG X_M Y_M Z_M [REPEATS]\n");
     return 2;
   }
   return rigcal::Measure(argv, argc == 10 ? std::max(1, std::atoi(argv[9])) : 9);

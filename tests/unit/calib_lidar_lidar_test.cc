@@ -175,7 +175,8 @@ TEST(LidarLidar, WhatIsMissingIsSaid) {
   for (auto* cloud : {&flat.captures[0].a_m, &flat.captures[0].b_m}) {
     cloud->clear();
     for (int i = 0; i < 160; ++i)
-      for (int k = 0; k < 160; ++k) cloud->emplace_back(0.05f * i - 4, 0.05f * k - 4, -1.5f + 0.001f * ((i * 7 + k) % 9));
+      for (int k = 0; k < 160; ++k)
+        cloud->emplace_back(0.05f * i - 4, 0.05f * k - 4, -1.5f + 0.001f * ((i * 7 + k) % 9));
   }
   const Edge edge = EstimateLidarLidarEdge(flat);
   if (edge.state == EdgeState::kGood) {

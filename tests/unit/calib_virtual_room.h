@@ -13,7 +13,7 @@ enum class RoomKind { kFurnished, kCorridor };
 
 struct VirtualRoom {
   RoomKind kind = RoomKind::kFurnished;
-  Se3 T_a_b;              // truth: b is turned to scan another way
+  Se3 T_a_b;  // truth: b is turned to scan another way
   Beams beams_a, beams_b;
   double start_m = 0.1, start_rad = 0.05;  // of each component of the nominal pose's error
   VirtualRoom();

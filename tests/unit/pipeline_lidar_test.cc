@@ -38,8 +38,10 @@ class LidarPipelineTest : public PipelineTest {
       manifest.header.sensors[0].T_ref_nominal = Se3();
       manifest.header.sensors[1].T_ref_nominal = problem.T_a_b_nominal;
     }
-    for (const auto& capture : problem.captures) AddFile(problem.lidar_a.id, capture.capture, Kitti(capture.a_m), manifest);
-    for (const auto& capture : problem.captures) AddFile(problem.lidar_b.id, capture.capture, Kitti(capture.b_m), manifest);
+    for (const auto& capture : problem.captures)
+      AddFile(problem.lidar_a.id, capture.capture, Kitti(capture.a_m), manifest);
+    for (const auto& capture : problem.captures)
+      AddFile(problem.lidar_b.id, capture.capture, Kitti(capture.b_m), manifest);
     Close(manifest);
   }
 
@@ -85,8 +87,7 @@ TEST_F(LidarPipelineTest, WithoutNominalPosesTheEdgeSaysWhatToGive) {
 TEST_F(LidarPipelineTest, ALostCloudCostsItsCaptureOnly) {
   calib::LidarLidarProblem problem = calib::RecordedIn(calib::VirtualRoom(), 2, 47);
   StoreRoom(problem, true);
-  std::filesystem::remove(
-      storage::BlobPath(store_->BlobFolder(), Sha256Of(Kitti(problem.captures[0].b_m))));
+  std::filesystem::remove(storage::BlobPath(store_->BlobFolder(), Sha256Of(Kitti(problem.captures[0].b_m))));
   StepAll();
   const Edge edge = OnlyEdge();
   ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses[0].what;
