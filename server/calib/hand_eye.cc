@@ -60,7 +60,9 @@ OrDiagnosis<HandEyeResult> ResultOf(const HandEyeProblem& problem, const HandEye
                                     const std::vector<std::size_t>& block_of_pose) {
   auto uncertainty = JackknifeMotion(problem, work, block_of_pose);
   if (!uncertainty) return tl::unexpected(MotionNotSolvable(problem, uncertainty.error()));
-  return HandEyeResult{EstimateOf(work), std::move(*uncertainty), OpenDirections(problem, work.reach)};
+  HandEyeResult result{EstimateOf(work), std::move(uncertainty->X), OpenDirections(problem, work.reach)};
+  if (work.estimates_offset) result.estimate.offset_sigma_s = uncertainty->offset_sigma_s;
+  return result;
 }
 
 OrDiagnosis<HandEyeResult> FromCaptures(const HandEyeProblem& problem) {
@@ -83,6 +85,17 @@ std::string SampleName(std::size_t k) {
   return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
 }
 
+// Odometry drifts: b's world moves against a's in proportion to time, from the left of its poses. A larger offset looks
+// at b earlier.
+SharedJacobian SharedOf(const CommonPoses& common, std::size_t k) {
+  const double middle_s = (common.times_s.front() + common.times_s.back()) / 2;
+  const double half_s = std::max(1e-9, (common.times_s.back() - common.times_s.front()) / 2);
+  const Matrix6d from_left = Adjoint(common.b[k].T_world_body.Inverse());
+  SharedJacobian shared(6, kStreamShared);
+  shared << (common.times_s[k] - middle_s) / half_s * from_left.leftCols<3>(), -common.b[k].twist;
+  return shared;
+}
+
 void SetSamples(const CommonPoses& common, HandEyeWork& work) {
   work.captures.clear();
   work.candidates.clear();
@@ -94,8 +107,7 @@ void SetSamples(const CommonPoses& common, HandEyeWork& work) {
     work.captures.emplace_back(SampleName(k));
     MotionCandidates sample;
     sample.a.push_back({{common.a[k], covariance, SharedJacobian(6, 0)}});
-    // A larger offset looks at b earlier.
-    sample.b.push_back({{common.b[k].T_world_body, covariance, SharedJacobian(-common.b[k].twist)}});
+    sample.b.push_back({{common.b[k].T_world_body, covariance, SharedOf(common, k)}});
     work.candidates.push_back(std::move(sample));
   }
 }
@@ -119,13 +131,15 @@ OrDiagnosis<HandEyeResult> FromStreams(const HandEyeProblem& problem) {
     SetSamples(PosesInCommon(a, b, offset_s), work);
     if (work.captures.size() < 2 * kStreamBlocks) return tl::unexpected(TooFewMotions(problem, work.captures.size()));
     if (auto fitted = FitMotion(problem, work); !fitted) return tl::unexpected(fitted.error());
-    offset_s += work.state.shared_b[0];
-    if (std::abs(work.state.shared_b[0]) < kOffsetSame_s) break;
+    const double shift_s = work.state.shared_b[kStreamOffset];
+    offset_s += shift_s;
+    if (std::abs(shift_s) < kOffsetSame_s) break;
   }
+  if (2 * work.problem.UsedCount() < work.captures.size())
+    return tl::unexpected(MotionsContradict(problem, work.captures.size()));
   auto result = ResultOf(problem, work, BlocksOf(work.captures.size()));
   if (!result) return result;
   result->estimate.offset_s = offset_s + 1e-9 * static_cast<double>(a.front().stamp.ns - b.front().stamp.ns);
-  result->estimate.offset_sigma_s = work.fit.offset_sigma_s;
   return result;
 }
 

@@ -26,7 +26,8 @@ Edge EdgeOf(const HandEyeProblem& problem) {
   edge.frame_a = problem.a.sensor.id;
   edge.frame_b = problem.b.sensor.id;
   edge.method = problem.method;
-  edge.figures["captures_total"] = static_cast<double>(AllCaptures(problem).size());
+  if (problem.method != "pose_streams")
+    edge.figures["captures_total"] = static_cast<double>(AllCaptures(problem).size());
   return edge;
 }
 
@@ -56,7 +57,7 @@ void AddReach(const MotionReach& reach, Edge& edge) {
 }
 
 void AddFigures(const HandEyeEstimate& estimate, Edge& edge) {
-  edge.figures["captures_used"] = static_cast<double>(estimate.captures);
+  edge.figures[estimate.offset_s ? "samples_used" : "captures_used"] = static_cast<double>(estimate.captures);
   edge.figures["motion_rms_m"] = estimate.rms_m;
   edge.figures["motion_rms_rad"] = estimate.rms_rad;
   AddNoise("a", estimate.noise_a, edge);

@@ -45,12 +45,24 @@ Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
   return solution.state.X;
 }
 
-Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block) {
+// `offset_s`: where the offset of the clocks comes to lie, if one is estimated.
+Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& offset_s) {
   MotionProblem problem = work.problem;
   for (const std::size_t k : block.poses) problem.used[k] = 0;
   if (block.capture) SetShared(work, &*block.capture, problem);
-  RIGCAL_ASSIGN(const Se3 X, SolvedPose(problem, work.state));
-  return Vector6d((work.state.X.Inverse() * X).Log());
+  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state));
+  if (work.estimates_offset) offset_s = solution.state.shared_b[kStreamOffset];
+  return Vector6d((work.state.X.Inverse() * solution.state.X).Log());
+}
+
+// As the covariance of X: the jackknife's, shrunk towards the model's.
+double OffsetSigma(const std::vector<double>& offsets_s, double model_sigma_s) {
+  const auto m = static_cast<double>(offsets_s.size());
+  if (m < 2) return model_sigma_s;
+  double mean_s = 0, sum_s2 = 0;
+  for (const double offset_s : offsets_s) mean_s += offset_s / m;
+  for (const double offset_s : offsets_s) sum_s2 += (offset_s - mean_s) * (offset_s - mean_s);
+  return std::sqrt(((m - 1) * (m - 1) / m * sum_s2 + 7 * model_sigma_s * model_sigma_s) / (m + 6));
 }
 
 // A board that is larger than given puts its camera farther away.
@@ -83,7 +95,7 @@ void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide 
 
 }  // namespace
 
-Result<Uncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
+Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
                                     const std::vector<std::size_t>& block_of_pose) {
   std::vector<GivenConstant> constants;
   AddBoardSize(work, problem.a, &MotionProblem::a, constants);
@@ -94,12 +106,18 @@ Result<Uncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEye
   const std::vector<Block> blocks = BlocksOf(work, block_of_pose);
   const std::size_t carrying = block_of_pose.empty() ? work.problem.UsedCount() : blocks.size();
   std::vector<BlockVector> vectors;
+  std::vector<double> offsets_s;
   if (carrying >= kHandEyeForJackknife) {
     std::vector<std::string> ids;
     for (const Block& block : blocks) ids.push_back(block.id);
-    RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, [&](std::size_t i) { return WithoutBlockOf(work, blocks[i]); }));
+    offsets_s.resize(blocks.size());
+    const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], offsets_s[i]); };
+    RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, without));
   }
-  return UncertaintyAlong(work.problem.free, work.fit.C_X, std::move(vectors), std::move(contributions), carrying);
+  MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
+  RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, work.fit.C_X, std::move(vectors),
+                                                std::move(contributions), carrying));
+  return uncertainty;
 }
 
 }  // namespace rigcal::calib

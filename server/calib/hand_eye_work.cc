@@ -16,6 +16,7 @@ using OrDiagnosis = tl::expected<T, Diagnosis>;
 // What a tracker or a robot is taken to be good for until its residuals say.
 constexpr double kTrackerSigma_m = 0.001, kTrackerSigma_rad = 0.001;
 // Poses of the body that are as near as this are one pose.
+constexpr double kDriftSigma_m = 0.05;  // of a stream's world
 constexpr double kSamePose_m = 0.0005, kSamePose_rad = 0.0005;
 
 std::vector<PoseCandidate> CandidatesOf(const CameraMotion& camera, const CaptureId& capture) {
@@ -124,8 +125,10 @@ void SetShared(const HandEyeWork& work, const CaptureId* without, MotionProblem&
   fill(work.camera_a, &MotionChoice::a, work.factor_a.translation, problem.a);
   fill(work.camera_b, &MotionChoice::b, work.factor_b.translation, problem.b);
   if (!work.estimates_offset) return;
-  problem.b.information = SharedMatrix::Zero(1, 1);
-  problem.b.gradient = SharedVector::Zero(1);
+  // A drift is small until the poses say otherwise; of the offset nothing is known.
+  problem.b.information = SharedMatrix::Zero(kStreamShared, kStreamShared);
+  problem.b.information.diagonal().head<3>().setConstant(1 / (kDriftSigma_m * kDriftSigma_m));
+  problem.b.gradient = SharedVector::Zero(kStreamShared);
 }
 
 MotionNoise NoiseOf(const MotionProblem& problem) {
@@ -144,12 +147,15 @@ MotionNoise NoiseOf(const MotionProblem& problem) {
 namespace {
 
 constexpr int kRoundsMax = 40, kChoosingRounds = 6;
-constexpr double kSame_ratio = 0.005;   // of a factor from round to round
+constexpr int kIterationsOnTheWay = 4;
+constexpr double kSame_ratio = 0.01;   // of a factor from round to round
 constexpr double kGateSquares = 40.0;   // of six degrees of freedom: one in a million
 constexpr double kChiMedian = 5.35;     // of six degrees of freedom
 constexpr double kFewPoses = 5.0;       // Rousseeuw & Leroy (1987)
 constexpr double kPriorOfCamera = 2.0, kPriorOfTracker = 0.5;  // squares that the expected noise counts as
 constexpr double kFactorMin = 1e-8;
+// Errors of a stream last for many of its poses and do not average out as those of captures do.
+constexpr double kStreamNoises = 8.0;
 
 std::vector<MotionCandidates> ScaledCandidates(const HandEyeWork& work) {
   std::vector<MotionCandidates> scaled = work.candidates;
@@ -228,16 +234,18 @@ void FindReach(const HandEyeProblem& problem, HandEyeWork& work) {
     if (work.problem.used[k]) used.push_back(work.state.T_world_a[k]);
   const MotionKind before = work.reach.kind;
   const bool first = work.reach.free.cols() == 0;
-  work.reach = ReachOf(used, work.state.X, NoiseOf(work.problem));
+  MotionNoise noise = NoiseOf(work.problem);
+  if (work.estimates_offset) noise.noises = kStreamNoises;
+  work.reach = ReachOf(used, work.state.X, noise);
   if (first || work.reach.kind != before)
     HoldOpen(problem, work);
   else
     work.problem.free = work.reach.free;
 }
 
-OrDiagnosis<void> SolveRound(const HandEyeProblem& problem, HandEyeWork& work) {
+OrDiagnosis<void> SolveRound(const HandEyeProblem& problem, HandEyeWork& work, int iterations_max) {
   if (work.reach.kind == MotionKind::kStill) return tl::unexpected(NoMotion(problem));
-  const auto solution = SolveMotion(work.problem, work.state);
+  const auto solution = SolveMotion(work.problem, work.state, iterations_max);
   if (!solution) return tl::unexpected(MotionNotSolvable(problem, solution.error()));
   work.state = solution->state;
   auto fit = FitOf(work.problem, work.state);
@@ -294,7 +302,7 @@ OrDiagnosis<void> FitMotion(const HandEyeProblem& problem, HandEyeWork& work) {
   }
   for (int round = 0; round < kRoundsMax; ++round) {
     FindReach(problem, work);
-    if (auto solved = SolveRound(problem, work); !solved) return solved;
+    if (auto solved = SolveRound(problem, work, kIterationsOnTheWay); !solved) return solved;
     const SideFactor a = Updated(work.factor_a, work.fit.a, work.camera_a.has_value()),
                      b = Updated(work.factor_b, work.fit.b, work.camera_b.has_value());
     const bool same_noise = Same(a, work.factor_a) && Same(b, work.factor_b);
@@ -309,7 +317,7 @@ OrDiagnosis<void> FitMotion(const HandEyeProblem& problem, HandEyeWork& work) {
     if (work.problem.UsedCount() < kHandEyeMin) return tl::unexpected(MotionsContradict(problem, work.captures.size()));
     if (same_noise && !changed) break;
   }
-  return SolveRound(problem, work);
+  return SolveRound(problem, work, kMotionIterationsMax);
 }
 
 }  // namespace rigcal::calib

@@ -16,6 +16,8 @@ constexpr std::size_t kHandEyeMin = 4;            // captures of both
 constexpr std::size_t kHandEyeForJackknife = 5;   // fewer: the uncertainty is the model's
 constexpr std::size_t kHandEyeEnough = 10;        // fewer: a note says so
 
+constexpr int kStreamShared = 4, kStreamOffset = 3;  // count, and where the offset stands
+
 // On the variances that a side's source lets expect.
 struct SideFactor {
   double translation = 1.0, rotation = 1.0;
@@ -25,7 +27,9 @@ struct HandEyeWork {
   std::vector<CaptureId> captures;
   std::vector<MotionCandidates> candidates;  // side by side with the captures; covariances as their sources say
   std::optional<CameraMotion> camera_a, camera_b;
-  bool estimates_offset = false;             // side b's one shared parameter, seconds
+  // Of pose streams side b shares how far its world drifts from the middle of the recording to its end, and the offset
+  // of the clocks.
+  bool estimates_offset = false;
   std::map<CaptureId, std::string> unused;
   SideFactor factor_a, factor_b;
   std::vector<MotionChoice> choices;
@@ -43,8 +47,12 @@ void SetShared(const HandEyeWork& work, const CaptureId* without, MotionProblem&
 [[nodiscard]] tl::expected<void, Diagnosis> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
 [[nodiscard]] MotionNoise NoiseOf(const MotionProblem& problem);
 
-// The uncertainty of X along the free directions.
-[[nodiscard]] Result<Uncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
-                                                  const std::vector<std::size_t>& block_of_pose);
+struct MotionUncertainty {
+  Uncertainty X;                // along the free directions
+  double offset_sigma_s = 0.0;  // where an offset is estimated
+};
+// `block_of_pose`: which poses are left out together, ascending; empty: each by itself.
+[[nodiscard]] Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
+                                                        const std::vector<std::size_t>& block_of_pose);
 
 }  // namespace rigcal::calib

@@ -8,7 +8,6 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kNoises = 3.0;  // a rotation or a way counts from so many of its noise on
 constexpr double kNumerical_rad = 1e-9, kNumerical_m = 1e-9;
 
 using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -71,7 +70,7 @@ void ReachWithoutRotation(const std::vector<Se3>& poses, const Se3& X, const Mot
   for (const Se3& T : poses)
     scatter += (T.p_m - mean) * (T.p_m - mean).transpose() / static_cast<double>(poses.size());
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(scatter, Eigen::ComputeFullU);
-  const double least_m = std::max(kNoises * noise.translation_m, kNumerical_m);
+  const double least_m = std::max(noise.noises * noise.translation_m, kNumerical_m);
   const Eigen::Vector3d ways_m = svd.singularValues().cwiseSqrt();
   reach.axis_a = to_a * svd.matrixU().col(0);
   reach.travel_m = ways_m[0];
@@ -103,7 +102,7 @@ MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const Motio
   };
   reach.tilt_rad = without_noise(beyond(s[0]), reach.tilt_noise_rad);
   reach.turn_rad = without_noise(beyond(s[1]), reach.tilt_noise_rad);
-  const double least_rad = std::max(kNoises * reach.tilt_noise_rad, kNumerical_rad);
+  const double least_rad = std::max(noise.noises * reach.tilt_noise_rad, kNumerical_rad);
   if (reach.turn_rad < least_rad) {
     ReachWithoutRotation(T_world_a, X, noise, reach);
     return reach;
@@ -114,7 +113,7 @@ MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const Motio
   }
   // Eigen gives U and V the same sign per column: both are the axis, in the world and in a.
   reach.travel_m = LeastTravel(T_world_a, svd.matrixU().col(0), reach.axis_a, reach.point_a_m);
-  const double least_m = std::max(kNoises * std::sqrt(2.0) * noise.translation_m, kNumerical_m);
+  const double least_m = std::max(noise.noises * std::sqrt(2.0) * noise.translation_m, kNumerical_m);
   std::vector<Vector6d> open = {MoveAlong(reach.axis_a)};
   reach.kind = MotionKind::kOneAxis;
   if (without_noise(reach.travel_m, std::sqrt(2.0) * noise.translation_m) < least_m) {

@@ -19,6 +19,7 @@ enum class MotionKind {
 
 struct MotionNoise {
   double translation_m = 0.0, rotation_rad = 0.0;  // one sigma per axis of what one pose is known to
+  double noises = 3.0;  // a rotation or a way counts from so many of its noise on
 };
 
 struct MotionReach {

@@ -14,7 +14,7 @@ using GlobalMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kG
 using GlobalVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kGlobalMax, 1>;
 using GlobalRows = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kGlobalMax>;
 
-constexpr int kIterationsMax = 60, kDampingsMax = 12;
+constexpr int kDampingsMax = 12;
 constexpr double kStepSmall = 1e-10;          // m, rad, and shared parameters over their sigma
 constexpr double kEigenvalueSmallest = 1e-11;  // after scaling to a unit diagonal
 constexpr double kCostNoise = 1e-13;
@@ -195,11 +195,11 @@ Matrix6d ResidualCovariance(const MotionProblem& problem, const Se3& X, std::siz
   return M * problem.a.poses[k].covariance * M.transpose() + problem.b.poses[k].covariance;
 }
 
-Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start) {
+Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start, int iterations_max) {
   const Layout at(problem);
   MotionSolution solution{start, CostOf(problem, start), 0};
   double damping = 0;
-  for (; solution.iterations < kIterationsMax; ++solution.iterations) {
+  for (; solution.iterations < iterations_max; ++solution.iterations) {
     const Reduced reduced = Reduce(problem, solution.state, at);
     if (!reduced.H.allFinite() || !reduced.g.allFinite()) return NotConverged();
     int tries = 0;

@@ -9,7 +9,8 @@
 
 namespace rigcal::calib {
 
-// What a side's poses share and what is estimated with them: a camera's intrinsics, a clock's offset. At most 12.
+// What a side's poses share and what is estimated with them: a camera's intrinsics; how one stream's world drifts
+// against the other's, and the offset of their clocks.
 constexpr int kSharedMax = 12;
 using SharedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSharedMax, 1>;
 using SharedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSharedMax, kSharedMax>;
@@ -51,8 +52,11 @@ struct MotionSolution {
 };
 
 // Gauss-Newton with damping where a step does not help; the body's poses eliminated. Deterministic. Directions of Z
-// and of the shared parameters that nothing tells stay where they are. Fails if nothing converges.
-[[nodiscard]] Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start);
+// and of the shared parameters that nothing tells stay where they are. Fails if nothing converges. With fewer iterations
+// it is on the way to the minimum.
+constexpr int kMotionIterationsMax = 60;
+[[nodiscard]] Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start,
+                                                 int iterations_max = kMotionIterationsMax);
 // A start from X and Z: the body where side a sees it, nothing shared.
 [[nodiscard]] MotionState StateFrom(const MotionProblem& problem, const Se3& X, const Se3& Z);
 
