@@ -176,6 +176,8 @@ SessionHeader ReadHeader(const YamlField& root) {
       header.targets.push_back(ReadTarget(target.Called(Title("target", target.Key()))));
   for (const YamlField& sensor : root.At("sensors").Members())
     header.sensors.push_back(ReadSensor(sensor.Called(Title("sensor", sensor.Key()))));
+  for (const Sensor& sensor : header.sensors)
+    if (sensor.kind == SensorKind::kCamera) static_cast<void>(root.At("targets"));  // pictures are of something
   if (const auto reference = root.Find("reference"))
     header.reference = ReadId<SensorId>(*reference);
   else if (!header.sensors.empty())
