@@ -188,7 +188,7 @@ CHARUCO = "  board: {type: charuco, squares: [9, 6], square_size_m: 0.025, marke
 SESSIONS = [
     yaml_case("a session without captures", r"session folder .*: it has no captures", files={}),
     yaml_case("a session without targets", r"session\.yaml line \d+: targets: the session has 0", ("targets:\n" + BOARD, "targets: {}\n")),
-    yaml_case("targets left out", r'session\.yaml line \d+: targets: the session has 0', ("targets:\n" + BOARD, "")),
+    yaml_case("targets left out", r'session\.yaml line \d+: "targets" is missing', ("targets:\n" + BOARD, "")),
     yaml_case("sensors without entries", r"session\.yaml line \d+: sensors: the session has 0", (YAML[YAML.index("sensors:"):], "sensors: {}\n")),
     yaml_case("a sensor without pictures", r"left and right see the board together in only 0 captures", kind="stored",
               files={path: content for path, content in GOOD.items() if path.startswith("left")}),
