@@ -53,7 +53,8 @@ void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
     if (edge["state"].Text() == "failed") continue;
     for (const Document& item : edge["diagnoses"].Items()) {
       const std::string sentence = SentenceOf(item);
-      const auto known = std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
+      const auto known =
+          std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
       if (known == notes.end())
         notes.emplace_back(sentence, PairOf(edge));
       else
@@ -66,8 +67,7 @@ void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
 }  // namespace
 
 void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
-  for (const Document& item : diagnoses.Items())
-    out << "  " << Plain(SentenceOf(item)) << '\n';
+  for (const Document& item : diagnoses.Items()) out << "  " << Plain(SentenceOf(item)) << '\n';
 }
 
 void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {

@@ -17,7 +17,7 @@ std::string AddressOf(const Awaited& awaited) {
 
 PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                       std::size_t items) {
-  return {std::move(kind),     std::move(robot),     std::move(id),    items,
+  return {std::move(kind),     std::move(robot),     std::move(id),     items,
           engine.TotalBytes(), engine.HeldAtFirst(), engine.restarts(), 0};
 }
 

@@ -66,7 +66,8 @@ ExitCode Run(const Context& context, const Options& options) {
     context.out << "address  " << place->address << '\n';
   context.out << "file     " << place->file << "  (in the server's data folder; opens from disk)\n";
   if (place->zip)
-    context.out << "zip      " << options.out << "  (" << place->zip->files << " files; unpack it and open index.html)\n";
+    context.out << "zip      " << options.out << "  (" << place->zip->files
+                << " files; unpack it and open index.html)\n";
   return ExitCode::kGood;
 }
 

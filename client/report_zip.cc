@@ -17,7 +17,8 @@ constexpr std::int64_t kReportBytesMax = 4LL << 30;
 constexpr std::int64_t kFileBytesMax = 1LL << 30;
 
 tl::unexpected<Error> Refused(const std::filesystem::path& file, const std::string& why) {
-  return Fail(ErrorCode::kStorage, file.string() + " cannot be written: " + why, "Check its folder and the free space.");
+  return Fail(ErrorCode::kStorage, file.string() + " cannot be written: " + why,
+              "Check its folder and the free space.");
 }
 
 struct Discard {
@@ -84,8 +85,9 @@ bool IsPlainPath(const std::string& path) {
 
 Result<ZipSummary> WriteReportZip(Connection& connection, std::chrono::milliseconds timeout, const std::string& robot,
                                   std::int64_t revision, const std::filesystem::path& file) {
-  RIGCAL_ASSIGN(const Document list,
-                connection.AskDocument("report_files", JsonObject({{"robot", robot}, {"revision", revision}}), timeout));
+  RIGCAL_ASSIGN(
+      const Document list,
+      connection.AskDocument("report_files", JsonObject({{"robot", robot}, {"revision", revision}}), timeout));
   RIGCAL_ASSIGN(Zip zip, OpenZip(file));
   ZipSummary summary;
   for (const Document& row : list["files"].Items()) {

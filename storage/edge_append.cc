@@ -67,6 +67,12 @@ bool InsertEdge(Store& store, const Edge& edge, Stamp now) {
   return insert.Run() > 0;
 }
 
+Blob BlobOfShifts(const std::vector<Vector6d>& shifts) {
+  std::vector<double> values;
+  for (const Vector6d& shift : shifts) values.insert(values.end(), shift.data(), shift.data() + 6);
+  return BlobOf(values.data(), values.size());
+}
+
 void InsertBlocks(Store& store, std::int64_t edge_number, const Uncertainty& uncertainty) {
   for (std::size_t i = 0; i < uncertainty.blocks.size(); ++i) {
     const auto& [block_id, d] = uncertainty.blocks[i];
@@ -77,8 +83,8 @@ void InsertBlocks(Store& store, std::int64_t edge_number, const Uncertainty& unc
   }
   for (std::size_t i = 0; i < uncertainty.contributions.size(); ++i) {
     const Contribution& part = uncertainty.contributions[i];
-    Query(store, "INSERT INTO edge_contribution VALUES (?, ?, ?, ?)")
-        .Bind(edge_number, i, part.name, BlobOf(part.covariance))
+    Query(store, "INSERT INTO edge_contribution VALUES (?, ?, ?, ?, ?)")
+        .Bind(edge_number, i, part.name, BlobOf(part.covariance), BlobOfShifts(part.shifts))
         .Run();
   }
 }

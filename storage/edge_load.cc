@@ -105,10 +105,17 @@ void LoadBlocks(Store& store, const Selection& selection, Selected& selected) {
               });
 }
 
+std::vector<Vector6d> ShiftsAt(const Query& row, int column) {
+  std::vector<Vector6d> shifts;
+  const std::vector<double> values = row.Doubles(column);
+  for (std::size_t i = 0; i + 6 <= values.size(); i += 6) shifts.emplace_back(values.data() + i);
+  return shifts;
+}
+
 void LoadParts(Store& store, const Selection& selection, Selected& selected) {
-  ForEachPart(store, selection, selected, "edge_contribution", "name, p.covariance", "idx",
+  ForEachPart(store, selection, selected, "edge_contribution", "name, p.covariance, p.shifts", "idx",
               [](Edge& edge, const Query& row) {
-                edge.uncertainty.contributions.push_back({row.Text(1), row.MatrixAt(2)});
+                edge.uncertainty.contributions.push_back({row.Text(1), row.MatrixAt(2), ShiftsAt(row, 3)});
               });
   ForEachPart(store, selection, selected, "edge_diagnosis", "code, what, cure", "idx",
               [](Edge& edge, const Query& row) {
@@ -159,9 +166,10 @@ Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session) {
 
 Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot) {
   return Load<std::optional<Stamp>>(store, "edges of robot " + robot.str(), [&]() -> Result<std::optional<Stamp>> {
-    Query query(store,
-                "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM edge LEFT JOIN session USING (session_id) "
-                "WHERE edge.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
+    Query query(
+        store,
+        "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM edge LEFT JOIN session USING (session_id) "
+        "WHERE edge.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
     if (!query.Bind(robot).Step()) return std::nullopt;
     return Stamp{query.Int(0)};
   });

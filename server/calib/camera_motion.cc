@@ -52,7 +52,8 @@ double VarianceOf(const CameraMotion& motion) { return std::max(motion.camera.va
 tl::expected<CameraMotion, Diagnosis> CameraMotionOf(const CameraProblem& problem) {
   auto camera = EstimateCamera(problem);
   if (!camera) return tl::unexpected(camera.error());
-  CameraMotion motion{std::move(*camera), !problem.camera.intrinsics, 0, {}, SymmetryOf(problem.board), CentreOf(problem.board)};
+  CameraMotion motion{std::move(*camera),        !problem.camera.intrinsics, 0, {},
+                      SymmetryOf(problem.board), CentreOf(problem.board)};
   const CameraModel model = ModelOf(problem.camera);
   motion.intrinsics_count = IntrinsicsCount(model);
   const IntrinsicsVector intrinsics = VectorOf(motion.camera.intrinsics);

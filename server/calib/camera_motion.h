@@ -26,7 +26,7 @@ struct CameraMotion {
   int intrinsics_count = 0;
   // Per capture: the poses that its view allows, the likeliest first.
   std::map<CaptureId, std::vector<ViewMoments>> views;
-  int turns = 1;               // orientations in which the board looks alike
+  int turns = 1;                                             // orientations in which the board looks alike
   Eigen::Vector3d centre_board_m = Eigen::Vector3d::Zero();  // about which it is turned
 };
 

@@ -18,9 +18,9 @@ namespace rigcal::calib {
 // One sensor: a camera with its views of one board that stands still, or a tracker or pose stream with its poses.
 struct HandEyeSide {
   Sensor sensor;
-  std::optional<Target> board;                           // of a camera
-  std::vector<std::pair<CaptureId, BoardView>> views;    // of a camera, sorted by id; a view may be not found
-  PoseTable poses;                                       // of the others
+  std::optional<Target> board;                         // of a camera
+  std::vector<std::pair<CaptureId, BoardView>> views;  // of a camera, sorted by id; a view may be not found
+  PoseTable poses;                                     // of the others
 };
 
 struct HandEyeProblem {
@@ -39,11 +39,11 @@ struct HandEyeEstimate {
   Se3 T_a_b, T_world_a_world_b;
   MotionReach reach;
   SideNoise noise_a, noise_b;
-  std::map<CaptureId, Vector6d> residuals;          // Log((Z B)^-1 A X) of the captures used
-  std::map<CaptureId, std::string> unused;          // why, in words
-  double rms_m = 0.0, rms_rad = 0.0;                // of the residuals
-  std::optional<double> offset_s, offset_sigma_s;   // of pose streams: t_a = t_b + offset
-  std::size_t captures = 0;                         // used; of streams: samples
+  std::map<CaptureId, Vector6d> residuals;         // Log((Z B)^-1 A X) of the captures used
+  std::map<CaptureId, std::string> unused;         // why, in words
+  double rms_m = 0.0, rms_rad = 0.0;               // of the residuals
+  std::optional<double> offset_s, offset_sigma_s;  // of pose streams: t_a = t_b + offset
+  std::size_t captures = 0;                        // used; of streams: samples
 };
 
 struct HandEyeResult {

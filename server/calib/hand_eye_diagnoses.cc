@@ -55,10 +55,11 @@ Diagnosis CameraFailed(const HandEyeProblem& problem, const HandEyeSide& side, c
 }
 
 Diagnosis MotionsContradict(const HandEyeProblem& problem, std::size_t captures) {
-  return {"contradicting_motion",
-          PairOf(problem) + ": no rigid connection of the two explains most of their " + CountText(captures) + ".",
-          "Check that boards and tracker stood still, that files and rows of one name are of one instant, and that each "
-          "camera's board is named right."};
+  return {
+      "contradicting_motion",
+      PairOf(problem) + ": no rigid connection of the two explains most of their " + CountText(captures) + ".",
+      "Check that boards and tracker stood still, that files and rows of one name are of one instant, and that each "
+      "camera's board is named right."};
 }
 
 Diagnosis CapturesContradict(const HandEyeProblem& problem, const std::vector<CaptureId>& captures) {
@@ -87,17 +88,18 @@ Diagnosis NoMotion(const HandEyeProblem& problem) {
 std::vector<Diagnosis> OpenDirections(const HandEyeProblem& problem, const MotionReach& reach) {
   const std::string a = problem.a.sensor.id.str(), b = problem.b.sensor.id.str();
   const std::string axis = AxisText(reach.axis_a) + " in the frame of " + a;
-  const std::string tilt = "to within " + DegreesOf(reach.tilt_rad) + " (noise " + DegreesOf(reach.tilt_noise_rad) + ")";
+  const std::string tilt =
+      "to within " + DegreesOf(reach.tilt_rad) + " (noise " + DegreesOf(reach.tilt_noise_rad) + ")";
   switch (reach.kind) {
     case MotionKind::kOneAxis:
       return {{"planar_motion",
-               PairOf(problem) + " were turned about one axis only, " + axis + ", " + tilt + ": how far " + b + " is from " +
-                   a + " along this axis is not known.",
+               PairOf(problem) + " were turned about one axis only, " + axis + ", " + tilt + ": how far " + b +
+                   " is from " + a + " along this axis is not known.",
                kTurnMore}};
     case MotionKind::kOnTheSpot:
       return {{"turning_on_the_spot",
-               PairOf(problem) + " were turned about one fixed line only, along " + axis + ", " + tilt + ": where " + b +
-                   " is along this line, and how it is turned about it, is not known.",
+               PairOf(problem) + " were turned about one fixed line only, along " + axis + ", " + tilt + ": where " +
+                   b + " is along this line, and how it is turned about it, is not known.",
                "Drive the robot to different places between captures. " + std::string(kTurnMore)}};
     case MotionKind::kNoRotation:
       return {{"pure_translation",
@@ -106,8 +108,8 @@ std::vector<Diagnosis> OpenDirections(const HandEyeProblem& problem, const Motio
                kTurnMore}};
     case MotionKind::kOneLine:
       return {{"straight_line",
-               PairOf(problem) + " were moved along one line only, " + axis + ", and not turned: where " + b + " is from " +
-                   a + " is not known, nor how it is turned about this line.",
+               PairOf(problem) + " were moved along one line only, " + axis + ", and not turned: where " + b +
+                   " is from " + a + " is not known, nor how it is turned about this line.",
                kTurnMore}};
     case MotionKind::kGeneral:
     case MotionKind::kStill:
@@ -147,8 +149,9 @@ std::vector<Diagnosis> TakenAsExact(const HandEyeProblem& problem) {
       notes.push_back(IntrinsicsTakenAsExact(side->sensor.id));
     if (!(side->board->square_sigma_m > 0))
       notes.push_back({"board_size_taken_as_exact",
-                       "The size of target '" + side->board->id.str() + "' is given without an uncertainty and taken as "
-                       "exact.",
+                       "The size of target '" + side->board->id.str() +
+                           "' is given without an uncertainty and taken as "
+                           "exact.",
                        "Give 'square_size_sigma_m' in session.yaml."});
   }
   return notes;

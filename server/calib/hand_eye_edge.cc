@@ -107,9 +107,8 @@ Edge EstimateHandEyeEdge(const HandEyeProblem& problem) {
   try {
     return Solved(problem);
   } catch (const std::exception& exception) {
-    return FailedEdge(
-        problem,
-        MotionNotSolvable(problem, {ErrorCode::kInternal, exception.what(), "Report this with the session's id."}));
+    return FailedEdge(problem, MotionNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
+                                                           "Report this with the session's id."}));
   }
 }
 

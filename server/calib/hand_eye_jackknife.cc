@@ -15,8 +15,7 @@ struct Block {
   std::optional<CaptureId> capture;
 };
 
-void AddSingleViews(const std::optional<CameraMotion>& camera, std::set<CaptureId>& known,
-                    std::vector<Block>& blocks) {
+void AddSingleViews(const std::optional<CameraMotion>& camera, std::set<CaptureId>& known, std::vector<Block>& blocks) {
   if (!camera || !camera->estimates_intrinsics) return;
   for (const auto& [capture, views] : camera->views)
     if (known.insert(capture).second) blocks.push_back({capture.str(), {}, capture});
@@ -86,8 +85,9 @@ void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide 
     constants.push_back({"intrinsics of " + side.sensor.id.str(), [&work, poses, i, sigma](double steps) {
                            MotionProblem moved = work.problem;
                            for (SidePose& pose : (moved.*poses).poses)
-                             pose.T_world_sensor = pose.T_world_sensor *
-                                                   Se3::Exp(steps * sigma * pose.d_shared.col(static_cast<Eigen::Index>(i)));
+                             pose.T_world_sensor =
+                                 pose.T_world_sensor *
+                                 Se3::Exp(steps * sigma * pose.d_shared.col(static_cast<Eigen::Index>(i)));
                            return SolvedPose(moved, work.state);
                          }});
   }
@@ -96,7 +96,7 @@ void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide 
 }  // namespace
 
 Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
-                                    const std::vector<std::size_t>& block_of_pose) {
+                                          const std::vector<std::size_t>& block_of_pose) {
   std::vector<GivenConstant> constants;
   AddBoardSize(work, problem.a, &MotionProblem::a, constants);
   AddBoardSize(work, problem.b, &MotionProblem::b, constants);

@@ -42,8 +42,7 @@ std::vector<PoseCandidate> CandidatesOf(const TimedPose& row) {
 using CandidateMap = std::map<CaptureId, std::vector<PoseCandidate>>;
 
 OrDiagnosis<CandidateMap> CandidatesOf(const HandEyeProblem& problem, const HandEyeSide& side,
-                                       std::optional<CameraMotion>& camera,
-                                       std::map<CaptureId, std::string>& unused) {
+                                       std::optional<CameraMotion>& camera, std::map<CaptureId, std::string>& unused) {
   CandidateMap candidates;
   if (side.sensor.kind != SensorKind::kCamera) {
     for (const TimedPose& row : side.poses) candidates[row.capture] = CandidatesOf(row);
@@ -75,7 +74,8 @@ bool IsRepeat(const HandEyeSide& side, const CandidateMap& candidates, const Cap
 
 SidePose Scaled(SidePose pose, const SideFactor& factor) {
   Vector6d scale;
-  scale << Eigen::Vector3d::Constant(std::sqrt(factor.translation)), Eigen::Vector3d::Constant(std::sqrt(factor.rotation));
+  scale << Eigen::Vector3d::Constant(std::sqrt(factor.translation)),
+      Eigen::Vector3d::Constant(std::sqrt(factor.rotation));
   pose.covariance = scale.asDiagonal() * pose.covariance * scale.asDiagonal();
   return pose;
 }
@@ -148,10 +148,10 @@ namespace {
 
 constexpr int kRoundsMax = 40, kChoosingRounds = 6;
 constexpr int kIterationsOnTheWay = 4;
-constexpr double kSame_ratio = 0.01;   // of a factor from round to round
-constexpr double kGateSquares = 40.0;   // of six degrees of freedom: one in a million
-constexpr double kChiMedian = 5.35;     // of six degrees of freedom
-constexpr double kFewPoses = 5.0;       // Rousseeuw & Leroy (1987)
+constexpr double kSame_ratio = 0.01;                           // of a factor from round to round
+constexpr double kGateSquares = 40.0;                          // of six degrees of freedom: one in a million
+constexpr double kChiMedian = 5.35;                            // of six degrees of freedom
+constexpr double kFewPoses = 5.0;                              // Rousseeuw & Leroy (1987)
 constexpr double kPriorOfCamera = 2.0, kPriorOfTracker = 0.5;  // squares that the expected noise counts as
 constexpr double kFactorMin = 1e-8;
 // Errors of a stream last for many of its poses and do not average out as those of captures do.
@@ -189,7 +189,8 @@ SideFactor Updated(const SideFactor& factor, const SideFit& fit, bool camera) {
 }
 
 bool Same(const SideFactor& x, const SideFactor& y) {
-  return std::abs(x.translation / y.translation - 1) < kSame_ratio && std::abs(x.rotation / y.rotation - 1) < kSame_ratio;
+  return std::abs(x.translation / y.translation - 1) < kSame_ratio &&
+         std::abs(x.rotation / y.rotation - 1) < kSame_ratio;
 }
 
 // Which poses contradict the others: judged by the middle of all, so that they cannot hide in their own noise.
@@ -217,8 +218,8 @@ void HoldOpen(const HandEyeProblem& problem, HandEyeWork& work) {
   const Vector6d away = (work.state.X.Inverse() * wanted).Log();
   // Without a drawing only positions have a natural value, nearest to a; they are the first of the open columns.
   const Eigen::Index positions = work.reach.kind == MotionKind::kOnTheSpot ? 1 : 3;
-  const Eigen::MatrixXd open =
-      work.reach.open.leftCols(problem.T_a_b_nominal ? work.reach.open.cols() : std::min(positions, work.reach.open.cols()));
+  const Eigen::MatrixXd open = work.reach.open.leftCols(
+      problem.T_a_b_nominal ? work.reach.open.cols() : std::min(positions, work.reach.open.cols()));
   work.state.X = (work.state.X * Se3::Exp(open * (open.transpose() * away))).Normalized();
   // Z follows, or the held part would pull at it through the noise.
   for (std::size_t k = 0; k < work.problem.used.size(); ++k) {

@@ -12,9 +12,9 @@
 
 namespace rigcal::calib {
 
-constexpr std::size_t kHandEyeMin = 4;            // captures of both
-constexpr std::size_t kHandEyeForJackknife = 5;   // fewer: the uncertainty is the model's
-constexpr std::size_t kHandEyeEnough = 10;        // fewer: a note says so
+constexpr std::size_t kHandEyeMin = 4;           // captures of both
+constexpr std::size_t kHandEyeForJackknife = 5;  // fewer: the uncertainty is the model's
+constexpr std::size_t kHandEyeEnough = 10;       // fewer: a note says so
 
 constexpr int kStreamShared = 4, kStreamOffset = 3;  // count, and where the offset stands
 
@@ -33,7 +33,7 @@ struct HandEyeWork {
   std::map<CaptureId, std::string> unused;
   SideFactor factor_a, factor_b;
   std::vector<MotionChoice> choices;
-  MotionProblem problem;                     // what was chosen, covariances with their factors
+  MotionProblem problem;  // what was chosen, covariances with their factors
   MotionState state;
   MotionReach reach;
   MotionFit fit;

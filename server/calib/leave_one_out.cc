@@ -39,6 +39,7 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
     if (contributions.empty() || contributions.back().name != constants[i].name)
       contributions.push_back({constants[i].name, Matrix6d::Zero()});
     contributions.back().covariance += **shifts[i] * (*shifts[i])->transpose();
+    contributions.back().shifts.push_back(**shifts[i]);
   }
   return contributions;
 }
@@ -65,9 +66,12 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
                                      std::vector<Contribution> contributions, std::size_t captures) {
   const Matrix6d onto = free * free.transpose(), C_model = free * C_model_along * free.transpose();
   for (BlockVector& block : blocks) block.d = onto * block.d;
-  for (Contribution& contribution : contributions)
+  for (Contribution& contribution : contributions) {
     contribution.covariance = Symmetrized(onto * contribution.covariance * onto);
-  if (free.cols() == 6) return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
+    for (Vector6d& shift : contribution.shifts) shift = onto * shift;
+  }
+  if (free.cols() == 6)
+    return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
   const int m = static_cast<int>(captures);
   Matrix6d C = C_model;
   if (!blocks.empty()) {

@@ -72,8 +72,11 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
   Uncertainty uncertainty =
       FromInformation(Omega, jackknife ? UncertaintySource::kJackknife : UncertaintySource::kModel, dof);
   if (uncertainty.rank != B.cols()) return failed();
-  for (Contribution& contribution : contributions)
-    if (!work.a_is_map) contribution.covariance = InverseCovariance(T_map_moving, contribution.covariance);
+  for (Contribution& contribution : contributions) {
+    if (work.a_is_map) break;
+    contribution.covariance = InverseCovariance(T_map_moving, contribution.covariance);
+    for (Vector6d& shift : contribution.shifts) shift = -Ad * shift;
+  }
   uncertainty.contributions = std::move(contributions);
   for (std::size_t k = 0; jackknife && k < m; ++k)
     uncertainty.blocks.push_back(

@@ -13,9 +13,9 @@ namespace rigcal::calib {
 namespace {
 
 constexpr int kSamplesMax = 150, kSamplesMin = 12, kRefinementsMax = 4;
-constexpr std::size_t kTriplesAll = 8;      // with so few captures every triple is tried
-constexpr std::size_t kKept = 3;            // partners of a sample, and combinations of them
-constexpr double kGoodMedian = 9.0;         // of squares with six degrees of freedom: noise explains it
+constexpr std::size_t kTriplesAll = 8;                // with so few captures every triple is tried
+constexpr std::size_t kKept = 3;                      // partners of a sample, and combinations of them
+constexpr double kGoodMedian = 9.0;                   // of squares with six degrees of freedom: noise explains it
 constexpr double kAngle_rad = 0.01, kPitch_m = 0.02;  // how well a sample's screws should agree
 constexpr double kInlierMedians = 6.0, kInlierLeast = 20.0;
 
@@ -71,8 +71,8 @@ double ScrewDifference(const MotionPair& motion) {
   const double angle_a = a.tail<3>().norm(), angle_b = b.tail<3>().norm();
   double difference = std::pow((angle_a - angle_b) / kAngle_rad, 2);
   if (angle_a > kAngle_rad && angle_b > kAngle_rad)
-    difference += std::pow(
-        (motion.A.p_m.dot(a.tail<3>()) / angle_a - motion.B.p_m.dot(b.tail<3>()) / angle_b) / kPitch_m, 2);
+    difference +=
+        std::pow((motion.A.p_m.dot(a.tail<3>()) / angle_a - motion.B.p_m.dot(b.tail<3>()) / angle_b) / kPitch_m, 2);
   return difference;
 }
 
@@ -124,8 +124,8 @@ class Search {
     std::vector<MotionPair> motions;
     for (const auto& [i, j] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
       motions.push_back(PairOf(captures_[sample[static_cast<std::size_t>(i)]],
-                               captures_[sample[static_cast<std::size_t>(j)]],
-                               choices[static_cast<std::size_t>(i)], choices[static_cast<std::size_t>(j)]));
+                               captures_[sample[static_cast<std::size_t>(j)]], choices[static_cast<std::size_t>(i)],
+                               choices[static_cast<std::size_t>(j)]));
     const MotionCandidates& first = captures_[sample[0]];
     for (const Se3& X : StartsOf(motions))
       TryPose(X, {first.a[choices[0].a].pose.T_world_sensor, first.b[choices[0].b].pose.T_world_sensor});

@@ -10,8 +10,8 @@ namespace rigcal::calib {
 
 struct PoseCandidate {
   SidePose pose;
-  double penalty = 0.0;    // how much worse it fits its own view, in squared sigmas
-  bool as_found = true;    // false: the board taken as turned
+  double penalty = 0.0;  // how much worse it fits its own view, in squared sigmas
+  bool as_found = true;  // false: the board taken as turned
 };
 // One capture: the poses that either side allows, none empty.
 struct MotionCandidates {

@@ -30,8 +30,8 @@ void SetOpen(const std::vector<Vector6d>& twists_a, const Se3& X, MotionReach& r
   reach.open.resize(6, count);
   for (Eigen::Index i = 0; i < count; ++i)
     reach.open.col(i) = Adjoint(X.Inverse()) * twists_a[static_cast<std::size_t>(i)];
-  const Matrix6d Q = count == 0 ? Matrix6d::Identity()
-                                : Matrix6d(Eigen::HouseholderQR<Columns>(reach.open).householderQ());
+  const Matrix6d Q =
+      count == 0 ? Matrix6d::Identity() : Matrix6d(Eigen::HouseholderQR<Columns>(reach.open).householderQ());
   reach.open = Q.leftCols(count);
   reach.free = Q.rightCols(6 - count);
 }
@@ -49,7 +49,8 @@ double LeastTravel(const std::vector<Se3>& poses, const Eigen::Vector3d& axis_wo
   const Eigen::Matrix3d mean_R = MeanRotation(poses);
   Eigen::Vector3d mean_p = Eigen::Vector3d::Zero();
   for (const Se3& T : poses) mean_p += T.p_m / static_cast<double>(poses.size());
-  Eigen::Matrix3d normal = axis_a * axis_a.transpose();  // the point may slide along the axis: the nearest to a's origin
+  Eigen::Matrix3d normal =
+      axis_a * axis_a.transpose();  // the point may slide along the axis: the nearest to a's origin
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (const Se3& T : poses) {
     const Eigen::Matrix3d M = across * (T.R() - mean_R);
@@ -67,8 +68,7 @@ void ReachWithoutRotation(const std::vector<Se3>& poses, const Se3& X, const Mot
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const Se3& T : poses) mean += T.p_m / static_cast<double>(poses.size());
-  for (const Se3& T : poses)
-    scatter += (T.p_m - mean) * (T.p_m - mean).transpose() / static_cast<double>(poses.size());
+  for (const Se3& T : poses) scatter += (T.p_m - mean) * (T.p_m - mean).transpose() / static_cast<double>(poses.size());
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(scatter, Eigen::ComputeFullU);
   const double least_m = std::max(noise.noises * noise.translation_m, kNumerical_m);
   const Eigen::Vector3d ways_m = svd.singularValues().cwiseSqrt();

@@ -15,7 +15,7 @@ using GlobalVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kGlobalMax, 1>;
 using GlobalRows = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kGlobalMax>;
 
 constexpr int kDampingsMax = 12;
-constexpr double kStepSmall = 1e-10;          // m, rad, and shared parameters over their sigma
+constexpr double kStepSmall = 1e-10;           // m, rad, and shared parameters over their sigma
 constexpr double kEigenvalueSmallest = 1e-11;  // after scaling to a unit diagonal
 constexpr double kCostNoise = 1e-13;
 
@@ -156,8 +156,7 @@ MotionState Stepped(const MotionProblem& problem, const MotionState& state, cons
   for (std::size_t k = 0; k < problem.used.size(); ++k) {
     if (!problem.used[k]) continue;
     const BodyNormal& n = reduced.bodies[body++];
-    next.T_world_a[k] =
-        (state.T_world_a[k] * Se3::Exp(-(n.inverse * (n.gradient + n.mixed * step)))).Normalized();
+    next.T_world_a[k] = (state.T_world_a[k] * Se3::Exp(-(n.inverse * (n.gradient + n.mixed * step)))).Normalized();
   }
   return next;
 }
@@ -264,9 +263,9 @@ Result<MotionFit> FitOf(const MotionProblem& problem, const MotionState& state) 
   if (!reduced.H.allFinite() || !(solver.eigenvalues().minCoeff() > kEigenvalueSmallest))
     return Fail(ErrorCode::kInvalidInput, "the motion leaves a direction open",
                 "Move and turn the robot about different axes.");
-  const GlobalMatrix C = scale.asDiagonal() * GlobalMatrix(solver.eigenvectors() *
-                                                           solver.eigenvalues().cwiseInverse().asDiagonal() *
-                                                           solver.eigenvectors().transpose()) *
+  const GlobalMatrix C = scale.asDiagonal() *
+                         GlobalMatrix(solver.eigenvectors() * solver.eigenvalues().cwiseInverse().asDiagonal() *
+                                      solver.eigenvectors().transpose()) *
                          scale.asDiagonal();
   MotionFit fit;
   fit.C_X = C.topLeftCorner(at.z, at.z);

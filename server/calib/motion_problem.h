@@ -34,13 +34,14 @@ struct MotionSide {
 struct MotionProblem {
   MotionSide a, b;
   std::vector<char> used;  // a pose that is not used has no weight
-  // Columns: directions of X (right tangent at b) along which it is estimated. All six unless the motion leaves some open.
+  // Columns: directions of X (right tangent at b) along which it is estimated. All six unless the motion leaves some
+  // open.
   Eigen::Matrix<double, 6, Eigen::Dynamic> free = Matrix6d::Identity();
   [[nodiscard]] std::size_t UsedCount() const;
 };
 
 struct MotionState {
-  Se3 X, Z;                   // T_a_b; T_world-of-a_world-of-b
+  Se3 X, Z;  // T_a_b; T_world-of-a_world-of-b
   SharedVector shared_a, shared_b;
   std::vector<Se3> T_world_a;  // the body's poses as both sides say
 };
@@ -52,8 +53,8 @@ struct MotionSolution {
 };
 
 // Gauss-Newton with damping where a step does not help; the body's poses eliminated. Deterministic. Directions of Z
-// and of the shared parameters that nothing tells stay where they are. Fails if nothing converges. With fewer iterations
-// it is on the way to the minimum.
+// and of the shared parameters that nothing tells stay where they are. Fails if nothing converges. With fewer
+// iterations it is on the way to the minimum.
 constexpr int kMotionIterationsMax = 60;
 [[nodiscard]] Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start,
                                                  int iterations_max = kMotionIterationsMax);
@@ -71,7 +72,7 @@ struct SideFit {
   double redundancy[2] = {0, 0};  // their expectation if the covariances are right
 };
 struct MotionFit {
-  Eigen::MatrixXd C_X;  // covariance of X along the free directions
+  Eigen::MatrixXd C_X;          // covariance of X along the free directions
   double offset_sigma_s = 0.0;  // of the last shared parameter of b, if there is one
   SideFit a, b;
 };

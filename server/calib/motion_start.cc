@@ -91,7 +91,8 @@ ClosedForm ClosedFormOf(const std::vector<Se3>& a, const std::vector<Se3>& b) {
     right += M.transpose() * (R_Z * b[i].p_m - a[i].p_m);
   }
   const Eigen::Matrix<double, 6, 1> t = normal.completeOrthogonalDecomposition().solve(right);
-  return {Se3{t.head<3>(), Eigen::Quaterniond(R_X)}.Normalized(), Se3{t.tail<3>(), Eigen::Quaterniond(R_Z)}.Normalized()};
+  return {Se3{t.head<3>(), Eigen::Quaterniond(R_X)}.Normalized(),
+          Se3{t.tail<3>(), Eigen::Quaterniond(R_Z)}.Normalized()};
 }
 
 }  // namespace rigcal::calib

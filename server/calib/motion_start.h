@@ -20,9 +20,9 @@ struct MotionPair {
 struct ClosedForm {
   Se3 X, Z;
 };
-// From poses A_k, B_k of the same instants, side by side: the rotation of X from the motions between all of them (Park &
-// Martin), that of Z as their mean, then both translations at once by least squares (Shah 2013). All of it is told only
-// by turns about different axes.
+// From poses A_k, B_k of the same instants, side by side: the rotation of X from the motions between all of them (Park
+// & Martin), that of Z as their mean, then both translations at once by least squares (Shah 2013). All of it is told
+// only by turns about different axes.
 [[nodiscard]] ClosedForm ClosedFormOf(const std::vector<Se3>& a, const std::vector<Se3>& b);
 
 }  // namespace rigcal::calib

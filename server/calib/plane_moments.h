@@ -18,7 +18,7 @@ struct PlaneMoments {
   // Of [p; u; 1] [p; u; 1]^T / variance, per m^2, less what range noise is expected to add: g^T sum g is a chi-square
   // less its mean, so that its least value is not drawn towards planes that the rays meet at a grazing angle.
   Matrix7d sum = Matrix7d::Zero();
-  double weight_per_m2 = 0.0;       // sum of 1 / variance of the distance
+  double weight_per_m2 = 0.0;  // sum of 1 / variance of the distance
   int points = 0;
 };
 

@@ -7,8 +7,8 @@ namespace rigcal::calib {
 namespace {
 
 constexpr double kNanoseconds = 1e-9;
-constexpr double kGapMax_s = 0.5;         // between rows: longer, and nothing is interpolated
-constexpr std::size_t kCellsMax = 4096;   // of a stream, in the first search
+constexpr double kGapMax_s = 0.5;        // between rows: longer, and nothing is interpolated
+constexpr std::size_t kCellsMax = 4096;  // of a stream, in the first search
 constexpr double kCell_s = 0.02;
 constexpr double kOverlapLeast_ratio = 0.25;  // of the shorter stream
 constexpr std::size_t kOverlapLeast_cells = 64;
@@ -85,9 +85,9 @@ std::optional<ClockOffset> CorrelateClocks(const PoseTable& table_a, const PoseT
   const double cell_s = std::max(kCell_s, longest_s / static_cast<double>(kCellsMax));
   const auto cells = [&](const Turning& turning) { return static_cast<std::size_t>(turning.times_s.back() / cell_s); };
   const std::vector<double> x = a.Speeds(0, cell_s, cells(a)), y = b.Speeds(0, cell_s, cells(b));
-  const auto overlap_min = std::max(
-      kOverlapLeast_cells,
-      static_cast<std::size_t>(kOverlapLeast_ratio * static_cast<double>(std::min(x.size(), y.size()))));
+  const auto overlap_min =
+      std::max(kOverlapLeast_cells,
+               static_cast<std::size_t>(kOverlapLeast_ratio * static_cast<double>(std::min(x.size(), y.size()))));
   ClockOffset best;
   for (auto lag = -static_cast<std::ptrdiff_t>(y.size()); lag <= static_cast<std::ptrdiff_t>(x.size()); ++lag)
     if (const double value = CorrelationAt(x, y, lag, overlap_min); value > best.correlation_ratio)
@@ -97,16 +97,17 @@ std::optional<ClockOffset> CorrelateClocks(const PoseTable& table_a, const PoseT
   best.correlation_ratio = FineCorrelation(a, b, best.offset_s);
   for (int i = 0; i < kRefinements; ++i, step_s /= 2)
     for (const double offset_s : {best.offset_s - step_s, best.offset_s + step_s})
-      if (const double value = FineCorrelation(a, b, offset_s); value > best.correlation_ratio) best = {offset_s, value};
+      if (const double value = FineCorrelation(a, b, offset_s); value > best.correlation_ratio)
+        best = {offset_s, value};
   return best;
 }
 
 std::optional<StreamPose> PoseAt(const PoseTable& stream, double time_s) {
   const std::int64_t origin_ns = stream.front().stamp.ns;
   if (!(time_s >= 0 && time_s <= SecondsSince(stream, stream.size() - 1))) return std::nullopt;
-  const auto after = std::lower_bound(stream.begin() + 1, stream.end() - 1, time_s, [&](const TimedPose& row, double t) {
-    return kNanoseconds * static_cast<double>(row.stamp.ns - origin_ns) < t;
-  });
+  const auto after = std::lower_bound(
+      stream.begin() + 1, stream.end() - 1, time_s,
+      [&](const TimedPose& row, double t) { return kNanoseconds * static_cast<double>(row.stamp.ns - origin_ns) < t; });
   const auto i = static_cast<std::size_t>(after - stream.begin());
   const double from_s = SecondsSince(stream, i - 1), gap_s = SecondsSince(stream, i) - from_s;
   if (gap_s > kGapMax_s) return std::nullopt;

@@ -9,7 +9,7 @@ namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kBlocksMax = 100'000;
-constexpr std::size_t kContributionsMax = 64;
+constexpr std::size_t kContributionsMax = 64, kShiftsMax = 64;
 constexpr std::size_t kFiguresMax = 1'000;
 constexpr std::size_t kCapturesMax = 100'000;
 constexpr std::size_t kShortTextMax = 64;  // the wire's string<64>
@@ -38,12 +38,22 @@ void WriteUncertaintyDetail(JsonWriter& out, const Uncertainty& uncertainty) {
   });
 }
 
+void WriteShifts(JsonWriter& out, const std::vector<Vector6d>& shifts) {
+  out.List("shifts", [&] {
+    for (const Vector6d& shift : shifts)
+      out.List([&] {
+        for (const double value : shift) out.Number(value);
+      });
+  });
+}
+
 void WriteContributions(JsonWriter& out, const std::vector<Contribution>& contributions) {
   out.List("contributions", [&] {
     for (const Contribution& contribution : contributions)
       out.Object([&] {
         WriteMatrix(out, "covariance", contribution.covariance);
         out.Text("name", contribution.name);
+        if (!contribution.shifts.empty()) WriteShifts(out, contribution.shifts);
       });
   });
 }
@@ -201,8 +211,11 @@ std::vector<BlockVector> ReadBlocks(const JsonField& field) {
 
 std::vector<Contribution> ReadContributions(const JsonField& field) {
   std::vector<Contribution> contributions;
-  for (const JsonField& item : field.Items(kContributionsMax))
+  for (const JsonField& item : field.Items(kContributionsMax)) {
     contributions.push_back({item.At("name").Text(kShortTextMax), ReadMatrix(item.At("covariance"))});
+    if (const auto shifts = item.Find("shifts"))
+      for (const JsonField& shift : shifts->Items(kShiftsMax)) contributions.back().shifts.push_back(ReadVector(shift));
+  }
   return contributions;
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kTrackerHeader = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw";
 constexpr std::string_view kStreamHeader = "stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw";
 constexpr const char* kCure = "Mend the line; docs/session-format.md describes poses.csv.";
-constexpr double kUnitTolerance = 1e-3;                  // of quaternions with few digits
+constexpr double kUnitTolerance = 1e-3;                           // of quaternions with few digits
 constexpr std::int64_t kStampMax_ns = 4'000'000'000'000'000'000;  // differences of two clocks stay in range
 constexpr std::size_t kNumbers = 7;
 
@@ -126,8 +126,9 @@ Status CheckHeader(TextLines& lines, SensorKind kind, const std::string& name) {
   const std::optional<std::string_view> header = lines.NextFilled();
   const Place place{name, header ? lines.line() : 1};
   if (header && *header == PoseHeader(kind)) return {};
-  return place.Refuse("the header is " + Quoted(header.value_or("")) + ", not " + std::string(PoseHeader(kind)),
-                      "Begin the file with exactly this line; a tracker's has a capture in front, a pose stream's not.");
+  return place.Refuse(
+      "the header is " + Quoted(header.value_or("")) + ", not " + std::string(PoseHeader(kind)),
+      "Begin the file with exactly this line; a tracker's has a capture in front, a pose stream's not.");
 }
 
 Result<PoseTable> Read(const std::set<CaptureId>* captures, std::string_view text, SensorKind kind,

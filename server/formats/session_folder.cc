@@ -12,8 +12,8 @@
 #include "server/base/text.h"
 #include "server/formats/folder_listing.h"
 #include "server/formats/nearest.h"
-#include "server/formats/payload_path.h"
 #include "server/formats/payload_kind.h"
+#include "server/formats/payload_path.h"
 #include "server/formats/poses.h"
 
 namespace rigcal::formats {
@@ -109,7 +109,8 @@ std::set<CaptureId> OtherCaptures(const std::map<SensorId, PoseTable>& tables, c
   return captures;
 }
 
-// A picture that is bad costs one capture; a table of poses is all that its sensor has, so it is read before it is sent.
+// A picture that is bad costs one capture; a table of poses is all that its sensor has, so it is read before it is
+// sent.
 Status CheckPoseTables(const fs::path& folder, const Manifest& manifest) {
   std::map<SensorId, std::string> texts;
   std::map<SensorId, PoseTable> tables;

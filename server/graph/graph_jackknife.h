@@ -14,8 +14,9 @@ namespace rigcal::graph {
 // What is known beyond an edge's Omega.
 struct EdgeBlocks {
   std::vector<BlockVector> blocks;
-  Matrix6d C_given = Matrix6d::Zero();  // of given constants; no block shows it, so it is added per edge
-  int dof = 0;                          // of the edge's uncertainty
+  Matrix6d C_given = Matrix6d::Zero();  // of given constants of its own; no block shows it, so it is added per edge
+  std::map<std::string, std::vector<Vector6d>> shifts;  // of given constants that its session shares, by their name
+  int dof = 0;                                          // of the edge's uncertainty
 };
 // Fewer blocks than this do not carry a covariance of six directions: such an edge counts with the C_e of its Omega.
 constexpr std::size_t kJackknifeBlocksMin = 8;

@@ -52,6 +52,28 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
   return source;
 }
 
+// The given constants of one name, which every edge of the session that knows them errs by at once.
+using GivenKey = std::pair<std::string, std::string>;  // session, name
+using GivenSources = std::map<GivenKey, ErrorSource>;
+
+void AddGiven(const JackknifeWork& work, std::size_t constraint, const std::string& session, const EdgeBlocks& own,
+              GivenSources& given) {
+  for (const auto& [name, shifts] : own.shifts) {
+    ErrorSource& source = given[{session, name}];
+    MatrixXd columns(6, static_cast<Eigen::Index>(shifts.size()));
+    for (std::size_t i = 0; i < shifts.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = shifts[i];
+    source.column_count = std::max(source.column_count, columns.cols());
+    source.parts.push_back({constraint, work.jacobians[constraint].D * columns});
+  }
+}
+
+// An edge that knows fewer of the constants does not err by the rest.
+void Widen(Eigen::Index column_count, ErrorPart& part) {
+  const Eigen::Index known = part.de.cols();
+  part.de.conservativeResize(Eigen::NoChange, column_count);
+  part.de.rightCols(column_count - known).setZero();
+}
+
 ErrorSource OwnError(std::size_t constraint, const MatrixXd& de, int dof) {
   ErrorSource source;
   source.dof = dof;
@@ -81,7 +103,8 @@ BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
     EdgeBlocks& own = blocks[edge.id];
     own.blocks = edge.uncertainty.blocks;
     own.dof = edge.uncertainty.dof;
-    for (const Contribution& part : edge.uncertainty.contributions) own.C_given += part.covariance;
+    for (const Contribution& part : edge.uncertainty.contributions)
+      if (part.shifts.empty() || !own.shifts.emplace(part.name, part.shifts).second) own.C_given += part.covariance;
   }
   return blocks;
 }
@@ -89,10 +112,12 @@ BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
 std::vector<ErrorSource> SourcesOf(const JackknifeWork& work) {
   std::map<std::string, std::vector<std::size_t>> sessions;
   std::vector<ErrorSource> own;
+  GivenSources given;
   for (std::size_t k = 0; k < work.problem.constraints.size(); ++k) {
     const GraphEdge& edge = work.EdgeOf(k);
     if (const EdgeBlocks* blocks = FindBlocks(work.blocks, edge.id); blocks != nullptr) {
       sessions[SessionKey(edge)].push_back(k);
+      AddGiven(work, k, SessionKey(edge), *blocks, given);
       if (!blocks->C_given.isZero(0.0))
         own.push_back(OwnError(k, work.jacobians[k].D * SquareRoot(blocks->C_given), 0));
     } else {
@@ -101,6 +126,10 @@ std::vector<ErrorSource> SourcesOf(const JackknifeWork& work) {
   }
   std::vector<ErrorSource> sources;
   for (const auto& [key, members] : sessions) sources.push_back(SessionSource(work, members));
+  for (auto& [key, source] : given) {
+    for (ErrorPart& part : source.parts) Widen(source.column_count, part);
+    sources.push_back(std::move(source));
+  }
   std::move(own.begin(), own.end(), std::back_inserter(sources));
   return sources;
 }

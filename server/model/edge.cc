@@ -86,7 +86,7 @@ EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t o
 }
 
 // Fields: frame_a, frame_b, method, pose, Omega, source, dof; then the number of blocks and each one's id and vector;
-// then the number of contributions and each one's name and covariance. Edges that agree in all this are the same
+// then the number of contributions and each one's name, covariance and shifts. Edges that agree in all this are the same
 // measurement given twice: then only their count matters, not which is which.
 Digest ContentDigest(const Edge& edge) {
   const Uncertainty& uncertainty = edge.uncertainty;
@@ -96,7 +96,10 @@ Digest ContentDigest(const Edge& edge) {
   hash.Number(uncertainty.blocks.size());
   for (const BlockVector& block : uncertainty.blocks) hash.Text(block.block_id).Vector(block.d);
   hash.Number(uncertainty.contributions.size());
-  for (const Contribution& part : uncertainty.contributions) hash.Text(part.name).Matrix(part.covariance);
+  for (const Contribution& part : uncertainty.contributions) {
+    hash.Text(part.name).Matrix(part.covariance);
+    for (const Vector6d& shift : part.shifts) hash.Vector(shift);
+  }
   return hash.Finish();
 }
 

@@ -44,6 +44,9 @@ Status CheckContributions(const std::vector<Contribution>& contributions) {
     if (!IsPositiveSemidefinite(part.covariance))
       return Refuse("contribution " + Quoted(part.name) + ": the covariance is not positive semi-definite",
                     "Give a symmetric 6x6 covariance in m and rad.");
+    for (const Vector6d& shift : part.shifts)
+      if (!shift.allFinite())
+        return Refuse("contribution " + Quoted(part.name) + ": a shift is not finite", "Give finite numbers, or none.");
   }
   return {};
 }

@@ -19,10 +19,13 @@ struct BlockVector {
   Vector6d d = Vector6d::Zero();
 };
 
-// A part of the covariance that a given constant brings (board size, given intrinsics): already inside Omega.
+// A part of the covariance that given constants bring (board size, given intrinsics): already inside Omega.
 struct Contribution {
   std::string name;
   Matrix6d covariance = Matrix6d::Zero();
+  // Per constant, what one sigma of it changes (right tangent at b); the covariance is the sum of their squares. Edges of
+  // one session with a contribution of one name err by them together. Empty: not known, taken as the edge's own.
+  std::vector<Vector6d> shifts = {};
 };
 
 struct Uncertainty {

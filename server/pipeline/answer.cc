@@ -218,10 +218,20 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
 
 const std::map<std::string, Verb>& Verbs() {
   static const std::map<std::string, Verb> verbs = {
-      {"robots", Robots},   {"sessions", Sessions}, {"session", Session}, {"edges", Edges},
-      {"edge", OneEdge},    {"show", Show},         {"lookup", Lookup},   {"revisions", Revisions},
-      {"status", OfStatus}, {"due", Due},           {"health", Health},
-      {"live", Live},       {"report_files", FilesOfReport}, {"report_file", FileOfReport},
+      {"robots", Robots},
+      {"sessions", Sessions},
+      {"session", Session},
+      {"edges", Edges},
+      {"edge", OneEdge},
+      {"show", Show},
+      {"lookup", Lookup},
+      {"revisions", Revisions},
+      {"status", OfStatus},
+      {"due", Due},
+      {"health", Health},
+      {"live", Live},
+      {"report_files", FilesOfReport},
+      {"report_file", FileOfReport},
   };
   return verbs;
 }

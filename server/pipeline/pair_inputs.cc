@@ -63,9 +63,8 @@ std::vector<Capture> Joined(const Sightings<A>& a, ViewA Capture::*view_a, const
 }
 
 std::size_t SeenByBoth(const calib::StereoProblem& problem) {
-  return static_cast<std::size_t>(std::count_if(problem.captures.begin(), problem.captures.end(), [](const auto& c) {
-    return c.a && c.b && c.a->found && c.b->found;
-  }));
+  return static_cast<std::size_t>(std::count_if(problem.captures.begin(), problem.captures.end(),
+                                                [](const auto& c) { return c.a && c.b && c.a->found && c.b->found; }));
 }
 
 std::size_t SeenByBoth(const calib::LidarCameraProblem& problem) {
@@ -96,8 +95,8 @@ Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const
     AddEvidence(ids.a, a, 0, evidence);
     AddEvidence(ids.b, b, 1, evidence);
     using Capture = calib::StereoCapture;
-    return PairInputs<calib::StereoProblem>{
-        {*pair.a, *pair.b, target, Joined<Capture>(a, &Capture::a, b, &Capture::b)}, ListOf(std::move(evidence))};
+    return PairInputs<calib::StereoProblem>{{*pair.a, *pair.b, target, Joined<Capture>(a, &Capture::a, b, &Capture::b)},
+                                            ListOf(std::move(evidence))};
   });
 }
 
@@ -115,7 +114,8 @@ Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& st
         AddEvidence(lidar.id, clouds, camera_is_a ? 1 : 0, evidence);
         using Capture = calib::LidarCameraCapture;
         calib::LidarCameraProblem problem{
-            camera, lidar, target, Joined<Capture>(views, &Capture::view, clouds, &Capture::cloud), camera_is_a, 0.0, {}};
+            camera,      lidar, target, Joined<Capture>(views, &Capture::view, clouds, &Capture::cloud),
+            camera_is_a, 0.0,   {}};
         if (camera.T_ref_nominal && lidar.T_ref_nominal)
           problem.T_cam_lidar_nominal = camera.T_ref_nominal->Inverse() * *lidar.T_ref_nominal;
         return PairInputs<calib::LidarCameraProblem>{std::move(problem), ListOf(std::move(evidence))};

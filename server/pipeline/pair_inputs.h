@@ -22,7 +22,8 @@ struct PairInputs {
 [[nodiscard]] Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& store,
                                                                             const Manifest& manifest,
                                                                             const SensorPair& pair);
-// Of the targets that a camera may see, the one found in most captures. A table of poses that cannot be read is an error.
+// Of the targets that a camera may see, the one found in most captures. A table of poses that cannot be read is an
+// error.
 [[nodiscard]] Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, const Manifest& manifest,
                                                                     const SensorPair& pair);
 // No target: every capture of either, with both clouds as they were decoded.

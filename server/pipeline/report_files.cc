@@ -55,8 +55,8 @@ Result<std::string> ReportFiles(const storage::Store& store, const RobotId& robo
 }
 
 // Only what the list holds: so no path leads out of the folder.
-Result<std::string> ReportFile(const storage::Store& store, const RobotId& robot, int revision,
-                               const std::string& path, std::int64_t offset) {
+Result<std::string> ReportFile(const storage::Store& store, const RobotId& robot, int revision, const std::string& path,
+                               std::int64_t offset) {
   const fs::path folder = FolderOf(store, robot, revision);
   RIGCAL_ASSIGN(const auto files, FilesOf(folder));
   const auto known = std::find_if(files.begin(), files.end(), [&](const File& file) { return file.path == path; });

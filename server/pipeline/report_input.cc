@@ -17,8 +17,7 @@ std::string BoardText(const Target& target) {
   std::string size = std::to_string(size_um / 1000);
   if (size_um % 1000 != 0) size += "." + std::to_string(1000 + size_um % 1000).substr(1);
   return target.id.str() + ": " + NameOf(target.kind) + " " + std::to_string(target.cols) + " x " +
-         std::to_string(target.rows) + ", " + size + " mm" +
-         (target.serial.empty() ? "" : ", serial " + target.serial);
+         std::to_string(target.rows) + ", " + size + " mm" + (target.serial.empty() ? "" : ", serial " + target.serial);
 }
 
 report::SessionFacts FactsOf(const SessionId& id, const Manifest& manifest) {
@@ -54,9 +53,8 @@ Status TakeSessions(storage::Store& store, report::ReportInput& input) {
     input.sessions.push_back(FactsOf(id, *manifest));
     headers.push_back(std::move(manifest->header));
   }
-  std::stable_sort(headers.begin(), headers.end(), [](const SessionHeader& a, const SessionHeader& b) {
-    return a.captured_at > b.captured_at;
-  });
+  std::stable_sort(headers.begin(), headers.end(),
+                   [](const SessionHeader& a, const SessionHeader& b) { return a.captured_at > b.captured_at; });
   for (const SessionHeader& header : headers) TakeSensors(header, input);
   return {};
 }

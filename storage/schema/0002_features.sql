@@ -1,6 +1,8 @@
--- Views of part of a target, and clouds.
+-- Views of part of a target, clouds, and what given constants change.
 
 ALTER TABLE detected_view ADD COLUMN corner_idx BLOB CHECK (length(corner_idx) % 8 = 0);  -- doubles; NULL: all points in order
+
+ALTER TABLE edge_contribution ADD COLUMN shifts BLOB CHECK (length(shifts) % 48 = 0);  -- [6] per constant; NULL: not known
 
 CREATE TABLE detected_cloud (                -- what a detector finds in a cloud, by content
   cloud_digest TEXT NOT NULL,

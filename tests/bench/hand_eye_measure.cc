@@ -90,7 +90,8 @@ int Measure(const std::filesystem::path& folder, const std::string& a, const std
   const auto start = std::chrono::steady_clock::now();
   const Edge edge = calib::EstimateHandEyeEdge(problem);
   const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  std::printf("{\"state\": \"%s\", \"method\": \"%s\", \"diagnoses\": [", edge.state == EdgeState::kGood ? "good" : "failed", edge.method.c_str());
+  std::printf("{\"state\": \"%s\", \"method\": \"%s\", \"diagnoses\": [",
+              edge.state == EdgeState::kGood ? "good" : "failed", edge.method.c_str());
   for (std::size_t i = 0; i < edge.diagnoses.size(); ++i)
     std::printf("%s\"%s\"", i ? ", " : "", edge.diagnoses[i].code.c_str());
   std::printf("], ");

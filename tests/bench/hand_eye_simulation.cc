@@ -45,9 +45,10 @@ void WeakMotion(const char* name, Drive drive, int seeds) {
       worst = std::max(worst, WorstSigmas(body.X, result->estimate.T_a_b, result->uncertainty));
       if (result->uncertainty.rank < 6) axis_deg = std::max(axis_deg, AxisError_deg(result->estimate.reach));
     }
-    std::printf("%s{\"ratio\": %.1f, \"worst_sigmas\": %.3f, \"axis_deg\": %.3f, \"rank4\": %d, \"rank5\": %d, \"rank6\": "
-                "%d, \"failed\": %d}",
-                comma, ratio, worst, axis_deg, ranks[4], ranks[5], ranks[6], failed);
+    std::printf(
+        "%s{\"ratio\": %.1f, \"worst_sigmas\": %.3f, \"axis_deg\": %.3f, \"rank4\": %d, \"rank5\": %d, \"rank6\": "
+        "%d, \"failed\": %d}",
+        comma, ratio, worst, axis_deg, ranks[4], ranks[5], ranks[6], failed);
     comma = ", ";
   }
   std::printf("], ");
@@ -72,10 +73,11 @@ struct Statistics {
   }
   void Print(const char* name) const {
     const double good = std::max(1, count - failed);
-    std::printf("\"%s\": {\"count\": %d, \"failed\": %d, \"rms_mm\": %.5f, \"rms_deg\": %.6f, \"bound_mm\": %.5f, "
-                "\"bound_deg\": %.6f, \"worst_sigmas\": %.3f, \"covered_ratio\": %.4f}, ",
-                name, count, failed, 1e3 * std::sqrt(sum_m2 / good), 180 / M_PI * std::sqrt(sum_rad2 / good),
-                1e3 * std::sqrt(bound_m2 / count), 180 / M_PI * std::sqrt(bound_rad2 / count), worst, covered / good);
+    std::printf(
+        "\"%s\": {\"count\": %d, \"failed\": %d, \"rms_mm\": %.5f, \"rms_deg\": %.6f, \"bound_mm\": %.5f, "
+        "\"bound_deg\": %.6f, \"worst_sigmas\": %.3f, \"covered_ratio\": %.4f}, ",
+        name, count, failed, 1e3 * std::sqrt(sum_m2 / good), 180 / M_PI * std::sqrt(sum_rad2 / good),
+        1e3 * std::sqrt(bound_m2 / count), 180 / M_PI * std::sqrt(bound_rad2 / count), worst, covered / good);
   }
 };
 
@@ -97,8 +99,9 @@ void AddBound(const HandEyeProblem& exact, const VirtualBody& body, const PoseNo
       variances << Eigen::Vector3d::Constant(std::pow(tracker.translation_m, 2)),
           Eigen::Vector3d::Constant(std::pow(tracker.rotation_rad, 2));
       SidePose& pose = side->front().pose;
-      pose.covariance = camera ? Matrix6d(pose.covariance * (side == &capture.a ? work->factor_a : work->factor_b).translation)
-                               : Matrix6d(variances.asDiagonal());
+      pose.covariance =
+          camera ? Matrix6d(pose.covariance * (side == &capture.a ? work->factor_a : work->factor_b).translation)
+                 : Matrix6d(variances.asDiagonal());
     }
   MotionProblem problem = ProblemOf(work->candidates, work->choices);
   SetShared(*work, nullptr, problem);
@@ -151,7 +154,8 @@ void Turned(int seeds) {
     worst_mm = std::max(worst_mm, 1e3 * e.head<3>().norm());
     worst_deg = std::max(worst_deg, 180 / M_PI * e.tail<3>().norm());
     view.board.square_m = 0.012;  // 60 to 80 px across
-    const auto tiny = EstimateHandEye(TrackerAndCamera(Looking(view, 40, 0.25, 0.09, seed), view, {0.0002, kNoise_rad}, 0.3, seed));
+    const auto tiny =
+        EstimateHandEye(TrackerAndCamera(Looking(view, 40, 0.25, 0.09, seed), view, {0.0002, kNoise_rad}, 0.3, seed));
     if (!tiny) {
       ++failed;
       continue;
@@ -159,9 +163,10 @@ void Turned(int seeds) {
     small_worst_sigmas = std::max(small_worst_sigmas, WorstSigmas(body.X, tiny->estimate.T_a_b, tiny->uncertainty));
     small_mm = std::max(small_mm, 1e3 * (tiny->estimate.T_a_b.p_m - body.X.p_m).norm());
   }
-  std::printf("\"turned\": {\"moved_mm\": %.8f, \"moved_deg\": %.8f, \"failed\": %d, \"small_worst_sigmas\": %.3f, "
-              "\"small_worst_mm\": %.3f}, ",
-              worst_mm, worst_deg, failed, small_worst_sigmas, small_mm);
+  std::printf(
+      "\"turned\": {\"moved_mm\": %.8f, \"moved_deg\": %.8f, \"failed\": %d, \"small_worst_sigmas\": %.3f, "
+      "\"small_worst_mm\": %.3f}, ",
+      worst_mm, worst_deg, failed, small_worst_sigmas, small_mm);
 }
 
 void Streams(int seeds) {
@@ -189,8 +194,7 @@ int Measure(int seeds) {
   General(2 * seeds);
   Turned(std::max(1, seeds / 4));
   Streams(std::max(1, seeds / 8));
-  std::printf("\"seconds\": %.1f}\n",
-              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  std::printf("\"seconds\": %.1f}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return 0;
 }
 

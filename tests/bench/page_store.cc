@@ -1,6 +1,6 @@
 // Stores for measuring pages.  `page_store render DIR`: a rig of 12 sensors, 59 edges of 40 captures with two pictures
-// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT`: robots.  `page_store serve DIR`: pages alone, without
-// DDS, until its input ends.
+// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT`: robots.
+// `page_store serve DIR`: pages alone, without DDS, until its input ends.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

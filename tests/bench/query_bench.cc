@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "server/base/thread_rank.h"
 #include "client/connection.h"
+#include "server/base/thread_rank.h"
 
 namespace {
 

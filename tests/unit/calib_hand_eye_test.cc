@@ -52,8 +52,7 @@ TEST(HandEye, StandsAtTheMinimum) {
     state.X = X, state.Z = Z;
     for (std::size_t k = 0; k < work->captures.size(); ++k) {
       const Vector6d e_a = (work->problem.a.poses[k].T_world_sensor.Inverse() * state.T_world_a[k]).Log();
-      const Vector6d e_b =
-          ((Z * work->problem.b.poses[k].T_world_sensor).Inverse() * state.T_world_a[k] * X).Log();
+      const Vector6d e_b = ((Z * work->problem.b.poses[k].T_world_sensor).Inverse() * state.T_world_a[k] * X).Log();
       cost += e_a.dot(work->problem.a.poses[k].covariance.inverse() * e_a) +
               e_b.dot(work->problem.b.poses[k].covariance.inverse() * e_b);
     }
@@ -80,7 +79,8 @@ TEST(HandEye, FindsTheNoiseOfEachSide) {
     ASSERT_TRUE(result);
     a_m += result->estimate.noise_a.translation_m / 10;
     b_m += result->estimate.noise_b.translation_m / 10;
-    sum_rad2 += (std::pow(result->estimate.noise_a.rotation_rad, 2) + std::pow(result->estimate.noise_b.rotation_rad, 2)) / 10;
+    sum_rad2 +=
+        (std::pow(result->estimate.noise_a.rotation_rad, 2) + std::pow(result->estimate.noise_b.rotation_rad, 2)) / 10;
   }
   // Whose translation noise it is shows only through the lever arm; together they are well known.
   EXPECT_NEAR(std::hypot(a_m, b_m), std::hypot(0.001, 0.004), 0.0008);
@@ -123,21 +123,19 @@ TEST_P(WeakMotion, ClaimsOnlyWhatItKnows) {
     if (GetParam().rank == 6) continue;
     EXPECT_TRUE(Has(result->notes, GetParam().code));
     if (GetParam().drive == Drive::kNoTurns) continue;
-    const Eigen::Vector3d axis = GetParam().drive == Drive::kStraight ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d axis =
+        GetParam().drive == Drive::kStraight ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
     EXPECT_GT(std::abs(result->estimate.reach.axis_a.dot(axis)), std::cos(2 * kDegree));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tilts, WeakMotion,
-                         testing::Values(Weak{Drive::kFloor, 0, 5, "planar_motion"},
-                                         Weak{Drive::kFloor, 1, 5, "planar_motion"},
-                                         Weak{Drive::kFloor, 2, 5, "planar_motion"},
-                                         Weak{Drive::kFloor, 10, 6, ""},
-                                         Weak{Drive::kOnTheSpot, 0, 4, "turning_on_the_spot"},
-                                         Weak{Drive::kOnTheSpot, 2, 4, "turning_on_the_spot"},
-                                         Weak{Drive::kOnTheSpot, 10, 6, ""},
-                                         Weak{Drive::kNoTurns, 0, 3, "pure_translation"},
-                                         Weak{Drive::kStraight, 0, 2, "straight_line"}));
+INSTANTIATE_TEST_SUITE_P(
+    Tilts, WeakMotion,
+    testing::Values(Weak{Drive::kFloor, 0, 5, "planar_motion"}, Weak{Drive::kFloor, 1, 5, "planar_motion"},
+                    Weak{Drive::kFloor, 2, 5, "planar_motion"}, Weak{Drive::kFloor, 10, 6, ""},
+                    Weak{Drive::kOnTheSpot, 0, 4, "turning_on_the_spot"},
+                    Weak{Drive::kOnTheSpot, 2, 4, "turning_on_the_spot"}, Weak{Drive::kOnTheSpot, 10, 6, ""},
+                    Weak{Drive::kNoTurns, 0, 3, "pure_translation"}, Weak{Drive::kStraight, 0, 2, "straight_line"}));
 
 TEST(HandEye, NothingMovedIsADiagnosis) {
   const auto result = EstimateHandEye(Tracked(Driven(Drive::kStill, 10, 0, 1), kNoise, kNoise, 1));
@@ -161,7 +159,8 @@ TEST(HandEye, LeavesOutWhatContradicts) {
   const VirtualBody body = Driven(Drive::kFree, 30, 0.3, 5);
   HandEyeProblem problem = Tracked(body, kNoise, kNoise, 5);
   const auto clean = EstimateHandEye(problem);
-  for (const std::size_t k : {3U, 11U, 12U, 20U, 28U}) std::swap(problem.a.poses[k].T_world_body, problem.a.poses[k - 1].T_world_body);
+  for (const std::size_t k : {3U, 11U, 12U, 20U, 28U})
+    std::swap(problem.a.poses[k].T_world_body, problem.a.poses[k - 1].T_world_body);
   const Edge edge = EstimateHandEyeEdge(problem);
   ASSERT_EQ(edge.state, EdgeState::kGood);
   EXPECT_TRUE(Has(edge.diagnoses, "inconsistent_captures"));
@@ -243,8 +242,7 @@ TEST(HandEye, GivenConstantsGoIntoSigma) {
   ASSERT_EQ(given->uncertainty.contributions.size(), 2U);
   EXPECT_THAT(given->uncertainty.contributions[0].name, HasSubstr("board"));
   const Matrix6d added = given->uncertainty.covariance - exact->uncertainty.covariance;
-  const Matrix6d said =
-      given->uncertainty.contributions[0].covariance + given->uncertainty.contributions[1].covariance;
+  const Matrix6d said = given->uncertainty.contributions[0].covariance + given->uncertainty.contributions[1].covariance;
   EXPECT_LT((added - said).norm(), 1e-6 * said.norm());
   // The first contribution by its definition: all of the problem with a board 0.1 % larger, its noise found anew.
   HandEyeProblem larger = TwoCameras(body, view, true, 4);

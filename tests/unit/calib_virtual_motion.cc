@@ -108,8 +108,8 @@ VirtualBody Looking(const VirtualView& view, int captures, double spread_m, doub
   for (int k = 0; k < captures; ++k) {
     const double x = part(random), y = part(random), z = part(random);
     const Eigen::Vector3d turn = Normal3(random, tilt_rad);
-    body.T_world_a.push_back(
-        {middle.p_m + spread_m * Eigen::Vector3d(x, y, z), Turned(turn.cwiseMax(-2 * tilt_rad).cwiseMin(2 * tilt_rad))});
+    body.T_world_a.push_back({middle.p_m + spread_m * Eigen::Vector3d(x, y, z),
+                              Turned(turn.cwiseMax(-2 * tilt_rad).cwiseMin(2 * tilt_rad))});
   }
   return body;
 }

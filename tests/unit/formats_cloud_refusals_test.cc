@@ -155,8 +155,8 @@ std::vector<BadCase> Plys() {
   for (const char* format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     cases.push_back({std::string("ply: 8e9 points, ") + format, "ply", Ply(Vertex("8000000000"), kPlain, format),
                      "announces 8000000000 points"});
-    cases.push_back({std::string("ply: 5e6 points, ") + format, "ply", Ply(Vertex("5000000"), kPlain, format),
-                     "5000000 points"});
+    cases.push_back(
+        {std::string("ply: 5e6 points, ") + format, "ply", Ply(Vertex("5000000"), kPlain, format), "5000000 points"});
     cases.push_back(
         {std::string("ply: no points, ") + format, "ply", Ply(Vertex("0"), "", format), "no point with finite"});
   }

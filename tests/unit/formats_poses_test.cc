@@ -1,8 +1,7 @@
-#include "server/formats/poses.h"
-
 #include <gmock/gmock.h>
 
 #include "server/base/limits.h"
+#include "server/formats/poses.h"
 
 namespace rigcal::formats {
 namespace {

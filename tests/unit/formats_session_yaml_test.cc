@@ -120,8 +120,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadYaml{"left: {type: camera", "left: {type: kamera",
                 "line 8: sensor 'left': type: sensor kind \"kamera\" is not known"},
         BadYaml{"left: {type: camera", "left: {type: tracker", "line 8: sensor left: a tracker sees no target"},
-        BadYaml{"sensors:", "skip_pairs: [[left, up]]\nsensors:",
-                "line 7: skip_pairs: [left, up]: \"up\" is not a sensor"},
+        BadYaml{
+            "sensors:", "skip_pairs: [[left, up]]\nsensors:", "line 7: skip_pairs: [left, up]: \"up\" is not a sensor"},
         BadYaml{"sensors:", "skip_pairs: [[left]]\nsensors:", "line 7: skip_pairs: must be two names of sensors"},
         BadYaml{"sensors:", "skip_pairs: left\nsensors:", "line 7: skip_pairs: must be a list"},
         BadYaml{"left: {", ".left: {", "line 8: sensor id \".left\" is not a valid name"},

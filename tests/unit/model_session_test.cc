@@ -95,9 +95,13 @@ TEST(ValidateHeader, TargetsAreNeededByCamerasOnly) {
 }
 
 TEST(ValidateHeader, SkippedPairsAreOfTwoSensors) {
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.skip_pairs = {{SensorId("left"), SensorId("top")}}; }).what,
+  EXPECT_THAT(RefusalAfter([](auto& h) {
+                h.skip_pairs = {{SensorId("left"), SensorId("top")}};
+              }).what,
               HasSubstr("skip_pairs: [left, top]: \"top\" is not a sensor"));
-  EXPECT_THAT(RefusalAfter([](auto& h) { h.skip_pairs = {{SensorId("left"), SensorId("left")}}; }).what,
+  EXPECT_THAT(RefusalAfter([](auto& h) {
+                h.skip_pairs = {{SensorId("left"), SensorId("left")}};
+              }).what,
               HasSubstr("no pair with itself"));
 }
 

@@ -88,7 +88,8 @@ TEST(ReportEdgeFit, ColourFollowsTheResidualAndWidthTheInformation) {
   EXPECT_STREQ(FitClass(shown, true), "unchecked");
   shown.residual = &residual;
   EXPECT_STREQ(FitClass(shown, false), "unchecked");
-  for (const auto& [in_sigmas, name] : std::vector<std::pair<double, const char*>>{{0.5, "fit0"}, {1.5, "fit1"}, {2.5, "fit2"}, {9.0, "fit3"}}) {
+  for (const auto& [in_sigmas, name] :
+       std::vector<std::pair<double, const char*>>{{0.5, "fit0"}, {1.5, "fit1"}, {2.5, "fit2"}, {9.0, "fit3"}}) {
     shown.in_sigmas = in_sigmas;
     EXPECT_STREQ(FitClass(shown, true), name);
   }

@@ -56,7 +56,9 @@ INSTANTIATE_TEST_SUITE_P(
                 in.clouds.lidars = {{kHostile, kHostile, kHostile, kHostile, kHostile, kHostile, kHostile, 9, 3, 1}};
               }},
         Field{"overlay",
-              [](ReportInput& in) { in.clouds.overlays = {{kHostile, kHostile, kHostile, kHostile, kHostile, 5}}; }},
+              [](ReportInput& in) {
+                in.clouds.overlays = {{kHostile, kHostile, kHostile, kHostile, kHostile, 5}};
+              }},
         Field{"method", [](ReportInput& in) { in.revision.edges[0].method = kHostile; }},
         Field{"capture_note", [](ReportInput& in) { in.revision.edges[0].captures[4].note = kHostile; }},
         Field{"picture_title", [](ReportInput& in) { in.revision.edges[0].evidence[0].title = kHostile; }},

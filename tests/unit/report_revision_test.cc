@@ -116,8 +116,7 @@ TEST(ReportRevision, FailedEdgeComesFirstWithReasonAndCure) {
 TEST(ReportRevision, ShowsPicturesThatExistAndSaysWhichAreMissing) {
   const ReportInput input = SampleReport();
   const std::string page = PageOf(input);
-  EXPECT_THAT(
-      page, HasSubstr("<img loading=\"lazy\" src=\"evidence/" + input.evidence[0].str() + ".jpg\""));
+  EXPECT_THAT(page, HasSubstr("<img loading=\"lazy\" src=\"evidence/" + input.evidence[0].str() + ".jpg\""));
   const std::string missing = input.revision.edges[0].evidence.back().digest.str();
   EXPECT_THAT(page, Not(HasSubstr(missing)));
   EXPECT_THAT(page, HasSubstr("picture not stored"));
