@@ -1,0 +1,70 @@
+"""The virtual MARS Mapper at full size, from captures to the published report, against its truth."""
+import json
+import math
+import pathlib
+import re
+import time
+
+from .measure import at_least, at_most, equal
+from .server import Server
+
+LIDARS = ("lidar_vertical", "lidar_horizontal")
+
+
+def rms(values):
+    return math.sqrt(sum(values) / max(1, len(values)))
+
+
+def bounds_of(truth):
+    """Cramer-Rao sigmas x y z rx ry rz by sensor."""
+    found = {}
+    for line in truth.read_text().splitlines():
+        match = re.match(r"  (\w+): .*bound_sigma: \[([^\]]*)\]", line)
+        if match:
+            found[match.group(1)] = [float(v) for v in match.group(2).split(",")]
+    return found
+
+
+def one_visit(context, folder, seed):
+    """What `rigcal compare` says of one simulated visit, the number of good edges, and seconds from push to report."""
+    session = folder / ("visit-%d" % seed)
+    context.run_json("rigcal", "simulate", "mars-mapper", "--out", session, "--seed", seed, "--json")
+    with Server(context, folder / ("data-%d" % seed)) as server:
+        began = time.monotonic()
+        pushed = server.rigcal("push", session, "--json", timeout=600)
+        took_s = time.monotonic() - began
+        edges = json.loads(server.rigcal("edges", "mars-mapper", "--json").stdout)["edges"]
+        compared = json.loads(server.rigcal("compare", "mars-mapper", "--poses", session / "truth.yaml", "--json").stdout)
+    if pushed.returncode not in (0, 1):
+        raise RuntimeError("rigcal push: exit %d: %s" % (pushed.returncode, pushed.stderr.strip()[-300:]))
+    return compared, bounds_of(session / "truth.yaml"), sum(edge["state"] == "good" for edge in edges), took_s
+
+
+def run(context):
+    squares = {"camera_m": [], "camera_rad": [], "lidar_m": [], "lidar_rad": [], "bound_m": [], "bound_rad": []}
+    good, worst_sigmas, slowest_s = [], 0.0, 0.0
+    with context.folder() as name:
+        for seed in range(1, 11 if context.full else 4):
+            compared, bounds, edges, took_s = one_visit(context, pathlib.Path(name), seed)
+            good.append(edges)
+            slowest_s = max(slowest_s, took_s)
+            worst_sigmas = max(worst_sigmas, compared["worst_sigmas"])
+            for sensor in compared["sensors"]:
+                if sensor["id"] == "body":
+                    continue
+                kind = "lidar" if sensor["id"] in LIDARS else "camera"
+                squares[kind + "_m"].append(sum(v * v for v in sensor["e"][:3]))
+                squares[kind + "_rad"].append(sum(v * v for v in sensor["e"][3:]))
+                squares["bound_m"].append(sum(v * v for v in bounds[sensor["id"]][:3]))
+                squares["bound_rad"].append(sum(v * v for v in bounds[sensor["id"]][3:]))
+    yield at_least("good_edges_of_59", min(good), 59)
+    yield at_most("cameras_rms", 1e3 * rms(squares["camera_m"]), 0.6, "mm")
+    yield at_most("cameras_rms_turn", math.degrees(rms(squares["camera_rad"])), 0.012, "deg")
+    yield at_most("lidars_rms", 1e3 * rms(squares["lidar_m"]), 1.2, "mm")
+    yield at_most("lidars_rms_turn", math.degrees(rms(squares["lidar_rad"])), 0.05, "deg")
+    yield at_most("worst_error_in_sigmas", worst_sigmas, 4.0)
+    yield at_most("push_to_report", slowest_s, 60.0, "s")
+    for part, unit in (("m", "translation"), ("rad", "rotation")):
+        ratio = rms(squares["camera_" + part] + squares["lidar_" + part]) / rms(squares["bound_" + part])
+        yield at_most("rms_over_cramer_rao_" + unit, ratio, 1.5)
+    yield equal("seeds", len(good), 10 if context.full else 3)
