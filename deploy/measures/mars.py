@@ -17,11 +17,12 @@ def rms(values):
 
 def bounds_of(truth):
     """Cramer-Rao sigmas x y z rx ry rz by sensor."""
-    found = {}
+    found, sensor = {}, None
     for line in truth.read_text().splitlines():
-        match = re.match(r"  (\w+): .*bound_sigma: \[([^\]]*)\]", line)
-        if match:
-            found[match.group(1)] = [float(v) for v in match.group(2).split(",")]
+        if match := re.match(r"  (\w+):", line):
+            sensor = match.group(1)
+        if match := re.match(r"    bound_sigma: \[([^\]]*)\]", line):
+            found[sensor] = [float(value) for value in match.group(1).split(",")]
     return found
 
 
