@@ -44,7 +44,11 @@ class Server:
 
     def close(self):
         if self.process:
-            self.process.wait(timeout=30)
+            try:
+                self.process.wait(timeout=90)  # it finishes the calibration that it is at
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
             self.process.stdout.close()
             self.log.close()
             self.process = None

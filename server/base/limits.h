@@ -7,31 +7,32 @@
 
 namespace rigcal::limits {
 
-constexpr std::size_t kNameMax = 64;                              // characters of an id that a person gives
-constexpr std::int64_t kManifestBytesMax = 16LL << 20;            // a session's canonical manifest
+constexpr std::size_t kNameMax = 64;                    // characters of an id that a person gives
+constexpr std::int64_t kManifestBytesMax = 16LL << 20;  // a session's canonical manifest
 constexpr std::size_t kPayloadsPerSessionMax = 100'000;
-constexpr std::int64_t kPayloadBytesMax = 2LL << 30;              // one picture or cloud
+constexpr std::int64_t kPayloadBytesMax = 2LL << 30;  // one picture or cloud
 constexpr std::int64_t kSessionBytesMax = 256LL << 30;
-constexpr std::size_t kChunkBytesMax = 1 << 20;                   // one DDS chunk
-constexpr std::int64_t kWindowBytes = 24LL << 20;                 // taken but not yet written, per session
-constexpr std::int64_t kIntakeBytesMax = 64LL << 20;              // the same, all sessions together
+constexpr std::size_t kChunkBytesMax = 1 << 20;       // one DDS chunk
+constexpr std::int64_t kWindowBytes = 24LL << 20;     // taken but not yet written, per session
+constexpr std::int64_t kIntakeBytesMax = 64LL << 20;  // the same, all sessions together
 constexpr std::size_t kEdgesPerBatchMax = 1'000'000;
 constexpr std::size_t kSensorsPerRobotMax = 100'000;
-constexpr std::size_t kSensorsPerSessionMax = 1024;               // its pairs are tried, so the square must stay small
+constexpr std::size_t kSensorsPerSessionMax = 1024;  // its pairs are tried, so the square must stay small
 constexpr std::size_t kTargetsPerSessionMax = 64;
 constexpr std::size_t kSessionYamlBytesMax = 1 << 20;
 constexpr std::size_t kRequestBytesMax = 64 << 10;
-constexpr std::size_t kReplyPartBytes = 512 << 10;                // longer replies travel in parts
+constexpr std::size_t kReplyPartBytes = 512 << 10;  // longer replies travel in parts
 constexpr std::int64_t kImagePixelsMax = 200'000'000;
-constexpr std::size_t kCloudPointsMax = 5'000'000;                  // of one capture
-constexpr std::size_t kCloudFieldsMax = 512;                      // values of one point, x y z included
-constexpr std::size_t kCloudValuesMax = 50'000'000;               // points times values of one point
+constexpr std::size_t kCloudPointsMax = 5'000'000;   // of one capture
+constexpr std::size_t kCloudFieldsMax = 512;         // values of one point, x y z included
+constexpr std::size_t kCloudValuesMax = 50'000'000;  // points times values of one point
 constexpr std::size_t kCloudHeaderBytesMax = 64 << 10;
-constexpr std::size_t kPoseTableBytesMax = 256 << 20;               // a poses.csv
+constexpr std::size_t kPoseTableBytesMax = 256 << 20;  // a poses.csv
 constexpr std::size_t kPoseTableRowsMax = 1'000'000;
-constexpr std::size_t kColouredPointsMax = 1'500'000;            // of a coloured cloud: beyond, it is thinned evenly
-constexpr std::size_t kCloudCamerasMax = 64;                      // that colour one cloud
-constexpr std::size_t kOpenSessionsMax = 256;                     // being received at once
+constexpr std::size_t kColouredPointsMax = 1'500'000;  // of a coloured cloud: beyond, it is thinned evenly
+constexpr std::size_t kLidarPairCapturesMax = 64;      // of two lidars, held in memory at once
+constexpr std::size_t kCloudCamerasMax = 64;           // that colour one cloud
+constexpr std::size_t kOpenSessionsMax = 256;          // being received at once
 constexpr std::size_t kHttpConnectionsMax = 64;
 constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;
 

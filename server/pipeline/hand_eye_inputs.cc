@@ -42,6 +42,13 @@ Result<SideInputs> LoadCamera(storage::Store& store, const Manifest& manifest, c
   return inputs;
 }
 
+std::set<CaptureId> OtherCaptures(const Manifest& manifest, const SensorId& tracker) {
+  std::set<CaptureId> captures;
+  for (const Payload& payload : manifest.payloads)
+    if (payload.sensor != tracker) captures.insert(payload.capture);
+  return captures;
+}
+
 Result<SideInputs> LoadPoses(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
   const auto payload = std::find_if(manifest.payloads.begin(), manifest.payloads.end(),
                                     [&](const Payload& p) { return p.sensor == sensor.id; });
@@ -52,7 +59,11 @@ Result<SideInputs> LoadPoses(storage::Store& store, const Manifest& manifest, co
   // A damaged disk costs this sensor, not the robot.
   if (!text) return Fail(ErrorCode::kInvalidInput, text.error().what, text.error().cure);
   SideInputs inputs;
-  RIGCAL_ASSIGN(inputs.side.poses, formats::ReadPoses(*text, sensor.kind, payload->path));
+  if (sensor.kind == SensorKind::kTracker) {
+    RIGCAL_ASSIGN(inputs.side.poses, formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), *text, payload->path));
+  } else {
+    RIGCAL_ASSIGN(inputs.side.poses, formats::ReadPoses(*text, sensor.kind, payload->path));
+  }
   return inputs;
 }
 

@@ -1,3 +1,5 @@
+#include <map>
+#include <set>
 #include <span>
 
 #include "server/base/limits.h"
@@ -50,6 +52,23 @@ std::vector<CloudFile> FilesOf(const Manifest& manifest, const SensorPair& ids,
   return files;
 }
 
+// So many captures that both lidars have, evenly spread, are enough; the others' clouds are not even read.
+void Thin(std::map<CaptureId, LidarLidarCapture>& captures, std::vector<CloudFile>& files) {
+  std::map<CaptureId, int> clouds;
+  for (const CloudFile& file : files) ++clouds[file.payload->capture];
+  std::vector<LidarLidarCapture*> both;
+  for (auto& [id, capture] : captures)
+    if (clouds[id] == 2) both.push_back(&capture);
+  if (both.size() <= limits::kLidarPairCapturesMax) return;
+  std::set<const LidarLidarCapture*> kept;
+  for (std::size_t i = 0; i < limits::kLidarPairCapturesMax; ++i)
+    kept.insert(both[i * both.size() / limits::kLidarPairCapturesMax]);
+  for (LidarLidarCapture* capture : both)
+    if (!kept.contains(capture))
+      capture->why_not = "not needed: " + std::to_string(limits::kLidarPairCapturesMax) + " captures are used";
+  std::erase_if(files, [](const CloudFile& file) { return !file.capture->why_not.empty(); });
+}
+
 }  // namespace
 
 Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store, const Manifest& manifest,
@@ -60,6 +79,7 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
                 "Push the session again under its own manifest.");
   std::map<CaptureId, LidarLidarCapture> captures;
   std::vector<CloudFile> files = FilesOf(manifest, ids, captures);
+  Thin(captures, files);
   const std::filesystem::path blobs = store.BlobFolder();
   ParallelFor(files.size(), [&](std::size_t i) { Read(blobs, files[i]); });
   for (const CloudFile& file : files)

@@ -8,6 +8,8 @@ namespace {
 
 // A burst larger than this, and than the graph at hand, is solved at once.
 constexpr std::size_t kOneByOneMax = 32;
+// Edges after which nothing but a batch will do (one of a low rank is enough) are taken together after so many.
+constexpr std::size_t kBatchesMax = 2;
 
 std::vector<EdgeId> SortedIds(const std::vector<GraphEdge>& edges) {
   std::vector<EdgeId> ids;
@@ -24,6 +26,10 @@ std::vector<EdgeId> Without(const std::vector<EdgeId>& a, const std::vector<Edge
   return rest;
 }
 
+void StartAnew(const RobotGraph& loaded, LiveGraph& live) {
+  live.solver = std::make_unique<graph::LiveSolver>(loaded.graph);
+}
+
 }  // namespace
 
 void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live) {
@@ -33,14 +39,15 @@ void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live) {
   const std::vector<EdgeId> wanted = SortedIds(loaded.graph.edges);
   const std::vector<EdgeId> added = Without(wanted, held), removed = Without(held, wanted);
   if (solver == nullptr || solver->graph().reference != loaded.graph.reference ||
-      added.size() > std::max(kOneByOneMax, held.size())) {
-    live.solver = std::make_unique<graph::LiveSolver>(loaded.graph);
-    return;
-  }
+      added.size() > std::max(kOneByOneMax, held.size()) || removed.size() > kBatchesMax)
+    return StartAnew(loaded, live);
   for (const SensorId& sensor : loaded.graph.sensors) live.solver->AddSensor(sensor);
   for (const EdgeId& id : removed) live.solver->Remove(id);
-  for (const GraphEdge& edge : loaded.graph.edges)
-    if (std::binary_search(added.begin(), added.end(), edge.id)) live.solver->Add(edge);
+  std::size_t batches = 0;
+  for (const GraphEdge& edge : loaded.graph.edges) {
+    if (!std::binary_search(added.begin(), added.end(), edge.id)) continue;
+    if (live.solver->Add(edge).batch && ++batches > kBatchesMax) return StartAnew(loaded, live);
+  }
 }
 
 LiveGraph& LiveGraphs::Of(const RobotId& robot) {

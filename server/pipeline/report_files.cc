@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "server/base/base64.h"
 #include "server/formats/json_writer.h"
@@ -37,6 +38,17 @@ Result<std::vector<File>> FilesOf(const fs::path& folder) {
   return files;
 }
 
+// A relative path of names alone, to a file as it is: none leads out of the folder.
+std::optional<std::int64_t> BytesOf(const fs::path& folder, const std::string& path) {
+  const fs::path relative(path);
+  std::error_code error;
+  if (path.empty() || relative.is_absolute() || relative.lexically_normal() != relative || *relative.begin() == "..")
+    return std::nullopt;
+  if (!fs::is_regular_file(fs::symlink_status(folder / relative, error)) || error) return std::nullopt;
+  const auto bytes = fs::file_size(folder / relative, error);
+  return error ? std::nullopt : std::optional(static_cast<std::int64_t>(bytes));
+}
+
 }  // namespace
 
 Result<std::string> ReportFiles(const storage::Store& store, const RobotId& robot, int revision) {
@@ -54,15 +66,13 @@ Result<std::string> ReportFiles(const storage::Store& store, const RobotId& robo
   });
 }
 
-// Only what the list holds: so no path leads out of the folder.
 Result<std::string> ReportFile(const storage::Store& store, const RobotId& robot, int revision, const std::string& path,
                                std::int64_t offset) {
   const fs::path folder = FolderOf(store, robot, revision);
-  RIGCAL_ASSIGN(const auto files, FilesOf(folder));
-  const auto known = std::find_if(files.begin(), files.end(), [&](const File& file) { return file.path == path; });
-  if (known == files.end() || offset < 0 || offset > known->bytes)
+  const auto known = BytesOf(folder, path);
+  if (!known || offset < 0 || offset > *known)
     return Fail(ErrorCode::kNotFound, "the report has no such piece of a file", "Ask for the list with report_files.");
-  std::string piece(static_cast<std::size_t>(std::min(known->bytes - offset, kReportPieceBytes)), '\0');
+  std::string piece(static_cast<std::size_t>(std::min(*known - offset, kReportPieceBytes)), '\0');
   std::ifstream file(folder / path, std::ios::binary);
   file.seekg(offset);
   if (!file.read(piece.data(), static_cast<std::streamsize>(piece.size())))
@@ -70,7 +80,7 @@ Result<std::string> ReportFile(const storage::Store& store, const RobotId& robot
   return formats::WriteObject([&](JsonWriter& out) {
     out.Text("path", path);
     out.Integer("offset", offset);
-    out.Integer("bytes", known->bytes);
+    out.Integer("bytes", *known);
     out.Text("base64", ToBase64(piece));
   });
 }

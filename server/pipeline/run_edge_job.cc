@@ -69,10 +69,21 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
        "Update the server and push the session again."});
 }
 
+// What a library throws (no memory for a cloud, say) costs this pair, not the server.
+Result<Edge> EstimateOrFail(storage::Store& store, const storage::JobRow& job) {
+  try {
+    return EstimatePair(store, job);
+  } catch (const std::exception& exception) {
+    return FailedEdge(job.pair, "none",
+                      {ErrorCode::kInternal, std::string("the estimate broke off: ") + exception.what(),
+                       "Push the session again with fewer captures, and report this with the session's id."});
+  }
+}
+
 }  // namespace
 
 Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock) {
-  RIGCAL_ASSIGN(Edge edge, EstimatePair(store, job));
+  RIGCAL_ASSIGN(Edge edge, EstimateOrFail(store, job));
   edge.robot = job.robot;
   edge.session = job.session;
   edge.id = EstimatedEdgeId(job.robot, job.session, edge.method, edge.frame_a, edge.frame_b);

@@ -33,6 +33,17 @@ class Claim {
   bool taken_;
 };
 
+// What a library throws costs this step, not the server.
+template <typename Work>
+auto Guarded(const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::exception& exception) {
+    return Fail(ErrorCode::kInternal, std::string("the work broke off: ") + exception.what(),
+                "Report this with the log of the server.");
+  }
+}
+
 Status UpdateLive(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const RobotGraph loaded, LoadRobotGraph(context.store, robot));
   LiveGraph& live = context.live.Of(robot);
@@ -58,7 +69,8 @@ Result<bool> PublishNext(const StepContext& context) {
   for (const storage::RevisionKey& key : unpublished) {
     const Claim claim(context.claims, key.robot);
     if (!claim.taken()) continue;
-    if (const auto folder = Publish(context.store, key, context.clock); !folder) {
+    const auto folder = Guarded([&] { return Publish(context.store, key, context.clock); });
+    if (!folder) {
       problem = folder.error();
       continue;
     }
@@ -122,7 +134,7 @@ Result<StepResult> ReviseNext(const StepContext& context) {
   for (const RobotId& robot : unsolved) {
     const Claim claim(context.claims, robot);
     if (!claim.taken()) continue;
-    const Result<Burst> burst = WorkOn(context, robot);
+    const Result<Burst> burst = Guarded([&] { return WorkOn(context, robot); });
     WakeBy(burst ? burst->wake_at : LetRest(context, robot, burst.error()), result);
     result.worked = burst && burst->over;
     if (result.worked) return result;

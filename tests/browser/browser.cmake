@@ -1,6 +1,6 @@
 # Pages in a real browser, from a real server that was fed over DDS. Skips, saying so, without chromium.
 foreach(flow pages cloud)
   add_test(NAME browser.${flow} COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/browser/${flow}_test.py)
-  set_tests_properties(browser.${flow} PROPERTIES LABELS browser TIMEOUT 180 SKIP_RETURN_CODE 77 RESOURCE_LOCK browser
+  set_tests_properties(browser.${flow} PROPERTIES LABELS browser TIMEOUT 600 SKIP_RETURN_CODE 77 RESOURCE_LOCK browser
     ENVIRONMENT "RIGCAL_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1;NODE_PATH=${RIGCAL_NODE_MODULES}")
 endforeach()

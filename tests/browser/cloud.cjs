@@ -9,12 +9,14 @@ withBrowser(async (browser) => {
   console.log(JSON.stringify({ visible_s: (Date.now() - start) / 1000 }));
   assert.ok((await colors(page, ".cloud canvas")) > 100, "the points are drawn in their colours");
   assert.ok((await page.textContent(".cloud .bar")).includes("2 million points"));
-  const seen = new Set([await page.$eval(".cloud canvas", (canvas) => canvas.toDataURL())]);
+  const drawn = () => page.$eval(".cloud canvas", (canvas) => canvas.toDataURL());
+  const seen = new Set([await drawn()]);
   for (const mode of ["camera", "depth", "intensity", "uncovered"]) {
-    const frames = await page.getAttribute(".cloud .view", "data-frames");
+    const before = await drawn();
     await page.selectOption(".cloud select", mode);
-    await page.waitForFunction((before) => document.querySelector(".cloud .view").dataset.frames !== before, frames);
-    seen.add(await page.$eval(".cloud canvas", (canvas) => canvas.toDataURL()));
+    const changed = (old) => document.querySelector(".cloud canvas").toDataURL() !== old;
+    await page.waitForFunction(changed, before, { polling: 200 });
+    seen.add(await drawn());
   }
   assert.strictEqual(seen.size, 5, "each way of colouring looks different");
   await page.$eval(".blend input", (field) => { field.value = 0; field.dispatchEvent(new Event("input")); });

@@ -25,7 +25,11 @@ class Flow:
 
     def __enter__(self):
         self.server.start()
-        self.address = self.ready()
+        try:
+            self.address = self.ready()
+        except BaseException:
+            self.server.kill()
+            raise
         return self
 
     def __exit__(self, *_):

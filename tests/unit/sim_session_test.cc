@@ -14,10 +14,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A place of this process, gone when it ends.
+class Scratch {
+ public:
+  Scratch() {
+    std::string pattern = (fs::temp_directory_path() / "rigcal-sim-XXXXXX").string();
+    if (mkdtemp(pattern.data()) != nullptr) folder_ = pattern;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] const fs::path& folder() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
 fs::path FreshFolder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("rigcal-sim-" + name);
-  fs::remove_all(folder);
-  return folder;
+  static const Scratch scratch;
+  fs::remove_all(scratch.folder() / name);
+  return scratch.folder() / name;
 }
 
 std::string BytesOf(const fs::path& path) {
