@@ -54,8 +54,8 @@ def run_real(context):
 
 def run(context):
     result = context.run_json("cloud_measure")
-    yield at_most("colour_1M_points_7_cameras_5MP_two_threads", result["best_ms"], 150.0, "ms")  # of 9: others may be at work
-    yield info("median_of_it", result["colour_ms"], "ms")
+    yield at_most("colour_1M_points_7_cameras_5MP_two_threads", result["colour_ms"], 150.0, "ms")  # median of 9
+    yield info("fastest_of_it", result["best_ms"], "ms")
     yield info("processor_time_of_it", result["processor_ms"], "ms")
     yield equal("same_bytes_1_and_2_threads", result["same_bytes"], True)
     yield at_most("wall_points_painted_as_plate", result["painted_as_plate"], 200)

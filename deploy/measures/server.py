@@ -47,8 +47,9 @@ class Server:
             try:
                 self.process.wait(timeout=90)  # it finishes the calibration that it is at
             except subprocess.TimeoutExpired:
-                self.process.kill()
+                self.process.kill()  # left running it would slow whatever is measured next
                 self.process.wait()
+                raise
             self.process.stdout.close()
             self.log.close()
             self.process = None
