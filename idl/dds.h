@@ -43,6 +43,8 @@ class Entity {
 struct ParticipantOptions {
   int domain = 0;   // RIGCAL_DOMAIN overrides in Open if set
   std::string tag;  // Discovery/Tag: isolates tests; empty: RIGCAL_DDS_TAG
+  // Sockets and threads of DDS that no other participant of the process has, unless that is apart too.
+  bool apart = false;
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
 };
@@ -104,7 +106,6 @@ class Origins {
   std::unordered_map<dds_instance_handle_t, SampleOrigin> by_publication_;
 };
 Status ForgetInstance(dds_entity_t writer, const void* sample);
-Status CallOnMatch(dds_entity_t writer, std::function<void()>* callback);
 std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader);
 bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant);
 void ClearMatch(dds_entity_t endpoint);  // so that a wait set sleeps again
@@ -126,11 +127,6 @@ class Writer {
   [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(entity_.get(), true); }
   // Drops what is kept for late joiners under the sample's key.
   [[nodiscard]] Status Forget(const T& sample) { return internal::ForgetInstance(entity_.get(), &sample); }
-  // Calls back from a thread of DDS whenever a reader is matched or lost. Must not block. Call once.
-  [[nodiscard]] Status OnMatch(std::function<void()> callback) {
-    on_match_ = std::make_unique<std::function<void()>>(std::move(callback));
-    return internal::CallOnMatch(entity_.get(), on_match_.get());
-  }
   // True if a reader of that participant (SampleOrigin::participant) matched: what is written now reaches it.
   [[nodiscard]] bool HasReaderOf(dds_instance_handle_t participant) const {
     return internal::HasReaderOf(entity_.get(), participant);
@@ -143,7 +139,6 @@ class Writer {
 
  private:
   explicit Writer(Entity entity) : entity_(std::move(entity)) {}
-  std::unique_ptr<std::function<void()>> on_match_;  // outlives entity_
   Entity entity_;
 };
 

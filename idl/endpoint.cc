@@ -84,18 +84,6 @@ Status ForgetInstance(dds_entity_t writer, const void* sample) {
               "A fault in Rigcal or too little memory: report it with the log");
 }
 
-Status CallOnMatch(dds_entity_t writer, std::function<void()>* callback) {
-  dds_listener_t* listener = dds_create_listener(callback);
-  dds_lset_publication_matched(listener, [](dds_entity_t, const dds_publication_matched_status_t, void* argument) {
-    (*static_cast<std::function<void()>*>(argument))();
-  });
-  const dds_return_t code = dds_set_listener(writer, listener);
-  dds_delete_listener(listener);
-  if (code == DDS_RETCODE_OK) return {};
-  return Fail(ErrorCode::kInternal, std::string("DDS listener: ") + dds_strretcode(-code),
-              "A fault in Rigcal: report it with the log");
-}
-
 Result<int> TakeSamples(dds_entity_t reader, int max,
                         const std::function<void(const void*, const dds_sample_info_t&)>& body) {
   std::array<void*, kTakeMax> samples{};

@@ -15,6 +15,7 @@ namespace rigcal::wire {
 namespace {
 
 constexpr int kDomainMax = 230;  // above it the UDP ports of DDSI run out
+constexpr int kApart = 1000;     // added to the number that a domain has in this process, not on the network
 
 // One Cyclone domain of this process; participants of the same id share it.
 struct Domain {
@@ -26,6 +27,8 @@ std::string Variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
+
+bool RuledFromOutside() { return !Variable("CYCLONEDDS_URI").empty(); }
 
 bool HasNetwork() {
   ifaddrs* list = nullptr;
@@ -40,14 +43,15 @@ bool HasNetwork() {
 }
 
 // Cyclone refuses an interface that is named twice, and picks loopback itself where nothing else is up.
-std::string Configuration(const std::string& tag) {
+std::string Configuration(int number, const std::string& tag) {
   std::string text(kdefault_xml);
   text.erase(text.find_last_not_of(" \n") + 1);
   text += ",<CycloneDDS><Domain Id=\"any\"><General><Interfaces>";
   const bool only_here = !Variable("RIGCAL_DDS_LOCAL").empty();
   text += only_here ? "<NetworkInterface name=\"lo\"/>" : "<NetworkInterface autodetermine=\"true\"/>";
   if (!only_here && HasNetwork()) text += "<NetworkInterface name=\"lo\" presence_required=\"false\"/>";
-  text += "</Interfaces></General><Discovery><Tag>" + tag + "</Tag></Discovery></Domain></CycloneDDS>";
+  text += "</Interfaces></General><Discovery><Tag>" + tag + "</Tag>";
+  text += "<ExternalDomainId>" + std::to_string(number) + "</ExternalDomainId></Discovery></Domain></CycloneDDS>";
   return text;
 }
 
@@ -86,25 +90,31 @@ Result<std::string> DiscoveryTag(const ParticipantOptions& options) {
   return tag;
 }
 
+// A domain on the network, and its number in this process.
+struct DomainNumbers {
+  int network = 0, here = 0;
+};
+
 // Null where CYCLONEDDS_URI rules: then Cyclone makes the domain itself.
-Result<std::shared_ptr<Domain>> SharedDomain(int number, const std::string& tag) {
+Result<std::shared_ptr<Domain>> SharedDomain(const DomainNumbers& numbers, const std::string& tag) {
   static std::mutex mutex;
   static std::map<int, std::weak_ptr<Domain>> domains;
-  if (!Variable("CYCLONEDDS_URI").empty()) return nullptr;
+  if (RuledFromOutside()) return nullptr;
   const std::lock_guard lock(mutex);
-  if (auto shared = domains[number].lock()) {
+  if (auto shared = domains[numbers.here].lock()) {
     if (shared->tag == tag) return shared;
     return Fail(ErrorCode::kConflict,
-                "DDS domain " + std::to_string(number) + " is open with tag '" + shared->tag + "'",
+                "DDS domain " + std::to_string(numbers.network) + " is open with tag '" + shared->tag + "'",
                 "Use one tag per domain and process");
   }
-  Entity entity(dds_create_domain(static_cast<dds_domainid_t>(number), Configuration(tag).c_str()));
+  const std::string configuration = Configuration(numbers.network, tag);
+  Entity entity(dds_create_domain(static_cast<dds_domainid_t>(numbers.here), configuration.c_str()));
   if (entity.get() < 0)
     return Fail(
         ErrorCode::kUnreachable, std::string("DDS could not start: ") + dds_strretcode(-entity.get()),
         "Run `rigcal doctor`: a network interface (loopback at least) must be up, and UDP ports from 7400 free");
   auto shared = std::make_shared<Domain>(Domain{std::move(entity), tag});
-  domains[number] = shared;
+  domains[numbers.here] = shared;
   return shared;
 }
 
@@ -131,8 +141,9 @@ Result<Participant> Participant::Open(const ParticipantOptions& options) {
   KeepFreedSamples();
   RIGCAL_ASSIGN(const int number, DomainNumber(options));
   RIGCAL_ASSIGN(const std::string tag, DiscoveryTag(options));
-  RIGCAL_ASSIGN(std::shared_ptr<Domain> domain, SharedDomain(number, tag));
-  Entity entity(dds_create_participant(static_cast<dds_domainid_t>(number), nullptr, nullptr));
+  const int here = options.apart && !RuledFromOutside() ? number + kApart : number;
+  RIGCAL_ASSIGN(std::shared_ptr<Domain> domain, SharedDomain({number, here}, tag));
+  Entity entity(dds_create_participant(static_cast<dds_domainid_t>(here), nullptr, nullptr));
   if (entity.get() < 0)
     return Fail(ErrorCode::kUnreachable, std::string("DDS participant: ") + dds_strretcode(-entity.get()),
                 "At most 120 DDS programs of one domain run on a machine: stop some, or set RIGCAL_DOMAIN");

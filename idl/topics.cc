@@ -27,7 +27,7 @@ RIGCAL_TOPIC(PairwiseResult, kVolatile, kKeepAll, 4096)
 RIGCAL_TOPIC(Event, kVolatile, kKeepAll, kNoLimit)
 RIGCAL_TOPIC(Calibration, kTransientLocal, kNewest, kNoLimit)
 RIGCAL_TOPIC(RobotStatus, kTransientLocal, kNewest, kNoLimit)
-RIGCAL_TOPIC(Request, kVolatile, kKeepAll, 4096)
+RIGCAL_TOPIC(Request, kVolatile, kKeepAll, 1024)
 RIGCAL_TOPIC(Reply, kVolatile, kKeepAll, kNoLimit)
 
 #undef RIGCAL_TOPIC

@@ -13,31 +13,28 @@ constexpr int kBigAtOnce = 1;  // a chunk is copied while it is loaned from DDS:
 
 }  // namespace
 
-Intake::Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Requests& requests)
+Intake::Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox)
     : readers_(std::move(readers)),
       waitset_(std::move(waitset)),
       outbox_(&outbox),
-      inbox_(&inbox),
-      requests_(&requests) {}
+      inbox_(&inbox) {}
 
 Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant) {
   const std::vector<std::string> robots = {wire::kAllRobotsPartition};
-  const std::vector<std::string> everyone = {wire::kOperatorPartition, wire::kAllRobotsPartition};
-  RIGCAL_ASSIGN(auto requests, wire::Reader<rigcal_wire_Request>::Open(participant, everyone));
   RIGCAL_ASSIGN(auto headers, wire::Reader<rigcal_wire_SessionHeader>::Open(participant, robots));
   RIGCAL_ASSIGN(auto manifests, wire::Reader<rigcal_wire_Manifest>::Open(participant, robots));
   RIGCAL_ASSIGN(auto edges, wire::Reader<rigcal_wire_PairwiseResult>::Open(participant, robots));
   RIGCAL_ASSIGN(auto chunks, wire::Reader<rigcal_wire_Chunk>::Open(participant, robots));
-  return Readers{std::move(requests), std::move(headers), std::move(manifests), std::move(edges), std::move(chunks)};
+  return Readers{std::move(headers), std::move(manifests), std::move(edges), std::move(chunks)};
 }
 
-Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox, Requests& requests) {
+Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox) {
   RIGCAL_ASSIGN(Readers readers, OpenReaders(participant));
   RIGCAL_ASSIGN(wire::WaitSet waitset, wire::WaitSet::Open(participant));
-  for (const dds_entity_t reader : {readers.requests.get(), readers.headers.get(), readers.manifests.get(),
+  for (const dds_entity_t reader : {readers.headers.get(), readers.manifests.get(),
                                     readers.edges.get(), readers.chunks.get()})
     RIGCAL_TRY(waitset.Attach(reader));
-  return Intake(std::move(readers), std::move(waitset), outbox, inbox, requests);
+  return Intake(std::move(readers), std::move(waitset), outbox, inbox);
 }
 
 template <typename T>
@@ -49,24 +46,10 @@ bool Intake::TakeInto(wire::Reader<T>& reader, int max) {
   return taken && *taken > 0;
 }
 
-bool Intake::TakeRequests() {
-  const auto taken = readers_.requests.Take(kSmallAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
-    for (const std::string& partition : origin.partitions)
-      if (partition == wire::kOperatorPartition || RobotOfPartition(partition))
-        return requests_->Offer(
-            {partition, origin.participant, sample.id, sample.verb, sample.json == nullptr ? "" : sample.json});
-  });
-  if (!taken) LogError(taken.error());
-  return taken && *taken > 0;
-}
-
 bool Intake::TakeAll() {
-  bool any = TakeRequests();
-  any |= TakeInto(readers_.headers, kSmallAtOnce);
+  bool any = TakeInto(readers_.headers, kSmallAtOnce);
   any |= TakeInto(readers_.manifests, kBigAtOnce);
-  any |= TakeRequests();  // between what takes milliseconds, so that a flood of one kind holds no question up
   any |= TakeInto(readers_.edges, kEdgesAtOnce);
-  any |= TakeRequests();
   any |= TakeInto(readers_.chunks, kBigAtOnce);
   return any;
 }

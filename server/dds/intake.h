@@ -1,5 +1,5 @@
 // Thread D: takes everything at once and never waits for anyone, as a reader that stops taking stalls every topic of
-// the process. Checks samples (from_idl) and hands them to threads W and Q.
+// the process. Checks samples (from_idl) and hands them to thread W.
 #pragma once
 
 #include <atomic>
@@ -7,31 +7,27 @@
 
 #include "server/dds/inbox.h"
 #include "server/dds/outbox.h"
-#include "server/dds/requests.h"
 
 namespace rigcal::dds {
 
 class Intake {
  public:
-  // Outbox, inbox and requests outlive it.
-  [[nodiscard]] static Result<Intake> Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox,
-                                           Requests& requests);
+  // Outbox and inbox outlive it.
+  [[nodiscard]] static Result<Intake> Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox);
   void Run();   // until Stop
   void Stop();  // any thread
 
  private:
   struct Readers {
-    wire::Reader<rigcal_wire_Request> requests;
     wire::Reader<rigcal_wire_SessionHeader> headers;
     wire::Reader<rigcal_wire_Manifest> manifests;
     wire::Reader<rigcal_wire_PairwiseResult> edges;
     wire::Reader<rigcal_wire_Chunk> chunks;
   };
-  Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Requests& requests);
+  Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox);
 
   [[nodiscard]] static Result<Readers> OpenReaders(const wire::Participant& participant);
   [[nodiscard]] bool TakeAll();  // true if there was something
-  [[nodiscard]] bool TakeRequests();
   template <typename T>
   [[nodiscard]] bool TakeInto(wire::Reader<T>& reader, int max);
   void MeetRobots();
@@ -40,7 +36,6 @@ class Intake {
   wire::WaitSet waitset_;
   Outbox* outbox_;
   Inbox* inbox_;
-  Requests* requests_;
   std::unique_ptr<std::atomic<bool>> stopped_ = std::make_unique<std::atomic<bool>>(false);
 };
 

@@ -40,9 +40,6 @@ void FillPose(const SensorPose& pose, rigcal_wire_Calibration& sample) {
 
 }  // namespace
 
-Outbox::Outbox(const wire::Participant& participant, std::function<void()> reply_matched)
-    : participant_(participant), reply_matched_(std::move(reply_matched)) {}
-
 Result<std::shared_ptr<Outbox::RobotWriters>> Outbox::OpenWriters(const RobotId& robot) const {
   const std::vector<std::string> partitions = {wire::RobotPartition(robot)};
   RIGCAL_ASSIGN(auto receipts, wire::Writer<rigcal_wire_Receipt>::Open(participant_, partitions));
@@ -143,29 +140,6 @@ void Outbox::SendStatus(const RobotId& robot, int revision, const Verdict& verdi
   sample.jobs_waiting = static_cast<std::uint32_t>(jobs_waiting);
   sample.stamp_ns = at.ns;
   LogFailure(writers->statuses.Write(sample));
-}
-
-Result<std::shared_ptr<Outbox::ReplyWriter>> Outbox::ReplyWriterOf(const std::string& partition) {
-  const std::lock_guard lock(mutex_);
-  const auto known = replies_.find(partition);
-  if (known != replies_.end()) return known->second;
-  if (replies_.size() > kRobotsMax)
-    return Fail(ErrorCode::kInvalidInput, "too many partitions ask", "Ask in partition operator");
-  RIGCAL_ASSIGN(auto writer, ReplyWriter::Open(participant_, {partition}));
-  RIGCAL_TRY(writer.OnMatch(reply_matched_));
-  return replies_.emplace(partition, std::make_shared<ReplyWriter>(std::move(writer))).first->second;
-}
-
-Status Outbox::AddAsker(const std::string& partition) {
-  RIGCAL_TRY(ReplyWriterOf(partition));
-  return {};
-}
-
-Status Outbox::Reply(const std::string& partition, dds_instance_handle_t participant, const rigcal_wire_Reply& part) {
-  RIGCAL_ASSIGN(const std::shared_ptr<ReplyWriter> writer, ReplyWriterOf(partition));
-  if (!writer->HasReaderOf(participant))
-    return Fail(ErrorCode::kUnreachable, "a client that asked does not read replies yet", "Wait for its reader");
-  return writer->Write(part);
 }
 
 }  // namespace rigcal::dds

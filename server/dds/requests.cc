@@ -1,20 +1,22 @@
 #include "server/dds/requests.h"
 
 #include <algorithm>
+#include <future>
 
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
+#include "server/dds/from_idl.h"
 #include "server/formats/answers.h"
 
 namespace rigcal::dds {
 namespace {
 
-constexpr std::size_t kQuestionsMax = 1'024;
+constexpr int kTakenAtOnce = 256;
 constexpr std::size_t kPendingMax = 256;
 constexpr std::chrono::seconds kPendingFor{5};
 constexpr std::chrono::milliseconds kBusyAgain{20};
-constexpr std::chrono::seconds kIdle{1};
+constexpr std::chrono::milliseconds kIdle{1000};
 
 std::vector<std::string> Split(const std::string& text) {
   std::vector<std::string> parts;
@@ -23,26 +25,47 @@ std::vector<std::string> Split(const std::string& text) {
   return parts;
 }
 
-}  // namespace
-
-void Requests::Offer(Question question) {
-  const std::lock_guard lock(mutex_);
-  if (questions_.size() >= kQuestionsMax)
-    return LogWarn("too many requests at once: one from " + question.partition + " is dropped");
-  questions_.push_back(std::move(question));
-  changed_.notify_one();
+// DDS makes threads of its own, of the rank of the thread that opens.
+Result<wire::Participant> OpenApart(wire::ParticipantOptions options) {
+  options.apart = true;
+  const auto open = [&] {
+    SetThreadRank(ThreadRank::kAnswers);
+    return wire::Participant::Open(options);
+  };
+  return std::async(std::launch::async, open).get();
 }
 
-void Requests::ReadersChanged() {
-  const std::lock_guard lock(mutex_);
-  readers_changed_ = true;
-  changed_.notify_one();
+// The first partition of a writer in which questions may be asked; nothing if there is none.
+std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
+  for (const std::string& partition : origin.partitions)
+    if (partition == wire::kOperatorPartition || RobotOfPartition(partition)) return partition;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
+                   const Answer& answer)
+    : participant_(std::move(participant)),
+      reader_(std::move(reader)),
+      waitset_(std::move(waitset)),
+      answer_(answer) {}
+
+Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Answer& answer) {
+  RIGCAL_ASSIGN(auto participant, OpenApart(options));
+  RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
+                                 participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
+  RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
+  RIGCAL_TRY(waitset.Attach(reader.get()));
+  std::unique_ptr<Requests> made(
+      new Requests(std::move(participant), std::move(reader), std::move(waitset), answer));
+  RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
+  return made;
 }
 
 void Requests::Stop() {
-  const std::lock_guard lock(mutex_);
   stopped_ = true;
-  changed_.notify_one();
+  waitset_.Wake();
 }
 
 std::string Requests::DocumentOf(const Question& question) const {
@@ -54,7 +77,7 @@ std::string Requests::DocumentOf(const Question& question) const {
   return answer ? std::move(*answer) : formats::WriteError(answer.error());
 }
 
-bool Requests::Send(Pending& pending) const {
+bool Requests::Send(Pending& pending) {
   pending.busy = false;
   while (pending.next_idx < pending.parts.size()) {
     rigcal_wire_Reply part{};
@@ -62,7 +85,7 @@ bool Requests::Send(Pending& pending) const {
     part.part_idx = static_cast<std::uint32_t>(pending.next_idx);
     part.part_count = static_cast<std::uint32_t>(pending.parts.size());
     part.json = pending.parts[pending.next_idx].data();
-    const Status sent = outbox_.Reply(pending.question.partition, pending.question.participant, part);
+    const Status sent = writers_.Send(pending.question.partition, pending.question.participant, part);
     if (sent) {
       ++pending.next_idx;
       continue;
@@ -89,27 +112,29 @@ void Requests::SendPending() {
   pending_.remove_if([&](Pending& pending) { return Send(pending) || pending.expires <= now; });
 }
 
-// The next question; nothing if it is time to look after the replies that wait.
-std::optional<Question> Requests::Next() {
+Result<std::vector<Question>> Requests::TakeQuestions() {
+  std::vector<Question> questions;
+  RIGCAL_TRY(reader_.Take(kTakenAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
+    const auto partition = AskedIn(origin);
+    if (!partition) return;
+    const char* json = sample.json == nullptr ? "" : sample.json;
+    questions.push_back({*partition, origin.participant, sample.id, sample.verb, json});
+  }));
+  return questions;
+}
+
+std::chrono::milliseconds Requests::Patience() const {
   const bool any_busy = std::any_of(pending_.begin(), pending_.end(), [](const Pending& one) { return one.busy; });
-  std::unique_lock lock(mutex_);
-  const std::chrono::milliseconds patience = any_busy ? kBusyAgain : std::chrono::milliseconds(kIdle);
-  changed_.wait_for(lock, patience, [&] { return stopped_ || readers_changed_ || !questions_.empty(); });
-  readers_changed_ = false;
-  if (questions_.empty() || stopped_) return std::nullopt;
-  Question question = std::move(questions_.front());
-  questions_.pop_front();
-  return question;
+  return any_busy ? kBusyAgain : kIdle;
 }
 
 void Requests::Run() {
   SetThreadRank(ThreadRank::kAnswers);
-  const auto stopped = [&] {
-    const std::lock_guard lock(mutex_);
-    return stopped_;
-  };
-  while (!stopped()) {
-    if (auto question = Next()) Add(std::move(*question));
+  while (!stopped_) {
+    if (const auto woken = waitset_.Wait(Patience()); !woken) return LogError(woken.error());
+    auto questions = TakeQuestions();
+    if (!questions) LogError(questions.error());
+    for (Question& question : questions.value_or(std::vector<Question>{})) Add(std::move(question));
     if (!pending_.empty()) SendPending();
   }
 }

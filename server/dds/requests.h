@@ -1,16 +1,17 @@
-// Thread Q: answers requests. A request may come before the server's reply writer has met the reader of the client that
-// asked; a volatile reply would be lost, so it waits here until they have met, bounded in number, bytes and time.
+// Thread Q: takes requests and answers them, on a participant of its own: its sockets and the threads of DDS behind them
+// are not those that sessions come in by. A request may come before the server's reply writer has met the reader of the
+// client that asked; a volatile reply would be lost, so it waits here until they have met, bounded in number and time.
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <deque>
+#include <functional>
 #include <list>
-#include <mutex>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "server/dds/outbox.h"
+#include "server/dds/reply_writers.h"
 
 namespace rigcal::dds {
 
@@ -22,16 +23,12 @@ struct Question {
 
 class Requests {
  public:
-  // Both outlive it. `answer` as in Callbacks.
-  Requests(Outbox& outbox, const std::function<Result<std::string>(const std::string&, const std::string&)>& answer)
-      : outbox_(outbox), answer_(answer) {}
-
-  // Thread D. Never waits; beyond the limit the question is dropped (the client asks again or gives up).
-  void Offer(Question question);
-  // A reader of replies came or went: any thread.
-  void ReadersChanged();
-  void Run();  // until Stop
-  void Stop();
+  using Answer = std::function<Result<std::string>(const std::string& verb, const std::string& json)>;
+  // The answerer outlives it.
+  [[nodiscard]] static Result<std::unique_ptr<Requests>> Open(const wire::ParticipantOptions& options,
+                                                              const Answer& answer);
+  void Run();   // until Stop
+  void Stop();  // any thread
 
  private:
   using Time = std::chrono::steady_clock::time_point;
@@ -43,20 +40,24 @@ class Requests {
     bool busy = false;  // a reader is slow: tried again soon, not only when readers change
   };
 
+  Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
+           const Answer& answer);
+
   [[nodiscard]] std::string DocumentOf(const Question& question) const;
   void Add(Question question);
   // True if there is nothing left to do for it.
-  [[nodiscard]] bool Send(Pending& pending) const;
+  [[nodiscard]] bool Send(Pending& pending);
   void SendPending();
-  [[nodiscard]] std::optional<Question> Next();
+  [[nodiscard]] Result<std::vector<Question>> TakeQuestions();
+  [[nodiscard]] std::chrono::milliseconds Patience() const;
 
-  Outbox& outbox_;
-  const std::function<Result<std::string>(const std::string&, const std::string&)>& answer_;
-  std::list<Pending> pending_;  // thread Q only
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Question> questions_;
-  bool readers_changed_ = false, stopped_ = false;
+  wire::Participant participant_;
+  wire::Reader<rigcal_wire_Request> reader_;
+  wire::WaitSet waitset_;
+  ReplyWriters writers_{participant_, waitset_};
+  const Answer& answer_;
+  std::list<Pending> pending_;
+  std::atomic<bool> stopped_ = false;
 };
 
 }  // namespace rigcal::dds

@@ -6,6 +6,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/dds/intake.h"
 #include "server/dds/recorder.h"
+#include "server/dds/requests.h"
 #include "storage/sessions.h"
 
 namespace rigcal::dds {
@@ -23,19 +24,17 @@ std::uint64_t NewIncarnation() {
 struct Service::Impl {
   Impl(wire::Participant opened, Callbacks given)
       : participant(std::move(opened)),
-        callbacks(std::move(given)),
-        requests(outbox, callbacks.answer),
-        outbox(participant, [this] { requests.ReadersChanged(); }) {}
+        callbacks(std::move(given)) {}
   ~Impl();
   [[nodiscard]] Status Open(const Options& options);
   void Start();
 
-  // Threads are joined before any of it goes. The outbox goes before requests, which its writers call.
+  // Threads are joined before any of it goes.
   wire::Participant participant;
   Callbacks callbacks;
   Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
-  Requests requests;
-  Outbox outbox;
+  Outbox outbox{participant};
+  std::unique_ptr<Requests> requests;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Intake> intake;
   std::thread thread_d, thread_w, thread_q;
@@ -45,26 +44,26 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
   RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
   for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
-  RIGCAL_TRY(outbox.AddAsker(wire::kOperatorPartition));
+  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks.answer));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
   recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox,
                                         callbacks, clock, NewIncarnation());
-  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, requests));
+  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox));
   intake = std::make_unique<Intake>(std::move(opened));
   return {};
 }
 
 void Service::Impl::Start() {
   thread_w = std::thread([this] { recorder->Run(); });
-  thread_q = std::thread([this] { requests.Run(); });
+  thread_q = std::thread([this] { requests->Run(); });
   thread_d = std::thread([this] { intake->Run(); });
 }
 
 Service::Impl::~Impl() {
   if (intake) intake->Stop();
   inbox.Stop();
-  requests.Stop();
+  if (requests) requests->Stop();
   for (std::thread* thread : {&thread_d, &thread_w, &thread_q})
     if (thread->joinable()) thread->join();
 }

@@ -170,23 +170,52 @@ TEST(WaitSet, IsWokenFromAnotherThreadAndByDataLeftBehind) {
   }
 }
 
-TEST(Writer, CallsBackWhenAReaderCame) {
+TEST(Writer, KnowsWhoseReaderCame) {
   const ParticipantOptions options = RandomOptions();
   Participant participant = MustOpen(options), other = MustOpen(options);
   auto writer = Writer<rigcal_wire_Reply>::Open(participant, {"operator"});
   ASSERT_TRUE(writer);
-  std::atomic<int> calls{0};
-  ASSERT_TRUE(writer->OnMatch([&] { ++calls; }));
   Writer<rigcal_wire_Reply> moved = std::move(*writer);
   auto reader = Reader<rigcal_wire_Reply>::Open(other, {"operator"});
   auto request_writer = Writer<rigcal_wire_Request>::Open(other, {"operator"});
   auto request_reader = Reader<rigcal_wire_Request>::Open(participant, {"operator"});
   ASSERT_TRUE(reader && request_writer && request_reader);
   ASSERT_TRUE(moved.WaitForReader(kPatience));
-  EXPECT_EQ(calls, 1);
   ASSERT_TRUE(request_reader->WaitForWriter(kPatience));
   EXPECT_TRUE(moved.HasReaderOf(request_reader->Matched().front().participant));
   EXPECT_FALSE(moved.HasReaderOf(12345));
+}
+
+TEST(Participant, ApartMeetsTheOthersOverTheNetwork) {
+  ParticipantOptions options = RandomOptions();
+  Participant participant = MustOpen(options);
+  options.apart = true;
+  Participant apart = MustOpen(options);
+  auto writer = Writer<rigcal_wire_Event>::Open(participant, {"robot/a"});
+  auto reader = Reader<rigcal_wire_Event>::Open(apart, {"robot/a"});
+  auto waitset = WaitSet::Open(apart);
+  ASSERT_TRUE(writer && reader && waitset && waitset->Attach(reader->get()));
+  ASSERT_TRUE(writer->WaitForReader(kPatience) && reader->WaitForWriter(kPatience));
+  rigcal_wire_Event sample{};
+  char json[] = "{}";
+  sample.json = json;
+  ASSERT_TRUE(writer->Write(sample));
+  int taken = 0;
+  while (taken == 0) {
+    ASSERT_TRUE(*waitset->Wait(kPatience));
+    taken = *reader->Take(8, [](const auto&, const auto&) {});
+  }
+  EXPECT_EQ(taken, 1);
+}
+
+TEST(Participant, ApartHasTheTagOfItsKind) {
+  ParticipantOptions options = RandomOptions();
+  options.apart = true;
+  Participant apart = MustOpen(options);
+  ParticipantOptions other = RandomOptions();
+  other.domain = options.domain;
+  other.apart = true;
+  EXPECT_EQ(Participant::Open(other).error().code, ErrorCode::kConflict);
 }
 
 }  // namespace
