@@ -91,7 +91,9 @@ struct SampleOrigin {
 
 namespace internal {
 Result<Entity> OpenReader(const Participant&, const TopicInfo&, const std::vector<std::string>& partitions);
-Result<Entity> OpenWriter(const Participant&, const TopicInfo&, const std::vector<std::string>& partitions);
+Result<Entity> OpenWriter(const Participant&, dds_entity_t parent, const TopicInfo&,
+                          const std::vector<std::string>& partitions);
+Result<Entity> OpenPublisher(const Participant&, const std::string& partition);
 Status WriteSample(dds_entity_t writer, const void* sample, const char* topic);
 // Takes up to `max` samples; calls body for each valid one.
 Result<int> TakeSamples(dds_entity_t reader, int max,
@@ -113,11 +115,30 @@ int MatchedCount(dds_entity_t endpoint, bool is_writer);
 Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::milliseconds timeout);
 }  // namespace internal
 
+// Several writers of one partition. They count as one child of the participant, which may have 16,382.
+class Publisher {
+ public:
+  [[nodiscard]] static Result<Publisher> Open(const Participant& participant, const std::string& partition) {
+    RIGCAL_ASSIGN(Entity entity, internal::OpenPublisher(participant, partition));
+    return Publisher(std::move(entity));
+  }
+  [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
+
+ private:
+  explicit Publisher(Entity entity) : entity_(std::move(entity)) {}
+  Entity entity_;
+};
+
 template <typename T>
 class Writer {
  public:
   [[nodiscard]] static Result<Writer> Open(const Participant& participant, const std::vector<std::string>& partitions) {
-    RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, InfoOf<T>(), partitions));
+    RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, participant.get(), InfoOf<T>(), partitions));
+    return Writer(std::move(entity));
+  }
+  // In the publisher's partition; the publisher outlives it.
+  [[nodiscard]] static Result<Writer> Open(const Participant& participant, const Publisher& publisher) {
+    RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, publisher.get(), InfoOf<T>(), {}));
     return Writer(std::move(entity));
   }
   // kBusy if a reader did not take within the writer's blocking time: nothing was written, try again.

@@ -24,7 +24,7 @@ Qos QosOf(const TopicInfo& info, const std::vector<std::string>& partitions) {
   Qos qos(dds_create_qos());
   std::vector<const char*> names;
   for (const std::string& partition : partitions) names.push_back(partition.c_str());
-  dds_qset_partition(qos.get(), static_cast<std::uint32_t>(names.size()), names.data());
+  if (!names.empty()) dds_qset_partition(qos.get(), static_cast<std::uint32_t>(names.size()), names.data());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kBlockingTime);
   dds_qset_durability(qos.get(), info.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), info.history_depth == 0 ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST,
@@ -59,12 +59,23 @@ Result<Entity> OpenReader(const Participant& participant, const TopicInfo& info,
   return Checked(handle, info, DDS_SUBSCRIPTION_MATCHED_STATUS);
 }
 
-Result<Entity> OpenWriter(const Participant& participant, const TopicInfo& info,
+Result<Entity> OpenWriter(const Participant& participant, dds_entity_t parent, const TopicInfo& info,
                           const std::vector<std::string>& partitions) {
   RIGCAL_ASSIGN(const dds_entity_t topic, participant.Topic(info));
   const Qos qos = QosOf(info, partitions);
-  const dds_entity_t handle = dds_create_writer(participant.get(), topic, qos.get(), nullptr);
+  const dds_entity_t handle = dds_create_writer(parent, topic, qos.get(), nullptr);
   return Checked(handle, info, DDS_PUBLICATION_MATCHED_STATUS);
+}
+
+Result<Entity> OpenPublisher(const Participant& participant, const std::string& partition) {
+  const Qos qos(dds_create_qos());
+  const char* name = partition.c_str();
+  dds_qset_partition(qos.get(), 1, &name);
+  Entity entity(dds_create_publisher(participant.get(), qos.get(), nullptr));
+  if (entity.get() < 0)
+    return Fail(ErrorCode::kInternal, "DDS publisher in " + partition + ": " + dds_strretcode(-entity.get()),
+                "Too little memory, or a fault in Rigcal: report it with the server's log");
+  return entity;
 }
 
 Status WriteSample(dds_entity_t writer, const void* sample, const char* topic) {

@@ -1,12 +1,14 @@
 // rigcald: reads the configuration, opens the four owners of state (DDS, store, runner, HTTP), wires them, waits for a
 // signal.
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <future>
 #include <iostream>
 #include <mutex>
+#include <thread>
 
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
@@ -72,6 +74,16 @@ Status EnforceLimits(const Config& config) {
   return {};
 }
 
+// All that counts is on disk, so a calibration that is under way is left: the next start does it anew.
+void LeaveSoon() {
+  constexpr std::chrono::seconds kGrace{20};
+  std::thread([kGrace] {
+    std::this_thread::sleep_for(kGrace);
+    LogWarn("stopped amid a calibration: the next start does it anew");
+    std::_Exit(0);
+  }).detach();
+}
+
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(storage::LockFolder(config.data));
@@ -108,6 +120,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   int signal = 0;
   sigwait(&signals, &signal);
   LogInfo("stopping");
+  LeaveSoon();
   relay.Set(nullptr);
   return {};
 }

@@ -5,7 +5,7 @@
 namespace rigcal::dds {
 namespace {
 
-constexpr std::size_t kRobotsMax = 20'000;
+constexpr std::size_t kRobotsMax = 16'000;  // a participant may have 16,382 publishers
 constexpr std::size_t kFinishedReceiptsMax = 4'096;
 
 void LogFailure(const Status& status) {
@@ -41,13 +41,13 @@ void FillPose(const SensorPose& pose, rigcal_wire_Calibration& sample) {
 }  // namespace
 
 Result<std::shared_ptr<Outbox::RobotWriters>> Outbox::OpenWriters(const RobotId& robot) const {
-  const std::vector<std::string> partitions = {wire::RobotPartition(robot)};
-  RIGCAL_ASSIGN(auto receipts, wire::Writer<rigcal_wire_Receipt>::Open(participant_, partitions));
-  RIGCAL_ASSIGN(auto events, wire::Writer<rigcal_wire_Event>::Open(participant_, partitions));
-  RIGCAL_ASSIGN(auto calibrations, wire::Writer<rigcal_wire_Calibration>::Open(participant_, partitions));
-  RIGCAL_ASSIGN(auto statuses, wire::Writer<rigcal_wire_RobotStatus>::Open(participant_, partitions));
-  return std::make_shared<RobotWriters>(
-      RobotWriters{std::move(receipts), std::move(events), std::move(calibrations), std::move(statuses)});
+  RIGCAL_ASSIGN(auto publisher, wire::Publisher::Open(participant_, wire::RobotPartition(robot)));
+  RIGCAL_ASSIGN(auto receipts, wire::Writer<rigcal_wire_Receipt>::Open(participant_, publisher));
+  RIGCAL_ASSIGN(auto events, wire::Writer<rigcal_wire_Event>::Open(participant_, publisher));
+  RIGCAL_ASSIGN(auto calibrations, wire::Writer<rigcal_wire_Calibration>::Open(participant_, publisher));
+  RIGCAL_ASSIGN(auto statuses, wire::Writer<rigcal_wire_RobotStatus>::Open(participant_, publisher));
+  return std::make_shared<RobotWriters>(RobotWriters{std::move(publisher), std::move(receipts), std::move(events),
+                                                     std::move(calibrations), std::move(statuses)});
 }
 
 std::shared_ptr<Outbox::RobotWriters> Outbox::WritersOf(const RobotId& robot) {

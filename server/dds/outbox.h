@@ -31,6 +31,7 @@ class Outbox {
 
  private:
   struct RobotWriters {
+    wire::Publisher publisher;
     wire::Writer<rigcal_wire_Receipt> receipts;
     wire::Writer<rigcal_wire_Event> events;
     wire::Writer<rigcal_wire_Calibration> calibrations;

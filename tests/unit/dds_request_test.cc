@@ -6,6 +6,7 @@
 
 #include "server/base/limits.h"
 #include "server/formats/answers.h"
+#include "storage/sessions.h"
 #include "tests/unit/dds_fixture.h"
 
 namespace rigcal::dds {
@@ -52,6 +53,23 @@ class Asker {
 };
 
 class RequestTest : public ServiceTest {};
+
+// A participant of DDS has at most 16,382 children.
+TEST_F(RequestTest, AnswersForAFleetOfFiveThousand) {
+  constexpr int kRobots = 5000;
+  StopServer();
+  {
+    storage::Store store = Must(storage::Store::Open(folder_.path()));
+    Must(store.Write([&]() -> Status {
+      for (int i = 0; i < kRobots; ++i)
+        RIGCAL_TRY(storage::AppendRobot(store, RobotId("robot-" + std::to_string(i)), Stamp{1}));
+      return {};
+    }));
+  }
+  StartServer();
+  EXPECT_EQ(Asker(options_.participant, "operator").Ask("fleet", "{}"), "fleet{}");
+  EXPECT_EQ(Asker(options_.participant, "robot/robot-4999").Ask("status", "{}"), "status{}");
+}
 
 TEST_F(RequestTest, AnswersOperatorsAndRobots) {
   Asker person(options_.participant, "operator");
