@@ -26,7 +26,7 @@ struct ResultWatch::State {
   const AwaitHooks& hooks;
   Awaited result;
   std::set<std::string> seen = {};                   // edges that were told
-  std::set<std::int64_t> made = {}, published = {};  // revisions, by event
+  std::set<std::int64_t> published = {};             // revisions, by event
   bool jobs_done = false, finished = false;
   bool ask_now = true;
   std::int64_t waiting = 0, total = 0;  // jobs of the session
@@ -65,10 +65,7 @@ void ResultWatch::TakeEvent(const rigcal_wire_Event& event, State& state) const 
     NoteEdge(edge, state);
   }
   if (kind == "published") state.published.insert((*data)["revision"].Integer().value_or(0));
-  if (kind == "revision") {
-    state.made.insert((*data)["revision"].Integer().value_or(0));
-    state.ask_now = true;
-  }
+  if (kind == "revision") state.ask_now = true;
 }
 
 Status ResultWatch::TakeEvents(State& state, milliseconds timeout) {
@@ -119,9 +116,9 @@ Status ResultWatch::AskAll(State& state) {
   return AskRevision(state);
 }
 
-// The report's files follow the revision. One that was made before we listened has them already.
+// The report's files follow the revision. The event comes after the answer that says they are not there yet.
 Status ResultWatch::AwaitPublished(State& state) {
-  if (!state.result.has_revision || state.made.count(state.looked_at_revision) == 0) return {};
+  if (!state.result.has_revision || state.result.show["published"].Flag(true)) return {};
   const std::int64_t until_ns = SteadyNow_ns() + std::chrono::nanoseconds(kPublishWithin).count();
   while (state.published.count(state.looked_at_revision) == 0 && SteadyNow_ns() < until_ns)
     RIGCAL_TRY(TakeEvents(state, milliseconds(200)));

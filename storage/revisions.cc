@@ -97,6 +97,13 @@ Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
   });
 }
 
+Result<bool> IsPublished(Store& store, const RevisionKey& key) {
+  return Load<bool>(store, Subject(key.robot), [&]() -> Result<bool> {
+    Query query(store, "SELECT 1 FROM publication WHERE robot_id = ? AND revision_number = ?");
+    return query.Bind(key.robot, key.number).Step();
+  });
+}
+
 Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
   const std::string subject = "publication of revision " + std::to_string(key.number) + " of robot " + key.robot.str();
   return store.connection().Append(subject, [&]() -> Status {

@@ -25,6 +25,7 @@ struct RevisionKey {
   int number = 0;
 };
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
+[[nodiscard]] Result<bool> IsPublished(Store& store, const RevisionKey& key);
 [[nodiscard]] Status AppendPublication(Store& store, const RevisionKey& key, Stamp now);
 
 // Append-only audit trail: who did what.

@@ -75,10 +75,11 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, Stamp now) {
+std::string WriteShow(const Revision& revision, bool is_published, Stamp now) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
+    out.Flag("published", is_published);
     out.Null("document");
   });
   // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds free text.

@@ -43,7 +43,7 @@ struct SessionAnswer {
                                      const std::vector<EdgeResidual>& residuals);
 
 // verb show: number, time and digest around the revision's document, which is put in byte for byte.
-[[nodiscard]] std::string WriteShow(const Revision& revision, Stamp now);
+[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, Stamp now);
 // verb revisions: without documents.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now);
 

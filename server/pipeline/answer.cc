@@ -89,7 +89,8 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
   RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
   RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, number));
-  return formats::WriteShow(revision, context.clock.Now());
+  RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(context.store, {robot, revision.number}));
+  return formats::WriteShow(revision, is_published, context.clock.Now());
 }
 
 Result<std::string> Revisions(const AnswerContext& context, const Parameters& parameters) {

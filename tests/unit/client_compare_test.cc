@@ -19,13 +19,23 @@ Se3 At(double x, double y, double z, double yaw = 0) {
   return T;
 }
 
-std::string FileWith(const std::string& text) {
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("compare-" + std::to_string(::getpid()) + "-" +
-                     testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml");
-  std::ofstream(path) << text;
-  return path.string();
-}
+// Gone with the object.
+class TextFile {
+ public:
+  explicit TextFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("compare-" + std::to_string(::getpid()) + "-" +
+               testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml")) {
+    std::ofstream(path_) << text;
+  }
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+  ~TextFile() { std::filesystem::remove(path_); }
+  [[nodiscard]] std::string path() const { return path_.string(); }
+
+ private:
+  std::filesystem::path path_;
+};
 
 TEST(Compare, TheErrorIsAlongTheSensorsOwnAxes) {
   // b looks along its x axis at the reference's y axis; it was moved by 1 mm along its own x.
@@ -58,11 +68,12 @@ TEST(Compare, WithoutTheReferenceOrACommonSensorItSaysSo) {
 
 TEST(Compare, AFileMayBeATruthOrASession) {
   const auto poses =
-      PosesOfFile(FileWith("format: 1\n"
+      PosesOfFile(TextFile("format: 1\n"
                            "sensors:\n"
                            "  left: {type: camera, T_ref_nominal: {p_m: [0, 0, 0], q_xyzw: [0, 0, 0, 1]}}\n"
                            "  top: {T_ref_sensor: {p_m: [1, 2, 3], q_xyzw: [0, 0, 0.6, 0.8]}}\n"
-                           "  none: {type: lidar}\n"));
+                           "  none: {type: lidar}\n")
+                      .path());
   ASSERT_TRUE(poses) << poses.error().what;
   ASSERT_EQ(poses->size(), 2U);
   EXPECT_EQ(poses->at("top").T_ref_sensor.p_m, Eigen::Vector3d(1, 2, 3));
@@ -71,9 +82,10 @@ TEST(Compare, AFileMayBeATruthOrASession) {
 
 TEST(Compare, AWrongFileIsASentenceThatNamesThePlace) {
   EXPECT_THAT(PosesOfFile("/does/not/exist.yaml").error().what, HasSubstr("/does/not/exist.yaml cannot be read"));
-  EXPECT_THAT(
-      PosesOfFile(FileWith("sensors:\n  top: {T_ref_sensor: {p_m: [1, 2, 3], q_xyzw: [0, 0, 0, 2]}}\n")).error().what,
-      testing::AllOf(HasSubstr("line 2"), HasSubstr("sensor 'top'"), HasSubstr("unit length")));
+  EXPECT_THAT(PosesOfFile(TextFile("sensors:\n  top: {T_ref_sensor: {p_m: [1, 2, 3], q_xyzw: [0, 0, 0, 2]}}\n").path())
+                  .error()
+                  .what,
+              testing::AllOf(HasSubstr("line 2"), HasSubstr("sensor 'top'"), HasSubstr("unit length")));
 }
 
 TEST(Compare, ARevisionGivesPosesAndSigmas) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <future>
 #include <map>
 #include <sstream>
 #include <thread>
@@ -217,6 +218,30 @@ TEST(Verbs, PushPrintsTheEdgesTheVerdictAndTheReport) {
   EXPECT_NE(ran.out.find("report  http://127.0.0.1:8420/robots/r1/revisions/1/"), std::string::npos) << ran.out;
   EXPECT_NE(ran.err.find("is stored: 4 files"), std::string::npos) << ran.err;
   EXPECT_EQ(ran.err.find('\x1b'), std::string::npos);
+}
+
+TEST(Verbs, PushWaitsForTheReport) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  std::atomic<int> session_questions{0};
+  std::promise<void> shown, returned;
+  const auto answer = [&, usual = CalibratedServer(session_questions)](const std::string& verb,
+                                                                       const std::string& json) -> Result<std::string> {
+    if (verb != "show") return usual(verb, json);
+    shown.set_value();
+    std::string text = *usual(verb, json);
+    return text.insert(1, R"("published":false,)");
+  };
+  FakeServer server("r1", answer);
+  auto returned_early = std::async(std::launch::async, [&] {
+    shown.get_future().wait();
+    const bool is_early = returned.get_future().wait_for(std::chrono::milliseconds(300)) == std::future_status::ready;
+    server.SendEvent("published", R"({"robot":"r1","revision":1})");
+    return is_early;
+  });
+  EXPECT_EQ(Rigcal({"push", folder.path().string()}).code, 0);
+  returned.set_value();
+  EXPECT_FALSE(returned_early.get());
 }
 
 TEST(Verbs, PushJsonIsOneDocument) {

@@ -78,11 +78,12 @@ Revision SampleRevisionRow() {
 
 TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   const Revision revision = SampleRevisionRow();
-  const std::string text = WriteShow(revision, kNow);
+  const std::string text = WriteShow(revision, true, kNow);
   EXPECT_NE(text.find(revision.document), std::string::npos);
   const json document = json::parse(text);
   EXPECT_EQ(document["age_ns"], 86400000000000);
   EXPECT_EQ(document["revision"], 3);
+  EXPECT_EQ(document["published"], true);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));
   EXPECT_EQ(document["document"]["reference"], "left");
 }
