@@ -4,6 +4,7 @@
 #include "server/base/limits.h"
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
+#include "server/formats/insight_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/suspects_fields.h"
 
@@ -71,6 +72,7 @@ void WriteRevisionEdges(JsonWriter& out, const RevisionInput& input) {
         WriteEdgeSummary(out, *edge);
         WriteEdgeDetail(out, *edge);
         WriteResidual(out, ResidualOf(residuals, edge->id));
+        WriteInfluence(out, input.solution.influences, edge->id);
       });
   });
 }
@@ -86,6 +88,8 @@ void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
     for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose);
   });
   WriteSuspects(out, "suspects", solution.suspects);
+  WriteInfluenceState(out, "influence", solution.influences);
+  WriteCycles(out, "cycles", solution.cycles);
 }
 
 EdgeResidual ReadResidual(const JsonField& field, const EdgeId& edge) {
@@ -115,6 +119,8 @@ GraphSolution ReadSolution(const JsonField& root) {
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     solution.poses.push_back(ReadSensorPose(sensor));
   if (const auto suspects = root.Find("suspects")) solution.suspects = ReadSuspects(*suspects);
+  if (const auto influence = root.Find("influence")) solution.influences = ReadInfluenceState(*influence);
+  if (const auto cycles = root.Find("cycles")) solution.cycles = ReadCycles(*cycles);
   return solution;
 }
 
@@ -146,6 +152,8 @@ Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
     input.edges.push_back(ReadEdgeFields(field));
     if (const auto residual = field.Find("residual"))
       input.solution.residuals.push_back(ReadResidual(*residual, input.edges.back().id));
+    if (const auto influence = field.Find("influence"))
+      input.solution.influences.edges.push_back(ReadInfluence(*influence, input.edges.back().id));
   }
   RIGCAL_TRY(document.status());
   return input;

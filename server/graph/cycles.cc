@@ -1,142 +1,222 @@
 #include "server/graph/cycles.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <set>
+#include <cmath>
+#include <map>
+#include <tuple>
 
-#include "server/graph/problem.h"
+#include "server/graph/cycle_walks.h"
+#include "server/graph/jackknife_sources.h"
 #include "server/math/covariance.h"
+#include "server/math/statistics.h"
 
 namespace rigcal::graph {
 namespace {
 
-struct Step {
-  std::size_t constraint = 0;
-  bool forward = true;  // from i to j
-};
-using Walk = std::vector<Step>;
+using Eigen::MatrixXd;
 
-struct Tree {
-  std::vector<int> depth;       // by vertex
-  std::vector<Step> to_parent;  // the step from a vertex to its parent
-  std::vector<bool> in_tree;    // by constraint
+// Below this share of what independent errors would leave, shared causes cancel: the loop closes by construction there.
+constexpr double kCheckedRatio = 1e-6;
+constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
+
+// What one edge errs by, column by column, and which cause each part belongs to.
+struct Causes {
+  struct Part {
+    std::size_t source = 0;
+    int dof = 0;
+    MatrixXd d;  // right tangent of the measurement
+  };
+  std::vector<std::vector<Part>> of_constraint;
+  std::vector<bool> own_known;  // by constraint
+  std::size_t shared_count = 0;
 };
 
-std::vector<std::vector<std::size_t>> ConstraintsAt(const Problem& problem) {
-  std::vector<std::vector<std::size_t>> at(static_cast<std::size_t>(problem.vertex_count));
-  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
-    at[static_cast<std::size_t>(problem.constraints[k].i)].push_back(k);
-    at[static_cast<std::size_t>(problem.constraints[k].j)].push_back(k);
+class Judge {
+ public:
+  Judge(const Graph& graph, const Problem& problem, const BlocksByEdge& blocks)
+      : work_{graph, problem, blocks, {}}, covariance_(problem.constraints.size()) {
+    work_.jacobians.resize(problem.constraints.size());
+    for (EdgeJacobian& jacobian : work_.jacobians) jacobian.D = Matrix6d::Identity();  // causes as the edges have them
+    TakeShared();
   }
-  return at;
-}
 
-Tree GrowBreadthFirst(const Problem& problem, const std::vector<std::vector<std::size_t>>& at) {
-  const auto count = static_cast<std::size_t>(problem.vertex_count);
-  Tree tree{std::vector<int>(count, -1), std::vector<Step>(count),
-            std::vector<bool>(problem.constraints.size(), false)};
-  std::vector<std::size_t> queue = {0};
-  tree.depth[0] = 0;
-  for (std::size_t n = 0; n < queue.size(); ++n)
-    for (const std::size_t k : at[queue[n]]) {
-      const Constraint& c = problem.constraints[k];
-      const bool is_i = static_cast<std::size_t>(c.i) == queue[n];
-      const auto other = static_cast<std::size_t>(is_i ? c.j : c.i);
-      if (tree.depth[other] >= 0) continue;
-      tree.depth[other] = tree.depth[queue[n]] + 1;
-      tree.to_parent[other] = {k, !is_i};
-      tree.in_tree[k] = true;
-      queue.push_back(other);
+  CycleResidual Residual(const Walk& walk) {
+    CycleResidual cycle;
+    cycle.tested = true;
+    for (const WalkStep& step : walk) {
+      cycle.edges.push_back(work_.EdgeOf(step.constraint).id);
+      cycle.sensors.push_back(SensorAt(StartOf(work_.problem, step)));
+      cycle.tested = cycle.tested && work_.problem.constraints[step.constraint].rank == 6;
     }
-  return tree;
-}
+    const std::vector<Matrix6d> carry = Carry(walk, cycle.e);
+    if (cycle.tested) Test(walk, carry, cycle);
+    return cycle;
+  }
 
-int End(const Problem& problem, const Step& step) {
-  const Constraint& c = problem.constraints[step.constraint];
-  return step.forward ? c.j : c.i;
-}
+ private:
+  void TakeShared() {
+    causes_.of_constraint.resize(work_.problem.constraints.size());
+    causes_.own_known.assign(work_.problem.constraints.size(), false);
+    std::vector<ErrorSource> shared = SharedSourcesOf(work_);
+    causes_.shared_count = shared.size();
+    for (std::size_t s = 0; s < shared.size(); ++s)
+      for (ErrorPart& part : shared[s].parts)
+        causes_.of_constraint[part.constraint].push_back({s, shared[s].dof, std::move(part.de)});
+  }
 
-// From i over the edge to j, up to the common ancestor and down again to i.
-Walk LoopOf(const Problem& problem, const Tree& tree, std::size_t chord) {
-  Walk walk = {{chord, true}}, down;
-  int a = problem.constraints[chord].j, b = problem.constraints[chord].i;
-  const auto depth = [&tree](int vertex) { return tree.depth[static_cast<std::size_t>(vertex)]; };
-  while (a != b) {
-    int& deeper = depth(a) >= depth(b) ? a : b;
-    const Step step = tree.to_parent[static_cast<std::size_t>(deeper)];
-    if (&deeper == &a) {
-      walk.push_back(step);
+  const std::vector<Causes::Part>& CausesOf(std::size_t k) {
+    if (!causes_.own_known[k]) {
+      ErrorSource own = OwnSourceOf(work_, k);
+      if (own.column_count > 0)
+        causes_.of_constraint[k].push_back({causes_.shared_count + k, own.dof, std::move(own.parts[0].de)});
+      covariance_[k] = Observable(work_.problem.constraints[k].Omega).covariance;
+      causes_.own_known[k] = true;
+    }
+    return causes_.of_constraint[k];
+  }
+
+  [[nodiscard]] const SensorId& SensorAt(int vertex) const {
+    return work_.graph.sensors[work_.problem.sensor_of_vertex[static_cast<std::size_t>(vertex)]];
+  }
+
+  // What an error of each step's measurement does to the loop's residual. (The residual's own Jacobian leaves e and
+  // thereby T^2 as they are.)
+  std::vector<Matrix6d> Carry(const Walk& walk, Vector6d& e) const {
+    std::vector<Matrix6d> carry(walk.size());
+    Se3 T_after;  // of the steps behind this one
+    for (std::size_t n = walk.size(); n-- > 0;) {
+      const Constraint& c = work_.problem.constraints[walk[n].constraint];
+      const Matrix6d A = Adjoint(T_after.Inverse());
+      carry[n] = walk[n].forward ? A : Matrix6d(-A * Adjoint(c.T_i_j));
+      T_after = ((walk[n].forward ? c.T_i_j : c.T_j_i) * T_after).Normalized();
+    }
+    e = T_after.Log();
+    return carry;
+  }
+
+  void Test(const Walk& walk, const std::vector<Matrix6d>& carry, CycleResidual& cycle) {
+    std::vector<Causes::Part> sums;  // per cause: what it does to the loop
+    Matrix6d C_independent = Matrix6d::Zero();
+    for (std::size_t n = 0; n < walk.size(); ++n) {
+      for (const Causes::Part& part : CausesOf(walk[n].constraint)) {
+        const auto same = std::find_if(sums.begin(), sums.end(),
+                                       [&](const Causes::Part& sum) { return sum.source == part.source; });
+        if (same == sums.end()) {
+          sums.push_back({part.source, part.dof, carry[n] * part.d});
+        } else {
+          same->d += carry[n] * part.d;
+        }
+      }
+      C_independent += carry[n] * covariance_[walk[n].constraint] * carry[n].transpose();
+    }
+    Compare(Symmetrized(C_independent), sums, cycle);
+  }
+
+  void Compare(const Matrix6d& C_independent, const std::vector<Causes::Part>& sums, CycleResidual& cycle) const {
+    const Eigen::LLT<Matrix6d> whiten(C_independent);
+    cycle.tested = whiten.info() == Eigen::Success;
+    if (!cycle.tested) return;
+    const Vector6d e = whiten.matrixL().solve(cycle.e);
+    Matrix6d C = Matrix6d::Zero();
+    double trace = 0.0, dof_sum = 0.0;
+    for (const Causes::Part& sum : sums) {
+      const MatrixXd white = whiten.matrixL().solve(sum.d);
+      C += white * white.transpose();
+      trace += white.squaredNorm();
+      if (sum.dof > 0) dof_sum += white.squaredNorm() * white.squaredNorm() / sum.dof;
+    }
+    cycle.dof = dof_sum > 0.0 ? trace * trace / dof_sum : 0.0;
+    const bool shared = std::any_of(sums.begin(), sums.end(),
+                                    [&](const Causes::Part& sum) { return sum.source < causes_.shared_count; });
+    if (shared) {
+      JudgeBy(C, e, cycle);
     } else {
-      down.push_back({step.constraint, !step.forward});
+      cycle.rank = 6, cycle.t_squared = e.squaredNorm();  // C is the identity
     }
-    deeper = End(problem, step);
+    cycle.tested = cycle.rank > 0 && std::isfinite(cycle.t_squared);
+    if (!cycle.tested) cycle.t_squared = cycle.dof = cycle.rank = 0;
   }
-  walk.insert(walk.end(), down.rbegin(), down.rend());
-  return walk;
-}
 
-CycleResidual Compose(const Graph& graph, const Problem& problem, const Walk& walk) {
-  CycleResidual cycle;
-  cycle.tested = true;
-  Se3 T;
-  Matrix6d C = Matrix6d::Zero();
-  for (const Step& step : walk) {
-    const Constraint& c = problem.constraints[step.constraint];
-    cycle.edges.push_back(graph.edges[problem.edges_by_id[c.edge]].id);
-    cycle.sensors.push_back(
-        graph.sensors[problem.sensor_of_vertex[static_cast<std::size_t>(step.forward ? c.i : c.j)]]);
-    cycle.tested = cycle.tested && c.rank == 6;
-    const Matrix6d own = Observable(c.Omega).covariance;
-    const Se3& T_step = step.forward ? c.T_i_j : c.T_j_i;
-    C = ComposeCovariance(C, T_step, step.forward ? own : InverseCovariance(c.T_i_j, own));
-    T = T * T_step;
+  static void JudgeBy(const Matrix6d& C, const Vector6d& e, CycleResidual& cycle) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(C));
+    const Vector6d parts = eigen.eigenvectors().transpose() * e;
+    for (int k = 0; k < 6; ++k) {
+      if (!(eigen.eigenvalues()(k) > kCheckedRatio)) continue;
+      ++cycle.rank;
+      cycle.t_squared += parts(k) * parts(k) / eigen.eigenvalues()(k);
+    }
   }
-  cycle.e = T.Normalized().Log();
-  if (cycle.tested) cycle.statistic = cycle.e.dot(C.ldlt().solve(cycle.e));
-  return cycle;
-}
 
-std::vector<std::size_t> KeyOf(const Walk& walk) {
-  std::vector<std::size_t> key;
-  for (const Step& step : walk) key.push_back(step.constraint);
-  std::sort(key.begin(), key.end());
-  return key;
-}
+  JackknifeWork work_;
+  Causes causes_;
+  std::vector<Matrix6d> covariance_;
+};
 
-Step StepFrom(const Problem& problem, std::size_t constraint, int vertex) {
-  return {constraint, problem.constraints[constraint].i == vertex};
-}
+// Per cycle, so that all of them together pass with `probability` where every edge is good.
+class Limits {
+ public:
+  Limits(std::int64_t count, double probability)
+      : each_(1.0 - (1.0 - probability) / static_cast<double>(std::max<std::int64_t>(count, 1))) {}
 
-// Triangles whose first edge has the smallest number.
-void AddTriangles(const Problem& problem, const std::vector<std::vector<std::size_t>>& at, std::size_t first,
-                  std::vector<Walk>& walks) {
-  const int i = problem.constraints[first].i, j = problem.constraints[first].j;
-  for (const std::size_t second : at[static_cast<std::size_t>(j)]) {
-    const int k = End(problem, StepFrom(problem, second, j));
-    if (second <= first || k == i || k == j) continue;
-    for (const std::size_t third : at[static_cast<std::size_t>(k)])
-      if (third > first && third != second && End(problem, StepFrom(problem, third, k)) == i)
-        walks.push_back({{first, true}, StepFrom(problem, second, j), StepFrom(problem, third, k)});
+  double Of(const CycleResidual& cycle) {
+    const int dof = cycle.dof > 0.0 ? static_cast<int>(std::min(cycle.dof, kDofMax) + kDofRounding) : -1;
+    const auto [at, is_new] = known_.try_emplace({dof, cycle.rank}, 0.0);
+    if (!is_new) return at->second;
+    const double limit =
+        dof < 0 ? ChiSquareQuantile(each_, cycle.rank) : HotellingLimit(dof + 1, cycle.rank, each_);
+    return at->second = std::isfinite(limit) ? limit : 0.0;
   }
+
+ private:
+  double each_;
+  std::map<std::pair<int, int>, double> known_;  // by degrees of freedom and rank: many cycles have the same
+};
+
+bool WorseThan(const CycleResidual& a, const CycleResidual& b) {
+  const auto key = [](const CycleResidual& cycle) {
+    const double ratio = cycle.limit > 0.0 ? cycle.t_squared / cycle.limit : -1.0;
+    return std::make_tuple(-ratio, -cycle.e.head<3>().norm());
+  };
+  return key(a) != key(b) ? key(a) < key(b) : a.edges < b.edges;
+}
+
+void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, Cycles& judged) {
+  judged.examined = static_cast<std::int64_t>(cycles.size());
+  judged.tested = std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; });
+  Limits limits(judged.tested, options.probability);
+  for (CycleResidual& cycle : cycles) {
+    if (cycle.tested) cycle.limit = limits.Of(cycle);
+    judged.failing += cycle.fails() ? 1 : 0;
+  }
+  std::sort(cycles.begin(), cycles.end(), WorseThan);
+  cycles.resize(std::min(cycles.size(), options.worst_max));
+  judged.worst = std::move(cycles);
 }
 
 }  // namespace
 
-std::vector<CycleResidual> FindCycles(const Graph& graph, std::size_t cycles_max) {
+Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOptions& options) {
+  Cycles judged;
   const Problem problem = MakeProblem(graph);
-  if (problem.vertex_count == 0) return {};
-  const auto at = ConstraintsAt(problem);
-  const Tree tree = GrowBreadthFirst(problem, at);
-  std::vector<Walk> walks;
-  for (std::size_t k = 0; k < problem.constraints.size() && walks.size() < cycles_max; ++k)
-    if (!tree.in_tree[k]) walks.push_back(LoopOf(problem, tree, k));
-  for (std::size_t k = 0; k < problem.constraints.size() && walks.size() < cycles_max; ++k)
-    AddTriangles(problem, at, k, walks);
-  std::set<std::vector<std::size_t>> seen;
+  if (!blocks.empty() && problem.free_count() >= kJackknifeSensorsMax) {
+    judged.why_not = "Loops were left out: over shared captures they are worked out up to " +
+                     std::to_string(kJackknifeSensorsMax) + " sensors, and this graph has " +
+                     std::to_string(problem.vertex_count) + ".";
+    return judged;
+  }
+  const CycleWalks found = WalkCycles(problem, options.steps_max);
+  Judge judge(graph, problem, blocks);
   std::vector<CycleResidual> cycles;
-  for (const Walk& walk : walks)
-    if (cycles.size() < cycles_max && seen.insert(KeyOf(walk)).second) cycles.push_back(Compose(graph, problem, walk));
-  return cycles;
+  for (const Walk& walk : found.walks) cycles.push_back(judge.Residual(walk));
+  judged.judged = true;
+  if (!found.complete)
+    judged.why_not = "Longer loops were left out: the first " + std::to_string(found.walks.size()) +
+                     " were worked out, those over the fewest edges, " + std::to_string(options.steps_max) +
+                     " steps in all.";
+  KeepWorst(cycles, options, judged);
+  return judged;
 }
 
 }  // namespace rigcal::graph

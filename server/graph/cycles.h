@@ -1,22 +1,19 @@
 // How well loops of edges close: what a person checks by hand.
 #pragma once
 
-#include <vector>
-
-#include "server/graph/solve.h"
+#include "server/graph/graph_jackknife.h"
 
 namespace rigcal::graph {
 
-struct CycleResidual {
-  std::vector<EdgeId> edges;      // in the order of the walk
-  std::vector<SensorId> sensors;  // likewise; the walk starts and ends at the first
-  Vector6d e = Vector6d::Zero();  // Log of the composed measurements, right tangent at the first sensor
-  bool tested = false;            // false: an edge does not see every direction
-  double statistic = 0.0;         // e^T C^-1 e, C composed of the edges' as independent
+struct CycleOptions {
+  std::size_t steps_max = 5000;  // of all walks together: what a graph of thousands of sensors may cost
+  std::size_t worst_max = 20;     // cycles that are given back
+  double probability = 0.999;     // that all cycles of a graph of good edges close
 };
 
-// The loop of every edge that is not in a spanning tree of fewest hops, then every triangle that is no such loop;
-// at most `cycles_max`.
-[[nodiscard]] std::vector<CycleResidual> FindCycles(const Graph& graph, std::size_t cycles_max = 10000);
+// The loop of every edge that is not in a spanning tree of fewest hops, then every triangle. Each is judged by the
+// covariance of its own residual: blocks and given constants that its edges share count once, through the whole loop.
+// Loops that were left out are named in `why_not`.
+[[nodiscard]] Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOptions& options = {});
 
 }  // namespace rigcal::graph

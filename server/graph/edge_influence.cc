@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <optional>
 
 #include "server/graph/edge_checks.h"
 #include "server/graph/solved_poses.h"
@@ -35,41 +36,77 @@ Eigen::VectorXd MoveWithout(const Constraint& c, const EdgeCheck& check, const E
   return move;
 }
 
-void FindMostMoved(const Graph& graph, const Problem& problem, const EdgeChecks& checks, const Eigen::VectorXd& move,
-                   EdgeInfluence& influence) {
+// The sensors whose pose the solution knows with a sigma, and how to count in those sigmas.
+struct Ruler {
+  int vertex = 0;
+  const SensorPose* pose = nullptr;
+  Eigen::LLT<Matrix6d> C;
+};
+
+std::vector<Ruler> RulersOf(const Problem& problem, const GraphSolution& solution) {
+  std::vector<Ruler> rulers;
   for (int vertex = 1; vertex < problem.vertex_count; ++vertex) {
-    const Eigen::Index row = 6 * (vertex - 1);
-    const Vector6d part = move.segment<6>(row);
-    const Matrix6d C = checks.P.block<6, 6>(row, row);
-    const double sigmas = std::sqrt(std::max(0.0, part.dot(C.ldlt().solve(part))));
-    if (!(sigmas > influence.move_sigmas) && !influence.most_moved.empty()) continue;
-    influence.most_moved = graph.sensors[problem.sensor_of_vertex[static_cast<std::size_t>(vertex)]];
+    const SensorPose& pose = solution.poses[problem.sensor_of_vertex[static_cast<std::size_t>(vertex)]];
+    Eigen::LLT<Matrix6d> C(pose.covariance);
+    if (pose.known && C.info() == Eigen::Success) rulers.push_back({vertex, &pose, std::move(C)});
+  }
+  return rulers;
+}
+
+void FindMostMoved(const std::vector<Ruler>& rulers, const Eigen::VectorXd& move, EdgeInfluence& influence) {
+  for (const Ruler& ruler : rulers) {
+    const Vector6d part = move.segment<6>(6 * (ruler.vertex - 1));
+    const double sigmas = ruler.C.matrixL().solve(part).norm();
+    if (!std::isfinite(sigmas) || (!(sigmas > influence.move_sigmas) && !influence.most_moved.empty())) continue;
+    influence.most_moved = ruler.pose->sensor;
     influence.move = part;
     influence.move_sigmas = sigmas;
   }
 }
 
-}  // namespace
+std::string WhyNot(const Problem& problem, const Graph& graph, const GraphSolution& solution) {
+  if (!solution.converged || solution.poses.size() != graph.sensors.size())
+    return "Influence was left out: the graph did not settle.";
+  if (problem.vertex_count <= kInfluenceSensorsMax && problem.constraints.size() <= kInfluenceEdgesMax) return "";
+  return "Influence was left out: it is worked out up to " + std::to_string(kInfluenceSensorsMax) + " sensors and " +
+         std::to_string(kInfluenceEdgesMax) + " edges, and this graph has " + std::to_string(problem.vertex_count) +
+         " and " + std::to_string(problem.constraints.size()) + ".";
+}
 
-std::vector<EdgeInfluence> InfluenceOfEdges(const Graph& graph, const GraphSolution& solution) {
-  const Problem problem = MakeProblem(graph);
-  if (!solution.converged || problem.free_count() == 0 || problem.free_count() >= kChecksSensorsMax) return {};
+std::optional<EdgeChecks> ChecksAt(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
   const Poses T_ref = SolvedPoses(graph, problem, solution);
   NormalEquations equations;
   Linearize(problem, T_ref, equations);
   AddPins(Observe(problem, T_ref).pins, equations.H);
   const auto cholesky = MakeCholesky<6>(problem.pattern);
-  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return {};
-  const EdgeChecks checks = CheckEdges(problem, T_ref, std::vector<bool>(problem.constraints.size(), true), *cholesky);
-  std::vector<EdgeInfluence> influences;
+  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return std::nullopt;
+  return CheckEdges(problem, T_ref, std::vector<bool>(problem.constraints.size(), true), *cholesky);
+}
+
+EdgeInfluence InfluenceOf(const Constraint& constraint, const EdgeCheck& check, const Eigen::MatrixXd& P,
+                          const std::vector<Ruler>& rulers) {
+  EdgeInfluence influence;
+  influence.checked = check.rank > 0;
+  influence.t_squared = check.t_squared;
+  if (influence.checked) FindMostMoved(rulers, MoveWithout(constraint, check, P), influence);
+  return influence;
+}
+
+}  // namespace
+
+Influences InfluenceOfEdges(const Graph& graph, const GraphSolution& solution) {
+  Influences influences;
+  const Problem problem = MakeProblem(graph);
+  influences.why_not = WhyNot(problem, graph, solution);
+  if (!influences.why_not.empty()) return influences;
+  influences.judged = true;
+  if (problem.free_count() == 0) return influences;
+  const std::optional<EdgeChecks> checks = ChecksAt(graph, problem, solution);
+  if (!checks) return {false, "Influence was left out: the edges do not hold the sensors.", {}};
+  const std::vector<Ruler> rulers = RulersOf(problem, solution);
   for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
-    EdgeInfluence influence;
-    influence.edge = graph.edges[problem.edges_by_id[problem.constraints[k].edge]].id;
-    influence.checked = checks.edges[k].rank > 0;
-    influence.t_squared = checks.edges[k].t_squared;
-    if (influence.checked)
-      FindMostMoved(graph, problem, checks, MoveWithout(problem.constraints[k], checks.edges[k], checks.P), influence);
-    influences.push_back(influence);
+    influences.edges.push_back(InfluenceOf(problem.constraints[k], checks->edges[k], checks->P, rulers));
+    influences.edges.back().edge = graph.edges[problem.edges_by_id[problem.constraints[k].edge]].id;
   }
   return influences;
 }

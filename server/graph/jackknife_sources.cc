@@ -109,20 +109,15 @@ BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
   return blocks;
 }
 
-std::vector<ErrorSource> SourcesOf(const JackknifeWork& work) {
+std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work) {
   std::map<std::string, std::vector<std::size_t>> sessions;
-  std::vector<ErrorSource> own;
   GivenSources given;
   for (std::size_t k = 0; k < work.problem.constraints.size(); ++k) {
     const GraphEdge& edge = work.EdgeOf(k);
-    if (const EdgeBlocks* blocks = FindBlocks(work.blocks, edge.id); blocks != nullptr) {
-      sessions[SessionKey(edge)].push_back(k);
-      AddGiven(work, k, SessionKey(edge), *blocks, given);
-      if (!blocks->C_given.isZero(0.0))
-        own.push_back(OwnError(k, work.jacobians[k].D * SquareRoot(blocks->C_given), 0));
-    } else {
-      own.push_back(OwnError(k, SquareRoot(Observable(work.problem.constraints[k].Omega).covariance), edge.dof));
-    }
+    const EdgeBlocks* blocks = FindBlocks(work.blocks, edge.id);
+    if (blocks == nullptr) continue;
+    sessions[SessionKey(edge)].push_back(k);
+    AddGiven(work, k, SessionKey(edge), *blocks, given);
   }
   std::vector<ErrorSource> sources;
   for (const auto& [key, members] : sessions) sources.push_back(SessionSource(work, members));
@@ -130,7 +125,24 @@ std::vector<ErrorSource> SourcesOf(const JackknifeWork& work) {
     for (ErrorPart& part : source.parts) Widen(source.column_count, part);
     sources.push_back(std::move(source));
   }
-  std::move(own.begin(), own.end(), std::back_inserter(sources));
+  return sources;
+}
+
+ErrorSource OwnSourceOf(const JackknifeWork& work, std::size_t constraint) {
+  const GraphEdge& edge = work.EdgeOf(constraint);
+  const Matrix6d& D = work.jacobians[constraint].D;
+  const EdgeBlocks* blocks = FindBlocks(work.blocks, edge.id);
+  if (blocks == nullptr)
+    return OwnError(constraint, D * SquareRoot(Observable(work.problem.constraints[constraint].Omega).covariance),
+                    edge.dof);
+  if (blocks->C_given.isZero(0.0)) return {};
+  return OwnError(constraint, D * SquareRoot(blocks->C_given), 0);
+}
+
+std::vector<ErrorSource> SourcesOf(const JackknifeWork& work) {
+  std::vector<ErrorSource> sources = SharedSourcesOf(work);
+  for (std::size_t k = 0; k < work.problem.constraints.size(); ++k)
+    if (ErrorSource own = OwnSourceOf(work, k); own.column_count > 0) sources.push_back(std::move(own));
   return sources;
 }
 

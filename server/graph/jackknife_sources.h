@@ -35,5 +35,8 @@ struct JackknifeWork {
 [[nodiscard]] bool AnySession(const JackknifeWork& work);
 // Sessions by id, then edges by id.
 [[nodiscard]] std::vector<ErrorSource> SourcesOf(const JackknifeWork& work);
+// The two kinds apart: causes that edges of a session share, and what one edge alone errs by (no columns: nothing).
+[[nodiscard]] std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work);
+[[nodiscard]] ErrorSource OwnSourceOf(const JackknifeWork& work, std::size_t constraint);
 
 }  // namespace rigcal::graph

@@ -10,6 +10,7 @@
 #include "server/base/stamp.h"
 #include "server/model/diagnosis.h"
 #include "server/model/edge.h"
+#include "server/model/insight.h"
 #include "server/model/suspects.h"
 
 namespace rigcal {
@@ -69,6 +70,8 @@ struct GraphSolution {
   int iterations = 0;
   std::vector<Diagnosis> diagnoses;    // unconnected sensors, weak directions, no convergence
   Suspects suspects;                   // not judged unless asked for
+  Influences influences;               // likewise
+  Cycles cycles;                       // likewise
 };
 
 // A numbered, stored, solved state. `document` is canonical JSON: same edges, same bytes; it holds neither number nor time.

@@ -7,6 +7,8 @@
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
 #include "server/formats/documents.h"
+#include "server/graph/cycles.h"
+#include "server/graph/edge_influence.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
@@ -56,12 +58,15 @@ void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector
   std::sort(graph.sensors.begin(), graph.sensors.end(), graph::SensorBefore);
 }
 
-// Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; suspects are named beside it.
+// Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; beside it suspects, what each
+// edge does to it, and how its loops close.
 GraphSolution SolveHonestly(const RobotGraph& loaded) {
   GraphSolution solution = graph::Solve(loaded.graph);
-  const graph::GraphJackknife jackknife = graph::JackknifeGraph(loaded.graph, solution, graph::BlocksOf(loaded.edges));
-  graph::TakeHonest(loaded.graph, jackknife, solution);
+  const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
+  graph::TakeHonest(loaded.graph, graph::JackknifeGraph(loaded.graph, solution, blocks), solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
+  solution.influences = graph::InfluenceOfEdges(loaded.graph, solution);
+  solution.cycles = graph::JudgeCycles(loaded.graph, blocks);
   return solution;
 }
 

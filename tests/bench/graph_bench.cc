@@ -1,5 +1,5 @@
 // graph_bench --g2o FILE | --synthetic VERTICES EDGES [--mode batch|marginals|incremental] [--order file|shuffled]
-//             [--seed S] [--repeat N] [--reference ceres]
+//             [--seed S] [--repeat N] [--reference ceres]; --mode honest|insight too
 // One JSON object: how long the graph engine takes, what it finds, in g2o's own cost too, and a digest of the poses.
 // Marginals are timed at the solution, updates one by one.
 #include <sys/resource.h>
@@ -19,8 +19,11 @@
 #include "server/base/limits.h"
 #include "server/base/sha256.h"
 #include "server/formats/g2o.h"
+#include "server/graph/cycles.h"
+#include "server/graph/edge_influence.h"
 #include "server/graph/live_solver.h"
 #include "server/graph/solve.h"
+#include "server/graph/suspects.h"
 #include "tests/bench/graph_reference.h"
 
 namespace {
@@ -147,6 +150,27 @@ Run RunMarginals(const Graph& graph, const Arguments& arguments) {
   return run;
 }
 
+// What a revision takes beside its solution: who is suspect (without insight), and what else it rests on (with it).
+Run RunBeside(const Graph& graph, const Arguments& arguments, bool insight) {
+  Run run;
+  run.solution = graph::Solve(graph);
+  const double start_us = Now_us();
+  const auto enough = [&] {
+    if (arguments.repeat > 0) return static_cast<int>(run.times_us.size()) >= arguments.repeat;
+    return run.times_us.size() >= 3 && (run.times_us.size() >= 1000 || Now_us() - start_us > 2e6);
+  };
+  while (!enough())
+    run.Time([&] {
+      if (!insight) {
+        run.solution.suspects = graph::FindSuspects(graph, graph::Solve(graph));
+        return;
+      }
+      run.solution.influences = graph::InfluenceOfEdges(graph, run.solution);
+      run.solution.cycles = graph::JudgeCycles(graph, {});
+    });
+  return run;
+}
+
 double PeakRss_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -184,6 +208,8 @@ nlohmann::json Summary(const Graph& graph, Run run) {
 
 Run RunOf(const Graph& graph, const Arguments& arguments) {
   if (arguments.mode == "incremental") return RunIncremental(graph);
+  if (arguments.mode == "honest" || arguments.mode == "insight")
+    return RunBeside(graph, arguments, arguments.mode == "insight");
   return arguments.mode == "marginals" ? RunMarginals(graph, arguments) : RunBatch(graph, arguments);
 }
 
@@ -220,7 +246,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Times the graph engine on a .g2o file");
   app.add_option("--g2o", arguments.g2o, "The file");
-  app.add_option("--mode", arguments.mode)->check(CLI::IsMember({"batch", "marginals", "incremental"}));
+  app.add_option("--mode", arguments.mode)->check(CLI::IsMember({"batch", "marginals", "incremental", "honest", "insight"}));
   app.add_option("--order", arguments.order)->check(CLI::IsMember({"file", "shuffled"}));
   app.add_option("--synthetic", arguments.synthetic, "VERTICES EDGES: a random graph instead (5 mm, 0.3 deg)")
       ->expected(2);

@@ -46,6 +46,52 @@ TEST(RevisionDocument, ComesBack) {
   EXPECT_EQ(WriteRevisionDocument(*read), WriteRevisionDocument(input));
 }
 
+TEST(RevisionDocument, SaysWhatTheSolutionRestsOn) {
+  const RevisionInput input = SampleRevision();
+  const json document = json::parse(WriteRevisionDocument(input));
+  EXPECT_EQ(document["influence"], json({{"judged", true}, {"why_not", nullptr}}));
+  EXPECT_TRUE(document["edges"][0]["influence"].is_null());
+  EXPECT_EQ(document["edges"][1]["influence"]["sensor"], "lidar");
+  EXPECT_EQ(document["edges"][1]["influence"]["move"][5], 0.002);
+  EXPECT_TRUE(document["edges"][2]["influence"]["move"].is_null());
+  EXPECT_EQ(document["cycles"]["failing"], 1);
+  EXPECT_EQ(document["cycles"]["worst"][0]["fails"], true);
+  EXPECT_TRUE(document["cycles"]["worst"][1]["limit"].is_null());
+  const auto read = ReadRevisionDocument(document.dump());
+  ASSERT_TRUE(read) << Sentence(read.error());
+  const GraphSolution& solution = read->solution;
+  EXPECT_TRUE(solution.influences.judged);
+  ASSERT_EQ(solution.influences.edges.size(), 2u);
+  EXPECT_EQ(solution.influences.edges[0].move_sigmas, 2.25);
+  EXPECT_TRUE(solution.influences.edges[1].most_moved.empty());
+  EXPECT_EQ(solution.cycles.why_not, "Longer loops were left out.");
+  ASSERT_EQ(solution.cycles.worst.size(), 2u);
+  EXPECT_EQ(solution.cycles.worst[0].edges, input.solution.cycles.worst[0].edges);
+  EXPECT_EQ(solution.cycles.worst[0].e, input.solution.cycles.worst[0].e);
+  EXPECT_EQ(solution.cycles.worst[0].limit, 45.0);
+  EXPECT_FALSE(solution.cycles.worst[1].fails());
+}
+
+// Documents of earlier versions are kept for ever.
+TEST(RevisionDocument, ReadsOneWithoutInfluenceAndCycles) {
+  const std::string old = samples::FileText(std::string(RIGCAL_SOURCE_DIR) + "/tests/golden/revision-without-insight.json");
+  const auto read = ReadRevisionDocument(old);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->edges.size(), 3u);
+  EXPECT_FALSE(read->solution.influences.judged);
+  EXPECT_TRUE(read->solution.influences.edges.empty());
+  EXPECT_FALSE(read->solution.cycles.judged);
+  EXPECT_TRUE(read->solution.cycles.worst.empty());
+}
+
+TEST(RevisionDocument, ALoopHasASensorPerEdge) {
+  json document = json::parse(WriteRevisionDocument(SampleRevision()));
+  document["cycles"]["worst"][0]["sensors"].push_back("up");
+  const auto read = ReadRevisionDocument(document.dump());
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().what, "revision: cycles.worst[0]: must have as many sensors as edges");
+}
+
 TEST(RevisionDocument, HoldsNoBlockVectors) {
   RevisionInput input = SampleRevision();
   input.edges[1].uncertainty.blocks = {{"01", Vector6d::Ones()}, {"02", Vector6d::Ones()}};

@@ -151,6 +151,16 @@ inline RevisionInput SampleRevision() {
   solution.dof = 6;
   solution.iterations = 4;
   solution.diagnoses = {{"not_connected", "sensor up", "Calibrate it against another sensor."}};
+  const EdgeId stereo = input.edges[1].id, planar = input.edges[2].id;
+  solution.influences.judged = true;
+  solution.influences.edges = {{stereo, true, 3.5, SensorId("lidar"), Vector6d::LinSpaced(6, 0.001, 0.002), 2.25},
+                               {planar, false, 0.0, SensorId(), Vector6d::Zero(), 0.0}};
+  solution.cycles.judged = true;
+  solution.cycles.why_not = "Longer loops were left out.";
+  solution.cycles.examined = 3, solution.cycles.tested = 2, solution.cycles.failing = 1;
+  const std::vector<SensorId> sensors = {SensorId("left"), SensorId("right")};
+  solution.cycles.worst = {{{stereo, planar}, sensors, Vector6d::LinSpaced(6, 0.01, 0.02), true, 90.0, 6, 12.5, 45.0},
+                           {{planar, stereo}, sensors, Vector6d::LinSpaced(6, 0.03, 0.04)}};
   return input;
 }
 

@@ -11,7 +11,7 @@ rigcal_test(graph_numbers_test
   DEPS rigcal_graph rigcal_formats Ceres::ceres)
 
 rigcal_test(graph_honesty_test
-  SOURCES unit/graph_jackknife_test.cc unit/graph_suspects_test.cc
+  SOURCES unit/graph_jackknife_test.cc unit/graph_suspects_test.cc unit/graph_insight_test.cc
   DEPS rigcal_graph rigcal_formats)
 rigcal_test(graph_property_test
   SOURCES unit/graph_property_test.cc

@@ -73,4 +73,19 @@ inline RandomRig MakeRig(std::size_t vertices, std::size_t edges, unsigned seed,
   return rig;
 }
 
+// Every pair of `count` sensors once.
+inline RandomRig FullRig(std::size_t count, unsigned seed) {
+  RandomRig rig = MakeRig(count, count - 1, seed);
+  rig.graph.edges.clear();
+  std::mt19937 random(seed + 1);
+  std::size_t k = 0;
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = a + 1; b < count; ++b) {
+      const Matrix6d Omega = RandomInformation(random, 0.002, 0.002);
+      const Se3 T = rig.truth[a].Inverse() * rig.truth[b] * Se3::Exp(DrawError(random, Omega));
+      rig.graph.edges.push_back(MakeEdge(k++, a, b, T, Omega));
+    }
+  return rig;
+}
+
 }  // namespace rigcal::graph

@@ -1,30 +1,12 @@
 #include <gmock/gmock.h>
 
-#include "server/graph/cycles.h"
-#include "server/graph/edge_influence.h"
 #include "server/graph/suspects.h"
 #include "tests/unit/graph_fixture.h"
 
 namespace rigcal::graph {
 namespace {
 
-using testing::ElementsAre;
 using testing::UnorderedElementsAre;
-
-// Every pair of `count` sensors once.
-RandomRig FullRig(std::size_t count, unsigned seed) {
-  RandomRig rig = MakeRig(count, count - 1, seed);
-  rig.graph.edges.clear();
-  std::mt19937 random(seed + 1);
-  std::size_t k = 0;
-  for (std::size_t a = 0; a < count; ++a)
-    for (std::size_t b = a + 1; b < count; ++b) {
-      const Matrix6d Omega = RandomInformation(random, 0.002, 0.002);
-      const Se3 T = rig.truth[a].Inverse() * rig.truth[b] * Se3::Exp(DrawError(random, Omega));
-      rig.graph.edges.push_back(MakeEdge(k++, a, b, T, Omega));
-    }
-  return rig;
-}
 
 Suspects Find(const Graph& graph) { return FindSuspects(graph, Solve(graph)); }
 
@@ -166,75 +148,6 @@ TEST(Suspects, DeficientEdgesAreJudgedByWhatTheySee) {
   const Suspects suspects = Find(rig.graph);
   ASSERT_EQ(suspects.edges.size(), 1u);
   EXPECT_EQ(suspects.edges[0].edge, IdOf(6));
-}
-
-TEST(Influence, IsTheSolutionWithoutTheEdge) {
-  const RandomRig rig = MakeRig(6, 12, 13, 2e-4, 2e-4);
-  const GraphSolution with = Solve(rig.graph);
-  const auto influences = InfluenceOfEdges(rig.graph, with);
-  ASSERT_EQ(influences.size(), rig.graph.edges.size());
-  int checked = 0;
-  for (const EdgeInfluence& influence : influences) {
-    if (!influence.checked) continue;
-    ++checked;
-    Graph graph = rig.graph;
-    graph.edges.erase(std::find_if(graph.edges.begin(), graph.edges.end(),
-                                   [&](const GraphEdge& edge) { return edge.id == influence.edge; }));
-    const GraphSolution without = Solve(graph);
-    const auto sensor = std::stoul(influence.most_moved.str());
-    const Vector6d move = (with.poses[sensor].T_ref_sensor.Inverse() * without.poses[sensor].T_ref_sensor).Log();
-    EXPECT_LT((move - influence.move).norm(), 0.01 * move.norm());
-    EXPECT_NEAR(influence.t_squared, with.cost - without.cost, 0.01 * with.cost);
-  }
-  EXPECT_GT(checked, 8);
-}
-
-TEST(Influence, ABridgeIsNotChecked) {
-  const RandomRig rig = MakeRig(4, 3, 14);
-  for (const EdgeInfluence& influence : InfluenceOfEdges(rig.graph, Solve(rig.graph))) EXPECT_FALSE(influence.checked);
-  EXPECT_TRUE(InfluenceOfEdges(Graph(), Solve(Graph())).empty());
-}
-
-TEST(Cycles, LoopsAndTriangles) {
-  const RandomRig rig = FullRig(4, 15);  // 3 fundamental loops, which are triangles with vertex 0; 1 more triangle
-  const auto cycles = FindCycles(rig.graph);
-  ASSERT_EQ(cycles.size(), 4u);
-  for (const CycleResidual& cycle : cycles) {
-    ASSERT_EQ(cycle.edges.size(), 3u);
-    EXPECT_TRUE(cycle.tested);
-    EXPECT_LT(cycle.statistic, 30.0);
-    Se3 T;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto edge = std::find_if(rig.graph.edges.begin(), rig.graph.edges.end(),
-                                     [&](const GraphEdge& e) { return e.id == cycle.edges[k]; });
-      T = T * (edge->frame_a == cycle.sensors[k] ? edge->T_a_b : edge->T_a_b.Inverse());
-    }
-    EXPECT_LT((T.Log() - cycle.e).norm(), 1e-12);
-  }
-}
-
-// A loop alone: its statistic is the cost of the solution, as nothing else is to be explained.
-TEST(Cycles, StatisticOfALoneLoopIsTheCost) {
-  RandomRig rig = FullRig(3, 16);
-  std::swap(rig.graph.edges[1].frame_a, rig.graph.edges[1].frame_b);
-  rig.graph.edges[1].Omega = InverseInformation(rig.graph.edges[1].T_a_b, rig.graph.edges[1].Omega);
-  rig.graph.edges[1].T_a_b = rig.graph.edges[1].T_a_b.Inverse();
-  const auto cycles = FindCycles(rig.graph);
-  ASSERT_EQ(cycles.size(), 1u);
-  EXPECT_NEAR(cycles[0].statistic, Solve(rig.graph).cost, 0.02 * cycles[0].statistic);
-  EXPECT_TRUE(FindCycles(Graph()).empty());
-  EXPECT_TRUE(FindCycles(MakeRig(3, 2, 17).graph).empty());
-}
-
-TEST(Cycles, TheSamePairTwiceIsALoop) {
-  RandomRig rig = MakeRig(2, 1, 18);
-  GraphEdge again = rig.graph.edges[0];
-  again.id = IdOf(5);
-  rig.graph.edges.push_back(again);
-  const auto cycles = FindCycles(rig.graph);
-  ASSERT_EQ(cycles.size(), 1u);
-  EXPECT_LT(cycles[0].e.norm(), 1e-12);
-  EXPECT_THAT(cycles[0].sensors, testing::SizeIs(2));
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// What a solution rests on: what leaving out one edge would change, and how well loops of edges close.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/math/se3.h"
+
+namespace rigcal {
+
+struct EdgeInfluence {
+  EdgeId edge;
+  bool checked = false;              // false: no other path between its sensors; then no numbers
+  double t_squared = 0.0;            // of the edge against what the others say, all taken as independent
+  SensorId most_moved;               // by leaving the edge out, in its sigmas; empty: no sensor
+  Vector6d move = Vector6d::Zero();  // Log(T_with^-1 T_without) of that sensor, right tangent
+  double move_sigmas = 0.0;          // sqrt(move^T C^-1 move), C the sensor's covariance with the edge
+};
+
+struct Influences {
+  bool judged = false;
+  std::string why_not;               // a sentence, where they were left out; empty: they were not asked for
+  std::vector<EdgeInfluence> edges;  // of the solution, sorted by id
+};
+
+struct CycleResidual {
+  std::vector<EdgeId> edges;      // in the order of the walk
+  std::vector<SensorId> sensors;  // likewise; the walk starts and ends at the first
+  Vector6d e = Vector6d::Zero();  // Log of the composed measurements, right tangent at the first sensor
+  bool tested = false;            // false: an edge does not see every direction
+  double t_squared = 0.0;         // e^T C_e^-1 e, by the covariance of this very residual
+  int rank = 0;                   // of C_e: directions in which the loop checks anything
+  double dof = 0.0;               // behind the estimate of C_e; 0: known
+  double limit = 0.0;             // of t_squared, for all tested cycles together; 0: too few captures for one
+
+  [[nodiscard]] bool fails() const { return limit > 0.0 && t_squared > limit; }
+};
+
+struct Cycles {
+  bool judged = false;
+  std::string why_not;       // a sentence, where all or some were left out
+  std::int64_t examined = 0, tested = 0, failing = 0;
+  std::vector<CycleResidual> worst;  // furthest beyond its limit first; those without a test last
+};
+
+}  // namespace rigcal
