@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
-#include <optional>
 #include <string>
 
 #include "client/pose_text.h"
@@ -13,23 +11,12 @@
 namespace rigcal::client {
 namespace {
 
-// Length of three entries of a residual e, from `first` on.
-std::optional<double> NormOf(const Document& e, std::size_t first) {
-  double sum = 0.0;
-  for (std::size_t i = first; i < first + 3; ++i) {
-    const auto value = e[i].Number();
-    if (!value) return std::nullopt;
-    sum += *value * *value;
-  }
-  return std::sqrt(sum);
-}
-
 void AddRow(const Document& edge, Table& table) {
   const Document e = edge["residual"]["e"];
   table.Add({edge["frame_a"].Text("?"), edge["frame_b"].Text("?"), edge["method"].Text("-"),
              Triple(edge["T_a_b"]["p_m"], kMmPerM, 2), RpyText(edge["T_a_b"], 3), Triple(edge["sigma_m"], kMmPerM, 3),
-             Triple(edge["sigma_rad"], kDegPerRad, 4), Scaled(NormOf(e, 0), kMmPerM, 3),
-             Scaled(NormOf(e, 3), kDegPerRad, 4)});
+             Triple(edge["sigma_rad"], kDegPerRad, 4), Scaled(LengthOf(e, 0), kMmPerM, 3),
+             Scaled(LengthOf(e, 3), kDegPerRad, 4)});
 }
 
 std::string PartsText(const Document& error) {

@@ -45,6 +45,16 @@ std::string Triple(const Document& list, double scale, int digits) {
   return text;
 }
 
+std::optional<double> LengthOf(const Document& list, std::size_t first) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + 3; ++i) {
+    const auto value = list[i].Number();
+    if (!value) return std::nullopt;
+    sum += *value * *value;
+  }
+  return std::sqrt(sum);
+}
+
 std::string RpyText(const Document& pose, int digits) {
   const auto q_xyzw = QuaternionOf(pose["q_xyzw"]);
   if (!q_xyzw) return "-";

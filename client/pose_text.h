@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <ostream>
 #include <string>
 
@@ -19,6 +20,8 @@ inline constexpr double kDegPerRad = 57.29577951308232;
 
 // "83.180 -0.920 0.120" of a JSON list of three, each times `scale`; "-" for an absent list or entry.
 [[nodiscard]] std::string Triple(const Document& list, double scale, int digits);
+// Length of three entries of a list, from `first` on.
+[[nodiscard]] std::optional<double> LengthOf(const Document& list, std::size_t first);
 // Roll, pitch, yaw in degrees of a pose {"p_m", "q_xyzw"}.
 [[nodiscard]] std::string RpyText(const Document& pose, int digits);
 // Six lines of six numbers, each line after `indent`.

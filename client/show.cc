@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/edge_table.h"
+#include "client/insight_table.h"
 #include "client/pose_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -36,6 +37,8 @@ void Print(const Document& document, std::ostream& out) {
   PrintPoses(revision, out);
   out << "\nEdges\n";
   PrintEdges(revision["edges"].Items(), out);
+  PrintInfluence(revision, out);
+  PrintLoops(revision, out);
 }
 
 struct Options {
@@ -53,7 +56,7 @@ ExitCode Run(const Context& context, const Options& options) {
 }  // namespace
 
 void AddShow(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, poses with sigma, edges");
+  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, poses with sigma, edges, loops");
   auto options = std::make_shared<Options>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")

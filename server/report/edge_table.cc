@@ -46,6 +46,20 @@ void FillInfluence(Dictionary& good, const ReportInput& input, const Edge& edge)
   influence->SetValue("CAPTURE", largest.block_id);
 }
 
+// What the solution without this edge would be.
+void FillWithout(Dictionary& good, const Influences& influences, const EdgeId& edge) {
+  const auto found = std::lower_bound(influences.edges.begin(), influences.edges.end(), edge,
+                                      [](const EdgeInfluence& one, const EdgeId& id) { return one.edge < id; });
+  const bool known = found != influences.edges.end() && found->edge == edge;
+  if (!known || !found->checked || found->most_moved.empty())
+    return ShowValue(good, "NO_WITHOUT", "WHY", known && !found->checked ? "nothing checks it" : "");
+  Dictionary* without = good.AddSectionDictionary("WITHOUT");
+  without->SetValue("MM", Significant(found->move.head<3>().norm() * kMmPerMetre, 2));
+  without->SetValue("DEG", Significant(found->move.tail<3>().norm() * kDegPerRad, 2));
+  without->SetValue("SIGMAS", Fixed(found->move_sigmas, 2));
+  without->SetValue("SENSOR", found->most_moved.str());
+}
+
 void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown) {
   Dictionary* good = row.AddSectionDictionary("GOOD");
   const Edge& edge = *shown.edge;
@@ -57,6 +71,7 @@ void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown)
   good->SetValue("S_DEG_KEY", SigmaKey(edge.uncertainty, tangent::kRotation));
   good->SetValue("SOURCE", NameOf(edge.uncertainty.source));
   FillInfluence(*good, input, edge);
+  FillWithout(*good, input.revision.solution.influences, edge.id);
 }
 
 std::ptrdiff_t UsedCount(const Edge& edge) {
@@ -97,6 +112,8 @@ void FillEdges(Dictionary& page, const ReportInput& input, const std::vector<Sho
   for (std::size_t i = 0; i < std::min(edges.size(), kEdgeRowsMax); ++i)
     FillRow(*page.AddSectionDictionary("EDGE"), input, edges[i], contradictions);
   if (edges.size() > kEdgeRowsMax) ShowValue(page, "MORE_EDGES", "COUNT", std::to_string(edges.size() - kEdgeRowsMax));
+  if (const std::string& why_not = input.revision.solution.influences.why_not; !why_not.empty())
+    ShowValue(page, "NO_EDGE_INFLUENCE", "TEXT", why_not);
   if (input.revision.solution.dof <= 0)
     ShowValue(page, "UNCHECKED", "TEXT", "Without a loop every residual is zero by construction and checks nothing.");
 }

@@ -9,6 +9,7 @@
 #include "server/report/drawing.h"
 #include "server/report/edge_section.h"
 #include "server/report/key_figures.h"
+#include "server/report/loop_section.h"
 #include "server/report/page_data.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
@@ -66,6 +67,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillDrawing(page, input.revision, edges);
   FillPoses(page, input.revision);
   FillEdges(page, input, edges);
+  FillLoops(page, input.revision.solution.cycles);
   FillSections(page, input, edges);
   FillClouds(page, input.clouds);
   FillProvenance(page, input);

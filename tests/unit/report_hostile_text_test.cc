@@ -59,6 +59,19 @@ INSTANTIATE_TEST_SUITE_P(
               [](ReportInput& in) {
                 in.clouds.overlays = {{kHostile, kHostile, kHostile, kHostile, kHostile, 5}};
               }},
+        Field{"influence_why_not", [](ReportInput& in) { in.revision.solution.influences.why_not = kHostile; }},
+        Field{"influence_sensor",
+              [](ReportInput& in) {
+                in.revision.solution.influences.edges = {
+                    {in.revision.edges[0].id, true, 1.0, SensorId(kHostile), Vector6d::Ones(), 1.0}};
+              }},
+        Field{"loop_why_not", [](ReportInput& in) { in.revision.solution.cycles.why_not = kHostile; }},
+        Field{"loop_sensor",
+              [](ReportInput& in) {
+                in.revision.solution.cycles.judged = true;
+                in.revision.solution.cycles.worst.resize(1);
+                in.revision.solution.cycles.worst[0].sensors = {SensorId(kHostile)};
+              }},
         Field{"method", [](ReportInput& in) { in.revision.edges[0].method = kHostile; }},
         Field{"capture_note", [](ReportInput& in) { in.revision.edges[0].captures[4].note = kHostile; }},
         Field{"picture_title", [](ReportInput& in) { in.revision.edges[0].evidence[0].title = kHostile; }},
@@ -134,7 +147,7 @@ TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
     EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
     ++templates;
   }
-  EXPECT_EQ(templates, 11);
+  EXPECT_EQ(templates, 12);
 }
 
 TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {
