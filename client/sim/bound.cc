@@ -191,24 +191,21 @@ class Builder {
   const Layout layout_;
 };
 
-// Standard deviations from an information matrix that may leave directions open.
-std::vector<std::optional<double>> SigmasOf(const MatrixXd& H) {
-  constexpr double kOpen = 1e-12, kShare = 1e-6;
+// Inverse of an information matrix along what it tells, and how much of each unknown it leaves open.
+struct Inverse {
+  MatrixXd covariance;
+  VectorXd open_ratio;
+  static constexpr double kOpenShare = 1e-6;
+};
+
+Inverse InverseOf(const MatrixXd& H) {
+  constexpr double kOpen = 1e-12;
   const VectorXd scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
   const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(scale.asDiagonal() * H * scale.asDiagonal());
-  std::vector<std::optional<double>> sigmas;
-  for (Eigen::Index i = 0; i < H.rows(); ++i) {
-    double variance = 0, open = 0;
-    for (Eigen::Index k = 0; k < H.rows(); ++k) {
-      const double part = axes.eigenvectors()(i, k) * axes.eigenvectors()(i, k);
-      if (axes.eigenvalues()[k] > kOpen)
-        variance += part / axes.eigenvalues()[k];
-      else
-        open += part;
-    }
-    sigmas.push_back(open > kShare ? std::nullopt : std::optional(scale[i] * std::sqrt(variance)));
-  }
-  return sigmas;
+  const VectorXd values = axes.eigenvalues().unaryExpr([](double value) { return value > kOpen ? 1 / value : 0.0; });
+  const VectorXd open = axes.eigenvalues().unaryExpr([](double value) { return value > kOpen ? 0.0 : 1.0; });
+  const MatrixXd half = scale.asDiagonal() * axes.eigenvectors();
+  return {half * values.asDiagonal() * half.transpose(), axes.eigenvectors().cwiseAbs2() * open};
 }
 
 bool HasNoise(const Rig& rig) {
@@ -227,13 +224,26 @@ std::map<SensorId, BoundSigma> CramerRaoBound(const Experiment& experiment) {
   std::map<SensorId, BoundSigma> bound;
   if (!HasNoise(experiment.rig)) return bound;
   const Builder builder(experiment);
-  const std::vector<std::optional<double>> sigmas = SigmasOf(builder.Information());
+  const Inverse inverse = InverseOf(builder.Information());
   for (const auto& [id, at] : builder.layout().pose) {
     BoundSigma& sigma = bound[id];
-    for (std::size_t i = 0; i < sigma.size(); ++i)
-      sigma[i] = at < 0 ? std::optional(0.0) : sigmas[static_cast<std::size_t>(at) + i];
+    for (int i = 0; i < 6; ++i)
+      if (at < 0)
+        sigma[static_cast<std::size_t>(i)] = 0.0;
+      else if (inverse.open_ratio[at + i] <= Inverse::kOpenShare)
+        sigma[static_cast<std::size_t>(i)] = std::sqrt(inverse.covariance(at + i, at + i));
   }
   return bound;
+}
+
+std::optional<Matrix6d> CramerRaoCovariance(const Experiment& experiment, const SensorId& sensor) {
+  if (!HasNoise(experiment.rig)) return std::nullopt;
+  const Builder builder(experiment);
+  const int at = builder.layout().pose.at(sensor);
+  if (at < 0) return Matrix6d(Matrix6d::Zero());
+  const Inverse inverse = InverseOf(builder.Information());
+  if (inverse.open_ratio.segment<6>(at).maxCoeff() > Inverse::kOpenShare) return std::nullopt;
+  return Matrix6d(inverse.covariance.block<6, 6>(at, at));
 }
 
 }  // namespace rigcal::sim

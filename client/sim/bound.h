@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "client/sim/truth.h"
 
@@ -14,5 +15,8 @@ namespace rigcal::sim {
 // is calibrated with; tracker poses. The room's walls do not enter: they would tell two lidars more. Without noise
 // there is no bound: empty. A bumped sensor is taken as never bumped.
 [[nodiscard]] std::map<SensorId, BoundSigma> CramerRaoBound(const Experiment& experiment);
+
+// The whole covariance of one sensor's pose; nothing where the data leave a direction of it open, or without noise.
+[[nodiscard]] std::optional<Matrix6d> CramerRaoCovariance(const Experiment& experiment, const SensorId& sensor);
 
 }  // namespace rigcal::sim

@@ -7,3 +7,4 @@ rigcal_program(graph_faults_measure SOURCES bench/graph_faults_measure.cc DEPS r
 rigcal_program(board_speed_measure SOURCES bench/board_speed_measure.cc bench/board_pictures.cc DEPS rigcal_detect)
 rigcal_program(cloud_measure SOURCES bench/cloud_measure.cc DEPS rigcal_cloud)
 rigcal_program(page_store SOURCES bench/page_store.cc DEPS rigcal_pipeline rigcal_http)
+rigcal_program(rig_measure SOURCES bench/rig_measure.cc bench/rig_edges.cc DEPS rigcal_sim rigcal_calib rigcal_graph)

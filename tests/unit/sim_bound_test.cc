@@ -141,6 +141,21 @@ TEST(SimBound, IsWhatAMaximumLikelihoodEstimateReaches) {
     }
 }
 
+TEST(SimBound, IsTheDiagonalOfItsCovariance) {
+  const Experiment experiment = Prepared(SmallRig());
+  const auto bound = CramerRaoBound(experiment);
+  for (const char* id : {"side", "top", "body"}) {
+    const auto covariance = CramerRaoCovariance(experiment, SensorId(id));
+    ASSERT_TRUE(covariance);
+    for (int i = 0; i < 6; ++i)
+      EXPECT_DOUBLE_EQ(std::sqrt((*covariance)(i, i)), bound.at(SensorId(id))[static_cast<std::size_t>(i)].value());
+    EXPECT_TRUE(covariance->llt().info() == Eigen::Success);
+  }
+  Options options;
+  options.motion = MotionKind::kPlanar;
+  EXPECT_FALSE(CramerRaoCovariance(Prepared(SmallRig(), options), SensorId("body")));
+}
+
 TEST(SimBound, LevelMotionLeavesTheTrackersHeightUnknownAndNothingElse) {
   Options options;
   options.captures = 12;
