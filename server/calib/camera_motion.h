@@ -7,19 +7,12 @@
 #include "server/calib/intrinsics.h"
 #include "server/calib/motion_problem.h"
 #include "server/calib/projection.h"
+#include "server/calib/view_moments.h"
 
 namespace rigcal::calib {
 
-// One view near a pose of its board: normal matrix and gradient over [intrinsics, board pose (right tangent)], px^2.
-struct ViewMoments {
-  Se3 T_cam_board;
-  Eigen::Matrix<double, kIntrinsicsMax + 6, kIntrinsicsMax + 6> normal;
-  Eigen::Matrix<double, kIntrinsicsMax + 6, 1> gradient;
-  double ssr_px2 = 0;
-};
-
-// A camera's views as side of a motion. Intrinsics that are estimated are the side's shared parameters; the camera's
-// pose in the frame of the board is T_world_sensor.
+// A camera's views as side of a motion. Intrinsics that are estimated or refined are the side's shared parameters; the
+// camera's pose in the frame of the board is T_world_sensor.
 struct CameraMotion {
   CameraEstimate camera;
   bool estimates_intrinsics = false;
@@ -34,8 +27,9 @@ struct CameraMotion {
 
 // The pose and what the intrinsics do to it. `turn`: the board taken as turned by that many of its symmetric turns.
 [[nodiscard]] SidePose PoseOf(const CameraMotion& motion, const ViewMoments& view, int turn);
-// What all views but `without` (may be null) say of the intrinsics, each with the first of its poses.
+// What all views but `without` (may be null) say of the intrinsics, each with the first of its poses, and what was
+// given of them. `factor`: on the variance of corners.
 void FillShared(const CameraMotion& motion, const std::map<CaptureId, std::size_t>& chosen, const CaptureId* without,
-                MotionSide& side);
+                double factor, MotionSide& side);
 
 }  // namespace rigcal::calib

@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -76,21 +77,30 @@ void AddBoardSize(const HandEyeWork& work, const HandEyeSide& side, MotionSide M
                        }});
 }
 
+std::string IntrinsicsName(const HandEyeSide& side) { return "intrinsics of " + side.sensor.id.str(); }
+
+// A larger value given moves what pulls the shared parameter, 1/2 (s - value)^2 / sigma^2.
 void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
                    std::vector<GivenConstant>& constants) {
-  if (!side.sensor.intrinsics || !side.sensor.intrinsics_sigma) return;
-  for (std::size_t i = 0; i < side.sensor.intrinsics_sigma->size(); ++i) {
-    const double sigma = (*side.sensor.intrinsics_sigma)[i];
-    if (!(sigma > 0)) continue;
-    constants.push_back({"intrinsics of " + side.sensor.id.str(), [&work, poses, i, sigma](double steps) {
+  for (const int i : RefinedOf(side.sensor)) {
+    const double sigma = (*side.sensor.intrinsics_sigma)[static_cast<std::size_t>(i)];
+    constants.push_back({IntrinsicsName(side), [&work, poses, i, sigma](double steps) {
                            MotionProblem moved = work.problem;
-                           for (SidePose& pose : (moved.*poses).poses)
-                             pose.T_world_sensor =
-                                 pose.T_world_sensor *
-                                 Se3::Exp(steps * sigma * pose.d_shared.col(static_cast<Eigen::Index>(i)));
+                           (moved.*poses).gradient[i] -= steps / sigma;
                            return SolvedPose(moved, work.state);
                          }});
   }
+}
+
+// The model's covariance without what given intrinsics bring, which is a contribution of its own.
+Eigen::MatrixXd CapturesPart(const HandEyeProblem& problem, const HandEyeWork& work,
+                             const std::vector<Contribution>& contributions) {
+  const auto& free = work.problem.free;
+  Eigen::MatrixXd part = work.fit.C_X;
+  for (const Contribution& given : contributions)
+    if (given.name == IntrinsicsName(problem.a) || given.name == IntrinsicsName(problem.b))
+      part -= free.transpose() * given.covariance * free;
+  return Eigen::LLT<Eigen::MatrixXd>(part).info() == Eigen::Success ? part : work.fit.C_X;
 }
 
 }  // namespace
@@ -115,8 +125,8 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
     RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, without));
   }
   MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
-  RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, work.fit.C_X, std::move(vectors),
-                                                std::move(contributions), carrying));
+  RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, CapturesPart(problem, work, contributions),
+                                                std::move(vectors), std::move(contributions), carrying));
   return uncertainty;
 }
 

@@ -118,9 +118,7 @@ void SetShared(const HandEyeWork& work, const CaptureId* without, MotionProblem&
     std::map<CaptureId, std::size_t> chosen;
     for (std::size_t k = 0; k < work.captures.size(); ++k)
       chosen[work.captures[k]] = work.choices[k].*choice / static_cast<std::size_t>(camera->turns);
-    FillShared(*camera, chosen, without, side);
-    side.information /= factor;
-    side.gradient /= factor;
+    FillShared(*camera, chosen, without, factor, side);
   };
   fill(work.camera_a, &MotionChoice::a, work.factor_a.translation, problem.a);
   fill(work.camera_b, &MotionChoice::b, work.factor_b.translation, problem.b);

@@ -23,6 +23,7 @@ constexpr double kContradictingRatio = 6.0, kContradictingWidthRatio = 0.02;
 // Another sensor will judge, so more poses are kept than the corners alone leave open (16): ten sigma.
 constexpr double kAlternativeCost = 100.0;
 constexpr int kPoseRoundsMax = 4;
+constexpr int kPulledRounds = 2;
 constexpr double kSamePose = 1e-3;
 
 // Captures, views and board poses side by side.
@@ -130,6 +131,17 @@ OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
   return {};
 }
 
+// Frees intrinsics that were given with sigmas. What the corners are good for is known once they fit.
+OrDiagnosis<void> RefineWithin(const CameraProblem& problem, double corner_sigma_px, Work& work) {
+  work.joint.estimate_a = true;
+  work.joint.held_a = HeldOf(problem.camera);
+  work.joint.pull_a = PullOf(problem.camera, corner_sigma_px);
+  auto solution = SolveJoint(work.joint, work.state);
+  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
+  work.state = std::move(solution->state);
+  return {};
+}
+
 // One look at every board's other pose: kept as an alternative, or taken. Returns whether anything changed.
 bool ReconsiderBoards(Work& work) {
   const double variance_px2 = VarianceOf(work);
@@ -147,6 +159,16 @@ bool ReconsiderBoards(Work& work) {
   return changed;
 }
 
+OrDiagnosis<void> RefineGiven(const CameraProblem& problem, Work& work) {
+  if (!RefinesIntrinsics(problem.camera)) return {};
+  for (int round = 0; round < kPoseRoundsMax; ++round) {
+    for (int again = 0; again < kPulledRounds; ++again)
+      if (auto refined = RefineWithin(problem, std::sqrt(VarianceOf(work)), work); !refined) return refined;
+    if (!ReconsiderBoards(work)) break;
+  }
+  return {};
+}
+
 OrDiagnosis<Work> FromScratch(const CameraProblem& problem) {
   Work work = Collected(problem);
   if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
@@ -160,12 +182,13 @@ OrDiagnosis<Work> FromScratch(const CameraProblem& problem) {
     if (auto refined = Refine(problem, work); !refined) return tl::unexpected(refined.error());
     if (!ReconsiderBoards(work)) break;
   }
+  if (auto refined = RefineGiven(problem, work); !refined) return tl::unexpected(refined.error());
   return work;
 }
 
 OrDiagnosis<Work> FromStart(const CameraProblem& problem, const CameraEstimate& start) {
   Work work = Collected(problem);
-  work.state.intrinsics_a = VectorOf(problem.camera.intrinsics.value_or(start.intrinsics));
+  work.state.intrinsics_a = VectorOf(HoldsIntrinsics(problem.camera) ? *problem.camera.intrinsics : start.intrinsics);
   work.state.T_a_board.resize(work.captures.size());
   for (std::size_t k = work.captures.size(); k-- > 0;) {
     const auto board = start.T_cam_board.find(work.captures[k]);
@@ -175,7 +198,9 @@ OrDiagnosis<Work> FromStart(const CameraProblem& problem, const CameraEstimate& 
       work.state.T_a_board[k] = board->second;
   }
   if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
-  if (auto refined = Refine(problem, work); !refined) return tl::unexpected(refined.error());
+  const auto refined =
+      start.pull.Pulls() ? RefineWithin(problem, start.pull.corner_sigma_px, work) : Refine(problem, work);
+  if (!refined) return tl::unexpected(refined.error());
   for (const CaptureId& capture : work.captures) {
     const auto other = start.alternatives.find(capture);
     work.alternatives.push_back(other == start.alternatives.end() ? std::vector<Se3>() : other->second);
@@ -187,11 +212,18 @@ OrDiagnosis<void> CheckConditioning(const CameraProblem& problem, const Work& wo
   if (problem.camera.intrinsics) return {};
   const auto covariance = ModelCovariance(work.joint, work.state);
   if (!covariance) return tl::unexpected(CameraIllConditioned(problem.camera.id, covariance.error().what));
-  const Eigen::VectorXd variances = covariance->diagonal().segment<kIntrinsicsMax>(kIntrinsicsAStart);
+  const Eigen::VectorXd variances = covariance->captures.diagonal().segment<kIntrinsicsMax>(kIntrinsicsAStart);
   if (auto open =
           WhyDistortionOpen(problem.camera.id, work.joint.model_a, variances, work.views, work.state.intrinsics_a))
     return tl::unexpected(std::move(*open));
   return {};
+}
+
+void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) {
+  if (!work.joint.pull_a.Pulls()) return;
+  if (const auto moments = MomentsAt(work.joint.model_a, work.state.intrinsics_a, work.joint.corners_board,
+                                     work.joint.captures[k].a, work.state.T_a_board[k]))
+    estimate.of_intrinsics.emplace(work.captures[k], Eliminated(*moments));
 }
 
 OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& work) {
@@ -200,6 +232,7 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
   estimate.intrinsics = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
   estimate.unused = work.unused;
   estimate.variance_px2 = VarianceOf(work);
+  estimate.pull = work.joint.pull_a;
   double ssr_px2 = 0;
   for (std::size_t k = 0; k < work.captures.size(); ++k) {
     const CaptureId& capture = work.captures[k];
@@ -207,6 +240,7 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
     if (!information) return tl::unexpected(CameraIllConditioned(problem.camera.id, information.error().what));
     estimate.T_cam_board[capture] = work.state.T_a_board[k];
     estimate.information[capture] = *information;
+    AddOfIntrinsics(work, k, estimate);
     if (!work.alternatives[k].empty()) estimate.alternatives[capture] = work.alternatives[k];
     estimate.rms_by_capture_px[capture] = RmsOf(work, k);
     ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/calib/given_intrinsics.h"
+#include "server/calib/view_moments.h"
 #include "server/model/diagnosis.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
@@ -14,7 +16,7 @@
 namespace rigcal::calib {
 
 struct CameraProblem {
-  Sensor camera;  // intrinsics given, or estimated as camera_model
+  Sensor camera;  // intrinsics given (with sigmas: refined within them), or estimated as camera_model
   Target board;
   std::vector<std::pair<CaptureId, BoardView>> views;  // sorted by id; a view may be not found
 };
@@ -31,11 +33,15 @@ struct CameraEstimate {
   std::map<CaptureId, std::string> unused;        // why, in words
   double rms_px = 0;                              // sqrt(sum of squared distances / number of points)
   double variance_px2 = 0;  // of a corner's u or v: sum of squared residuals / (residuals - parameters)
+  // Where the intrinsics were given with sigmas, and so refined: what pulled, and what each view used says of them.
+  IntrinsicsPull pull;
+  std::map<CaptureId, ViewOfIntrinsics> of_intrinsics;
 };
 
-// Pure and deterministic. Given intrinsics stay as given: poses only, one view is enough. Estimated ones need 3 views
-// with tilted boards. With `start`, from its intrinsics and poses: the captures it has, with their alternatives kept as
-// they are, unrefined (leave-one-out). Never throws.
+// Pure and deterministic. Given intrinsics without sigmas stay as given: poses only, one view is enough. With sigmas
+// all views refine them within those, and one view is enough too. Estimated ones need 3 views with tilted boards. With
+// `start`, from its intrinsics and poses: the captures it has, with their alternatives kept as they are, unrefined
+// (leave-one-out). Never throws.
 [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCamera(const CameraProblem& problem,
                                                                      const CameraEstimate* start = nullptr);
 

@@ -23,6 +23,7 @@ Solved SolvedOf(const StereoProblem& problem, const StereoEstimate& estimate) {
     solved.state.T_a_board.push_back(board->second);
   }
   solved.joint = JointOf(problem, solved.used, estimate.turn_b);
+  SetCornerSigma(problem, estimate.corner_sigma_px, solved.joint);
   solved.state.intrinsics_a = VectorOf(estimate.intrinsics_a);
   solved.state.intrinsics_b = VectorOf(estimate.intrinsics_b);
   solved.state.T_a_b = estimate.T_a_b;
@@ -51,30 +52,22 @@ Result<Se3> PoseOf(const Solved& solved) {
   return solution.state.T_a_b;
 }
 
-void AddIntrinsics(const Sensor& camera, IntrinsicsVector JointState::*intrinsics, const Solved& solved,
+void AddIntrinsics(const Sensor& camera, const std::vector<Vector6d>& shifts, const Se3& T_a_b,
                    std::vector<GivenConstant>& constants) {
-  if (!camera.intrinsics || !camera.intrinsics_sigma) return;
-  const int count = IntrinsicsCount(camera.intrinsics->model);
-  if (camera.intrinsics_sigma->size() != static_cast<std::size_t>(count)) return;
-  for (int i = 0; i < count; ++i) {
-    const double sigma = (*camera.intrinsics_sigma)[static_cast<std::size_t>(i)];
-    if (!(sigma > 0)) continue;
-    constants.push_back({"intrinsics of " + camera.id.str(), [&solved, intrinsics, i, sigma](double steps) {
-                           Solved moved = solved;
-                           (moved.state.*intrinsics)[i] += steps * sigma;
-                           return PoseOf(moved);
-                         }});
-  }
+  for (const Vector6d& shift : shifts)
+    constants.push_back({"intrinsics of " + camera.id.str(),
+                         [&T_a_b, shift](double steps) { return Result<Se3>(T_a_b * Se3::Exp(steps * shift)); }});
 }
 
-std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const Solved& solved) {
+std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const StereoEstimate& estimate,
+                                       const Solved& solved) {
   std::vector<GivenConstant> constants;
   const double ratio = problem.board.square_sigma_m / problem.board.square_m;
   if (ratio > 0)
     constants.push_back({"size of board " + problem.board.id.str(),
                          [&solved, ratio](double steps) { return PoseOf(WithSquare(solved, 1 + steps * ratio)); }});
-  AddIntrinsics(problem.camera_a, &JointState::intrinsics_a, solved, constants);
-  AddIntrinsics(problem.camera_b, &JointState::intrinsics_b, solved, constants);
+  AddIntrinsics(problem.camera_a, estimate.shifts_a, estimate.T_a_b, constants);
+  AddIntrinsics(problem.camera_b, estimate.shifts_b, estimate.T_a_b, constants);
   return constants;
 }
 
@@ -90,7 +83,7 @@ Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate
   const Solved solved = SolvedOf(problem, estimate);
   // Single views are blocks too, but no degrees of freedom of the pair.
   const std::size_t both = CountBoth(problem, solved.used);
-  RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, solved)));
+  RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate, solved)));
   std::vector<BlockVector> blocks;
   if (both >= kCapturesForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutCapture(solved, k); };

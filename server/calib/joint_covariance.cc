@@ -3,6 +3,7 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <vector>
 
 #include "server/calib/costs/reference_view.h"
@@ -53,12 +54,17 @@ std::vector<RowMajor> BlockJacobians(const ceres::CostFunction& cost, const std:
   return jacobians;
 }
 
+void HoldColumns(bool estimate, const std::vector<int>& held, RowMajor& d_intrinsics) {
+  if (!estimate) d_intrinsics.setZero();
+  for (const int i : held) d_intrinsics.col(i).setZero();
+}
+
 bool AddReferenceView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
   const PoseBlock T_a_board = BlockOf(state.T_a_board[k]);
   auto jacobians = BlockJacobians(*MakeReferenceViewCost(problem.model_a, problem.corners_board, problem.captures[k].a),
                                   {state.intrinsics_a.data(), T_a_board.data()});
   if (jacobians.empty()) return false;
-  if (!problem.estimate_a) jacobians[0].setZero();
+  HoldColumns(problem.estimate_a, problem.held_a, jacobians[0]);
   jacobians[1] = jacobians[1] * PlusJacobian(state.T_a_board[k]);
   normal.Add({kIntrinsicsAStart}, jacobians);
   return true;
@@ -69,7 +75,7 @@ bool AddSecondView(const JointProblem& problem, const JointState& state, std::si
   auto jacobians = BlockJacobians(*MakeSecondViewCost(problem.model_b, problem.corners_board, problem.captures[k].b),
                                   {state.intrinsics_b.data(), T_a_b.data(), T_a_board.data()});
   if (jacobians.empty()) return false;
-  if (!problem.estimate_b) jacobians[0].setZero();
+  HoldColumns(problem.estimate_b, problem.held_b, jacobians[0]);
   jacobians[1] = jacobians[1] * PlusJacobian(state.T_a_b);
   jacobians[2] = jacobians[2] * PlusJacobian(state.T_a_board[k]);
   normal.Add({kIntrinsicsBStart, kPairStart}, jacobians);
@@ -85,6 +91,25 @@ Eigen::MatrixXd ScaledInverse(const Eigen::MatrixXd& matrix) {
   const Eigen::MatrixXd scaled_inverse =
       solver.eigenvectors() * solver.eigenvalues().cwiseInverse().asDiagonal() * solver.eigenvectors().transpose();
   return scale.asDiagonal() * scaled_inverse * scale.asDiagonal();
+}
+
+// What pulls tell, on the diagonal.
+ReducedMatrix PullsOf(const JointProblem& problem) {
+  ReducedMatrix pulls = ReducedMatrix::Zero();
+  for (int i = 0; i < kIntrinsicsMax; ++i) {
+    if (problem.estimate_a) pulls(kIntrinsicsAStart + i, kIntrinsicsAStart + i) = std::pow(problem.pull_a.Weight(i), 2);
+    if (problem.estimate_b) pulls(kIntrinsicsBStart + i, kIntrinsicsBStart + i) = std::pow(problem.pull_b.Weight(i), 2);
+  }
+  return pulls;
+}
+
+// What one sigma of each pulled number does to T_a_b.
+std::vector<Vector6d> ShiftsOf(const ReducedMatrix& inverse, int start, const IntrinsicsPull& pull) {
+  std::vector<Vector6d> shifts;
+  for (int i = 0; i < kIntrinsicsMax; ++i)
+    if (pull.Pulls() && pull.sigma[i] > 0)
+      shifts.push_back(inverse.block<6, 1>(kPairStart, start + i) * pull.Weight(i) * pull.corner_sigma_px);
+  return shifts;
 }
 
 Result<CaptureNormal> NormalOf(const JointProblem& problem, const JointState& state, std::size_t k) {
@@ -127,17 +152,20 @@ Result<ReducedMatrix> InverseOfFree(const ReducedMatrix& normal) {
   return inverse;
 }
 
-Result<ReducedMatrix> ModelCovariance(const JointProblem& problem, const JointState& state) {
+Result<JointCovariance> ModelCovariance(const JointProblem& problem, const JointState& state) {
   const int dof = ResidualCount(problem) - ParameterCount(problem);
   if (dof <= 0) return NotObservable("there are fewer corners than unknowns");
   RIGCAL_ASSIGN(const ReducedMatrix normal, ReducedNormal(problem, state));
-  RIGCAL_ASSIGN(const ReducedMatrix inverse, InverseOfFree(normal));
+  const ReducedMatrix pulls = PullsOf(problem);
+  RIGCAL_ASSIGN(const ReducedMatrix inverse, InverseOfFree(normal + pulls));
   double ssr_px2 = 0;
   for (std::size_t k = 0; k < problem.captures.size(); ++k) {
     const CaptureError error = ErrorOf(problem, state, k);
     ssr_px2 += error.a_px2 + error.b_px2;
   }
-  return ReducedMatrix(ssr_px2 / dof * inverse);
+  return JointCovariance{ssr_px2 / dof * (inverse - inverse * pulls * inverse),
+                         ShiftsOf(inverse, kIntrinsicsAStart, problem.pull_a),
+                         ShiftsOf(inverse, kIntrinsicsBStart, problem.pull_b)};
 }
 
 }  // namespace rigcal::calib

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "server/calib/joint_problem.h"
 
@@ -21,7 +22,13 @@ using ReducedMatrix = Eigen::Matrix<double, kReducedSize, kReducedSize>;
 // Inverse of the rows and columns that are not zero; the others stay zero. Fails where a direction is not observable.
 [[nodiscard]] Result<ReducedMatrix> InverseOfFree(const ReducedMatrix& normal);
 
-// s^2 H^-1 with s^2 = sum of squared residuals / (residuals - parameters).
-[[nodiscard]] Result<ReducedMatrix> ModelCovariance(const JointProblem& problem, const JointState& state);
+struct JointCovariance {
+  // s^2 H^-1 with s^2 = sum of squared residuals / (residuals - parameters); where intrinsics are pulled to what was
+  // given, the part that the captures' errors bring: s^2 H^-1 N H^-1, N without the pulls.
+  ReducedMatrix captures;
+  // The other part: what one sigma of each pulled number does to T_a_b, ascending by index.
+  std::vector<Vector6d> shifts_a, shifts_b;
+};
+[[nodiscard]] Result<JointCovariance> ModelCovariance(const JointProblem& problem, const JointState& state);
 
 }  // namespace rigcal::calib

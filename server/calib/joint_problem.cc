@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "server/calib/costs/given_intrinsics.h"
 #include "server/calib/costs/reference_view.h"
 #include "server/calib/costs/second_view.h"
 #include "server/calib/pose_block.h"
@@ -65,9 +66,18 @@ void Hold(ceres::Problem& ceres_problem, double* block) {
 }
 
 void HoldSome(ceres::Problem& ceres_problem, double* block, const std::vector<int>& held) {
-  if (!ceres_problem.HasParameterBlock(block)) return;
+  if (held.empty() || !ceres_problem.HasParameterBlock(block)) return;
   auto manifold = std::make_unique<ceres::SubsetManifold>(ceres_problem.ParameterBlockSize(block), held);
   ceres_problem.SetManifold(block, manifold.release());
+}
+
+// Intrinsics that are held, held in part, or pulled to where they were given.
+void SetIntrinsics(ceres::Problem& ceres_problem, double* block, CameraModel model, bool estimate,
+                   const std::vector<int>& held, const IntrinsicsPull& pull) {
+  if (!ceres_problem.HasParameterBlock(block)) return;
+  if (!estimate) return Hold(ceres_problem, block);
+  HoldSome(ceres_problem, block, held);
+  if (pull.Pulls()) ceres_problem.AddResidualBlock(MakeGivenIntrinsicsCost(model, pull).release(), nullptr, block);
 }
 
 ceres::Solver::Options Options() {
@@ -84,9 +94,10 @@ ceres::Solver::Options Options() {
   return options;
 }
 
+// A pull, however weak, closes the valley of the rational model's two halves.
 bool EstimatesRational(const JointProblem& problem) {
-  return (problem.estimate_a && problem.model_a == CameraModel::kPinholeRational) ||
-         (problem.estimate_b && problem.model_b == CameraModel::kPinholeRational);
+  return (problem.estimate_a && !problem.pull_a.Pulls() && problem.model_a == CameraModel::kPinholeRational) ||
+         (problem.estimate_b && !problem.pull_b.Pulls() && problem.model_b == CameraModel::kPinholeRational);
 }
 
 tl::unexpected<Error> NotConverged(const JointProblem& problem) {
@@ -132,9 +143,8 @@ Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& 
   for (std::size_t k = 0; k < boards; ++k) AddViews(problem, k, parameters.board(k), parameters, ceres_problem);
   if (ceres_problem.HasParameterBlock(parameters.pair()))
     ceres_problem.SetManifold(parameters.pair(), MakeSe3Manifold().release());
-  if (!problem.estimate_a) Hold(ceres_problem, parameters.a());
-  if (!problem.held_a.empty()) HoldSome(ceres_problem, parameters.a(), problem.held_a);
-  if (!problem.estimate_b) Hold(ceres_problem, parameters.b());
+  SetIntrinsics(ceres_problem, parameters.a(), problem.model_a, problem.estimate_a, problem.held_a, problem.pull_a);
+  SetIntrinsics(ceres_problem, parameters.b(), problem.model_b, problem.estimate_b, problem.held_b, problem.pull_b);
 
   ceres::Solver::Options options = Options();
   AllowForValley(problem, options);
@@ -178,8 +188,8 @@ int ResidualCount(const JointProblem& problem) {
 }
 
 int ParameterCount(const JointProblem& problem) {
-  const int a = problem.estimate_a ? IntrinsicsCount(problem.model_a) : 0;
-  const int b = problem.estimate_b ? IntrinsicsCount(problem.model_b) : 0;
+  const int a = problem.estimate_a && !problem.pull_a.Pulls() ? IntrinsicsCount(problem.model_a) : 0;
+  const int b = problem.estimate_b && !problem.pull_b.Pulls() ? IntrinsicsCount(problem.model_b) : 0;
   const bool pair = std::any_of(problem.captures.begin(), problem.captures.end(),
                                 [](const JointCapture& capture) { return !capture.b.empty(); });
   return (pair ? 6 : 0) + a + b + 6 * static_cast<int>(problem.captures.size());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/calib/given_intrinsics.h"
 #include "server/calib/projection.h"
 #include "server/calib/seen_corners.h"
 #include "server/math/se3.h"
@@ -22,7 +23,8 @@ struct JointProblem {
   std::vector<JointCapture> captures;
   CameraModel model_a = CameraModel::kPinholeRadtan, model_b = CameraModel::kPinholeRadtan;
   bool estimate_a = true, estimate_b = true;  // intrinsics; otherwise they stay as the state gives them
-  std::vector<int> held_a;  // of the estimated intrinsics of a, by index: stay as the state gives them
+  std::vector<int> held_a, held_b;            // of the estimated intrinsics, by index: stay as the state gives them
+  IntrinsicsPull pull_a, pull_b;              // of the estimated intrinsics: what is known of them beforehand
 };
 
 struct JointState {
@@ -48,7 +50,7 @@ struct CaptureError {
 [[nodiscard]] Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::size_t capture_idx,
                                  const Se3& T_a_board);
 [[nodiscard]] CaptureError ErrorOf(const JointProblem& problem, const JointState& state, std::size_t capture_idx);
-// Numbers (two per corner and view) and free parameters of the whole problem.
+// Numbers (two per corner and view) and free parameters of the whole problem, less those that a pull tells already.
 [[nodiscard]] int ResidualCount(const JointProblem& problem);
 [[nodiscard]] int ParameterCount(const JointProblem& problem);
 

@@ -1,19 +1,19 @@
 #include "server/calib/lidar_camera_variants.h"
 
-#include <array>
+#include "server/calib/intrinsics_variants.h"
 
 namespace rigcal::calib {
 namespace {
 
 Error Reason(const Diagnosis& diagnosis) { return {ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure}; }
 
-// Poses of the boards from the pictures, intrinsics as `sensor` gives them or estimated from these views.
-tl::expected<CameraEstimate, Diagnosis> CameraAgain(const LidarCameraProblem& problem, const Sensor& sensor,
-                                                    const LidarCameraEstimate& estimate, const CaptureId* without) {
-  CameraProblem camera{sensor, problem.board, {}};
+// Poses of the boards and intrinsics from the other pictures.
+tl::expected<CameraEstimate, Diagnosis> CameraWithout(const LidarCameraProblem& problem,
+                                                      const LidarCameraEstimate& estimate, const CaptureId& without) {
+  CameraProblem camera{problem.camera, problem.board, {}};
   for (const LidarCameraCapture& capture : problem.captures) {
     if (!estimate.camera.T_cam_board.contains(capture.capture)) continue;
-    if (without == nullptr || capture.capture != *without) camera.views.emplace_back(capture.capture, *capture.view);
+    if (capture.capture != without) camera.views.emplace_back(capture.capture, *capture.view);
   }
   return EstimateCamera(camera, &estimate.camera);
 }
@@ -24,7 +24,7 @@ std::vector<CaptureId> BlocksOf(const LidarCameraProblem& problem, const LidarCa
   std::vector<CaptureId> blocks;
   for (const LidarCameraCapture& capture : problem.captures)
     if (estimate.patch_idx.contains(capture.capture) ||
-        (!problem.camera.intrinsics && estimate.camera.T_cam_board.contains(capture.capture)))
+        (!HoldsIntrinsics(problem.camera) && estimate.camera.T_cam_board.contains(capture.capture)))
       blocks.push_back(capture.capture);
   return blocks;
 }
@@ -39,8 +39,10 @@ Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem, con
                                           const CaptureId& capture) {
   LidarCameraEstimate start = estimate;
   start.patch_idx.erase(capture);
-  if (!problem.camera.intrinsics) {
-    auto camera = CameraAgain(problem, problem.camera, estimate, &capture);
+  if (RefinesIntrinsics(problem.camera)) {
+    start.camera = WithoutView(estimate.camera, capture);
+  } else if (!problem.camera.intrinsics) {
+    auto camera = CameraWithout(problem, estimate, capture);
     if (!camera) return Fail(Reason(camera.error()));
     start.camera = std::move(*camera);
   }
@@ -49,23 +51,14 @@ Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem, con
 
 Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
                                                 std::size_t idx, double sigmas) {
-  Sensor moved = problem.camera;
-  CameraIntrinsics& k = *moved.intrinsics;
-  (idx < 4 ? *std::array{&k.fx_px, &k.fy_px, &k.cx_px, &k.cy_px}[idx] : k.distortion[idx - 4]) +=
-      sigmas * (*problem.camera.intrinsics_sigma)[idx];
-  auto camera = CameraAgain(problem, moved, estimate, nullptr);
-  if (!camera) return Fail(Reason(camera.error()));
   LidarCameraEstimate start = estimate;
-  start.camera = std::move(*camera);
+  start.camera = WithGiven(estimate.camera, static_cast<int>(idx), sigmas);
   return SolvedAgain(problem, start);
 }
 
 std::vector<std::size_t> UncertainIntrinsics(const LidarCameraProblem& problem) {
-  std::vector<std::size_t> uncertain;
-  if (!problem.camera.intrinsics || !problem.camera.intrinsics_sigma) return uncertain;
-  for (std::size_t i = 0; i < problem.camera.intrinsics_sigma->size(); ++i)
-    if ((*problem.camera.intrinsics_sigma)[i] > 0) uncertain.push_back(i);
-  return uncertain;
+  const std::vector<int> refined = RefinedOf(problem.camera);
+  return {refined.begin(), refined.end()};
 }
 
 }  // namespace rigcal::calib

@@ -7,14 +7,14 @@
 
 namespace rigcal::calib {
 
-// Captures that carry the answer: those of both, and where intrinsics are estimated every picture.
+// Captures that carry the answer: those of both, and every picture unless intrinsics are held.
 [[nodiscard]] std::vector<CaptureId> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
 [[nodiscard]] Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem,
                                                       const LidarCameraEstimate& start);
-// Everything estimated anew, intrinsics too unless they are given.
+// Everything estimated anew, intrinsics too unless they are held.
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem,
                                                         const LidarCameraEstimate& estimate, const CaptureId& capture);
-// Of given intrinsics with sigmas: fx fy cx cy and the distortion, the idx-th moved by so many of its sigmas.
+// Of given intrinsics with sigmas: fx fy cx cy and the distortion, the idx-th given larger by so many of its sigmas.
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& problem,
                                                               const LidarCameraEstimate& estimate, std::size_t idx,
                                                               double sigmas);

@@ -6,6 +6,7 @@
 
 #include "server/calib/camera_diagnoses.h"
 #include "server/calib/diagnoses.h"
+#include "server/calib/given_intrinsics.h"
 #include "server/calib/joint_covariance.h"
 #include "server/calib/planar_pose.h"
 #include "server/calib/selection.h"
@@ -15,7 +16,6 @@ namespace {
 
 using View = std::optional<BoardView>;
 
-constexpr double kTypicalCornerSigma_px = 0.25;
 // Well-tilted boards give 0.1 to 0.5 %; boards parallel to the picture give tens of per cent and more.
 constexpr double kFocalSigmaMaxRatio = 0.03;
 // Sigma of a coefficient times its power of the outermost radius: up to 20 where boards fill the picture (the rational

@@ -65,7 +65,8 @@ std::string WhyUseless(const StereoProblem& problem, const StereoCapture& captur
                                              WhyNot(capture.b, problem.camera_b.id, problem.board)
                               : !a ? WhyNot(capture.a, problem.camera_a.id, problem.board)
                                    : WhyNot(capture.b, problem.camera_b.id, problem.board);
-  const bool informs_intrinsics = (a && !problem.camera_a.intrinsics) || (b && !problem.camera_b.intrinsics);
+  const bool informs_intrinsics =
+      (a && !HoldsIntrinsics(problem.camera_a)) || (b && !HoldsIntrinsics(problem.camera_b));
   return informs_intrinsics ? std::string() : missing;
 }
 
@@ -150,17 +151,25 @@ JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t
   joint.corners_board = TargetPoints(problem.board);
   joint.model_a = ModelOf(problem.camera_a);
   joint.model_b = ModelOf(problem.camera_b);
-  joint.estimate_a = !problem.camera_a.intrinsics;
-  joint.estimate_b = !problem.camera_b.intrinsics;
+  joint.estimate_a = !HoldsIntrinsics(problem.camera_a);
+  joint.estimate_b = !HoldsIntrinsics(problem.camera_b);
+  joint.held_a = HeldOf(problem.camera_a);
+  joint.held_b = HeldOf(problem.camera_b);
+  SetCornerSigma(problem, kTypicalCornerSigma_px, joint);
   for (const std::size_t idx : used) {
     const StereoCapture& capture = problem.captures[idx];
     JointCapture views;
-    // A single view of a camera with given intrinsics never comes here, so no view is idle.
+    // A single view of a camera whose intrinsics are held never comes here, so no view is idle.
     if (Sees(capture.a, problem.board)) views.a = SeenIn(*capture.a, problem.board);
     if (Sees(capture.b, problem.board)) views.b = SeenIn(*capture.b, problem.board, TurnOf(capture.capture, turn_b));
     joint.captures.push_back(std::move(views));
   }
   return joint;
+}
+
+void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointProblem& joint) {
+  joint.pull_a = PullOf(problem.camera_a, corner_sigma_px);
+  joint.pull_b = PullOf(problem.camera_b, corner_sigma_px);
 }
 
 CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used) {

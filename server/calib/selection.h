@@ -12,8 +12,8 @@
 
 namespace rigcal::calib {
 
-// A capture that both cameras saw always enters. One that a single camera saw enters if that camera's intrinsics are
-// estimated, as it tells about them and about nothing else. A capture that shows what an earlier one shows does not
+// A capture that both cameras saw always enters. One that a single camera saw enters unless that camera's intrinsics
+// are held, as it tells about them and about nothing else. A capture that shows what an earlier one shows does not
 // enter: as a block of its own it would make the jackknife believe in information that is not there.
 struct Selection {
   std::vector<std::size_t> used;              // indices into StereoProblem::captures, ascending
@@ -32,9 +32,11 @@ struct Selection {
 [[nodiscard]] Selection Select(const StereoProblem& problem);
 
 [[nodiscard]] std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_t>& used);
-// `turn_b`: of the views of b, as in StereoEstimate.
+// `turn_b`: of the views of b, as in StereoEstimate. Corners are taken as typical until SetCornerSigma says otherwise.
 [[nodiscard]] JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used,
                                    const std::map<CaptureId, int>& turn_b = {});
+// What corners count against intrinsics that were given with sigmas.
+void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointProblem& joint);
 [[nodiscard]] CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used);
 [[nodiscard]] CameraViews ViewsOfB(const StereoProblem& problem, const std::vector<std::size_t>& used);
 

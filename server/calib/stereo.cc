@@ -143,14 +143,14 @@ void FillResiduals(const StereoProblem& problem, const StereoWork& work, StereoE
 }
 
 std::optional<Diagnosis> WhyDistortionOpen(const StereoProblem& problem, const StereoWork& work,
-                                           const ReducedMatrix& covariance) {
-  const Eigen::VectorXd variances = covariance.diagonal();
+                                           const JointCovariance& covariance) {
+  const Eigen::VectorXd variances = covariance.captures.diagonal();
   std::optional<Diagnosis> why;
-  if (work.joint.estimate_a)
+  if (work.joint.estimate_a && !work.joint.pull_a.Pulls())
     why =
         WhyDistortionOpen(problem.camera_a.id, work.joint.model_a, variances.segment<kIntrinsicsMax>(kIntrinsicsAStart),
                           ViewsOfA(problem, work.used), work.state.intrinsics_a);
-  if (!why && work.joint.estimate_b)
+  if (!why && work.joint.estimate_b && !work.joint.pull_b.Pulls())
     why =
         WhyDistortionOpen(problem.camera_b.id, work.joint.model_b, variances.segment<kIntrinsicsMax>(kIntrinsicsBStart),
                           ViewsOfB(problem, work.used), work.state.intrinsics_b);
@@ -162,7 +162,10 @@ OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const StereoW
   const auto covariance = ModelCovariance(work.joint, work.state);
   if (!covariance) return tl::unexpected(IllConditioned(problem, covariance.error().what));
   if (auto open = WhyDistortionOpen(problem, work, *covariance)) return tl::unexpected(std::move(*open));
-  estimate.C_model = covariance->block<6, 6>(kPairStart, kPairStart);
+  estimate.C_model = covariance->captures.block<6, 6>(kPairStart, kPairStart);
+  estimate.shifts_a = covariance->shifts_a;
+  estimate.shifts_b = covariance->shifts_b;
+  estimate.corner_sigma_px = std::max(work.joint.pull_a.corner_sigma_px, work.joint.pull_b.corner_sigma_px);
   estimate.intrinsics_a = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
   estimate.intrinsics_b = IntrinsicsOf(work.joint.model_b, work.state.intrinsics_b);
   estimate.T_a_b = work.state.T_a_b;

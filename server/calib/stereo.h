@@ -19,7 +19,7 @@ struct StereoCapture {
 };
 
 struct StereoProblem {
-  Sensor camera_a, camera_b;  // intrinsics given or absent
+  Sensor camera_a, camera_b;  // intrinsics given (with sigmas: refined within them) or absent
   Target board;
   std::vector<StereoCapture> captures;
 };
@@ -36,6 +36,10 @@ struct StereoEstimate {
   Matrix6d C_model = Matrix6d::Zero();     // s^2 H^-1 of the joint problem, right tangent at b
   std::vector<CaptureResidual> residuals;  // per capture
   int iterations = 0;
+  // Where intrinsics were given with sigmas, and so refined: what corners counted against them, and what one sigma of
+  // each does to T_a_b (right tangent at b), ascending. C_model is then the corners' part alone.
+  double corner_sigma_px = 0;
+  std::vector<Vector6d> shifts_a, shifts_b;
 };
 
 // Is it solvable? Empty: yes. Otherwise why not: too few captures with both views, board not found in ..., all boards
@@ -44,7 +48,7 @@ struct StereoEstimate {
 // Pure; deterministic for any thread count. `start` warm-starts the refinement (jackknife).
 [[nodiscard]] Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start = nullptr);
 // Leave one capture out, warm start, in parallel; block vectors in capture order. Adds the contribution of the board's
-// size (square_sigma_m) and of given intrinsics (intrinsics_sigma). Below 5 captures the source is the model:
+// size (square_sigma_m) and of the sigmas that intrinsics were given with. Below 5 captures the source is the model:
 // from 5 to 7 ShrinkTowardsModel already weighs it heavily, while the model alone, blind to errors that a capture's
 // corners share, understates sigma about twice on real pictures.
 [[nodiscard]] Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate);

@@ -71,8 +71,10 @@ OrDiagnosis<StereoStart> ColdStart(const StereoProblem& problem) {
 
 StereoWork WarmStart(const StereoProblem& problem, const StereoEstimate& start) {
   StereoWork work;
-  work.state.intrinsics_a = VectorOf(problem.camera_a.intrinsics.value_or(start.intrinsics_a));
-  work.state.intrinsics_b = VectorOf(problem.camera_b.intrinsics.value_or(start.intrinsics_b));
+  work.state.intrinsics_a =
+      VectorOf(HoldsIntrinsics(problem.camera_a) ? *problem.camera_a.intrinsics : start.intrinsics_a);
+  work.state.intrinsics_b =
+      VectorOf(HoldsIntrinsics(problem.camera_b) ? *problem.camera_b.intrinsics : start.intrinsics_b);
   work.state.T_a_b = start.T_a_b;
   for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
     const CaptureId& capture = problem.captures[idx].capture;
@@ -87,6 +89,7 @@ StereoWork WarmStart(const StereoProblem& problem, const StereoEstimate& start) 
     work.state.T_a_board.push_back(board->second);
   }
   work.joint = JointOf(problem, work.used, start.turn_b);
+  SetCornerSigma(problem, start.corner_sigma_px, work.joint);
   return work;
 }
 

@@ -16,6 +16,7 @@ constexpr double kContradictingWidthRatio = 0.02;  // and this part of the pictu
 // Two minima of a board's pose whose weighted costs differ by less than four sigma squared cannot be told apart.
 constexpr double kAmbiguousCost = 16.0;
 constexpr int kPoseRoundsMax = 4;
+constexpr int kPulledRounds = 2;
 
 // The best pose of one board over all turns of b's view; sets the turn.
 PoseChoice ChooseTurnAndPose(const StereoProblem& problem, std::size_t k, StereoWork& work) {
@@ -108,6 +109,17 @@ OrDiagnosis<void> Refine(const StereoProblem& problem, StereoWork& work) {
   return {};
 }
 
+// What the corners are good for is known once they fit, and they fit a little better once it is known.
+OrDiagnosis<void> RefineAgainstGiven(const StereoProblem& problem, StereoWork& work) {
+  const bool pulled = work.joint.pull_a.Pulls() || work.joint.pull_b.Pulls();
+  for (int round = 1; pulled && round < kPulledRounds; ++round) {
+    SetCornerSigma(problem, std::sqrt(work.Variance_px2()), work.joint);
+    if (auto refined = Refine(problem, work); !refined) return refined;
+  }
+  if (pulled) SetCornerSigma(problem, std::sqrt(work.Variance_px2()), work.joint);
+  return Refine(problem, work);
+}
+
 OrDiagnosis<void> RefineWithChoices(const StereoProblem& problem, StereoWork& work, std::vector<Diagnosis>& notes) {
   std::vector<CaptureId> ambiguous;
   for (int round = 0; round < kPoseRoundsMax; ++round) {
@@ -117,7 +129,7 @@ OrDiagnosis<void> RefineWithChoices(const StereoProblem& problem, StereoWork& wo
     if (CountBoth(problem, work.used) < kCapturesMin) return tl::unexpected(AmbiguousPose(problem, ambiguous));
   }
   if (!ambiguous.empty()) notes.push_back(AmbiguousPose(problem, ambiguous));
-  return Refine(problem, work);
+  return RefineAgainstGiven(problem, work);
 }
 
 }  // namespace rigcal::calib

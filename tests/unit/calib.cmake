@@ -5,6 +5,9 @@ rigcal_test(calib_test
 rigcal_test(calib_models_test
   SOURCES unit/calib_models_test.cc unit/calib_symmetry_test.cc unit/calib_camera_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
+rigcal_test(calib_given_intrinsics_test
+  SOURCES unit/calib_given_intrinsics_test.cc unit/calib_virtual_pair.cc unit/calib_virtual_motion.cc
+  DEPS rigcal_calib)
 rigcal_test(calib_statistics_test
   SOURCES unit/calib_statistics_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)

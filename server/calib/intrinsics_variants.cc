@@ -1,0 +1,60 @@
+#include "server/calib/intrinsics_variants.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+using Information = Eigen::Matrix<double, kIntrinsicsMax, kIntrinsicsMax>;
+
+// Of all views and what pulls; unit where an intrinsic is held, which no gradient moves.
+Information InformationOf(const CameraEstimate& estimate) {
+  Information information = Information::Zero();
+  for (const auto& [capture, view] : estimate.of_intrinsics) information += view.information;
+  for (int i = 0; i < kIntrinsicsMax; ++i) information(i, i) += std::pow(estimate.pull.Weight(i), 2);
+  return information;
+}
+
+IntrinsicsVector Solved(const CameraEstimate& estimate, Information information, IntrinsicsVector gradient) {
+  for (int i = 0; i < kIntrinsicsMax; ++i) {
+    if (estimate.pull.sigma[i] > 0) continue;
+    information.row(i).setZero();
+    information.col(i).setZero();
+    information(i, i) = 1;
+    gradient[i] = 0;
+  }
+  return information.ldlt().solve(gradient);
+}
+
+CameraEstimate Moved(CameraEstimate estimate, const IntrinsicsVector& change) {
+  const CameraModel model = estimate.intrinsics.model;
+  estimate.intrinsics = IntrinsicsOf(model, VectorOf(estimate.intrinsics) + change);
+  for (auto& [capture, T_cam_board] : estimate.T_cam_board)
+    if (const auto view = estimate.of_intrinsics.find(capture); view != estimate.of_intrinsics.end())
+      T_cam_board = (T_cam_board * Se3::Exp(view->second.d_board * change)).Normalized();
+  return estimate;
+}
+
+}  // namespace
+
+CameraEstimate WithoutView(const CameraEstimate& estimate, const CaptureId& capture) {
+  CameraEstimate without = estimate;
+  without.T_cam_board.erase(capture);
+  without.information.erase(capture);
+  without.alternatives.erase(capture);
+  without.rms_by_capture_px.erase(capture);
+  without.of_intrinsics.erase(capture);
+  const auto view = estimate.of_intrinsics.find(capture);
+  if (view == estimate.of_intrinsics.end()) return without;
+  return Moved(std::move(without),
+               Solved(estimate, InformationOf(estimate) - view->second.information, view->second.gradient));
+}
+
+CameraEstimate WithGiven(const CameraEstimate& estimate, int idx, double sigmas) {
+  IntrinsicsVector gradient = IntrinsicsVector::Zero();
+  gradient[idx] = std::pow(estimate.pull.Weight(idx), 2) * estimate.pull.sigma[idx] * sigmas;
+  return Moved(estimate, Solved(estimate, InformationOf(estimate), gradient));
+}
+
+}  // namespace rigcal::calib
