@@ -44,11 +44,11 @@ std::optional<double> Figure(const Edge& edge, const std::string& name) {
 
 std::optional<CameraIntrinsics> IntrinsicsOf(const Sensor& camera, const SessionId& session,
                                              const formats::RevisionInput& revision) {
-  if (camera.intrinsics) return camera.intrinsics;
+  if (camera.intrinsics && !camera.intrinsics_sigma) return camera.intrinsics;
   for (const Edge& edge : revision.edges)
     if (edge.session == session && edge.state == EdgeState::kGood)
       if (auto found = EstimatedIntrinsics(edge, camera.id, camera.camera_model)) return found;
-  return std::nullopt;
+  return camera.intrinsics;
 }
 
 struct ReadyCamera {
