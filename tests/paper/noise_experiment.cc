@@ -76,12 +76,13 @@ void AddPart(const NoiseSums& sums, double weight, NoiseSums& mean) {
 
 }  // namespace
 
-NoiseExperiment RunNoiseExperiment(int sets, double sigma_m, double sigma_rad) {
+NoiseExperiment RunNoiseExperiment(int sets, double sigma_m, double sigma_rad, unsigned seed) {
   NoiseExperiment experiment{sigma_m, sigma_rad, {}, {}, {}};
   for (int set = 0; set < sets; ++set) {
-    const RandomRig rig = CompleteRig(1000 + static_cast<unsigned>(set), sigma_m, sigma_rad);
+    const unsigned first = 1'000'000 * (seed - 1) + static_cast<unsigned>(set);
+    const RandomRig rig = CompleteRig(1000 + first, sigma_m, sigma_rad);
     AddExpected(rig, 1.0 / sets, experiment);
-    experiment.sets.push_back(RunSet(rig, 5000 + static_cast<unsigned>(set)));
+    experiment.sets.push_back(RunSet(rig, 5000 + first));
   }
   return experiment;
 }

@@ -1,8 +1,9 @@
 // The paper's synthetic experiment (section IV-A): noise on the edges of a small graph, before and after optimisation.
 #pragma once
 
-#include <string>
 #include <vector>
+
+#include "tests/paper/page.h"
 
 namespace rigcal::paper {
 
@@ -24,13 +25,13 @@ struct NoiseExperiment {
 };
 
 // Four vertices, every pair an edge, isotropic noise N(0, Sigma), one random rig per set. Deterministic.
-[[nodiscard]] NoiseExperiment RunNoiseExperiment(int sets, double sigma_m, double sigma_rad);
+[[nodiscard]] NoiseExperiment RunNoiseExperiment(int sets, double sigma_m, double sigma_rad, unsigned seed);
 
 // Mean over the sets of one sum; before and after.
 [[nodiscard]] NoiseSums MeanNoise(const NoiseExperiment& experiment);
 [[nodiscard]] NoiseSums MeanOptimised(const NoiseExperiment& experiment);
 // Section of the page: both figures, ratios against the prediction.
-[[nodiscard]] std::string NoiseSection(const NoiseExperiment& experiment);
+[[nodiscard]] Section NoiseSection(const NoiseExperiment& experiment);
 // The largest ratio of whitened sums, optimised over noise, among the sets.
 [[nodiscard]] double LargestRatio(const NoiseExperiment& experiment);
 

@@ -1,31 +1,49 @@
 #include "tests/paper/page.h"
 
+#include <fmt/format.h>
+
 namespace rigcal::paper {
 namespace {
 
 constexpr const char* kHead = R"(<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>The paper's experiments</title><style>
-:root { color-scheme: light dark; --text: #1c2330; --back: #fff; --line: #d7dce3; }
-@media (prefers-color-scheme: dark) { :root { --text: #dfe4ec; --back: #14181f; --line: #364050; } }
+<title>The paper's experiments</title><link rel="stylesheet" href="style.css"></head><body><main>
+<h1>The paper's experiments</h1>
+)";
+
+constexpr const char* kStyle =
+    R"(:root { color-scheme: light dark; --text: #1c2330; --soft: #5a6575; --back: #fff; --line: #d7dce3; }
+@media (prefers-color-scheme: dark) { :root { --text: #dfe4ec; --soft: #9aa5b5; --back: #14181f; --line: #364050; } }
 body { font: 16px/1.5 system-ui, sans-serif; color: var(--text); background: var(--back); max-width: 60rem;
   margin: 2rem auto; padding: 0 1rem; }
-figure { margin: 1rem 0; overflow-x: auto; } svg { max-width: 100%; height: auto; }
-svg text { font: 12px system-ui, sans-serif; fill: var(--text); } svg .grid { stroke: var(--line); }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-td, th { padding: .25rem .8rem; border-bottom: 1px solid var(--line); text-align: right; } th { text-align: left; }
-</style></head><body>
-<h1>The paper's experiments</h1>
-<p>Chen and Schwertfeger, <i>Heterogeneous Multi-sensor Calibration based on Graph Optimization</i> (RCAR 2019), done again on simulated
-truth.</p>
+h2 { margin-top: 3rem; }
+figure { margin: 1rem 0; overflow-x: auto; }
+figcaption { color: var(--soft); font-size: .9rem; }
+svg { max-width: 100%; height: auto; }
+.table { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
+td, th { padding: .25rem .7rem; border-bottom: 1px solid var(--line); text-align: right; }
+td { white-space: nowrap; }
+th { text-align: left; font-weight: 600; }
+tr.sum td, tr.sum th { border-top: 2px solid var(--line); }
 )";
 
 }  // namespace
 
-std::string Page(const std::vector<std::string>& sections) {
-  std::string page = kHead;
-  for (const std::string& section : sections) page += section;
-  return page + "</body></html>\n";
+std::string Figure(const std::string& name, const std::string& svg, const std::string& caption, Section& section) {
+  section.pictures.push_back({name, svg});
+  return "<figure>" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
+}
+
+std::vector<PageFile> PageFiles(const std::string& introduction, const std::vector<Section>& sections) {
+  std::string page = kHead + introduction;
+  std::vector<PageFile> files = {{"style.css", kStyle}};
+  for (const Section& section : sections) {
+    page += section.html;
+    for (const Picture& picture : section.pictures) files.push_back({picture.name + ".svg", picture.svg});
+  }
+  files.push_back({"index.html", page + "</main></body></html>\n"});
+  return files;
 }
 
 }  // namespace rigcal::paper

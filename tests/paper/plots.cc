@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace rigcal::paper {
 namespace {
 
-constexpr double kWidth_px = 920, kHeight_px = 280, kLeft_px = 70, kTop_px = 34, kFoot_px = 34, kBoxes_px = 130;
-constexpr std::array<const char*, 5> kColours = {"#4269d0", "#efb118", "#3ca951", "#ff725c", "#a463f2"};
+constexpr double kWidth_px = 920, kHeight_px = 280, kLeft_px = 70, kTop_px = 34, kFoot_px = 40;
+constexpr const char* kGrid = "stroke='currentColor' stroke-opacity='0.2'";
 
 std::string Line(double x0, double y0, double x1, double y1, const std::string& style) {
   return fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' {}/>\n", x0, y0, x1, y1, style);
@@ -21,8 +20,10 @@ std::string Text(double x, double y, const std::string& anchor, const std::strin
 }
 
 std::string Open(const std::string& title, const std::string& unit) {
-  return fmt::format("<svg viewBox='0 0 {0} {1}' width='{0}' role='img' aria-label='{2}'>\n", kWidth_px, kHeight_px,
-                     title) +
+  return fmt::format(
+             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' role='img' aria-label='{2}' "
+             "font-family='system-ui, sans-serif' font-size='12' fill='currentColor'>\n",
+             kWidth_px, kHeight_px, title) +
          Text(kLeft_px, 18, "start", fmt::format("<tspan font-weight='600'>{}</tspan> [{}]", title, unit));
 }
 
@@ -60,25 +61,113 @@ std::string Box(const Series& series, double x, const Linear& y) {
          Line(x - 15, y(Quantile(series.values, 0.5)), x + 15, y(Quantile(series.values, 0.5)), stroke);
 }
 
-std::string Dots(const Series& series, const Linear& y) {
+std::string Dot(double x, double y, const std::string& colour) {
+  return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2' fill='{}' fill-opacity='0.75'/>\n", x, y, colour);
+}
+
+std::string Dashes(double x0, double x1, double y, const std::string& colour) {
+  return Line(x0, y, x1, y, fmt::format("stroke='{}' stroke-width='2' stroke-dasharray='7 4'", colour));
+}
+
+std::string Dots(const Series& series, double width, const Linear& y) {
   std::string svg;
-  const double width = kWidth_px - kLeft_px - kBoxes_px;
   for (std::size_t k = 0; k < series.values.size(); ++k)
-    svg += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2' fill='{}' fill-opacity='0.75'/>\n",
-                       kLeft_px + width * (static_cast<double>(k) + 0.5) / static_cast<double>(series.values.size()),
-                       y(series.values[k]), series.colour);
-  return svg + Line(kLeft_px, y(series.expected), kLeft_px + width, y(series.expected),
-                    fmt::format("stroke='{}' stroke-width='2' stroke-dasharray='7 4'", series.colour));
+    svg += Dot(kLeft_px + width * (static_cast<double>(k) + 0.5) / static_cast<double>(series.values.size()),
+               y(series.values[k]), series.colour);
+  return svg + Dashes(kLeft_px, kLeft_px + width, y(series.expected), series.colour);
 }
 
 std::string Grid(const Linear& y) {
   std::string svg;
   for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const double at = y(part * y.top);
-    svg += Line(kLeft_px, at, kWidth_px, at, "class='grid'") +
+    svg += Line(kLeft_px, at, kWidth_px, at, kGrid) +
            Text(kLeft_px - 6, at + 4, "end", fmt::format("{:.3g}", part * y.top));
   }
   return svg;
+}
+
+// Names in their colours, one after another at the top.
+class Legend {
+ public:
+  void Add(const std::string& name, const std::string& colour) {
+    svg_ += fmt::format("<circle cx='{:.1f}' cy='14' r='5' fill='{}'/>", x_, colour) + Text(x_ + 10, 18, "start", name);
+    x_ += 40 + 6.5 * static_cast<double>(name.size());
+  }
+  [[nodiscard]] const std::string& svg() const { return svg_; }
+
+ private:
+  double x_ = kLeft_px + 290;
+  std::string svg_;
+};
+
+struct Logarithmic {
+  double bottom = 0, top = 1;  // powers of ten
+  double operator()(double value) const {
+    const double part = (std::log10(std::max(value, 1e-300)) - bottom) / (top - bottom);
+    return kHeight_px - kFoot_px - std::clamp(part, 0.0, 1.0) * (kHeight_px - kFoot_px - kTop_px);
+  }
+};
+
+// Smallest and largest positive value; a few strays near zero do not count.
+std::pair<double, double> RangeOf(const std::vector<Strips>& strips) {
+  double smallest = 1e300, largest = 1e-300;
+  const auto add = [&](double value) {
+    if (value > 0) smallest = std::min(smallest, value), largest = std::max(largest, value);
+  };
+  for (const Strips& one : strips) {
+    for (const double value : one.expected) add(value);
+    for (const auto& values : one.values)
+      for (const double value : values) add(value);
+  }
+  return {std::min(std::max(smallest, largest * 1e-4), largest), largest};
+}
+
+Logarithmic LogarithmicOf(double smallest, double largest) {
+  Logarithmic y{std::floor(std::log10(smallest) * 2) / 2, std::ceil(std::log10(largest) * 2) / 2};
+  if (!(y.top > y.bottom)) y.top = y.bottom + 1;
+  return y;
+}
+
+std::string Grid(const Logarithmic& y) {
+  std::string svg;
+  for (double decade = std::floor(y.bottom); decade <= y.top; ++decade)
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const double value = step * std::pow(10.0, decade);
+      if (std::log10(value) < y.bottom - 1e-9 || std::log10(value) > y.top + 1e-9) continue;
+      svg += Line(kLeft_px, y(value), kWidth_px, y(value), kGrid) +
+             Text(kLeft_px - 6, y(value) + 4, "end", fmt::format("{:g}", value));
+    }
+  return svg;
+}
+
+// One group of one series: its dots spread over `width` about x, its dash across.
+template <typename Axis>
+std::string Strip(const std::vector<double>& values, double expected, double x, double width, const std::string& colour,
+                  const Axis& y) {
+  std::string svg;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    svg += Dot(x + width * ((static_cast<double>(k) + 0.5) / static_cast<double>(values.size()) - 0.5), y(values[k]),
+               colour);
+  return expected > 0 ? svg + Dashes(x - 0.6 * width, x + 0.6 * width, y(expected), colour) : svg;
+}
+
+template <typename Axis>
+std::string StripsOn(const Axis& y, const std::vector<GroupName>& groups, const std::vector<Strips>& strips) {
+  const double group_px = (kWidth_px - kLeft_px) / static_cast<double>(std::max<std::size_t>(1, groups.size()));
+  const double strip_px = 0.8 * group_px / static_cast<double>(std::max<std::size_t>(1, strips.size()));
+  std::string svg = Grid(y);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const double left = kLeft_px + group_px * (static_cast<double>(g) + 0.1);
+    for (std::size_t k = 0; k < strips.size(); ++k)
+      svg += Strip(strips[k].values[g], strips[k].expected[g], left + strip_px * (static_cast<double>(k) + 0.5),
+                   0.7 * strip_px, strips[k].colour, y);
+    svg += Text(left + 0.4 * group_px, kHeight_px - 20, "middle", groups[g].first) +
+           Text(left + 0.4 * group_px, kHeight_px - 5, "middle", groups[g].second);
+  }
+  Legend legend;
+  for (const Strips& one : strips) legend.Add(one.name, one.colour);
+  return svg + legend.svg();
 }
 
 }  // namespace
@@ -91,50 +180,28 @@ std::string PlotSeries(const std::string& title, const std::string& unit, const 
     sets = one.values.size();
   }
   const Linear y{RoundUp(largest)};
+  const double boxes_px = 30 + 50 * static_cast<double>(series.size());
+  const double width = kWidth_px - kLeft_px - boxes_px;
   std::string svg = Open(title, unit) + Grid(y);
-  double x = kWidth_px - kBoxes_px + 40, name_x = kLeft_px + 330;
+  Legend legend;
+  double x = kWidth_px - boxes_px + 40;
   for (const Series& one : series) {
-    svg += Dots(one, y) + Box(one, x, y);
-    svg += fmt::format("<circle cx='{:.1f}' cy='14' r='5' fill='{}'/>", name_x, one.colour) +
-           Text(name_x + 10, 18, "start", one.name);
-    x += 50, name_x += 200;
+    svg += Dots(one, width, y) + Box(one, x, y);
+    legend.Add(one.name, one.colour);
+    x += 50;
   }
-  svg += Text(kLeft_px, kHeight_px - 12, "start", "data set 1") +
-         Text(kWidth_px - kBoxes_px, kHeight_px - 12, "end", fmt::format("data set {}", sets));
+  svg += legend.svg() + Text(kLeft_px, kHeight_px - 12, "start", "data set 1") +
+         Text(kWidth_px - boxes_px, kHeight_px - 12, "end", fmt::format("data set {}", sets));
   return svg + "</svg>\n";
 }
 
-std::string PlotBars(const std::string& title, const std::string& unit, const std::vector<std::string>& groups,
-                     const std::vector<Bars>& bars) {
-  double largest = 1e-12, smallest = 1e12;
-  for (const Bars& one : bars)
-    for (const double value : one.values)
-      if (value > 0) largest = std::max(largest, value), smallest = std::min(smallest, value);
-  const double top = std::ceil(std::log10(largest)), bottom = std::floor(std::log10(smallest));
-  const double decades = std::max(1.0, top - bottom);
-  const auto y = [&](double value) {
-    return kHeight_px - kFoot_px - (std::log10(value) - bottom) / decades * (kHeight_px - kFoot_px - kTop_px);
-  };
-  std::string svg = Open(title, unit);
-  for (double decade = bottom; decade <= top; ++decade)
-    svg += Line(kLeft_px, y(std::pow(10, decade)), kWidth_px, y(std::pow(10, decade)), "class='grid'") +
-           Text(kLeft_px - 6, y(std::pow(10, decade)) + 4, "end", fmt::format("{:g}", std::pow(10, decade)));
-  const double group_px = (kWidth_px - kLeft_px) / static_cast<double>(std::max<std::size_t>(1, groups.size()));
-  const double bar_px = 0.8 * group_px / static_cast<double>(std::max<std::size_t>(1, bars.size()));
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const double x = kLeft_px + group_px * (static_cast<double>(g) + 0.1);
-    for (std::size_t k = 0; k < bars.size(); ++k)
-      if (const double value = bars[k].values[g]; value > 0)
-        svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='{}'/>\n",
-                           x + bar_px * static_cast<double>(k), y(value), 0.92 * bar_px,
-                           kHeight_px - kFoot_px - y(value), kColours[k % kColours.size()]);
-    svg += Text(x + 0.4 * group_px, kHeight_px - 12, "middle", groups[g]);
-  }
-  for (std::size_t k = 0; k < bars.size(); ++k)
-    svg += fmt::format("<rect x='{0:.1f}' y='9' width='10' height='10' fill='{1}'/>",
-                       kLeft_px + 330 + 150.0 * static_cast<double>(k), kColours[k % kColours.size()]) +
-           Text(kLeft_px + 345 + 150.0 * static_cast<double>(k), 18, "start", bars[k].name);
-  return svg + "</svg>\n";
+std::string PlotStrips(const std::string& title, const std::string& unit, const std::vector<GroupName>& groups,
+                       const std::vector<Strips>& strips, Scale scale) {
+  const auto [smallest, largest] = RangeOf(strips);
+  return Open(title, unit) +
+         (scale == Scale::kLinear ? StripsOn(Linear{RoundUp(largest)}, groups, strips)
+                                  : StripsOn(LogarithmicOf(smallest, largest), groups, strips)) +
+         "</svg>\n";
 }
 
 }  // namespace rigcal::paper

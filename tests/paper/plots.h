@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rigcal::paper {
@@ -17,13 +18,20 @@ struct Series {
 [[nodiscard]] std::string PlotSeries(const std::string& title, const std::string& unit,
                                      const std::vector<Series>& series);
 
-struct Bars {
+struct Strips {
   std::string name;
-  std::vector<double> values;  // one per group
+  std::string colour;
+  std::vector<std::vector<double>> values;  // per group
+  std::vector<double> expected;             // per group; 0: none
 };
+// Two lines under a group.
+using GroupName = std::pair<std::string, std::string>;
 
-// Bars side by side per group on a logarithmic axis; values <= 0 are left out.
-[[nodiscard]] std::string PlotBars(const std::string& title, const std::string& unit,
-                                   const std::vector<std::string>& groups, const std::vector<Bars>& bars);
+enum class Scale { kLinear, kLogarithmic };
+
+// Per group one column of dots for each of the strips, a dash at what is expected.
+[[nodiscard]] std::string PlotStrips(const std::string& title, const std::string& unit,
+                                     const std::vector<GroupName>& groups, const std::vector<Strips>& strips,
+                                     Scale scale);
 
 }  // namespace rigcal::paper
