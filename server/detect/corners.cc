@@ -3,59 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "server/detect/board_search.h"
+#include "server/detect/part_search.h"
 
 namespace rigcal::detect {
 namespace {
 
 using Points = std::vector<cv::Point2f>;
 
-constexpr int kSmallSide_px = 1400;
 constexpr double kMoveRatio = 0.2, kMoveMin_px = 2;  // by the refinement, of the distance to the nearest corner
-constexpr double kMarginSquares = 2.5;
-constexpr double kSquare_px = 24;  // side of a square in the picture that is searched thoroughly
 // Half window of the refinement as a part of the distance to the nearest corner: of 0.16 ... 0.34 the one that stays
 // clear of the next corners on tilted boards; on real pairs the joint rms is 0.196 px, against 0.284 px for the
 // sector-based search.
 constexpr double kWindowRatio = 0.25;
 constexpr int kWindowMinPx = 2, kWindowMaxPx = 20;
-
-cv::Mat Scaled(const cv::Mat& image, double scale) {
-  if (scale == 1.0) return image;
-  cv::Mat scaled;
-  cv::resize(image, scaled, {}, scale, scale, scale < 1.0 ? cv::INTER_AREA : cv::INTER_LINEAR);
-  return scaled;
-}
-
-// Pixel centres are at whole numbers, so a scale moves them by half a pixel of either grid.
-void Unscale(Points& points, double scale) {
-  for (cv::Point2f& point : points) {
-    point.x = static_cast<float>((point.x + 0.5) / scale - 0.5);
-    point.y = static_cast<float>((point.y + 0.5) / scale - 0.5);
-  }
-}
-
-bool SearchByQuads(const cv::Mat& image, const cv::Size& counts, Points& points) {
-  return cv::findChessboardCorners(image, counts, points, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
-}
-
-bool SearchBySectors(const cv::Mat& image, const cv::Size& counts, Points& points) {
-  return cv::findChessboardCornersSB(image, counts, points, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE);
-}
-
-bool SearchAt(const cv::Mat& image, const std::vector<double>& scales, const cv::Size& counts, Points& points) {
-  for (const auto search : {SearchByQuads, SearchBySectors}) {
-    for (const double scale : scales) {
-      if (!search(Scaled(image, scale), counts, points)) continue;
-      Unscale(points, scale);
-      return true;
-    }
-  }
-  return false;
-}
 
 double NearestNeighbourPx(const Points& points, const cv::Size& counts, int corner_idx) {
   const int row = corner_idx / counts.width, col = corner_idx % counts.width;
@@ -70,26 +33,6 @@ double NearestNeighbourPx(const Points& points, const cv::Size& counts, int corn
   consider(row, col - 1);
   consider(row, col + 1);
   return nearest;
-}
-
-// What a whole board may cover of which a part was seen.
-cv::Rect Around(const GridPart& part, const cv::Mat& image, const cv::Size& counts) {
-  const double whole_px = (std::max(counts.width, counts.height) + 1) * part.square_px;
-  const Eigen::Array2d seen_px = part.max_px - part.min_px;
-  const Eigen::Array2d margin_px = (whole_px - seen_px).max(kMarginSquares * part.square_px);
-  const Eigen::Array2i first = (part.min_px.array() - margin_px).cast<int>();
-  const Eigen::Array2i last = (part.max_px.array() + margin_px).cast<int>();
-  return cv::Rect(first.x(), first.y(), last.x() - first.x(), last.y() - first.y()) &
-         cv::Rect(0, 0, image.cols, image.rows);
-}
-
-bool SearchPart(const cv::Mat& image, const GridPart& part, const cv::Size& counts, Points& points) {
-  const cv::Rect around = Around(part, image, counts);
-  std::vector<double> scales = {1.0, 2.0};
-  if (std::max(image.cols, image.rows) > kSmallSide_px) scales = {std::min(2.0, kSquare_px / part.square_px)};
-  if (!SearchAt(image(around), scales, counts, points)) return false;
-  for (cv::Point2f& point : points) point += cv::Point2f(around.tl());
-  return true;
 }
 
 GridPart GridOf(const Points& points, const cv::Size& counts) {
@@ -107,13 +50,13 @@ cv::Mat Wrapped(const GreyImage& image) {
   return {image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data())};
 }
 
-// The quick search first. Where it saw a part of a board only, the thorough ones around that part; they would take a
-// part of a larger pattern for a board.
+// The quick search first; where it saw a part of a board only, the thorough one around that part. That one would take a
+// piece of a larger pattern for a board.
 std::vector<Eigen::Vector2d> Search(const GreyImage& image, const cv::Size& counts) {
   const BoardSearch quick = SearchBoard(image, counts.width, counts.height);
   if (!quick.corners_px.empty() || quick.parts.empty()) return quick.corners_px;
-  Points points;
-  if (!SearchPart(Wrapped(image), quick.parts.front(), counts, points)) return {};
+  const Points points = SearchAround(Wrapped(image), quick.parts.front(), counts);
+  if (points.empty()) return {};
   const GridPart grid = GridOf(points, counts);
   if (std::any_of(quick.others.begin(), quick.others.end(),
                   [&](const GridPart& other) { return IsPartOf(grid, other); }))

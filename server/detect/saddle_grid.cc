@@ -1,26 +1,17 @@
 #include "server/detect/saddle_grid.h"
 
 #include <algorithm>
-#include <array>
 #include <climits>
 #include <cmath>
+
+#include "server/detect/grid_prediction.h"
+#include "server/detect/grid_strays.h"
 
 namespace rigcal::detect {
 namespace {
 
-constexpr std::array<GridPlace, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 constexpr float kSearchRatio = 0.22f, kSearchMin_px = 1.5f, kSearchMax_px = 8;  // around a predicted place
-constexpr float kOffMax = 0.3f;          // from a predicted place, in parts of the spacing
-constexpr float kContrastRatio = 0.25f;  // of the neighbours'
-
-GridPlace Stepped(const GridPlace& from, std::size_t way, int times = 1) {
-  return {from.first + times * kSteps[way % 4].first, from.second + times * kSteps[way % 4].second};
-}
-
-const GridNode* At(const SaddleGrid& grid, const GridPlace& place) {
-  const auto found = grid.find(place);
-  return found == grid.end() ? nullptr : &found->second;
-}
+constexpr float kContrastRatio = 0.25f;                                         // of the neighbours'
 
 // Everything that hangs together with `seed`.
 SaddleGrid GridFrom(const std::vector<Saddle>& saddles, const std::vector<Neighbours>& neighbours, std::size_t seed,
@@ -46,33 +37,6 @@ SaddleGrid GridFrom(const std::vector<Saddle>& saddles, const std::vector<Neighb
   return grid;
 }
 
-// The mean of what the lines and the cells next to the place say.
-struct Prediction {
-  Eigen::Vector2f sum_px = Eigen::Vector2f::Zero();
-  float count = 0;
-  void Add(const Eigen::Vector2f& at_px) { sum_px += at_px, count += 1; }
-};
-
-std::optional<Eigen::Vector2f> Predicted(const SaddleGrid& grid, const GridPlace& place) {
-  Prediction between, beyond;
-  for (std::size_t way = 0; way < 4; ++way) {
-    const GridNode *a = At(grid, Stepped(place, way)), *b = At(grid, Stepped(place, way, 2));
-    const GridNode* c = At(grid, Stepped(place, way, 3));
-    const GridNode* opposite = At(grid, Stepped(place, way + 2));
-    const GridNode *side = At(grid, Stepped(place, way + 1)), *corner = At(grid, Stepped(Stepped(place, way), way + 1));
-    if (a && opposite) between.Add((a->saddle.at_px + opposite->saddle.at_px) / 2);
-    if (a && side && corner) beyond.Add(a->saddle.at_px + side->saddle.at_px - corner->saddle.at_px);
-    if (!a || !b) continue;
-    const Eigen::Vector2f step = a->saddle.at_px - b->saddle.at_px;
-    float shrink = 1;  // of the steps from corner to corner, by perspective
-    if (c) shrink = std::clamp(step.norm() / (b->saddle.at_px - c->saddle.at_px).norm(), 0.7f, 1.4f);
-    beyond.Add(a->saddle.at_px + shrink * step);
-  }
-  if (between.count > 0) return between.sum_px / between.count;
-  if (beyond.count > 0) return beyond.sum_px / beyond.count;
-  return std::nullopt;
-}
-
 // How the saddle point would be turned in the grid; nothing if it is of the wrong kind for its place.
 std::optional<std::size_t> TurnOf(const GreyLevel& level, const SaddleGrid& grid, const GridPlace& place,
                                   const Saddle& saddle) {
@@ -90,14 +54,6 @@ std::optional<std::size_t> TurnOf(const GreyLevel& level, const SaddleGrid& grid
   return std::nullopt;
 }
 
-float Spacing_px(const SaddleGrid& grid, const GridPlace& place, const Eigen::Vector2f& at_px) {
-  float nearest = HUGE_VALF;
-  for (std::size_t way = 0; way < 4; ++way)
-    if (const GridNode* node = At(grid, Stepped(place, way)))
-      nearest = std::min(nearest, (node->saddle.at_px - at_px).norm());
-  return nearest;
-}
-
 std::optional<GridNode> Grown(const GreyLevel& level, const SaddleGrid& grid, const GridPlace& place) {
   const auto at_px = Predicted(grid, place);
   if (!at_px || !(at_px->x() >= 0 && at_px->y() >= 0 && at_px->x() <= static_cast<float>(level.width_px - 1) &&
@@ -111,25 +67,6 @@ std::optional<GridNode> Grown(const GreyLevel& level, const SaddleGrid& grid, co
   const auto turn = TurnOf(level, grid, place, *saddle);
   if (!turn) return std::nullopt;
   return GridNode{*saddle, *turn};
-}
-
-// How far a node is from where the others say, in parts of the spacing there; infinite if they say nothing.
-float Off(const SaddleGrid& grid, const GridPlace& place, const GridNode& node) {
-  const auto told = Predicted(grid, place);
-  return told ? (*told - node.saddle.at_px).norm() / Spacing_px(grid, place, *told) : HUGE_VALF;
-}
-
-// Takes out the node that is the furthest from where the others say. False if all are near enough.
-bool DropWorst(SaddleGrid& grid) {
-  auto worst = grid.end();
-  float worst_off = kOffMax;
-  for (auto node = grid.begin(); node != grid.end(); ++node) {
-    const float off = Off(grid, node->first, node->second);
-    if (off > worst_off) worst = node, worst_off = off;
-  }
-  if (worst == grid.end()) return false;
-  grid.erase(worst);
-  return true;
 }
 
 // Is there a node at the next place that way, and the edge to it?
@@ -165,7 +102,7 @@ std::vector<SaddleGrid> GridsOf(const std::vector<Saddle>& saddles, const std::v
 }
 
 void Grow(const GreyLevel& level, std::size_t count_max, SaddleGrid& grid) {
-  while (DropWorst(grid)) continue;
+  DropStrays(grid);
   std::vector<GridPlace> open;
   for (const auto& [place, node] : grid) open.push_back(place);
   for (std::size_t next = 0; next < open.size() && grid.size() < count_max; ++next)

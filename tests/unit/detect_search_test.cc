@@ -5,6 +5,7 @@
 
 #include "server/detect/board_search.h"
 #include "server/detect/corners.h"
+#include "server/detect/part_search.h"
 #include "server/detect/saddle_points.h"
 #include "tests/unit/detect_rendering.h"
 
@@ -108,6 +109,22 @@ TEST(SearchBoard, ACoveredCornerLeavesAPart) {
   ASSERT_FALSE(search.parts.empty());
   EXPECT_GE(search.parts.front().corners, 45u);
   EXPECT_NEAR(search.parts.front().square_px, 29, 3);
+}
+
+TEST(SearchAround, FindsTheWholeBoardButNoPieceOfALargerOne) {
+  const cv::Mat picture = Photo(9, 6, 30, 0.2);
+  const std::vector<Eigen::Vector2d> whole = SearchBoard(ImageOf(picture), 9, 6).corners_px;
+  ASSERT_EQ(whole.size(), 54u);
+  GridPart part{whole[10], whole[10], 30, 24};  // columns 1 to 6 of rows 1 to 4
+  for (int row = 1; row <= 4; ++row)
+    for (int col = 1; col <= 6; ++col) {
+      const Eigen::Vector2d& corner = whole[static_cast<std::size_t>(row * 9 + col)];
+      part.min_px = part.min_px.cwiseMin(corner), part.max_px = part.max_px.cwiseMax(corner);
+    }
+  EXPECT_EQ(SearchAround(picture, part, {9, 6}).size(), 54u);
+  EXPECT_TRUE(SearchAround(picture, part, {8, 6}).empty());
+  EXPECT_TRUE(SearchAround(picture, part, {6, 4}).empty());
+  EXPECT_TRUE(SearchAround(picture, part, {4, 3}).empty());
 }
 
 TEST(SearchBoard, NeitherThreadsNorTheMemorysPlaceMatter) {
