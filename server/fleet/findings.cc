@@ -31,6 +31,26 @@ const Diagnosis* DiagnosisOf(const GraphSolution& solution, const std::string& s
   return nullptr;
 }
 
+// Independent edges of known information.
+bool CostIsChiSquare(const std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  return std::all_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    if (edge.state != EdgeState::kGood) return true;
+    return edge.uncertainty.dof == 0 && (edge.session.empty() || sessions.insert(edge.session).second);
+  });
+}
+
+std::optional<Finding> FindWorstLoop(const Cycles& cycles) {
+  if (cycles.failing < 1 || cycles.worst.empty() || !cycles.worst.front().fails()) return std::nullopt;
+  const CycleResidual& worst = cycles.worst.front();
+  std::vector<std::string> names;
+  for (const SensorId& sensor : worst.sensors) names.push_back(sensor.str());
+  std::string why = "the loop of " + List(names) + " does not close: it is off by " + OffText(worst.e) + ", " +
+                    Number(worst.t_squared / worst.limit, "times") + " the limit of its test";
+  if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
+  return Finding{why, "Repeat the sessions of its edges, the one first that the failing loops have in common"};
+}
+
 }  // namespace
 
 std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
@@ -168,10 +188,7 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
 std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                      const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
-  std::set<SessionId> sessions;
-  for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kGood && !edge.session.empty() && !sessions.insert(edge.session).second)
-      return std::nullopt;
+  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles);
   const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
   if (solution.cost <= limit) return std::nullopt;
   return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) +

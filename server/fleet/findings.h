@@ -24,8 +24,9 @@ struct Finding {
 // test.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);
-// The weighted cost is beyond chi-square for its degrees of freedom: a long loop that does not close shows here even
-// where each edge alone hides it. Not where edges of one session share captures, as they are not independent.
+// Loops that do not close, also where each edge alone hides it. Where every information is known and no session is
+// shared: the weighted cost is beyond chi-square for its degrees of freedom. Where information was estimated, or captures
+// are shared, the cost is no chi-square: then the loop that is furthest beyond the limit of its own test.
 [[nodiscard]] std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                    const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges);

@@ -4,42 +4,13 @@
 #include <cstdio>
 #include <set>
 
+#include "server/fleet/assess.h"
+#include "server/graph/cycles.h"
 #include "server/graph/suspects.h"
-#include "tests/unit/graph_random.h"
+#include "tests/bench/fault_graphs.h"
 
 namespace rigcal::graph {
 namespace {
-
-constexpr double kRadiansPerDegree = 1.0 / 57.29577951308232;
-constexpr double kSigma_m = 0.005, kSigma_rad = 0.3 * kRadiansPerDegree;
-constexpr double kGross_m = 0.1, kGross_rad = 10.0 * kRadiansPerDegree;
-constexpr std::size_t kSensors = 12, kEdges = 59;
-
-// 59 of the 66 pairs of 12 sensors within 1.5 m.
-RandomRig MakeGraph(std::mt19937& random) {
-  RandomRig rig = MakeRig(kSensors, 0, static_cast<unsigned>(random()));
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t a = 0; a < kSensors; ++a)
-    for (std::size_t b = a + 1; b < kSensors; ++b) pairs.emplace_back(a, b);
-  for (std::size_t k = pairs.size() - 1; k > 0; --k) std::swap(pairs[k], pairs[random() % (k + 1)]);
-  Matrix6d Omega = Matrix6d::Zero();
-  Omega.diagonal() << Eigen::Vector3d::Constant(1 / (kSigma_m * kSigma_m)),
-      Eigen::Vector3d::Constant(1 / (kSigma_rad * kSigma_rad));
-  for (std::size_t k = 0; k < kEdges; ++k) {
-    const auto [a, b] = pairs[k];
-    const Se3 T = rig.truth[a].Inverse() * rig.truth[b] * Se3::Exp(DrawError(random, Omega));
-    rig.graph.edges.push_back(MakeEdge(k, a, b, T.Normalized(), Omega));
-  }
-  return rig;
-}
-
-// 10 cm and 10 degrees, in any direction.
-Vector6d GrossError(std::mt19937& random) {
-  Vector6d error = RandomVector(random, 1.0, 1.0);
-  error.head<3>() *= kGross_m / error.head<3>().norm();
-  error.tail<3>() *= kGross_rad / error.tail<3>().norm();
-  return error;
-}
 
 // Edges that are blamed: suspects, and the smaller group where a sensor has two poses.
 std::set<EdgeId> Blamed(const Suspects& suspects) {
@@ -59,7 +30,7 @@ double SquaredErrorWithout(const RandomRig& rig, const std::set<EdgeId>& out) {
   options.marginals = false;
   const GraphSolution solution = Solve(graph, options);
   double sum = 0.0;
-  for (std::size_t v = 1; v < kSensors; ++v)
+  for (std::size_t v = 1; v < kFaultSensors; ++v)
     sum += (rig.truth[v].Inverse() * solution.poses[v].T_ref_sensor).Log().squaredNorm();
   return sum;
 }
@@ -80,32 +51,15 @@ struct Faults {
   }
 };
 
-Faults MeasureIndependent(int count, int seeds) {
+Faults MeasureIndependent(int count, int seeds, const Information& information = {}) {
   Faults faults;
   for (int seed = 0; seed < seeds; ++seed) {
     std::mt19937 random(static_cast<unsigned>(1000 * count + seed));
-    RandomRig rig = MakeGraph(random);
-    std::set<EdgeId> wrong;
-    while (wrong.size() < static_cast<std::size_t>(count)) {
-      GraphEdge& edge = rig.graph.edges[random() % kEdges];
-      if (wrong.insert(edge.id).second) edge.T_a_b = edge.T_a_b * Se3::Exp(GrossError(random));
-    }
+    RandomRig rig = MakeFaultGraph(random, information).rig;
+    const std::set<EdgeId> wrong = SpoilEdges(rig, static_cast<std::size_t>(count), random);
     faults.Count(rig, wrong);
   }
   return faults;
-}
-
-// `count` edges of one sensor saw it elsewhere; fewer where that leaves fewer than two others.
-std::set<EdgeId> MoveSensor(RandomRig& rig, std::size_t sensor, std::size_t count, std::mt19937& random) {
-  const Se3 T_moved = Se3::Exp(GrossError(random));
-  std::set<EdgeId> wrong;
-  for (GraphEdge& edge : rig.graph.edges) {
-    if (wrong.size() == count) break;
-    if (edge.frame_a != Name(sensor) && edge.frame_b != Name(sensor)) continue;
-    edge.T_a_b = edge.frame_b == Name(sensor) ? edge.T_a_b * T_moved : T_moved.Inverse() * edge.T_a_b;
-    wrong.insert(edge.id);
-  }
-  return wrong;
 }
 
 std::size_t DegreeOf(const RandomRig& rig, std::size_t sensor) {
@@ -119,8 +73,8 @@ Faults MeasureConsistent(std::size_t count, int seeds) {
   Faults faults;
   for (int seed = 0; seed < seeds; ++seed) {
     std::mt19937 random(static_cast<unsigned>(50000 * count) + static_cast<unsigned>(seed));
-    RandomRig rig = MakeGraph(random);
-    const std::set<EdgeId> wrong = MoveSensor(rig, random() % kSensors, count, random);
+    RandomRig rig = MakeFaultGraph(random, {}).rig;
+    const std::set<EdgeId> wrong = MoveSensor(rig, random() % kFaultSensors, count, random);
     faults.Count(rig, wrong);
   }
   return faults;
@@ -132,8 +86,8 @@ double MeasureTwoPoses(int seeds) {
   int right = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     std::mt19937 random(900000 + static_cast<unsigned>(seed));
-    RandomRig rig = MakeGraph(random);
-    const std::size_t sensor = random() % kSensors, degree = DegreeOf(rig, sensor), half = (degree + 1) / 2;
+    RandomRig rig = MakeFaultGraph(random, {}).rig;
+    const std::size_t sensor = random() % kFaultSensors, degree = DegreeOf(rig, sensor), half = (degree + 1) / 2;
     const std::set<EdgeId> wrong = MoveSensor(rig, sensor, half + random() % (degree - 1 - half), random);
     const Suspects suspects = FindSuspects(rig.graph, Solve(rig.graph));
     if (suspects.two_poses.size() != 1 || suspects.two_poses[0].sensor != Name(sensor)) continue;
@@ -150,8 +104,73 @@ void Add(Faults& sum, const Faults& part) {
   sum.squared += part.squared, sum.squared_oracle += part.squared_oracle;
 }
 
+double Share(int part, int whole) { return static_cast<double>(part) / std::max(whole, 1); }
+
+// The values behind a verdict, as a store would hold them.
+std::vector<Edge> EdgesOf(const Graph& graph) {
+  std::vector<Edge> edges;
+  for (const GraphEdge& from : graph.edges) {
+    Edge edge;
+    edge.id = from.id, edge.session = from.session;
+    edge.frame_a = from.frame_a, edge.frame_b = from.frame_b;
+    edge.T_a_b = from.T_a_b;
+    edge.state = EdgeState::kGood;
+    edge.uncertainty = FromInformation(from.Omega, UncertaintySource::kJackknife, from.dof);
+    edges.push_back(edge);
+  }
+  return edges;
+}
+
+struct Judgement {
+  bool fails = false, loop_fails = false;
+};
+
+Judgement Judge(const FaultGraph& made) {
+  GraphSolution solution = Solve(made.rig.graph);
+  TakeHonest(made.rig.graph, JackknifeGraph(made.rig.graph, solution, made.blocks), solution);
+  solution.suspects = FindSuspects(made.rig.graph, solution);
+  solution.cycles = JudgeCycles(made.rig.graph, made.blocks);
+  return {fleet::Assess(EdgesOf(made.rig.graph), solution).level == VerdictLevel::kFail, solution.cycles.failing > 0};
+}
+
+struct Verdicts {
+  double fails = 0.0, loops_fail = 0.0;  // shares of graphs
+};
+
+Verdicts MeasureVerdicts(int count, int seeds, const Information& information) {
+  int fails = 0, loops_fail = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(700000 + 1000 * count + seed));
+    FaultGraph made = MakeFaultGraph(random, information);
+    (void)SpoilEdges(made.rig, static_cast<std::size_t>(count), random);
+    const Judgement judgement = Judge(made);
+    fails += judgement.fails ? 1 : 0;
+    loops_fail += judgement.loop_fails ? 1 : 0;
+  }
+  return {Share(fails, seeds), Share(loops_fail, seeds)};
+}
+
+constexpr int kSeeds = 300;
+
+void PrintEstimated(const std::string& name, const Information& information) {
+  Faults faults;
+  for (const int count : {1, 10}) Add(faults, MeasureIndependent(count, kSeeds, information));
+  const Faults none = MeasureIndependent(0, kSeeds, information);
+  const auto print = [&](const char* figure, double value) {
+    std::printf(", \"%s_%d_%s\": %.6f", name.c_str(), information.blocks, figure, value);
+  };
+  print("recall", Share(faults.found, faults.bad));
+  print("false_alarms", Share(faults.false_alarms, faults.good));
+  print("false_alarms_without_faults", Share(none.false_alarms, none.good));
+  print("rms_ratio", std::sqrt(faults.squared / faults.squared_oracle));
+  const Verdicts one = MeasureVerdicts(1, kSeeds, information), zero = MeasureVerdicts(0, kSeeds, information);
+  print("verdict_of_one", one.fails);
+  print("loops_of_one", one.loops_fail);
+  print("verdict_of_none", zero.fails);
+  print("loops_of_none", zero.loops_fail);
+}
+
 void Run() {
-  constexpr int kSeeds = 300;
   Faults independent, consistent, none;
   double worst_rms_ratio = 0.0;
   for (int count = 1; count <= 10; ++count) {
@@ -164,12 +183,18 @@ void Run() {
   std::printf(
       "{\"graphs\": %d, \"recall\": %.6f, \"false_alarms\": %.6f, \"rms_ratio\": %.6f, \"rms_ratio_worst\": %.6f, "
       "\"false_alarms_without_faults\": %.6f, \"consistent_recall\": %.6f, \"consistent_false_alarms\": %.6f, "
-      "\"two_poses\": %.6f}\n",
+      "\"two_poses\": %.6f",
       10 * kSeeds, static_cast<double>(independent.found) / independent.bad,
       static_cast<double>(independent.false_alarms) / independent.good,
       std::sqrt(independent.squared / independent.squared_oracle), worst_rms_ratio,
       static_cast<double>(none.false_alarms) / none.good, static_cast<double>(consistent.found) / consistent.bad,
       static_cast<double>(consistent.false_alarms) / consistent.good, MeasureTwoPoses(kSeeds));
+  for (const int blocks : {13, 20, 40}) {
+    PrintEstimated("sessions", {Source::kSessions, blocks});
+    PrintEstimated("scatter", {Source::kScatter, blocks});
+    PrintEstimated("rig", {Source::kRig, blocks});
+  }
+  std::printf("}\n");
 }
 
 }  // namespace

@@ -83,6 +83,36 @@ TEST(Trust, EdgesOfOneSessionAreNotIndependentSoTheirCostIsNoVerdict) {
   EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);
 }
 
+// e^T C^-1 e with C from 40 captures is larger than chi-square allows, and the more so the more edges there are.
+TEST(Trust, EstimatedInformationMakesTheCostNoChiSquare) {
+  EXPECT_EQ(Triangle(0, 0.0035).Judge().level, VerdictLevel::kFail);
+  EXPECT_EQ(Triangle(39, 0.0035).Judge().level, VerdictLevel::kPass);
+}
+
+CycleResidual Loop(double t_squared, double limit) {
+  CycleResidual loop;
+  for (const char* name : {"left", "right", "top"}) loop.sensors.emplace_back(name);
+  loop.e << 0.006, 0.008, 0.0, 0.0, 0.0, 0.0349065850398866;
+  loop.tested = true;
+  loop.t_squared = t_squared, loop.limit = limit;
+  return loop;
+}
+
+TEST(Trust, AnOpenLoopOfEstimatedEdgesIsNamedByItsOwnTest) {
+  Chain chain = Triangle(39, 0.0005);
+  chain.solution.cycles.judged = true;
+  chain.solution.cycles.worst = {Loop(80.0, 40.0)};
+  chain.solution.cycles.failing = 1;
+  const Verdict verdict = chain.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_EQ(verdict.why,
+            "The loop of left, right and top does not close: it is off by 10 mm and 2 deg, 2 times the limit of its "
+            "test.");
+  chain.solution.cycles.worst = {Loop(39.0, 40.0)};
+  chain.solution.cycles.failing = 0;
+  EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);
+}
+
 TEST(Trust, ASensorOnASingleEdgeIsUnchecked) {
   Chain chain = Triangle(39, 0.0005);
   chain.AddSensor("tail");
