@@ -15,6 +15,10 @@ bool IsSkipped(const SessionHeader& header, const Sensor& a, const Sensor& b) {
   });
 }
 
+std::optional<Se3> DrawnPose(const SessionHeader& header, const Sensor& sensor) {
+  return sensor.id == header.reference ? Se3{} : sensor.T_ref_nominal;
+}
+
 }  // namespace
 
 std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const Sensor& b) {
@@ -36,6 +40,12 @@ std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
     for (auto b = a + 1; b != header.sensors.end(); ++b)
       if (!MethodFor(header, *a, *b).empty() && !IsSkipped(header, *a, *b)) pairs.push_back({a->id, b->id});
   return pairs;
+}
+
+std::optional<Se3> NominalPose(const SessionHeader& header, const Sensor& a, const Sensor& b) {
+  const std::optional<Se3> T_ref_a = DrawnPose(header, a), T_ref_b = DrawnPose(header, b);
+  if (!T_ref_a || !T_ref_b) return std::nullopt;
+  return T_ref_a->Inverse() * *T_ref_b;
 }
 
 }  // namespace rigcal

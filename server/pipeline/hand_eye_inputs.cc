@@ -90,8 +90,7 @@ Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, con
   std::stable_sort(inputs.evidence.begin(), inputs.evidence.end(),
                    [](const Evidence& x, const Evidence& y) { return x.capture < y.capture; });
   inputs.problem.method = MethodFor(manifest.header, a.side.sensor, b.side.sensor);
-  if (a.side.sensor.T_ref_nominal && b.side.sensor.T_ref_nominal)
-    inputs.problem.T_a_b_nominal = a.side.sensor.T_ref_nominal->Inverse() * *b.side.sensor.T_ref_nominal;
+  inputs.problem.T_a_b_nominal = NominalPose(manifest.header, a.side.sensor, b.side.sensor);
   inputs.problem.a = std::move(a.side);
   inputs.problem.b = std::move(b.side);
   return inputs;

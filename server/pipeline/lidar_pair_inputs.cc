@@ -87,8 +87,7 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
   PairInputs<calib::LidarLidarProblem> inputs;
   inputs.problem.lidar_a = *a;
   inputs.problem.lidar_b = *b;
-  if (a->T_ref_nominal && b->T_ref_nominal)
-    inputs.problem.T_a_b_nominal = a->T_ref_nominal->Inverse() * *b->T_ref_nominal;
+  inputs.problem.T_a_b_nominal = NominalPose(manifest.header, *a, *b);
   for (auto& [id, capture] : captures) inputs.problem.captures.push_back(std::move(capture));
   return inputs;
 }

@@ -116,8 +116,7 @@ Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& st
         calib::LidarCameraProblem problem{
             camera,      lidar, target, Joined<Capture>(views, &Capture::view, clouds, &Capture::cloud),
             camera_is_a, 0.0,   {}};
-        if (camera.T_ref_nominal && lidar.T_ref_nominal)
-          problem.T_cam_lidar_nominal = camera.T_ref_nominal->Inverse() * *lidar.T_ref_nominal;
+        problem.T_cam_lidar_nominal = NominalPose(manifest.header, camera, lidar);
         return PairInputs<calib::LidarCameraProblem>{std::move(problem), ListOf(std::move(evidence))};
       });
 }

@@ -265,6 +265,20 @@ TEST(PairsToCalibrate, OfCamerasAndLidars) {
   EXPECT_EQ(PairsOf(header), "");
 }
 
+TEST(NominalPose, NeedsNoDrawingOfTheReference) {
+  SessionHeader header = GoodHeader();
+  Sensor &left = header.sensors[0], &right = header.sensors[1];
+  EXPECT_FALSE(NominalPose(header, left, right));
+  right.T_ref_nominal = Se3{Eigen::Vector3d(0.2, 0, 0), Eigen::Quaterniond(0, 1, 0, 0)};
+  EXPECT_EQ(NominalPose(header, left, right)->p_m, Eigen::Vector3d(0.2, 0, 0));
+  EXPECT_EQ(NominalPose(header, right, left)->p_m, Eigen::Vector3d(-0.2, 0, 0));
+  header.reference = right.id;
+  EXPECT_FALSE(NominalPose(header, left, right));
+  left.T_ref_nominal = Se3{Eigen::Vector3d(0, 3, 0), Eigen::Quaterniond::Identity()};
+  EXPECT_EQ(NominalPose(header, left, right)->p_m,
+            Eigen::Vector3d(0, -3, 0));  // right is the reference: its drawing is void
+}
+
 TEST(PairsToCalibrate, OfTrackersAndPoseStreams) {
   SessionHeader header = GoodHeader();
   constexpr auto kCamera = SensorKind::kCamera, kLidar = SensorKind::kLidar, kTracker = SensorKind::kTracker,
