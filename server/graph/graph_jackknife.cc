@@ -1,5 +1,6 @@
 #include "server/graph/graph_jackknife.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -16,12 +17,16 @@ using Eigen::MatrixXd;
 // Adds up what the sources bring, a batch of columns at a time.
 class Accumulator {
  public:
-  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky)
+  // `analytic`: per free vertex, the measure by which its variances of different units are added up.
+  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky, const std::vector<Matrix6d>& analytic)
       : work_(work),
         cholesky_(cholesky),
         C_e_(work.problem.constraints.size(), Matrix6d::Zero()),
-        dof_sum_(C_e_.size(), 0.0) {
+        dof_sum_(C_e_.size(), 0.0),
+        pose_trace_(analytic.size(), 0.0),
+        pose_dof_sum_(analytic.size(), 0.0) {
     joint_ = MatrixXd::Zero(6 * work.problem.free_count(), 6 * work.problem.free_count());
+    for (const Matrix6d& C : analytic) whitening_.push_back(Symmetrized(C).llt());
   }
 
   void Add(const std::vector<ErrorSource>& sources) {
@@ -39,11 +44,16 @@ class Accumulator {
   [[nodiscard]] MatrixXd Joint() const { return joint_.selfadjointView<Eigen::Lower>(); }
   [[nodiscard]] const Matrix6d& C_e(std::size_t constraint) const { return C_e_[constraint]; }
   [[nodiscard]] double Dof(std::size_t constraint) const {
-    const double trace = Trace(constraint, C_e_[constraint]);
-    return dof_sum_[constraint] > 0.0 && trace > 0.0 ? trace * trace / dof_sum_[constraint] : 0.0;
+    return Satterthwaite(Trace(constraint, C_e_[constraint]), dof_sum_[constraint]);
+  }
+  [[nodiscard]] double PoseDof(std::size_t free_vertex) const {
+    return Satterthwaite(pose_trace_[free_vertex], pose_dof_sum_[free_vertex]);
   }
 
  private:
+  static double Satterthwaite(double trace, double dof_sum) {
+    return dof_sum > 0.0 && trace > 0.0 ? trace * trace / dof_sum : 0.0;
+  }
   [[nodiscard]] double Trace(std::size_t constraint, const Matrix6d& C) const {
     return work_.problem.constraints[constraint].Omega.cwiseProduct(C).sum();
   }
@@ -59,6 +69,24 @@ class Accumulator {
     columns = -columns;
     joint_.selfadjointView<Eigen::Lower>().rankUpdate(columns);
     AddResiduals(begin, end, columns);
+    for (std::size_t v = 0; v < whitening_.size(); ++v) AddPoseDof(begin, end, columns, v);
+  }
+
+  void AddPoseDof(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns, std::size_t free_vertex) {
+    const MatrixXd whitened =
+        whitening_[free_vertex].matrixL().solve(columns.middleRows<6>(6 * static_cast<Eigen::Index>(free_vertex)));
+    const Eigen::RowVectorXd weights = whitened.colwise().squaredNorm();
+    pose_trace_[free_vertex] += weights.sum();
+    pose_dof_sum_[free_vertex] += DofSum(begin, end, weights);
+  }
+
+  // Squared share of every estimated source over its degrees of freedom (Welch & Satterthwaite).
+  static double DofSum(const ErrorSource* begin, const ErrorSource* end, const Eigen::RowVectorXd& weights) {
+    double sum = 0.0;
+    Eigen::Index at = 0;
+    for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source)
+      if (source->dof > 0) sum += std::pow(weights.segment(at, source->column_count).sum(), 2) / source->dof;
+    return sum;
   }
 
   void AddResiduals(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns) {
@@ -73,9 +101,7 @@ class Accumulator {
       C_e_[k] += changes[k] * changes[k].transpose();
       const Eigen::RowVectorXd weights =
           changes[k].cwiseProduct(work_.problem.constraints[k].Omega * changes[k]).colwise().sum();
-      at = 0;
-      for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source)
-        if (source->dof > 0) dof_sum_[k] += std::pow(weights.segment(at, source->column_count).sum(), 2) / source->dof;
+      dof_sum_[k] += DofSum(begin, end, weights);
     }
   }
 
@@ -84,22 +110,25 @@ class Accumulator {
   MatrixXd joint_;
   std::vector<Matrix6d> C_e_;
   std::vector<double> dof_sum_;
+  std::vector<Eigen::LLT<Matrix6d>> whitening_;
+  std::vector<double> pose_trace_, pose_dof_sum_;
 };
 
-void FillSensors(const JackknifeWork& work, const GraphSolution& solution, BlockCholesky<6>& cholesky,
-                 GraphJackknife& jackknife) {
-  const std::vector<Matrix6d> analytic = cholesky.InverseDiagonal();
+void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const std::vector<Matrix6d>& analytic,
+                 const Accumulator& accumulator, GraphJackknife& jackknife) {
   const std::size_t count = work.graph.sensors.size();
   jackknife.sensors = work.graph.sensors;
   jackknife.row_of_sensor.assign(count, -1);
   jackknife.known.assign(count, false);
   jackknife.analytic.assign(count, Matrix6d::Zero());
+  jackknife.dof.assign(count, 0.0);
   for (std::size_t s = 0; s < count; ++s) {
     const int vertex = work.problem.vertex_of_sensor[s];
     jackknife.known[s] = vertex >= 0 && solution.poses[s].known;
     if (!jackknife.known[s] || vertex == 0) continue;
     jackknife.row_of_sensor[s] = 6 * (vertex - 1);
     jackknife.analytic[s] = Symmetrized(analytic[static_cast<std::size_t>(vertex - 1)]);
+    jackknife.dof[s] = accumulator.PoseDof(static_cast<std::size_t>(vertex - 1));
   }
 }
 
@@ -141,11 +170,12 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   AddPins(Observe(problem, T_ref).pins, equations.H);
   const auto cholesky = MakeCholesky<6>(problem.pattern);
   if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return jackknife;
-  Accumulator accumulator(work, *cholesky);
+  const std::vector<Matrix6d> analytic = cholesky->InverseDiagonal();
+  Accumulator accumulator(work, *cholesky, analytic);
   accumulator.Add(SourcesOf(work));
   jackknife.joint = accumulator.Joint();
   if (!jackknife.joint.allFinite()) return jackknife;
-  FillSensors(work, solution, *cholesky, jackknife);
+  FillSensors(work, solution, analytic, accumulator, jackknife);
   jackknife.residuals.resize(solution.residuals.size());
   for (std::size_t k = 0; k < problem.constraints.size(); ++k)
     jackknife.residuals[problem.constraints[k].edge] = {true, accumulator.C_e(k), accumulator.Dof(k)};

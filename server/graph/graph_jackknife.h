@@ -41,6 +41,7 @@ struct GraphJackknife {
   std::vector<bool> known;                    // the reference too
   Eigen::MatrixXd joint;                      // of all known sensors' poses, right tangents
   std::vector<Matrix6d> analytic;             // H^-1's diagonal block, per sensor
+  std::vector<double> dof;                    // behind a sensor's covariance, as of the residuals; 0: nothing estimated
   std::vector<ResidualCovariance> residuals;  // in the order of GraphSolution::residuals
 };
 constexpr int kJackknifeSensorsMax = 500;

@@ -29,12 +29,14 @@ void JudgeResidual(const Matrix6d& Omega, const ResidualCovariance& covariance, 
 
 void TakeHonest(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution) {
   if (!jackknife.available) return;
-  for (SensorPose& pose : solution.poses) {
+  for (std::size_t s = 0; s < solution.poses.size(); ++s) {
+    SensorPose& pose = solution.poses[s];
     const auto honest = SensorCovariance(jackknife, pose.sensor);
     if (!honest || pose.sensor == graph.reference) continue;
     pose.covariance_analytic = pose.covariance;
     pose.covariance = *honest;
     pose.by_jackknife = true;
+    pose.dof = jackknife.dof[s];
   }
   std::map<EdgeId, const GraphEdge*> by_id;
   for (const GraphEdge& edge : graph.edges) by_id.emplace(edge.id, &edge);

@@ -129,6 +129,26 @@ TEST(GraphJackknife, ThreeFramesByHand) {
   EXPECT_NEAR(jackknife.residuals[2].in_solution ? 1.0 : 0.0, 1.0, 0.0);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_NEAR(jackknife.residuals[k].C_e(0, 0), (4 * C_shared + 1e-4) / 9, 1e-12) << k;
+  // Eight blocks, and an edge that is known by itself.
+  EXPECT_EQ(jackknife.dof[0], 0.0);
+  for (const std::size_t v : {1, 2}) EXPECT_GT(jackknife.dof[v], 7.01) << v;
+}
+
+TEST(GraphJackknife, DegreesOfFreedomAreThoseOfTheSessions) {
+  RandomRig rig = MakeRig(6, 13, 3, 1e-3, 1e-3);
+  const BlocksByEdge blocks = GiveBlocks(rig.graph, 13, 2e-4, 4);
+  const GraphJackknife two_sessions = JackknifeGraph(rig.graph, Solve(rig.graph), blocks);
+  for (GraphEdge& edge : rig.graph.edges) edge.session = rig.graph.edges.front().session;
+  GraphSolution solution = Solve(rig.graph);
+  const GraphJackknife one_session = JackknifeGraph(rig.graph, solution, blocks);
+  ASSERT_TRUE(two_sessions.available && one_session.available);
+  for (std::size_t v = 1; v < 6; ++v) {
+    EXPECT_NEAR(one_session.dof[v], kBlocks - 1, 1e-9) << v;
+    EXPECT_GT(two_sessions.dof[v], kBlocks - 1) << v;
+    EXPECT_LE(two_sessions.dof[v], 2 * (kBlocks - 1) + 1e-9) << v;
+  }
+  TakeHonest(rig.graph, one_session, solution);
+  EXPECT_EQ(solution.poses[3].dof, one_session.dof[3]);
 }
 
 // One edge per block vector set whose scatter is its covariance: then the jackknife and H^-1 are the same.
