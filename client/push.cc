@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <optional>
+#include <random>
 
 #include "client/edge_table.h"
 #include "client/progress.h"
@@ -17,6 +20,7 @@ namespace {
 struct Options {
   std::string folder;
   double give_up_s = 60.0;
+  std::optional<std::uint64_t> shuffle_seed;
   bool no_wait = false;
 };
 
@@ -50,9 +54,25 @@ std::string CaptureText(const PushEngine& engine, const std::vector<Payload>& pa
   return std::to_string(held) + "/" + std::to_string(captures.size()) + " captures";
 }
 
+// File by file, in a drawn order.
+std::vector<std::uint32_t> ShuffledChunks(const PushPlan& plan, std::uint64_t seed) {
+  std::vector<std::vector<std::uint32_t>> chunks_of_file;
+  std::uint32_t count = 0;
+  for (const std::int64_t size_bytes : plan.payload_bytes) {
+    chunks_of_file.emplace_back(static_cast<std::size_t>((size_bytes + plan.chunk_bytes - 1) / plan.chunk_bytes));
+    std::iota(chunks_of_file.back().begin(), chunks_of_file.back().end(), count);
+    count += static_cast<std::uint32_t>(chunks_of_file.back().size());
+  }
+  std::shuffle(chunks_of_file.begin(), chunks_of_file.end(), std::mt19937_64(seed));
+  std::vector<std::uint32_t> order;
+  for (const auto& chunks : chunks_of_file) order.insert(order.end(), chunks.begin(), chunks.end());
+  return order;
+}
+
 PushPlan PlanOf(const SessionToPush& session, const Options& options) {
   PushPlan plan;
   for (const Payload& payload : session.payloads) plan.payload_bytes.push_back(payload.size_bytes);
+  if (options.shuffle_seed) plan.send_order = ShuffledChunks(plan, *options.shuffle_seed);
   plan.give_up_ns = std::llround(options.give_up_s * 1e9);
   return plan;
 }
@@ -129,6 +149,9 @@ void AddPush(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("push", "Send a session folder, wait for its edges and the new calibration");
   auto options = std::make_shared<Options>();
   verb->add_option("DIR", options->folder, "The session folder (docs/session-format.md)")->required();
+  verb->add_option("--shuffle", options->shuffle_seed,
+                   "Send the files in an order drawn from this seed; the result is the same")
+      ->type_name("SEED");
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
   verb->add_option("--timeout-total", options->give_up_s,
                    "Give up after so many seconds without any answer (default 60)")
