@@ -45,12 +45,9 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
   context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
 }
 
-void AddVerbs(CLI::App& app, Context& context) {
-  for (const auto add : {AddPush, AddPushEdges, AddRobots, AddSessions, AddEdges, AddShow, AddLookup, AddStatus,
-                         AddWatch, AddReport, AddDue, AddCompare, AddDoctor, AddSimulate})
-    add(app, context);
-  app.require_subcommand(1);
-}
+constexpr AddVerb kVerbs[] = {AddPush,   AddPushEdges,        AddRobots, AddSessions, AddEdges, AddShow,
+                              AddLookup, AddStatus,           AddWatch,  AddReport,   AddDue,   AddCompare,
+                              AddDoctor, AddSimulateElsewhere};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {
@@ -66,9 +63,11 @@ int Parse(CLI::App& app, int argc, const char* const* argv, const Context& conte
 
 }  // namespace
 
-int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal) {
+int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal,
+                   std::span<const AddVerb> verbs) {
   Context context{out, err};
   context.err_is_terminal = err_is_terminal;
+  context.arguments = {argv, static_cast<std::size_t>(argc)};
   try {
     GlobalOptions options;
     CLI::App app("Calibrates robots: pushes sessions to rigcald and asks for what came out.", "rigcal");
@@ -76,12 +75,17 @@ int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::os
     app.footer(kFooter);
     AddGlobalOptions(app, options, context);
     app.parse_complete_callback([&] { Apply(app, options, context); });
-    AddVerbs(app, context);
+    for (const AddVerb add : verbs) add(app, context);
+    app.require_subcommand(1);
     return Parse(app, argc, argv, context);
   } catch (const std::exception& error) {
     err << "rigcal: a fault of its own: " << error.what() << ". Please report it with the command line." << std::endl;
     return static_cast<int>(ExitCode::kRefused);
   }
+}
+
+int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal) {
+  return RunCommandLine(argc, argv, out, err, err_is_terminal, kVerbs);
 }
 
 }  // namespace rigcal::client

@@ -1,10 +1,17 @@
 // The whole command line: parses, runs one verb, gives the exit code. No exception leaves it.
+// `rigcal simulate` replaces the process.
 #pragma once
 
 #include <ostream>
+#include <span>
+
+#include "client/verbs.h"
 
 namespace rigcal::client {
 
 int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal);
+// With these verbs only.
+int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal,
+                   std::span<const AddVerb> verbs);
 
 }  // namespace rigcal::client

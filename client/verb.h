@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <ostream>
+#include <span>
 #include <string>
 
 #include "client/connection.h"
@@ -20,7 +21,8 @@ struct Context {
   std::chrono::milliseconds timeout{5000};
   bool timeout_is_given = false;
   wire::ParticipantOptions dds = {};
-  ExitCode exit_code = ExitCode::kGood;  // set by the verb that ran
+  ExitCode exit_code = ExitCode::kGood;         // set by the verb that ran
+  std::span<const char* const> arguments = {};  // of the whole command line, as given
 };
 
 // Report of exit_code.h to the context's streams; with --json also docs/api.md's error document on `out`.

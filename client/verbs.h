@@ -9,6 +9,8 @@ class App;
 
 namespace rigcal::client {
 
+using AddVerb = void (*)(CLI::App& app, Context& context);
+
 void AddPush(CLI::App& app, Context& context);
 void AddPushEdges(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
@@ -22,6 +24,8 @@ void AddReport(CLI::App& app, Context& context);
 void AddDue(CLI::App& app, Context& context);
 void AddCompare(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
+// In the program of simulate_main.cc; `rigcal` has the one that starts it.
 void AddSimulate(CLI::App& app, Context& context);
+void AddSimulateElsewhere(CLI::App& app, Context& context);
 
 }  // namespace rigcal::client

@@ -33,8 +33,8 @@ Ran Rigcal(const std::string& arguments) {
   return ran;
 }
 
-const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges",   "show",  "lookup",
-                                         "status", "watch",      "report", "due",      "compare", "doctor"};
+const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges",   "show",   "lookup",
+                                         "status", "watch",      "report", "due",      "compare", "doctor", "simulate"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
@@ -60,11 +60,22 @@ TEST(Program, WrongUsageIsTwoWithASentence) {
   for (const char* arguments :
        {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
         "show r --revision zero", "show r --revision 0", "status --timeout never", "status --timeout -1",
-        "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate"}) {
+        "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate",
+        "simulate --captures x", "--frobnicate simulate"}) {
     const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;
   }
+}
+
+// A program of its own runs it: the words before the verb and after it reach that one.
+TEST(Program, SimulateTakesItsWordsAndEndsLikeTheOthers) {
+  const Ran rig = Rigcal("simulate --print-rig mars-mapper");
+  EXPECT_EQ(rig.code, 0) << rig.text;
+  EXPECT_NE(rig.text.find("lidar_vertical"), std::string::npos) << rig.text;
+  const Ran refused = Rigcal("--json simulate no-such-rig --captures 2");
+  EXPECT_EQ(refused.code, 4) << refused.text;
+  EXPECT_NE(refused.text.find(R"("what":"rig no-such-rig)"), std::string::npos) << refused.text;
 }
 
 TEST(Program, ADomainThatIsNoneIsWrongUsage) {
