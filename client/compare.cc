@@ -12,7 +12,7 @@
 namespace rigcal::client {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::string robot, poses_file;
   int revision = 0, with_revision = 0;
   double sigmas_max = 0.0;
@@ -31,7 +31,7 @@ Result<Document> AskRevision(const Context& context, const std::string& robot, i
   return Document::Parse(text, "the server's answer to 'show'");
 }
 
-Result<Comparison> Compared(const Context& context, const Options& options) {
+Result<Comparison> Compared(const Context& context, const CompareOptions& options) {
   RIGCAL_ASSIGN(const Document answer, AskRevision(context, options.robot, options.revision));
   const Document document = answer["document"];
   KnownPoses others;
@@ -67,7 +67,7 @@ std::optional<double> Length(const std::optional<Vector6d>& sigma, int start) {
   return sigma->segment<3>(start).norm();
 }
 
-void Print(const Comparison& comparison, std::ostream& out) {
+void PrintCompare(const Comparison& comparison, std::ostream& out) {
   out << Plain(comparison.robot) << ", revision " << comparison.revision << ", against " << Plain(comparison.other)
       << ", in " << Plain(comparison.reference) << '\n';
   Table table({{"SENSOR"},
@@ -117,13 +117,13 @@ std::string Json(const Comparison& comparison) {
   });
 }
 
-ExitCode Run(const Context& context, const Options& options) {
+ExitCode RunCompare(const Context& context, const CompareOptions& options) {
   const auto comparison = Compared(context, options);
   if (!comparison) return Report(comparison.error(), context);
   if (context.json)
     context.out << Json(*comparison) << std::endl;
   else
-    Print(*comparison, context.out);
+    PrintCompare(*comparison, context.out);
   const bool beyond = options.sigmas_max > 0 && WorstSigmas(*comparison) > options.sigmas_max;
   return beyond ? ExitCode::kVerdictFail : ExitCode::kGood;
 }
@@ -132,7 +132,7 @@ ExitCode Run(const Context& context, const Options& options) {
 
 void AddCompare(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("compare", "Compare a robot's poses with another revision or a file of poses");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->type_name("N")
@@ -153,7 +153,7 @@ void AddCompare(CLI::App& app, Context& context) {
       "  rigcal compare mapper-01 --with 3                          what moved since revision 3\n"
       "  rigcal compare mapper-01 --poses visit/session.yaml        against the nominal poses of the drawing\n"
       "  rigcal compare demo --poses demo/truth.yaml --sigmas-max 4  against a simulated robot's truth\n");
-  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+  verb->callback([&context, options] { context.exit_code = RunCompare(context, *options); });
 }
 
 }  // namespace rigcal::client

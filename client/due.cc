@@ -14,7 +14,7 @@ bool AnyOverdue(const Document& document) {
   return false;
 }
 
-void Print(const Document& document, std::ostream& out) {
+void PrintDue(const Document& document, std::ostream& out) {
   if (!AnyOverdue(document)) {
     out << "No robot is overdue: " << document["robots"].size() << " known, all calibrated within "
         << AgeOf(document["max_age_ns"]) << ".\n";
@@ -28,13 +28,13 @@ void Print(const Document& document, std::ostream& out) {
   table.Print(out);
 }
 
-ExitCode Run(const Context& context, const std::string& max_age) {
+ExitCode RunDue(const Context& context, const std::string& max_age) {
   const auto max_age_ns = ParseDuration(max_age);
   if (!max_age_ns) {
     Report(max_age_ns.error(), context);
     return ExitCode::kUsage;
   }
-  return Answer(context, {"due", JsonObject({{"max_age_ns", *max_age_ns}}), Print, [](const Document& document) {
+  return Answer(context, {"due", JsonObject({{"max_age_ns", *max_age_ns}}), PrintDue, [](const Document& document) {
                             return AnyOverdue(document) ? ExitCode::kVerdictFail : ExitCode::kGood;
                           }});
 }
@@ -51,7 +51,7 @@ void AddDue(CLI::App& app, Context& context) {
       "Examples:\n"
       "  rigcal due\n"
       "  rigcal due --max-age 30d || mail -s 'robots to calibrate' team@example.org\n");
-  verb->callback([&context, max_age] { context.exit_code = Run(context, *max_age); });
+  verb->callback([&context, max_age] { context.exit_code = RunDue(context, *max_age); });
 }
 
 }  // namespace rigcal::client

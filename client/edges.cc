@@ -8,7 +8,7 @@
 namespace rigcal::client {
 namespace {
 
-void Print(const Document& document, std::ostream& out) {
+void PrintAnswer(const Document& document, std::ostream& out) {
   const auto edges = document["edges"].Items();
   if (edges.empty()) out << "This robot has no edges yet. Send a session with `rigcal push DIR`.\n";
   PrintEdges(edges, out);
@@ -27,7 +27,7 @@ void AddEdges(CLI::App& app, Context& context) {
       "  rigcal edges mapper-01\n"
       "  rigcal edges mapper-01 --json\n");
   verb->callback([&context, robot] {
-    context.exit_code = Answer(context, {"edges", JsonObject({{"robot", *robot}}), Print, {}});
+    context.exit_code = Answer(context, {"edges", JsonObject({{"robot", *robot}}), PrintAnswer, {}});
   });
 }
 

@@ -14,7 +14,7 @@ std::string QuaternionText(const Document& q_xyzw) {
   return text;
 }
 
-void Print(const Document& document, std::ostream& out) {
+void PrintLookup(const Document& document, std::ostream& out) {
   const std::string a = Plain(document["frame_a"].Text("?")), b = Plain(document["frame_b"].Text("?"));
   const Document pose = document["T_a_b"];
   out << "T_" << a << "_" << b << "  pose of " << b << " in " << a << ", robot " << Plain(document["robot"].Text("?"))
@@ -29,21 +29,21 @@ void Print(const Document& document, std::ostream& out) {
   PrintVerdict(document["verdict"], out);
 }
 
-struct Options {
+struct LookupOptions {
   std::string robot, a, b;
 };
 
-ExitCode Run(const Context& context, const Options& options) {
+ExitCode RunLookup(const Context& context, const LookupOptions& options) {
   const std::string parameters = JsonObject({{"robot", options.robot}, {"a", options.a}, {"b", options.b}});
-  return Answer(context,
-                {"lookup", parameters, Print, [](const Document& document) { return Judge(document["verdict"]); }});
+  return Answer(context, {"lookup", parameters, PrintLookup,
+                          [](const Document& document) { return Judge(document["verdict"]); }});
 }
 
 }  // namespace
 
 void AddLookup(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("lookup", "Print the pose of sensor B in sensor A with its 6x6 covariance");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LookupOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("A", options->a, "Sensor in whose frame the pose is given")->required();
   verb->add_option("B", options->b, "Sensor whose pose it is")->required();
@@ -52,7 +52,7 @@ void AddLookup(CLI::App& app, Context& context) {
       "Examples:\n"
       "  rigcal lookup mapper-01 front_left lidar\n"
       "  rigcal lookup mapper-01 front_left lidar --json\n");
-  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+  verb->callback([&context, options] { context.exit_code = RunLookup(context, *options); });
 }
 
 }  // namespace rigcal::client

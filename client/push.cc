@@ -17,7 +17,7 @@
 namespace rigcal::client {
 namespace {
 
-struct Options {
+struct PushOptions {
   std::string folder;
   double give_up_s = 60.0;
   std::optional<std::uint64_t> shuffle_seed;
@@ -29,7 +29,7 @@ struct Folder {
   FileMarks marks;
 };
 
-Result<Folder> ReadFolder(const Context& context, const Options& options) {
+Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
   Folder folder;
   folder.marks = MarkFiles(options.folder);
   Progress progress(context.err, context.err_is_terminal, "Reading", SteadyNow_ns());
@@ -69,7 +69,7 @@ std::vector<std::uint32_t> ShuffledChunks(const PushPlan& plan, std::uint64_t se
   return order;
 }
 
-PushPlan PlanOf(const SessionToPush& session, const Options& options) {
+PushPlan PlanOf(const SessionToPush& session, const PushOptions& options) {
   PushPlan plan;
   for (const Payload& payload : session.payloads) plan.payload_bytes.push_back(payload.size_bytes);
   if (options.shuffle_seed) plan.send_order = ShuffledChunks(plan, *options.shuffle_seed);
@@ -77,7 +77,7 @@ PushPlan PlanOf(const SessionToPush& session, const Options& options) {
   return plan;
 }
 
-Result<PushSummary> Send(const Context& context, const Options& options, const wire::Participant& participant,
+Result<PushSummary> Send(const Context& context, const PushOptions& options, const wire::Participant& participant,
                          const Folder& folder) {
   const SessionToPush& session = folder.session;
   RIGCAL_ASSIGN(const auto outlet,
@@ -113,7 +113,7 @@ void SaySent(const Context& context, const PushSummary& summary) {
   context.err << std::endl;
 }
 
-Result<Awaited> Await(const Context& context, const Options& options, const SessionToPush& session,
+Result<Awaited> Await(const Context& context, const PushOptions& options, const SessionToPush& session,
                       ResultWatch& watch) {
   const AwaitHooks hooks{[&](const Document& edge, std::int64_t, std::int64_t) {
                            (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
@@ -123,7 +123,7 @@ Result<Awaited> Await(const Context& context, const Options& options, const Sess
                      hooks);
 }
 
-Status Run(Context& context, const Options& options) {
+Status RunPush(Context& context, const PushOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
@@ -147,7 +147,7 @@ Status Run(Context& context, const Options& options) {
 
 void AddPush(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("push", "Send a session folder, wait for its edges and the new calibration");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PushOptions>();
   verb->add_option("DIR", options->folder, "The session folder (docs/session-format.md)")->required();
   verb->add_option("--shuffle", options->shuffle_seed,
                    "Send the files in an order drawn from this seed; the result is the same")
@@ -164,7 +164,7 @@ void AddPush(CLI::App& app, Context& context) {
       "  rigcal push visit-2026-01-31/ --no-wait\n"
       "  rigcal push visit-2026-01-31/ --json > result.json\n");
   verb->callback([&context, options] {
-    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context);
+    if (const Status done = RunPush(context, *options); !done) context.exit_code = Report(done.error(), context);
   });
 }
 

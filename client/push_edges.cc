@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::size_t kInFlightMax = 2000;
 
-struct Options {
+struct PushEdgesOptions {
   std::string file, robot;
   std::optional<std::uint64_t> shuffle_seed;
   double give_up_s = 60.0;
   bool no_wait = false;
 };
 
-Result<EdgesToPush> ReadEdges(const Options& options) {
+Result<EdgesToPush> ReadEdges(const PushEdgesOptions& options) {
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(options.robot));
   RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, limits::kG2oFileBytesMax));
   if (std::filesystem::path(options.file).extension() == ".g2o") {
@@ -36,7 +36,7 @@ Result<EdgesToPush> ReadEdges(const Options& options) {
   return EdgesOf(robot, std::move(edges), options.shuffle_seed);
 }
 
-Status CheckCount(const EdgesToPush& batch, const Options& options) {
+Status CheckCount(const EdgesToPush& batch, const PushEdgesOptions& options) {
   if (batch.edges.empty())
     return Fail(ErrorCode::kInvalidInput, options.file + " has no edges", "Give a file with at least one edge");
   if (batch.edges.size() > limits::kEdgesPerBatchMax)
@@ -46,7 +46,7 @@ Status CheckCount(const EdgesToPush& batch, const Options& options) {
   return {};
 }
 
-Result<PushSummary> Send(const Context& context, const Options& options, const wire::Participant& participant,
+Result<PushSummary> Send(const Context& context, const PushEdgesOptions& options, const wire::Participant& participant,
                          const EdgesToPush& batch) {
   RIGCAL_ASSIGN(const auto outlet, EdgeOutlet::Open(participant, batch));
   PushPlan plan = BatchPlan(batch.edges.size(), kInFlightMax);
@@ -68,13 +68,14 @@ Result<PushSummary> Send(const Context& context, const Options& options, const w
   return summary;
 }
 
-Result<Awaited> Await(const Context& context, const Options& options, const EdgesToPush& batch, ResultWatch& watch) {
+Result<Awaited> Await(const Context& context, const PushEdgesOptions& options, const EdgesToPush& batch,
+                      ResultWatch& watch) {
   AwaitPlace place{batch.robot, SessionId(), {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)};
   for (const Edge& edge : batch.edges) place.edges.insert(edge.id.str());
   return watch.Await(std::move(place), {{}, [&](const std::string& line) { context.err << line << std::endl; }});
 }
 
-Status Run(Context& context, const Options& options) {
+Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
   RIGCAL_TRY(CheckCount(batch, options));
@@ -101,7 +102,7 @@ Status Run(Context& context, const Options& options) {
 
 void AddPushEdges(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("push-edges", "Send finished pairwise results, wait for the new calibration");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PushEdgesOptions>();
   verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")
       ->required();
   verb->add_option("--robot", options->robot, "The robot whose edges they are")->required()->type_name("ID");
@@ -118,7 +119,7 @@ void AddPushEdges(CLI::App& app, Context& context) {
       "  rigcal push-edges results.json --robot mapper-01\n"
       "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n");
   verb->callback([&context, options] {
-    if (const Status done = Run(context, *options); !done) context.exit_code = Report(done.error(), context);
+    if (const Status done = RunPushEdges(context, *options); !done) context.exit_code = Report(done.error(), context);
   });
 }
 

@@ -9,7 +9,7 @@
 namespace rigcal::client {
 namespace {
 
-struct Options {
+struct ReportOptions {
   std::string robot, out;
   int revision = 0;
 };
@@ -20,7 +20,7 @@ struct Place {
   std::optional<ZipSummary> zip;
 };
 
-Result<std::int64_t> KnownRevision(Connection& connection, const Context& context, const Options& options) {
+Result<std::int64_t> KnownRevision(Connection& connection, const Context& context, const ReportOptions& options) {
   RIGCAL_ASSIGN(const Document revisions,
                 connection.AskDocument("revisions", JsonObject({{"robot", options.robot}}), context.timeout));
   std::int64_t newest = 0;
@@ -35,7 +35,7 @@ Result<std::int64_t> KnownRevision(Connection& connection, const Context& contex
               "`rigcal robots` shows each robot's newest one");
 }
 
-Result<Place> Find(const Context& context, const Options& options) {
+Result<Place> Find(const Context& context, const ReportOptions& options) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
   Place place;
@@ -48,7 +48,7 @@ Result<Place> Find(const Context& context, const Options& options) {
   return place;
 }
 
-ExitCode Run(const Context& context, const Options& options) {
+ExitCode RunReport(const Context& context, const ReportOptions& options) {
   const auto place = Find(context, options);
   if (!place) return Report(place.error(), context);
   if (context.json) {
@@ -75,7 +75,7 @@ ExitCode Run(const Context& context, const Options& options) {
 
 void AddReport(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("report", "Tell where a robot's report is, or fetch it as a zip");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(CLI::PositiveNumber)
@@ -88,7 +88,7 @@ void AddReport(CLI::App& app, Context& context) {
       "  rigcal report mapper-01 --revision 3\n"
       "  rigcal report mapper-01 --out mapper-01.zip\n"
       "  xdg-open \"$(rigcal report mapper-01 --json | jq -r .address)\"\n");
-  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+  verb->callback([&context, options] { context.exit_code = RunReport(context, *options); });
 }
 
 }  // namespace rigcal::client

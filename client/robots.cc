@@ -6,7 +6,7 @@
 namespace rigcal::client {
 namespace {
 
-void Print(const Document& document, std::ostream& out) {
+void PrintRobots(const Document& document, std::ostream& out) {
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
   Table table({{"ROBOT"},
@@ -32,7 +32,7 @@ void AddRobots(CLI::App& app, Context& context) {
       "Examples:\n"
       "  rigcal robots\n"
       "  rigcal robots --json\n");
-  verb->callback([&context] { context.exit_code = Answer(context, {"robots", "{}", Print, {}}); });
+  verb->callback([&context] { context.exit_code = Answer(context, {"robots", "{}", PrintRobots, {}}); });
 }
 
 }  // namespace rigcal::client

@@ -7,7 +7,7 @@
 namespace rigcal::client {
 namespace {
 
-void Print(const Document& document, std::ostream& out) {
+void PrintSessions(const Document& document, std::ostream& out) {
   if (document["sessions"].size() == 0) out << "No session is known yet. Send one with `rigcal push DIR`.\n";
   if (document["sessions"].size() == 0) return;
   Table table({{"SESSION"},
@@ -41,7 +41,7 @@ void AddSessions(CLI::App& app, Context& context) {
       "  rigcal sessions mapper-01\n");
   verb->callback([&context, robot] {
     const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
-    context.exit_code = Answer(context, {"sessions", parameters, Print, {}});
+    context.exit_code = Answer(context, {"sessions", parameters, PrintSessions, {}});
   });
 }
 

@@ -27,7 +27,7 @@ void PrintPoses(const Document& revision, std::ostream& out) {
   table.Print(out);
 }
 
-void Print(const Document& document, std::ostream& out) {
+void PrintShow(const Document& document, std::ostream& out) {
   const Document revision = document["document"];
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", "
       << AgeOf(document["age_ns"]) << " old\n";
@@ -41,15 +41,15 @@ void Print(const Document& document, std::ostream& out) {
   PrintLoops(revision, out);
 }
 
-struct Options {
+struct ShowOptions {
   std::string robot;
   int revision = 0;
 };
 
-ExitCode Run(const Context& context, const Options& options) {
+ExitCode RunShow(const Context& context, const ShowOptions& options) {
   std::vector<Field> parameters = {{"robot", options.robot}};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
-  return Answer(context, {"show", JsonObject(parameters), Print,
+  return Answer(context, {"show", JsonObject(parameters), PrintShow,
                           [](const Document& document) { return Judge(document["document"]["verdict"]); }});
 }
 
@@ -57,7 +57,7 @@ ExitCode Run(const Context& context, const Options& options) {
 
 void AddShow(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, poses with sigma, edges, loops");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ShowOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(CLI::PositiveNumber)
@@ -68,7 +68,7 @@ void AddShow(CLI::App& app, Context& context) {
       "  rigcal show mapper-01\n"
       "  rigcal show mapper-01 --revision 3\n"
       "  rigcal show mapper-01 --json > mapper-01.json\n");
-  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+  verb->callback([&context, options] { context.exit_code = RunShow(context, *options); });
 }
 
 }  // namespace rigcal::client

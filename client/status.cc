@@ -15,7 +15,7 @@ void PrintServer(const Document& document, std::ostream& out) {
   out << '\n';
 }
 
-void Print(const Document& document, std::ostream& out) {
+void PrintStatus(const Document& document, std::ostream& out) {
   PrintServer(document, out);
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
@@ -39,7 +39,7 @@ void AddStatus(CLI::App& app, Context& context) {
       "  rigcal status --timeout 1 && echo a server is there\n");
   verb->callback([&context, robot] {
     const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
-    context.exit_code = Answer(context, {"status", parameters, Print, {}});
+    context.exit_code = Answer(context, {"status", parameters, PrintStatus, {}});
   });
 }
 

@@ -22,7 +22,7 @@ std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set in a signal handler");
 void OnInterrupt(int) { interrupted = true; }
 
-struct Options {
+struct WatchOptions {
   std::string robot;
   int count = 0;
 };
@@ -45,7 +45,7 @@ std::string TextOf(const std::string& kind, const Document& data) {
   return data.Dump();
 }
 
-void Print(const Context& context, const rigcal_wire_Event& event) {
+void PrintWatch(const Context& context, const rigcal_wire_Event& event) {
   const auto data = Document::Parse(event.json ? event.json : "{}", "the event");
   const std::string robot = event.robot_id, kind = event.kind;
   if (context.json) {
@@ -63,7 +63,7 @@ void Print(const Context& context, const rigcal_wire_Event& event) {
               << std::endl;
 }
 
-Status WatchLoop(const Context& context, const Options& options) {
+Status WatchLoop(const Context& context, const WatchOptions& options) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   const std::string partition = options.robot.empty() ? wire::kAllRobotsPartition : "robot/" + options.robot;
   RIGCAL_ASSIGN(auto events, wire::Reader<rigcal_wire_Event>::Open(participant, {partition}));
@@ -83,14 +83,14 @@ Status WatchLoop(const Context& context, const Options& options) {
     }
     RIGCAL_TRY(events.Take(256, [&](const rigcal_wire_Event& event, const wire::SampleOrigin&) {
       if (is_enough()) return;
-      Print(context, event);
+      PrintWatch(context, event);
       ++seen;
     }));
   }
   return {};
 }
 
-ExitCode Run(const Context& context, const Options& options) {
+ExitCode RunWatch(const Context& context, const WatchOptions& options) {
   struct sigaction action {};
   action.sa_handler = OnInterrupt;
   sigaction(SIGINT, &action, nullptr);
@@ -105,7 +105,7 @@ ExitCode Run(const Context& context, const Options& options) {
 
 void AddWatch(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("watch", "Print what happens as it happens, until Ctrl-C");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WatchOptions>();
   verb->add_option("ROBOT", options->robot, "Only this robot");
   verb->add_option("--count", options->count, "End after so many events")->check(CLI::PositiveNumber)->type_name("N");
   verb->footer(
@@ -114,7 +114,7 @@ void AddWatch(CLI::App& app, Context& context) {
       "  rigcal watch\n"
       "  rigcal watch mapper-01 --count 10\n"
       "  rigcal watch mapper-01 --timeout 60 --json\n");
-  verb->callback([&context, options] { context.exit_code = Run(context, *options); });
+  verb->callback([&context, options] { context.exit_code = RunWatch(context, *options); });
 }
 
 }  // namespace rigcal::client

@@ -7,9 +7,9 @@
 namespace rigcal::storage {
 namespace {
 
-std::string Subject(std::int64_t number) { return "job " + std::to_string(number); }
+std::string JobSubject(std::int64_t number) { return "job " + std::to_string(number); }
 
-JobRow RowOf(const Query& query) {
+JobRow JobRowOf(const Query& query) {
   return {query.Int(0), query.IdAt<RobotId>(1), query.IdAt<SessionId>(2),
           SensorPair{query.IdAt<SensorId>(3), query.IdAt<SensorId>(4)}};
 }
@@ -27,7 +27,7 @@ Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotI
                 "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
                 "ORDER BY w.job_number");
     while (query.Step()) {
-      JobRow row = RowOf(query);
+      JobRow row = JobRowOf(query);
       if (std::find(busy_robots.begin(), busy_robots.end(), row.robot) == busy_robots.end()) return row;
     }
     return std::nullopt;
@@ -51,9 +51,9 @@ Result<JobCount> CountJobs(Store& store, const SessionId& session) {
 }
 
 Status FinishJob(Store& store, std::int64_t number, Stamp now) {
-  return store.connection().Append(Subject(number), [&]() -> Status {
+  return store.connection().Append(JobSubject(number), [&]() -> Status {
     if (!Exists(store, number))
-      return Fail(ErrorCode::kNotFound, Subject(number) + " is not known", "Take jobs from the queue.");
+      return Fail(ErrorCode::kNotFound, JobSubject(number) + " is not known", "Take jobs from the queue.");
     Query(store, "INSERT INTO job_finished VALUES (?, ?) ON CONFLICT DO NOTHING").Bind(number, now).Run();
     Query(store, "DELETE FROM waiting_job WHERE job_number = ?").Bind(number).Run();
     return {};

@@ -9,7 +9,7 @@ struct PayloadList {
   std::int64_t count = 0;
 };
 
-std::string Subject(const SessionId& id) { return "payloads of session " + id.str(); }
+std::string PayloadsSubject(const SessionId& id) { return "payloads of session " + id.str(); }
 
 Result<PayloadList> FindList(Store& store, const SessionId& id) {
   Query query(store, "SELECT number, payload_count FROM session WHERE session_id = ?");
@@ -40,7 +40,7 @@ void InsertHeld(Store& store, std::int64_t session_number, std::uint32_t idx, St
 }  // namespace
 
 Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id) {
-  return Load<std::vector<bool>>(store, Subject(id), [&]() -> Result<std::vector<bool>> {
+  return Load<std::vector<bool>>(store, PayloadsSubject(id), [&]() -> Result<std::vector<bool>> {
     RIGCAL_ASSIGN(const PayloadList list, FindList(store, id));
     std::vector<bool> held(static_cast<std::size_t>(list.count), false);
     Query query(store, "SELECT idx FROM payload_held WHERE session_number = ?");
@@ -51,7 +51,7 @@ Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id) {
 }
 
 Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint32_t>& payload_idx, Stamp now) {
-  return store.connection().Append(Subject(id), [&]() -> Status {
+  return store.connection().Append(PayloadsSubject(id), [&]() -> Status {
     RIGCAL_ASSIGN(const PayloadList list, FindList(store, id));
     RIGCAL_TRY(CheckIndices(id, list, payload_idx));
     for (const std::uint32_t idx : payload_idx) InsertHeld(store, list.session_number, idx, now);

@@ -6,7 +6,7 @@
 namespace rigcal::storage {
 namespace {
 
-std::string Subject(const RobotId& robot) { return "revisions of robot " + robot.str(); }
+std::string RevisionsSubject(const RobotId& robot) { return "revisions of robot " + robot.str(); }
 
 const std::string kColumns =
     "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest ";
@@ -38,7 +38,7 @@ void Insert(Store& store, const Revision& revision, int number) {
 }  // namespace
 
 Result<int> AppendRevision(Store& store, const Revision& revision) {
-  return Append<int>(store, Subject(revision.robot), [&]() -> Result<int> {
+  return Append<int>(store, RevisionsSubject(revision.robot), [&]() -> Result<int> {
     RIGCAL_TRY(AppendRobot(store, revision.robot, revision.created_at));
     const int number = NewestNumber(store, revision.robot) + 1;
     Insert(store, revision, number);
@@ -47,7 +47,7 @@ Result<int> AppendRevision(Store& store, const Revision& revision) {
 }
 
 Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number) {
-  return Load<std::optional<Revision>>(store, Subject(robot), [&]() -> Result<std::optional<Revision>> {
+  return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
     Query query(store, "SELECT " + kColumns + ", document FROM revision WHERE robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionOf(query);
@@ -57,7 +57,7 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
 }
 
 Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number) {
-  return Load<std::optional<Revision>>(store, Subject(robot), [&]() -> Result<std::optional<Revision>> {
+  return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
     Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     return RevisionOf(query);
@@ -65,7 +65,7 @@ Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId&
 }
 
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) {
-  return Load<std::vector<Revision>>(store, Subject(robot), [&]() -> Result<std::vector<Revision>> {
+  return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
     Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? ORDER BY number DESC");
     query.Bind(robot);
     std::vector<Revision> revisions;

@@ -18,7 +18,7 @@ const std::string kSelectRow =
     "ELSE (SELECT count(*) FROM payload_held h WHERE h.session_number = s.number) END "
     "FROM session s LEFT JOIN session_closed c ON c.session_number = s.number ";
 
-SessionRow RowOf(const Query& query) {
+SessionRow SessionRowOf(const Query& query) {
   SessionRow row;
   row.robot = query.IdAt<RobotId>(0);
   row.id = query.IdAt<SessionId>(1);
@@ -102,7 +102,7 @@ Result<std::optional<SessionRow>> LoadSession(Store& store, const SessionId& id)
   return Load<std::optional<SessionRow>>(store, Subject(id), [&]() -> Result<std::optional<SessionRow>> {
     Query query(store, kSelectRow + "WHERE s.session_id = ?");
     if (!query.Bind(id).Step()) return std::nullopt;
-    return RowOf(query);
+    return SessionRowOf(query);
   });
 }
 
@@ -121,7 +121,7 @@ Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot)
                            "ORDER BY s.captured_ns DESC, s.number DESC");
     if (!robot.empty()) query.Bind(robot);
     std::vector<SessionRow> rows;
-    while (query.Step()) rows.push_back(RowOf(query));
+    while (query.Step()) rows.push_back(SessionRowOf(query));
     return rows;
   });
 }

@@ -13,7 +13,7 @@ namespace {
 
 using formats::YamlField;
 
-constexpr const char* kCure = "Mend the file; `rigcal simulate --print-rig mars-mapper` prints a complete one.";
+constexpr const char* kRigCure = "Mend the file; `rigcal simulate --print-rig mars-mapper` prints a complete one.";
 constexpr std::size_t kRigBytesMax = 1 << 20;
 constexpr double kRadPerDeg = M_PI / 180;
 
@@ -231,7 +231,7 @@ Rig ReadTree(const YamlField& root) {
 }  // namespace
 
 Result<Rig> ReadRig(std::string_view text, const std::string& name) {
-  RIGCAL_ASSIGN(const std::unique_ptr<formats::YamlTree> tree, formats::ParseYaml(text, name, kCure, kRigBytesMax));
+  RIGCAL_ASSIGN(const std::unique_ptr<formats::YamlTree> tree, formats::ParseYaml(text, name, kRigCure, kRigBytesMax));
   Rig rig = ReadTree(YamlField(*tree));
   if (tree->error) return Fail(*tree->error);
   if (const Status valid = Validate(rig); !valid)

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kRoundBytes = 8LL << 20;        // small enough that clients hear of progress often
 constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
 constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
-constexpr std::chrono::milliseconds kIdle{1000};
+constexpr std::chrono::milliseconds kRecorderIdle{1000};
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void Recorder::Take(Arrival arrival) {
 }
 
 void Recorder::TakeRound() {
-  auto arrivals = inbox_.Take(kRoundBytes, kIdle);
+  auto arrivals = inbox_.Take(kRoundBytes, kRecorderIdle);
   for (Arrival& arrival : arrivals) Take(std::move(arrival));
   sessions_.Write();
   inbox_.Release();  // before clients are told that they may send more

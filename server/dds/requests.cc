@@ -16,7 +16,7 @@ constexpr int kTakenAtOnce = 256;
 constexpr std::size_t kPendingMax = 256;
 constexpr std::chrono::seconds kPendingFor{5};
 constexpr std::chrono::milliseconds kBusyAgain{20};
-constexpr std::chrono::milliseconds kIdle{1000};
+constexpr std::chrono::milliseconds kRequestIdle{1000};
 
 std::vector<std::string> Split(const std::string& text) {
   std::vector<std::string> parts;
@@ -125,7 +125,7 @@ Result<std::vector<Question>> Requests::TakeQuestions() {
 
 std::chrono::milliseconds Requests::Patience() const {
   const bool any_busy = std::any_of(pending_.begin(), pending_.end(), [](const Pending& one) { return one.busy; });
-  return any_busy ? kBusyAgain : kIdle;
+  return any_busy ? kBusyAgain : kRequestIdle;
 }
 
 void Requests::Run() {

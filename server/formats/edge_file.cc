@@ -59,7 +59,7 @@ Uncertainty ReadCovariance(const JsonField& field, UncertaintySource source, int
   return {};
 }
 
-Uncertainty ReadUncertainty(const JsonField& edge) {
+Uncertainty ReadGivenUncertainty(const JsonField& edge) {
   const auto information = edge.Find("information");
   const auto covariance = edge.Find("covariance");
   if (information.has_value() == covariance.has_value()) {
@@ -97,7 +97,7 @@ Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot) {
   edge.frame_a = ReadId<SensorId>(field.At("frame_a"));
   edge.frame_b = ReadId<SensorId>(field.At("frame_b"));
   edge.T_a_b = ReadMeasuredPose(field.At("T_a_b"));
-  edge.uncertainty = ReadUncertainty(field);
+  edge.uncertainty = ReadGivenUncertainty(field);
   const auto method = field.Find("method");
   edge.method = method ? ReadMethod(*method) : "given";
   edge.state = EdgeState::kGood;

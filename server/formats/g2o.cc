@@ -13,7 +13,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr double kUnitTolerance = 1e-3;
+constexpr double kG2oUnitTolerance = 1e-3;
 
 Vector6d HalfAngles() {
   Vector6d D;
@@ -82,7 +82,7 @@ Result<Se3> PoseFrom(const Line& line, const double* numbers) {
   Se3 T;
   T.p_m = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
   T.q.coeffs() = Eigen::Vector4d(numbers[3], numbers[4], numbers[5], numbers[6]);
-  if (const double norm = T.q.norm(); !(std::abs(norm - 1.0) <= kUnitTolerance))
+  if (const double norm = T.q.norm(); !(std::abs(norm - 1.0) <= kG2oUnitTolerance))
     return line.Refuse("the quaternion has length " + std::to_string(norm) + ", not 1",
                        "Normalise the quaternion; the order is qx qy qz qw.");
   if (const Status near = CheckPlausible(T.p_m); !near) return line.Refuse(near.error().what, near.error().cure);

@@ -18,7 +18,7 @@ using limits::Limits;
 using limits::Setting;
 
 constexpr std::size_t kBytesMax = 64 << 10;
-constexpr const char* kCure = "docs/limits.md lists every limit and its range.";
+constexpr const char* kLimitsCure = "docs/limits.md lists every limit and its range.";
 constexpr std::array<std::pair<std::string_view, int>, 3> kUnits = {{{"KiB", 10}, {"MiB", 20}, {"GiB", 30}}};
 
 bool IsOfBytes(const Setting& setting) { return setting.name.ends_with("_bytes"); }
@@ -50,7 +50,8 @@ Result<const Setting*> Find(std::string_view name) {
   if (found != all.end()) return &*found;
   std::vector<std::string_view> names;
   for (const Setting& one : all) names.push_back(one.name);
-  return Fail(ErrorCode::kInvalidInput, "limit " + Quoted(name) + " is not known; " + DidYouMean(name, names), kCure);
+  return Fail(ErrorCode::kInvalidInput, "limit " + Quoted(name) + " is not known; " + DidYouMean(name, names),
+              kLimitsCure);
 }
 
 Status Set(std::string_view name, std::string_view text, Limits& limits) {
@@ -60,7 +61,7 @@ Status Set(std::string_view name, std::string_view text, Limits& limits) {
     return Fail(ErrorCode::kInvalidInput,
                 "limit " + std::string(name) + " must be a whole number from " + std::to_string(setting->least) +
                     " to " + std::to_string(setting->ceiling) + ", not " + Quoted(text),
-                kCure);
+                kLimitsCure);
   limits.*setting->value = *value;
   return {};
 }
@@ -68,7 +69,7 @@ Status Set(std::string_view name, std::string_view text, Limits& limits) {
 }  // namespace
 
 Result<Limits> ReadLimits(std::string_view yaml, const std::string& name, const Limits& limits) {
-  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(yaml, name, kCure, kBytesMax));
+  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(yaml, name, kLimitsCure, kBytesMax));
   Limits changed = limits;
   if (tree->root.kind == YamlNode::Kind::kNull) return changed;  // comments only
   for (const YamlField& member : YamlField(*tree).Members()) {

@@ -7,7 +7,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr const char* kCure =
+constexpr const char* kPathCure =
     "Payloads are <sensor>/<capture>.png, .jpg or .jpeg of a camera, .pcd, .ply or .bin of a lidar, and "
     "<sensor>/poses.csv of a tracker or pose stream, in lower case.";
 
@@ -28,7 +28,7 @@ std::string_view SuffixOf(std::string_view path) {
 }
 
 Result<Payload> PayloadAt(std::string_view path) {
-  const auto bad = [&](const std::string& why, const std::string& cure = kCure) {
+  const auto bad = [&](const std::string& why, const std::string& cure = kPathCure) {
     return Fail(ErrorCode::kInvalidInput, "file " + Quoted(path) + ": " + why, cure);
   };
   const std::size_t slash = path.find('/');

@@ -10,7 +10,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr const char* kCutCure = "The file is damaged: copy or save it again.";
+constexpr const char* kDamagedCure = "The file is damaged: copy or save it again.";
 // LZF's longest reference takes 3 bytes and stands for 264.
 constexpr std::size_t kLzfRatioMax = 88;
 
@@ -63,21 +63,21 @@ std::size_t SizeAt(std::string_view body, std::size_t offset_bytes) {
 Status CheckCompressed(const CloudTable& table, std::string_view body) {
   constexpr std::size_t kSizesBytes = 8;
   if (body.size() < kSizesBytes)
-    return RefuseCloud(table.file, "ends before the sizes of its compressed body", kCutCure);
+    return RefuseCloud(table.file, "ends before the sizes of its compressed body", kDamagedCure);
   const std::size_t packed = SizeAt(body, 0), plain = SizeAt(body, 4), rest = body.size() - kSizesBytes;
   if (packed > rest)
     return RefuseCloud(table.file,
                        "its compressed body has " + std::to_string(rest) + " of " + std::to_string(packed) + " bytes",
-                       kCutCure);
+                       kDamagedCure);
   if (plain != table.points * table.point_bytes)
     return RefuseCloud(table.file,
                        "its compressed body claims to hold " + std::to_string(plain) + " bytes, but its " +
                            std::to_string(table.points) + " points take " +
                            std::to_string(table.points * table.point_bytes),
-                       kCutCure);
+                       kDamagedCure);
   if (plain > static_cast<std::size_t>(limits::kPayloadBytesMax) || plain > packed * kLzfRatioMax)
     return RefuseCloud(table.file, std::to_string(packed) + " compressed bytes cannot hold " + std::to_string(plain),
-                       kCutCure);
+                       kDamagedCure);
   return {};
 }
 
@@ -87,7 +87,7 @@ Result<Cloud> CloudOfCompressed(const CloudTable& table, std::string_view body) 
   std::vector<std::byte> plain(SizeAt(body, 4));
   const unsigned size =
       lzf_decompress(body.data() + 8, static_cast<unsigned>(packed), plain.data(), static_cast<unsigned>(plain.size()));
-  if (size != plain.size()) return RefuseCloud(table.file, "its compressed body cannot be unpacked", kCutCure);
+  if (size != plain.size()) return RefuseCloud(table.file, "its compressed body cannot be unpacked", kDamagedCure);
   return CloudOfBinary(table, plain, ByteOrder::kLittle);
 }
 

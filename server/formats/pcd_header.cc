@@ -13,7 +13,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-constexpr const char* kCure = "Mend the header, or save the cloud again as PCD 0.7.";
+constexpr const char* kPcdCure = "Mend the header, or save the cloud again as PCD 0.7.";
 constexpr std::array<std::string_view, 6> kVersions = {"0.7", ".7", "0.6", ".6", "0.5", ".5"};
 constexpr std::array<std::string_view, 10> kKeys = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
                                                     "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
@@ -58,7 +58,9 @@ class Reader {
 
  private:
   static std::size_t TextBytes(std::string_view bytes) { return std::min(bytes.size(), limits::kCloudHeaderBytesMax); }
-  [[nodiscard]] tl::unexpected<Error> Refuse(const std::string& what) const { return RefuseCloud(name_, what, kCure); }
+  [[nodiscard]] tl::unexpected<Error> Refuse(const std::string& what) const {
+    return RefuseCloud(name_, what, kPcdCure);
+  }
 
   Status TakeLine(std::string_view line, std::size_t number) {
     const std::string at = "line " + std::to_string(number) + ": ";

@@ -12,7 +12,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr const char* kCure = "Mend the header, or save the cloud again as PLY 1.0.";
+constexpr const char* kPlyCure = "Mend the header, or save the cloud again as PLY 1.0.";
 constexpr const char* kListCure = "Save the points alone, with scalar properties.";
 
 struct Property {
@@ -61,17 +61,18 @@ class HeaderReader {
   Result<PlyHeader> Read(std::string_view bytes) {
     const std::string_view head = bytes.substr(0, limits::kCloudHeaderBytesMax);
     TextLines lines(head);
-    if (lines.Next() != "ply") return RefuseCloud(name_, "does not begin with the line \"ply\"", kCure);
+    if (lines.Next() != "ply") return RefuseCloud(name_, "does not begin with the line \"ply\"", kPlyCure);
     for (bool ended = false; !ended;) {
       if (lines.AtEnd())
-        return RefuseCloud(
-            name_, "its header has no end_header line in its first " + std::to_string(head.size()) + " bytes", kCure);
+        return RefuseCloud(name_,
+                           "its header has no end_header line in its first " + std::to_string(head.size()) + " bytes",
+                           kPlyCure);
       const auto words = WordsOf(lines.Next());
       line_ = lines.line();
       ended = words.size() == 1 && words[0] == "end_header";
       if (!ended) RIGCAL_TRY(TakeLine(words));
     }
-    if (!header_.body) return RefuseCloud(name_, "its header has no format line", kCure);
+    if (!header_.body) return RefuseCloud(name_, "its header has no format line", kPlyCure);
     header_.body_offset_bytes = head.size() - lines.rest().size();
     header_.body_line = lines.line() + 1;
     return std::move(header_);
@@ -79,7 +80,7 @@ class HeaderReader {
 
  private:
   [[nodiscard]] tl::unexpected<Error> Refuse(const std::string& what) const {
-    return RefuseCloud(name_, "line " + std::to_string(line_) + ": " + what, kCure);
+    return RefuseCloud(name_, "line " + std::to_string(line_) + ": " + what, kPlyCure);
   }
 
   Status TakeLine(const std::vector<std::string_view>& words) {

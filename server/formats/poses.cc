@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::string_view kTrackerHeader = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw";
 constexpr std::string_view kStreamHeader = "stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw";
-constexpr const char* kCure = "Mend the line; docs/session-format.md describes poses.csv.";
-constexpr double kUnitTolerance = 1e-3;                           // of quaternions with few digits
+constexpr const char* kPosesCure = "Mend the line; docs/session-format.md describes poses.csv.";
+constexpr double kPosesUnitTolerance = 1e-3;                      // of quaternions with few digits
 constexpr std::int64_t kStampMax_ns = 4'000'000'000'000'000'000;  // differences of two clocks stay in range
 constexpr std::size_t kNumbers = 7;
 
@@ -26,7 +26,7 @@ struct Place {
   const std::string& name;
   std::size_t line;
 
-  [[nodiscard]] tl::unexpected<Error> Refuse(const std::string& what, const std::string& cure = kCure) const {
+  [[nodiscard]] tl::unexpected<Error> Refuse(const std::string& what, const std::string& cure = kPosesCure) const {
     return Fail(ErrorCode::kInvalidInput, name + " line " + std::to_string(line) + ": " + what, cure);
   }
 };
@@ -64,7 +64,7 @@ Result<Se3> PoseOf(const std::array<double, kNumbers>& values, const Place& plac
   Se3 T;
   T.p_m = {values[0], values[1], values[2]};
   T.q = Eigen::Quaterniond(values[6], values[3], values[4], values[5]);
-  if (!(std::abs(T.q.norm() - 1) <= kUnitTolerance))
+  if (!(std::abs(T.q.norm() - 1) <= kPosesUnitTolerance))
     return place.Refuse("the quaternion has the length " + std::to_string(T.q.norm()) + ", not 1",
                         "Give qx,qy,qz,qw of a unit quaternion, the scalar last.");
   if (const Status near = CheckPlausible(T.p_m); !near) return place.Refuse(near.error().what, near.error().cure);

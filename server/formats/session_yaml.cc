@@ -8,7 +8,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr const char* kCure = "Mend the file; docs/session-format.md has a complete example.";
+constexpr const char* kYamlCure = "Mend the file; docs/session-format.md has a complete example.";
 constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
 
 // A key is printable, but may be a whole file long.
@@ -210,7 +210,7 @@ YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
 }  // namespace
 
 Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& name) {
-  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(text, name, kCure, limits::kSessionYamlBytesMax));
+  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(text, name, kYamlCure, limits::kSessionYamlBytesMax));
   const YamlField root(*tree);
   SessionHeader header = ReadHeader(root);
   if (tree->error) return Fail(*tree->error);

@@ -14,7 +14,7 @@
 namespace rigcal::pipeline {
 namespace {
 
-constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr const char* kHtmlType = "text/html; charset=utf-8";
 constexpr std::size_t kTrendRevisionsMax = 24, kTrendBytesMax = 64u << 20, kTrendSensorsMax = 60;
 constexpr std::size_t kPictureBytesMax = 64u << 20;
 
@@ -56,7 +56,7 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
   for (const auto& session : sessions) input.sessions.push_back(SessionRowOf(session));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.revisions.size()));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
-  return PageText{std::move(body), kHtml};
+  return PageText{std::move(body), kHtmlType};
 }
 
 // The newest revisions, as many as stay within bounds.
@@ -89,7 +89,7 @@ Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot,
   input.before = {first.summary.number, first.document};
   input.now = {second.summary.number, second.document};
   RIGCAL_ASSIGN(std::string body, report::RenderCompare(input));
-  return PageText{std::move(body), kHtml};
+  return PageText{std::move(body), kHtmlType};
 }
 
 Result<formats::SessionAnswer> SessionOf(const AnswerContext& context, const RobotId& robot, const std::string& name) {
@@ -108,7 +108,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(std::string body, report::RenderSession(input));
-  return PageText{std::move(body), kHtml};
+  return PageText{std::move(body), kHtmlType};
 }
 
 // Only pictures that an edge of this session names: the blobs of others are not handed out.

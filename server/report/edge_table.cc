@@ -37,7 +37,7 @@ void FillTest(Dictionary& good, const ReportInput& input, const EdgeId& edge) {
   if (found->second.statistic > found->second.limit) test->ShowSection("BEYOND");
 }
 
-void FillInfluence(Dictionary& good, const ReportInput& input, const Edge& edge) {
+void FillInfluenceCell(Dictionary& good, const ReportInput& input, const Edge& edge) {
   const auto blocks = input.blocks.find(edge.id);
   if (blocks == input.blocks.end() || blocks->second.empty()) return good.ShowSection("NO_INFLUENCE");
   const Influence largest = LargestInfluence(blocks->second, edge.uncertainty);
@@ -70,7 +70,7 @@ void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown)
   good->SetValue("S_DEG", ThreeSigmas(edge.uncertainty, tangent::kRotation));
   good->SetValue("S_DEG_KEY", SigmaKey(edge.uncertainty, tangent::kRotation));
   good->SetValue("SOURCE", NameOf(edge.uncertainty.source));
-  FillInfluence(*good, input, edge);
+  FillInfluenceCell(*good, input, edge);
   FillWithout(*good, input.revision.solution.influences, edge.id);
 }
 
