@@ -6,13 +6,16 @@ rigcal_test(graph_test
           unit/graph_of_test.cc unit/graph_g2o_test.cc unit/graph_data_test.cc unit/graph_live_test.cc
   DEPS rigcal_graph rigcal_formats)
 
+# Ceres's templates are compiled once for both of its tests.
+rigcal_library(graph_ceres SOURCES unit/graph_ceres.cc DEPS rigcal_graph Ceres::ceres)
+
 rigcal_test(graph_numbers_test
   SOURCES unit/graph_numbers_test.cc
-  DEPS rigcal_graph rigcal_formats Ceres::ceres)
+  DEPS rigcal_graph rigcal_formats graph_ceres)
 
 rigcal_test(graph_honesty_test
   SOURCES unit/graph_jackknife_test.cc unit/graph_suspects_test.cc unit/graph_insight_test.cc
   DEPS rigcal_graph rigcal_formats)
 rigcal_test(graph_property_test
   SOURCES unit/graph_property_test.cc
-  DEPS rigcal_graph rigcal_formats Ceres::ceres)
+  DEPS rigcal_graph rigcal_formats graph_ceres)
