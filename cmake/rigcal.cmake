@@ -1,7 +1,8 @@
-# rigcal_library(NAME SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])
+# rigcal_library(NAME SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])   PCH: beyond the headers that all share
 # rigcal_program(NAME SOURCES ... DEPS ...)
 # rigcal_manpage(NAME SECTION)                          build/.../man/NAME.SECTION.gz, from its --help
-# rigcal_test(NAME SOURCES ... DEPS ... [LABELS ...])     one GoogleTest program, one ctest per case
+# rigcal_test(NAME [COMPUTES] SOURCES ... DEPS ... [LABELS ...])   one GoogleTest program, one ctest per case
+#   COMPUTES: spends its time in templates of its own (Eigen, simulation), so it is optimised as the product is
 # rigcal_embed(TARGET NAMESPACE ns FILES ...)             files as string_view constants: "<ns>/embedded.h"
 # rigcal_embed_built(TARGET NAMESPACE ns OUTPUT x.h FILES ...)  the same for large files that the build makes
 
@@ -28,6 +29,15 @@ if(RIGCAL_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link,float-cast-overflow -fno-sanitize-recover=all)
 endif()
 
+# What nearly every file includes. `dev` and `tidy` do without, so that a file still has to include what it uses.
+set(RIGCAL_PCH_HEADERS <algorithm> <array> <chrono> <cmath> <cstdint> <cstdio> <filesystem> <fstream> <functional>
+    <limits> <map> <memory> <numeric> <optional> <random> <set> <span> <sstream> <string> <string_view> <unordered_map>
+    <utility> <vector> <Eigen/Dense> <tl/expected.hpp>)
+option(RIGCAL_PCH "Precompile headers" ON)
+if(RIGCAL_TIDY OR RIGCAL_FUZZ)
+  set(RIGCAL_PCH OFF)
+endif()
+
 function(rigcal_settings target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${RIGCAL_WARNINGS}>)
@@ -36,16 +46,57 @@ function(rigcal_settings target)
   endif()
 endfunction()
 
+# rigcal_unite(TARGET)   compiles eight of its files as one: headers and templates once. What a file keeps to itself
+# then needs a name that no other file of the target has. math, detect, calib, graph and cloud, whose speed is measured,
+# are compiled file by file.
+option(RIGCAL_UNITY "Compile several files as one" ON)
+function(rigcal_unite target)
+  if(RIGCAL_UNITY AND NOT RIGCAL_TIDY AND NOT RIGCAL_FUZZ)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
+# rigcal_precompile(TARGET FROM owner)            uses the precompiled header of `owner`, which has the same flags
+# rigcal_precompile(TARGET HEADERS <header> ...)  has its own
+function(rigcal_precompile target)
+  cmake_parse_arguments(arg "" "FROM" "HEADERS" ${ARGN})
+  if(NOT RIGCAL_PCH)
+    return()
+  endif()
+  if(arg_FROM)
+    target_precompile_headers(${target} REUSE_FROM ${arg_FROM})
+  else()
+    target_precompile_headers(${target} PRIVATE ${arg_HEADERS})
+  endif()
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -fpch-preprocess)  # or ccache cannot see into it
+  endif()
+endfunction()
+
+# An owner of a precompiled header that many targets share: RIGCAL_PCH_HEADERS and those named.
+function(rigcal_precompiled name)
+  cmake_parse_arguments(arg "" "" "HEADERS;OPTIONS;DEPS" ${ARGN})
+  if(RIGCAL_PCH)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cc CONTENT "" @ONLY)
+    add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cc)
+    target_link_libraries(${name} PRIVATE Eigen3::Eigen ${arg_DEPS})
+    rigcal_settings(${name})
+    rigcal_precompile(${name} HEADERS ${RIGCAL_PCH_HEADERS} ${arg_HEADERS})
+    target_compile_options(${name} PRIVATE ${arg_OPTIONS})
+  endif()
+endfunction()
+
+rigcal_precompiled(rigcal_pch)
+
 function(rigcal_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPS;PCH" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
   target_link_libraries(${name} PUBLIC ${arg_DEPS})
   rigcal_settings(${name})
-  if(arg_PCH AND NOT RIGCAL_TIDY AND NOT RIGCAL_FUZZ)
-    target_precompile_headers(${name} PRIVATE ${arg_PCH})
-    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_compile_options(${name} PRIVATE -fpch-preprocess)
-    endif()
+  if(arg_PCH)
+    rigcal_precompile(${name} HEADERS ${RIGCAL_PCH_HEADERS} ${arg_PCH})
+  else()
+    rigcal_precompile(${name} FROM rigcal_pch)
   endif()
 endfunction()
 
@@ -54,6 +105,7 @@ function(rigcal_program name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_DEPS})
   rigcal_settings(${name})
+  rigcal_precompile(${name} FROM rigcal_pch)
 endfunction()
 
 function(rigcal_manpage name section)
@@ -67,13 +119,19 @@ function(rigcal_manpage name section)
 endfunction()
 
 function(rigcal_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES" "" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT arg_LABELS)
     set(arg_LABELS unit)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_DEPS} GTest::gmock_main)
   rigcal_settings(${name})
+  if(arg_COMPUTES)
+    rigcal_precompile(${name} FROM rigcal_computing_test_pch)
+  else()
+    rigcal_precompile(${name} FROM rigcal_test_pch)
+    target_compile_options(${name} PRIVATE ${RIGCAL_TEST_OPTIONS})
+  endif()
   target_compile_definitions(${name} PRIVATE RIGCAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 ENVIRONMENT "RIGCAL_DDS_LOCAL=1"
                         LABELS "${arg_LABELS}")

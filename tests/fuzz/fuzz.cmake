@@ -6,6 +6,7 @@ if(RIGCAL_FUZZ)
 else()
   add_library(rigcal_replay OBJECT fuzz/replay_main.cc)
   rigcal_settings(rigcal_replay)
+  rigcal_precompile(rigcal_replay FROM rigcal_pch)
 endif()
 
 function(rigcal_fuzz name)

@@ -1,23 +1,23 @@
-rigcal_test(calib_test
+rigcal_test(calib_test COMPUTES
   SOURCES unit/calib_derivative_test.cc unit/calib_estimate_test.cc unit/calib_diagnosis_test.cc unit/calib_start_test.cc
           unit/calib_projection_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
-rigcal_test(calib_models_test
+rigcal_test(calib_models_test COMPUTES
   SOURCES unit/calib_models_test.cc unit/calib_symmetry_test.cc unit/calib_camera_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
-rigcal_test(calib_given_intrinsics_test
+rigcal_test(calib_given_intrinsics_test COMPUTES
   SOURCES unit/calib_given_intrinsics_test.cc unit/calib_virtual_pair.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)
-rigcal_test(calib_statistics_test
+rigcal_test(calib_statistics_test COMPUTES
   SOURCES unit/calib_statistics_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
-rigcal_test(calib_real_test
+rigcal_test(calib_real_test COMPUTES
   SOURCES unit/calib_real_test.cc unit/calib_fisheye_real_test.cc
   DEPS rigcal_calib rigcal_detect)
 rigcal_program(stereo_measure
   SOURCES bench/stereo_measure.cc
   DEPS rigcal_calib rigcal_detect)
-rigcal_test(calib_lidar_camera_test
+rigcal_test(calib_lidar_camera_test COMPUTES
   SOURCES unit/calib_lidar_camera_test.cc unit/calib_plane_moments_test.cc unit/calib_virtual_lidar.cc
   DEPS rigcal_calib)
 rigcal_program(lidar_camera_measure
@@ -26,7 +26,7 @@ rigcal_program(lidar_camera_measure
 rigcal_program(hand_eye_measure
   SOURCES bench/hand_eye_measure.cc
   DEPS rigcal_calib rigcal_detect rigcal_formats)
-rigcal_test(calib_lidar_lidar_test
+rigcal_test(calib_lidar_lidar_test COMPUTES
   SOURCES unit/calib_lidar_lidar_test.cc unit/calib_lidar_lidar_statistics_test.cc unit/calib_virtual_room.cc
   DEPS rigcal_calib TBB::tbb)
 rigcal_program(lidar_lidar_measure
@@ -35,6 +35,6 @@ rigcal_program(lidar_lidar_measure
 rigcal_program(hand_eye_simulation
   SOURCES bench/hand_eye_simulation.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)
-rigcal_test(calib_hand_eye_test
+rigcal_test(calib_hand_eye_test COMPUTES
   SOURCES unit/calib_hand_eye_test.cc unit/calib_hand_eye_statistics_test.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)

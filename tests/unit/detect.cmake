@@ -1,8 +1,8 @@
-rigcal_test(detect_test
+rigcal_test(detect_test COMPUTES
   SOURCES unit/detect_header_test.cc unit/detect_board_test.cc unit/detect_search_test.cc unit/detect_charuco_test.cc unit/detect_rendering.cc
           unit/detect_symmetric_test.cc unit/detect_tag_grid_test.cc unit/detect_real_test.cc unit/detect_strays_test.cc
   DEPS rigcal_detect)
-rigcal_test(detect_cloud_test
+rigcal_test(detect_cloud_test COMPUTES
   SOURCES unit/detect_cloud_real_test.cc unit/detect_cloud_simulated_test.cc
     unit/detect_cloud_degenerate_test.cc
   DEPS rigcal_detect)
@@ -13,6 +13,7 @@ set(RIGCAL_CALISCOPE_SESSION ${CMAKE_BINARY_DIR}/data/caliscope)
 add_executable(detect_caliscope_test unit/detect_caliscope_test.cc)
 target_link_libraries(detect_caliscope_test PRIVATE rigcal_detect rigcal_formats GTest::gmock_main)
 rigcal_settings(detect_caliscope_test)
+rigcal_precompile(detect_caliscope_test FROM rigcal_computing_test_pch)
 target_compile_definitions(detect_caliscope_test PRIVATE RIGCAL_CALISCOPE="${RIGCAL_CALISCOPE}"
                            RIGCAL_CALISCOPE_SESSION="${RIGCAL_CALISCOPE_SESSION}")
 add_test(NAME detect_caliscope_test COMMAND detect_caliscope_test)
