@@ -1,8 +1,9 @@
 # rigcal_library(NAME SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])   PCH: beyond the headers that all share
 # rigcal_program(NAME SOURCES ... DEPS ...)
 # rigcal_manpage(NAME SECTION)                          build/.../man/NAME.SECTION.gz, from its --help
-# rigcal_test(NAME [COMPUTES] SOURCES ... DEPS ... [LABELS ...])   one GoogleTest program, one ctest per case
+# rigcal_test(NAME [COMPUTES] [WHOLE] SOURCES ... DEPS ... [LABELS ...])   one GoogleTest program, one ctest per case
 #   COMPUTES: spends its time in templates of its own (Eigen, simulation), so it is optimised as the product is
+#   WHOLE: its cases judge one thing that costs much to make: one ctest for all of them
 # rigcal_embed(TARGET NAMESPACE ns FILES ...)             files as string_view constants: "<ns>/embedded.h"
 # rigcal_embed_built(TARGET NAMESPACE ns OUTPUT x.h FILES ...)  the same for large files that the build makes
 
@@ -119,7 +120,7 @@ function(rigcal_manpage name section)
 endfunction()
 
 function(rigcal_test name)
-  cmake_parse_arguments(arg "COMPUTES" "" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES;WHOLE" "" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT arg_LABELS)
     set(arg_LABELS unit)
   endif()
@@ -133,8 +134,13 @@ function(rigcal_test name)
     target_compile_options(${name} PRIVATE ${RIGCAL_TEST_OPTIONS})
   endif()
   target_compile_definitions(${name} PRIVATE RIGCAL_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 ENVIRONMENT "RIGCAL_DDS_LOCAL=1"
-                        LABELS "${arg_LABELS}")
+  if(arg_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 300 ENVIRONMENT "RIGCAL_DDS_LOCAL=1" LABELS "${arg_LABELS}" COST 20)
+  else()
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 ENVIRONMENT "RIGCAL_DDS_LOCAL=1"
+                          LABELS "${arg_LABELS}")
+  endif()
 endfunction()
 
 function(rigcal_embed target)

@@ -4,3 +4,4 @@ foreach(flow pages cloud)
   set_tests_properties(browser.${flow} PROPERTIES LABELS browser TIMEOUT 600 SKIP_RETURN_CODE 77 RESOURCE_LOCK browser
     ENVIRONMENT "RIGCAL_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1;NODE_PATH=${RIGCAL_NODE_MODULES}")
 endforeach()
+set_tests_properties(browser.pages PROPERTIES COST 40)

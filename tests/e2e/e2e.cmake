@@ -5,6 +5,7 @@ foreach(flow edges insight session hand_eye refusals bad_inputs install)
   set_tests_properties(e2e.${flow} PROPERTIES LABELS e2e TIMEOUT 600 SKIP_RETURN_CODE 77
     ENVIRONMENT "RIGCAL_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1;RIGCAL_BUILD=${PROJECT_BINARY_DIR}")
 endforeach()
+set_tests_properties(e2e.bad_inputs PROPERTIES COST 80)  # the longest begins first, also where none was ever run
 
 # What a hostile program in the network may send: see bad_inputs.py.
 rigcal_program(hostile_client SOURCES e2e/hostile_client.cc DEPS rigcal_client rigcal_dds GTest::gtest)

@@ -8,7 +8,7 @@ rigcal_test(calib_models_test COMPUTES
 rigcal_test(calib_given_intrinsics_test COMPUTES
   SOURCES unit/calib_given_intrinsics_test.cc unit/calib_virtual_pair.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)
-rigcal_test(calib_statistics_test COMPUTES
+rigcal_test(calib_statistics_test COMPUTES WHOLE
   SOURCES unit/calib_statistics_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_real_test COMPUTES
