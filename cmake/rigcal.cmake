@@ -48,7 +48,7 @@ function(rigcal_settings target)
 endfunction()
 
 # rigcal_unite(TARGET)   compiles eight of its files as one: headers and templates once. What a file keeps to itself
-# then needs a name that no other file of the target has. math, detect, calib, graph and cloud, whose speed is measured,
+# then needs a name that no other file of the target has. math, detect, calib, graph, cloud and sim, whose speed is measured,
 # are compiled file by file.
 option(RIGCAL_UNITY "Compile several files as one" ON)
 function(rigcal_unite target)
