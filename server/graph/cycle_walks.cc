@@ -72,7 +72,10 @@ WalkStep StepFrom(const Problem& problem, std::size_t constraint, int vertex) {
 class Collector {
  public:
   Collector(const Problem& problem, std::size_t steps_max)
-      : problem_(problem), at_(ConstraintsAt(problem)), steps_left_(steps_max), looks_left_(kLooksPerStep * steps_max) {}
+      : problem_(problem),
+        at_(ConstraintsAt(problem)),
+        steps_left_(steps_max),
+        looks_left_(kLooksPerStep * steps_max) {}
 
   CycleWalks Take() {
     AddLoops();

@@ -101,8 +101,8 @@ class Judge {
     Matrix6d C_independent = Matrix6d::Zero();
     for (std::size_t n = 0; n < walk.size(); ++n) {
       for (const Causes::Part& part : CausesOf(walk[n].constraint)) {
-        const auto same = std::find_if(sums.begin(), sums.end(),
-                                       [&](const Causes::Part& sum) { return sum.source == part.source; });
+        const auto same =
+            std::find_if(sums.begin(), sums.end(), [&](const Causes::Part& sum) { return sum.source == part.source; });
         if (same == sums.end()) {
           sums.push_back({part.source, part.dof, carry[n] * part.d});
         } else {
@@ -164,8 +164,7 @@ class Limits {
     const int dof = cycle.dof > 0.0 ? static_cast<int>(std::min(cycle.dof, kDofMax) + kDofRounding) : -1;
     const auto [at, is_new] = known_.try_emplace({dof, cycle.rank}, 0.0);
     if (!is_new) return at->second;
-    const double limit =
-        dof < 0 ? ChiSquareQuantile(each_, cycle.rank) : HotellingLimit(dof + 1, cycle.rank, each_);
+    const double limit = dof < 0 ? ChiSquareQuantile(each_, cycle.rank) : HotellingLimit(dof + 1, cycle.rank, each_);
     return at->second = std::isfinite(limit) ? limit : 0.0;
   }
 

@@ -6,9 +6,9 @@
 namespace rigcal::graph {
 
 struct CycleOptions {
-  std::size_t steps_max = 5000;  // of all walks together: what a graph of thousands of sensors may cost
-  std::size_t worst_max = 20;     // cycles that are given back
-  double probability = 0.999;     // that all cycles of a graph of good edges close
+  std::size_t steps_max = 3000;  // of all walks together: what a graph of thousands of sensors may cost
+  std::size_t worst_max = 20;    // cycles that are given back
+  double probability = 0.999;    // that all cycles of a graph of good edges close
 };
 
 // The loop of every edge that is not in a spanning tree of fewest hops, then every triangle. Each is judged by the

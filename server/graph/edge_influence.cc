@@ -64,13 +64,13 @@ void FindMostMoved(const std::vector<Ruler>& rulers, const Eigen::VectorXd& move
   }
 }
 
-std::string WhyNot(const Problem& problem, const Graph& graph, const GraphSolution& solution) {
+std::string WhyNot(const Graph& graph, const GraphSolution& solution) {
   if (!solution.converged || solution.poses.size() != graph.sensors.size())
     return "Influence was left out: the graph did not settle.";
-  if (problem.vertex_count <= kInfluenceSensorsMax && problem.constraints.size() <= kInfluenceEdgesMax) return "";
+  if (graph.sensors.size() <= kInfluenceSensorsMax && graph.edges.size() <= kInfluenceEdgesMax) return "";
   return "Influence was left out: it is worked out up to " + std::to_string(kInfluenceSensorsMax) + " sensors and " +
-         std::to_string(kInfluenceEdgesMax) + " edges, and this graph has " + std::to_string(problem.vertex_count) +
-         " and " + std::to_string(problem.constraints.size()) + ".";
+         std::to_string(kInfluenceEdgesMax) + " edges, and this graph has " + std::to_string(graph.sensors.size()) +
+         " and " + std::to_string(graph.edges.size()) + ".";
 }
 
 std::optional<EdgeChecks> ChecksAt(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
@@ -96,9 +96,9 @@ EdgeInfluence InfluenceOf(const Constraint& constraint, const EdgeCheck& check, 
 
 Influences InfluenceOfEdges(const Graph& graph, const GraphSolution& solution) {
   Influences influences;
-  const Problem problem = MakeProblem(graph);
-  influences.why_not = WhyNot(problem, graph, solution);
+  influences.why_not = WhyNot(graph, solution);
   if (!influences.why_not.empty()) return influences;
+  const Problem problem = MakeProblem(graph);
   influences.judged = true;
   if (problem.free_count() == 0) return influences;
   const std::optional<EdgeChecks> checks = ChecksAt(graph, problem, solution);

@@ -6,7 +6,7 @@
 namespace rigcal::graph {
 
 // Work grows with the square of the sensors and with sensors times edges.
-constexpr int kInfluenceSensorsMax = 150;
+constexpr std::size_t kInfluenceSensorsMax = 150;
 constexpr std::size_t kInfluenceEdgesMax = 1500;
 
 // Sigmas are those that `solution` states. Not judged, with a sentence why, beyond the limits above or without

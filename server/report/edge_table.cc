@@ -12,8 +12,7 @@ namespace {
 
 std::string ThreeNumbers(const Eigen::Vector3d& values, double scale) {
   std::string text;
-  for (int axis = 0; axis < 3; ++axis)
-    text += (text.empty() ? "" : " / ") + Significant(values(axis) * scale, 2);
+  for (int axis = 0; axis < 3; ++axis) text += (text.empty() ? "" : " / ") + Significant(values(axis) * scale, 2);
   return text;
 }
 

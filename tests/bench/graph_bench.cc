@@ -246,7 +246,8 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Times the graph engine on a .g2o file");
   app.add_option("--g2o", arguments.g2o, "The file");
-  app.add_option("--mode", arguments.mode)->check(CLI::IsMember({"batch", "marginals", "incremental", "honest", "insight"}));
+  app.add_option("--mode", arguments.mode)
+      ->check(CLI::IsMember({"batch", "marginals", "incremental", "honest", "insight"}));
   app.add_option("--order", arguments.order)->check(CLI::IsMember({"file", "shuffled"}));
   app.add_option("--synthetic", arguments.synthetic, "VERTICES EDGES: a random graph instead (5 mm, 0.3 deg)")
       ->expected(2);

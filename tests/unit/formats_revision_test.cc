@@ -74,7 +74,8 @@ TEST(RevisionDocument, SaysWhatTheSolutionRestsOn) {
 
 // Documents of earlier versions are kept for ever.
 TEST(RevisionDocument, ReadsOneWithoutInfluenceAndCycles) {
-  const std::string old = samples::FileText(std::string(RIGCAL_SOURCE_DIR) + "/tests/golden/revision-without-insight.json");
+  const std::string old =
+      samples::FileText(std::string(RIGCAL_SOURCE_DIR) + "/tests/golden/revision-without-insight.json");
   const auto read = ReadRevisionDocument(old);
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_EQ(read->edges.size(), 3u);

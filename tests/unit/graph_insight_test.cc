@@ -158,7 +158,8 @@ TEST(Cycles, EveryFailingLoopHoldsTheWrongEdge) {
   wrong.T_a_b = wrong.T_a_b * Se3::Exp(0.1 * Vector6d::Ones());
   const Cycles cycles = JudgeCycles(rig.graph, {}, All());
   EXPECT_EQ(cycles.failing, 4);  // triangles of an edge of a complete graph of 6
-  for (const CycleResidual& cycle : cycles.worst) EXPECT_EQ(cycle.fails(), testing::Value(cycle.edges, testing::Contains(wrong.id)));
+  for (const CycleResidual& cycle : cycles.worst)
+    EXPECT_EQ(cycle.fails(), testing::Value(cycle.edges, testing::Contains(wrong.id)));
   for (int k = 0; k < 4; ++k) EXPECT_TRUE(cycles.worst[static_cast<std::size_t>(k)].fails());
 }
 
@@ -204,7 +205,8 @@ SharedSession MakeSharedSession(int m, unsigned seed) {
     std::vector<Vector6d> errors, d;
     Vector6d mean = Vector6d::Zero();
     for (std::size_t i = 0; i < static_cast<std::size_t>(m); ++i) {
-      errors.push_back(of_camera[b][i] - Adjoint(truth.Inverse()) * of_camera[a][i] + RandomVector(random, 0.001, 0.001));
+      errors.push_back(of_camera[b][i] - Adjoint(truth.Inverse()) * of_camera[a][i] +
+                       RandomVector(random, 0.001, 0.001));
       mean += errors.back() / m;
     }
     for (int i = 0; i < m; ++i) {

@@ -32,9 +32,11 @@ TEST(ReportLoops, WorstFirstAndFailingOnesMarked) {
   const std::string page = PageOf(input);
   EXPECT_THAT(page, HasSubstr("9 loops worked out, 8 tested: 1 does not close."));
   EXPECT_THAT(page, HasSubstr("Shown are the 3 that close worst"));
-  EXPECT_THAT(page, HasSubstr("<tr><th scope=\"row\">front_left \xE2\x86\x92 lidar \xE2\x86\x92 rear \xE2\x86\x92 front_left</th>"
-                              "<td>20.0</td><td>2.00</td><td><span class=\"beyond\">91.0 (36.1)</span></td>"
-                              "<td class=\"text\"><span class=\"badge fail\">does not close</span></td></tr>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("<tr><th scope=\"row\">front_left \xE2\x86\x92 lidar \xE2\x86\x92 rear \xE2\x86\x92 front_left</th>"
+                "<td>20.0</td><td>2.00</td><td><span class=\"beyond\">91.0 (36.1)</span></td>"
+                "<td class=\"text\"><span class=\"badge fail\">does not close</span></td></tr>"));
   EXPECT_THAT(page, HasSubstr("<td><span>9.00 (36.1)</span></td><td class=\"text\"><span class=\"badge pass\">closes"));
   EXPECT_THAT(page, HasSubstr("an edge does not see every direction"));
 }
@@ -63,7 +65,8 @@ TEST(ReportInfluenceColumn, WhatTheSolutionWithoutTheEdgeWouldBe) {
   EdgeInfluence moved{input.revision.edges[0].id, true, 9.0, SensorId("rear"), Vector6d::Zero(), 4.25};
   moved.move << 0.0, 0.003, 0.004, 0.0349065850398866, 0.0, 0.0;
   influences.edges = {moved, {input.revision.edges[1].id, false, 0.0, SensorId(), Vector6d::Zero(), 0.0}};
-  std::sort(influences.edges.begin(), influences.edges.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; });
+  std::sort(influences.edges.begin(), influences.edges.end(),
+            [](const auto& a, const auto& b) { return a.edge < b.edge; });
   const std::string page = PageOf(input);
   EXPECT_THAT(page, HasSubstr("<td data-v=\"4.25\">5.0 / 2.0 / 4.25 <span class=\"soft\">rear</span></td>"));
   EXPECT_THAT(page, HasSubstr("<td data-v=\"\" class=\"soft\">nothing checks it</td>"));
