@@ -1,6 +1,9 @@
 #include "server/calib/camera_diagnoses.h"
 
+#include <cmath>
 #include <cstdio>
+
+#include "server/calib/given_intrinsics.h"
 
 namespace rigcal::calib {
 namespace {
@@ -9,6 +12,13 @@ std::string Number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f", value);
   return text;
+}
+
+constexpr double kDisagreeingSigmas = 6.0;
+
+std::string NameOfIntrinsic(CameraModel model, int idx) {
+  static const char* const kFirst[] = {"fx", "fy", "cx", "cy"};
+  return idx < 4 ? kFirst[idx] : DistortionNames(model)[static_cast<std::size_t>(idx) - 4];
 }
 
 }  // namespace
@@ -41,6 +51,23 @@ Diagnosis DistortionOpen(const SensorId& camera, CameraModel model, const std::s
       "The views of " + camera.str() + " do not tell the distortion " + name + " of the model " + NameOf(model) + ".",
       std::string("Take captures with the board in all corners of the picture") +
           (model == CameraModel::kPinholeRational ? ", or use the model pinhole_radtan." : ".")};
+}
+
+std::optional<Diagnosis> WhyGivenDisagree(const Sensor& camera, const CameraIntrinsics& refined) {
+  double most = 0;
+  int worst = 0;
+  for (const int i : RefinedOf(camera)) {
+    const double away = VectorOf(refined)[i] - VectorOf(*camera.intrinsics)[i];
+    const double sigmas = std::abs(away) / (*camera.intrinsics_sigma)[static_cast<std::size_t>(i)];
+    if (sigmas > most) most = sigmas, worst = i;
+  }
+  if (!(most > kDisagreeingSigmas)) return std::nullopt;
+  return Diagnosis{
+      "given_intrinsics_disagree",
+      "The pictures of " + camera.id.str() + " put " + NameOfIntrinsic(refined.model, worst) + " " + Number(most) +
+          " sigmas from where it was given.",
+      "Calibrate this camera anew, give a larger 'sigma' with its intrinsics in session.yaml, or leave them "
+      "out to have them estimated."};
 }
 
 Diagnosis CameraError(const SensorId& camera, const std::string& code, const Error& error) {

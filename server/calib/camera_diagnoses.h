@@ -1,6 +1,9 @@
 // The sentences about one camera by itself.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "server/base/result.h"
 #include "server/calib/intrinsics.h"
 
@@ -14,5 +17,8 @@ namespace rigcal::calib {
 // The distortion of an estimated camera is not told by its views. `name` as in DistortionNames().
 [[nodiscard]] Diagnosis DistortionOpen(const SensorId& camera, CameraModel model, const std::string& name);
 [[nodiscard]] Diagnosis CameraError(const SensorId& camera, const std::string& code, const Error& error);
+
+// A note on a good edge: the views put refined intrinsics further than six sigmas from where they were given.
+[[nodiscard]] std::optional<Diagnosis> WhyGivenDisagree(const Sensor& camera, const CameraIntrinsics& refined);
 
 }  // namespace rigcal::calib

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/camera_diagnoses.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/estimation.h"
 #include "server/calib/selection.h"
@@ -60,6 +61,10 @@ void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagno
     if (camera->intrinsics && !camera->intrinsics_sigma) notes.push_back(IntrinsicsTakenAsExact(camera->id));
 }
 
+void AddDisagreement(const Sensor& camera, const CameraIntrinsics& refined, std::vector<Diagnosis>& notes) {
+  if (auto why = WhyGivenDisagree(camera, refined)) notes.push_back(std::move(*why));
+}
+
 void AddIntrinsicsFigures(const std::string& camera, const CameraIntrinsics& intrinsics, Edge& edge) {
   edge.figures["fx_" + camera + "_px"] = intrinsics.fx_px;
   edge.figures["fy_" + camera + "_px"] = intrinsics.fy_px;
@@ -113,6 +118,8 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   edge.diagnoses = std::move(notes);
   const std::size_t both = CountBoth(problem, estimate);
   AddNotes(problem, both, edge.diagnoses);
+  AddDisagreement(problem.camera_a, estimate.intrinsics_a, edge.diagnoses);
+  AddDisagreement(problem.camera_b, estimate.intrinsics_b, edge.diagnoses);
   AddFigures(estimate, both, edge);
   return edge;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/camera_diagnoses.h"
 #include "server/calib/hand_eye_diagnoses.h"
 #include "server/calib/hand_eye_work.h"
 #include "server/calib/stream_motion.h"
@@ -56,12 +57,20 @@ HandEyeEstimate EstimateOf(const HandEyeWork& work) {
   return estimate;
 }
 
+void AddDisagreement(const HandEyeSide& side, const std::optional<CameraMotion>& camera,
+                     std::vector<Diagnosis>& notes) {
+  if (!camera) return;
+  if (auto why = WhyGivenDisagree(side.sensor, camera->camera.intrinsics)) notes.push_back(std::move(*why));
+}
+
 OrDiagnosis<HandEyeResult> ResultOf(const HandEyeProblem& problem, const HandEyeWork& work,
                                     const std::vector<std::size_t>& block_of_pose) {
   auto uncertainty = JackknifeMotion(problem, work, block_of_pose);
   if (!uncertainty) return tl::unexpected(MotionNotSolvable(problem, uncertainty.error()));
   HandEyeResult result{EstimateOf(work), std::move(uncertainty->X), OpenDirections(problem, work.reach)};
   if (work.estimates_offset) result.estimate.offset_sigma_s = uncertainty->offset_sigma_s;
+  AddDisagreement(problem.a, work.camera_a, result.notes);
+  AddDisagreement(problem.b, work.camera_b, result.notes);
   return result;
 }
 

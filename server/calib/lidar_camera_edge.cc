@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/calib/camera_diagnoses.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_camera_diagnoses.h"
@@ -105,6 +106,7 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
     notes.push_back(RangeTakenAsExact(problem));
   if (problem.camera.intrinsics && !problem.camera.intrinsics_sigma)
     notes.push_back(IntrinsicsTakenAsExact(problem.camera.id));
+  if (auto why = WhyGivenDisagree(problem.camera, estimate.camera.intrinsics)) notes.push_back(std::move(*why));
   AddMissing(problem, notes);
 }
 

@@ -171,6 +171,26 @@ TEST(GivenIntrinsics, VariantsAreWhatEstimatingAgainGives) {
   }
 }
 
+TEST(GivenIntrinsics, ThatThePicturesContradictAreNamed) {
+  const auto told = [](const std::vector<Diagnosis>& notes) {
+    return testing::Value(notes, testing::Contains(testing::Field(&Diagnosis::code, "given_intrinsics_disagree")));
+  };
+  StereoProblem pair = GivenPair(kSigma, 8);
+  EXPECT_FALSE(told(EstimateEdge(pair).diagnoses));
+  pair.camera_b.intrinsics->cx_px += 30;
+  const Edge edge = EstimateEdge(pair);
+  ASSERT_TRUE(told(edge.diagnoses));
+  EXPECT_THAT(edge.diagnoses.back().what, testing::HasSubstr("front_right put cx"));
+  const VirtualView view;
+  HandEyeProblem moving = TwoCameras(Looking(view, 30, 0.25, 0.15, 8), view, true, 8);
+  moving.a.sensor.intrinsics_sigma = kSigma;
+  EXPECT_FALSE(told(EstimateHandEyeEdge(moving).diagnoses));
+  moving.a.sensor.intrinsics->fx_px += 30;  // and fy not: the views tell their ratio
+  const Edge contradicted = EstimateHandEyeEdge(moving);
+  ASSERT_EQ(contradicted.state, EdgeState::kGood) << contradicted.diagnoses.front().what;
+  EXPECT_TRUE(told(contradicted.diagnoses));
+}
+
 HandEyeProblem GivenCameras(const std::vector<double>& sigma, unsigned seed) {
   const VirtualView view;
   HandEyeProblem problem = TwoCameras(Looking(view, 30, 0.25, 0.15, seed), view, true, seed);
