@@ -1,5 +1,6 @@
 #include "server/calib/lidar_lidar_uncertainty.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
 
@@ -17,13 +18,15 @@ Directions Known(const Directions& unknown) {
   return Q.rightCols(6 - unknown.cols());
 }
 
-// Both methods see the same points and err alike in part, so their difference understates the error: by this factor in
-// simulated rooms.
-constexpr double kMethodVariances = 3.0;
-
-Contribution MethodContribution(const LidarLidarPose& pose) {
-  const Vector6d apart = (pose.ndt.Inverse() * pose.polished).Log();
-  return {"method (NDT against GICP)", kMethodVariances * apart * apart.transpose()};
+// What the two methods disagree by is one draw of an error that all captures share, so that neither the jackknife nor
+// the scatter within the clouds shows it. It arises where the pose rests on the surfaces, as chance does, and so has
+// the shape of the covariance by chance, along the columns of B. The scale of a covariance of known shape is, of one
+// draw, its mean square over the directions; the draw's own direction alone would leave the five others without any.
+Contribution MethodContribution(const LidarLidarPose& pose, const Directions& B, const Matrix6d& C) {
+  const Eigen::MatrixXd along = B.transpose() * C * B;
+  const Eigen::VectorXd apart = B.transpose() * (pose.ndt.Inverse() * pose.polished).Log();
+  const double scale = apart.dot(along.ldlt().solve(apart)) / static_cast<double>(B.cols());
+  return {"method (NDT against GICP)", scale * Symmetrized(B * along * B.transpose())};
 }
 
 Result<std::vector<Contribution>> RangeContributions(const LidarLidarProblem& problem, const Se3& T_map_moving,
@@ -62,7 +65,7 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
   const bool jackknife = m >= kCloudsForJackknife;
   Matrix6d C = jackknife ? ShrinkTowardsModel(JackknifeCovariance(d), C_model, static_cast<int>(m)) : C_model;
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
-  contributions.push_back(MethodContribution(pose));
+  contributions.push_back(MethodContribution(pose, B, C));
   for (const Contribution& contribution : contributions) C += contribution.covariance;
   Matrix6d Omega = Symmetrized(B * (B.transpose() * C * B).inverse() * B.transpose());
   if (!Omega.allFinite()) return failed();
