@@ -8,3 +8,7 @@ rigcal_program(board_speed_measure SOURCES bench/board_speed_measure.cc bench/bo
 rigcal_program(cloud_measure SOURCES bench/cloud_measure.cc DEPS rigcal_cloud)
 rigcal_program(page_store SOURCES bench/page_store.cc DEPS rigcal_pipeline rigcal_http)
 rigcal_program(rig_measure SOURCES bench/rig_measure.cc bench/rig_edges.cc DEPS rigcal_sim rigcal_calib rigcal_graph)
+rigcal_program(rig_coverage
+  SOURCES bench/rig_coverage_main.cc bench/rig_coverage.cc bench/rig_motions.cc bench/rig_given.cc bench/rig_turned.cc bench/rig_bytes.cc
+          bench/rig_case.cc bench/feature_session.cc
+  DEPS rigcal_sim rigcal_calib rigcal_graph TBB::tbb)

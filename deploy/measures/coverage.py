@@ -1,0 +1,97 @@
+"""The virtual MARS Mapper without rendering, hundreds of visits: whether what is claimed of its sensors holds."""
+import json
+import os
+import pathlib
+
+from .measure import at_least, at_most, equal, info, within
+from .server import Server
+
+
+def coverage(context):
+    seeds = 200 if context.full else 6
+    result = context.run_json("rig_coverage", "coverage", seeds, timeout=20000)["coverage"]
+    yield equal("coverage_failed_edges", result["failed_edges"], 0)
+    for name, sensor in result["sensors"].items():
+        covered = 100 * sensor["covered_ratio"]
+        # Of few visits the part that is covered says little.
+        yield within("covered_" + name, covered, 95, 3, "%") if context.full else info("covered_" + name, covered, "%")
+        yield info("mean_t2_" + name, sensor["mean_t2"])
+    sensors = result["sensors"].values()
+    count = sum(sensor["count"] for sensor in sensors)
+    yield equal("coverage_poses", count, 11 * seeds)
+    yield at_least("covered_of_all", 100 * sum(s["covered_ratio"] * s["count"] for s in sensors) / count, 92 if context.full else 85, "%")
+    for name, method in result["methods"].items():
+        yield info("edges_mean_t2_" + name, method["mean_t2"])
+        yield info("edges_covered_" + name, 100 * method["covered_ratio"], "%")
+
+
+def motions(context):
+    result = context.run_json("rig_coverage", "motions", 5 if context.full else 1, timeout=20000)
+    for name in ("planar", "on_the_spot"):
+        for case in result[name]:
+            title = "%s_tilt_%g" % (name, case["tilt_deg"])
+            yield at_most(title + "_edge_sigmas", case["worst_edge_sigmas"], 4.0)
+            yield at_most(title + "_pose_sigmas", case["worst_pose_sigmas"], 4.0)
+            if case["edges_open"] > 0:
+                yield at_most(title + "_axis", case["axis_deg"], 2.0, "deg")
+            yield info(title + "_edges_open_failed", "%d_%d" % (case["edges_open"], case["edges_failed"]))
+        yield equal(name + "_tracker_height_claimed", sum(case["body_known"] for case in result[name] if case["tilt_deg"] == 0), 0)
+        yield equal(name + "_tracker_unknown_unsaid", sum(case["body_unsaid"] for case in result[name]), 0)
+
+
+def given(context):
+    result = context.run_json("rig_coverage", "given", 10 if context.full else 1, timeout=20000)["given"]
+    for name, case in result.items():
+        yield at_most(name + "_sigmas", case["worst_sigmas"], 4.0)
+        yield at_most(name + "_sigma_over_error", case["sigma_over_error"], 5.0)
+        yield at_most(name + "_sigma_over_error_turned", case["sigma_over_error_turned"], 5.0)
+        yield equal(name + "_failed_edges", case["failed_edges"], 0)
+
+
+def turned(context):
+    result = context.run_json("rig_coverage", "turned", 5 if context.full else 1, timeout=20000)["turned"]
+    for name, case in result.items():
+        yield at_most("turned_%s_moved" % name, case["moved_mm"], 0.001, "mm")
+        yield at_most("turned_%s_turned" % name, case["moved_deg"], 0.0001, "deg")
+        yield at_most("turned_%s_sigmas" % name, case["worst_sigmas"], 4.0)
+        yield equal("turned_%s_failed" % name, case["failed"], 0)
+
+
+def revision_of(context, session, data, processors, *extra):
+    """The revision of one push, by a server that has so many processors."""
+    all_of_them = os.sched_getaffinity(0)
+    try:
+        os.sched_setaffinity(0, set(sorted(all_of_them)[:processors]))  # what it starts keeps to these
+        with Server(context, data) as server:
+            done = server.rigcal("push", session, "--json", *extra, timeout=1800)
+            if done.returncode not in (0, 1):
+                raise RuntimeError("rigcal push: exit %d: %s" % (done.returncode, done.stderr.strip()[-300:]))
+            return json.loads(server.rigcal("show", "mars-mapper", "--json").stdout)
+    finally:
+        os.sched_setaffinity(0, all_of_them)
+
+
+def same_bytes(context):
+    result = context.run_json("rig_coverage", "same_bytes", 3 if context.full else 1, timeout=2000)["same_bytes"]
+    yield equal("edges_differ_from_one_and_two_threads", result["one_and_two_threads_differ"], 0)
+    yield equal("edges_of_one_and_two_threads", result["good_edges"], 59 * result["visits"])
+    with context.folder() as name:
+        folder = pathlib.Path(name)
+        context.run_json("rigcal", "simulate", "mars-mapper", "--out", folder / "visit", "--captures", 8, "--scale", 0.3, "--json")
+        shown = [revision_of(context, folder / "visit", folder / "one", 1),
+                 revision_of(context, folder / "visit", folder / "two", 2, "--shuffle", 1),
+                 revision_of(context, folder / "visit", folder / "three", 2, "--shuffle", 2)]
+    yield equal("revisions_that_differ", len({one["digest"] for one in shown}) - 1, 0)
+    yield at_least("revision_good_edges", sum(edge["state"] == "good" for edge in shown[0]["document"]["edges"]), 50)
+
+
+def jackknives(context):
+    result = context.run_json("rig_coverage", "time", timeout=2000)["time"]
+    yield equal("jackknives", result["edges"], 59)
+    yield at_most("all_estimates_and_jackknives", result["wall_s"], 10.0, "s")
+    yield info("all_estimates_and_jackknives_processor", result["processor_s"], "s")
+
+
+def run(context):
+    for part in (jackknives, same_bytes, coverage, motions, given, turned):
+        yield from part(context)
