@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "server/calib/camera_diagnoses.h"
+#include "server/calib/camera_fit.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/estimation.h"
 #include "server/calib/selection.h"
@@ -124,11 +125,13 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   return edge;
 }
 
-Edge Solved(const StereoProblem& problem) {
+Edge Solved(const StereoProblem& problem, std::vector<CameraFit>* fits) {
+  if (fits) *fits = FitsOf(problem, nullptr);
   if (auto diagnoses = Observability(problem); !diagnoses.empty()) return FailedEdge(problem, std::move(diagnoses));
   std::vector<Diagnosis> notes;
   const auto estimate = EstimateOrDiagnose(problem, nullptr, &notes);
   if (!estimate) return FailedEdge(problem, {estimate.error()});
+  if (fits) *fits = FitsOf(problem, &*estimate);
   const double limit_px = HighRms_px(problem);
   if (!(estimate->rms_px <= limit_px)) {
     notes.insert(notes.begin(), HighResidual(problem, estimate->rms_px, limit_px, WorstOf(*estimate)));
@@ -144,9 +147,9 @@ Edge Solved(const StereoProblem& problem) {
 
 }  // namespace
 
-Edge EstimateEdge(const StereoProblem& problem) {
+Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return Solved(problem);
+    return Solved(problem, fits);
   } catch (const std::exception& exception) {
     return FailedEdge(problem,
                       {FromError(problem, "internal",

@@ -67,7 +67,9 @@ OrDiagnosis<HandEyeResult> ResultOf(const HandEyeProblem& problem, const HandEye
                                     const std::vector<std::size_t>& block_of_pose) {
   auto uncertainty = JackknifeMotion(problem, work, block_of_pose);
   if (!uncertainty) return tl::unexpected(MotionNotSolvable(problem, uncertainty.error()));
-  HandEyeResult result{EstimateOf(work), std::move(uncertainty->X), OpenDirections(problem, work.reach)};
+  HandEyeResult result{EstimateOf(work), std::move(uncertainty->X), OpenDirections(problem, work.reach), {}, {}};
+  if (work.camera_a) result.camera_a = work.camera_a->camera;
+  if (work.camera_b) result.camera_b = work.camera_b->camera;
   if (work.estimates_offset) result.estimate.offset_sigma_s = uncertainty->offset_sigma_s;
   AddDisagreement(problem.a, work.camera_a, result.notes);
   AddDisagreement(problem.b, work.camera_b, result.notes);

@@ -10,6 +10,7 @@
 
 #include "server/calib/intrinsics.h"
 #include "server/calib/motion_observability.h"
+#include "server/model/camera_fit.h"
 #include "server/model/edge.h"
 #include "server/model/pose_table.h"
 
@@ -50,11 +51,13 @@ struct HandEyeResult {
   HandEyeEstimate estimate;
   Uncertainty uncertainty;
   std::vector<Diagnosis> notes;
+  std::optional<CameraEstimate> camera_a, camera_b;  // of sides that are cameras, from their pictures alone
 };
 
 // Pure; deterministic. A diagnosis says why there is no answer.
 [[nodiscard]] tl::expected<HandEyeResult, Diagnosis> EstimateHandEye(const HandEyeProblem& problem);
-// The finished edge; a failed one carries the diagnoses. Never throws.
-[[nodiscard]] Edge EstimateHandEyeEdge(const HandEyeProblem& problem);
+// The finished edge; a failed one carries the diagnoses. Never throws. `fits`, if not null, becomes what it says of the
+// cameras (camera_fit.h).
+[[nodiscard]] Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits = nullptr);
 
 }  // namespace rigcal::calib

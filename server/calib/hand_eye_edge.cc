@@ -1,6 +1,7 @@
 #include <cmath>
 #include <set>
 
+#include "server/calib/camera_fit.h"
 #include "server/calib/hand_eye.h"
 #include "server/calib/hand_eye_diagnoses.h"
 #include "server/calib/hand_eye_work.h"
@@ -78,9 +79,13 @@ void AddCaptures(const HandEyeProblem& problem, const HandEyeEstimate& estimate,
   }
 }
 
-Edge Solved(const HandEyeProblem& problem) {
+const CameraEstimate* PointerTo(const std::optional<CameraEstimate>& camera) { return camera ? &*camera : nullptr; }
+
+Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
+  if (fits) *fits = FitsOf(problem, nullptr, nullptr);
   auto result = EstimateHandEye(problem);
   if (!result) return FailedEdge(problem, result.error());
+  if (fits) *fits = FitsOf(problem, PointerTo(result->camera_a), PointerTo(result->camera_b));
   const HandEyeEstimate& estimate = result->estimate;
   if (!(estimate.rms_m <= kHighRms_m && estimate.rms_rad <= kHighRms_rad)) {
     Edge edge = FailedEdge(problem, HighMotionResidual(problem, estimate));
@@ -103,9 +108,9 @@ Edge Solved(const HandEyeProblem& problem) {
 
 }  // namespace
 
-Edge EstimateHandEyeEdge(const HandEyeProblem& problem) {
+Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return Solved(problem);
+    return Solved(problem, fits);
   } catch (const std::exception& exception) {
     return FailedEdge(problem, MotionNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
                                                            "Report this with the session's id."}));

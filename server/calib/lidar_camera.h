@@ -10,6 +10,7 @@
 #include "server/calib/intrinsics.h"
 #include "server/calib/plane_moments.h"
 #include "server/math/se3.h"
+#include "server/model/camera_fit.h"
 #include "server/model/edge.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
@@ -71,6 +72,7 @@ struct LidarCameraEstimate {
 [[nodiscard]] Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem,
                                                        const LidarCameraEstimate& estimate);
 // Both as the finished edge (method "lidar_camera"); a failed one carries the diagnoses.
-[[nodiscard]] Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem);
+// `fits`, if not null, becomes what it says of the camera (camera_fit.h).
+[[nodiscard]] Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<CameraFit>* fits = nullptr);
 
 }  // namespace rigcal::calib

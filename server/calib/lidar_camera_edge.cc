@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "server/calib/camera_diagnoses.h"
+#include "server/calib/camera_fit.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_camera_diagnoses.h"
@@ -110,10 +111,12 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
   AddMissing(problem, notes);
 }
 
-Edge Solved(const LidarCameraProblem& problem) {
+Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   std::vector<Diagnosis> notes;
+  if (fits) *fits = FitsOf(problem, nullptr);
   auto estimate = EstimateLidarCamera(problem, nullptr, &notes);
   if (!estimate) return FailedEdge(problem, {estimate.error()});
+  if (fits) *fits = FitsOf(problem, &estimate->camera);
   if (const Status widened = WidenSystematics(problem, *estimate); !widened)
     return FailedEdge(problem, {NotSolvable(problem, widened.error())});
   if (std::abs(estimate->board_scale_ratio) > kScaleMax_ratio && estimate->SuspectsBoardSize())
@@ -142,9 +145,9 @@ Edge Solved(const LidarCameraProblem& problem) {
 
 }  // namespace
 
-Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem) {
+Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return Solved(problem);
+    return Solved(problem, fits);
   } catch (const std::exception& exception) {
     return FailedEdge(
         problem,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "server/model/camera_fit.h"
 #include "server/model/edge.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
@@ -54,6 +55,7 @@ struct StereoEstimate {
 [[nodiscard]] Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate);
 
 // The three above as the finished edge; a failed one carries the diagnoses. Fills figures (rms_px, captures_used, ...).
-[[nodiscard]] Edge EstimateEdge(const StereoProblem& problem);
+// `fits`, if not null, becomes what it says of both cameras (camera_fit.h).
+[[nodiscard]] Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits = nullptr);
 
 }  // namespace rigcal::calib

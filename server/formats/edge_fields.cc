@@ -74,7 +74,7 @@ void WriteEvidence(JsonWriter& out, const std::vector<Evidence>& evidence) {
   out.List("evidence", [&] {
     for (const Evidence& picture : evidence)
       out.Object([&] {
-        out.Text("capture", picture.capture.str());
+        picture.capture.empty() ? out.Null("capture") : out.Text("capture", picture.capture.str());
         out.Text("digest", picture.digest.str());
         out.Text("sensor", picture.sensor.str());
         out.Text("suffix", picture.suffix);
@@ -114,10 +114,12 @@ std::vector<CaptureResidual> ReadCaptures(const JsonField& field) {
 
 std::vector<Evidence> ReadEvidence(const JsonField& field) {
   std::vector<Evidence> evidence;
-  for (const JsonField& item : field.Items(kCapturesMax))
+  for (const JsonField& item : field.Items(kCapturesMax)) {
+    const auto capture = item.Find("capture");
     evidence.push_back({item.At("title").Text(), ReadId<SensorId>(item.At("sensor")),
-                        ReadId<CaptureId>(item.At("capture")), ReadId<Digest>(item.At("digest")),
+                        capture ? ReadId<CaptureId>(*capture) : CaptureId(), ReadId<Digest>(item.At("digest")),
                         item.At("suffix").Text(kShortTextMax)});
+  }
   return evidence;
 }
 

@@ -1,0 +1,40 @@
+// How one camera fits its pictures of one board: where corners were seen, how far they are from where the estimate puts
+// them, how the boards stood. What a report draws of a camera.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/model/camera.h"
+
+namespace rigcal {
+
+// One picture with the board in it.
+struct ViewFit {
+  CaptureId capture;
+  std::vector<Eigen::Vector2d> uv_px;  // corners as seen
+  // Seen minus where the estimate puts them, side by side with `uv_px`; empty: the board has no pose.
+  std::vector<Eigen::Vector2d> residual_px;
+  double distance_m = 0.0;  // of the board's middle; has a meaning with residuals only, as the next
+  // The angle between the board's normal and the line of sight to its middle, along the picture's x (positive: its
+  // right side is nearer) and y (its lower side is nearer).
+  Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();
+};
+
+enum class IntrinsicsSource { kNone, kGiven, kEstimated };  // "none" | "given" | "estimated"
+
+struct CameraFit {
+  SensorId camera;
+  int width_px = 0, height_px = 0;
+  IntrinsicsSource source = IntrinsicsSource::kNone;
+  CameraIntrinsics intrinsics;  // meaningful unless kNone
+  // fx fy cx cy and the distortion's, in its order; empty: not known.
+  std::vector<double> sigma;
+  bool sigma_by_jackknife = false;  // false: given, or the model's
+  std::vector<ViewFit> views;
+};
+
+}  // namespace rigcal
