@@ -1,6 +1,7 @@
 // No statement changes or removes what is stored, in any table but the queues.
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "storage/fleet_facts.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -32,6 +33,7 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendCloud(store_, DigestOf("cloud"), "plate 1", {{true, "", {}, 7, {PlanePatch{}}}, {}}));
       RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }
@@ -70,7 +72,7 @@ TEST_F(AppendOnlyTest, UnitsAreTheEndOfColumnNames) {
   for (const std::string& name : reals) {
     const bool unitless =
         name.find("_q") != std::string::npos || name == "edge_figure.value" || name == "edge_capture.rms";
-    const bool has_unit = name.ends_with("_m") || name.ends_with("_rad");
+    const bool has_unit = name.ends_with("_m") || name.ends_with("_rad") || name.ends_with("_ratio");
     EXPECT_TRUE(unitless || has_unit) << name;
   }
 }
