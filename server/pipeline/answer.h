@@ -27,7 +27,7 @@ struct PageText {
   std::string body, content_type;
   bool immutable = false;  // named by its content
 };
-// "/", "/robots/<id>/..." (robot_pages.h), "/style.css", "/assets/<script>", "/healthz", "/metrics", "/api/v1/<verb>"
+// "/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css", "/assets/<script>", "/healthz", "/metrics", "/api/v1/<verb>"
 // with the query string as parameters.
 [[nodiscard]] Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path,
                                           const std::string& query);

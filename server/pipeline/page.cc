@@ -4,10 +4,12 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/experiments.h"
 #include "server/pipeline/robot_pages.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/report/assets.h"
 #include "server/report/render.h"
+#include "storage/fleet_facts.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -29,13 +31,24 @@ Result<report::FleetQuery> FleetQueryOf(const std::string& query) {
   return asked;
 }
 
+void AddFacts(const storage::FleetFacts& facts, report::FleetRow& row) {
+  row.last_session_at = facts.last_session_at;
+  if (facts.worst)
+    row.worst = report::WorstFit{facts.worst->frame_a.str(), facts.worst->frame_b.str(), facts.worst->in_sigmas};
+}
+
 Result<PageText> FleetPage(const AnswerContext& context, const std::string& query) {
   RIGCAL_ASSIGN(const report::FleetQuery asked, FleetQueryOf(query));
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
+  RIGCAL_ASSIGN(const auto facts, storage::LoadFleetFacts(context.store));
   std::vector<report::FleetRow> fleet;
-  for (const auto& row : rows) fleet.push_back(FleetRowOf(row));
-  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now, asked));
+  for (const auto& row : rows) {
+    fleet.push_back(FleetRowOf(row));
+    if (const auto known = facts.find(row.robot); known != facts.end()) AddFacts(known->second, fleet.back());
+  }
+  const std::size_t experiments = ListExperiments(context.store.folder()).size();
+  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now, asked, experiments));
   return PageText{std::move(body), kHtml};
 }
 
@@ -79,7 +92,7 @@ Result<PageText> Healthz(const AnswerContext& context) {
 }  // namespace
 
 Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
-  const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/";
+  const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/";
   if (path == "/") return FleetPage(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
@@ -87,6 +100,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path == "/metrics") return Metrics(context);
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
   if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);
+  if (path.rfind(experiments, 0) == 0) return AnswerExperiments(context, path.substr(experiments.size()));
   return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots: /");
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/base/durable_file.h"
+#include "server/formats/camera_fit.h"
 #include "server/pipeline/clouds.h"
 #include "server/pipeline/report_input.h"
 #include "server/report/assets.h"
@@ -38,11 +39,20 @@ Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges,
   std::set<Digest> done;
   for (const Edge& edge : edges)
     for (const Evidence& item : edge.evidence) {
+      if (item.suffix == formats::kCameraFitSuffix) continue;
       if (!done.insert(item.digest).second || !storage::HasBlob(store.BlobFolder(), item.digest)) continue;
       RIGCAL_TRY(LinkFile(storage::BlobPath(store.BlobFolder(), item.digest),
                           folder / (item.digest.str() + "." + item.suffix)));
       present.push_back(item.digest);
     }
+  return {};
+}
+
+// Of the edges that speak for a camera; the others' would only make the report heavy.
+Status LinkFits(const storage::Store& store, const std::vector<report::CameraReport>& cameras, const fs::path& folder) {
+  for (const report::CameraReport& camera : cameras)
+    RIGCAL_TRY(
+        LinkFile(storage::BlobPath(store.BlobFolder(), camera.document), folder / (camera.document.str() + ".json")));
   return {};
 }
 
@@ -93,6 +103,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   std::error_code error;
   fs::remove_all(temporary, error);
   RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
+  RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));
   RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary));
   RIGCAL_TRY(LinkAssets(store.ReportFolder(), temporary / "assets"));
   RIGCAL_ASSIGN(const auto files, report::RenderRevision(input, revision->document));

@@ -5,6 +5,7 @@
 
 #include "server/base/version.h"
 #include "server/fleet/assess.h"
+#include "server/pipeline/camera_fits.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -94,6 +95,12 @@ Status TakePrevious(storage::Store& store, report::ReportInput& input) {
   return {};
 }
 
+void TakeCameras(storage::Store& store, report::ReportInput& input) {
+  std::map<SessionId, Stamp> captured_at;
+  for (const report::SessionFacts& session : input.sessions) captured_at.emplace(session.id, session.captured_at);
+  input.cameras = LoadFits(store, report::ChooseFits(input.revision, captured_at));
+}
+
 }  // namespace
 
 Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revision& revision) {
@@ -107,6 +114,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   RIGCAL_TRY(TakeBlocks(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
+  TakeCameras(store, input);
   return input;
 }
 

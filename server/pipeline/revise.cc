@@ -13,7 +13,9 @@
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
+#include "server/report/edge_order.h"
 #include "storage/edges.h"
+#include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -70,6 +72,15 @@ GraphSolution SolveHonestly(const RobotGraph& loaded) {
   return solution;
 }
 
+// The worst fit of those that other edges check; failed ones have no fit.
+std::optional<storage::WorstEdge> WorstEdgeOf(const formats::RevisionInput& revision) {
+  if (revision.solution.dof <= 0) return std::nullopt;
+  for (const report::ShownEdge& shown : report::InOrder(revision))
+    if (shown.edge->state == EdgeState::kGood && shown.residual != nullptr)
+      return storage::WorstEdge{shown.edge->frame_a, shown.edge->frame_b, shown.in_sigmas};
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
@@ -97,6 +108,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   input.verdict = fleet::Assess(loaded.edges, input.solution);
   input.edges = std::move(loaded.edges);
 
+  const auto worst = WorstEdgeOf(input);
   Revision revision;
   revision.robot = robot;
   revision.created_at = clock.Now();
@@ -106,6 +118,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.edge_watermark = loaded.watermark;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
+    if (worst) return storage::AppendWorstEdge(store, {robot, revision.number}, *worst);
     return {};
   }));
   return revision;

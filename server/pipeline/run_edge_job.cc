@@ -1,5 +1,6 @@
 #include "server/pipeline/run_edge_job.h"
 
+#include "server/pipeline/camera_fits.h"
 #include "server/pipeline/pair_inputs.h"
 #include "server/pipeline/same_pictures.h"
 #include "storage/edges.h"
@@ -19,14 +20,16 @@ Edge FailedEdge(const SensorPair& pair, const std::string& method, const Error& 
 
 // A method from its loader and its estimator. What cannot be loaded is a failed edge, unless the store failed.
 template <typename Inputs, typename Estimate>
-Result<Edge> EdgeFrom(const SensorPair& pair, const std::string& method, Result<Inputs> inputs,
+Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, const std::string& method, Result<Inputs> inputs,
                       const Estimate& estimate) {
   if (!inputs) {
     if (inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
     return FailedEdge(pair, method, inputs.error());
   }
-  Edge edge = estimate(inputs->problem);
+  std::vector<CameraFit> fits;
+  Edge edge = estimate(inputs->problem, &fits);
   edge.evidence = std::move(inputs->evidence);
+  RIGCAL_TRY(AppendFits(store, fits, edge));
   return edge;
 }
 
@@ -34,7 +37,7 @@ Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const S
   const std::vector<CaptureId> same = SamePictures(manifest, pair);
   auto inputs = LoadStereo(store, manifest, pair);
   if (inputs) LeaveOut(same, inputs->problem);
-  RIGCAL_ASSIGN(Edge edge, EdgeFrom(pair, "stereo", std::move(inputs), calib::EstimateEdge));
+  RIGCAL_ASSIGN(Edge edge, EdgeFrom(store, pair, "stereo", std::move(inputs), calib::EstimateEdge));
   TellLeftOut(same, edge);
   return edge;
 }
@@ -59,10 +62,11 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   const std::string method(a && b ? MethodFor(manifest->header, *a, *b) : "stereo");
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
-    return EdgeFrom(job.pair, method, LoadLidarCamera(store, *manifest, job.pair), calib::EstimateLidarCameraEdge);
+    return EdgeFrom(store, job.pair, method, LoadLidarCamera(store, *manifest, job.pair),
+                    calib::EstimateLidarCameraEdge);
   if (method == "lidar_lidar") return LidarLidarEdge(store, *manifest, job.pair);
   if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
-    return EdgeFrom(job.pair, method, LoadHandEye(store, *manifest, job.pair), calib::EstimateHandEyeEdge);
+    return EdgeFrom(store, job.pair, method, LoadHandEye(store, *manifest, job.pair), calib::EstimateHandEyeEdge);
   return FailedEdge(
       job.pair, method.empty() ? "none" : method,
       {ErrorCode::kUnsupported, "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),

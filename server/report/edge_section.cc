@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "server/formats/camera_fit.h"
 #include "server/report/bars.h"
 #include "server/report/edge_axes.h"
 #include "server/report/influence.h"
@@ -103,6 +104,14 @@ void FillInfluence(Dictionary& section, const ReportInput& input, const Edge& ed
 // The suffix becomes part of an address: only what we write ourselves.
 bool IsPicture(const Evidence& evidence) { return evidence.suffix == "jpg" || evidence.suffix == "png"; }
 
+// What is kept for the cameras' sections is none.
+std::vector<const Evidence*> PicturesOf(const Edge& edge) {
+  std::vector<const Evidence*> pictures;
+  for (const Evidence& evidence : edge.evidence)
+    if (evidence.suffix != formats::kCameraFitSuffix) pictures.push_back(&evidence);
+  return pictures;
+}
+
 void FillPicture(Dictionary& picture, const Evidence& evidence, const std::set<Digest>& stored) {
   picture.SetValue("TITLE", evidence.title);
   if (!IsPicture(evidence) || stored.count(evidence.digest) == 0) return picture.ShowSection("MISSING");
@@ -112,12 +121,16 @@ void FillPicture(Dictionary& picture, const Evidence& evidence, const std::set<D
 }
 
 void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>& stored) {
-  if (edge.evidence.empty()) return;
+  const std::vector<const Evidence*> all = PicturesOf(edge);
+  if (all.empty()) return;
   Dictionary* pictures = section.AddSectionDictionary("PICTURES");
-  const std::size_t count = std::min(edge.evidence.size(), kPicturesPerEdgeMax);
-  for (std::size_t i = 0; i < count; ++i)
-    FillPicture(*pictures->AddSectionDictionary("PICTURE"), edge.evidence[i], stored);
-  if (count < edge.evidence.size()) ShowValue(*pictures, "MORE", "COUNT", std::to_string(edge.evidence.size() - count));
+  const std::size_t count = std::min(all.size(), kPicturesPerEdgeMax);
+  for (std::size_t i = 0; i < count; ++i) FillPicture(*pictures->AddSectionDictionary("PICTURE"), *all[i], stored);
+  if (count == all.size()) return;
+  Dictionary* more = pictures->AddSectionDictionary("MORE");
+  more->SetValue("SHOWN", std::to_string(count));
+  more->SetValue("COUNT", std::to_string(all.size()));
+  if (!edge.session.empty()) ShowValue(*more, "SESSION", "ID", edge.session.str());
 }
 
 }  // namespace

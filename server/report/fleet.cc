@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include "server/report/age.h"
@@ -38,11 +39,22 @@ std::string FleetSummary(const std::vector<FleetRow>& rows) {
   return text + (overdue > 0 ? "; " + std::to_string(overdue) + " overdue" : "");
 }
 
+void FillWorst(Dictionary& row, const std::optional<WorstFit>& worst) {
+  if (!worst) return row.ShowSection("NO_WORST");
+  Dictionary* one = row.AddSectionDictionary("WORST");
+  one->SetValue("FROM", worst->frame_a);
+  one->SetValue("TO", worst->frame_b);
+  one->SetValue("SIGMAS", Fixed(worst->in_sigmas, 1));
+  one->SetValue("LEVEL", worst->in_sigmas < kOff_sigmas ? "soft" : "badge warn");
+}
+
 void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
   row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(robot.calibrated_at, now));
+  row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
+  FillWorst(row, robot.worst);
   row.SetValue("SESSIONS", std::to_string(robot.sessions));
   row.SetValue("EDGES", std::to_string(robot.edges));
   if (robot.overdue) row.ShowSection("OVERDUE");
@@ -52,11 +64,19 @@ void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   revision->SetValue("ROBOT", robot.robot.str());
 }
 
-constexpr std::array<std::pair<const char*, const char*>, 6> kChoices = {
-    {{"", "all"}, {"fail", "fail"}, {"unknown", "unknown"}, {"warn", "warn"}, {"pass", "pass"}, {"overdue", "overdue"}}};
-constexpr std::array<std::pair<const char*, const char*>, 6> kColumns = {{{"robot", "Robot"},
+constexpr std::array<std::pair<const char*, const char*>, 8> kChoices = {{{"", "all"},
+                                                                          {"fail", "fail"},
+                                                                          {"unknown", "unknown"},
+                                                                          {"warn", "warn"},
+                                                                          {"pass", "pass"},
+                                                                          {"overdue", "overdue"},
+                                                                          {"off", "an edge beyond 3 \xCF\x83"},
+                                                                          {"quiet", "no session for 30 days"}}};
+constexpr std::array<std::pair<const char*, const char*>, 8> kColumns = {{{"robot", "Robot"},
                                                                           {"", "Verdict"},
                                                                           {"calibrated", "Calibrated"},
+                                                                          {"session", "Last session"},
+                                                                          {"worst", "Worst edge"},
                                                                           {"revision", "Revision"},
                                                                           {"sessions", "Sessions"},
                                                                           {"edges", "Edges"}}};
@@ -82,6 +102,8 @@ void FillAddress(Dictionary& link, const FleetQuery& query) {
   link.SetValue("PAGE", std::to_string(query.page));
 }
 
+bool IsNumber(std::string_view column) { return column == "revision" || column == "sessions" || column == "edges"; }
+
 void FillColumns(Dictionary& list, const FleetQuery& query) {
   for (const auto& [sort, name] : kColumns) {
     Dictionary* column = list.AddSectionDictionary("COLUMN");
@@ -92,15 +114,16 @@ void FillColumns(Dictionary& list, const FleetQuery& query) {
     next.descending = chosen && !query.descending;
     FillAddress(*column, next);
     column->SetValue("NAME", name);
+    if (IsNumber(sort)) column->ShowSection("NUMERIC");
     if (chosen) ShowValue(*column, "SORTED", "DIRECTION", query.descending ? "descending" : "ascending");
     column->SetValue("ARROW", !chosen ? "\xE2\x86\x95" : query.descending ? "\xE2\x86\x93" : "\xE2\x86\x91");
   }
 }
 
 void FillPager(Dictionary& list, FleetQuery query, const FleetSlice& slice, std::size_t robots) {
-  list.SetValue("COUNT", slice.matches == robots ? Count(robots, "robot", "robots")
-                                                 : std::to_string(slice.matches) + " of " +
-                                                       Count(robots, "robot", "robots"));
+  list.SetValue("COUNT", slice.matches == robots
+                             ? Count(robots, "robot", "robots")
+                             : std::to_string(slice.matches) + " of " + Count(robots, "robot", "robots"));
   if (slice.matches == 0) list.ShowSection("NOTHING");
   if (slice.pages < 2) return;
   Dictionary* pager = list.AddSectionDictionary("PAGER");
@@ -114,16 +137,18 @@ void FillPager(Dictionary& list, FleetQuery query, const FleetSlice& slice, std:
 
 }  // namespace
 
-Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, const FleetQuery& query) {
+Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, const FleetQuery& query,
+                                std::size_t experiments) {
   Dictionary page("fleet");
   FillHead(page, "Fleet", "");
+  if (experiments > 0) ShowValue(page, "EXPERIMENTS", "COUNT", Count(experiments, "experiment", "experiments"));
   AddScript(page, AssetPath("live.js"));
   if (rows.empty()) {
     page.ShowSection("EMPTY");
     return Expand("fleet.tpl", page);
   }
   page.SetValue("SUMMARY", FleetSummary(rows));
-  const FleetSlice slice = SliceOf(rows, query);
+  const FleetSlice slice = SliceOf(rows, query, now);
   Dictionary* list = page.AddSectionDictionary("ROBOTS");
   FillForm(*list, query);
   FillColumns(*list, query);

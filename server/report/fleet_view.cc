@@ -1,6 +1,7 @@
 #include "server/report/fleet_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace rigcal::report {
@@ -25,11 +26,20 @@ std::vector<std::string> WordsOf(const std::string& search) {
   return words;
 }
 
-bool Matches(const FleetRow& row, const std::vector<std::string>& words, const std::string& verdict) {
-  if (verdict == "overdue" && !row.overdue) return false;
-  if (!verdict.empty() && verdict != "overdue" && NameOf(row.verdict.level) != verdict) return false;
+// One of the choices of the page.
+bool IsLike(const FleetRow& row, Stamp now, const std::string& choice) {
+  if (choice.empty()) return true;
+  if (choice == "overdue") return row.overdue;
+  if (choice == "off") return row.worst && row.worst->in_sigmas >= kOff_sigmas;
+  if (choice == "quiet") return !row.last_session_at || now.ns - row.last_session_at->ns > kQuiet_ns;
+  return NameOf(row.verdict.level) == choice;
+}
+
+bool HasWords(const FleetRow& row, const std::vector<std::string>& words) {
   if (words.empty()) return true;
-  const std::string text = Lowered(row.robot.str() + " " + NameOf(row.verdict.level) + " " + row.verdict.why);
+  std::string text = row.robot.str() + " " + NameOf(row.verdict.level) + " " + row.verdict.why;
+  if (row.worst) text += " " + row.worst->frame_a + " " + row.worst->frame_b;
+  text = Lowered(std::move(text));
   return std::all_of(words.begin(), words.end(),
                      [&](const std::string& word) { return text.find(word) != std::string::npos; });
 }
@@ -52,6 +62,9 @@ int Urgency(VerdictLevel level) {
 std::int64_t KeyOf(const FleetRow& row, const std::string& sort) {
   if (sort == "robot") return 0;
   if (sort == "calibrated") return row.calibrated_at.ns;
+  if (sort == "session") return row.last_session_at ? row.last_session_at->ns : 0;
+  // A thousandth of sigma tells edges apart; beyond 1e12 sigma all are alike.
+  if (sort == "worst") return row.worst ? -std::llround(std::min(row.worst->in_sigmas, 1e12) * 1e3) : 1;
   if (sort == "revision") return -row.revision;
   if (sort == "sessions") return -row.sessions;
   if (sort == "edges") return -row.edges;
@@ -60,11 +73,11 @@ std::int64_t KeyOf(const FleetRow& row, const std::string& sort) {
 
 }  // namespace
 
-FleetSlice SliceOf(const std::vector<FleetRow>& rows, const FleetQuery& query) {
+FleetSlice SliceOf(const std::vector<FleetRow>& rows, const FleetQuery& query, Stamp now) {
   const std::vector<std::string> words = WordsOf(query.search);
   FleetSlice slice;
   for (const FleetRow& row : rows)
-    if (Matches(row, words, query.verdict)) slice.rows.push_back(&row);
+    if (IsLike(row, now, query.verdict) && HasWords(row, words)) slice.rows.push_back(&row);
   std::sort(slice.rows.begin(), slice.rows.end(), [&](const FleetRow* a, const FleetRow* b) {
     const std::int64_t left = KeyOf(*a, query.sort), right = KeyOf(*b, query.sort);
     return left != right ? (left < right) != query.descending : a->robot < b->robot;

@@ -10,12 +10,14 @@
 namespace rigcal::report {
 
 inline constexpr std::size_t kFleetRowsMax = 100;  // of one page
+inline constexpr double kOff_sigmas = 3.0;         // an edge beyond this is "off"
+inline constexpr std::int64_t kQuiet_ns = 30LL * 24 * 3600 * 1'000'000'000;  // "quiet" for longer
 
 struct FleetSlice {
   std::vector<const FleetRow*> rows;
   std::size_t matches = 0, pages = 1, page = 1;
 };
 // `query.page` beyond the last is the last.
-[[nodiscard]] FleetSlice SliceOf(const std::vector<FleetRow>& rows, const FleetQuery& query);
+[[nodiscard]] FleetSlice SliceOf(const std::vector<FleetRow>& rows, const FleetQuery& query, Stamp now = {});
 
 }  // namespace rigcal::report

@@ -108,6 +108,19 @@ Figure WorstSensorFigure(const formats::RevisionInput& revision) {
            counts}};
 }
 
+// The first letter's size apart: a verdict is a sentence, a diagnosis part of one.
+bool Says(const std::string& sentence, const std::string& part) {
+  return part.size() > 1 && sentence.find(part.substr(1)) != std::string::npos;
+}
+
+// What the verdict already says stands above, large.
+std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
+  std::vector<Diagnosis> rest;
+  for (const Diagnosis& diagnosis : revision.solution.diagnoses)
+    if (!Says(revision.verdict.why, diagnosis.what)) rest.push_back(diagnosis);
+  return rest;
+}
+
 }  // namespace
 
 void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
@@ -119,7 +132,7 @@ void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, co
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {
   constexpr std::size_t kNotesMax = 20;
-  const auto& diagnoses = revision.solution.diagnoses;
+  const std::vector<Diagnosis> diagnoses = NotInVerdict(revision);
   if (diagnoses.empty()) return;
   Dictionary* notes = page.AddSectionDictionary("NOTES");
   for (std::size_t i = 0; i < std::min(diagnoses.size(), kNotesMax); ++i) {

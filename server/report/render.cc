@@ -5,6 +5,7 @@
 #include "report_embedded.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
+#include "server/report/camera_section.h"
 #include "server/report/change_section.h"
 #include "server/report/drawing.h"
 #include "server/report/edge_section.h"
@@ -68,6 +69,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillPoses(page, input.revision);
   FillEdges(page, input, edges);
   FillLoops(page, input.revision.solution.cycles);
+  FillCameras(page, input);
   FillSections(page, input, edges);
   FillClouds(page, input.clouds);
   FillProvenance(page, input);

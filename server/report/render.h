@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/report/camera_choice.h"
 #include "server/report/cloud_section.h"
 
 namespace rigcal::report {
@@ -45,6 +46,7 @@ struct ReportInput {
   std::vector<SessionFacts> sessions;
   std::map<EdgeId, EdgeLimit> limits;
   std::map<EdgeId, std::vector<BlockVector>> blocks;
+  std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
 };
 
@@ -54,6 +56,10 @@ struct ReportInput {
 [[nodiscard]] Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input,
                                                                         const std::string& document);
 
+struct WorstFit {
+  std::string frame_a, frame_b;
+  double in_sigmas = 0.0;
+};
 struct FleetRow {
   RobotId robot;
   int revision = 0;  // 0: none yet
@@ -61,18 +67,23 @@ struct FleetRow {
   Stamp calibrated_at;  // newest capture behind a good edge; 0: never
   std::int64_t sessions = 0, edges = 0;
   bool overdue = false;
+  std::optional<Stamp> last_session_at = {};  // captured; absent: no session
+  std::optional<WorstFit> worst = {};         // of the newest revision; absent: nothing checks an edge
 };
 // What the fleet's page is asked for; each part comes from its address and may be anything.
 struct FleetQuery {
   std::string search;   // words that a robot's row must hold
-  std::string verdict;  // "pass", "warn", "fail", "unknown", "overdue"; empty: all
-  std::string sort;     // "robot", "calibrated", "revision", "sessions", "edges"; else by urgency
+  // "pass", "warn", "fail", "unknown", "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days);
+  // empty: all
+  std::string verdict;
+  // "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
+  std::string sort;
   bool descending = false;
   std::size_t page = 1;
 };
-// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h.
+// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h. `experiments`: how many there are to link to.
 [[nodiscard]] Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now,
-                                              const FleetQuery& query = {});
+                                              const FleetQuery& query = {}, std::size_t experiments = 0);
 // Drawing of the sensor graph alone: circles and edges, labels escaped, failed edges dashed.
 [[nodiscard]] std::string RenderGraphSvg(const formats::RevisionInput& revision);
 [[nodiscard]] std::string StyleSheet();

@@ -1,16 +1,18 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
-#include "server/report/robot_pages.h"
 #include "server/report/page.h"
+#include "server/report/robot_pages.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kCapturesMax = 1000;
+constexpr std::size_t kOpenUses = 6;  // of a capture; more are folded
 
 using Place = std::pair<CaptureId, SensorId>;
 
@@ -43,9 +45,11 @@ void FillCell(Dictionary& cell, const SensorId& sensor, const Evidence* picture,
 
 // What each pair of sensors did with the capture.
 void FillUses(Dictionary& row, const std::vector<Edge>& edges, const CaptureId& capture) {
+  std::size_t used = 0, all = 0;
   for (const Edge& edge : edges)
     for (const CaptureResidual& residual : edge.captures) {
       if (residual.capture != capture) continue;
+      used += residual.used ? 1 : 0, ++all;
       Dictionary* use = row.AddSectionDictionary("USE");
       use->SetValue("LEVEL", residual.used ? "pass" : "unknown");
       use->SetValue("WORD", residual.used ? "used" : "not used");
@@ -53,6 +57,8 @@ void FillUses(Dictionary& row, const std::vector<Edge>& edges, const CaptureId& 
       use->SetValue("TO", edge.frame_b.str());
       if (!residual.note.empty()) ShowValue(*use, "NOTE", "TEXT", residual.note);
     }
+  row.SetValue("USED", std::to_string(used) + " of " + Count(all, "pair", "pairs"));
+  if (all <= kOpenUses) row.ShowSection("OPEN");
 }
 
 void FillCaptures(Dictionary& page, const SessionInput& input) {
@@ -75,8 +81,21 @@ void FillCaptures(Dictionary& page, const SessionInput& input) {
   if (captures.size() > kCapturesMax) ShowValue(page, "MORE", "COUNT", std::to_string(captures.size() - kCapturesMax));
 }
 
-void FillEdges(Dictionary& page, const std::vector<Edge>& edges) {
-  for (const Edge& edge : edges) {
+std::vector<const Edge*> Sorted(const std::vector<Edge>& edges) {
+  std::vector<const Edge*> sorted;
+  for (const Edge& edge : edges) sorted.push_back(&edge);
+  std::sort(sorted.begin(), sorted.end(), [](const Edge* x, const Edge* y) {
+    const auto key = [](const Edge* edge) {
+      return std::make_tuple(edge->state != EdgeState::kFailed, edge->frame_a, edge->frame_b, edge->id);
+    };
+    return key(x) < key(y);
+  });
+  return sorted;
+}
+
+void FillEdges(Dictionary& page, const std::vector<const Edge*>& edges) {
+  for (const Edge* one : edges) {
+    const Edge& edge = *one;
     Dictionary* row = page.AddSectionDictionary("EDGE");
     const bool good = edge.state == EdgeState::kGood;
     row->SetValue("FROM", edge.frame_a.str());
@@ -107,7 +126,7 @@ Result<std::string> RenderSession(const SessionInput& input) {
     condition->SetValue("NAME", name);
     condition->SetValue("VALUE", value);
   }
-  FillEdges(page, input.edges);
+  FillEdges(page, Sorted(input.edges));
   FillCaptures(page, input);
   return Expand("session.tpl", page);
 }

@@ -9,10 +9,12 @@
 #include "server/formats/documents.h"
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/camera_fits.h"
 #include "server/pipeline/publish.h"
 #include "server/pipeline/revise.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
+#include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 #include "tests/unit/graph_random.h"
@@ -61,6 +63,27 @@ void AddCaptures(Edge& edge, const std::vector<Digest>& pictures, int number, st
   }
 }
 
+// What a camera of 40 pictures with 54 corners each keeps.
+CameraFit FitOf(const SensorId& camera, std::mt19937& random) {
+  std::normal_distribution<double> noise_px(0.0, 0.2);
+  std::uniform_real_distribution<double> place(0.0, 1.0);
+  CameraFit fit;
+  fit.camera = camera;
+  fit.width_px = 1280, fit.height_px = 720;
+  fit.source = IntrinsicsSource::kEstimated;
+  fit.intrinsics = {640.0, 640.0, 640.0, 360.0};
+  fit.sigma.assign(9, 0.1);
+  for (int i = 0; i < kCaptures; ++i) {
+    ViewFit view{CaptureId(Name("c", i)), {}, {}, 1.0 + place(random), {place(random) - 0.5, place(random) - 0.5}};
+    for (int corner = 0; corner < 54; ++corner) {
+      view.uv_px.emplace_back(1280.0 * place(random), 720.0 * place(random));
+      view.residual_px.emplace_back(noise_px(random), noise_px(random));
+    }
+    fit.views.push_back(std::move(view));
+  }
+  return fit;
+}
+
 double PublishSeconds(storage::Store& store, const RobotId& robot) {
   const Revision revision = pipeline::Revise(store, robot, SystemClock()).value();
   const auto start = std::chrono::steady_clock::now();
@@ -80,6 +103,7 @@ int Render(const char* folder) {
       for (int i = first; i < last; ++i) {
         Edge edge = EdgeFrom(rig.graph.edges[static_cast<std::size_t>(i)], robot, i);
         AddCaptures(edge, pictures, i, random);
+        RIGCAL_TRY(pipeline::AppendFits(store, {FitOf(edge.frame_a, random), FitOf(edge.frame_b, random)}, edge));
         RIGCAL_TRY(storage::AppendEdge(store, edge, SystemClock().Now()));
       }
       return {};
@@ -116,6 +140,8 @@ Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int 
   revision.digest = Sha256Of(revision.document);
   RIGCAL_ASSIGN(revision.edge_watermark, storage::LoadEdgeWatermark(store, robot));
   RIGCAL_ASSIGN(const int added, storage::AppendRevision(store, revision));
+  const Edge& worst = input.edges.front();
+  RIGCAL_TRY(storage::AppendWorstEdge(store, {robot, added}, {worst.frame_a, worst.frame_b, 0.001 * number}));
   return storage::AppendPublication(store, {robot, added}, now);
 }
 

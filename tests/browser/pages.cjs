@@ -5,13 +5,14 @@ const { accessible, assert, close, colors, drawn, facts, open, withBrowser } = r
 const at = (path) => facts.address + path;
 
 async function everyPage(browser) {
-  const paths = ["/", "/?q=rover&sort=edges&order=down", "/robots/rover/", "/robots/rover/revisions/2/", "/robots/rover/compare?a=2&b=1", "/robots/broken/revisions/1/"];
+  const paths = ["/", "/?q=rover&sort=edges&order=down", "/robots/rover/", "/robots/rover/revisions/2/", "/robots/rover/compare?a=2&b=1", "/robots/broken/revisions/1/", "/experiments/", "/experiments/noise_whitening/"];
   if (facts.pictures) {
     const reply = await (await fetch(at("/api/v1/sessions?robot=stereo"))).json();
     paths.push("/robots/stereo/revisions/1/", "/robots/stereo/", `/robots/stereo/sessions/${reply.sessions[0].session}/`);
   }
   for (const path of paths) {
     const page = await open(browser, at(path));
+    await page.$$eval("details", (all) => all.forEach((one) => (one.open = true)));
     await accessible(page);
     await page.emulateMedia({ colorScheme: "dark" });
     await accessible(page);
@@ -39,6 +40,42 @@ async function fleet(browser) {
   await page.waitForURL(/sort=robot/);
   assert.deepStrictEqual(await robots(), [...(await robots())].sort(), "sorted by name");
   await close(page);
+}
+
+async function fleetColumns(browser) {
+  const page = await open(browser, at("/?sort=worst"));
+  const robots = () => page.$$eval("#live tbody th", (cells) => cells.map((cell) => cell.textContent.trim()));
+  assert.strictEqual((await robots())[0], "broken", "the worst edge of all comes first");
+  assert.ok((await page.textContent("#live tbody tr")).match(/\d σ\s+a → c/), "with its name and its residual");
+  await page.waitForSelector("form[data-ready]");
+  await page.selectOption("select[name=verdict]", "off");
+  await page.waitForFunction(() => document.querySelectorAll("#live tbody tr").length === 1);
+  assert.deepStrictEqual(await robots(), ["broken"]);
+  await close(page);
+}
+
+async function experiments(browser) {
+  const page = await open(browser, at("/"));
+  await page.click("a:has-text('1 experiment')");
+  await page.click("a:has-text('Noise whitening')");
+  await page.waitForURL(/noise_whitening\/$/);
+  assert.strictEqual(await page.$eval("h1", (one) => getComputedStyle(one).color), "rgb(1, 2, 3)", "its own style sheet");
+  await close(page);
+  for (const path of ["/experiments/..%2frigcal.db", "/experiments/noise_whitening/..%2f..%2frigcal.db", "/experiments/none/"])
+    assert.ok((await fetch(at(path))).status >= 400, path);
+}
+
+async function cameras(browser) {
+  if (!facts.pictures) return;
+  const page = await open(browser, at("/robots/stereo/revisions/1/"), { javaScriptEnabled: false });
+  const one = page.locator("details.camera").first();
+  for (const part of [".heat5, .heat4, .heat3", ".usual", ".normal", ".compass .dot", ".values dd"])
+    assert.ok(await one.locator(part).first().isVisible(), part);
+  const reply = await fetch(new URL(await one.locator("a[download]").getAttribute("href"), page.url()));
+  const fit = await reply.json();
+  const corners = fit.views.reduce((sum, view) => sum + view.uv_px.length / 2, 0);
+  assert.ok((await one.locator("summary").textContent()).includes(`${corners} corners`), "what is drawn is what is stored");
+  await page.context().close();
 }
 
 async function edgeTable(browser) {
@@ -136,7 +173,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, edgeTable, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, fleetColumns, experiments, cameras, edgeTable, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

@@ -59,6 +59,16 @@ def push_session(flow):
     return True
 
 
+def put_experiment(flow):
+    folder = flow.server.data / "experiments" / "noise_whitening"
+    folder.mkdir(parents=True)
+    (folder / "style.css").write_text("main { max-width: 40rem; } h1 { color: rgb(1, 2, 3); }")
+    (folder / "experiment.json").write_text('{"sets": 300}')
+    (folder / "index.html").write_text(
+        '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Noise</title><link rel="icon" href="data:,">'
+        '<link rel="stylesheet" href="style.css"></head><body><main><h1>Noise</h1></main></body></html>')
+
+
 def wait_published(flow):
     """Asks, as the pages do, until nothing is left to be solved or published."""
     until = time.monotonic() + 120
@@ -74,6 +84,7 @@ def fill(flow):
     push_edges(flow, "rover", [edge("base", "front", [1.0002, 0, 0])])
     push_edges(flow, "broken", [edge("a", "b", [1, 0, 0]), edge("b", "c", [1, 0, 0]), edge("a", "c", [2, 0, 0]), edge("a", "c", [2, 0.5, 0])], exit_code=1)
     pictures = push_session(flow)
+    put_experiment(flow)
     wait_published(flow)
     return pictures
 

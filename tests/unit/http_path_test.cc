@@ -30,6 +30,14 @@ TEST(HttpPath, PublishedFile) {
     EXPECT_FALSE(PublishedFile(path)) << path;
 }
 
+TEST(HttpPath, PagesWithoutTheirLastSlash) {
+  EXPECT_EQ(WithSlash("/experiments").value(), "/experiments/");
+  EXPECT_EQ(WithSlash("/experiments/noise").value(), "/experiments/noise/");
+  EXPECT_EQ(WithSlash("/robots/m").value(), "/robots/m/");
+  for (const std::string path : {"/", "/experiments/", "/experiments/noise/experiment.json", "/x", "/robots"})
+    EXPECT_FALSE(WithSlash(path)) << path;
+}
+
 TEST(HttpConditions, Tags) {
   EXPECT_TRUE(MatchesTag("*", "\"a\""));
   EXPECT_TRUE(MatchesTag(" \"b\" , W/\"a\"", "\"a\""));

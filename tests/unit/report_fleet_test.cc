@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/report/fleet_view.h"
 #include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
 
@@ -45,6 +46,42 @@ TEST(ReportFleet, RobotWithoutRevisionHasNoAge) {
 
 TEST(ReportFleet, ClockThatWentBackIsNamed) {
   EXPECT_THAT(RenderFleet({RowOf("a", VerdictLevel::kPass, 1)}, Stamp{0}).value(), HasSubstr("check the clock"));
+}
+
+TEST(ReportFleet, LastSessionAndWorstEdgeAreShownSearchedAndSorted) {
+  FleetRow quiet = RowOf("quiet", VerdictLevel::kPass, 1), off = RowOf("off", VerdictLevel::kPass, 1),
+           fine = RowOf("fine", VerdictLevel::kPass, 1);
+  quiet.last_session_at = Stamp{10 * kDay_ns};
+  off.last_session_at = Stamp{99 * kDay_ns};
+  off.worst = WorstFit{"left", "mast", 4.25};
+  fine.last_session_at = Stamp{98 * kDay_ns};
+  fine.worst = WorstFit{"left", "right", 0.5};
+  const std::vector<FleetRow> rows = {quiet, off, fine};
+  const Stamp now{100 * kDay_ns};
+  const std::string page = RenderFleet(rows, now).value();
+  EXPECT_THAT(page, HasSubstr("4.2 &sigma;</span> <span class=\"pair\">left &rarr; mast"));
+  EXPECT_THAT(page, HasSubstr(AgeText(90 * kDay_ns) + " ago"));
+  const auto order = [&](const FleetQuery& query) {
+    std::string names;
+    for (const FleetRow* row : SliceOf(rows, query, now).rows) names += row->robot.str() + " ";
+    return names;
+  };
+  FleetQuery query;
+  query.sort = "worst";
+  EXPECT_EQ(order(query), "off fine quiet ");
+  query.sort = "session";
+  EXPECT_EQ(order(query), "quiet fine off ");
+  query.descending = true;
+  EXPECT_EQ(order(query), "off fine quiet ");
+  EXPECT_EQ(order({"MAST", "", "", false, 1}), "off ");
+  EXPECT_EQ(order({"", "off", "", false, 1}), "off ");
+  EXPECT_EQ(order({"", "quiet", "", false, 1}), "quiet ");
+}
+
+TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
+  const std::vector<FleetRow> rows = {RowOf("a", VerdictLevel::kPass, 1)};
+  EXPECT_THAT(RenderFleet(rows, Stamp{0}).value(), Not(HasSubstr("experiments/")));
+  EXPECT_THAT(RenderFleet(rows, Stamp{0}, {}, 2).value(), HasSubstr("<a href=\"experiments/\">2 experiments</a>"));
 }
 
 TEST(ReportRobot, RevisionsNewestFirst) {

@@ -1,11 +1,11 @@
 // ECharts with the parts that the pages use, in the colours of the style sheet. Tooltips are drawn as rich text on the canvas:
 // a name can never become markup, and nothing needs an inline style.
 import * as echarts from "echarts/core";
-import { BarChart, CustomChart, LineChart, ScatterChart } from "echarts/charts";
-import { AriaComponent, DataZoomInsideComponent, GridComponent, LegendComponent, MarkLineComponent, TooltipComponent } from "echarts/components";
+import { BarChart, LineChart } from "echarts/charts";
+import { GridComponent, LegendComponent, MarkLineComponent, TooltipComponent } from "echarts/components";
 import { CanvasRenderer } from "echarts/renderers";
 
-echarts.use([BarChart, CustomChart, LineChart, ScatterChart, AriaComponent, DataZoomInsideComponent, GridComponent,
+echarts.use([BarChart, LineChart, GridComponent,
   LegendComponent, MarkLineComponent, TooltipComponent, CanvasRenderer]);
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");

@@ -66,7 +66,7 @@
 <figure>{{#STORED}}<a href="evidence/{{FILE}}"><img loading="lazy" src="evidence/{{FILE}}" alt=""><span dir="auto">{{TITLE}}</span></a>{{/STORED}}{{#MISSING}}<span class="missing">picture not stored</span><figcaption dir="auto">{{TITLE}}</figcaption>{{/MISSING}}</figure>
 {{/PICTURE}}
 </div>
-{{#MORE}}<p class="hint">{{COUNT}} more pictures are on the page of the session, and named in <a href="revision.json">revision.json</a>.</p>{{/MORE}}
+{{#MORE}}<p class="hint">{{SHOWN}} of {{COUNT}} pictures are shown. {{#SESSION}}<a href="../../sessions/{{ID}}/#captures">All of them are on the page of the session.</a>{{/SESSION}}</p>{{/MORE}}
 {{/PICTURES}}
 <p class="hint">{{PROVENANCE}} <code>edge {{ID}}</code></p>
 </div>

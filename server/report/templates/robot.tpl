@@ -33,7 +33,7 @@
 <h2 id="sessions">Sessions <span class="soft">newest first</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="sessions">
 <table class="list">
-<thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Files</th><th scope="col">Pairs</th></tr></thead>
+<thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col" class="num">Files</th><th scope="col" class="num">Pairs</th></tr></thead>
 <tbody>
 {{#SESSION}}
 <tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td>{{FILES}}</td><td>{{PAIRS}}</td></tr>

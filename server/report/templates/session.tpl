@@ -8,12 +8,12 @@
 <p class="meta">Captured {{TIME}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}, {{FILES}}{{#WAITING}}, {{COUNT}} pairs still to be calibrated{{/WAITING}}{{#CONDITION}}; <bdi>{{NAME}}</bdi>: <bdi>{{VALUE}}</bdi>{{/CONDITION}}</p>
 </header>
 <section class="card">
-<h2 id="edges">What it gave</h2>
+<h2 id="edges">What it gave <span class="soft">failed edges first</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
 <table class="list">
 <thead><tr><th scope="col">Edge</th><th scope="col">State</th><th scope="col">Method</th></tr></thead>
 <tbody>
-{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text"><bdi>{{METHOD}}</bdi></td></tr>
+{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
 {{/EDGE}}
 </tbody>
 </table>
@@ -25,7 +25,7 @@
 <table class="sheet">
 <thead><tr><th scope="col">Capture</th>{{#SENSOR}}<th scope="col"><bdi>{{NAME}}</bdi></th>{{/SENSOR}}<th scope="col">Used by</th></tr></thead>
 <tbody>
-{{#CAPTURE}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th>{{#CELL}}<td>{{#PICTURE}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" width="160" height="120" src="evidence/{{FILE}}" alt="{{ALT}}"></a><span class="alt" dir="auto">{{ALT}}</span>{{/PICTURE}}{{#BLANK}}<span class="soft">{{TEXT}}</span>{{/BLANK}}</td>{{/CELL}}<td class="text">{{#USE}}<p><span class="badge {{LEVEL}}">{{WORD}}</span> {{FROM}} &rarr; {{TO}}{{#NOTE}} <span class="soft" dir="auto">{{TEXT}}</span>{{/NOTE}}</p>{{/USE}}</td></tr>
+{{#CAPTURE}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th>{{#CELL}}<td>{{#PICTURE}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" width="160" height="120" src="evidence/{{FILE}}" alt="{{ALT}}"></a><span class="alt" dir="auto">{{ALT}}</span>{{/PICTURE}}{{#BLANK}}<span class="soft">{{TEXT}}</span>{{/BLANK}}</td>{{/CELL}}<td class="text"><details{{#OPEN}} open{{/OPEN}}><summary>{{USED}}</summary>{{#USE}}<p><span class="badge {{LEVEL}}">{{WORD}}</span> {{FROM}} &rarr; {{TO}}{{#NOTE}} <span class="soft" dir="auto">{{TEXT}}</span>{{/NOTE}}</p>{{/USE}}</details></td></tr>
 {{/CAPTURE}}
 </tbody>
 </table>

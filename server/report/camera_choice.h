@@ -1,0 +1,28 @@
+// Which edge speaks for a camera: several edges estimate it, each from captures of its own.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "server/formats/documents.h"
+#include "server/model/camera_fit.h"
+
+namespace rigcal::report {
+
+struct FitChoice {
+  SensorId camera;
+  EdgeId edge;
+  Digest document;  // of its fit
+};
+// One per camera that an edge has a fit of, sorted by name: of a good edge rather than a failed one, of the newest
+// session, of the most captures used.
+[[nodiscard]] std::vector<FitChoice> ChooseFits(const formats::RevisionInput& revision,
+                                                const std::map<SessionId, Stamp>& captured_at);
+
+struct CameraReport {
+  CameraFit fit;
+  EdgeId edge;
+  Digest document;
+};
+
+}  // namespace rigcal::report

@@ -1,0 +1,54 @@
+// What the corners of a camera say together: where in the picture they were, how large their residuals are and how they
+// are spread, how the boards stood.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "server/model/camera_fit.h"
+
+namespace rigcal::report {
+
+// The picture in fields of equal size, about square.
+struct Coverage {
+  int columns = 0, rows = 0;
+  std::vector<int> corners;              // of every field, row by row
+  double share_ratio = 0.0;              // of the fields that have a corner
+  std::array<double, 4> margin_ratio{};  // without a corner at the left, right, top, bottom; of width or height
+  [[nodiscard]] int At(int column, int row) const { return corners[static_cast<std::size_t>(row * columns + column)]; }
+};
+[[nodiscard]] Coverage CoverageOf(const CameraFit& fit);
+
+// Of u and v residuals alike, in units of their own root mean square.
+struct ResidualShape {
+  std::size_t numbers = 0;      // two per corner; 0: nothing else is known
+  double sigma_px = 0.0;        // root mean square of u's and v's
+  double beyond_3_ratio = 0.0;  // of the numbers beyond three times that; 0.0027 of a normal distribution
+  double worst_px = 0.0;        // length of the longest vector
+  std::vector<double> density;  // of a histogram of kBins over -kReach..kReach sigma; beyond that in the outermost bins
+};
+inline constexpr int kBins = 32;
+inline constexpr double kReach = 4.0;
+inline constexpr double kNormalBeyond3_ratio = 0.0027;
+[[nodiscard]] ResidualShape ShapeOf(const CameraFit& fit);
+
+// The residual that the corners of one part of the picture share: what the camera model does not explain.
+struct FieldMean {
+  Eigen::Vector2d at_px, mean_px;
+  std::size_t corners = 0;
+};
+[[nodiscard]] std::vector<FieldMean> MeansOf(const CameraFit& fit);
+
+struct Stand {
+  double nearest_m = 0.0, farthest_m = 0.0, largest_tilt_rad = 0.0;
+  std::size_t views = 0;  // with a pose; 0: nothing else is known
+};
+[[nodiscard]] Stand StandOf(const CameraFit& fit);
+
+[[nodiscard]] std::size_t CornersOf(const CameraFit& fit);
+// What a technician should do about where the boards were; empty: nothing.
+[[nodiscard]] std::string AdviceOf(const CameraFit& fit);
+
+}  // namespace rigcal::report

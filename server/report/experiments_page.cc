@@ -1,0 +1,37 @@
+#include "server/report/experiments_page.h"
+
+#include <algorithm>
+
+#include "server/report/page.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+// "noise_whitening" -> "Noise whitening".
+std::string TitleOf(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  std::replace(name.begin(), name.end(), '-', ' ');
+  if (!name.empty() && name.front() >= 'a' && name.front() <= 'z')
+    name.front() = static_cast<char>(name.front() - 'a' + 'A');
+  return name;
+}
+
+}  // namespace
+
+Result<std::string> RenderExperiments(const std::vector<ExperimentRow>& rows) {
+  Dictionary page("experiments");
+  FillHead(page, "Experiments", "../");
+  if (rows.empty()) page.ShowSection("EMPTY");
+  Dictionary* list = rows.empty() ? nullptr : page.AddSectionDictionary("LIST");
+  for (const ExperimentRow& row : rows) {
+    Dictionary* one = list->AddSectionDictionary("EXPERIMENT");
+    one->SetValue("NAME", row.name);
+    one->SetValue("TITLE", TitleOf(row.name));
+    one->SetValue("TIME", TimeText(row.written_at));
+    if (row.has_figures) ShowValue(*one, "FIGURES", "NAME", row.name);
+  }
+  return Expand("experiments.tpl", page);
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,119 @@
+// Pages of the whole fleet: what each robot's row knows, the experiments, and what is kept of cameras.
+#include "server/formats/camera_fit.h"
+#include "server/pipeline/answer.h"
+#include "server/pipeline/camera_fits.h"
+#include "server/pipeline/experiments.h"
+#include "storage/fleet_facts.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FleetPageTest : public PipelineTest {
+ protected:
+  RevisionCache revisions_cache_;
+  AnswerContext Context() { return {*store_, clock_, revisions_cache_, clock_.now, ""}; }
+  Result<PageText> Page(const std::string& path) { return AnswerPage(Context(), path, ""); }
+  void Put(const std::string& path, const std::string& text) const {
+    const fs::path file = fs::path(folder_) / "experiments" / path;
+    fs::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+  }
+};
+
+TEST_F(FleetPageTest, RowKnowsTheWorstEdgeOfTheNewestRevision) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  const auto facts = storage::LoadFleetFacts(*store_);
+  ASSERT_TRUE(facts) << Sentence(facts.error());
+  const auto row = facts->find(RobotId("r"));
+  ASSERT_NE(row, facts->end());
+  ASSERT_TRUE(row->second.worst);
+  const auto page = Page("/");
+  ASSERT_TRUE(page) << Sentence(page.error());
+  EXPECT_NE(page->body.find(row->second.worst->frame_a.str() + " &rarr; " + row->second.worst->frame_b.str()),
+            std::string::npos);
+  EXPECT_FALSE(row->second.last_session_at);
+}
+
+TEST_F(FleetPageTest, RowKnowsTheNewestClosedSession) {
+  StoreSession("r", {{"left/1.png", "no picture"}});
+  const auto facts = storage::LoadFleetFacts(*store_);
+  ASSERT_TRUE(facts) << Sentence(facts.error());
+  EXPECT_EQ(facts->at(RobotId("r")).last_session_at->ns, clock_.now.ns);
+}
+
+TEST_F(FleetPageTest, ExperimentsAreServedFromTheirFolders) {
+  EXPECT_TRUE(ListExperiments(folder_).empty());
+  EXPECT_NE(Page("/experiments/")->body.find("No experiment is here yet"), std::string::npos);
+  Put("noise_whitening/index.html", "<!doctype html>page");
+  Put("noise_whitening/experiment.json", "{}");
+  Put("noise_whitening/plot.svg", "<svg/>");
+  Put("empty/notes.txt", "no page");
+  const auto list = Page("/experiments/");
+  ASSERT_TRUE(list) << Sentence(list.error());
+  EXPECT_NE(list->body.find("href=\"noise_whitening/\""), std::string::npos);
+  EXPECT_EQ(list->body.find("empty"), std::string::npos);
+  EXPECT_EQ(Page("/experiments/noise_whitening/")->body, "<!doctype html>page");
+  EXPECT_EQ(Page("/experiments/noise_whitening/experiment.json")->content_type, "application/json; charset=utf-8");
+  EXPECT_EQ(Page("/experiments/noise_whitening/plot.svg")->content_type, "image/svg+xml");
+}
+
+TEST_F(FleetPageTest, NothingOutsideAnExperimentIsServed) {
+  Put("good/index.html", "page");
+  Put("good/notes.txt", "of an unknown kind");
+  Put("good/.hidden.json", "{}");
+  Put("good/deep/inner.json", "{}");
+  fs::create_symlink(fs::path(folder_) / "rigcal.db", fs::path(folder_) / "experiments" / "good" / "link.json");
+  fs::create_directory_symlink(fs::path(folder_), fs::path(folder_) / "experiments" / "up");
+  std::ofstream(fs::path(folder_) / "index.html") << "not an experiment";
+  for (const char* rest :
+       {"../rigcal.db", "good/../../rigcal.db", "good/../good/index.html", "good/notes.txt", "good/.hidden.json",
+        "good/deep/inner.json", "good/link.json", "up/", "up/index.html", "good", "good//", "..", "../", "none/"})
+    EXPECT_EQ(AnswerExperiments(Context(), rest).error().code, ErrorCode::kNotFound) << rest;
+  EXPECT_EQ(ListExperiments(folder_).size(), 1U);
+}
+
+CameraFit SmallFit() {
+  CameraFit fit;
+  fit.camera = SensorId("a");
+  fit.width_px = 640, fit.height_px = 480;
+  fit.views.push_back({CaptureId("01"), {{10.0, 20.0}}, {}, 0.0, {0.0, 0.0}});
+  return fit;
+}
+
+TEST_F(FleetPageTest, FitsOfCamerasAreKeptShownAndMayBeGone) {
+  std::vector<Edge> edges = Triangle("r");
+  ASSERT_TRUE(AppendFits(*store_, {SmallFit(), CameraFit{}}, edges[0]));
+  ASSERT_EQ(edges[0].evidence.size(), 1U) << "a camera that saw nothing has no document";
+  StoreEdges(edges);
+  StepAll();
+  const Digest document = edges[0].evidence[0].digest;
+  const fs::path folder = store_->ReportFolder() / "r" / "1";
+  EXPECT_TRUE(fs::exists(folder / "cameras" / (document.str() + ".json")));
+  EXPECT_FALSE(fs::exists(folder / "evidence" / (document.str() + ".fit")));
+  std::stringstream page;
+  page << std::ifstream(folder / "index.html").rdbuf();
+  EXPECT_NE(page.str().find("id=\"cameras\""), std::string::npos);
+  const std::vector<report::FitChoice> choices = {{SensorId("a"), edges[0].id, document},
+                                                  {SensorId("b"), edges[0].id, document},
+                                                  {SensorId("c"), edges[0].id, Sha256Of("gone")}};
+  EXPECT_EQ(LoadFits(*store_, choices).size(), 1U) << "of another camera, and gone";
+}
+
+// The picture of a real pair from the store to the page.
+TEST_F(FleetPageTest, ResidualsOfRealPicturesReachThePage) {
+  const auto pictures = RealPictures();
+  if (pictures.empty()) GTEST_SKIP() << "no real pictures in ../shared/data";
+  StoreSession("r", pictures);
+  StepAll();
+  std::stringstream page;
+  page << std::ifstream(store_->ReportFolder() / "r" / "1" / "index.html").rdbuf();
+  for (const char* part : {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "sigma from a jackknife"})
+    EXPECT_NE(page.str().find(part), std::string::npos) << part;
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
