@@ -40,7 +40,7 @@ struct CycleResidual {
 
 struct Cycles {
   bool judged = false;
-  std::string why_not;       // a sentence, where all or some were left out
+  std::string why_not;  // a sentence, where all or some were left out
   std::int64_t examined = 0, tested = 0, failing = 0;
   std::vector<CycleResidual> worst;  // furthest beyond its limit first; those without a test last
 };

@@ -68,7 +68,7 @@ TEST(ReportInfluenceColumn, WhatTheSolutionWithoutTheEdgeWouldBe) {
   std::sort(influences.edges.begin(), influences.edges.end(),
             [](const auto& a, const auto& b) { return a.edge < b.edge; });
   const std::string page = PageOf(input);
-  EXPECT_THAT(page, HasSubstr("<td data-v=\"4.25\">5.0 / 2.0 / 4.25 <span class=\"soft\">rear</span></td>"));
+  EXPECT_THAT(page, HasSubstr("<td data-v=\"4.25\">5.0 / 2.0 / 4.25<br><span class=\"soft\">rear</span></td>"));
   EXPECT_THAT(page, HasSubstr("<td data-v=\"\" class=\"soft\">nothing checks it</td>"));
   influences.edges.clear();
   influences.judged = false;
