@@ -154,7 +154,7 @@ constexpr int kSeeds = 300;
 
 void PrintEstimated(const std::string& name, const Information& information) {
   Faults faults;
-  for (const int count : {1, 10}) Add(faults, MeasureIndependent(count, kSeeds, information));
+  for (const int count : {1, 4, 7, 10}) Add(faults, MeasureIndependent(count, kSeeds, information));
   const Faults none = MeasureIndependent(0, kSeeds, information);
   const auto print = [&](const char* figure, double value) {
     std::printf(", \"%s_%d_%s\": %.6f", name.c_str(), information.blocks, figure, value);
