@@ -68,5 +68,7 @@ struct Elimination {
   EliminationCost cost;
 };
 [[nodiscard]] Elimination EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links);
+// The same with some vertices after all others. Links may come twice, in any order.
+[[nodiscard]] std::vector<int> ConstrainedOrder(const BlockPattern& links, const std::vector<bool>& is_last);
 
 }  // namespace rigcal::graph

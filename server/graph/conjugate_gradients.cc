@@ -13,6 +13,11 @@ namespace {
 constexpr double kResidualRatio = 1e-2;
 constexpr int kIterationsMax = 100;
 
+// One multiplication with the matrix and one with the inverses of its diagonal; six vectors are a block.
+double ProductsOfRound(const BlockPattern& pattern) {
+  return (2.0 * pattern.block_count + 2.0 * static_cast<double>(pattern.off_diagonal.size())) / 6.0;
+}
+
 }  // namespace
 
 bool ConjugateGradients::Factor(const BlockMatrix<6>& matrix, double lambda) {
@@ -63,6 +68,7 @@ bool ConjugateGradients::Iterate(const Eigen::VectorXd& rhs, Eigen::VectorXd& x)
   for (int iteration = 0; iteration < kIterationsMax; ++iteration) {
     if (rz <= enough) return true;
     Multiply(p_, Hp_);
+    products_ += ProductsOfRound(pattern_);
     const double curvature = p_.dot(Hp_);
     if (!(curvature > 0.0)) return false;
     const double length = rz / curvature;

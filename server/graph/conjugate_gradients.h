@@ -23,6 +23,8 @@ class ConjugateGradients final : public BlockCholesky<6> {
   void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) override;
   // Empty if the factor is too large or does not exist.
   std::vector<Block> InverseDiagonal() override;
+  // Products of blocks in all calls, as far as no factor was made.
+  [[nodiscard]] double products() const { return products_; }
 
  private:
   using Map = Eigen::Map<Eigen::VectorXd>;
@@ -38,6 +40,7 @@ class ConjugateGradients final : public BlockCholesky<6> {
   std::unique_ptr<BlockCholesky<6>> exact_;
   bool stalled_ = false;  // on the matrix at hand: exact_ is its factor
   Eigen::VectorXd r_, z_, p_, Hp_;
+  double products_ = 0.0;
 };
 
 }  // namespace rigcal::graph

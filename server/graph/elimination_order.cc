@@ -47,4 +47,22 @@ Elimination EliminationOrder(int vertex_count, const std::vector<std::pair<int, 
   return elimination;
 }
 
+std::vector<int> ConstrainedOrder(const BlockPattern& links, const std::vector<bool>& is_last) {
+  std::vector<int> order(is_last.size()), group(is_last.begin(), is_last.end());
+  std::iota(order.begin(), order.end(), 0);
+  if (std::count(group.begin(), group.end(), 0) == 0) group.assign(group.size(), 0);  // CAMD takes no empty group
+  std::vector<std::pair<int, int>> pairs;
+  for (const BlockPosition& at : links.off_diagonal) pairs.emplace_back(at.row, at.col);
+  cholmod_common common;
+  cholmod_start(&common);
+  common.print = 0;
+  if (cholmod_sparse* matrix = LinkMatrix(links.block_count, pairs, &common); matrix != nullptr) {
+    std::vector<int> found(order.size());
+    if (cholmod_camd(matrix, nullptr, 0, group.data(), found.data(), &common) != 0) order = std::move(found);
+    cholmod_free_sparse(&matrix, &common);
+  }
+  cholmod_finish(&common);
+  return order;
+}
+
 }  // namespace rigcal::graph

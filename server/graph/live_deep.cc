@@ -1,6 +1,9 @@
-// Updates of deep graphs, by a factor that grows. Steps are taken with H as it was when the factor was made: a rigid
-// motion of a part changes no block of H (residuals and their derivatives depend on relative poses alone). Edges that
-// were bent since are linearised anew, one by one, before a step would suffer. The gradient is always exact.
+// Updates of deep graphs, by a tree of cliques. Steps are taken with H as it was when its edges were linearised: a
+// rigid motion of a part changes no block of H (residuals and their derivatives depend on relative poses alone). Edges
+// that were bent since are linearised anew before a step would suffer, and the part of the tree above them is made
+// again. The gradient is always exact.
+//
+// A sensor that hangs on one edge takes no part: it follows the sensor it hangs on, until a second edge reaches it.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -13,9 +16,8 @@
 namespace rigcal::graph {
 namespace {
 
-constexpr int kCorrectionsMax = 64;  // then a new factor is cheaper than the corrections of the old one
 constexpr double kBent_rad = 0.02, kBent_ratio = 0.04;  // turned, or moved, as a part of its length
-constexpr int kBentMax = 5;                             // more at once: a new factor is cheaper
+constexpr double kBentStrict = 0.1;                     // of these, where steps gain less than they should
 constexpr double kTurnMax_rad = 0.5;     // an edge that disagrees by more may lead to another basin: the batch decides
 constexpr double kRestRelative = 1e-11;  // of the cost: what may be left to gain
 constexpr double kSettledRelative = 1e-9;
@@ -24,97 +26,163 @@ constexpr double kRoundingRelative = 1e-12;  // of the cost: a rise by less is n
 constexpr double kStepLeast = 1e-12;         // m and rad
 constexpr int kStepsMax = 12;
 
+// One edge's part of H at a relative pose: U U^T.
+CliqueTree::Edge Linearized(const Constraint& constraint, const Se3& T_i_j) {
+  const Matrix6d root = constraint.Omega.llt().matrixL();
+  const Matrix6d J_j = RightJacobianInverse((constraint.T_j_i * T_i_j).Log());
+  const Matrix6d U_j = J_j.transpose() * root;
+  return {constraint.i - 1, constraint.j - 1, -Adjoint(T_i_j.Inverse()).transpose() * U_j, U_j};
+}
+
 }  // namespace
 
 Se3 LiveSolver::RelativePose(const Constraint& constraint) const {
   return T_ref_[static_cast<std::size_t>(constraint.i)].Inverse() * T_ref_[static_cast<std::size_t>(constraint.j)];
 }
 
-void LiveSolver::GrowLeaf(const Constraint& constraint) {
-  if (!growing_holds_) return;
-  const EdgeJacobian jacobian = JacobianOf(constraint, T_ref_);
-  const bool leaf_is_j = constraint.j > constraint.i;
-  const Matrix6d& J_leaf = leaf_is_j ? jacobian.J_j : jacobian.J_i;
-  const Matrix6d& J_parent = leaf_is_j ? jacobian.J_i : jacobian.J_j;
-  const Matrix6d weighted = constraint.Omega * J_leaf;
-  linearized_at_.push_back(RelativePose(constraint));
-  growing_holds_ = growing_.AddLeaf(std::min(constraint.i, constraint.j) - 1, J_leaf.transpose() * weighted,
-                                    J_parent.transpose() * weighted);
+// The newest vertex hangs on the newest edge.
+void LiveSolver::GrowLeaf() {
+  if (!tree_holds_) return;
+  hangs_on_.push_back(static_cast<int>(problem_->constraints.size()) - 1);
+  linearized_at_.emplace_back();
+  equations_.g.conservativeResizeLike(Eigen::VectorXd::Zero(6 * problem_->free_count()));
+}
+
+// Where a vertex that hangs on an edge stands.
+Se3 LiveSolver::Hanging(int vertex, const Poses& T_ref) const {
+  const Constraint& constraint =
+      problem_->constraints[static_cast<std::size_t>(hangs_on_[static_cast<std::size_t>(vertex)])];
+  if (constraint.j == vertex) return (T_ref[static_cast<std::size_t>(constraint.i)] * constraint.T_i_j).Normalized();
+  return (T_ref[static_cast<std::size_t>(constraint.j)] * constraint.T_j_i).Normalized();
+}
+
+// The vertex, and all it hangs on, take part from now on.
+void LiveSolver::TakePart(int vertex) {
+  for (int edge = 0; (edge = hangs_on_[static_cast<std::size_t>(vertex)]) >= 0;) {
+    hangs_on_[static_cast<std::size_t>(vertex)] = -1;
+    TakeEdge(static_cast<std::size_t>(edge));
+    const Constraint& constraint = problem_->constraints[static_cast<std::size_t>(edge)];
+    vertex = constraint.i == vertex ? constraint.j : constraint.i;
+  }
+}
+
+void LiveSolver::TakeEdge(std::size_t edge) {
+  const Constraint& constraint = problem_->constraints[edge];
+  linearized_at_[edge] = RelativePose(constraint);
+  tree_.Take(edge, Linearized(constraint, linearized_at_[edge]));
+}
+
+void LiveSolver::Count(UpdateWork& work) {
+  work.products += tree_.products() - products_counted_;
+  work.columns_factored += tree_.columns() - columns_counted_;
+  products_counted_ = tree_.products();
+  columns_counted_ = tree_.columns();
 }
 
 bool LiveSolver::RenewDeep(UpdateWork& work) {
-  Linearize(*problem_, T_ref_, equations_);
-  linearized_at_.clear();
-  for (const Constraint& constraint : problem_->constraints) linearized_at_.push_back(RelativePose(constraint));
-  growing_holds_ = growing_.Renew(problem_->pattern, equations_.H, budget_.products_max);
+  for (const int edge : tree_.Open()) {
+    const auto k = static_cast<std::size_t>(edge);
+    linearized_at_[k] = RelativePose(problem_->constraints[k]);
+    const CliqueTree::Edge linearized = Linearized(problem_->constraints[k], linearized_at_[k]);
+    tree_.Replace(k, linearized.U_i, linearized.U_j);
+    ++work.edges_evaluated;
+  }
+  const Constraint& newest = problem_->constraints.back();
+  tree_holds_ = tree_.Renew(newest.i - 1, newest.j - 1, budget_.products_max);
+  Count(work);
+  return tree_holds_;
+}
+
+// Vertices with one edge, or one beside those that hang on them. The others come before them: every vertex came with an
+// edge to one that was there.
+void LiveSolver::FindHanging() {
+  std::vector<int> count(T_ref_.size(), 0), sum(T_ref_.size(), 0);  // edges; of their numbers
+  const auto add = [&](int edge, int sign) {
+    const Constraint& constraint = problem_->constraints[static_cast<std::size_t>(edge)];
+    for (const int vertex : {constraint.i, constraint.j})
+      count[static_cast<std::size_t>(vertex)] += sign, sum[static_cast<std::size_t>(vertex)] += sign * edge;
+  };
+  for (std::size_t k = 0; k < problem_->constraints.size(); ++k) add(static_cast<int>(k), 1);
+  hangs_on_.assign(T_ref_.size(), -1);
+  for (std::size_t v = T_ref_.size(); v-- > 1;) {
+    if (count[v] != 1) continue;
+    hangs_on_[v] = sum[v];
+    add(sum[v], -1);
+  }
+}
+
+// Everything anew.
+void LiveSolver::BeginDeep(UpdateWork& work) {
+  tree_.Clear();
+  products_counted_ = 0.0;
+  columns_counted_ = 0;
+  linearized_at_.assign(problem_->constraints.size(), Se3());
+  FindHanging();
+  for (std::size_t k = 0; k < problem_->constraints.size(); ++k) {
+    const Constraint& constraint = problem_->constraints[k];
+    if (hangs_on_[static_cast<std::size_t>(std::max(constraint.i, constraint.j))] != static_cast<int>(k)) TakeEdge(k);
+  }
+  for (std::size_t v = 1; v < T_ref_.size(); ++v)
+    if (hangs_on_[v] >= 0) T_ref_[v] = Hanging(static_cast<int>(v), T_ref_);
+  LinearizeGradient(*problem_, T_ref_, equations_);
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
-  work.columns_factored += problem_->free_count();
-  work.products += growing_.products_of_factor();
-  return growing_holds_;
-}
-
-// What one edge adds to H at a relative pose: U U^T with these rows.
-struct LiveSolver::EdgeRoot {
-  Matrix6d U_i, U_j;
-};
-
-LiveSolver::EdgeRoot LiveSolver::RootAt(const Constraint& constraint, const Se3& T_i_j) {
-  const Matrix6d root = constraint.Omega.llt().matrixL();
-  const Matrix6d J_j = RightJacobianInverse((constraint.T_j_i * T_i_j).Log());
-  const Matrix6d U_j = J_j.transpose() * root;
-  return {-Adjoint(T_i_j.Inverse()).transpose() * U_j, U_j};
-}
-
-bool LiveSolver::Correct(double sign, const Constraint& constraint, const Se3& T_i_j, UpdateWork& work) {
-  const EdgeRoot root = RootAt(constraint, T_i_j);
-  const int columns = growing_.AddEdge(sign, constraint.i - 1, root.U_i, constraint.j - 1, root.U_j);
-  work.columns_factored += std::max(columns, 0);
-  return columns >= 0;
 }
 
 // Takes the edge into the gradient, the cost and the factor.
 bool LiveSolver::JoinDeep(const Constraint& added, UpdateWork& work) {
-  const EdgeJacobian jacobian = JacobianOf(added, T_ref_);
-  if (jacobian.e.tail<3>().norm() > kTurnMax_rad) return false;
+  if (Residual(added, T_ref_).tail<3>().norm() > kTurnMax_rad) return false;
   problem_->constraints.push_back(added);
-  if (!growing_holds_ || growing_.corrections() >= kCorrectionsMax) return RenewDeep(work);
-  equations_.g.conservativeResizeLike(Eigen::VectorXd::Zero(6 * problem_->free_count()));
+  if (!tree_holds_) {
+    BeginDeep(work);
+    return RenewDeep(work);
+  }
+  linearized_at_.emplace_back();
+  TakePart(added.i);
+  TakePart(added.j);
+  TakeEdge(problem_->constraints.size() - 1);
+  const EdgeJacobian jacobian = JacobianOf(added, T_ref_);
   AddToGradient(added, jacobian, jacobian.e, equations_.g);
   equations_.cost += jacobian.e.dot(added.Omega * jacobian.e);
-  linearized_at_.push_back(RelativePose(added));
-  return Correct(1.0, added, linearized_at_.back(), work) || RenewDeep(work);
+  return RenewDeep(work);
 }
 
-// Linearises anew the edges that were bent since the factor learnt them. False if there is none, or no factor left.
-bool LiveSolver::Straighten(UpdateWork& work) {
-  std::vector<std::size_t> bent;
+bool LiveSolver::IsBent(std::size_t edge, double part) const {
+  const Se3& before = linearized_at_[edge];
+  const Se3 change = before.Inverse() * RelativePose(problem_->constraints[edge]);
+  return 2.0 * change.q.vec().norm() > part * kBent_rad || change.p_m.norm() > part * kBent_ratio * before.p_m.norm();
+}
+
+// Linearises anew the edges that were bent by more than this part of what is allowed since the factor learnt them.
+// False if there is none, or no factor left.
+bool LiveSolver::Straighten(double part, UpdateWork& work) {
+  bool any = false;
   for (std::size_t k = 0; k < linearized_at_.size(); ++k) {
-    const Vector6d change = (linearized_at_[k].Inverse() * RelativePose(problem_->constraints[k])).Log();
-    if (change.tail<3>().norm() > kBent_rad || change.head<3>().norm() > kBent_ratio * linearized_at_[k].p_m.norm())
-      bent.push_back(k);
-  }
-  if (bent.empty()) return false;
-  if (static_cast<int>(bent.size()) > kBentMax || growing_.corrections() + 2 * kBentMax > kCorrectionsMax)
-    return RenewDeep(work);
-  for (const std::size_t k : bent) {
     const Constraint& constraint = problem_->constraints[k];
-    const Se3 before = std::exchange(linearized_at_[k], RelativePose(constraint));
-    if (!Correct(1.0, constraint, linearized_at_[k], work) || !Correct(-1.0, constraint, before, work))
-      return RenewDeep(work);
+    const bool hangs = hangs_on_[static_cast<std::size_t>(std::max(constraint.i, constraint.j))] == static_cast<int>(k);
+    if (hangs || !IsBent(k, part)) continue;
+    tree_.Change(k);
+    any = true;
   }
-  return true;
+  return any && RenewDeep(work);
 }
 
 // False, and nothing has happened, if the step leads uphill.
 bool LiveSolver::StepDeep(UpdateWork& work) {
   const double cost_before = equations_.cost;
   g_before_ = equations_.g;
-  Retract(T_ref_, step_, trial_);
+  trial_.resize(T_ref_.size());
+  trial_[0] = T_ref_[0];
+  for (std::size_t v = 1; v < T_ref_.size(); ++v) {
+    const Eigen::Index row = 6 * (static_cast<Eigen::Index>(v) - 1);
+    trial_[v] = hangs_on_[v] >= 0 ? Hanging(static_cast<int>(v), trial_)
+                                  : (T_ref_[v] * Se3::Exp(step_.segment<6>(row))).Normalized();
+  }
   LinearizeGradient(*problem_, trial_, equations_);
   ++work.iterations;
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
   if (equations_.cost <= (1.0 + kRoundingRelative) * cost_before) {
     std::swap(T_ref_, trial_);
+    tree_.TouchAll();
     return true;
   }
   equations_.g = g_before_;
@@ -131,35 +199,36 @@ bool LiveSolver::RelaxDeep(const Constraint& added, UpdateWork& work) {
   stale_ = true;
   if (!JoinDeep(added, work)) return false;
   const double enough = large() ? budget_.rest_ratio : kRestRelative;
-  bool fresh = growing_.corrections() == 0;  // H is that of these poses: no other factor would do better
-  bool straight = true;                      // as far as straightening makes it
+  bool straight = true;  // as far as straightening makes it
+  double part = 1.0;     // 0: H is that of these poses, no other factor would do better
   for (double gain_before = std::numeric_limits<double>::infinity();;) {
-    step_ = -equations_.g;
-    const double gain = growing_.Reduce(step_);
-    work.products += growing_.products_of_solve();
+    const double gain = tree_.Reduce(equations_.g), rest = enough * equations_.cost;
+    Count(work);
     if (!std::isfinite(gain)) return false;
-    const double rest_ratio = equations_.cost > 0.0 ? std::max(gain, 0.0) / equations_.cost : 0.0;
+    const double rest_ratio = equations_.cost > 0.0 ? gain / equations_.cost : 0.0;
     const bool spent = work.iterations >= kStepsMax || work.products >= budget_.products_max;
     if (rest_ratio <= enough || (spent && large())) return LeaveRest(rest_ratio, work), true;
     if (spent) return false;
-    if (!fresh && !straight) {
-      straight = true;
-      if (Straighten(work)) {
-        fresh = growing_.corrections() == 0;
+    if (!std::exchange(straight, true) && Straighten(1.0, work)) continue;
+    if (!tree_holds_) return false;
+    const bool slow = gain > kShrink * gain_before && gain / gain_before * gain > rest;
+    if (!slow || part == 0.0) {
+      step_.resize(equations_.g.size());
+      tree_.Finish(step_);
+      Count(work);
+      step_ = -step_;
+      if (step_.cwiseAbs().maxCoeff() <= kStepLeast) return LeaveRest(0.0, work), true;
+      if (StepDeep(work)) {
+        gain_before = gain;
+        straight = false;
+        part = 1.0;
         continue;
       }
-      if (!growing_holds_) return false;
+      if (part == 0.0) return false;
     }
-    growing_.Finish(step_);
-    if (step_.cwiseAbs().maxCoeff() <= kStepLeast) return LeaveRest(0.0, work), true;
-    const bool slow = gain > kShrink * gain_before;
-    if ((!slow || fresh) && StepDeep(work)) {
-      gain_before = gain;
-      fresh = straight = false;
-      continue;
-    }
-    if (fresh || !RenewDeep(work)) return false;
-    fresh = true;
+    part = part == 1.0 ? kBentStrict : 0.0;
+    Straighten(part, work);
+    if (!tree_holds_) return false;
   }
 }
 

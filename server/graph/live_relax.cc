@@ -16,6 +16,14 @@ constexpr double kShrink = 0.1;          // what a gain must be of the one befor
 constexpr double kShrinkLeast = 0.01;    // one good step does not promise that the next shrinks as well
 constexpr int kStepsMax = 12, kStepsFresh = 5;
 
+// Of block columns first .. count - 1 of a dense factor; of a solve with it.
+double ProductsOfDense(int first, int count) {
+  double products = 0.0;
+  for (int c = first; c < count; ++c) products += (c + 1.0) * (count - c);
+  return products;
+}
+double ProductsOfDenseSolve(int count) { return count * (count + 1.0) / 6.0; }
+
 }  // namespace
 
 bool LiveSolver::FactorNow(UpdateWork& work) {
@@ -28,11 +36,25 @@ bool LiveSolver::FactorNow(UpdateWork& work) {
   if (count > kBlocksDenseMax) {
     if (count != factored_count_) solver_ = std::make_unique<ConjugateGradients>(problem_->pattern);
     factored_count_ = count;
+    work.products += count;
     return solver_->Factor(equations_.H, 0.0);
   }
   if (count != factored_count_) solver_ = std::make_unique<DenseCholesky<6>>(problem_->pattern);
   factored_count_ = count;
+  work.products += ProductsOfDense(first, count);
   return static_cast<DenseCholesky<6>&>(*solver_).FactorFrom(static_cast<std::size_t>(first), equations_.H, 0.0);
+}
+
+// x <- H^-1 x.
+void LiveSolver::SolveStep(Eigen::VectorXd& x, UpdateWork& work) {
+  if (factored_count_ <= kBlocksDenseMax) {
+    work.products += ProductsOfDenseSolve(factored_count_);
+    return solver_->SolveInPlace(x);
+  }
+  const auto& gradients = static_cast<const ConjugateGradients&>(*solver_);
+  const double before = gradients.products();
+  solver_->SolveInPlace(x);
+  work.products += gradients.products() - before;
 }
 
 // The gradient before the edge: none at an optimum.
@@ -54,7 +76,7 @@ bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
   double gain_before = std::numeric_limits<double>::infinity();
   for (work.iterations = 1; work.iterations <= kStepsMax; ++work.iterations) {
     step_ = -equations_.g;
-    secants_.Apply(step_, [this](Eigen::VectorXd& x) { solver_->SolveInPlace(x); });
+    secants_.Apply(step_, [this, &work](Eigen::VectorXd& x) { SolveStep(x, work); });
     const double gain = -step_.dot(equations_.g);
     if (!std::isfinite(gain) || step_.cwiseAbs().maxCoeff() > kStepMax) return false;
     Retract(T_ref_, step_, trial_);

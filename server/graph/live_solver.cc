@@ -7,12 +7,22 @@
 #include "server/graph/optimize_graph.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/spanning_tree.h"
+#include "server/graph/step_solver.h"
 
 namespace rigcal::graph {
 namespace {
 
 constexpr int kLevelsMax = 12;  // deeper graphs are badly conditioned for conjugate gradients
 constexpr int kIterationsLeast = 5, kIterationsMost = 100;  // of a batch within an update
+constexpr double kRoundsTypical = 30.0;                     // of conjugate gradients in an iteration, by experience
+
+// About: of a factor and a solve, or of conjugate gradients.
+double ProductsOfIteration(const Problem& problem) {
+  const double count = problem.free_count(), links = static_cast<double>(problem.pattern.off_diagonal.size());
+  if (problem.free_count() <= kBlocksDenseMax) return count * (count + 1.0) * (count + 2.0) / 6.0;
+  if (PrefersConjugateGradients(problem)) return kRoundsTypical * (count + links) / 3.0;
+  return problem.elimination_cost.flops + problem.elimination_cost.entries / 3.0;
+}
 
 }  // namespace
 
@@ -28,9 +38,9 @@ UpdateWork LiveSolver::Add(const GraphEdge& edge) {
   if (was_known) {
     Place(edge, constraint);
     if (constraint.i == constraint.j) return Rebuild();
-    return (deep() ? RelaxDeep(constraint, work) : Relax(constraint, work)) ? work : Rebuild();
+    return (deep() ? RelaxDeep(constraint, work) : Relax(constraint, work)) ? work : Rebuild(work);
   }
-  return Connect(edge, constraint) ? work : Rebuild();
+  return Connect(edge, constraint) ? work : Rebuild(work);
 }
 
 UpdateWork LiveSolver::AddSensor(const SensorId& sensor) {
@@ -117,18 +127,19 @@ UpdateWork LiveSolver::Settle() {
   return work;
 }
 
-UpdateWork LiveSolver::Rebuild() {
-  UpdateWork work;
+UpdateWork LiveSolver::Rebuild(UpdateWork work) {
   work.batch = true;
   SolveOptions options;
   options.marginals = false;
-  if (large() && growing_.products_of_factor() > 0.0)
-    options.iterations_max = std::clamp(static_cast<int>(budget_.products_max / growing_.products_of_factor()),
-                                        kIterationsLeast, kIterationsMost);
+  const double products = ProductsOfIteration(MakeProblem(graph_));
+  if (large() && products > 0.0)
+    options.iterations_max =
+        static_cast<int>(std::clamp<double>(budget_.products_max / products, kIterationsLeast, kIterationsMost));
   solution_ = Solve(graph_, options);
-  work.iterations = solution_.iterations;
-  work.edges_evaluated = static_cast<int>(graph_.edges.size()) * (solution_.iterations + 1);
-  work.products = solution_.iterations * growing_.products_of_factor();
+  work.iterations += solution_.iterations;
+  work.edges_evaluated += static_cast<int>(graph_.edges.size()) * (solution_.iterations + 1);
+  work.products += solution_.iterations * products;
+  work.rest_ratio = 0.0;
   settled_ = solution_.converged;
   fast_ = AdoptSolution(solution_.iterations >= options.iterations_max);
   return work;
@@ -139,7 +150,7 @@ UpdateWork LiveSolver::Rebuild() {
 bool LiveSolver::AdoptSolution(bool stopped) {
   vertex_of_sensor_.clear(), sensor_of_vertex_.clear(), level_.clear(), slot_of_pair_.clear();
   level_max_ = 0;
-  growing_holds_ = false;
+  tree_holds_ = false;
   *problem_ = Problem();
   T_ref_.clear();
   equations_ = NormalEquations();
@@ -234,7 +245,7 @@ bool LiveSolver::Connect(const GraphEdge& edge, Constraint& constraint) {
   Place(edge, constraint);
   problem_->constraints.push_back(constraint);
   LinearizeEdge(constraint, T_ref_, equations_.H);
-  GrowLeaf(constraint);
+  GrowLeaf();
   dirty_from_ = std::min(dirty_from_, std::max(std::min(constraint.i, constraint.j) - 1, 0));
   return true;
 }

@@ -1,7 +1,8 @@
 // The live state of one robot's graph, kept at the optimum while edges come and go. It remembers poses, H and its
 // factor between updates, so that an edge costs a few passes over the residuals. One thread.
 //
-// Small graphs have a dense factor, shallow ones are solved by conjugate gradients, deep ones have a factor that grows.
+// Small graphs have a dense factor, shallow ones are solved by conjugate gradients, deep ones have a factor of which
+// only what changes is made again.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "server/graph/growing_factor.h"
+#include "server/graph/clique_tree.h"
 #include "server/graph/linearize.h"
 #include "server/graph/secant_pairs.h"
 #include "server/graph/solve.h"
@@ -22,7 +23,7 @@ struct UpdateWork {
   int iterations = 0;        // steps taken
   int edges_evaluated = 0;   // residuals with their gradients
   int columns_factored = 0;  // block columns of the factor that were renewed
-  double products = 0.0;     // of 6x6 blocks, in factors and solves: what the budget counts
+  double products = 0.0;     // of 6x6 blocks, in factors and solves: what the budget counts (of a batch: about)
   double rest_ratio = 0.0;   // of the cost: what is left to gain, as far as is known
   bool batch = false;        // solved from the ground up: a removed edge, a large step, a deficient edge
 };
@@ -69,7 +70,7 @@ class LiveSolver {
   [[nodiscard]] std::vector<std::pair<SensorId, Matrix6d>> Marginals() const;
 
  private:
-  UpdateWork Rebuild();
+  UpdateWork Rebuild(UpdateWork work = {});
   [[nodiscard]] bool AdoptSolution(bool stopped);
   [[nodiscard]] int VertexOf(const SensorId& sensor) const;
   int AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int level);
@@ -81,18 +82,23 @@ class LiveSolver {
   [[nodiscard]] bool deep() const;
   bool FactorNow(UpdateWork& work);
   void BeginGradient();
+  void SolveStep(Eigen::VectorXd& x, UpdateWork& work);
   bool Relax(const Constraint& added, UpdateWork& work);
   void LeaveRest(double rest_ratio, UpdateWork& work);
   bool RelaxDeep(const Constraint& added, UpdateWork& work);
-  struct EdgeRoot;
-  [[nodiscard]] static EdgeRoot RootAt(const Constraint& constraint, const Se3& T_i_j);
   [[nodiscard]] Se3 RelativePose(const Constraint& constraint) const;
-  bool Correct(double sign, const Constraint& constraint, const Se3& T_i_j, UpdateWork& work);
-  bool Straighten(UpdateWork& work);
+  void Count(UpdateWork& work);
+  void FindHanging();
+  [[nodiscard]] Se3 Hanging(int vertex, const Poses& T_ref) const;
+  void TakePart(int vertex);
+  void TakeEdge(std::size_t edge);
+  void BeginDeep(UpdateWork& work);
+  [[nodiscard]] bool IsBent(std::size_t edge, double part) const;
+  bool Straighten(double part, UpdateWork& work);
   bool RenewDeep(UpdateWork& work);
   bool JoinDeep(const Constraint& added, UpdateWork& work);
   bool StepDeep(UpdateWork& work);
-  void GrowLeaf(const Constraint& constraint);
+  void GrowLeaf();
 
   UpdateBudget budget_;
   Graph graph_;
@@ -113,9 +119,12 @@ class LiveSolver {
   bool stale_ = true;       // H is to be linearised anew
   SecantPairs secants_;
   Eigen::VectorXd step_, g_before_;
-  GrowingFactor growing_;           // of a deep graph,
-  bool growing_holds_ = false;      // if it is of this graph
-  std::vector<Se3> linearized_at_;  // T_i_j of every constraint as growing_ knows it
+  CliqueTree tree_;                 // of a deep graph,
+  bool tree_holds_ = false;         // if it is of this graph
+  std::vector<int> hangs_on_;       // of a vertex: the one edge that holds it; -1: it takes part
+  std::vector<Se3> linearized_at_;  // T_i_j of every constraint as tree_ knows it
+  double products_counted_ = 0.0;   // of tree_,
+  int columns_counted_ = 0;
   bool settled_ = true;
 };
 

@@ -1,0 +1,108 @@
+// The tree of cliques against a dense matrix: whatever came when, its solves are those of H.
+#include "server/graph/clique_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+#include <random>
+
+namespace rigcal::graph {
+namespace {
+
+constexpr double kAll = std::numeric_limits<double>::infinity();
+
+Matrix6d NearIdentity(std::mt19937& random) {
+  std::normal_distribution<double> normal(0.0, 0.1);
+  Matrix6d matrix = Matrix6d::Identity();
+  for (double& entry : matrix.reshaped()) entry += normal(random);
+  return matrix;
+}
+
+// Edges as they are, and the matrix they add up to.
+class Twin {
+ public:
+  explicit Twin(unsigned seed) : random_(seed) {}
+
+  CliqueTree::Edge Random(int i, int j) { return {i, j, -NearIdentity(random_), NearIdentity(random_)}; }
+  void Take(int i, int j) {
+    edges_.push_back(Random(i, j));
+    tree.Take(edges_.size() - 1, edges_.back());
+  }
+  void Change(std::size_t number) {
+    changed_.push_back(number);
+    tree.Change(number);
+  }
+  // All edges that are open become others.
+  void Renew(int near_i, int near_j) {
+    const std::vector<int> open = tree.Open();
+    for (const std::size_t number : changed_)
+      EXPECT_NE(std::find(open.begin(), open.end(), static_cast<int>(number)), open.end());
+    changed_.clear();
+    for (const int number : open) {
+      CliqueTree::Edge& edge = edges_[static_cast<std::size_t>(number)];
+      edge = Random(edge.i, edge.j);
+      tree.Replace(static_cast<std::size_t>(number), edge.U_i, edge.U_j);
+    }
+    ASSERT_TRUE(tree.Renew(near_i, near_j, kAll));
+  }
+
+  // Where x changes in a few blocks only, and in all.
+  void ExpectSolves(int step) {
+    const int count = tree.block_count();
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6 * count, 6 * count);
+    for (const CliqueTree::Edge& edge : edges_) {
+      Eigen::MatrixXd U = Eigen::MatrixXd::Zero(6 * count, 6);
+      if (edge.i >= 0) U.middleRows<6>(6 * edge.i) += edge.U_i;
+      if (edge.j >= 0) U.middleRows<6>(6 * edge.j) += edge.U_j;
+      H += U * U.transpose();
+    }
+    x_.conservativeResizeLike(Eigen::VectorXd::Zero(6 * count));
+    std::uniform_int_distribution<int> any(0, count - 1);
+    for (int k = 0; k < 3; ++k) {
+      const int block = any(random_);
+      x_.segment<6>(6 * block).setRandom();
+      tree.Touch(block);
+    }
+    const Eigen::VectorXd expected = H.ldlt().solve(x_);
+    EXPECT_NEAR(tree.Reduce(x_), x_.dot(expected), 1e-9 * x_.dot(expected)) << step;
+    Eigen::VectorXd solved(6 * count);
+    tree.Finish(solved);
+    EXPECT_LE((solved - expected).norm(), 1e-9 * expected.norm()) << step;
+  }
+
+  [[nodiscard]] std::size_t edge_count() const { return edges_.size(); }
+  CliqueTree tree;
+
+ private:
+  std::mt19937 random_;
+  std::vector<CliqueTree::Edge> edges_;
+  std::vector<std::size_t> changed_;
+  Eigen::VectorXd x_;
+};
+
+TEST(CliqueTree, SolvesWhateverCameWhen) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Twin twin(seed);
+    std::mt19937 random(seed + 100);
+    twin.Take(-1, 0);
+    for (int step = 0; step < 100; ++step) {
+      const int count = twin.tree.block_count();
+      const auto any = [&random, count] { return std::uniform_int_distribution<int>(-1, count - 1)(random); };
+      const int kind = std::uniform_int_distribution<int>(0, 9)(random);
+      if (kind < 4) twin.Take(any(), count);
+      if (kind >= 4 && kind < 7) {
+        const int a = any(), b = any();
+        if (a != b) twin.Take(a, b);
+      }
+      if (kind == 7) twin.Change(std::uniform_int_distribution<std::size_t>(0, twin.edge_count() - 1)(random));
+      if (kind < 6) continue;
+      twin.Renew(any(), any());
+      twin.ExpectSolves(step);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::graph
