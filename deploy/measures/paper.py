@@ -57,7 +57,7 @@ def method_rows(method):
 def run(context):
     folder = context.root / "build" / "measure" / "paper"
     folder.parent.mkdir(parents=True, exist_ok=True)
-    figures = context.run_json("paper_experiment", "--out", folder, "--threads", 2)
+    figures = context.run_json("paper_experiment", "--out", folder, "--threads", 2, timeout=1800)
     yield from noise_rows(figures["noise"])
     yield from global_rows(figures["global"])
     yield from chain_rows(figures["chain"])

@@ -77,6 +77,14 @@ json FiguresOf(const NoiseExperiment& experiment) {
 }
 
 json FiguresOf(const GlobalExperiment& experiment) {
+  json noisy = json::array();
+  for (const NoisyPair& pair : experiment.noisy_pairs)
+    noisy.push_back({{"a", pair.a.str()},
+                     {"b", pair.b.str()},
+                     {"method", pair.method},
+                     {"refusal", pair.refusal},
+                     {"error_m", pair.error_m},
+                     {"error_rad", pair.error_rad}});
   return {{"sensors", experiment.sensors},
           {"captures", experiment.captures},
           {"edges_min", experiment.edges_min},
@@ -87,6 +95,7 @@ json FiguresOf(const GlobalExperiment& experiment) {
           {"whitened_ratio_expected", experiment.WhitenedExpected()},
           {"whitened_ratio_half_width", experiment.WhitenedHalfWidth()},
           {"noise_factor", experiment.noise_factor},
+          {"noisy_pairs", std::move(noisy)},
           {"paper", {{"before", kPaperBefore}, {"after", kPaperAfter}}},
           {"visits", Json(experiment.visits)},
           {"realistic", Json(experiment.realistic)},

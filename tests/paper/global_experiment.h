@@ -39,6 +39,14 @@ struct GlobalRuns {
   GlobalRun full, diagonal;  // information; diagonal as in the paper: one over each variance
 };
 
+// What the estimators say of one pair where the sensors themselves are as noisy as E_global would have it.
+struct NoisyPair {
+  SensorId a, b;
+  std::string method;
+  std::string refusal;  // empty: an edge, with this error
+  double error_m = 0.0, error_rad = 0.0;
+};
+
 struct GlobalExperiment {
   std::size_t edges_min = 0;  // good ones, in the visit that has the fewest
   std::size_t sensors = 0, captures = 0;
@@ -49,6 +57,7 @@ struct GlobalExperiment {
   double noise_factor = 0.0;
   int dof = 0;                                  // of the weighted cost with full information
   double edge_rms_m = 0.0, edge_rms_rad = 0.0;  // of one edge's error, realistic
+  std::vector<NoisyPair> noisy_pairs;           // one per method, at noise_factor
 
   // Of drawn errors with full information: the mean cost over its degrees of freedom, and the part of the weighted
   // noise that the poses keep, a ratio of chi-squares (beta distribution); but for odds of 1e-6.
@@ -61,6 +70,9 @@ struct GlobalExperiment {
 // An error if a visit left sensors without a chain of good edges to the reference.
 [[nodiscard]] Result<GlobalExperiment> RunGlobalExperiment(const std::vector<Visit>& visits, int draws,
                                                            std::uint64_t seed);
+// `how`: as for the visits; which pairs is chosen here.
+[[nodiscard]] Result<std::vector<NoisyPair>> TryNoisySensors(const sim::Experiment& like, double noise_factor,
+                                                             VisitOptions how);
 [[nodiscard]] Section GlobalSection(const GlobalExperiment& experiment);
 
 }  // namespace rigcal::paper

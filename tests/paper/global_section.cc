@@ -23,7 +23,9 @@ std::string Plot(const GlobalRuns& runs, const std::string& title) {
   return PlotSeries(title, "m&#178; + rad&#178;", {before, full, diagonal});
 }
 
-std::string Cell(double seen, double predicted) { return fmt::format("<td>{:.3g} ({:.3g})</td>", seen, predicted); }
+std::string Cell(double seen, double predicted) {
+  return fmt::format("<td class='tight'>{:.3g} ({:.3g})</td>", seen, predicted);
+}
 
 std::string Row(const std::string& name, const GlobalRun& run) {
   const GlobalSample mean = run.Mean();
@@ -84,14 +86,30 @@ std::string PaperSentence(const GlobalExperiment& experiment) {
       diagonal.after.total / diagonal.before.total, kPaperAfter / kPaperBefore);
 }
 
+std::string NoisySentence(const GlobalExperiment& experiment) {
+  if (experiment.noisy_pairs.empty()) return {};
+  std::string html = fmt::format(
+      "<p>Sensors {:.0f} times as noisy (corners, ranges, tracker, lenses) do not give such a graph. One pair of each "
+      "kind, "
+      "and what its estimator says:</p>\n<div class='table'><table>\n",
+      experiment.noise_factor);
+  for (const NoisyPair& pair : experiment.noisy_pairs)
+    html += fmt::format("<tr><th>{}</th><td class='text'>{}</td></tr>\n", pair.method,
+                        pair.refusal.empty()
+                            ? fmt::format("{}, {}: errs by {:.1f} mm and {:.2f} deg", pair.a.str(), pair.b.str(),
+                                          1e3 * pair.error_m, kDegreesPerRadian * pair.error_rad)
+                            : "refused: " + Escaped(pair.refusal));
+  return html + "</table></div>\n";
+}
+
 std::string InformationSentence(const GlobalExperiment& experiment) {
   const GlobalSample full = experiment.realistic.full.Mean(), diagonal = experiment.realistic.diagonal.Mean();
   return fmt::format(
-      "<p>Which information is better? By E<sub>global</sub> after optimisation the diagonal one ({:.2g}, full "
-      "{:.2g}), "
-      "by the truth the full one: with the diagonal the poses err {:.2f} times as much in translation and {:.2f} times "
-      "in rotation. E<sub>global</sub> counts every edge alike, so the worst edges rule it: a smaller one is not a "
-      "better "
+      "<p>Which information is better? E<sub>global</sub> after optimisation is {:.2g} with the diagonal one and "
+      "{:.2g} "
+      "with the full one, but with the diagonal one the poses err {:.2f} times as much in translation and {:.2f} times "
+      "in "
+      "rotation. E<sub>global</sub> counts every edge alike, so the worst edges rule it: a smaller one is not a better "
       "rig. The weighted cost tells more: {:.1f} on average where {} degrees of freedom let expect {}; and of the "
       "noise, "
       "weighted, the graph keeps {:.4f}, where it has 11 poses for 59 edges: {:.4f}.</p>\n",
@@ -103,13 +121,13 @@ std::string InformationSentence(const GlobalExperiment& experiment) {
 std::string SharedSentence(const GlobalExperiment& experiment) {
   const GlobalSample visits = experiment.visits.full.Mean(), drawn = experiment.realistic.full.Mean();
   return fmt::format(
-      "<p>Edges of one visit share its captures. What they share they agree on, so E<sub>global</sub> after "
-      "optimisation "
-      "({:.2g}) and the cost ({:.0f} of {}) look better than those of independent edges ({:.2g}), while the poses err "
-      "{:.2f} times as much. The prediction for the visits takes the captures out one by one through the whole graph "
-      "and "
-      "says {:.2f} mm; seen are {:.2f} mm.</p>\n",
-      visits.after.total, visits.cost, experiment.dof, drawn.after.total, std::sqrt(visits.pose_m2 / drawn.pose_m2),
+      "<p>Edges of one visit share its captures, and what they share they agree on: E<sub>global</sub> after "
+      "optimisation is {:.2g} and the cost {:.0f}, where independent edges give {:.2g} and {:.0f}. That is no sign of "
+      "a "
+      "better rig: the poses err {:.2f} times as much as those of independent edges. The prediction for the visits "
+      "takes "
+      "the captures out one by one through the whole graph and says {:.2f} mm; seen are {:.2f} mm.</p>\n",
+      visits.after.total, visits.cost, drawn.after.total, drawn.cost, std::sqrt(visits.pose_m2 / drawn.pose_m2),
       1e3 * std::sqrt(experiment.visits.full.predicted_pose_m2), 1e3 * std::sqrt(visits.pose_m2));
 }
 
@@ -125,7 +143,7 @@ Section GlobalSection(const GlobalExperiment& experiment) {
       Figure("global-paper-noise", Plot(experiment.paper, "Noise as large as the paper's"),
              "E<sub>global</sub> with errors drawn from the edges' covariances, edges independent." + dashes, section);
   section.html += Table(experiment) + RealisticSentence(experiment) + PaperSentence(experiment) +
-                  InformationSentence(experiment) + SharedSentence(experiment);
+                  NoisySentence(experiment) + InformationSentence(experiment) + SharedSentence(experiment);
   return section;
 }
 

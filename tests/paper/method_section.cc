@@ -39,7 +39,7 @@ std::string Norms(const MethodPair& pair, Vector6d MethodSample::*part) {
     rotation += (sample.*part).tail<3>().squaredNorm();
   }
   const double count = std::max<double>(1, static_cast<double>(pair.samples.size()));
-  return fmt::format("<td>{:.3g} mm, {:.2g} deg</td>", 1e3 * std::sqrt(translation / count),
+  return fmt::format("<td class='tight'>{:.3g} mm<br>{:.2g} deg</td>", 1e3 * std::sqrt(translation / count),
                      kDegreesPerRadian * std::sqrt(rotation / count));
 }
 

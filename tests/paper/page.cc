@@ -14,7 +14,7 @@ constexpr const char* kHead = R"(<!doctype html>
 constexpr const char* kStyle =
     R"(:root { color-scheme: light dark; --text: #1c2330; --soft: #5a6575; --back: #fff; --line: #d7dce3; }
 @media (prefers-color-scheme: dark) { :root { --text: #dfe4ec; --soft: #9aa5b5; --back: #14181f; --line: #364050; } }
-body { font: 16px/1.5 system-ui, sans-serif; color: var(--text); background: var(--back); max-width: 60rem;
+body { font: 16px/1.5 system-ui, sans-serif; color: var(--text); background: var(--back); max-width: 64rem;
   margin: 2rem auto; padding: 0 1rem; }
 h2 { margin-top: 3rem; }
 figure { margin: 1rem 0; overflow-x: auto; }
@@ -23,12 +23,26 @@ svg { max-width: 100%; height: auto; }
 .table { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
 td, th { padding: .25rem .7rem; border-bottom: 1px solid var(--line); text-align: right; }
-td { white-space: nowrap; }
+td.tight { white-space: nowrap; }
+td.text { text-align: left; }
 th { text-align: left; font-weight: 600; }
 tr.sum td, tr.sum th { border-top: 2px solid var(--line); }
 )";
 
 }  // namespace
+
+std::string Escaped(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    if (c == '&')
+      html += "&amp;";
+    else if (c == '<')
+      html += "&lt;";
+    else
+      html += c;
+  }
+  return html;
+}
 
 std::string Figure(const std::string& name, const std::string& svg, const std::string& caption, Section& section) {
   section.pictures.push_back({name, svg});

@@ -18,6 +18,8 @@ struct Section {
   std::vector<Picture> pictures;
 };
 
+// Text as HTML.
+[[nodiscard]] std::string Escaped(const std::string& text);
 // A picture as HTML, with a sentence under it; the picture goes into the section's list.
 [[nodiscard]] std::string Figure(const std::string& name, const std::string& svg, const std::string& caption,
                                  Section& section);

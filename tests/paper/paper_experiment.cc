@@ -57,7 +57,10 @@ std::string Introduction(const Settings& settings) {
 Result<nlohmann::json> Run(const Settings& settings) {
   const NoiseExperiment noise = RunNoiseExperiment(settings.sets, kSigma_m, kSigma_rad, settings.seed);
   RIGCAL_ASSIGN(const std::vector<Visit> visits, MakeVisits(settings));
-  RIGCAL_ASSIGN(const GlobalExperiment global, RunGlobalExperiment(visits, settings.sets, settings.seed));
+  RIGCAL_ASSIGN(GlobalExperiment global, RunGlobalExperiment(visits, settings.sets, settings.seed));
+  VisitOptions how;
+  how.threads = settings.threads;
+  RIGCAL_ASSIGN(global.noisy_pairs, TryNoisySensors(visits.front().experiment, global.noise_factor, how));
   const ChainExperiment chain = RunChainExperiment(visits);
   const MethodExperiment method = RunMethodExperiment(visits);
   const nlohmann::json figures = {{"seed", settings.seed},

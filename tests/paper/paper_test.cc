@@ -102,6 +102,20 @@ TEST(PaperPaths, ErrorsOfEdgesAddUpAsTheComposedPoseMoves) {
   EXPECT_FALSE(FindPath(edges, sensors));
 }
 
+// Enough to connect all sensors, with a route and a pair of two methods among them.
+std::vector<SensorPair> FewPairs() {
+  std::vector<SensorPair> pairs;
+  for (const auto& [a, b] :
+       {std::pair("front_left", "front_right"), std::pair("left_front", "left_back"),
+        std::pair("right_front", "right_back"), std::pair("up_left", "up_right"), std::pair("front_left", "left_front"),
+        std::pair("left_front", "right_front"), std::pair("left_front", "up_left"), std::pair("left_front", "back"),
+        std::pair("left_front", "lidar_vertical"), std::pair("left_front", "lidar_horizontal"),
+        std::pair("lidar_vertical", "lidar_horizontal"), std::pair("left_front", "body"),
+        std::pair("left_back", "body")})
+    pairs.push_back({SensorId(a), SensorId(b)});
+  return pairs;
+}
+
 // A small visit, as text.
 std::string Document(int threads) {
   const auto rig = sim::LoadRig("mars-mapper");
@@ -110,7 +124,7 @@ std::string Document(int threads) {
   sim::Options options;
   options.captures = 12;
   options.tilt_rms_rad = 0.17;  // so few captures must be of very different directions
-  VisitOptions how{2, threads};
+  VisitOptions how{2, threads, FewPairs()};
   auto visit = MakeVisit(*rig, options, how);
   EXPECT_TRUE(visit) << (visit ? "" : Sentence(visit.error()));
   if (!visit) return {};
@@ -132,6 +146,26 @@ TEST(PaperExperiment, IsTheSameForAnyNumberOfThreadsAndNeedsNothingFromElsewhere
   EXPECT_NE(one.find("E<sub>global</sub>"), std::string::npos);
   for (const char* foreign : {"<script", "href=\"http", "src=", "url(", "style=", "nan", "-inf"})
     EXPECT_EQ(one.find(foreign), std::string::npos) << foreign;
+}
+
+TEST(PaperPage, TextIsNotMarkup) { EXPECT_EQ(Escaped("a < b & c"), "a &lt; b &amp; c"); }
+
+// What is asked for is all that is estimated.
+TEST(PaperVisit, OnlyThePairsAskedForAreEstimated) {
+  const auto rig = sim::LoadRig("mars-mapper");
+  ASSERT_TRUE(rig);
+  sim::Options options;
+  options.captures = 12;
+  VisitOptions how;
+  how.only = {{SensorId("front_left"), SensorId("front_right")}};
+  const auto visit = MakeVisit(*rig, options, how);
+  ASSERT_TRUE(visit);
+  ASSERT_EQ(visit->edges.size(), 1u);
+  EXPECT_EQ(visit->edges[0].method, "stereo");
+  ASSERT_EQ(visit->other_method.size(), 1u);
+  EXPECT_EQ(visit->other_method[0].method, "non_overlapping");
+  options.scale_ratio = 99;
+  EXPECT_FALSE(MakeVisit(*rig, options, how));
 }
 
 TEST(PaperPlots, ValuesThatAreEqualOrZeroHaveAnAxis) {

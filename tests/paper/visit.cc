@@ -102,11 +102,11 @@ struct Job {
   bool other_method = false;
 };
 
-std::vector<Job> JobsOf(const Experiment& experiment) {
+std::vector<Job> JobsOf(const Experiment& experiment, const std::vector<SensorPair>& only) {
   SessionHeader pairs_of = experiment.declared;
   pairs_of.skip_pairs = experiment.rig.skip_pairs;
   std::vector<Job> jobs;
-  for (const SensorPair& pair : PairsToCalibrate(pairs_of)) {
+  for (const SensorPair& pair : only.empty() ? PairsToCalibrate(pairs_of) : only) {
     const Sensor &a = DeclaredOf(experiment.declared, pair.a), &b = DeclaredOf(experiment.declared, pair.b);
     jobs.push_back({&a, &b, std::string(MethodFor(experiment.declared, a, b)), false});
     if (jobs.back().method == "stereo") jobs.push_back({&a, &b, "non_overlapping", true});
@@ -136,7 +136,7 @@ Result<Visit> MakeVisit(const sim::Rig& rig, const sim::Options& options, const 
   Visit visit{std::move(prepared), {}, {}};
   const Experiment& experiment = visit.experiment;
   const Observations seen = sim::Observe(experiment);
-  const std::vector<Job> jobs = JobsOf(experiment);
+  const std::vector<Job> jobs = JobsOf(experiment, how.only);
   std::vector<Edge> edges(jobs.size());
   ParallelFor(
       jobs.size(), [&](std::size_t i) { edges[i] = EdgeOf(experiment, seen, jobs[i], how); }, how.threads);

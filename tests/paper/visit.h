@@ -12,6 +12,7 @@ namespace rigcal::paper {
 struct VisitOptions {
   std::size_t lidar_pair_captures = 8;  // whole scans cost most: so many captures enter the edge of two lidars
   int threads = 0;                      // 0: as many as the machine has; the answer does not depend on it
+  std::vector<SensorPair> only = {};    // if not empty: no other pairs
 };
 
 // What one visit gave. Edges come in the order of PairsToCalibrate().
