@@ -57,7 +57,7 @@ struct GlobalExperiment {
   double noise_factor = 0.0;
   int dof = 0;                                  // of the weighted cost with full information
   double edge_rms_m = 0.0, edge_rms_rad = 0.0;  // of one edge's error, realistic
-  std::vector<NoisyPair> noisy_pairs;           // one per method, at noise_factor
+  std::vector<NoisyPair> noisy_pairs;           // of four methods, at noise_factor
 
   // Of drawn errors with full information: the mean cost over its degrees of freedom, and the part of the weighted
   // noise that the poses keep, a ratio of chi-squares (beta distribution); but for odds of 1e-6.

@@ -89,9 +89,8 @@ std::string PaperSentence(const GlobalExperiment& experiment) {
 std::string NoisySentence(const GlobalExperiment& experiment) {
   if (experiment.noisy_pairs.empty()) return {};
   std::string html = fmt::format(
-      "<p>Sensors {:.0f} times as noisy (corners, ranges, tracker, lenses) do not give such a graph. One pair of each "
-      "kind, "
-      "and what its estimator says:</p>\n<div class='table'><table>\n",
+      "<p>Sensors {:.0f} times as noisy (corners, ranges, tracker, lenses) do not give such a graph. What the "
+      "estimators of four pairs say:</p>\n<div class='table'><table>\n",
       experiment.noise_factor);
   for (const NoisyPair& pair : experiment.noisy_pairs)
     html += fmt::format("<tr><th>{}</th><td class='text'>{}</td></tr>\n", pair.method,

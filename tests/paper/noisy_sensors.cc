@@ -4,11 +4,11 @@
 namespace rigcal::paper {
 namespace {
 
+// Two lidars are not among them: their search tries everything before it refuses, which takes as long as all the rest.
 std::vector<SensorPair> OnePairPerMethod() {
   std::vector<SensorPair> pairs;
-  for (const auto& [a, b] :
-       {std::pair("left_front", "left_back"), std::pair("left_front", "up_left"), std::pair("left_front", "body"),
-        std::pair("left_front", "lidar_vertical"), std::pair("lidar_vertical", "lidar_horizontal")})
+  for (const auto& [a, b] : {std::pair("left_front", "left_back"), std::pair("left_front", "up_left"),
+                             std::pair("left_front", "body"), std::pair("left_front", "lidar_vertical")})
     pairs.push_back({SensorId(a), SensorId(b)});
   return pairs;
 }
@@ -32,7 +32,6 @@ Result<std::vector<NoisyPair>> TryNoisySensors(const sim::Experiment& like, doub
   sim::Options options = like.options;
   options.noise_factor = noise_factor;
   how.only = OnePairPerMethod();
-  how.lidar_pair_captures = 3;  // a refusal tries everything first
   RIGCAL_ASSIGN(const Visit visit, MakeVisit(rig, options, how));
   std::vector<NoisyPair> pairs;
   for (const Edge& edge : visit.edges) pairs.push_back(Told(visit.experiment, edge));
