@@ -15,6 +15,19 @@ Result<Vector6d> ShiftOf(const GivenConstant& constant) {
   return Vector6d(0.5 * (minus.Inverse() * plus).Log());
 }
 
+// With what the captures and the given constants add; `m` captures. Without blocks the model's stands for the captures.
+Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
+                      const std::vector<Contribution>& contributions, int m) {
+  Matrix6d C = C_model;
+  if (!blocks.empty()) {
+    std::vector<Vector6d> d;
+    for (const BlockVector& block : blocks) d.push_back(block.d);
+    C = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
+  }
+  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  return C;
+}
+
 }  // namespace
 
 Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const WithoutBlock& without) {
@@ -47,13 +60,7 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
 Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
                                   std::vector<Contribution> contributions, std::size_t captures) {
   const int m = static_cast<int>(captures);
-  Matrix6d C = C_model;
-  if (!blocks.empty()) {
-    std::vector<Vector6d> d;
-    for (const BlockVector& block : blocks) d.push_back(block.d);
-    C = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
-  }
-  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  const Matrix6d C = CovarianceOf(C_model, blocks, contributions, m);
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
   RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, m - 1));
   uncertainty.blocks = std::move(blocks);
@@ -73,13 +80,7 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
   if (free.cols() == 6)
     return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
   const int m = static_cast<int>(captures);
-  Matrix6d C = C_model;
-  if (!blocks.empty()) {
-    std::vector<Vector6d> d;
-    for (const BlockVector& block : blocks) d.push_back(block.d);
-    C = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
-  }
-  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  const Matrix6d C = CovarianceOf(C_model, blocks, contributions, m);
   const Eigen::MatrixXd along = free.transpose() * C * free;
   const Eigen::LLT<Eigen::MatrixXd> llt(along);
   if (llt.info() != Eigen::Success || !along.allFinite())

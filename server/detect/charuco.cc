@@ -180,6 +180,11 @@ std::string WhyNot(const Target& target, const Sight& sight, std::size_t corners
 }  // namespace
 
 void FindCharuco(const GreyImage& image, const Target& target, BoardView& view) {
+  const auto markers = static_cast<int>(CharucoLayout(target, target.legacy_layout).quads.size());
+  if (!AnyMarkers(image, {target.dictionary, markers}, std::array{1})) {
+    view.why_not = WhyNot(target, {}, 0);
+    return;
+  }
   Sight sight = SightOf(image, target, false);
   if (!IsBoard(sight) && !sight.other_layout)
     if (Sight behind = SightOf(image, target, true); IsBoard(behind)) sight = std::move(behind);
@@ -189,11 +194,7 @@ void FindCharuco(const GreyImage& image, const Target& target, BoardView& view) 
     view.why_not = WhyNot(target, sight, corners.size());
     return;
   }
-  view.found = true;
-  for (const BoardCorner& corner : corners) {
-    view.corner_idx.push_back(corner.idx);
-    view.corners_px.push_back(corner.corner_px);
-  }
+  Show(corners, view);
 }
 
 }  // namespace rigcal::detect

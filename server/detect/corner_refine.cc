@@ -117,4 +117,12 @@ bool SpreadEnough(const std::vector<BoardCorner>& corners, std::size_t count_min
   return true;
 }
 
+void Show(const std::vector<BoardCorner>& corners, BoardView& view) {
+  view.found = true;
+  for (const BoardCorner& corner : corners) {
+    view.corner_idx.push_back(corner.idx);
+    view.corners_px.push_back(corner.corner_px);
+  }
+}
+
 }  // namespace rigcal::detect

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/detect/grey_image.h"
+#include "server/model/features.h"
 
 namespace rigcal::detect {
 
@@ -27,5 +28,8 @@ struct BoardCorner {
 
 // Can a pose be told from them: at least `count_min`, and no line on the board with all of them, or all but one?
 [[nodiscard]] bool SpreadEnough(const std::vector<BoardCorner>& corners, std::size_t count_min);
+
+// As those of a board that was found.
+void Show(const std::vector<BoardCorner>& corners, BoardView& view);
 
 }  // namespace rigcal::detect

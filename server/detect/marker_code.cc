@@ -4,12 +4,25 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "server/detect/plane_map.h"
 
 namespace rigcal::detect {
 namespace {
+
+// In the order of OpenCV's PREDEFINED_DICTIONARY_NAME. `distance`: Hamming distance of the AprilTag families, for which
+// OpenCV 4.6 corrects no bits; 0: as OpenCV has it.
+struct KnownDictionary {
+  const char* name;
+  int distance;
+};
+constexpr std::array<KnownDictionary, 21> kDictionaries = {
+    {{"DICT_4X4_50", 0},         {"DICT_4X4_100", 0},       {"DICT_4X4_250", 0},       {"DICT_4X4_1000", 0},
+     {"DICT_5X5_50", 0},         {"DICT_5X5_100", 0},       {"DICT_5X5_250", 0},       {"DICT_5X5_1000", 0},
+     {"DICT_6X6_50", 0},         {"DICT_6X6_100", 0},       {"DICT_6X6_250", 0},       {"DICT_6X6_1000", 0},
+     {"DICT_7X7_50", 0},         {"DICT_7X7_100", 0},       {"DICT_7X7_250", 0},       {"DICT_7X7_1000", 0},
+     {"DICT_ARUCO_ORIGINAL", 0}, {"DICT_APRILTAG_16h5", 5}, {"DICT_APRILTAG_25h9", 9}, {"DICT_APRILTAG_36h10", 10},
+     {"DICT_APRILTAG_36h11", 11}}};
 
 constexpr double kContrastMin = 12;         // grey levels between dark and light cells
 constexpr double kBorderBrokenRatio = 0.1;  // cells of the border that may have the other colour
@@ -24,20 +37,22 @@ double GreyAt(const cv::Mat& grey, const Eigen::Vector2d& at_px) {
          fy * ((1 - fx) * grey.at<std::uint8_t>(y1, x0) + fx * grey.at<std::uint8_t>(y1, x1));
 }
 
-// Mean grey of the middle of every cell, row by row. Empty if the corners are no square seen from anywhere.
-std::vector<double> CellGreys(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px, int cells) {
+// Mean grey of the middle of every cell, of `across` x `across` places (odd), row by row. Empty if the corners are no
+// square seen from anywhere.
+std::vector<double> CellGreys(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px, int cells,
+                              int across) {
   const double side = cells;
   const auto map = PlaneMap::Fit({{0, 0}, {side, 0}, {side, side}, {0, side}}, {corners_px.begin(), corners_px.end()});
   std::vector<double> greys;
   for (int i = 0; map && i < cells * cells; ++i) {
     double sum = 0;
-    for (int k = 0; k < 9; ++k) {
-      const Eigen::Vector2d within(0.5 + 0.2 * (k % 3 - 1), 0.5 + 0.2 * (k / 3 - 1));
+    for (int k = 0; k < across * across; ++k) {
+      const Eigen::Vector2d within(0.5 + 0.2 * (k % across - across / 2), 0.5 + 0.2 * (k / across - across / 2));
       const auto pixel = map->Pixel(Eigen::Vector2d(i % cells, i / cells) + within);
       if (!pixel) return {};
       sum += GreyAt(grey, *pixel);
     }
-    greys.push_back(sum / 9);
+    greys.push_back(sum / (across * across));
   }
   return greys;
 }
@@ -58,15 +73,14 @@ double Level(std::vector<double> greys) {
   return level;
 }
 
-}  // namespace
-
-std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
-                                   const cv::aruco::Dictionary& dictionary, int border_bits) {
-  const int cells = dictionary.markerSize + 2 * border_bits;
-  const std::vector<double> greys = CellGreys(grey, corners_px, cells);
+// Of the code within a border; 1 is the colour that the border has not. Nothing if the border is broken.
+std::optional<cv::Mat> BitsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px, int bits_across,
+                              int border_bits) {
+  const int cells = bits_across + 2 * border_bits;
+  const std::vector<double> greys = CellGreys(grey, corners_px, cells, 3);
   const double level = greys.empty() ? -1 : Level(greys);
   if (level < 0) return std::nullopt;
-  cv::Mat bits(dictionary.markerSize, dictionary.markerSize, CV_8U);
+  cv::Mat bits(bits_across, bits_across, CV_8U);
   int border = 0, light = 0;
   for (int i = 0; i < cells * cells; ++i) {
     const int row = i / cells - border_bits, col = i % cells - border_bits;
@@ -81,12 +95,63 @@ std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::
   const double broken = kBorderBrokenRatio * border;
   if (light > broken && border - light > broken) return std::nullopt;
   if (light > broken) bits = 1 - bits;
+  return bits;
+}
+
+// A first look at a square, at a single place of each cell: most have one grey, or no border.
+bool MayBeCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px, int bits_across,
+               int border_bits) {
+  constexpr double kLooseRatio = 0.3;  // of the border's cells
+  const int cells = bits_across + 2 * border_bits;
+  const std::vector<double> greys = CellGreys(grey, corners_px, cells, 1);
+  if (greys.empty()) return false;
+  const auto [darkest, lightest] = std::minmax_element(greys.begin(), greys.end());
+  if (*lightest - *darkest < kContrastMin) return false;
+  int border = 0, light = 0;
+  for (int i = 0; i < cells * cells; ++i) {
+    const int inset = std::min({i / cells, i % cells, cells - 1 - i / cells, cells - 1 - i % cells});
+    if (inset >= border_bits) continue;
+    ++border;
+    light += 2 * greys[static_cast<std::size_t>(i)] > *darkest + *lightest ? 1 : 0;
+  }
+  return std::min(light, border - light) <= kLooseRatio * border;
+}
+
+}  // namespace
+
+cv::Ptr<cv::aruco::Dictionary> DictionaryOf(const std::string& name) {
+  const auto known = std::find_if(kDictionaries.begin(), kDictionaries.end(),
+                                  [&](const KnownDictionary& dictionary) { return name == dictionary.name; });
+  if (known == kDictionaries.end()) return {};
+  const auto dictionary = cv::aruco::getPredefinedDictionary(static_cast<int>(known - kDictionaries.begin()));
+  const int corrected = known->distance > 0 ? (known->distance - 1) / 2 : dictionary->maxCorrectionBits;
+  return cv::makePtr<cv::aruco::Dictionary>(dictionary->bytesList, dictionary->markerSize, corrected);
+}
+
+std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
+                                   const cv::aruco::Dictionary& dictionary, int border_bits) {
+  const auto bits = BitsOf(grey, corners_px, dictionary.markerSize, border_bits);
   int id = -1, rotation = 0;
-  if (!dictionary.identify(bits, id, rotation, kCorrectionRate)) return std::nullopt;
+  if (!bits || !dictionary.identify(*bits, id, rotation, kCorrectionRate)) return std::nullopt;
   ReadMarker marker{id, {}};
   for (std::size_t i = 0; i < 4; ++i)
     marker.corners_px[i] = corners_px[(i + 4 - static_cast<std::size_t>(rotation)) % 4];
   return marker;
+}
+
+std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
+                       const cv::aruco::Dictionary& dictionary, int border_bits) {
+  std::vector<int> ids;
+  if (!MayBeCode(grey, corners_px, dictionary.markerSize, border_bits)) return ids;
+  const auto bits = BitsOf(grey, corners_px, dictionary.markerSize, border_bits);
+  if (!bits) return ids;
+  cv::Mat mirrored;
+  cv::flip(*bits, mirrored, 1);
+  for (const cv::Mat& read : {*bits, mirrored}) {
+    int id = -1, rotation = 0;
+    if (dictionary.identify(read, id, rotation, kCorrectionRate)) ids.push_back(id);
+  }
+  return ids;
 }
 
 }  // namespace rigcal::detect

@@ -1,12 +1,17 @@
-// Reads the code in a square. Shows OpenCV, and is for markers.cc only.
+// Dictionaries, and the code in a square. Shows OpenCV, and is for markers.cc only.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <opencv2/aruco/dictionary.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace rigcal::detect {
+
+// Null: there is no such dictionary.
+[[nodiscard]] cv::Ptr<cv::aruco::Dictionary> DictionaryOf(const std::string& name);
 
 struct ReadMarker {
   int id = 0;
@@ -17,5 +22,8 @@ struct ReadMarker {
 // any corner). Nothing if the border is broken or the code is not in the dictionary. Throws what OpenCV throws.
 [[nodiscard]] std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
                                                  const cv::aruco::Dictionary& dictionary, int border_bits);
+// The same, read from the front and from behind: none to two ids.
+[[nodiscard]] std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
+                                     const cv::aruco::Dictionary& dictionary, int border_bits);
 
 }  // namespace rigcal::detect

@@ -5,41 +5,27 @@
 #include <cstdint>
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 #include <tuple>
+#include <utility>
 
 #include "server/detect/marker_code.h"
 
 namespace rigcal::detect {
 namespace {
 
-// In the order of OpenCV's PREDEFINED_DICTIONARY_NAME. `distance`: Hamming distance of the AprilTag families, for which
-// OpenCV 4.6 corrects no bits; 0: as OpenCV has it.
-struct KnownDictionary {
-  const char* name;
-  int distance;
-};
-constexpr std::array<KnownDictionary, 21> kDictionaries = {
-    {{"DICT_4X4_50", 0},         {"DICT_4X4_100", 0},       {"DICT_4X4_250", 0},       {"DICT_4X4_1000", 0},
-     {"DICT_5X5_50", 0},         {"DICT_5X5_100", 0},       {"DICT_5X5_250", 0},       {"DICT_5X5_1000", 0},
-     {"DICT_6X6_50", 0},         {"DICT_6X6_100", 0},       {"DICT_6X6_250", 0},       {"DICT_6X6_1000", 0},
-     {"DICT_7X7_50", 0},         {"DICT_7X7_100", 0},       {"DICT_7X7_250", 0},       {"DICT_7X7_1000", 0},
-     {"DICT_ARUCO_ORIGINAL", 0}, {"DICT_APRILTAG_16h5", 5}, {"DICT_APRILTAG_25h9", 9}, {"DICT_APRILTAG_36h10", 10},
-     {"DICT_APRILTAG_36h11", 11}}};
-
 constexpr double kSideMin_px = 12;
 constexpr double kSideMinRatio = 0.01;  // of a large picture's longer side: a bound on the number of candidates
+// A glance has one window: the one that shows some of the markers of a board at every size, blur and tilt at which the
+// search shows them.
+constexpr int kGlanceWindow_px = 9;
+constexpr double kGlanceScale = 0.5;  // for large, blurred ones; and the picture itself
+// So many ids are worth a search: clutter that reads like a short code is not rare, but mostly a single one.
+constexpr std::size_t kGlanceShort = 2, kGlanceLong = 1, kGlanceStrangers = 4;
+constexpr int kLongBits = 5;  // across
 constexpr int kEnlargeSide_px = 1600, kReduceSide_px = 2400, kFullSide_px = 6000;
 
 using Quad = std::array<Eigen::Vector2d, 4>;
-
-cv::Ptr<cv::aruco::Dictionary> DictionaryOf(const std::string& name) {
-  const auto known = std::find_if(kDictionaries.begin(), kDictionaries.end(),
-                                  [&](const KnownDictionary& dictionary) { return name == dictionary.name; });
-  if (known == kDictionaries.end()) return {};
-  const auto dictionary = cv::aruco::getPredefinedDictionary(static_cast<int>(known - kDictionaries.begin()));
-  const int corrected = known->distance > 0 ? (known->distance - 1) / 2 : dictionary->maxCorrectionBits;
-  return cv::makePtr<cv::aruco::Dictionary>(dictionary->bytesList, dictionary->markerSize, corrected);
-}
 
 cv::Ptr<cv::aruco::DetectorParameters> Parameters(const MarkerSearch& search, int side_px) {
   auto parameters = cv::aruco::DetectorParameters::create();
@@ -97,11 +83,48 @@ SeenMarker Unscaled(int id, const Quad& quad, const MarkerSearch& search, int wi
   return marker;
 }
 
+// All of them, whatever is in them.
+std::vector<std::vector<cv::Point2f>> SquaresIn(const cv::Mat& searched, const cv::aruco::Dictionary& dictionary,
+                                                const MarkerSearch& search) {
+  const int side_px = std::max(searched.cols, searched.rows);
+  auto parameters = Parameters(search, side_px);
+  parameters->minMarkerPerimeterRate = 4 * kSideMin_px / side_px;  // few are bordered, so none need be left out
+  parameters->adaptiveThreshWinSizeMin = parameters->adaptiveThreshWinSizeMax = kGlanceWindow_px;
+  std::vector<std::vector<cv::Point2f>> squares, unread;
+  std::vector<int> ids;
+  cv::aruco::detectMarkers(Parted(searched, search.separate_px), cv::makePtr<cv::aruco::Dictionary>(dictionary),
+                           squares, ids, parameters, unread);
+  squares.insert(squares.end(), unread.begin(), unread.end());
+  return squares;
+}
+
 Eigen::Vector2d CentreOf(const SeenMarker& marker) {
   return (marker.corners_px[0] + marker.corners_px[1] + marker.corners_px[2] + marker.corners_px[3]) / 4;
 }
 
 }  // namespace
+
+bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<const int> border_bits) {
+  if (std::max(image.width_px, image.height_px) <= kReduceSide_px) return true;
+  const auto dictionary = DictionaryOf(search.dictionary);
+  if (!dictionary) return false;
+  const std::size_t enough = dictionary->markerSize >= kLongBits ? kGlanceLong : kGlanceShort;
+  std::set<int> ids, strangers;
+  std::vector<std::pair<double, int>> passes = {{kGlanceScale, 0}, {1.0, 0}};
+  if (search.separate_px > 0) passes.emplace_back(1.0, search.separate_px);
+  for (const auto& [scale, separate_px] : passes) {
+    MarkerSearch glance = search;
+    glance.scale = scale, glance.separate_px = separate_px;
+    const cv::Mat searched = Searched(image, glance);
+    for (const auto& quad : SquaresIn(searched, *dictionary, glance)) {
+      for (const int bits : border_bits)
+        for (const int id : IdsOf(searched, Grown(quad, separate_px), *dictionary, bits))
+          (id < search.id_count ? ids : strangers).insert(id);
+      if (ids.size() >= enough || strangers.size() >= kGlanceStrangers) return true;
+    }
+  }
+  return false;
+}
 
 std::optional<int> BitsAcross(const std::string& dictionary) {
   const auto known = DictionaryOf(dictionary);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,10 @@ struct FoundMarkers {
   int strangers = 0;
 };
 [[nodiscard]] FoundMarkers FindMarkers(const GreyImage& image, const MarkerSearch& search);
+// A quick look at a large picture, in all widths of border, from the front and from behind: can FindMarkers() find two
+// of them? True for small pictures, in which that one is quick. Squares that clutter makes do not count, unless they
+// read like codes. Throws what OpenCV throws.
+[[nodiscard]] bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<const int> border_bits);
 // Adds what `more` has in places where `markers` has none of the same id.
 void Join(std::vector<SeenMarker>& markers, const std::vector<SeenMarker>& more);
 

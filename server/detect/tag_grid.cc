@@ -106,6 +106,12 @@ std::string WhyNot(const Target& target, const Sight& sight, std::size_t corners
 
 void FindTagGrid(const GreyImage& image, const Target& target, BoardView& view) {
   const MarkerLayout layout = GridLayout(target);
+  MarkerSearch glance{target.dictionary, static_cast<int>(layout.quads.size())};
+  glance.separate_px = 1;
+  if (!AnyMarkers(image, glance, kBorderBits)) {
+    view.why_not = WhyNot(target, {}, 0);
+    return;
+  }
   Sight sight = BestSight(image, target, layout, false);
   if (!Credible(sight.tags.size(), sight.seen.size()))
     if (Sight behind = BestSight(image, target, layout, true); IsBoard(target, behind)) sight = std::move(behind);
@@ -115,11 +121,7 @@ void FindTagGrid(const GreyImage& image, const Target& target, BoardView& view) 
     view.why_not = WhyNot(target, sight, corners.size());
     return;
   }
-  view.found = true;
-  for (const BoardCorner& corner : corners) {
-    view.corner_idx.push_back(corner.idx);
-    view.corners_px.push_back(corner.corner_px);
-  }
+  Show(corners, view);
 }
 
 }  // namespace rigcal::detect
