@@ -8,6 +8,9 @@ def run(context):
     yield info("board_found_5mp_max_ms", result["found_max_ms"], "ms")
     yield at_most("board_none_5mp_ms", result["none_median_ms"], 150.0, "ms")
     yield at_most("board_none_5mp_max_ms", result["none_max_ms"], 150, "ms")
+    yield at_most("charuco_none_5mp_max_ms", result["charuco_none_max_ms"], 150.0, "ms")
+    yield at_most("tags_none_5mp_median_ms", result["tags_none_median_ms"], 150.0, "ms")
+    yield info("tags_none_5mp_max_ms", result["tags_none_max_ms"], "ms")
     yield info("decode_png_5mp_ms", result["decode_png_ms"], "ms")
     yield info("decode_jpeg_5mp_ms", result["decode_jpeg_ms"], "ms")
     if result["reference_corners"] > 0:

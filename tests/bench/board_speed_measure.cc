@@ -17,8 +17,10 @@
 #include <span>
 #include <string>
 
+#include "server/detect/charuco.h"
 #include "server/detect/corners.h"
 #include "server/detect/orientation.h"
+#include "server/detect/tag_grid.h"
 #include "tests/bench/board_pictures.h"
 
 namespace rigcal::detect {
@@ -54,7 +56,7 @@ struct Board {
 };
 
 struct Tally {
-  std::vector<double> found_ms, none_ms, decode_png_ms, decode_jpeg_ms;
+  std::vector<double> found_ms, none_ms, charuco_none_ms, tags_none_ms, decode_png_ms, decode_jpeg_ms;
   int boards = 0, found = 0, wrong = 0;
   double squares = 0, reference_squares = 0;
   long corners = 0, reference_corners = 0;
@@ -199,6 +201,19 @@ void MeasureReal(const std::filesystem::path& data, const cv::Mat& canvas, Tally
   }
 }
 
+void LookForMarkers(const cv::Mat& picture, Tally& tally) {
+  const GreyImage image = AsImage(picture);
+  Target target{TargetId("board"), 8, 5, 0.04, 0, ""};
+  BoardView charuco, tags;
+  target.kind = TargetKind::kCharuco;
+  target.dictionary = "DICT_4X4_50", target.marker_m = 0.03;
+  tally.charuco_none_ms.push_back(ProcessorMilliseconds([&] { FindCharuco(image, target, charuco); }));
+  target.kind = TargetKind::kAprilGrid, target.cols = target.rows = 6;
+  target.dictionary = "DICT_APRILTAG_36h11", target.spacing_ratio = 0.3;
+  tally.tags_none_ms.push_back(ProcessorMilliseconds([&] { FindTagGrid(image, target, tags); }));
+  if (charuco.found || tags.found) ++tally.wrong;
+}
+
 // Nothing that could be found: scenes, clutter, boards of other counts, boards that are cut off.
 void MeasureNone(const std::vector<cv::Mat>& roads, Tally& tally) {
   const auto look = [&](const cv::Mat& picture) {
@@ -218,6 +233,7 @@ void MeasureNone(const std::vector<cv::Mat>& roads, Tally& tally) {
     if (i >= 6) DrawBoard(wish, picture);
     Expose(random, 1, 3, picture);
     look(picture);
+    if (i % 2 == 0) LookForMarkers(picture, tally);
   }
 }
 
@@ -275,6 +291,10 @@ int Measure(const std::filesystem::path& data, int pictures) {
   LookForMistakes(pictures, small);
   std::printf("{\"found_median_ms\": %.2f, \"found_max_ms\": %.2f, ", Median(large.found_ms), Largest(large.found_ms));
   std::printf("\"none_median_ms\": %.2f, \"none_max_ms\": %.2f, ", Median(large.none_ms), Largest(large.none_ms));
+  std::printf("\"charuco_none_median_ms\": %.2f, \"charuco_none_max_ms\": %.2f, ", Median(large.charuco_none_ms),
+              Largest(large.charuco_none_ms));
+  std::printf("\"tags_none_median_ms\": %.2f, \"tags_none_max_ms\": %.2f, ", Median(large.tags_none_ms),
+              Largest(large.tags_none_ms));
   std::printf("\"decode_png_ms\": %.2f, \"decode_jpeg_ms\": %.2f, ", Median(large.decode_png_ms),
               Median(large.decode_jpeg_ms));
   std::printf("\"drawn\": %d, \"drawn_found\": %d, \"real\": %d, \"real_found\": %d, \"wrong\": %d, ", drawn,
