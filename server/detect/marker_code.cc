@@ -140,16 +140,19 @@ std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::
 }
 
 std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
-                       const cv::aruco::Dictionary& dictionary, int border_bits) {
+                       const cv::aruco::Dictionary& dictionary, std::span<const int> border_bits) {
   std::vector<int> ids;
-  if (!MayBeCode(grey, corners_px, dictionary.markerSize, border_bits)) return ids;
-  const auto bits = BitsOf(grey, corners_px, dictionary.markerSize, border_bits);
-  if (!bits) return ids;
-  cv::Mat mirrored;
-  cv::flip(*bits, mirrored, 1);
-  for (const cv::Mat& read : {*bits, mirrored}) {
-    int id = -1, rotation = 0;
-    if (dictionary.identify(read, id, rotation, kCorrectionRate)) ids.push_back(id);
+  // Broader borders hold the narrowest one.
+  if (!MayBeCode(grey, corners_px, dictionary.markerSize, border_bits.front())) return ids;
+  for (const int bits_wide : border_bits) {
+    const auto bits = BitsOf(grey, corners_px, dictionary.markerSize, bits_wide);
+    if (!bits) continue;
+    cv::Mat mirrored;
+    cv::flip(*bits, mirrored, 1);
+    for (const cv::Mat& read : {*bits, mirrored}) {
+      int id = -1, rotation = 0;
+      if (dictionary.identify(read, id, rotation, kCorrectionRate)) ids.push_back(id);
+    }
   }
   return ids;
 }

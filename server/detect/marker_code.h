@@ -5,6 +5,7 @@
 #include <array>
 #include <opencv2/aruco/dictionary.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct ReadMarker {
 // any corner). Nothing if the border is broken or the code is not in the dictionary. Throws what OpenCV throws.
 [[nodiscard]] std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
                                                  const cv::aruco::Dictionary& dictionary, int border_bits);
-// The same, read from the front and from behind: none to two ids.
+// The same for borders of these widths (the narrowest first), read from the front and from behind.
 [[nodiscard]] std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
-                                     const cv::aruco::Dictionary& dictionary, int border_bits);
+                                     const cv::aruco::Dictionary& dictionary, std::span<const int> border_bits);
 
 }  // namespace rigcal::detect

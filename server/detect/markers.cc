@@ -117,9 +117,8 @@ bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<co
     glance.scale = scale, glance.separate_px = separate_px;
     const cv::Mat searched = Searched(image, glance);
     for (const auto& quad : SquaresIn(searched, *dictionary, glance)) {
-      for (const int bits : border_bits)
-        for (const int id : IdsOf(searched, Grown(quad, separate_px), *dictionary, bits))
-          (id < search.id_count ? ids : strangers).insert(id);
+      for (const int id : IdsOf(searched, Grown(quad, separate_px), *dictionary, border_bits))
+        (id < search.id_count ? ids : strangers).insert(id);
       if (ids.size() >= enough || strangers.size() >= kGlanceStrangers) return true;
     }
   }
