@@ -21,5 +21,6 @@ inline constexpr std::size_t kPoseRowsMax = 3000;
 inline constexpr std::size_t kEdgeRowsMax = 6000;
 inline constexpr std::size_t kDetailItemsMax = 6000;  // captures + pictures + diagnoses, all sections together
 inline constexpr std::size_t kPicturesPerEdgeMax = 24;  // the session's page has all
+inline constexpr std::size_t kManySections = 24;        // of more edges than this half as many pictures are shown
 
 }  // namespace rigcal::report

@@ -120,11 +120,11 @@ void FillPicture(Dictionary& picture, const Evidence& evidence, const std::set<D
   if (evidence.title.empty()) shown->SetValue("TITLE", evidence.sensor.str() + " " + evidence.capture.str());
 }
 
-void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>& stored) {
+void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>& stored, std::size_t pictures_max) {
   const std::vector<const Evidence*> all = PicturesOf(edge);
   if (all.empty()) return;
   Dictionary* pictures = section.AddSectionDictionary("PICTURES");
-  const std::size_t count = std::min(all.size(), kPicturesPerEdgeMax);
+  const std::size_t count = std::min(all.size(), pictures_max);
   for (std::size_t i = 0; i < count; ++i) FillPicture(*pictures->AddSectionDictionary("PICTURE"), *all[i], stored);
   if (count == all.size()) return;
   Dictionary* more = pictures->AddSectionDictionary("MORE");
@@ -136,7 +136,7 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 }  // namespace
 
 void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownEdge& shown,
-                     const std::set<Digest>& stored, bool open) {
+                     const std::set<Digest>& stored, std::size_t pictures_max, bool open) {
   const Edge& edge = *shown.edge;
   const bool failed = edge.state == EdgeState::kFailed;
   section.SetValue("STATE", failed ? "failed" : "good");
@@ -155,7 +155,7 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   if (!failed) FillParts(section, edge);
   FillCaptures(section, edge);
   FillInfluence(section, input, edge);
-  FillPictures(section, edge, stored);
+  FillPictures(section, edge, stored, pictures_max);
 }
 
 }  // namespace rigcal::report

@@ -8,8 +8,8 @@
 
 namespace rigcal::report {
 
-// `stored`: digests of pictures that exist. `open`: unfolded.
+// `stored`: digests of pictures that exist; `pictures_max` of them are shown. `open`: unfolded.
 void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownEdge& shown,
-                     const std::set<Digest>& stored, bool open);
+                     const std::set<Digest>& stored, std::size_t pictures_max, bool open);
 
 }  // namespace rigcal::report

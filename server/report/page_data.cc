@@ -103,8 +103,9 @@ void WriteCaptures(JsonWriter& out, const Edge& edge) {
       out.Object([&] {
         out.Text("capture", capture.capture.str());
         out.Number("rms", Rounded(capture.rms));
-        out.Flag("used", capture.used);
-        if (!capture.used) out.Text("note", capture.note);
+        if (capture.used) return;
+        out.Flag("unused", true);
+        out.Text("note", capture.note);
       });
   });
 }

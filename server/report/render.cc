@@ -41,6 +41,7 @@ void FillSections(Dictionary& page, const ReportInput& input, const std::vector<
   const std::set<Digest> stored(input.evidence.begin(), input.evidence.end());
   std::size_t detailed = 0, left = 0, shown_sections = 0;
   for (const ShownEdge& shown : edges) detailed += shown.detailed ? 1 : 0;
+  const std::size_t pictures_max = detailed > kManySections ? kPicturesPerEdgeMax / 2 : kPicturesPerEdgeMax;
   for (const ShownEdge& shown : edges) {
     const Edge& edge = *shown.edge;
     if (!shown.detailed) {
@@ -50,7 +51,8 @@ void FillSections(Dictionary& page, const ReportInput& input, const std::vector<
     const bool failed = edge.state == EdgeState::kFailed;
     Dictionary* section = page.AddSectionDictionary("DETAIL_SECTION")->AddIncludeDictionary("DETAIL");
     section->SetFilename("edge.tpl");
-    FillEdgeSection(*section, input, shown, stored, detailed <= kOpenMax || (failed && shown_sections++ < kOpenMax));
+    FillEdgeSection(*section, input, shown, stored, pictures_max,
+                    detailed <= kOpenMax || (failed && shown_sections++ < kOpenMax));
   }
   if (left > 0) ShowValue(page, "MORE_DETAILS", "COUNT", std::to_string(left));
 }

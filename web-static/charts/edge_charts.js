@@ -28,7 +28,7 @@ const grid = { left: 8, right: 12, top: 26, bottom: 6, containLabel: true };
 
 function residualOption(edge) {
   const scale = edge.unit === "m" ? MM : 1, unit = edge.unit === "m" ? "mm" : "px";
-  const used = edge.captures.filter((capture) => capture.used).map((capture) => capture.rms * scale);
+  const used = edge.captures.filter((capture) => !capture.unused).map((capture) => capture.rms * scale);
   const mean = used.length ? Math.sqrt(used.reduce((sum, value) => sum + value * value, 0) / used.length) : 0;
   return {
     grid,
@@ -36,14 +36,14 @@ function residualOption(edge) {
       trigger: "axis",
       formatter: ([point]) => {
         const capture = edge.captures[point.dataIndex];
-        return capture.used ? `${capture.capture}: ${digits(capture.rms * scale)} ${unit}` : `${capture.capture}: not used\n${capture.note}`;
+        return !capture.unused ? `${capture.capture}: ${digits(capture.rms * scale)} ${unit}` : `${capture.capture}: not used\n${capture.note}`;
       },
     },
     xAxis: { type: "category", data: edge.captures.map((capture) => capture.capture) },
     yAxis: { type: "value", name: unit, min: 0 },
     series: [{
       type: "bar", barMaxWidth: 26,
-      data: edge.captures.map((capture) => (capture.used ? { value: capture.rms * scale } : { value: 0, itemStyle: { color: colorOf("soft") } })),
+      data: edge.captures.map((capture) => (!capture.unused ? { value: capture.rms * scale } : { value: 0, itemStyle: { color: colorOf("soft") } })),
       itemStyle: { color: colorOf("link"), borderRadius: [2, 2, 0, 0] },
       markLine: {
         silent: true, symbol: "none", label: { formatter: "rms", color: colorOf("soft"), position: "insideEndTop" },
