@@ -1,7 +1,7 @@
 // The rig in 3D: sensors where they are, how sure that is, where they were meant to be and where they were before.
 import { Group, Raycaster, Vector2 } from "three";
 import { Box3, Vector3, View, hasWebGl } from "./rig/scene.js";
-import { makeGhost, makeSensor, poseMatrix, scaleEllipsoid } from "./rig/sensor_shapes.js";
+import { makeGhost, makeSensor, poseMatrix, scaleEllipsoid, showName } from "./rig/sensor_shapes.js";
 import { button, choice, element, number, showSensor, slider, toggle } from "./rig/panel.js";
 import { pageColor } from "./rig/colors.js";
 import { showClouds } from "./rig/cloud_view.js";
@@ -19,10 +19,12 @@ function boxOf(sensors) {
 function startScale(sensors, size) {
   const largest = Math.max(...sensors.map((sensor) => (sensor.sigma ? Math.max(...sensor.sigma.slice(0, 3)) : 0)));
   if (!(largest > 0)) return 1;
-  const exact = (0.1 * size) / largest;
+  const exact = ((sensors.length > 40 ? 0.03 : 0.1) * size) / largest;
   const decade = 10 ** Math.floor(Math.log10(exact));
   return Math.max(1, [5, 2, 1].map((step) => step * decade).find((step) => step <= exact) ?? decade);
 }
+
+const NAMED_MAX = 60;  // sensors; of more only the chosen one shows its name
 
 function addGhosts(view, sensors, size, bar) {
   for (const [key, name, color] of GHOSTS) {
@@ -72,7 +74,7 @@ function showRig(section, data) {
   const view = new View(place, reference?.kind === "camera" ? "-y" : "z");
   view.canvas.setAttribute("aria-label", `The rig in 3D: ${sensors.length} sensors. Arrow keys turn it, plus and minus zoom. The table of sensors has the same numbers.`);
   const shapeSize = size * (sensors.length > 40 ? 0.03 : 0.11);
-  const shapes = sensors.map((sensor) => makeSensor(sensor, shapeSize));
+  const shapes = sensors.map((sensor) => makeSensor(sensor, shapeSize, sensors.length <= NAMED_MAX));
   for (const shape of shapes) view.scene.add(shape.group);
   const floor = view.up === "z" ? [0, 0, box.min.z] : [0, box.max.y, 0];
   const step = view.addGrid(size, floor);
@@ -80,6 +82,7 @@ function showRig(section, data) {
   const select = (id) => {
     const chosen = sensors.findIndex((sensor) => sensor.id === id);
     shapes.forEach((shape, index) => shape.outline.color.copy(pageColor(index === chosen ? "select" : sensors[index].reference ? "accent" : "text")));
+    shapes.forEach((shape, index) => showName(shape, shape.named || index === chosen));
     list.field.value = id;
     showSensor(panel, sensors[chosen]);
     view.request();

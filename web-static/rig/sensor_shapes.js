@@ -102,7 +102,13 @@ export function scaleEllipsoid(mesh, scale) {
   mesh.matrixWorldNeedsUpdate = true;
 }
 
-export function makeSensor(sensor, size) {
+// Names of very many sensors would hide them: then only the chosen one and the reference have theirs.
+export function showName(shape, shown) {
+  if (!shape.name && shown) shape.group.add((shape.name = nameSprite(shape.target.userData.sensor, shape.size * 0.62)));
+  if (shape.name) shape.name.visible = shown;
+}
+
+export function makeSensor(sensor, size, named) {
   const group = new Group();
   group.applyMatrix4(poseMatrix(sensor));
   const outline = new LineBasicMaterial({ color: pageColor(sensor.reference ? "accent" : "text") });
@@ -111,8 +117,10 @@ export function makeSensor(sensor, size) {
   target.userData.sensor = sensor.id;
   const blob = ellipsoid(sensor);
   if (blob) group.add(blob);
-  group.add(target, nameSprite(sensor.id, size * 0.62));
-  return { group, target, blob, outline };
+  group.add(target);
+  const shape = { group, target, blob, outline, size, named: named || sensor.reference };
+  showName(shape, shape.named);
+  return shape;
 }
 
 // Where else the sensor was, or was meant to be: pale, joined to where it is by a dashed line.

@@ -36,7 +36,7 @@
 <thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col" class="num">Files</th><th scope="col" class="num">Pairs</th></tr></thead>
 <tbody>
 {{#SESSION}}
-<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td>{{FILES}}</td><td>{{PAIRS}}</td></tr>
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td data-label="Files">{{FILES}}</td><td data-label="Pairs">{{PAIRS}}</td></tr>
 {{/SESSION}}
 </tbody>
 </table>
