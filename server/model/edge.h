@@ -15,13 +15,14 @@ namespace rigcal {
 
 enum class EdgeState { kGood, kFailed };  // "good" | "failed"
 
-// A picture that shows how the edge was made: content-addressed, JPEG or PNG.
+// What shows how the edge was made, content-addressed: a picture of one capture (JPEG or PNG), or what all captures say of
+// a camera (formats/camera_fit.h).
 struct Evidence {
   std::string title;  // "front_left / 003: 54 corners"
   SensorId sensor;
-  CaptureId capture;
-  Digest digest;       // of the encoded picture in the blob store
-  std::string suffix;  // "jpg" | "png"
+  CaptureId capture;   // empty: of all
+  Digest digest;       // of its bytes in the blob store
+  std::string suffix;  // "jpg" | "png" | "fit"
 };
 
 // What one capture said: rms of its residuals, in ResidualUnitOf() the edge's method.
