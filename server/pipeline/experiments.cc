@@ -20,7 +20,7 @@ constexpr std::array<std::pair<const char*, const char*>, 8> kTypes = {{{".html"
                                                                         {".jpg", "image/jpeg"},
                                                                         {".csv", "text/csv; charset=utf-8"}}};
 
-tl::unexpected<Error> NoPage(const std::string& rest) {
+tl::unexpected<Error> NoExperiment(const std::string& rest) {
   return Fail(ErrorCode::kNotFound, "there is no page /experiments/" + rest, "See the list: /experiments/");
 }
 
@@ -51,16 +51,16 @@ Stamp WrittenAt(const fs::path& file) {
   return {std::chrono::duration_cast<std::chrono::nanoseconds>(since).count()};
 }
 
-Result<PageText> File(const fs::path& file, const std::string& rest) {
+Result<PageText> ExperimentFile(const fs::path& file, const std::string& rest) {
   const auto type =
       std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& one) { return file.extension() == one.first; });
   std::error_code error;
-  if (type == kTypes.end() || !IsPlainFile(file)) return NoPage(rest);
+  if (type == kTypes.end() || !IsPlainFile(file)) return NoExperiment(rest);
   const auto bytes = fs::file_size(file, error);
-  if (error || bytes > kFileBytesMax) return NoPage(rest);
+  if (error || bytes > kFileBytesMax) return NoExperiment(rest);
   std::string body(bytes, '\0');
   std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(body.data(), static_cast<std::streamsize>(bytes))) return NoPage(rest);
+  if (!stream.read(body.data(), static_cast<std::streamsize>(bytes))) return NoExperiment(rest);
   return PageText{std::move(body), type->second};
 }
 
@@ -90,9 +90,9 @@ Result<PageText> AnswerExperiments(const AnswerContext& context, const std::stri
   const std::size_t slash = rest.find('/');
   const std::string name = rest.substr(0, slash);
   const std::string file = slash == std::string::npos ? "" : rest.substr(slash + 1);
-  if (!IsName(name) || slash == std::string::npos || !IsPlainFolder(all / name)) return NoPage(rest);
-  if (file.empty()) return File(all / name / "index.html", rest);
-  return IsName(file) ? File(all / name / file, rest) : NoPage(rest);
+  if (!IsName(name) || slash == std::string::npos || !IsPlainFolder(all / name)) return NoExperiment(rest);
+  if (file.empty()) return ExperimentFile(all / name / "index.html", rest);
+  return IsName(file) ? ExperimentFile(all / name / file, rest) : NoExperiment(rest);
 }
 
 }  // namespace rigcal::pipeline
