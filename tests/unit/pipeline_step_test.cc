@@ -85,7 +85,11 @@ TEST_F(PipelineTest, RealPairsGiveAnEdgeARevisionAndAReport) {
   EXPECT_NEAR(edge.T_a_b.p_m.norm(), 0.08318, 0.0003);
   EXPECT_GT(edge.T_a_b.p_m.x(), 0.08);  // the right camera is at +x of the left one
   EXPECT_EQ(edge.uncertainty.blocks.size(), 13u);
-  EXPECT_EQ(edge.evidence.size(), 26u);
+  const auto fits = std::count_if(edge.evidence.begin(), edge.evidence.end(),
+                                  [](const Evidence& one) { return one.suffix == "fit"; });
+  EXPECT_EQ(fits, 2);  // one per camera; the others are pictures
+  EXPECT_EQ(edge.evidence.size(), 28u);
+  EXPECT_EQ(edge.evidence[0].suffix, "jpg");
   EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "r" / "1" / "evidence" /
                                       (edge.evidence[0].digest.str() + ".jpg")));
 }
