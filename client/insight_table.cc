@@ -48,7 +48,8 @@ std::string CountText(const Document& cycles) {
   const auto count = [&](const char* key) { return cycles[key].Integer().value_or(0); };
   if (count("examined") == 0) return "none: nothing checks the edges";
   return std::to_string(count("examined")) + " worked out, " + std::to_string(count("tested")) + " tested, " +
-         (count("failing") == 0
+         (count("tested") == 0 ? "nothing says whether they close"
+          : count("failing") == 0
               ? "all of these close"
               : std::to_string(count("failing")) + (count("failing") == 1 ? " does not close" : " do not close"));
 }

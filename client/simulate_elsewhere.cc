@@ -31,7 +31,7 @@ Error Start(Context& context) {
   const std::vector<fs::path> places = Places();
   for (const fs::path& place : places) execv(place.c_str(), arguments.data());
   return {ErrorCode::kUnsupported, "the simulator (" + std::string(kProgram) + ") is not where it belongs",
-          places.empty() ? "Install rigcal whole" : "Install rigcal whole, or put it at " + places.front().string()};
+          places.empty() ? "Install rigcal whole" : "Install rigcal whole, or put it at " + places.back().string()};
 }
 
 }  // namespace

@@ -1,15 +1,14 @@
 // rigcald: reads the configuration, opens the four owners of state (DDS, store, runner, HTTP), wires them, waits for a
 // signal.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <future>
 #include <iostream>
 #include <mutex>
-#include <thread>
 
+#include "server/base/leave_soon.h"
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
 #include "server/base/version.h"
@@ -72,16 +71,6 @@ Status EnforceLimits(const Config& config) {
   limits::Enforce(limits);
   if (const std::string changed = formats::ChangedLimits(limits); !changed.empty()) LogInfo("limits: " + changed);
   return {};
-}
-
-// All that counts is on disk, so a calibration that is under way is left: the next start does it anew.
-void LeaveSoon() {
-  constexpr std::chrono::seconds kGrace{20};
-  std::thread([kGrace] {
-    std::this_thread::sleep_for(kGrace);
-    LogWarn("stopped amid a calibration: the next start does it anew");
-    std::_Exit(0);
-  }).detach();
 }
 
 Status Serve(const Config& config, const sigset_t& signals) {

@@ -31,7 +31,7 @@ def run(context):
         bound = context.run_json("rigcal", "simulate", "mars-mapper", "--json")["sensors"]
         cameras = [norm_of(sensor["bound_sigma"]) for sensor in bound.values() if sensor["type"] == "camera"]
         lidars = [norm_of(sensor["bound_sigma"]) for sensor in bound.values() if sensor["type"] == "lidar"]
-        # Two thirds of what estimates are allowed, so that the task can be met at all.
+        # Two thirds of what estimates are allowed, so that estimates can keep to it at all.
         yield at_most("bound_cameras_mm", max(m for m, _ in cameras), 0.4)
         yield at_most("bound_cameras_deg", max(deg for _, deg in cameras), 0.008)
         yield at_most("bound_lidars_mm", max(m for m, _ in lidars), 0.8)

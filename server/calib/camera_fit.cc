@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/calib/camera_motion.h"
+#include "server/calib/given_intrinsics.h"
 #include "server/calib/projection.h"
 #include "server/calib/seen_corners.h"
 #include "server/calib/selection.h"
@@ -80,7 +81,33 @@ std::vector<double> JackknifeSigma(const Gathered& gathered) {
   return Finite((m - 1) / m * (moved.colwise() - mean).rowwise().squaredNorm());
 }
 
+// Of the views and of what was given together. What was given where the views leave no scatter.
+std::vector<double> RefinedSigma(const Sensor& camera, const Gathered& gathered) {
+  const std::vector<double>& given = *camera.intrinsics_sigma;
+  const Eigen::Index count = gathered.normal.rows();
+  const double dof = static_cast<double>(gathered.numbers) - 6.0 * static_cast<double>(gathered.views.size());
+  if (!(dof > 0) || !(gathered.ssr_px2 > 0)) return given;
+  IntrinsicsMatrix information = gathered.normal * (dof / gathered.ssr_px2);
+  for (const int i : HeldOf(camera)) {
+    information.row(i).setZero();
+    information.col(i).setZero();
+    information(i, i) = 1;
+  }
+  Eigen::VectorXd variances = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (const double sigma = given[static_cast<std::size_t>(i)]; sigma > 0) information(i, i) += 1 / (sigma * sigma);
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (given[static_cast<std::size_t>(i)] > 0)
+      variances[i] = SolveScaled(information, Eigen::VectorXd::Unit(count, i))[i];
+  return Finite(variances);
+}
+
 void SetSigma(const Sensor& camera, const Gathered& gathered, CameraFit& fit) {
+  if (RefinesIntrinsics(camera)) {
+    fit.source = IntrinsicsSource::kRefined;
+    fit.sigma = RefinedSigma(camera, gathered);
+    return;
+  }
   if (camera.intrinsics) {
     fit.source = IntrinsicsSource::kGiven;
     fit.sigma = camera.intrinsics_sigma.value_or(std::vector<double>());

@@ -16,7 +16,8 @@ struct HandEyeProblem;
 
 // Views of a camera with the board where an estimate puts it. `turns`: how the corners of a view are renumbered, as
 // StereoEstimate::turn_b. Views without a pose are left out. Estimated intrinsics get a sigma by a jackknife over the
-// views (one Gauss-Newton step each), the model's below 5 views; given ones the sigma that was given with them.
+// views (one Gauss-Newton step each), the model's below 5 views; given ones the sigma that was given with them,
+// refined ones that of the views and what was given together.
 [[nodiscard]] CameraFit FitOf(const CameraProblem& problem, const CameraIntrinsics& intrinsics,
                               const std::map<CaptureId, Se3>& T_cam_board, const std::map<CaptureId, int>& turns = {});
 // Where the board was found, of a camera that was not solved.

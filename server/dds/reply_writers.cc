@@ -3,14 +3,14 @@
 namespace rigcal::dds {
 namespace {
 
-constexpr std::size_t kPartitionsMax = 20'000;
+constexpr std::size_t kPartitionsMax = 16'000;  // a participant may have 16,382 publishers
 
 }  // namespace
 
 Result<ReplyWriters::Writer*> ReplyWriters::WriterOf(const std::string& partition) {
   const auto known = writers_.find(partition);
   if (known != writers_.end()) return &known->second;
-  if (writers_.size() > kPartitionsMax)
+  if (writers_.size() >= kPartitionsMax)
     return Fail(ErrorCode::kInvalidInput, "too many partitions ask", "Ask in partition operator");
   RIGCAL_ASSIGN(auto writer, Writer::Open(participant_, {partition}));
   RIGCAL_TRY(waitset_.Attach(writer.get()));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <future>
+#include <thread>
 
 #include "server/base/limits.h"
 #include "server/base/log.h"
@@ -12,7 +13,7 @@
 namespace rigcal::dds {
 namespace {
 
-constexpr int kTakenAtOnce = 256;
+constexpr int kTakenAtOnce = 16;  // the others stay with DDS, which bounds them
 constexpr std::size_t kPendingMax = 256;
 constexpr std::chrono::seconds kPendingFor{5};
 constexpr std::chrono::milliseconds kBusyAgain{20};
@@ -46,10 +47,7 @@ std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
 
 Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
                    const Answer& answer)
-    : participant_(std::move(participant)),
-      reader_(std::move(reader)),
-      waitset_(std::move(waitset)),
-      answer_(answer) {}
+    : participant_(std::move(participant)), reader_(std::move(reader)), waitset_(std::move(waitset)), answer_(answer) {}
 
 Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Answer& answer) {
   RIGCAL_ASSIGN(auto participant, OpenApart(options));
@@ -57,8 +55,7 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
                                  participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(reader.get()));
-  std::unique_ptr<Requests> made(
-      new Requests(std::move(participant), std::move(reader), std::move(waitset), answer));
+  std::unique_ptr<Requests> made(new Requests(std::move(participant), std::move(reader), std::move(waitset), answer));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   return made;
 }
@@ -131,10 +128,17 @@ std::chrono::milliseconds Requests::Patience() const {
 void Requests::Run() {
   SetThreadRank(ThreadRank::kAnswers);
   while (!stopped_) {
-    if (const auto woken = waitset_.Wait(Patience()); !woken) return LogError(woken.error());
+    if (const auto woken = waitset_.Wait(Patience()); !woken) {
+      LogError(woken.error());
+      std::this_thread::sleep_for(kRequestIdle);
+    }
     auto questions = TakeQuestions();
     if (!questions) LogError(questions.error());
-    for (Question& question : questions.value_or(std::vector<Question>{})) Add(std::move(question));
+    for (Question& question : questions.value_or(std::vector<Question>{})) {
+      if (stopped_) return;
+      Add(std::move(question));
+      if (!pending_.empty()) SendPending();
+    }
     if (!pending_.empty()) SendPending();
   }
 }

@@ -7,6 +7,11 @@
 namespace rigcal::formats {
 namespace {
 
+const char* NameOfSource(IntrinsicsSource source) {
+  if (source == IntrinsicsSource::kGiven) return "given";
+  return source == IntrinsicsSource::kRefined ? "refined" : "estimated";
+}
+
 constexpr std::size_t kViewsMax = 100'000, kNumbersMax = 1'000'000, kDistortionMax = 16;
 constexpr std::int64_t kSizeMax_px = 1'000'000;
 
@@ -42,7 +47,7 @@ void WriteIntrinsics(JsonWriter& out, const CameraFit& fit) {
     WriteNumbers(out, "f_c_px", {values.fx_px, values.fy_px, values.cx_px, values.cy_px});
     WriteNumbers(out, "sigma", fit.sigma);
     out.Flag("sigma_by_jackknife", fit.sigma_by_jackknife);
-    out.Text("source", fit.source == IntrinsicsSource::kGiven ? "given" : "estimated");
+    out.Text("source", NameOfSource(fit.source));
   });
 }
 
@@ -74,8 +79,11 @@ ViewFit ReadView(const JsonField& field) {
 
 void ReadIntrinsics(const JsonField& field, CameraFit& fit) {
   const std::string source = field.At("source").Text();
-  if (source != "given" && source != "estimated") field.At("source").Refuse("must be \"given\" or \"estimated\"");
-  fit.source = source == "given" ? IntrinsicsSource::kGiven : IntrinsicsSource::kEstimated;
+  if (source != "given" && source != "refined" && source != "estimated")
+    field.At("source").Refuse("must be \"given\", \"refined\" or \"estimated\"");
+  fit.source = source == "given"     ? IntrinsicsSource::kGiven
+               : source == "refined" ? IntrinsicsSource::kRefined
+                                     : IntrinsicsSource::kEstimated;
   const auto model = CameraModelOf(field.At("model").Text());
   if (!model) return field.At("model").Refuse(model.error().what);
   CameraIntrinsics& values = fit.intrinsics;

@@ -183,10 +183,11 @@ bool WorseThan(const CycleResidual& a, const CycleResidual& b) {
 
 void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, Cycles& judged) {
   judged.examined = static_cast<std::int64_t>(cycles.size());
-  judged.tested = std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; });
-  Limits limits(judged.tested, options.probability);
+  Limits limits(std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; }),
+                options.probability);
   for (CycleResidual& cycle : cycles) {
     if (cycle.tested) cycle.limit = limits.Of(cycle);
+    judged.tested += cycle.limit > 0.0 ? 1 : 0;
     judged.failing += cycle.fails() ? 1 : 0;
   }
   std::sort(cycles.begin(), cycles.end(), WorseThan);

@@ -74,7 +74,8 @@ std::optional<std::string> WithSlash(const std::string& path) {
   if (path.back() == '/') return std::nullopt;
   const auto segments = Segments(path);
   const bool is_robot = segments.size() == 2 && segments[0] == "robots" && RobotId::Parse(segments[1]).has_value();
-  const bool is_experiment = !segments.empty() && segments.size() <= 2 && segments[0] == "experiments";
+  const bool is_experiment = !segments.empty() && segments.size() <= 2 && segments[0] == "experiments" &&
+                             (segments.size() == 1 || CheckName("experiment", segments[1]).has_value());
   if (!is_robot && !is_experiment && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
   return path + "/";
 }

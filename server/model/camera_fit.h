@@ -24,7 +24,8 @@ struct ViewFit {
   Eigen::Vector2d tilt_rad = Eigen::Vector2d::Zero();
 };
 
-enum class IntrinsicsSource { kNone, kGiven, kEstimated };  // "none" | "given" | "estimated"
+// kRefined: given with sigmas, and refined by the views within those.
+enum class IntrinsicsSource { kNone, kGiven, kRefined, kEstimated };  // "none" | "given" | "refined" | "estimated"
 
 struct CameraFit {
   SensorId camera;

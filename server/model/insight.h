@@ -41,7 +41,8 @@ struct CycleResidual {
 struct Cycles {
   bool judged = false;
   std::string why_not;  // a sentence, where all or some were left out
-  std::int64_t examined = 0, tested = 0, failing = 0;
+  std::int64_t examined = 0, failing = 0;
+  std::int64_t tested = 0;  // those that have a limit
   std::vector<CycleResidual> worst;  // furthest beyond its limit first; those without a test last
 };
 

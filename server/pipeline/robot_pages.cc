@@ -118,7 +118,7 @@ Result<PageText> SessionPicture(const AnswerContext& context, const RobotId& rob
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, row.session));
   for (const Edge& edge : edges)
     for (const Evidence& evidence : edge.evidence) {
-      if (evidence.digest.str() + "." + evidence.suffix != file) continue;
+      if (evidence.suffix == "fit" || evidence.digest.str() + "." + evidence.suffix != file) continue;
       RIGCAL_ASSIGN(std::string bytes,
                     storage::LoadBlob(context.store.BlobFolder(), evidence.digest, kPictureBytesMax));
       return PageText{std::move(bytes), evidence.suffix == "png" ? "image/png" : "image/jpeg", true};

@@ -23,13 +23,16 @@ std::string AnchorOf(const CameraReport& camera) { return "c-" + camera.document
 
 std::string SourceText(const CameraFit& fit) {
   if (fit.source == IntrinsicsSource::kNone) return "not solved";
-  return fit.source == IntrinsicsSource::kGiven ? "given" : "estimated";
+  if (fit.source == IntrinsicsSource::kGiven) return "given";
+  return fit.source == IntrinsicsSource::kRefined ? "refined" : "estimated";
 }
 
 std::string SigmaSourceText(const CameraFit& fit) {
   if (fit.source == IntrinsicsSource::kGiven)
     return fit.sigma.empty() ? "given in session.yaml without a sigma: taken as exact"
                              : "given in session.yaml with this sigma";
+  if (fit.source == IntrinsicsSource::kRefined)
+    return "given in session.yaml and refined by the pictures within the sigma given there; this is the sigma of both";
   if (fit.sigma.empty()) return "sigma is not known: the pictures leave a value open";
   return fit.sigma_by_jackknife ? "sigma from a jackknife over the pictures"
                                 : "sigma from the scatter of the corners: too few pictures for a jackknife";

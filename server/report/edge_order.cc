@@ -10,7 +10,9 @@ namespace {
 
 // A section costs its heading, too.
 std::size_t ItemsOf(const Edge& edge) {
-  return 2 + edge.captures.size() + std::min(edge.evidence.size(), kPicturesPerEdgeMax) + edge.diagnoses.size();
+  const auto pictures = static_cast<std::size_t>(std::count_if(
+      edge.evidence.begin(), edge.evidence.end(), [](const Evidence& one) { return one.suffix != "fit"; }));
+  return 2 + edge.captures.size() + std::min(pictures, kPicturesPerEdgeMax) + edge.diagnoses.size();
 }
 
 bool HasDetails(const Edge& edge) {

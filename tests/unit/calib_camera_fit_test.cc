@@ -130,8 +130,13 @@ TEST(CameraFitOf, FewPicturesGiveTheModelsSigmaAndGivenIntrinsicsTheirOwn) {
   problem.camera.intrinsics = pair.a;
   problem.camera.intrinsics_sigma = std::vector<double>(9, 0.5);
   const CameraFit given = FitOf(problem, pair.a, estimate->T_cam_board);
-  EXPECT_EQ(given.source, IntrinsicsSource::kGiven);
-  EXPECT_EQ(given.sigma, std::vector<double>(9, 0.5));
+  EXPECT_EQ(given.source, IntrinsicsSource::kRefined);
+  ASSERT_EQ(given.sigma.size(), 9U);
+  for (const double sigma : given.sigma) EXPECT_LT(sigma, 0.5);
+  problem.camera.intrinsics_sigma = std::vector<double>(9, 1e-9);
+  EXPECT_NEAR(FitOf(problem, pair.a, estimate->T_cam_board).sigma[0], 1e-9, 1e-12);
+  problem.camera.intrinsics_sigma->at(1) = 0;
+  EXPECT_EQ(FitOf(problem, pair.a, estimate->T_cam_board).sigma[1], 0);
   problem.camera.intrinsics_sigma.reset();
   EXPECT_TRUE(FitOf(problem, pair.a, estimate->T_cam_board).sigma.empty());
 }

@@ -63,6 +63,7 @@ TEST(PrintLoops, LongLoopsAreCutAndNoneAreNamed) {
   const std::string text = Loops(
       R"({"cycles": {"judged": true, "examined": 1, "tested": 0, "failing": 0, "worst": [{"sensors": ["1","2","3","4","5","6","7","8","9"]}]}})");
   EXPECT_NE(text.find("8 - ... (9 edges) - 1"), std::string::npos) << text;
+  EXPECT_NE(text.find("0 tested, nothing says whether they close"), std::string::npos) << text;
   EXPECT_EQ(Loops("{}"), "");  // of before
 }
 
