@@ -13,7 +13,7 @@ from .measure import at_most, info
 from .server import Server
 from .sessions import noise_session
 
-ROUNDS = 3
+ROUNDS = 5
 COUNT, WARM_UP = 4000, 500
 PAYLOAD_BYTES, PAYLOADS = 3_000_000, 100
 EDGES = 4000

@@ -30,10 +30,12 @@ Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {
 
 }  // namespace
 
-Status Persist(storage::Store& store, const DurableBatch& batch, Stamp now) {
+Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, Stamp now) {
   RIGCAL_TRY(SyncAll(batch.files));
   RIGCAL_TRY(storage::AdoptBlobs(store.BlobFolder(), batch.files));
-  return store.Write([&] { return Record(store, batch, now); });
+  RIGCAL_TRY(store.Write([&] { return Record(store, batch, now); }));
+  for (const storage::FinishedFile& file : batch.files) cached.Add(storage::BlobPath(store.BlobFolder(), file.digest));
+  return {};
 }
 
 }  // namespace rigcal::dds

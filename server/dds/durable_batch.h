@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "server/base/cached_files.h"
 #include "server/base/stamp.h"
 #include "storage/blobs.h"
 #include "storage/store.h"
@@ -18,7 +19,7 @@ struct DurableBatch {
 };
 
 // Syncs the files side by side, moves them to the blob store, then records all in ONE transaction. Any thread; `store`
-// is that thread's own. When it returns good, everything survives power loss; otherwise nothing is recorded.
-[[nodiscard]] Status Persist(storage::Store& store, const DurableBatch& batch, Stamp now);
+// is that thread's own. Of the blobs only the newest stay `cached`. When it returns good, everything survives power loss; otherwise nothing is recorded.
+[[nodiscard]] Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, Stamp now);
 
 }  // namespace rigcal::dds

@@ -30,7 +30,7 @@ void SessionRecorder::StartCommit() {
   commit_is_done_ = false;
   // Where no thread can be made it is deferred: done when it is asked for.
   commit_ = std::async(std::launch::async | std::launch::deferred, [this] {
-    Status done = Persist(commit_store_, running_, clock_.Now());
+    Status done = Persist(commit_store_, running_, cached_, clock_.Now());
     commit_is_done_ = true;
     commit_done_();
     return done;

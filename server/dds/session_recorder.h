@@ -81,6 +81,7 @@ class SessionRecorder {
   std::vector<Finished> finished_;
   std::function<void()> commit_done_;
   DurableBatch running_;  // what commit_ works on
+  CachedFiles cached_;    // of commit_ alone
   std::atomic<bool> commit_is_done_{false};
   std::future<Status> commit_;  // last: its end is waited for before anything else goes
 };

@@ -1,5 +1,7 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,7 +10,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "server/base/cached_files.h"
 #include "server/base/durable_file.h"
+#include "server/base/file_descriptor.h"
 #include "server/base/parallel_for.h"
 #include "server/base/sha256.h"
 
@@ -34,6 +38,35 @@ TEST_F(Files, WriteThenReadGivesTheSameBytes) {
   ASSERT_TRUE(WriteDurably(folder_ / "file", bytes).has_value());
   EXPECT_EQ(ReadFile(folder_ / "file", 5).value(), bytes);
   EXPECT_EQ(EntryCount(), 1U) << "a temporary file was left";
+}
+
+// Read without waiting for a disk: possible of what the page cache holds.
+bool IsCached(const std::filesystem::path& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  char byte = 0;
+  const iovec into = {&byte, 1};
+  return ::preadv2(file.get(), &into, 1, 0, RWF_NOWAIT) == 1;
+}
+
+// Whether a file written and then let go is still cached: some file systems live in memory, or do not tell.
+bool TellsWhatIsCached(const std::filesystem::path& path) {
+  if (!WriteDurably(path, "bytes") || !IsCached(path)) return false;
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  return ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_DONTNEED) == 0 && !IsCached(path);
+}
+
+TEST_F(Files, OnlyTheNewestStayCached) {
+  if (!TellsWhatIsCached(folder_ / "probe")) GTEST_SKIP() << "this file system does not tell what is cached";
+  constexpr int kFiles = 4, kFileBytes = 1 << 20;
+  CachedFiles cached(2 * kFileBytes);
+  for (int i = 0; i < kFiles; ++i) {
+    const auto path = folder_ / std::to_string(i);
+    ASSERT_TRUE(WriteDurably(path, std::string(kFileBytes, 'x')).has_value());
+    cached.Add(path);
+  }
+  cached.Add(folder_ / "no such file");
+  for (int i = 0; i < kFiles; ++i) EXPECT_EQ(IsCached(folder_ / std::to_string(i)), i >= 2) << i;
+  EXPECT_EQ(ReadFile(folder_ / "0", kFileBytes).value(), std::string(kFileBytes, 'x'));
 }
 
 TEST_F(Files, WriteReplaces) {
