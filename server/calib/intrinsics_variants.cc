@@ -1,6 +1,8 @@
 #include "server/calib/intrinsics_variants.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace rigcal::calib {
@@ -8,10 +10,15 @@ namespace {
 
 using Information = Eigen::Matrix<double, kIntrinsicsMax, kIntrinsicsMax>;
 
-// Of all views and what pulls; unit where an intrinsic is held, which no gradient moves.
-Information InformationOf(const CameraEstimate& estimate) {
+Information OfViews(const CameraEstimate& estimate) {
   Information information = Information::Zero();
   for (const auto& [capture, view] : estimate.of_intrinsics) information += view.information;
+  return information;
+}
+
+// Of all views and what pulls; unit where an intrinsic is held, which no gradient moves.
+Information InformationOf(const CameraEstimate& estimate) {
+  Information information = OfViews(estimate);
   for (int i = 0; i < kIntrinsicsMax; ++i) information(i, i) += std::pow(estimate.pull.Weight(i), 2);
   return information;
 }
@@ -49,6 +56,21 @@ CameraEstimate WithoutView(const CameraEstimate& estimate, const CaptureId& capt
   if (view == estimate.of_intrinsics.end()) return without;
   return Moved(std::move(without),
                Solved(estimate, InformationOf(estimate) - view->second.information, view->second.gradient));
+}
+
+std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate) {
+  const Eigen::SelfAdjointEigenSolver<Information> views(OfViews(estimate));
+  std::vector<IntrinsicsVector> changes;
+  for (int i = 0; i < kIntrinsicsMax; ++i) {
+    const double strength = std::sqrt(std::max(0.0, views.eigenvalues()[i]) * estimate.variance_px2);
+    if (strength > 0)
+      changes.push_back(Solved(estimate, InformationOf(estimate), strength * views.eigenvectors().col(i)));
+  }
+  return changes;
+}
+
+CameraEstimate WithIntrinsicsMoved(const CameraEstimate& estimate, const IntrinsicsVector& change) {
+  return Moved(estimate, change);
 }
 
 CameraEstimate WithGiven(const CameraEstimate& estimate, int idx, double sigmas) {

@@ -49,6 +49,21 @@ void AddIntrinsics(const LidarCameraProblem& problem, const LidarCameraEstimate&
          }});
 }
 
+// The part of the model that comes from the corners by way of refined intrinsics: the planes take those as known.
+Result<Matrix6d> CornersPart(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  Matrix6d part = Matrix6d::Zero();
+  std::vector<GivenConstant> changes;
+  for (const IntrinsicsVector& change : ChangesOfRefined(problem, estimate))
+    changes.push_back({"corners", [&problem, &estimate, change](double steps) -> Result<Se3> {
+                         RIGCAL_ASSIGN(const LidarCameraEstimate moved,
+                                       SolvedWithChange(problem, estimate, steps * change));
+                         return EdgePose(problem, moved.T_cam_lidar);
+                       }});
+  RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(changes));
+  for (const Contribution& contribution : contributions) part += contribution.covariance;
+  return part;
+}
+
 // What was given, and no less than what the captures show.
 double RangeBiasSigma_m(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const double shown_m = estimate.SuspectsRangeBias() ? std::abs(estimate.range_bias_m - problem.range_bias_m) : 0.0;
@@ -72,8 +87,10 @@ std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const 
 
 Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate)));
-  const Matrix6d C_model =
+  RIGCAL_ASSIGN(const Matrix6d corners, CornersPart(problem, estimate));
+  const Matrix6d C_planes =
       problem.camera_is_a ? estimate.C_model : InverseCovariance(estimate.T_cam_lidar, estimate.C_model);
+  const Matrix6d C_model = Symmetrized(C_planes + corners);
   std::vector<BlockVector> blocks;
   if (estimate.patch_idx.size() >= kLidarCapturesForJackknife) {
     const std::vector<CaptureId> captures = BlocksOf(problem, estimate);

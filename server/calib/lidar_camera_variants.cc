@@ -56,6 +56,18 @@ Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& proble
   return SolvedAgain(problem, start);
 }
 
+std::vector<IntrinsicsVector> ChangesOfRefined(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  if (!RefinesIntrinsics(problem.camera)) return {};
+  return ChangesByCorners(estimate.camera);
+}
+
+Result<LidarCameraEstimate> SolvedWithChange(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                             const IntrinsicsVector& change) {
+  LidarCameraEstimate start = estimate;
+  start.camera = WithIntrinsicsMoved(estimate.camera, change);
+  return SolvedAgain(problem, start);
+}
+
 std::vector<std::size_t> UncertainIntrinsics(const LidarCameraProblem& problem) {
   const std::vector<int> refined = RefinedOf(problem.camera);
   return {refined.begin(), refined.end()};

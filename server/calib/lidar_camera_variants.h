@@ -18,6 +18,12 @@ namespace rigcal::calib {
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& problem,
                                                               const LidarCameraEstimate& estimate, std::size_t idx,
                                                               double sigmas);
+// What the corners' errors do to refined intrinsics: independent changes of one sigma each; none where nothing is refined.
+[[nodiscard]] std::vector<IntrinsicsVector> ChangesOfRefined(const LidarCameraProblem& problem,
+                                                             const LidarCameraEstimate& estimate);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithChange(const LidarCameraProblem& problem,
+                                                           const LidarCameraEstimate& estimate,
+                                                           const IntrinsicsVector& change);
 // Indices of those whose sigma is above zero; none if the intrinsics are not given or exact.
 [[nodiscard]] std::vector<std::size_t> UncertainIntrinsics(const LidarCameraProblem& problem);
 

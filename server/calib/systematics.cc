@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace rigcal::calib {
@@ -46,20 +47,29 @@ std::optional<PlaneSolution> SolveScaled(LidarCameraWork work, double ratio) {
   return solution ? std::optional(std::move(*solution)) : std::nullopt;
 }
 
-// Newton steps on the least cost as a function of the scale; its curvature is the information.
+struct ScaleStep {
+  double ratio = 0, sigma_ratio = 0;
+};
+
+// A Newton step on the least cost as a function of the scale; its curvature is the information.
+std::optional<ScaleStep> StepOfScale(const LidarCameraWork& work) {
+  const auto less = SolveScaled(work, -kScaleStep_ratio), same = SolveScaled(work, 0),
+             more = SolveScaled(work, kScaleStep_ratio);
+  if (!less || !same || !more) return std::nullopt;
+  const double slope = (more->cost - less->cost) / (2 * kScaleStep_ratio);
+  const double curvature = (more->cost - 2 * same->cost + less->cost) / (kScaleStep_ratio * kScaleStep_ratio);
+  if (!(curvature > 0)) return std::nullopt;
+  return ScaleStep{std::clamp(-slope / curvature, -0.1, 0.1), std::sqrt(2 / curvature)};
+}
+
 Fit FitBoardScale(const LidarCameraProblem& problem, LidarCameraWork work) {
   Fit fit;
   for (int round = 0; round < kRounds; ++round) {
-    const auto less = SolveScaled(work, -kScaleStep_ratio), same = SolveScaled(work, 0),
-               more = SolveScaled(work, kScaleStep_ratio);
-    if (!less || !same || !more) return {};
-    const double slope = (more->cost - less->cost) / (2 * kScaleStep_ratio);
-    const double curvature = (more->cost - 2 * same->cost + less->cost) / (kScaleStep_ratio * kScaleStep_ratio);
-    if (!(curvature > 0)) return {};
-    const double step = std::clamp(-slope / curvature, -0.1, 0.1);
-    Scale(step, work);
-    fit.value = (1 + fit.value) * (1 + step) - 1;
-    fit.sigma = std::sqrt(2 / curvature);
+    const auto step = StepOfScale(work);
+    if (!step) return {};
+    Scale(step->ratio, work);
+    fit.value = (1 + fit.value) * (1 + step->ratio) - 1;
+    fit.sigma = step->sigma_ratio;
     const auto solution = SolvePlanes(work.planes, work.StateOf(), false);
     if (!solution) return {};
     work.T_cam_lidar = solution->state.T_cam_lidar;
@@ -70,6 +80,15 @@ Fit FitBoardScale(const LidarCameraProblem& problem, LidarCameraWork work) {
 }
 
 }  // namespace
+
+Systematics SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto with_bias = SolvePlanes(work.planes, work.StateOf(), true);
+  Scale(board_scale_ratio, work);
+  const auto step = StepOfScale(work);
+  return {with_bias ? with_bias->state.range_bias_m : kUnknown,
+          step ? (1 + board_scale_ratio) * (1 + step->ratio) - 1 : kUnknown};
+}
 
 void EstimateSystematics(const LidarCameraProblem& problem, const LidarCameraWork& work,
                          LidarCameraEstimate& estimate) {
