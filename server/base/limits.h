@@ -15,6 +15,7 @@ constexpr std::int64_t kSessionBytesMax = 256LL << 30;
 constexpr std::size_t kChunkBytesMax = 1 << 20;       // one DDS chunk
 constexpr std::int64_t kWindowBytes = 24LL << 20;     // taken but not yet written, per session
 constexpr std::int64_t kIntakeBytesMax = 64LL << 20;  // the same, all sessions together
+constexpr std::int64_t kIntakeWhileAskedBytesPerS = 96LL << 20;  // somewhat less than a gigabit link brings
 constexpr std::size_t kEdgesPerBatchMax = 1'000'000;
 constexpr std::size_t kSensorsPerRobotMax = 100'000;
 constexpr std::size_t kSensorsPerSessionMax = 1024;  // its pairs are tried, so the square must stay small

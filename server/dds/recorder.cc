@@ -1,5 +1,8 @@
 #include "server/dds/recorder.h"
 
+#include <thread>
+
+#include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
 
@@ -7,17 +10,26 @@ namespace rigcal::dds {
 namespace {
 
 constexpr std::int64_t kRoundBytes = 8LL << 20;        // small enough that clients hear of progress often
+constexpr std::int64_t kRoundWhileAskedBytes = 1LL << 20;
 constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
 constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
 constexpr std::chrono::milliseconds kRecorderIdle{1000};
+constexpr std::chrono::milliseconds kAskedLately{200};
+
+std::chrono::nanoseconds DurationOf(const std::vector<Arrival>& arrivals, std::int64_t bytes_per_s) {
+  std::int64_t bytes = 0;
+  for (const Arrival& arrival : arrivals) bytes += BytesOf(arrival);
+  return std::chrono::nanoseconds(bytes * 1'000'000'000 / bytes_per_s);
+}
 
 }  // namespace
 
 Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
-                   std::uint64_t incarnation)
+                   const LastQuestion& asked, std::uint64_t incarnation)
     : stores_(std::move(stores)),
       inbox_(inbox),
       outbox_(outbox),
+      asked_(asked),
       incarnation_(incarnation),
       sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
       batches_(stores_.takes, outbox, callbacks, clock, incarnation),
@@ -43,12 +55,17 @@ void Recorder::Take(Arrival arrival) {
   if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
 }
 
+// While somebody asks, one robot's flood leaves processors and disk to the answers.
 void Recorder::TakeRound() {
-  auto arrivals = inbox_.Take(kRoundBytes, kRecorderIdle);
+  const auto start = std::chrono::steady_clock::now();
+  const bool yields = asked_.IsWithin(kAskedLately);
+  auto arrivals = inbox_.Take(yields ? kRoundWhileAskedBytes : kRoundBytes, kRecorderIdle);
+  const auto least = DurationOf(arrivals, limits::kIntakeWhileAskedBytesPerS);
   for (Arrival& arrival : arrivals) Take(std::move(arrival));
   sessions_.Write();
   inbox_.Release();  // before clients are told that they may send more
   sessions_.Report();
+  if (yields) std::this_thread::sleep_until(start + least);
 }
 
 // While a commit runs the next payloads come in, and are committed together when it is done.

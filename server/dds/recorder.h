@@ -5,6 +5,7 @@
 
 #include "server/dds/batch_recorder.h"
 #include "server/dds/inbox.h"
+#include "server/dds/last_question.h"
 #include "server/dds/session_recorder.h"
 
 namespace rigcal::dds {
@@ -17,7 +18,7 @@ class Recorder {
   };
   // All outlive it. `incarnation` differs for every start of a server.
   Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
-           std::uint64_t incarnation);
+           const LastQuestion& asked, std::uint64_t incarnation);
   void Run();  // until the inbox is stopped
 
  private:
@@ -29,6 +30,7 @@ class Recorder {
   Stores stores_;
   Inbox& inbox_;
   Outbox& outbox_;
+  const LastQuestion& asked_;
   std::uint64_t incarnation_;
   SessionRecorder sessions_;
   BatchRecorder batches_;

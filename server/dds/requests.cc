@@ -46,16 +46,21 @@ std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
 }  // namespace
 
 Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
-                   const Answer& answer)
-    : participant_(std::move(participant)), reader_(std::move(reader)), waitset_(std::move(waitset)), answer_(answer) {}
+                   const Answer& answer, LastQuestion& asked)
+    : participant_(std::move(participant)),
+      reader_(std::move(reader)),
+      waitset_(std::move(waitset)),
+      answer_(answer),
+      asked_(asked) {}
 
-Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Answer& answer) {
+Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Answer& answer,
+                                                 LastQuestion& asked) {
   RIGCAL_ASSIGN(auto participant, OpenApart(options));
   RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
                                  participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(reader.get()));
-  std::unique_ptr<Requests> made(new Requests(std::move(participant), std::move(reader), std::move(waitset), answer));
+  std::unique_ptr<Requests> made(new Requests(std::move(participant), std::move(reader), std::move(waitset), answer, asked));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   return made;
 }
@@ -136,6 +141,7 @@ void Requests::Run() {
     if (!questions) LogError(questions.error());
     for (Question& question : questions.value_or(std::vector<Question>{})) {
       if (stopped_) return;
+      asked_.Note();
       Add(std::move(question));
       if (!pending_.empty()) SendPending();
     }

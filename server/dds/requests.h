@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "server/dds/last_question.h"
 #include "server/dds/reply_writers.h"
 
 namespace rigcal::dds {
@@ -24,9 +25,9 @@ struct Question {
 class Requests {
  public:
   using Answer = std::function<Result<std::string>(const std::string& verb, const std::string& json)>;
-  // The answerer outlives it.
+  // Answerer and `asked`, in which every question is noted, outlive it.
   [[nodiscard]] static Result<std::unique_ptr<Requests>> Open(const wire::ParticipantOptions& options,
-                                                              const Answer& answer);
+                                                              const Answer& answer, LastQuestion& asked);
   void Run();   // until Stop
   void Stop();  // any thread
 
@@ -41,7 +42,7 @@ class Requests {
   };
 
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
-           const Answer& answer);
+           const Answer& answer, LastQuestion& asked);
 
   [[nodiscard]] std::string DocumentOf(const Question& question) const;
   void Add(Question question);
@@ -56,6 +57,7 @@ class Requests {
   wire::WaitSet waitset_;
   ReplyWriters writers_{participant_, waitset_};
   const Answer& answer_;
+  LastQuestion& asked_;
   std::list<Pending> pending_;
   std::atomic<bool> stopped_ = false;
 };

@@ -34,6 +34,7 @@ struct Service::Impl {
   Callbacks callbacks;
   Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
   Outbox outbox{participant};
+  LastQuestion asked;
   std::unique_ptr<Requests> requests;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Intake> intake;
@@ -44,11 +45,11 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
   RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
   for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
-  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks.answer));
+  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks.answer, asked));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
   recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox,
-                                        callbacks, clock, NewIncarnation());
+                                        callbacks, clock, asked, NewIncarnation());
   RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox));
   intake = std::make_unique<Intake>(std::move(opened));
   return {};

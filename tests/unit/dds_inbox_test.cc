@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "server/dds/inbox.h"
+#include "server/dds/last_question.h"
 
 namespace rigcal::dds {
 namespace {
@@ -25,6 +26,14 @@ std::vector<std::string> Kinds(const std::vector<Arrival>& arrivals) {
     if (std::holds_alternative<OpenSession>(one)) kinds.push_back("open");
   }
   return kinds;
+}
+
+TEST(LastQuestion, IsLateOnlyAfterItWasAsked) {
+  LastQuestion asked;
+  EXPECT_FALSE(asked.IsWithin(std::chrono::minutes(59)));
+  asked.Note();
+  EXPECT_TRUE(asked.IsWithin(std::chrono::minutes(59)));
+  EXPECT_FALSE(asked.IsWithin(std::chrono::milliseconds(0)));
 }
 
 TEST(Inbox, DiscardsWhatIsBeyondASessionsWindowAndSaysSo) {
