@@ -32,6 +32,16 @@ Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings) {
   return verdict;
 }
 
+// Claims no more agreement than was tested.
+Verdict Pass(const std::string& untested) {
+  const std::string why = untested.empty()
+                              ? "Every sensor is known well enough and the edges agree with each other."
+                              : "Every sensor is known well enough and each edge passes its own test against the "
+                                "others; " +
+                                    untested + ".";
+  return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
+}
+
 std::vector<Finding> Collect(std::initializer_list<std::optional<Finding>> candidates) {
   std::vector<Finding> findings;
   for (const std::optional<Finding>& candidate : candidates)
@@ -63,11 +73,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto open = FindOpenLoops(edges, solution, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings = Collect({FindFailedEdges(edges), FindUncertainSensors(solution, policy),
-                                 FindUncheckedSensors(edges, solution), FindUntestable(edges, solution, policy)});
+  const auto warnings =
+      Collect({FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
+               FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
-  return {VerdictLevel::kPass, "Every sensor is known well enough and the edges agree with each other.",
-          "Nothing; calibrate again when it is due."};
+  return Pass(UntestedLoops(edges, solution));
 }
 
 }  // namespace rigcal::fleet

@@ -21,9 +21,10 @@ struct Policy {
 };
 
 // Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph
-// means that nothing checks the result: warn. Unknown sensors (those that occur only in failed edges too): unknown, by
-// name. Failed edges: warn, by name, unless the same two sensors have a good edge as well (the failure was repaired
-// since).
+// means that nothing checks the result: warn. Edges in loops that nothing checks (see UncheckedEdges), or that cannot
+// be tested: warn, by name. "The edges agree" is said only where loops, or the cost, were tested. Unknown sensors
+// (those that occur only in failed edges too): unknown, by name. Failed edges: warn, by name, unless the same two
+// sensors have a good edge as well (the failure was repaired since).
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has

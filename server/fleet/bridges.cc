@@ -78,19 +78,21 @@ Walk WalkFrom(const Links& links, std::size_t root) {
 
 }  // namespace
 
-std::vector<SensorId> BehindBridges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+Bridges FindBridges(const std::vector<Edge>& edges, const GraphSolution& solution) {
   const Links links = LinksOf(edges, solution);
-  if (links.sensors.empty()) return {};
+  Bridges bridges;
+  if (links.sensors.empty()) return bridges;
   const Walk walk = WalkFrom(links, links.root);
   std::vector<bool> behind(links.sensors.size(), false);
-  for (const std::size_t sensor : walk.visited)
-    if (sensor != links.root)
-      behind[sensor] = behind[walk.parent[sensor]] || walk.low[sensor] == walk.order[sensor];
-  std::vector<SensorId> names;
-  for (std::size_t k = 0; k < behind.size(); ++k)
-    if (behind[k]) names.push_back(links.sensors[k]);
-  std::sort(names.begin(), names.end());
-  return names;
+  for (const std::size_t sensor : walk.visited) {
+    if (sensor == links.root) continue;
+    const bool by_bridge = walk.low[sensor] == walk.order[sensor];
+    if (by_bridge) bridges.edges.insert(edges[walk.parent_edge[sensor]].id);
+    behind[sensor] = by_bridge || behind[walk.parent[sensor]];
+    if (behind[sensor]) bridges.sensors.push_back(links.sensors[sensor]);
+  }
+  std::sort(bridges.sensors.begin(), bridges.sensors.end());
+  return bridges;
 }
 
 }  // namespace rigcal::fleet

@@ -1,13 +1,17 @@
-// Which sensors no loop of the graph contains.
+// Which sensors and edges no loop of the graph contains.
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "server/model/graph.h"
 
 namespace rigcal::fleet {
 
-// Known sensors that a bridge separates from the reference: no second path of edges checks their pose. Sorted.
-[[nodiscard]] std::vector<SensorId> BehindBridges(const std::vector<Edge>& edges, const GraphSolution& solution);
+struct Bridges {
+  std::vector<SensorId> sensors;  // known, but a bridge separates them from the reference: no second path. Sorted
+  std::set<EdgeId> edges;         // without any of these the graph falls apart
+};
+[[nodiscard]] Bridges FindBridges(const std::vector<Edge>& edges, const GraphSolution& solution);
 
 }  // namespace rigcal::fleet

@@ -9,6 +9,7 @@
 #include "server/fleet/wording.h"
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
+#include "server/model/unchecked.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -161,18 +162,36 @@ std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, cons
     return Finding{"no loop of edges checks the result",
                    "Calibrate one more pair of sensors, or repeat a pair, so that the edges check each other"};
   std::vector<std::string> names;
-  for (const SensorId& sensor : BehindBridges(edges, solution)) names.push_back(sensor.str());
+  for (const SensorId& sensor : FindBridges(edges, solution).sensors) names.push_back(sensor.str());
   if (names.empty()) return std::nullopt;
   return Finding{"nothing checks the pose of " + List(names) + ": a single edge is the only tie to the reference",
                  "Calibrate " + List(names) + " against one more sensor, or repeat the pair"};
 }
 
+std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (solution.dof <= 0) return std::nullopt;
+  const std::set<EdgeId> unchecked = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
+  std::vector<std::string> names;
+  for (const Edge& edge : edges)
+    if (unchecked.contains(edge.id) && !bridges.contains(edge.id) &&
+        std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end())
+      names.push_back(NameOfEdge(edge));
+  if (names.empty()) return std::nullopt;
+  const bool one = names.size() == 1;
+  return Finding{"nothing checks " + List(names) + ": the other edges of " + (one ? "its" : "their") +
+                     " loops fit whatever " + (one ? "it says" : "they say"),
+                 "Repeat " + List(names) + " in a session of " + (one ? "its" : "their") +
+                     " own, with motion or boards in every direction"};
+}
+
 std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                       const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
+  const std::set<EdgeId> unchecked = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
   std::map<EdgeId, const Edge*> by_id;
   for (const Edge& edge : edges)
-    if (edge.uncertainty.dof > 0) by_id.emplace(edge.id, &edge);
+    if (edge.uncertainty.dof > 0 && !unchecked.contains(edge.id) && !bridges.contains(edge.id))
+      by_id.emplace(edge.id, &edge);
   std::vector<std::string> names;
   for (const EdgeResidual& residual : solution.residuals) {
     const auto edge = by_id.find(residual.edge);
@@ -194,6 +213,13 @@ std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const Graph
   return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) +
                      " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + LimitText(limit) + ")",
                  "Look for the edge with the largest residual in sigmas and repeat its session"};
+}
+
+std::string UntestedLoops(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (CostIsChiSquare(edges)) return "";
+  const Cycles& cycles = solution.cycles;
+  if (!cycles.judged) return cycles.why_not.empty() ? "" : "loops as a whole were not worked out";
+  return cycles.tested == 0 ? "no loop could be tested as a whole" : "";
 }
 
 }  // namespace rigcal::fleet

@@ -20,15 +20,18 @@ struct Finding {
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution);
 // Edges that the robust optimum rejects, the worst first; a loop that alone does not close is named whole.
 [[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
-// Edges whose covariance comes from too few captures for a test of their residual. Only where there is something to
-// test.
+// Edges in loops that check them in no direction. Bridges are left to FindUncheckedSensors.
+[[nodiscard]] std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
+// Edges that something checks, but whose covariance comes from too few captures for a test of their residual.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);
 // Loops that do not close, also where each edge alone hides it. Where every information is known and no session is
-// shared: the weighted cost is beyond chi-square for its degrees of freedom. Where information was estimated, or captures
-// are shared, the cost is no chi-square: then the loop that is furthest beyond the limit of its own test.
+// shared: the weighted cost is beyond chi-square for its degrees of freedom. Where information was estimated, or
+// captures are shared, the cost is no chi-square: then the loop that is furthest beyond the limit of its own test.
 [[nodiscard]] std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                    const Policy& policy);
+// Half a sentence where only edges were tested, one by one, and no loop; empty where loops were.
+[[nodiscard]] std::string UntestedLoops(const std::vector<Edge>& edges, const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUnsettled(const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution);

@@ -5,6 +5,7 @@
 
 #include "server/base/version.h"
 #include "server/fleet/assess.h"
+#include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
@@ -76,9 +77,10 @@ void TakeLimits(report::ReportInput& input) {
   for (const Edge& edge : input.revision.edges) edges.emplace(edge.id, &edge);
   if (input.revision.solution.dof <= 0) return;
   const auto& residuals = input.revision.solution.residuals;
+  const std::set<EdgeId> unchecked = UncheckedEdges(input.revision.solution);
   for (const EdgeResidual& residual : residuals) {
     const auto edge = edges.find(residual.edge);
-    if (edge == edges.end()) continue;
+    if (edge == edges.end() || unchecked.contains(residual.edge)) continue;
     const fleet::EdgeTest test = fleet::TestResidual(*edge->second, residual, residuals.size());
     input.limits.emplace(residual.edge, report::EdgeLimit{test.statistic, test.limit});
   }

@@ -1,6 +1,7 @@
 #include "server/report/loop_section.h"
 
 #include <algorithm>
+#include <set>
 
 #include "server/report/text.h"
 
@@ -18,9 +19,24 @@ std::string WalkOf(const CycleResidual& cycle) {
   return text + (cycle.sensors.empty() ? "" : cycle.sensors.front().str());
 }
 
-void FillTest(Dictionary& row, const CycleResidual& cycle) {
+std::set<EdgeId> DeficientEdges(const std::vector<Edge>& edges) {
+  std::set<EdgeId> deficient;
+  for (const Edge& edge : edges)
+    if (edge.uncertainty.rank < 6) deficient.insert(edge.id);
+  return deficient;
+}
+
+std::string WhyUntested(const CycleResidual& cycle, const std::set<EdgeId>& deficient) {
+  if (cycle.tested) return "too few captures";
+  const bool blind =
+      std::any_of(cycle.edges.begin(), cycle.edges.end(), [&](const EdgeId& edge) { return deficient.contains(edge); });
+  return blind ? "an edge does not see every direction"
+               : "its edges share their errors, so it closes whatever they are";
+}
+
+void FillTest(Dictionary& row, const CycleResidual& cycle, const std::set<EdgeId>& deficient) {
   if (!cycle.tested || !(cycle.limit > 0.0)) {
-    ShowValue(row, "NO_TEST", "WHY", cycle.tested ? "too few captures" : "an edge does not see every direction");
+    ShowValue(row, "NO_TEST", "WHY", WhyUntested(cycle, deficient));
     return row.ShowSection("UNTESTED");
   }
   Dictionary* test = row.AddSectionDictionary("TEST");
@@ -30,11 +46,11 @@ void FillTest(Dictionary& row, const CycleResidual& cycle) {
   row.ShowSection(cycle.fails() ? "FAILS" : "CLOSES");
 }
 
-void FillLoop(Dictionary& row, const CycleResidual& cycle) {
+void FillLoop(Dictionary& row, const CycleResidual& cycle, const std::set<EdgeId>& deficient) {
   row.SetValue("WALK", WalkOf(cycle));
   row.SetValue("MM", Significant(cycle.e.head<3>().norm() * kMmPerMetre, 3));
   row.SetValue("DEG", Significant(cycle.e.tail<3>().norm() * kDegPerRad, 3));
-  FillTest(row, cycle);
+  FillTest(row, cycle, deficient);
 }
 
 std::string SummaryOf(const Cycles& cycles) {
@@ -49,7 +65,8 @@ std::string SummaryOf(const Cycles& cycles) {
 
 }  // namespace
 
-void FillLoops(Dictionary& page, const Cycles& cycles) {
+void FillLoops(Dictionary& page, const formats::RevisionInput& revision) {
+  const Cycles& cycles = revision.solution.cycles;
   if (!cycles.judged && cycles.why_not.empty()) return;
   Dictionary* section = page.AddSectionDictionary("LOOPS_SECTION")->AddIncludeDictionary("LOOPS");
   section->SetFilename("loops.tpl");
@@ -60,7 +77,8 @@ void FillLoops(Dictionary& page, const Cycles& cycles) {
               "Shown are the " + std::to_string(cycles.worst.size()) + " that close worst for their uncertainty.");
   if (cycles.worst.empty()) return;
   Dictionary* table = section->AddSectionDictionary("TABLE");
-  for (const CycleResidual& cycle : cycles.worst) FillLoop(*table->AddSectionDictionary("LOOP"), cycle);
+  const std::set<EdgeId> deficient = DeficientEdges(revision.edges);
+  for (const CycleResidual& cycle : cycles.worst) FillLoop(*table->AddSectionDictionary("LOOP"), cycle, deficient);
 }
 
 }  // namespace rigcal::report

@@ -70,7 +70,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillDrawing(page, input.revision, edges);
   FillPoses(page, input.revision);
   FillEdges(page, input, edges);
-  FillLoops(page, input.revision.solution.cycles);
+  FillLoops(page, input.revision);
   FillCameras(page, input);
   FillSections(page, input, edges);
   FillClouds(page, input.clouds);

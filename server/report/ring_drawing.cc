@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/model/unchecked.h"
 #include "server/report/drawing.h"
 #include "server/report/edge_axes.h"
 #include "server/report/edge_fit.h"
@@ -36,7 +37,8 @@ std::string TitleOf(const ShownEdge& shown) {
 struct Ring {
   Dictionary& svg;
   std::map<SensorId, Eigen::Vector2d> places;
-  bool named = false, checked = false;
+  bool named = false;
+  std::set<EdgeId> unchecked;
   InformationScale widths;
   Contradictions contradictions;
   std::vector<std::pair<const ShownEdge*, Curve>> links = {};
@@ -59,7 +61,7 @@ void PlaceLinks(Ring& ring, const std::vector<ShownEdge>& edges) {
 void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
   const bool failed = shown.edge->state == EdgeState::kFailed;
   Dictionary* link = ring.svg.AddSectionDictionary("LINK");
-  link->SetValue("STATE", FitClass(shown, ring.checked));
+  link->SetValue("STATE", FitClass(shown, !ring.unchecked.contains(shown.edge->id)));
   link->SetValue("STROKE", failed ? kFailedStroke : kGoodStroke);
   link->SetValue("THICK", ring.named ? Fixed(ring.widths.Width_px(*shown.edge), 1) : "1");
   link->SetValue("D", std::string("M").append(Point(curve.a)) + "Q" + Point(curve.control) + " " + Point(curve.b));
@@ -121,7 +123,7 @@ std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, co
   Ring ring{svg,
             RingPlaces(poses, revision.reference, size),
             poses.size() <= kNamedMax,
-            revision.solution.dof > 0,
+            UncheckedEdges(revision.solution),
             InformationScale(edges),
             ContradictionsOf(revision.solution.suspects)};
   for (const auto& [sensor, place] : ring.places) ring.tags.Block(place, {26, 26});

@@ -3,6 +3,7 @@
 
 #include "server/fleet/assess.h"
 #include "server/fleet/bridges.h"
+#include "server/model/unchecked.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -119,10 +120,67 @@ TEST(Trust, ASensorOnASingleEdgeIsUnchecked) {
   chain.AddSensor("tip");
   chain.AddEdge("top", "tail", 39, 0.0);
   chain.AddEdge("tip", "tail", 39, 0.0);
-  EXPECT_THAT(BehindBridges(chain.edges, chain.solution), ElementsAre(SensorId("tail"), SensorId("tip")));
+  EXPECT_THAT(FindBridges(chain.edges, chain.solution).sensors, ElementsAre(SensorId("tail"), SensorId("tip")));
   const Verdict verdict = chain.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
   EXPECT_THAT(verdict.why, HasSubstr("tail and tip"));
+}
+
+// Whatever a bridge says, it fits: more captures would not make it testable.
+TEST(Trust, ABridgeOfFewCapturesIsUncheckedNotUntestable) {
+  Chain chain = Triangle(39, 0.0005);
+  chain.AddSensor("tail");
+  chain.AddEdge("top", "tail", 6, 0.0);
+  for (const bool by_jackknife : {false, true}) {
+    chain.solution.residuals.back().by_jackknife = by_jackknife;
+    EXPECT_EQ(chain.Judge().why, "Nothing checks the pose of tail: a single edge is the only tie to the reference.");
+  }
+  EXPECT_EQ(FindBridges(chain.edges, chain.solution).edges, std::set<EdgeId>{chain.edges.back().id});
+}
+
+// Two edges tie the tail, but what one of them sees the other does not.
+TEST(Trust, EdgesThatTheirLoopsDoNotCheckAreNamed) {
+  Chain chain = Triangle(39, 0.0005);
+  chain.AddSensor("tail");
+  chain.AddEdge("top", "tail", 39, 0.0);
+  chain.AddEdge("tail", "left", 39, 0.0);
+  EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);
+  chain.solution.influences.judged = true;
+  for (std::size_t k = 0; k < 5; ++k)
+    chain.solution.influences.edges.push_back({chain.edges[k].id, k < 3, 0.0, SensorId(), Vector6d::Zero()});
+  const Verdict verdict = chain.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "Nothing checks top - tail and tail - left: the other edges of their loops fit whatever they say.");
+}
+
+TEST(Trust, EdgesWhoseErrorsAreAllSharedAreUnchecked) {
+  Chain chain = Triangle(0, 0.0);
+  for (std::size_t k = 0; k < 3; ++k) {
+    chain.edges[k].session = SessionId(std::string(64, '1'));
+    chain.solution.residuals[k].by_jackknife = true;  // rank 0: no error would show
+  }
+  EXPECT_EQ(UncheckedEdges(chain.solution).size(), 3U);
+  const Verdict verdict = chain.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("Nothing checks left - right, right - top and left - top"));
+}
+
+TEST(Trust, OnlyWhatWasTestedIsClaimed) {
+  Chain chain = Triangle(39, 0.0005);
+  EXPECT_THAT(chain.Judge().why, HasSubstr("the edges agree with each other."));
+  chain.solution.cycles.judged = true;
+  chain.solution.cycles.examined = 1;
+  EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);
+  EXPECT_EQ(chain.Judge().why,
+            "Every sensor is known well enough and each edge passes its own test against the others; no loop could be "
+            "tested as a whole.");
+  chain.solution.cycles.tested = 1;
+  EXPECT_THAT(chain.Judge().why, HasSubstr("the edges agree with each other."));
+  chain.solution.cycles = {false, "Loops were left out: too many.", 0, 0, 0, {}};
+  EXPECT_THAT(chain.Judge().why, HasSubstr("loops as a whole were not worked out."));
+  for (Edge& edge : chain.edges) edge.uncertainty.dof = 0;  // their cost is a test of all loops at once
+  EXPECT_THAT(chain.Judge().why, HasSubstr("the edges agree with each other."));
 }
 
 TEST(Trust, APairThatIsMeasuredTwiceIsNoBridge) {
@@ -130,7 +188,7 @@ TEST(Trust, APairThatIsMeasuredTwiceIsNoBridge) {
   chain.AddSensor("tail");
   chain.AddEdge("top", "tail", 39, 0.0);
   chain.AddEdge("tail", "top", 39, 0.0);
-  EXPECT_TRUE(BehindBridges(chain.edges, chain.solution).empty());
+  EXPECT_TRUE(FindBridges(chain.edges, chain.solution).sensors.empty());
 }
 
 TEST(Trust, ALoopBehindABridgeIsStillTiedByOneEdge) {
@@ -140,7 +198,8 @@ TEST(Trust, ALoopBehindABridgeIsStillTiedByOneEdge) {
   chain.AddEdge("x", "y", 39, 0.0);
   chain.AddEdge("y", "z", 39, 0.0);
   chain.AddEdge("z", "x", 39, 0.0);
-  EXPECT_THAT(BehindBridges(chain.edges, chain.solution), ElementsAre(SensorId("x"), SensorId("y"), SensorId("z")));
+  EXPECT_THAT(FindBridges(chain.edges, chain.solution).sensors,
+              ElementsAre(SensorId("x"), SensorId("y"), SensorId("z")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "server/graph/edge_influence.h"
 #include "server/math/jackknife.h"
 #include "server/math/statistics.h"
+#include "server/model/unchecked.h"
 #include "tests/unit/graph_fixture.h"
 
 namespace rigcal::graph {
@@ -85,6 +86,24 @@ TEST(Influence, ABridgeIsNotChecked) {
   for (const EdgeInfluence& influence : influences.edges) EXPECT_FALSE(influence.checked);
   const Influences none = InfluenceOfEdges(Graph(), Solve(Graph()));
   EXPECT_TRUE(none.edges.empty());
+}
+
+// Two edges tie the fourth sensor, each in what the other does not see: a loop that checks nothing.
+TEST(Influence, EdgesThatCompleteEachOtherAreNotChecked) {
+  RandomRig rig = FullRig(4, 15);
+  std::vector<GraphEdge>& edges = rig.graph.edges;  // 01 02 03 12 13 23
+  edges.erase(edges.begin() + 2);
+  for (const std::size_t k : {3U, 4U}) {
+    Vector6d seen = 1e6 * Vector6d::Ones();
+    (k == 3 ? seen.head<3>() : seen.tail<3>()).setZero();
+    edges[k].Omega = seen.asDiagonal();
+    edges[k].rank = 3;
+  }
+  GraphSolution solution = Solve(rig.graph);
+  ASSERT_EQ(solution.dof, 6);
+  EXPECT_TRUE(UncheckedEdges(solution).empty());  // not known yet
+  solution.influences = InfluenceOfEdges(rig.graph, solution);
+  EXPECT_EQ(UncheckedEdges(solution), (std::set<EdgeId>{edges[3].id, edges[4].id}));
 }
 
 TEST(Influence, SaysWhatItLeavesOut) {

@@ -39,6 +39,16 @@ TEST(GraphSvg, FailedEdgeIsDashedAndUnknownSensorGrey) {
   EXPECT_THAT(svg, HasSubstr(">tracker</text>"));
 }
 
+TEST(GraphSvg, AnEdgeThatNothingChecksIsNotShownAsAGoodFit) {
+  formats::RevisionInput revision = SampleReport().revision;
+  revision.solution.influences.judged = true;
+  revision.solution.influences.edges = {
+      {revision.solution.residuals[0].edge, false, 0.0, SensorId(), Vector6d::Zero()}};
+  const std::string svg = RenderGraphSvg(revision);
+  EXPECT_EQ(CountOf(svg, "<path class=\"link fit"), 4);
+  EXPECT_EQ(CountOf(svg, "<path class=\"link unchecked\""), 1);
+}
+
 TEST(GraphSvg, EveryElementIsClosed) {
   const std::string svg = RenderGraphSvg(SampleReport().revision);
   for (const std::string tag : {"svg", "a", "path", "text", "circle", "title"}) {

@@ -38,7 +38,10 @@ TEST(ReportLoops, WorstFirstAndFailingOnesMarked) {
                 "<td>20.0</td><td>2.00</td><td><span class=\"beyond\">91.0 (36.1)</span></td>"
                 "<td class=\"text\"><span class=\"badge fail\">does not close</span></td></tr>"));
   EXPECT_THAT(page, HasSubstr("<td><span>9.00 (36.1)</span></td><td class=\"text\"><span class=\"badge pass\">closes"));
-  EXPECT_THAT(page, HasSubstr("an edge does not see every direction"));
+  EXPECT_THAT(page, HasSubstr("its edges share their errors, so it closes whatever they are"));
+  cycles.worst.back().edges = {input.revision.edges[0].id, input.revision.edges[1].id};
+  input.revision.edges[1].uncertainty.rank = 5;
+  EXPECT_THAT(PageOf(input), HasSubstr("an edge does not see every direction"));
 }
 
 TEST(ReportLoops, SaysWhatIsMissing) {
