@@ -55,6 +55,26 @@ void CliqueTree::Change(std::size_t number) {
     if (block >= 0) touched_.push_back(block);
 }
 
+void CliqueTree::Drop(std::size_t number, std::size_t largest) {
+  const auto renumber = [this](std::size_t from, int to) {
+    for (const int block : {edges_[from].i, edges_[from].j}) {
+      if (block < 0) continue;
+      std::vector<int>& numbers = edges_of_block_[static_cast<std::size_t>(block)];
+      const auto at = std::find(numbers.begin(), numbers.end(), static_cast<int>(from));
+      if (to < 0) {
+        numbers.erase(at);
+      } else {
+        *at = to;
+      }
+    }
+  };
+  Change(number);
+  renumber(number, -1);
+  if (largest < edges_.size() && largest != number) renumber(largest, static_cast<int>(number));
+  edges_[number] = largest < edges_.size() ? edges_[largest] : Edge();
+  edges_.resize(std::min(edges_.size(), largest));
+}
+
 void CliqueTree::Replace(std::size_t number, const Matrix6d& U_i, const Matrix6d& U_j) {
   Edge& edge = edges_[number];
   edge.U_i = U_i, edge.U_j = U_j;

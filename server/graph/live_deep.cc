@@ -93,8 +93,9 @@ bool LiveSolver::RenewDeep(UpdateWork& work) {
   return tree_holds_;
 }
 
-// Vertices with one edge, or one beside those that hang on them. The others come before them: every vertex came with an
-// edge to one that was there.
+// Vertices with one edge, or one beside those that hang on them, if it leads to a vertex that came before: so that
+// poses can follow in the order of vertices. (An edge that left may leave a later one behind; such a vertex takes
+// part.)
 void LiveSolver::FindHanging() {
   std::vector<int> count(T_ref_.size(), 0), sum(T_ref_.size(), 0);  // edges; of their numbers
   const auto add = [&](int edge, int sign) {
@@ -106,6 +107,8 @@ void LiveSolver::FindHanging() {
   hangs_on_.assign(T_ref_.size(), -1);
   for (std::size_t v = T_ref_.size(); v-- > 1;) {
     if (count[v] != 1) continue;
+    const Constraint& only = problem_->constraints[static_cast<std::size_t>(sum[v])];
+    if (std::min(only.i, only.j) == static_cast<int>(v)) continue;
     hangs_on_[v] = sum[v];
     add(sum[v], -1);
   }
@@ -119,8 +122,7 @@ void LiveSolver::BeginDeep(UpdateWork& work) {
   linearized_at_.assign(problem_->constraints.size(), Se3());
   FindHanging();
   for (std::size_t k = 0; k < problem_->constraints.size(); ++k) {
-    const Constraint& constraint = problem_->constraints[k];
-    if (hangs_on_[static_cast<std::size_t>(std::max(constraint.i, constraint.j))] != static_cast<int>(k)) TakeEdge(k);
+    if (!Hangs(k)) TakeEdge(k);
   }
   for (std::size_t v = 1; v < T_ref_.size(); ++v)
     if (hangs_on_[v] >= 0) T_ref_[v] = Hanging(static_cast<int>(v), T_ref_);
@@ -128,9 +130,31 @@ void LiveSolver::BeginDeep(UpdateWork& work) {
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
 }
 
+// An edge that disagrees by much may hold the poses in one basin, or pull them into another.
+bool LiveSolver::MayLeaveBasin(const Constraint& constraint) const {
+  return Residual(constraint, T_ref_).tail<3>().norm() > kTurnMax_rad;
+}
+
+bool LiveSolver::Hangs(std::size_t edge) const {
+  const Constraint& constraint = problem_->constraints[edge];
+  return hangs_on_[static_cast<std::size_t>(std::max(constraint.i, constraint.j))] == static_cast<int>(edge);
+}
+
+// Gradient and cost at the poses at hand, and the factor, after edges of the tree have changed.
+bool LiveSolver::RenewGradientDeep(UpdateWork& work) {
+  if (!tree_holds_) {
+    BeginDeep(work);
+    return RenewDeep(work);
+  }
+  LinearizeGradient(*problem_, T_ref_, equations_);
+  work.edges_evaluated += static_cast<int>(problem_->constraints.size());
+  tree_.TouchAll();
+  return RenewDeep(work);
+}
+
 // Takes the edge into the gradient, the cost and the factor.
 bool LiveSolver::JoinDeep(const Constraint& added, UpdateWork& work) {
-  if (Residual(added, T_ref_).tail<3>().norm() > kTurnMax_rad) return false;
+  if (MayLeaveBasin(added)) return false;
   problem_->constraints.push_back(added);
   if (!tree_holds_) {
     BeginDeep(work);
@@ -157,9 +181,7 @@ bool LiveSolver::IsBent(std::size_t edge, double part) const {
 bool LiveSolver::Straighten(double part, UpdateWork& work) {
   bool any = false;
   for (std::size_t k = 0; k < linearized_at_.size(); ++k) {
-    const Constraint& constraint = problem_->constraints[k];
-    const bool hangs = hangs_on_[static_cast<std::size_t>(std::max(constraint.i, constraint.j))] == static_cast<int>(k);
-    if (hangs || !IsBent(k, part)) continue;
+    if (Hangs(k) || !IsBent(k, part)) continue;
     tree_.Change(k);
     any = true;
   }
@@ -197,7 +219,10 @@ void LiveSolver::LeaveRest(double rest_ratio, UpdateWork& work) {
 
 bool LiveSolver::RelaxDeep(const Constraint& added, UpdateWork& work) {
   stale_ = true;
-  if (!JoinDeep(added, work)) return false;
+  return JoinDeep(added, work) && DescendDeep(work);
+}
+
+bool LiveSolver::DescendDeep(UpdateWork& work) {
   const double enough = large() ? budget_.rest_ratio : kRestRelative;
   bool straight = true;  // as far as straightening makes it
   double part = 1.0;     // 0: H is that of these poses, no other factor would do better

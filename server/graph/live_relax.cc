@@ -66,12 +66,16 @@ void LiveSolver::BeginGradient() {
 }
 
 bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
-  const double enough = large() ? kRestLarge * budget_.rest_ratio : kRestRelative;
   BeginGradient();
   LinearizeEdge(added, T_ref_, equations_.H, &equations_.g);
   problem_->constraints.push_back(added);
   dirty_from_ = std::min(dirty_from_, std::max(std::min(added.i, added.j) - 1, 0));
-  if (!FactorNow(work)) return false;
+  return FactorNow(work) && Descend(work);
+}
+
+// From the poses at hand, whose gradient is there, with the factor at hand.
+bool LiveSolver::Descend(UpdateWork& work) {
+  const double enough = large() ? kRestLarge * budget_.rest_ratio : kRestRelative;
   secants_.Clear();
   double gain_before = std::numeric_limits<double>::infinity();
   for (work.iterations = 1; work.iterations <= kStepsMax; ++work.iterations) {

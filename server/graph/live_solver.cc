@@ -48,25 +48,6 @@ UpdateWork LiveSolver::AddSensor(const SensorId& sensor) {
   return {};
 }
 
-UpdateWork LiveSolver::Remove(const EdgeId& edge) {
-  const auto removed = std::remove_if(graph_.edges.begin(), graph_.edges.end(),
-                                      [&edge](const GraphEdge& candidate) { return candidate.id == edge; });
-  if (removed == graph_.edges.end()) return {};
-  graph_.edges.erase(removed, graph_.edges.end());
-  return Rebuild();
-}
-
-UpdateWork LiveSolver::Reweight(const EdgeId& edge, const Matrix6d& Omega, int rank) {
-  bool found = false;
-  for (GraphEdge& candidate : graph_.edges) {
-    if (candidate.id != edge) continue;
-    candidate.Omega = Omega;
-    candidate.rank = rank;
-    found = true;
-  }
-  return found ? Rebuild() : UpdateWork{};
-}
-
 GraphSolution LiveSolver::Glance() const {
   if (!fast_) return solution_;
   GraphSolution glance;
@@ -149,6 +130,7 @@ UpdateWork LiveSolver::Rebuild(UpdateWork work) {
 // `stopped` is a state to go on from.
 bool LiveSolver::AdoptSolution(bool stopped) {
   vertex_of_sensor_.clear(), sensor_of_vertex_.clear(), level_.clear(), slot_of_pair_.clear();
+  id_of_constraint_.clear();
   level_max_ = 0;
   tree_holds_ = false;
   *problem_ = Problem();
@@ -167,8 +149,9 @@ bool LiveSolver::AdoptSolution(bool stopped) {
     before = sensor_of_vertex_.size();
     for (const GraphEdge& edge : graph_.edges) {
       const int a = VertexOf(edge.frame_a), b = VertexOf(edge.frame_b);
-      full = full && edge.rank == 6;
       if ((a < 0) == (b < 0)) continue;
+      Constraint constraint;
+      if (!FillConstraint(edge, 0, constraint).empty()) continue;
       const auto found = known.find((a < 0 ? edge.frame_a : edge.frame_b).str());
       if (found == known.end()) return false;
       AddVertex(found->second->sensor, found->second->T_ref_sensor,
@@ -178,9 +161,10 @@ bool LiveSolver::AdoptSolution(bool stopped) {
   for (const GraphEdge& edge : graph_.edges) {
     Constraint constraint;
     if (VertexOf(edge.frame_a) < 0 || VertexOf(edge.frame_b) < 0) continue;
-    if (!FillConstraint(edge, 0, constraint).empty()) return false;
+    if (!FillConstraint(edge, 0, constraint).empty()) continue;  // it takes no part
     Place(edge, constraint);
     problem_->constraints.push_back(constraint);
+    full = full && constraint.rank == 6;
   }
   LinearizeGradient(*problem_, T_ref_, equations_);
   return full;
@@ -224,9 +208,11 @@ int LiveSolver::SlotOf(int i, int j) {
   return at->second;
 }
 
+// The constraint's vertices; it is to be the next of problem_.
 void LiveSolver::Place(const GraphEdge& edge, Constraint& constraint) {
   constraint.i = VertexOf(edge.frame_a), constraint.j = VertexOf(edge.frame_b);
   constraint.slot = SlotOf(constraint.i, constraint.j);
+  id_of_constraint_.push_back(edge.id);
 }
 
 // A sensor that hangs on one edge moves nothing else. False if this edge is more than that: it joins two parts.

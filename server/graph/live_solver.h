@@ -25,7 +25,7 @@ struct UpdateWork {
   int columns_factored = 0;  // block columns of the factor that were renewed
   double products = 0.0;     // of 6x6 blocks, in factors and solves: what the budget counts (of a batch: about)
   double rest_ratio = 0.0;   // of the cost: what is left to gain, as far as is known
-  bool batch = false;        // solved from the ground up: a removed edge, a large step, a deficient edge
+  bool batch = false;        // solved from the ground up: a large step, a deficient edge, parts that meet or fall apart
 };
 
 // How far an update goes. Counts of work and not of time, so that the same edges give the same poses everywhere.
@@ -84,8 +84,15 @@ class LiveSolver {
   void BeginGradient();
   void SolveStep(Eigen::VectorXd& x, UpdateWork& work);
   bool Relax(const Constraint& added, UpdateWork& work);
+  bool RelaxAnew(UpdateWork& work);
+  bool Descend(UpdateWork& work);
   void LeaveRest(double rest_ratio, UpdateWork& work);
   bool RelaxDeep(const Constraint& added, UpdateWork& work);
+  bool DescendDeep(UpdateWork& work);
+  [[nodiscard]] std::optional<std::size_t> ConstraintOf(const EdgeId& edge) const;
+  [[nodiscard]] bool ConnectedWithout(std::size_t edge) const;
+  [[nodiscard]] bool MayLeaveBasin(const Constraint& constraint) const;
+  void Forget(std::size_t edge);
   [[nodiscard]] Se3 RelativePose(const Constraint& constraint) const;
   void Count(UpdateWork& work);
   void FindHanging();
@@ -96,6 +103,8 @@ class LiveSolver {
   [[nodiscard]] bool IsBent(std::size_t edge, double part) const;
   bool Straighten(double part, UpdateWork& work);
   bool RenewDeep(UpdateWork& work);
+  [[nodiscard]] bool Hangs(std::size_t edge) const;
+  bool RenewGradientDeep(UpdateWork& work);
   bool JoinDeep(const Constraint& added, UpdateWork& work);
   bool StepDeep(UpdateWork& work);
   void GrowLeaf();
@@ -112,6 +121,7 @@ class LiveSolver {
   std::unique_ptr<Problem> problem_ = std::make_unique<Problem>();  // where solver_ reads it; vertices in order of
                                                                     // arrival; constraints and pattern only
   Poses T_ref_, trial_;
+  std::vector<EdgeId> id_of_constraint_;
   NormalEquations equations_;
   std::unique_ptr<BlockCholesky<6>> solver_;
   int factored_count_ = 0;  // blocks of the factor at hand

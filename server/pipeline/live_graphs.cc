@@ -8,7 +8,7 @@ namespace {
 
 // A burst larger than this, and than the graph at hand, is solved at once.
 constexpr std::size_t kOneByOneMax = 32;
-// Edges after which nothing but a batch will do (one of a low rank is enough) are taken together after so many.
+// Changes after which nothing but a batch will do (an edge of a low rank is enough) are taken together after so many.
 constexpr std::size_t kBatchesMax = 2;
 
 std::vector<EdgeId> SortedIds(const std::vector<GraphEdge>& edges) {
@@ -39,15 +39,17 @@ void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live) {
   const std::vector<EdgeId> wanted = SortedIds(loaded.graph.edges);
   const std::vector<EdgeId> added = Without(wanted, held), removed = Without(held, wanted);
   if (solver == nullptr || solver->graph().reference != loaded.graph.reference ||
-      added.size() > std::max(kOneByOneMax, held.size()) || removed.size() > kBatchesMax)
+      added.size() > std::max(kOneByOneMax, held.size()) || removed.size() > kOneByOneMax)
     return StartAnew(loaded, live);
   for (const SensorId& sensor : loaded.graph.sensors) live.solver->AddSensor(sensor);
-  for (const EdgeId& id : removed) live.solver->Remove(id);
   std::size_t batches = 0;
   for (const GraphEdge& edge : loaded.graph.edges) {
     if (!std::binary_search(added.begin(), added.end(), edge.id)) continue;
     if (live.solver->Add(edge).batch && ++batches > kBatchesMax) return StartAnew(loaded, live);
   }
+  // After what takes their place: so the graph does not fall apart meanwhile.
+  for (const EdgeId& id : removed)
+    if (live.solver->Remove(id).batch && ++batches > kBatchesMax) return StartAnew(loaded, live);
 }
 
 LiveGraph& LiveGraphs::Of(const RobotId& robot) {

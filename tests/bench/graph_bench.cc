@@ -1,7 +1,7 @@
 // graph_bench --g2o FILE | --synthetic VERTICES EDGES [--mode batch|marginals|incremental] [--order file|shuffled]
-//             [--seed S] [--repeat N] [--reference ceres]; --mode honest|insight too
+//             [--seed S] [--repeat N] [--reference ceres]; --mode remove|honest|insight too
 // One JSON object: how long the graph engine takes, what it finds, in g2o's own cost too, and a digest of the poses.
-// Marginals are timed at the solution, updates one by one.
+// Marginals are timed at the solution, updates one by one; so are removals, each edge being put back before the next.
 #include <sys/resource.h>
 #include <time.h>  // NOLINT(modernize-deprecated-headers): clock_gettime is POSIX
 
@@ -92,6 +92,15 @@ struct Run {
     times_us.push_back(Now_us() - begin_us);
     cpu_times_us.push_back(Cpu_us() - cpu_begin_us);
   }
+  template <typename Update>
+  void TimeUpdate(const Update& update) {
+    graph::UpdateWork work;
+    Time([&] { work = update(); });
+    batches += work.batch ? 1 : 0;
+    steps += work.iterations;
+    products += work.products;
+    rest_ratio_max = std::max(rest_ratio_max, work.rest_ratio);
+  }
 };
 
 Run RunBatch(const Graph& graph, const Arguments& arguments) {
@@ -109,18 +118,7 @@ Run RunBatch(const Graph& graph, const Arguments& arguments) {
   return run;
 }
 
-// Every edge by itself, each update from the state before it; sensors appear with their first edge.
-Run RunIncremental(const Graph& graph) {
-  Run run;
-  graph::LiveSolver live(graph.reference);
-  for (const GraphEdge& edge : graph.edges) {
-    graph::UpdateWork work;
-    run.Time([&] { work = live.Add(edge); });
-    run.batches += work.batch ? 1 : 0;
-    run.steps += work.iterations;
-    run.products += work.products;
-    run.rest_ratio_max = std::max(run.rest_ratio_max, work.rest_ratio);
-  }
+void Finish(graph::LiveSolver& live, Run& run) {
   run.cost_before_settling = live.Cost();
   const double begin_us = Now_us();
   if (!live.settled()) live.Settle();
@@ -131,6 +129,27 @@ Run RunIncremental(const Graph& graph) {
   run.solution.cost = live.Cost();  // of the live poses as they are, not of the solution made from them
   for (SensorPose& pose : run.solution.poses)
     if (const std::optional<Se3> T = live.PoseOf(pose.sensor)) pose.T_ref_sensor = *T;
+}
+
+// Every edge by itself, each update from the state before it; sensors appear with their first edge.
+Run RunIncremental(const Graph& graph) {
+  Run run;
+  graph::LiveSolver live(graph.reference);
+  for (const GraphEdge& edge : graph.edges) run.TimeUpdate([&] { return live.Add(edge); });
+  Finish(live, run);
+  return run;
+}
+
+// Up to 300 edges of the whole graph, spread over it: out, and in again.
+Run RunRemovals(const Graph& graph) {
+  Run run;
+  graph::LiveSolver live(graph);
+  const std::size_t stride = std::max<std::size_t>(graph.edges.size() / 300, 1);
+  for (std::size_t k = 0; k < graph.edges.size(); k += stride) {
+    run.TimeUpdate([&] { return live.Remove(graph.edges[k].id); });
+    live.Add(graph.edges[k]);
+  }
+  Finish(live, run);
   return run;
 }
 
@@ -208,6 +227,7 @@ nlohmann::json Summary(const Graph& graph, Run run) {
 
 Run RunOf(const Graph& graph, const Arguments& arguments) {
   if (arguments.mode == "incremental") return RunIncremental(graph);
+  if (arguments.mode == "remove") return RunRemovals(graph);
   if (arguments.mode == "honest" || arguments.mode == "insight")
     return RunBeside(graph, arguments, arguments.mode == "insight");
   return arguments.mode == "marginals" ? RunMarginals(graph, arguments) : RunBatch(graph, arguments);
@@ -247,7 +267,7 @@ int main(int argc, char** argv) {
   CLI::App app("Times the graph engine on a .g2o file");
   app.add_option("--g2o", arguments.g2o, "The file");
   app.add_option("--mode", arguments.mode)
-      ->check(CLI::IsMember({"batch", "marginals", "incremental", "honest", "insight"}));
+      ->check(CLI::IsMember({"batch", "marginals", "incremental", "remove", "honest", "insight"}));
   app.add_option("--order", arguments.order)->check(CLI::IsMember({"file", "shuffled"}));
   app.add_option("--synthetic", arguments.synthetic, "VERTICES EDGES: a random graph instead (5 mm, 0.3 deg)")
       ->expected(2);

@@ -34,6 +34,17 @@ class Twin {
     changed_.push_back(number);
     tree.Change(number);
   }
+  // Unless H would not be definite without it.
+  bool Drop(std::size_t number) {
+    std::vector<CliqueTree::Edge> rest = edges_;
+    rest[number] = rest.back();
+    rest.pop_back();
+    const Eigen::MatrixXd H = Sum(rest);
+    if (!changed_.empty() || H.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() < 1e-3) return false;
+    tree.Drop(number, edges_.size() - 1);
+    edges_ = rest;
+    return true;
+  }
   // All edges that are open become others.
   void Renew(int near_i, int near_j) {
     const std::vector<int> open = tree.Open();
@@ -51,13 +62,7 @@ class Twin {
   // Where x changes in a few blocks only, and in all.
   void ExpectSolves(int step) {
     const int count = tree.block_count();
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6 * count, 6 * count);
-    for (const CliqueTree::Edge& edge : edges_) {
-      Eigen::MatrixXd U = Eigen::MatrixXd::Zero(6 * count, 6);
-      if (edge.i >= 0) U.middleRows<6>(6 * edge.i) += edge.U_i;
-      if (edge.j >= 0) U.middleRows<6>(6 * edge.j) += edge.U_j;
-      H += U * U.transpose();
-    }
+    const Eigen::MatrixXd H = Sum(edges_);
     x_.conservativeResizeLike(Eigen::VectorXd::Zero(6 * count));
     std::uniform_int_distribution<int> any(0, count - 1);
     for (int k = 0; k < 3; ++k) {
@@ -76,6 +81,18 @@ class Twin {
   CliqueTree tree;
 
  private:
+  [[nodiscard]] Eigen::MatrixXd Sum(const std::vector<CliqueTree::Edge>& edges) const {
+    const int count = tree.block_count();
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(6 * count, 6 * count);
+    for (const CliqueTree::Edge& edge : edges) {
+      Eigen::MatrixXd U = Eigen::MatrixXd::Zero(6 * count, 6);
+      if (edge.i >= 0) U.middleRows<6>(6 * edge.i) += edge.U_i;
+      if (edge.j >= 0) U.middleRows<6>(6 * edge.j) += edge.U_j;
+      H += U * U.transpose();
+    }
+    return H;
+  }
+
   std::mt19937 random_;
   std::vector<CliqueTree::Edge> edges_;
   std::vector<std::size_t> changed_;
@@ -87,20 +104,24 @@ TEST(CliqueTree, SolvesWhateverCameWhen) {
     Twin twin(seed);
     std::mt19937 random(seed + 100);
     twin.Take(-1, 0);
-    for (int step = 0; step < 100; ++step) {
+    int dropped = 0;
+    for (int step = 0; step < 120; ++step) {
       const int count = twin.tree.block_count();
       const auto any = [&random, count] { return std::uniform_int_distribution<int>(-1, count - 1)(random); };
-      const int kind = std::uniform_int_distribution<int>(0, 9)(random);
+      const auto any_edge = [&random, &twin] { return random() % twin.edge_count(); };
+      const int kind = std::uniform_int_distribution<int>(0, 11)(random);
       if (kind < 4) twin.Take(any(), count);
       if (kind >= 4 && kind < 7) {
         const int a = any(), b = any();
         if (a != b) twin.Take(a, b);
       }
-      if (kind == 7) twin.Change(std::uniform_int_distribution<std::size_t>(0, twin.edge_count() - 1)(random));
+      if (kind == 7) twin.Change(any_edge());
+      if (kind > 9) dropped += twin.Drop(any_edge()) ? 1 : 0;
       if (kind < 6) continue;
       twin.Renew(any(), any());
       twin.ExpectSolves(step);
     }
+    EXPECT_GT(dropped, 3);
   }
 }
 
