@@ -72,16 +72,6 @@ void CliqueTree::AddLeft(const Clique& child, Eigen::Map<Eigen::MatrixXd>& front
   }
 }
 
-void CliqueTree::Touch(int block) {
-  if (block < 0) return;
-  for (int id = owner_[static_cast<std::size_t>(block)]; id >= 0;) {
-    Clique& clique = cliques_[static_cast<std::size_t>(id)];
-    if (clique.stale) return;
-    clique.stale = true;
-    id = clique.parent;
-  }
-}
-
 void CliqueTree::Forward(Clique& clique, const Eigen::VectorXd& x) {
   const Eigen::Index own = 6 * clique.own_count, below = 6 * clique.below_count();
   above_.setZero(own + below);

@@ -28,10 +28,12 @@ class Twin {
   CliqueTree::Edge Random(int i, int j) { return {i, j, -NearIdentity(random_), NearIdentity(random_)}; }
   void Take(int i, int j) {
     edges_.push_back(Random(i, j));
+    renewed_.insert(renewed_.end(), {i, j});
     tree.Take(edges_.size() - 1, edges_.back());
   }
   void Change(std::size_t number) {
     changed_.push_back(number);
+    renewed_.insert(renewed_.end(), {edges_[number].i, edges_[number].j});
     tree.Change(number);
   }
   // Unless H would not be definite without it.
@@ -41,6 +43,7 @@ class Twin {
     rest.pop_back();
     const Eigen::MatrixXd H = Sum(rest);
     if (!changed_.empty() || H.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() < 1e-3) return false;
+    renewed_.insert(renewed_.end(), {edges_[number].i, edges_[number].j});
     tree.Drop(number, edges_.size() - 1);
     edges_ = rest;
     return true;
@@ -59,16 +62,17 @@ class Twin {
     ASSERT_TRUE(tree.Renew(near_i, near_j, kAll));
   }
 
-  // Where x changes in a few blocks only, and in all.
+  // Where x changes at blocks of new and changed edges only, and in all.
   void ExpectSolves(int step) {
     const int count = tree.block_count();
     const Eigen::MatrixXd H = Sum(edges_);
     x_.conservativeResizeLike(Eigen::VectorXd::Zero(6 * count));
-    std::uniform_int_distribution<int> any(0, count - 1);
-    for (int k = 0; k < 3; ++k) {
-      const int block = any(random_);
-      x_.segment<6>(6 * block).setRandom();
-      tree.Touch(block);
+    for (const int block : renewed_)
+      if (block >= 0) x_.segment<6>(6 * block).setRandom();
+    renewed_.clear();
+    if (step % 3 == 0) {
+      x_.setRandom();
+      tree.TouchAll();
     }
     const Eigen::VectorXd expected = H.ldlt().solve(x_);
     EXPECT_NEAR(tree.Reduce(x_), x_.dot(expected), 1e-9 * x_.dot(expected)) << step;
@@ -96,6 +100,7 @@ class Twin {
   std::mt19937 random_;
   std::vector<CliqueTree::Edge> edges_;
   std::vector<std::size_t> changed_;
+  std::vector<int> renewed_;  // blocks, since x changed last
   Eigen::VectorXd x_;
 };
 
