@@ -47,11 +47,9 @@ void FillInfluenceCell(Dictionary& good, const ReportInput& input, const Edge& e
 
 // What the solution without this edge would be.
 void FillWithout(Dictionary& good, const Influences& influences, const EdgeId& edge) {
-  const auto found = std::lower_bound(influences.edges.begin(), influences.edges.end(), edge,
-                                      [](const EdgeInfluence& one, const EdgeId& id) { return one.edge < id; });
-  const bool known = found != influences.edges.end() && found->edge == edge;
-  if (!known || !found->checked || found->most_moved.empty())
-    return ShowValue(good, "NO_WITHOUT", "WHY", known && !found->checked ? "nothing checks it" : "");
+  const EdgeInfluence* found = InfluenceOf(influences, edge);
+  if (found == nullptr || !found->checked || found->most_moved.empty())
+    return ShowValue(good, "NO_WITHOUT", "WHY", found != nullptr && !found->checked ? "nothing checks it" : "");
   Dictionary* without = good.AddSectionDictionary("WITHOUT");
   without->SetValue("MM", Significant(found->move.head<3>().norm() * kMmPerMetre, 2));
   without->SetValue("DEG", Significant(found->move.tail<3>().norm() * kDegPerRad, 2));

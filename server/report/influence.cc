@@ -29,12 +29,17 @@ Influence LargestInfluence(const std::vector<BlockVector>& blocks, const Uncerta
   return largest;
 }
 
+const EdgeInfluence* InfluenceOf(const Influences& influences, const EdgeId& edge) {
+  const auto found = std::lower_bound(influences.edges.begin(), influences.edges.end(), edge,
+                                      [](const EdgeInfluence& one, const EdgeId& id) { return one.edge < id; });
+  return found != influences.edges.end() && found->edge == edge ? &*found : nullptr;
+}
+
 std::string InfluenceText(const Influence& influence) {
   if (influence.block_id.empty()) return "";
   return "Without capture " + influence.block_id + " the position moves most: by " +
          Significant(influence.position_m * kMmPerMetre, 3) + " mm and " +
-         Significant(influence.rotation_rad * kDegPerRad, 3) + " deg, " + Fixed(influence.in_sigmas, 1) +
-         " \xCF\x83.";
+         Significant(influence.rotation_rad * kDegPerRad, 3) + " deg, " + Fixed(influence.in_sigmas, 1) + " \xCF\x83.";
 }
 
 }  // namespace rigcal::report

@@ -1,8 +1,9 @@
-// Which capture moves an edge's answer: the edge's block vectors, read.
+// Which capture moves an edge's answer: the edge's block vectors, read. What the edge does to the solution.
 #pragma once
 
 #include <vector>
 
+#include "server/model/insight.h"
 #include "server/model/uncertainty.h"
 
 namespace rigcal::report {
@@ -15,5 +16,7 @@ struct Influence {
 [[nodiscard]] Influence LargestInfluence(const std::vector<BlockVector>& blocks, const Uncertainty& uncertainty);
 // "Without capture 07 the position moves most: 0.12 mm and 0.004 deg, 0.4 sigma."; empty without block vectors.
 [[nodiscard]] std::string InfluenceText(const Influence& influence);
+// nullptr: not worked out for this edge.
+[[nodiscard]] const EdgeInfluence* InfluenceOf(const Influences& influences, const EdgeId& edge);
 
 }  // namespace rigcal::report

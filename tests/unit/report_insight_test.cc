@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <sstream>
 
 #include "tests/unit/report_sample.h"
 
@@ -73,6 +75,19 @@ TEST(ReportInfluenceColumn, WhatTheSolutionWithoutTheEdgeWouldBe) {
   const std::string page = PageOf(input);
   EXPECT_THAT(page, HasSubstr("<td data-v=\"4.25\">5.0 / 2.0 / 4.25<br><span class=\"soft\">rear</span></td>"));
   EXPECT_THAT(page, HasSubstr("<td data-v=\"\" class=\"soft\">nothing checks it</td>"));
+  std::map<std::string, std::string> last;  // columns of edges.csv, by edge
+  input.blocks[moved.edge] = {{"07", 1e-3 * Vector6d::Unit(tangent::kX)}, {"03", 1e-3 * Vector6d::Unit(tangent::kRx)}};
+  const auto endings = [&] {
+    std::istringstream csv(RenderRevision(input, "{}").value().at("edges.csv"));
+    for (std::string line; std::getline(csv, line);)
+      for (const Edge& edge : input.revision.edges)
+        if (const auto at = line.find(edge.id.str()); at != std::string::npos)
+          last[edge.id.str()] = line.substr(line.find(',', at + 65));
+    return last;
+  };
+  EXPECT_EQ(endings()[moved.edge.str()], ",yes,rear,0.005,0.034906585,4.25,07,0.001\r");
+  EXPECT_EQ(endings()[input.revision.edges[1].id.str()], ",no,,,,,,\r");
+  EXPECT_EQ(endings()[input.revision.edges[2].id.str()], ",,,,,,,\r");
   influences.edges.clear();
   influences.judged = false;
   influences.why_not = "Influence was left out: too many sensors.";
