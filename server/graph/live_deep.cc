@@ -17,6 +17,7 @@ namespace rigcal::graph {
 namespace {
 
 constexpr double kBent_rad = 0.02, kBent_ratio = 0.04;  // turned, or moved, as a part of its length
+constexpr double kLever_ratio = 0.05;                   // of sigma_m / sigma_rad: the least length that counts
 constexpr double kBentStrict = 0.1;                     // of these, where steps gain less than they should
 constexpr double kTurnMax_rad = 0.5;     // an edge that disagrees by more may lead to another basin: the batch decides
 constexpr double kRestRelative = 1e-11;  // of the cost: what may be left to gain
@@ -170,10 +171,15 @@ bool LiveSolver::JoinDeep(const Constraint& added, UpdateWork& work) {
   return RenewDeep(work);
 }
 
+// Frames in one place have no length of their own: there the length counts at which a turn is as uncertain as a move.
 bool LiveSolver::IsBent(std::size_t edge, double part) const {
+  const Constraint& constraint = problem_->constraints[edge];
   const Se3& before = linearized_at_[edge];
-  const Se3 change = before.Inverse() * RelativePose(problem_->constraints[edge]);
-  return 2.0 * change.q.vec().norm() > part * kBent_rad || change.p_m.norm() > part * kBent_ratio * before.p_m.norm();
+  const Se3 change = before.Inverse() * RelativePose(constraint);
+  const Vector6d information = constraint.Omega.diagonal();
+  const double lever_m = std::sqrt(information.tail<3>().sum() / information.head<3>().sum());
+  const double length_m = std::max(before.p_m.norm(), kLever_ratio * lever_m);
+  return 2.0 * change.q.vec().norm() > part * kBent_rad || change.p_m.norm() > part * kBent_ratio * length_m;
 }
 
 // Linearises anew the edges that were bent by more than this part of what is allowed since the factor learnt them.
