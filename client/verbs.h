@@ -23,6 +23,7 @@ void AddWatch(CLI::App& app, Context& context);
 void AddReport(CLI::App& app, Context& context);
 void AddDue(CLI::App& app, Context& context);
 void AddCompare(CLI::App& app, Context& context);
+void AddExport(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 // In the program of simulate_main.cc; `rigcal` has the one that starts it.
 void AddSimulate(CLI::App& app, Context& context);

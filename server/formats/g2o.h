@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/model/edge.h"
+#include "server/model/graph.h"
 
 namespace rigcal::formats {
 
@@ -19,6 +19,11 @@ struct G2oFile {
 // Indefinite, non-finite or asymmetric information and non-unit quaternions (beyond 1e-3; nearer ones are normalised)
 // are refused; the error names line and edge. The same pair may be measured several times.
 [[nodiscard]] Result<G2oFile> ReadG2o(std::string_view text, const RobotId& robot);
+// The good edges in their order, poses of known sensors as vertices, the reference as FIX. Every number is read back as
+// it was, bit by bit. Names that are all whole numbers stay; else vertices count the sensors, and comments name them.
+// kNotFound without a good edge.
+[[nodiscard]] Result<std::string> WriteG2o(const std::vector<Edge>& edges, const std::vector<SensorPose>& poses,
+                                           const SensorId& reference);
 [[nodiscard]] Matrix6d InformationFromG2o(const Matrix6d& Omega_g2o);
 [[nodiscard]] Matrix6d InformationToG2o(const Matrix6d& Omega);
 

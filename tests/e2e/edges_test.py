@@ -1,5 +1,6 @@
 """Finished edges: pushed in two orders to two servers, queried, again after kill -9."""
 import json
+import random
 
 from flow import Flow, check
 
@@ -20,6 +21,46 @@ def newest(flow):
     return json.loads(flow.rigcal("show", "rig", "--json").stdout)
 
 
+def random_g2o(path):
+    """A file with as many digits as there are, and the numbers of each edge by its two vertices."""
+    draw = random.Random(4)
+    edges = {}
+    for a in range(5):
+        for b in range(a + 1, 5):
+            q = [draw.gauss(0, 1e-3) for _ in range(3)] + [1.0]
+            norm = sum(x * x for x in q) ** 0.5
+            root = [[draw.gauss(0, 0.1) + (row == column) for column in range(6)] for row in range(6)]
+            scale = [1e3 if row < 3 else 4e2 for row in range(6)]
+            product = lambda r, c: scale[r] * scale[c] * sum(root[r][k] * root[c][k] for k in range(6))
+            edges[a, b] = [float(b - a), draw.gauss(0, 1e-3), draw.gauss(0, 1e-3)] + [x / norm for x in q] + [
+                product(r, c) for r in range(6) for c in range(r, 6)]
+    path.write_text("FIX 2\n" + "".join("EDGE_SE3:QUAT %d %d %s\n" % (a, b, " ".join(map(repr, numbers)))
+                                        for (a, b), numbers in edges.items()))
+    return edges
+
+
+def read_g2o(path):
+    lines = [line.split() for line in path.read_text().splitlines()]
+    return {(int(line[1]), int(line[2])): [float(x) for x in line[3:]] for line in lines if line[0] == "EDGE_SE3:QUAT"}
+
+
+def g2o_round_trip(flow):
+    """File to service to file, twice: what is stored is what was received."""
+    sent = random_g2o(flow.folder / "sent.g2o")
+    flow.server.rigcal("push-edges", flow.folder / "sent.g2o", "--robot", "ring")
+    done = json.loads(flow.rigcal("export", "ring", "--out", flow.folder / "back.g2o", "--json").stdout)
+    check(done["edges"] == 10 and done["sensors"] == 5, "export counts: %r" % done)
+    flow.server.rigcal("push-edges", flow.folder / "back.g2o", "--robot", "ring-2")
+    flow.rigcal("export", "ring-2", "--out", flow.folder / "again.g2o")
+    for name in ("back.g2o", "again.g2o"):
+        came = read_g2o(flow.folder / name)
+        check(came.keys() == sent.keys(), name + " has every edge")
+        worst = max(abs(x - y) / max(abs(x), 1.0) for pair in sent for x, y in zip(sent[pair], came[pair]))
+        check(worst <= 1e-12, "%s is off by %g" % (name, worst))
+    flow.rigcal("export", "nobody", "--out", flow.folder / "none.g2o", exit_code=4)
+    flow.rigcal("export", "ring", "--out", flow.folder / "ring.urdf", exit_code=4)
+
+
 def main():
     with Flow() as flow, Flow() as other:
         path = triangle(flow.folder)
@@ -38,6 +79,7 @@ def main():
         check(again["held_before"] == 3, "pushing again sends nothing: %r" % again)
         check(newest(flow)["revision"] == shown["revision"], "pushing again makes no revision")
 
+        g2o_round_trip(flow)
         flow.kill_and_restart()
         check(newest(flow) ["document"] == shown["document"], "the revision survives kill -9")
         check(json.loads(flow.get("/api/v1/show?robot=rig"))["digest"] == shown["digest"], "HTTP gives the same document")
