@@ -22,6 +22,17 @@ void WriteAnalytic(JsonWriter& out, const SensorPose& pose) {
   });
 }
 
+// Only where it is known.
+void WriteBasis(JsonWriter& out, const std::vector<Vector6d>& basis) {
+  if (basis.empty()) return;
+  out.List("unobservable_basis", [&] {
+    for (const Vector6d& direction : basis)
+      out.List([&] {
+        for (const double value : direction) out.Number(value);
+      });
+  });
+}
+
 void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
   out.Object([&] {
     out.Text("id", pose.sensor.str());
@@ -34,6 +45,7 @@ void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
     } else {
       for (const char* key : {"T_ref_sensor", "covariance", "sigma_source"}) out.Null(key);
       WriteNoSigmas(out);
+      WriteBasis(out, pose.unobservable_basis);
     }
     WriteAnalytic(out, pose);
   });
@@ -43,6 +55,8 @@ SensorPose ReadSensorPose(const JsonField& field) {
   SensorPose pose;
   pose.sensor = ReadId<SensorId>(field.At("id"));
   pose.known = field.At("known").Flag();
+  if (const auto basis = field.Find("unobservable_basis"))
+    for (const JsonField& direction : basis->Items(6)) pose.unobservable_basis.push_back(ReadVector(direction));
   if (!pose.known) return pose;
   pose.T_ref_sensor = ReadPose(field.At("T_ref_sensor"), kUnitTolerance);
   pose.covariance = ReadMatrix(field.At("covariance"));

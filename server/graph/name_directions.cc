@@ -22,6 +22,17 @@ std::string NameAxis(const Eigen::Vector3d& direction) {
   return text.data();
 }
 
+std::string NameDirection(const Vector6d& direction) {
+  const Eigen::Vector3d translation = direction.head<3>(), rotation = direction.tail<3>();
+  constexpr double kNothing = 1e-3;
+  if (rotation.norm() < kNothing) return "translation along " + NameAxis(translation);
+  std::string text = "rotation about " + NameAxis(rotation);
+  if (translation.norm() >= kNothing) text += " coupled with translation along " + NameAxis(translation);
+  return text;
+}
+
+}  // namespace
+
 // Reduced column echelon form: every column gets a coordinate of its own, so that pure axes show as such. Rotations are
 // eliminated first: what remains are pure translations.
 FreeBasis Reduced(FreeBasis basis) {
@@ -43,19 +54,9 @@ FreeBasis Reduced(FreeBasis basis) {
     for (Eigen::Index k = 0; k < basis.cols(); ++k)
       if (k != c) basis.col(k) -= basis(row, k) * basis.col(c);
   }
-  return basis;
+  constexpr double kRounding = 1e-9;
+  return (basis.array().abs() < kRounding).select(0.0, basis);
 }
-
-std::string NameDirection(const Vector6d& direction) {
-  const Eigen::Vector3d translation = direction.head<3>(), rotation = direction.tail<3>();
-  constexpr double kNothing = 1e-3;
-  if (rotation.norm() < kNothing) return "translation along " + NameAxis(translation);
-  std::string text = "rotation about " + NameAxis(rotation);
-  if (translation.norm() >= kNothing) text += " coupled with translation along " + NameAxis(translation);
-  return text;
-}
-
-}  // namespace
 
 std::string NameDirections(const FreeBasis& basis) {
   const FreeBasis reduced = Reduced(basis);

@@ -61,6 +61,11 @@ Diagnosis Singular() {
           "Check the information matrices of the edges for wrong units (metres and radians)."};
 }
 
+void TakeBasis(const FreeBasis& free, SensorPose& pose) {
+  const FreeBasis basis = Reduced(free);
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) pose.unobservable_basis.emplace_back(basis.col(k));
+}
+
 void FillPoses(const Graph& graph, const Problem& problem, const Settled& settled, GraphSolution& solution) {
   for (std::size_t s = 0; s < graph.sensors.size(); ++s) {
     SensorPose& pose = solution.poses[s];
@@ -72,6 +77,7 @@ void FillPoses(const Graph& graph, const Problem& problem, const Settled& settle
     if (pose.known) {
       pose.T_ref_sensor = settled.optimum.T_ref[static_cast<std::size_t>(vertex)];
     } else {
+      if (settled.observability.judged) TakeBasis(free, pose);
       solution.diagnoses.push_back(settled.observability.judged ? NotObservable(pose.sensor, graph.reference, free)
                                                                 : NotJudged(pose.sensor));
     }

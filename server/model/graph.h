@@ -42,6 +42,9 @@ struct SensorPose {
   // Behind the covariance (Welch & Satterthwaite over sessions and given constants): of the T^2 region of the pose.
   // Meaningful if by_jackknife; 0: nothing in it is estimated from captures.
   double dof = 0.0;
+  // If not known: the directions that its edges leave free, as far as they were worked out. Right tangent at the
+  // sensor, metres and radians; each has a coordinate of its own that is 1 in it and 0 in the others.
+  std::vector<Vector6d> unobservable_basis = {};
 };
 
 struct EdgeResidual {

@@ -108,6 +108,20 @@ TEST(RevisionDocument, AnUnknownSensorHasNoNumbers) {
   EXPECT_NEAR(sensors[1]["covariance"][1][3].get<double>(), -2e-7, 1e-20);
 }
 
+TEST(RevisionDocument, WhatIsFreeComesBack) {
+  RevisionInput input = SampleRevision();
+  EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["sensors"][2].contains("unobservable_basis"));
+  Vector6d turn = 2.0 * Vector6d::Unit(tangent::kY);
+  turn(tangent::kRz) = 1.0;
+  input.solution.poses[2].unobservable_basis = {turn, Vector6d::Unit(tangent::kX)};
+  const std::string text = WriteRevisionDocument(input);
+  EXPECT_EQ(json::parse(text)["sensors"][2]["unobservable_basis"][0], json::parse("[0, 2, 0, 0, 0, 1]"));
+  const auto read = ReadRevisionDocument(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->solution.poses[2].unobservable_basis, input.solution.poses[2].unobservable_basis);
+  EXPECT_TRUE(read->solution.poses[1].unobservable_basis.empty());
+}
+
 TEST(RevisionDocument, ErrorsNameThePath) {
   std::string text = WriteRevisionDocument(SampleRevision());
   const std::string from = "\"q_xyzw\":[0.36,0.0,0.48,0.8]";

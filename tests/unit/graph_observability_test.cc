@@ -36,6 +36,9 @@ TEST(GraphObservability, AFreeAxisMakesTheSensorUnknownAndIsNamed) {
     EXPECT_GT(solution.poses[2].covariance(0, 0), 0.0);
     EXPECT_FALSE(solution.poses[3].known);
     EXPECT_EQ(solution.poses[3].covariance, Matrix6d::Zero());
+    ASSERT_EQ(solution.poses[3].unobservable_basis.size(), 1U);
+    EXPECT_LT((solution.poses[3].unobservable_basis[0] - Vector6d::Unit(axis)).norm(), 1e-6) << axis;
+    EXPECT_TRUE(solution.poses[2].unobservable_basis.empty());
     ASSERT_EQ(solution.diagnoses.size(), 1U);
     EXPECT_EQ(solution.diagnoses[0].code, "not_observable");
     EXPECT_EQ(solution.diagnoses[0].what, "the pose of sensor 3 is not fully determined: its edges leave free " +
@@ -135,6 +138,10 @@ TEST(GraphObservability, TheBasisIsInMetresAndRadians) {
   ASSERT_EQ(basis.cols(), 1);
   EXPECT_NEAR(basis(tangent::kY, 0) / basis(tangent::kRz, 0), 2.0, 1e-9);
   EXPECT_NEAR(basis(tangent::kX, 0), 0.0, 1e-9);
+  const std::vector<Vector6d> said = Solve(rig.graph).poses[4].unobservable_basis;
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0](tangent::kRz), 1.0);
+  EXPECT_NEAR(said[0](tangent::kY), 2.0, 1e-6);
 }
 
 // A sensor held by two deficient edges that complete each other stays known beside one that is free.
