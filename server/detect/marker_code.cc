@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "server/detect/plane_map.h"
 
@@ -139,20 +140,40 @@ std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::
   return marker;
 }
 
-std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
-                       const cv::aruco::Dictionary& dictionary, std::span<const int> border_bits) {
+CodeBits PackedBits(const cv::Mat& bits) {
+  CodeBits packed = 0;
+  for (int i = 0; i < bits.rows * bits.cols; ++i)
+    packed = packed << 1 | (bits.at<std::uint8_t>(i / bits.cols, i % bits.cols) != 0 ? 1 : 0);
+  return packed;
+}
+
+CodeTable TableOf(const cv::aruco::Dictionary& dictionary) {
+  std::vector<std::array<CodeBits, 4>> codes;
+  for (int id = 0; id < dictionary.bytesList.rows; ++id) {
+    cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(dictionary.bytesList.row(id), dictionary.markerSize);
+    std::array<CodeBits, 4>& turned = codes.emplace_back();
+    for (CodeBits& code : turned) {
+      code = PackedBits(bits);
+      cv::Mat next;
+      cv::rotate(bits, next, cv::ROTATE_90_CLOCKWISE);
+      bits = next;
+    }
+  }
+  return {std::move(codes), static_cast<int>(dictionary.maxCorrectionBits * kCorrectionRate)};
+}
+
+std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px, int bits_across,
+                       const CodeTable& table, std::span<const int> border_bits) {
   std::vector<int> ids;
   // Broader borders hold the narrowest one.
-  if (!MayBeCode(grey, corners_px, dictionary.markerSize, border_bits.front())) return ids;
+  if (!MayBeCode(grey, corners_px, bits_across, border_bits.front())) return ids;
   for (const int bits_wide : border_bits) {
-    const auto bits = BitsOf(grey, corners_px, dictionary.markerSize, bits_wide);
+    const auto bits = BitsOf(grey, corners_px, bits_across, bits_wide);
     if (!bits) continue;
     cv::Mat mirrored;
     cv::flip(*bits, mirrored, 1);
-    for (const cv::Mat& read : {*bits, mirrored}) {
-      int id = -1, rotation = 0;
-      if (dictionary.identify(read, id, rotation, kCorrectionRate)) ids.push_back(id);
-    }
+    for (const cv::Mat& read : {*bits, mirrored})
+      if (const auto id = table.IdOf(PackedBits(read))) ids.push_back(*id);
   }
   return ids;
 }

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "server/detect/code_table.h"
+
 namespace rigcal::detect {
 
 // Null: there is no such dictionary.
@@ -23,8 +25,11 @@ struct ReadMarker {
 // any corner). Nothing if the border is broken or the code is not in the dictionary. Throws what OpenCV throws.
 [[nodiscard]] std::optional<ReadMarker> ReadCode(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
                                                  const cv::aruco::Dictionary& dictionary, int border_bits);
-// The same for borders of these widths (the narrowest first), read from the front and from behind.
+// The dictionary for IdsOf(), which asks of many squares.
+[[nodiscard]] CodeTable TableOf(const cv::aruco::Dictionary& dictionary);
+[[nodiscard]] CodeBits PackedBits(const cv::Mat& bits);
+// The ids that ReadCode() reads with borders of these widths (the narrowest first), from the front and from behind.
 [[nodiscard]] std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px,
-                                     const cv::aruco::Dictionary& dictionary, std::span<const int> border_bits);
+                                     int bits_across, const CodeTable& table, std::span<const int> border_bits);
 
 }  // namespace rigcal::detect

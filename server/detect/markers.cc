@@ -83,18 +83,33 @@ SeenMarker Unscaled(int id, const Quad& quad, const MarkerSearch& search, int wi
   return marker;
 }
 
-// All of them, whatever is in them.
-std::vector<std::vector<cv::Point2f>> SquaresIn(const cv::Mat& searched, const cv::aruco::Dictionary& dictionary,
-                                                const MarkerSearch& search) {
-  const int side_px = std::max(searched.cols, searched.rows);
-  auto parameters = Parameters(search, side_px);
-  parameters->minMarkerPerimeterRate = 4 * kSideMin_px / side_px;  // few are bordered, so none need be left out
-  parameters->adaptiveThreshWinSizeMin = parameters->adaptiveThreshWinSizeMax = kGlanceWindow_px;
-  std::vector<std::vector<cv::Point2f>> squares, unread;
-  std::vector<int> ids;
-  cv::aruco::detectMarkers(Parted(searched, search.separate_px), cv::makePtr<cv::aruco::Dictionary>(dictionary),
-                           squares, ids, parameters, unread);
-  squares.insert(squares.end(), unread.begin(), unread.end());
+// Dark at that window. Dark pixels that have no dark one beside them are noise, tens of thousands of outlines, and no
+// marker's.
+cv::Mat DarkParts(const cv::Mat& grey) {
+  constexpr double kDarker_grey = 7;  // than around it: as OpenCV's search of markers
+  cv::Mat dark, near;
+  cv::adaptiveThreshold(grey, dark, 1, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, kGlanceWindow_px,
+                        kDarker_grey);
+  cv::boxFilter(dark, near, CV_8U, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
+  cv::threshold(near, near, 1, 1, cv::THRESH_BINARY);
+  cv::bitwise_and(dark, near, dark);
+  return dark;
+}
+
+// All those that OpenCV's search finds, before it asks what is in them. In either sense of turning.
+std::vector<std::vector<cv::Point2f>> SquaresIn(const cv::Mat& searched) {
+  constexpr double kOffRatio = 0.03;  // of the outline: how far a side may bend; as OpenCV's search
+  std::vector<std::vector<cv::Point>> outlines;
+  const double longest_px = 4 * std::max(searched.cols, searched.rows);
+  cv::findContours(DarkParts(searched), outlines, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+  std::vector<std::vector<cv::Point2f>> squares;
+  for (const auto& outline : outlines) {
+    const auto length_px = static_cast<double>(outline.size());
+    if (length_px < 4 * kSideMin_px || length_px > longest_px) continue;
+    std::vector<cv::Point> corners;
+    cv::approxPolyDP(outline, corners, kOffRatio * length_px, true);
+    if (corners.size() == 4 && cv::isContourConvex(corners)) squares.emplace_back(corners.begin(), corners.end());
+  }
   return squares;
 }
 
@@ -108,6 +123,7 @@ bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<co
   if (std::max(image.width_px, image.height_px) <= kReduceSide_px) return true;
   const auto dictionary = DictionaryOf(search.dictionary);
   if (!dictionary) return false;
+  const CodeTable table = TableOf(*dictionary);
   const std::size_t enough = dictionary->markerSize >= kLongBits ? kGlanceLong : kGlanceShort;
   std::set<int> ids, strangers;
   std::vector<std::pair<double, int>> passes = {{kGlanceScale, 0}, {1.0, 0}};
@@ -116,8 +132,8 @@ bool AnyMarkers(const GreyImage& image, const MarkerSearch& search, std::span<co
     MarkerSearch glance = search;
     glance.scale = scale, glance.separate_px = separate_px;
     const cv::Mat searched = Searched(image, glance);
-    for (const auto& quad : SquaresIn(searched, *dictionary, glance)) {
-      for (const int id : IdsOf(searched, Grown(quad, separate_px), *dictionary, border_bits))
+    for (const auto& quad : SquaresIn(Parted(searched, separate_px))) {
+      for (const int id : IdsOf(searched, Grown(quad, separate_px), dictionary->markerSize, table, border_bits))
         (id < search.id_count ? ids : strangers).insert(id);
       if (ids.size() >= enough || strangers.size() >= kGlanceStrangers) return true;
     }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+#include <random>
 
+#include "server/detect/marker_code.h"
 #include "tests/unit/detect_rendering.h"
 
 namespace rigcal::detect {
@@ -44,6 +46,28 @@ TEST(DetectInLargePictures, SaysThatThereIsNone) {
   const cv::Mat empty(600, 2600, CV_8U, cv::Scalar(kBackground));
   EXPECT_THAT(DetectIn(empty, TargetOf(Charuco())).view.why_not, HasSubstr("no marker of DICT_4X4_50 was read"));
   EXPECT_THAT(DetectIn(empty, TargetOf(TagGrid())).view.why_not, HasSubstr("no tag of DICT_APRILTAG_36h11 was read"));
+}
+
+// Codes of the dictionary with more and more wrong bits, in all turns, and any others.
+TEST(DetectInLargePictures, TheTableKnowsTheCodesThatOpenCvKnows) {
+  std::mt19937_64 random(3);
+  for (const char* name : {"DICT_4X4_50", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_36h11"}) {
+    const auto dictionary = DictionaryOf(name);
+    const CodeTable table = TableOf(*dictionary);
+    int known = 0, unknown = 0;
+    for (int i = 0; i < 300; ++i) {
+      const int row = static_cast<int>(random() % static_cast<std::uint64_t>(dictionary->bytesList.rows));
+      cv::Mat bits = cv::aruco::Dictionary::getBitsFromByteList(dictionary->bytesList.row(row), dictionary->markerSize);
+      for (int wrong = 0; wrong < i % 9; ++wrong) bits.at<std::uint8_t>(static_cast<int>(random() % bits.total())) ^= 1;
+      if (i % 4 > 0) cv::rotate(bits.clone(), bits, i % 4 - 1);
+      int id = -1, turns = 0;
+      const bool identified = dictionary->identify(bits, id, turns, 0.6);
+      EXPECT_EQ(table.IdOf(PackedBits(bits)), identified ? std::optional(id) : std::nullopt) << name << " " << i;
+      ++(identified ? known : unknown);
+    }
+    EXPECT_GT(known, 30) << name;
+    EXPECT_GT(unknown, 30) << name;
+  }
 }
 
 TEST(DetectInLargePictures, TellsTheMarkersOfOtherBoards) {
