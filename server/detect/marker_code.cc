@@ -165,9 +165,9 @@ CodeTable TableOf(const cv::aruco::Dictionary& dictionary) {
 std::vector<int> IdsOf(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& corners_px, int bits_across,
                        const CodeTable& table, std::span<const int> border_bits) {
   std::vector<int> ids;
-  // Broader borders hold the narrowest one.
-  if (!MayBeCode(grey, corners_px, bits_across, border_bits.front())) return ids;
   for (const int bits_wide : border_bits) {
+    // Broader borders hold the narrowest one.
+    if (!MayBeCode(grey, corners_px, bits_across, bits_wide)) return ids;
     const auto bits = BitsOf(grey, corners_px, bits_across, bits_wide);
     if (!bits) continue;
     cv::Mat mirrored;
