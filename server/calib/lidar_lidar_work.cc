@@ -35,13 +35,19 @@ std::vector<Eigen::Vector3f> Shifted(std::vector<Eigen::Vector3f> points_m, doub
   return points_m;
 }
 
-std::vector<NdtTerm> TermsOf(const LidarLidarWork& work, std::size_t level, std::size_t captures_max) {
+std::vector<NdtTerm> TermsOf(const LidarLidarWork& work, std::size_t level, const std::vector<std::size_t>& captures) {
   std::vector<NdtTerm> terms;
-  const std::size_t every = (work.clouds.size() + captures_max - 1) / captures_max;
-  for (std::size_t i = 0; i < work.clouds.size(); i += every)
-    terms.push_back({&work.clouds[i].maps[level], &work.clouds[i].points[level]});
+  for (const std::size_t i : captures) terms.push_back({&work.clouds[i].maps[level], &work.clouds[i].points[level]});
   return terms;
 }
+
+std::vector<std::size_t> Every(std::size_t step, std::size_t count) {
+  std::vector<std::size_t> captures;
+  for (std::size_t i = 0; i < count; i += step) captures.push_back(i);
+  return captures;
+}
+
+double MetRatio(const NdtScore& score) { return score.points_met / std::max(score.points, 1.0); }
 
 std::vector<NdtTerm> SurfaceTerms(const LidarLidarWork& work) {
   std::vector<NdtTerm> terms;
@@ -129,11 +135,12 @@ LidarLidarPose FitFrom(const LidarLidarWork& work, const Se3& start, std::size_t
                        const Directions& locked) {
   LidarLidarPose pose;
   pose.ndt = start;
+  const std::vector<std::size_t> all = Every(1, work.clouds.size());
   for (std::size_t level = first_level; level < kNdtLevels; ++level) {
     const double step_max = level + 1 < kNdtLevels ? kStepCoarse : kStepFine;
-    const NdtFit fit = FitNdt(TermsOf(work, level, work.clouds.size()), pose.ndt, step_max, locked);
+    const NdtFit fit = FitNdt(TermsOf(work, level, all), pose.ndt, step_max, locked);
     pose.ndt = fit.T_a_b;
-    pose.met_ratio = fit.score.points_met / std::max(fit.score.points, 1.0);
+    pose.met_ratio = MetRatio(fit.score);
   }
   const NdtFit last = FitNdt(SurfaceTerms(work), pose.ndt, kStepLast, locked);
   const Polished polished = Polish(PolishTerms(work), last.T_a_b, locked);
@@ -145,17 +152,22 @@ LidarLidarPose FitFrom(const LidarLidarWork& work, const Se3& start, std::size_t
   return pose;
 }
 
+std::vector<std::size_t> StartCaptures(const LidarLidarWork& work) {
+  return Every((work.clouds.size() + kStartCaptures - 1) / kStartCaptures, work.clouds.size());
+}
+
 std::vector<StartEnd> TryStarts(const LidarLidarWork& work) {
   std::vector<Vector6d> offsets{Vector6d::Zero()};
   for (int axis = 0; axis < 6; ++axis)
     for (const double sign : {1.0, -1.0})
       offsets.push_back(sign * (axis < 3 ? kStartShiftVoxels * work.voxel_m : kStartTurn_rad) * Vector6d::Unit(axis));
+  const std::vector<std::size_t> few = StartCaptures(work);
   std::vector<StartEnd> ends(offsets.size());
   ParallelFor(offsets.size(), [&](std::size_t i) {
     ends[i].T = work.nominal * Se3::Exp(offsets[i]);
     for (std::size_t level = 0; level < kNdtLevels; ++level) {
-      const NdtFit fit = FitNdt(TermsOf(work, level, kStartCaptures), ends[i].T, kStepCoarse);
-      ends[i] = {fit.T_a_b, -fit.score.cost / std::max(fit.score.points, 1.0)};
+      const NdtFit fit = FitNdt(TermsOf(work, level, few), ends[i].T, kStepCoarse);
+      ends[i] = {fit.T_a_b, -fit.score.cost / std::max(fit.score.points, 1.0), MetRatio(fit.score)};
     }
   });
   return ends;

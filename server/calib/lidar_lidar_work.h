@@ -42,10 +42,12 @@ struct LidarLidarPose {
 // Where one start ends, after all levels of NDT, on a few captures. Higher scores are better.
 struct StartEnd {
   Se3 T;
-  double score = 0;
+  double score = 0, met_ratio = 0;  // as LidarLidarPose's
 };
 // The nominal pose first, then it turned and shifted to all sides.
 [[nodiscard]] std::vector<StartEnd> TryStarts(const LidarLidarWork& work);
+// Which of `work.clouds` these few captures are.
+[[nodiscard]] std::vector<std::size_t> StartCaptures(const LidarLidarWork& work);
 
 // The pose without each block: the captures, or with one capture either half of its points. One Gauss-Newton step of
 // the last stage from the common pose, whose pairs it keeps.

@@ -152,6 +152,24 @@ TEST(LidarLidar, CloudsOfTwoPlacesAreRefused) {
   EXPECT_EQ(CodeOf(problem), "low_overlap");
 }
 
+// The few captures that starts are tried on are enough to refuse: with the others or without, the same sentence.
+TEST(LidarLidar, TheOtherCapturesOfAHopelessPairAreNotFitted) {
+  VirtualRoom corridor;
+  corridor.kind = RoomKind::kCorridor;
+  LidarLidarProblem problem = RecordedIn(VirtualRoom(), 9, 5), few = problem;
+  const LidarLidarProblem elsewhere = RecordedIn(corridor, 9, 6);
+  few.captures.clear();
+  for (std::size_t i = 0; i < 9; ++i) {
+    problem.captures[i].b_m = elsewhere.captures[i].b_m;
+    if (i % 3 == 0) few.captures.push_back(problem.captures[i]);
+  }
+  const auto refused = EstimateLidarLidar(problem, nullptr), refused_few = EstimateLidarLidar(few, nullptr);
+  ASSERT_FALSE(refused);
+  ASSERT_FALSE(refused_few);
+  EXPECT_EQ(refused.error().code, "poor_fit");
+  EXPECT_EQ(refused.error().what, refused_few.error().what);
+}
+
 TEST(LidarLidar, AStartThatIsFarOffIsNotBelieved) {
   const VirtualRoom room;
   LidarLidarProblem problem = RecordedIn(room, 1, 29);
