@@ -3,7 +3,9 @@
 The client that floods, the server and the one that asks share the processors here; the one that asks runs in real time,
 as if it had a machine of its own. A virtual machine may take ms to wake a processor while others are busy, whoever keeps
 them busy: so the same flood is also sent to a second server beside, where it cannot be in the way of the first one's
-answers but by the machine ("elsewhere")."""
+answers but by the machine ("elsewhere"). While somebody asks a server, it takes payloads in no faster than 96 MiB/s
+(docs/limits.md); the second one is asked now and then too, so that it does the same."""
+import contextlib
 import json
 import pathlib
 import subprocess
@@ -64,6 +66,20 @@ def query(context, server, count=COUNT):
                             env=server.environment())
 
 
+@contextlib.contextmanager
+def asked_now_and_then(context, server):
+    """Ten questions a second to a server that has a robot's calibration."""
+    arguments = ["--tag", server.tag, "--robot", "quiet", "--a", "s0", "--b", "s9", "--count", "1000000", "--pause-ms", "100"]
+    process = subprocess.Popen([str(context.bin / "query_bench"), *arguments], stdout=subprocess.DEVNULL, env=server.environment())
+    try:
+        yield
+        if process.poll() is not None:
+            raise RuntimeError("the second server gave no answer")
+    finally:
+        process.kill()
+        process.wait()
+
+
 def payloads(folder):
     """A session whose bytes are new each time, so that all of them travel."""
     session = noise_session(folder / "flood", "loud", PAYLOAD_BYTES, PAYLOADS, seed=1)
@@ -88,14 +104,16 @@ def edges(folder):
 def one_round(context, folder, make):
     """The times of questions to one server: in quiet, while another is flooded, while it is flooded itself."""
     with Server(context, folder / "store") as server, Server(context, folder / "other_store") as other:
-        done = server.rigcal("push-edges", edge_file(folder / "quiet.json", 60, 0.0), "--robot", "quiet")
-        if done.returncode not in (0, 1):
-            raise RuntimeError("push-edges: " + done.stderr[-300:])
-        prepare, times = make(folder), {"quiet": query(context, server)}
-        for name, flooded in (("elsewhere", other), ("flood", server)):
-            with Flood(flooded, prepare) as flood:
-                query(context, server, WARM_UP)
-                times[name] = query(context, server)
+        for one in (server, other):
+            done = one.rigcal("push-edges", edge_file(folder / "quiet.json", 60, 0.0), "--robot", "quiet")
+            if done.returncode not in (0, 1):
+                raise RuntimeError("push-edges: " + done.stderr[-300:])
+        with asked_now_and_then(context, other):
+            prepare, times = make(folder), {"quiet": query(context, server)}
+            for name, flooded in (("elsewhere", other), ("flood", server)):
+                with Flood(flooded, prepare) as flood:
+                    query(context, server, WARM_UP)
+                    times[name] = query(context, server)
         return times, flood.pushed
 
 

@@ -1,5 +1,6 @@
-// A stream of files that are written once and seldom read: only the newest stay in the page cache. Else the stream takes
-// ever fresh memory from everything else, and on a virtual machine each fresh page has to be asked of the host first.
+// A stream of files that are written once: only the newest stay in the page cache until they are read. Else a flood
+// takes ever fresh memory from everything else, and on a virtual machine each fresh page has to be asked of the host
+// first.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +13,14 @@ namespace rigcal {
 class CachedFiles {
  public:
   explicit CachedFiles(std::int64_t bytes_max) : bytes_max_(bytes_max) {}
-  // A synced file that is not written any more. Lets the oldest go beyond the limit; whether the system heeds it changes
-  // no result.
+  // A synced file that is not written any more. Lets the oldest go beyond the limit; whether the system heeds it
+  // changes no result.
   void Add(const std::filesystem::path& path);
 
  private:
   struct File {
     std::filesystem::path path;
-    std::int64_t size_bytes;
+    std::int64_t bytes;
   };
   std::int64_t bytes_max_, bytes_ = 0;
   std::deque<File> files_;

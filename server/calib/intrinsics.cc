@@ -220,7 +220,7 @@ OrDiagnosis<void> CheckConditioning(const CameraProblem& problem, const Work& wo
 }
 
 void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) {
-  if (!work.joint.pull_a.Pulls()) return;
+  if (!work.joint.estimate_a) return;
   if (const auto moments = MomentsAt(work.joint.model_a, work.state.intrinsics_a, work.joint.corners_board,
                                      work.joint.captures[k].a, work.state.T_a_board[k]))
     estimate.of_intrinsics.emplace(work.captures[k], Eliminated(*moments));

@@ -23,9 +23,14 @@ Information InformationOf(const CameraEstimate& estimate) {
   return information;
 }
 
+// Where nothing pulls, the views estimate all that the model has.
+bool IsFree(const CameraEstimate& estimate, int idx) {
+  return estimate.pull.Pulls() ? estimate.pull.sigma[idx] > 0 : idx < IntrinsicsCount(estimate.intrinsics.model);
+}
+
 IntrinsicsVector Solved(const CameraEstimate& estimate, Information information, IntrinsicsVector gradient) {
   for (int i = 0; i < kIntrinsicsMax; ++i) {
-    if (estimate.pull.sigma[i] > 0) continue;
+    if (IsFree(estimate, i)) continue;
     information.row(i).setZero();
     information.col(i).setZero();
     information(i, i) = 1;
@@ -59,12 +64,18 @@ CameraEstimate WithoutView(const CameraEstimate& estimate, const CaptureId& capt
 }
 
 std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate) {
-  const Eigen::SelfAdjointEigenSolver<Information> views(OfViews(estimate));
+  const Information of_views = OfViews(estimate);
+  // Pixels and ratios side by side: decomposed with a unit diagonal.
+  const IntrinsicsVector scale = of_views.diagonal().cwiseSqrt();
+  const auto safe = scale.unaryExpr([](double one) { return one > 0 ? 1 / one : 0.0; });
+  const Information scaled = safe.asDiagonal() * of_views * safe.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Information> views(scaled);
+  const double variance_px2 = std::max(estimate.variance_px2, std::pow(estimate.pull.corner_sigma_px, 2));
   std::vector<IntrinsicsVector> changes;
   for (int i = 0; i < kIntrinsicsMax; ++i) {
-    const double strength = std::sqrt(std::max(0.0, views.eigenvalues()[i]) * estimate.variance_px2);
-    if (strength > 0)
-      changes.push_back(Solved(estimate, InformationOf(estimate), strength * views.eigenvectors().col(i)));
+    const double strength = std::sqrt(std::max(0.0, views.eigenvalues()[i]) * variance_px2);
+    const IntrinsicsVector gradient = strength * scale.cwiseProduct(views.eigenvectors().col(i));
+    if (strength > 0) changes.push_back(Solved(estimate, InformationOf(estimate), gradient));
   }
   return changes;
 }

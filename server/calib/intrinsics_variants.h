@@ -8,7 +8,7 @@ namespace rigcal::calib {
 
 // `estimate.pull` pulls. The view's own pose is gone too.
 [[nodiscard]] CameraEstimate WithoutView(const CameraEstimate& estimate, const CaptureId& capture);
-// What the errors of the corners do to refined intrinsics: independent changes of one sigma each.
+// What the errors of the corners do to refined or estimated intrinsics: independent changes of one sigma each.
 [[nodiscard]] std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate);
 [[nodiscard]] CameraEstimate WithIntrinsicsMoved(const CameraEstimate& estimate, const IntrinsicsVector& change);
 // The intrinsic with that index given larger by so many of its sigmas.

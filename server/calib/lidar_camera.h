@@ -44,7 +44,7 @@ struct LidarCameraEstimate {
   CameraEstimate camera;                         // from the pictures alone, with the pose that the cloud confirms
   std::map<CaptureId, std::size_t> patch_idx;    // of the candidate that is the board, per capture used
   std::map<CaptureId, LidarCameraCheck> checks;  // likewise
-  Matrix6d C_model = Matrix6d::Zero();           // s^2 H^-1 of the joint problem, right tangent at the lidar
+  Matrix6d C_model = Matrix6d::Zero();           // s^2 H^-1 with the intrinsics as known, right tangent at the lidar
   double range_sigma_m = 0.0;                    // of one point, from the scatter within patches
   double capture_sigma_m = 0.0;                  // what the points of one capture share, between captures
   // Ranges are too short by this: estimated beside, not applied.
@@ -57,6 +57,8 @@ struct LidarCameraEstimate {
   double rms_rad = 0.0;                       // of their angles
   std::vector<CaptureResidual> residuals;     // per capture: mean distance, metres
 
+  // Range bias and size of the board could both be told from the captures; else their figures are 0 and mean nothing.
+  [[nodiscard]] bool KnowsSystematics() const { return range_bias_sigma_m > 0 && board_scale_sigma_ratio > 0; }
   [[nodiscard]] bool SuspectsBoardSize() const;
   [[nodiscard]] bool SuspectsRangeBias() const;  // it is large and beyond its own uncertainty
 };

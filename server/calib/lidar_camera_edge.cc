@@ -72,7 +72,16 @@ void AddIntrinsicsFigures(const CameraIntrinsics& intrinsics, Edge& edge) {
   for (std::size_t i = 0; i < names.size(); ++i) edge.figures[names[i] + "_ratio"] = intrinsics.distortion[i];
 }
 
+void AddSystematics(const LidarCameraEstimate& estimate, Edge& edge) {
+  if (!estimate.KnowsSystematics()) return;
+  edge.figures["range_bias_m"] = estimate.range_bias_m;
+  edge.figures["range_bias_sigma_m"] = estimate.range_bias_sigma_m;
+  edge.figures["board_scale_ratio"] = estimate.board_scale_ratio;
+  edge.figures["board_scale_sigma_ratio"] = estimate.board_scale_sigma_ratio;
+}
+
 void AddFigures(const LidarCameraEstimate& estimate, Edge& edge) {
+  AddSystematics(estimate, edge);
   std::size_t points = 0;
   for (const auto& [capture, check] : estimate.checks) points += check.points;
   edge.figures["captures_used"] = static_cast<double>(estimate.patch_idx.size());
@@ -81,10 +90,6 @@ void AddFigures(const LidarCameraEstimate& estimate, Edge& edge) {
   edge.figures["plane_angle_rms_rad"] = estimate.rms_rad;
   edge.figures["range_sigma_m"] = estimate.range_sigma_m;
   edge.figures["capture_sigma_m"] = estimate.capture_sigma_m;
-  edge.figures["range_bias_m"] = estimate.range_bias_m;
-  edge.figures["range_bias_sigma_m"] = estimate.range_bias_sigma_m;
-  edge.figures["board_scale_ratio"] = estimate.board_scale_ratio;
-  edge.figures["board_scale_sigma_ratio"] = estimate.board_scale_sigma_ratio;
   edge.figures["rms_px"] = estimate.camera.rms_px;
   AddIntrinsicsFigures(estimate.camera.intrinsics, edge);
 }

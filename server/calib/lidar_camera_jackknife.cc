@@ -49,11 +49,11 @@ void AddIntrinsics(const LidarCameraProblem& problem, const LidarCameraEstimate&
          }});
 }
 
-// The part of the model that comes from the corners by way of refined intrinsics: the planes take those as known.
+// The part of the model that comes from the corners by way of the intrinsics: the planes take those as known.
 Result<Matrix6d> CornersPart(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   Matrix6d part = Matrix6d::Zero();
   std::vector<GivenConstant> changes;
-  for (const IntrinsicsVector& change : ChangesOfRefined(problem, estimate))
+  for (const IntrinsicsVector& change : ChangesOfIntrinsics(problem, estimate))
     changes.push_back({"corners", [&problem, &estimate, change](double steps) -> Result<Se3> {
                          RIGCAL_ASSIGN(const LidarCameraEstimate moved,
                                        SolvedWithChange(problem, estimate, steps * change));

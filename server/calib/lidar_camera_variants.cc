@@ -56,8 +56,9 @@ Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& proble
   return SolvedAgain(problem, start);
 }
 
-std::vector<IntrinsicsVector> ChangesOfRefined(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  if (!RefinesIntrinsics(problem.camera)) return {};
+std::vector<IntrinsicsVector> ChangesOfIntrinsics(const LidarCameraProblem& problem,
+                                                  const LidarCameraEstimate& estimate) {
+  if (HoldsIntrinsics(problem.camera)) return {};
   return ChangesByCorners(estimate.camera);
 }
 

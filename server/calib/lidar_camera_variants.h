@@ -18,9 +18,9 @@ namespace rigcal::calib {
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& problem,
                                                               const LidarCameraEstimate& estimate, std::size_t idx,
                                                               double sigmas);
-// What the corners' errors do to refined intrinsics: independent changes of one sigma each; none where nothing is refined.
-[[nodiscard]] std::vector<IntrinsicsVector> ChangesOfRefined(const LidarCameraProblem& problem,
-                                                             const LidarCameraEstimate& estimate);
+// What the corners' errors do to intrinsics: independent changes of one sigma each; none where they are held.
+[[nodiscard]] std::vector<IntrinsicsVector> ChangesOfIntrinsics(const LidarCameraProblem& problem,
+                                                                const LidarCameraEstimate& estimate);
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithChange(const LidarCameraProblem& problem,
                                                            const LidarCameraEstimate& estimate,
                                                            const IntrinsicsVector& change);

@@ -41,7 +41,8 @@ Result<std::vector<Pair>> PairsOf(const Nearby& nearby, std::size_t count, const
 Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const std::vector<CaptureId> captures = BlocksOf(problem, estimate);
   RIGCAL_ASSIGN(const std::vector<Pair> pairs,
-                PairsOf({problem, estimate.board_scale_ratio}, captures.size(), [&](std::size_t i) { return SolvedWithout(problem, estimate, captures[i]); }));
+                PairsOf({problem, estimate.board_scale_ratio}, captures.size(),
+                        [&](std::size_t i) { return SolvedWithout(problem, estimate, captures[i]); }));
   const auto m = static_cast<double>(pairs.size());
   Pair mean = Pair::Zero(), variance = Pair::Zero();
   for (const Pair& pair : pairs) mean += pair / m;
@@ -68,8 +69,9 @@ Result<Pair> IntrinsicsVariance(const LidarCameraProblem& problem, const LidarCa
 
 // Of the planes' points, which the estimate knows, and of the corners by way of refined intrinsics.
 Result<Pair> ModelVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  const std::vector<IntrinsicsVector> changes = ChangesOfRefined(problem, estimate);
-  RIGCAL_ASSIGN(Pair variance, VarianceOf({problem, estimate.board_scale_ratio}, changes.size(), [&](std::size_t i, double sigmas) {
+  const std::vector<IntrinsicsVector> changes = ChangesOfIntrinsics(problem, estimate);
+  RIGCAL_ASSIGN(Pair variance,
+                VarianceOf({problem, estimate.board_scale_ratio}, changes.size(), [&](std::size_t i, double sigmas) {
                   return SolvedWithChange(problem, estimate, sigmas * changes[i]);
                 }));
   variance += Pair(estimate.range_bias_sigma_m, estimate.board_scale_sigma_ratio).cwiseAbs2();
@@ -79,10 +81,11 @@ Result<Pair> ModelVariance(const LidarCameraProblem& problem, const LidarCameraE
 // NaN if one of them is.
 double Larger(double a, double b) { return std::isnan(a + b) ? a + b : std::max(a, b); }
 
-// What some of the variants cannot tell is not known: 0 with sigma 0.
-void Fill(double variance, double& value, double& sigma) {
-  if (!std::isfinite(variance)) value = variance = 0;
-  sigma = std::sqrt(variance);
+// Neither is known: with one of them left open the other would be blamed for both.
+void Forget(LidarCameraEstimate& estimate) {
+  estimate.range_bias_m = estimate.range_bias_sigma_m = 0;
+  estimate.board_scale_ratio = estimate.board_scale_sigma_ratio = 0;
+  estimate.scale_fits_better = false;
 }
 
 }  // namespace
@@ -95,8 +98,12 @@ Status WidenSystematics(const LidarCameraProblem& problem, LidarCameraEstimate& 
   }
   RIGCAL_ASSIGN(const Pair given, IntrinsicsVariance(problem, estimate));
   variance += given;
-  Fill(variance[0], estimate.range_bias_m, estimate.range_bias_sigma_m);
-  Fill(variance[1], estimate.board_scale_ratio, estimate.board_scale_sigma_ratio);
+  if (!variance.allFinite() || !estimate.KnowsSystematics()) {
+    Forget(estimate);
+    return {};
+  }
+  estimate.range_bias_sigma_m = std::sqrt(variance[0]);
+  estimate.board_scale_sigma_ratio = std::sqrt(variance[1]);
   return {};
 }
 

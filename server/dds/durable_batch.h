@@ -19,7 +19,8 @@ struct DurableBatch {
 };
 
 // Syncs the files side by side, moves them to the blob store, then records all in ONE transaction. Any thread; `store`
-// is that thread's own. Of the blobs only the newest stay `cached`. When it returns good, everything survives power loss; otherwise nothing is recorded.
+// and `cached`, which keeps the newest blobs in the page cache, are that thread's own. When it returns good, everything
+// survives power loss; otherwise nothing is recorded.
 [[nodiscard]] Status Persist(storage::Store& store, const DurableBatch& batch, CachedFiles& cached, Stamp now);
 
 }  // namespace rigcal::dds

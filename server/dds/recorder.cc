@@ -9,16 +9,17 @@
 namespace rigcal::dds {
 namespace {
 
-constexpr std::int64_t kRoundBytes = 8LL << 20;        // small enough that clients hear of progress often
+constexpr std::int64_t kRoundBytes = 8LL << 20;  // small enough that clients hear of progress often
 constexpr std::int64_t kRoundWhileAskedBytes = 1LL << 20;
 constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
 constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
 constexpr std::chrono::milliseconds kRecorderIdle{1000};
 constexpr std::chrono::milliseconds kAskedLately{200};
 
-std::chrono::nanoseconds DurationOf(const std::vector<Arrival>& arrivals, std::int64_t bytes_per_s) {
+std::chrono::nanoseconds DurationOfPayloads(const std::vector<Arrival>& arrivals, std::int64_t bytes_per_s) {
   std::int64_t bytes = 0;
-  for (const Arrival& arrival : arrivals) bytes += BytesOf(arrival);
+  for (const Arrival& arrival : arrivals)
+    if (std::holds_alternative<ChunkBytes>(arrival)) bytes += BytesOf(arrival);
   return std::chrono::nanoseconds(bytes * 1'000'000'000 / bytes_per_s);
 }
 
@@ -55,17 +56,18 @@ void Recorder::Take(Arrival arrival) {
   if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
 }
 
-// While somebody asks, one robot's flood leaves processors and disk to the answers.
-void Recorder::TakeRound() {
-  const auto start = std::chrono::steady_clock::now();
+// While somebody asks, one robot's flood leaves processors and disk to the answers: the next round begins no earlier
+// than at the time that this gives.
+Recorder::Time Recorder::TakeRound() {
+  const Time start = std::chrono::steady_clock::now();
   const bool yields = asked_.IsWithin(kAskedLately);
   auto arrivals = inbox_.Take(yields ? kRoundWhileAskedBytes : kRoundBytes, kRecorderIdle);
-  const auto least = DurationOf(arrivals, limits::kIntakeWhileAskedBytesPerS);
+  const auto least = DurationOfPayloads(arrivals, limits::kIntakeWhileAskedBytesPerS);
   for (Arrival& arrival : arrivals) Take(std::move(arrival));
   sessions_.Write();
   inbox_.Release();  // before clients are told that they may send more
   sessions_.Report();
-  if (yields) std::this_thread::sleep_until(start + least);
+  return yields ? start + least : start;
 }
 
 // While a commit runs the next payloads come in, and are committed together when it is done.
@@ -82,8 +84,9 @@ void Recorder::CommitDue() {
 void Recorder::Run() {
   SetThreadRank(ThreadRank::kWorks);
   while (!inbox_.Stopped()) {
-    TakeRound();
+    const Time next = TakeRound();
     CommitDue();
+    std::this_thread::sleep_until(next);
   }
   sessions_.Settle();
 }

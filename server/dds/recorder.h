@@ -22,9 +22,10 @@ class Recorder {
   void Run();  // until the inbox is stopped
 
  private:
+  using Time = std::chrono::steady_clock::time_point;
   void Take(Arrival arrival);
   void Answer(const Refusal& refusal);
-  void TakeRound();
+  [[nodiscard]] Time TakeRound();
   void CommitDue();
 
   Stores stores_;
@@ -34,7 +35,7 @@ class Recorder {
   std::uint64_t incarnation_;
   SessionRecorder sessions_;
   BatchRecorder batches_;
-  std::chrono::steady_clock::time_point last_commit_;
+  Time last_commit_;
 };
 
 }  // namespace rigcal::dds

@@ -60,7 +60,8 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
                                  participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(reader.get()));
-  std::unique_ptr<Requests> made(new Requests(std::move(participant), std::move(reader), std::move(waitset), answer, asked));
+  std::unique_ptr<Requests> made(
+      new Requests(std::move(participant), std::move(reader), std::move(waitset), answer, asked));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   return made;
 }
@@ -143,6 +144,7 @@ void Requests::Run() {
       if (stopped_) return;
       asked_.Note();
       Add(std::move(question));
+      asked_.Note();  // an answer may take longer than what is kept clear after a question
       if (!pending_.empty()) SendPending();
     }
     if (!pending_.empty()) SendPending();

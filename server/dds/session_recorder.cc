@@ -14,7 +14,6 @@ namespace rigcal::dds {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kCachedBytes = 64LL << 20;   // of stored payloads; what is calibrated soon is mostly still there
 constexpr std::size_t kOpenPayloadsMax = 1'000'000;  // of all sessions that are being received: bounds memory
 
 Error WrongHash(const std::string& path) {
@@ -34,7 +33,7 @@ SessionRecorder::SessionRecorder(storage::Store& store, storage::Store& commit_s
       clock_(clock),
       incarnation_(incarnation),
       commit_done_(std::move(commit_done)),
-      cached_(kCachedBytes) {
+      cached_(limits::kCachedBytes) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(store_.IntakeFolder(), ignored))
     fs::remove_all(entry.path(), ignored);

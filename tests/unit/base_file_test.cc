@@ -69,6 +69,18 @@ TEST_F(Files, OnlyTheNewestStayCached) {
   EXPECT_EQ(ReadFile(folder_ / "0", kFileBytes).value(), std::string(kFileBytes, 'x'));
 }
 
+TEST_F(Files, EmptyFilesTakeRoomAmongTheCachedToo) {
+  if (!TellsWhatIsCached(folder_ / "probe")) GTEST_SKIP() << "this file system does not tell what is cached";
+  CachedFiles cached(2 * 4096);
+  ASSERT_TRUE(WriteDurably(folder_ / "first", "bytes").has_value());
+  cached.Add(folder_ / "first");
+  for (const char* name : {"a", "b"}) {
+    ASSERT_TRUE(WriteDurably(folder_ / name, "").has_value());
+    cached.Add(folder_ / name);
+  }
+  EXPECT_FALSE(IsCached(folder_ / "first"));
+}
+
 TEST_F(Files, WriteReplaces) {
   ASSERT_TRUE(WriteDurably(folder_ / "file", "a long first text").has_value());
   ASSERT_TRUE(WriteDurably(folder_ / "file", "short").has_value());

@@ -171,6 +171,32 @@ TEST(GivenIntrinsics, VariantsAreWhatEstimatingAgainGives) {
   }
 }
 
+// What corners and given values do adds up to H^-1 (s^2 N + W^2 s_0^2) H^-1 of views N and weights W, H = N + W^2.
+TEST(GivenIntrinsics, ChangesByCornersAndByTheGivenMakeTheCovariance) {
+  std::vector<double> sigma = kSigma;
+  sigma[5] = 0;
+  const auto estimate = EstimateCamera(CameraOf(GivenPair(sigma, 9)));
+  ASSERT_TRUE(estimate);
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(9, 9), W2 = N, changed = N;
+  for (const auto& [capture, view] : estimate->of_intrinsics) N += view.information.topLeftCorner<9, 9>();
+  for (int i = 0; i < 9; ++i) W2(i, i) = std::pow(estimate->pull.Weight(i), 2);
+  for (const IntrinsicsVector& change : ChangesByCorners(*estimate))
+    changed += change.head<9>() * change.head<9>().transpose();
+  const IntrinsicsVector at = VectorOf(estimate->intrinsics);
+  for (int i = 0; i < 9; ++i) {
+    const Eigen::VectorXd change = (VectorOf(WithGiven(*estimate, i, 1).intrinsics) - at).head<9>();
+    changed += change * change.transpose();
+  }
+  const double s2 = std::max(estimate->variance_px2, std::pow(estimate->pull.corner_sigma_px, 2));
+  const std::vector<int> free = {0, 1, 2, 3, 4, 6, 7};
+  const Eigen::MatrixXd inverse = Eigen::MatrixXd(Eigen::MatrixXd(N + W2)(free, free)).inverse();
+  const Eigen::MatrixXd inside = s2 * N + std::pow(estimate->pull.corner_sigma_px, 2) * W2;
+  const Eigen::MatrixXd expected = inverse * inside(free, free) * inverse;
+  const Eigen::VectorXd unit = expected.diagonal().cwiseSqrt().cwiseInverse();
+  EXPECT_LT((unit.asDiagonal() * (changed(free, free) - expected) * unit.asDiagonal()).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_EQ(changed.row(5).norm() + changed.row(8).norm(), 0);
+}
+
 TEST(GivenIntrinsics, ThatThePicturesContradictAreNamed) {
   const auto told = [](const std::vector<Diagnosis>& notes) {
     return testing::Value(notes, testing::Contains(testing::Field(&Diagnosis::code, "given_intrinsics_disagree")));
