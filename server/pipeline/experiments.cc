@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kExperimentsMax = 1000, kFileBytesMax = 64u << 20;
+constexpr std::size_t kFileBytesMax = 64u << 20;
 constexpr std::array<std::pair<const char*, const char*>, 8> kTypes = {{{".html", "text/html; charset=utf-8"},
                                                                         {".json", "application/json; charset=utf-8"},
                                                                         {".css", "text/css; charset=utf-8"},
@@ -70,8 +70,7 @@ std::vector<report::ExperimentRow> ListExperiments(const fs::path& folder) {
   std::vector<report::ExperimentRow> rows;
   std::error_code error;
   const fs::path all = folder / "experiments";
-  for (fs::directory_iterator at(all, error), end; !error && at != end && rows.size() < kExperimentsMax;
-       at.increment(error)) {
+  for (fs::directory_iterator at(all, error), end; !error && at != end; at.increment(error)) {
     const std::string name = at->path().filename().string();
     const fs::path page = at->path() / "index.html";
     if (!IsName(name) || !IsPlainFolder(at->path()) || !IsPlainFile(page)) continue;

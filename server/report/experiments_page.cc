@@ -8,6 +8,8 @@
 namespace rigcal::report {
 namespace {
 
+constexpr std::size_t kExperimentsMax = 1000;  // on one page
+
 // "noise_whitening" -> "Noise whitening".
 std::string TitleOf(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -24,13 +26,19 @@ Result<std::string> RenderExperiments(const std::vector<ExperimentRow>& rows) {
   FillHead(page, "Experiments", "../");
   if (rows.empty()) page.ShowSection("EMPTY");
   Dictionary* list = rows.empty() ? nullptr : page.AddSectionDictionary("LIST");
-  for (const ExperimentRow& row : rows) {
+  const std::size_t count = std::min(rows.size(), kExperimentsMax);
+  for (std::size_t idx = 0; idx < count; ++idx) {
+    const ExperimentRow& row = rows[idx];
     Dictionary* one = list->AddSectionDictionary("EXPERIMENT");
     one->SetValue("NAME", row.name);
     one->SetValue("TITLE", TitleOf(row.name));
     one->SetValue("TIME", TimeText(row.written_at));
     if (row.has_figures) ShowValue(*one, "FIGURES", "NAME", row.name);
   }
+  if (count < rows.size())
+    ShowValue(*list, "CUT", "TEXT",
+              std::to_string(count) + " of " + std::to_string(rows.size()) +
+                  " experiments are listed, by name; the others open by their address, /experiments/NAME/.");
   return Expand("experiments.tpl", page);
 }
 

@@ -26,11 +26,27 @@ std::map<Place, const Evidence*> PicturesOf(const std::vector<Edge>& edges) {
   return pictures;
 }
 
-std::map<CaptureId, std::set<SensorId>> CapturesOf(const Manifest& manifest) {
+// A tracker's or a pose stream's poses are one file of the whole session: no capture has a file of them.
+std::set<SensorId> WithPosesOf(const Manifest& manifest) {
+  std::set<SensorId> sensors;
+  for (const Sensor& sensor : manifest.header.sensors)
+    if (sensor.kind == SensorKind::kTracker || sensor.kind == SensorKind::kPoseStream) sensors.insert(sensor.id);
+  return sensors;
+}
+
+std::map<CaptureId, std::set<SensorId>> CapturesOf(const Manifest& manifest, const std::set<SensorId>& with_poses) {
   std::map<CaptureId, std::set<SensorId>> captures;
   for (const Payload& payload : manifest.payloads)
-    if (!payload.capture.empty()) captures[payload.capture].insert(payload.sensor);
+    if (!payload.capture.empty() && !with_poses.contains(payload.sensor))
+      captures[payload.capture].insert(payload.sensor);
   return captures;
+}
+
+void FillPoses(Dictionary& page, const std::set<SensorId>& with_poses) {
+  if (with_poses.empty()) return;
+  std::string names;
+  for (const SensorId& sensor : with_poses) names += (names.empty() ? "" : ", ") + sensor.str();
+  ShowValue(page, "POSES", "NAMES", names);
 }
 
 void FillCell(Dictionary& cell, const SensorId& sensor, const Evidence* picture, bool has_file) {
@@ -63,15 +79,20 @@ void FillUses(Dictionary& row, const std::vector<Edge>& edges, const CaptureId& 
 
 void FillCaptures(Dictionary& page, const SessionInput& input) {
   const auto pictures = PicturesOf(input.edges);
-  const auto captures = CapturesOf(input.manifest);
+  const auto with_poses = WithPosesOf(input.manifest);
+  const auto captures = CapturesOf(input.manifest, with_poses);
+  FillPoses(page, with_poses);
+  if (captures.empty()) return;
+  Dictionary* sheet = page.AddSectionDictionary("SHEET");
   for (const Sensor& sensor : input.manifest.header.sensors)
-    ShowValue(page, "SENSOR", "NAME", sensor.id.str() + " (" + NameOf(sensor.kind) + ")");
+    if (!with_poses.contains(sensor.id)) ShowValue(*sheet, "SENSOR", "NAME", sensor.id.str() + " (" + NameOf(sensor.kind) + ")");
   std::size_t shown = 0;
   for (const auto& [capture, sensors] : captures) {
     if (shown++ == kCapturesMax) break;
-    Dictionary* row = page.AddSectionDictionary("CAPTURE");
+    Dictionary* row = sheet->AddSectionDictionary("CAPTURE");
     row->SetValue("NAME", capture.str());
     for (const Sensor& sensor : input.manifest.header.sensors) {
+      if (with_poses.contains(sensor.id)) continue;
       const auto picture = pictures.find({capture, sensor.id});
       FillCell(*row->AddSectionDictionary("CELL"), sensor.id, picture == pictures.end() ? nullptr : picture->second,
                sensors.contains(sensor.id));

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/report/experiments_page.h"
 #include "server/report/fleet_view.h"
 #include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
@@ -82,6 +83,41 @@ TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
   const std::vector<FleetRow> rows = {RowOf("a", VerdictLevel::kPass, 1)};
   EXPECT_THAT(RenderFleet(rows, Stamp{0}).value(), Not(HasSubstr("experiments/")));
   EXPECT_THAT(RenderFleet(rows, Stamp{0}, {}, 2).value(), HasSubstr("<a href=\"experiments/\">2 experiments</a>"));
+}
+
+TEST(ReportFleet, ALongListOfExperimentsSaysThatItIsCut) {
+  std::vector<ExperimentRow> rows;
+  for (int idx = 0; idx < 1000; ++idx) rows.push_back({"run" + std::to_string(idx), Stamp{1}, false});
+  EXPECT_THAT(RenderExperiments(rows).value(), Not(HasSubstr("are listed")));
+  rows.push_back({"zz_last", Stamp{1}, false});
+  const std::string page = RenderExperiments(rows).value();
+  EXPECT_THAT(page, HasSubstr("1000 of 1001 experiments are listed"));
+  EXPECT_THAT(page, Not(HasSubstr("zz_last")));
+}
+
+SessionInput SessionWithPoses(bool with_pictures) {
+  SessionInput input;
+  input.robot = RobotId("r");
+  Sensor camera, tracked;
+  camera.id = SensorId("eye");
+  tracked.id = SensorId("body");
+  tracked.kind = SensorKind::kTracker;
+  input.manifest.header.sensors = {tracked};
+  input.manifest.payloads = {{"body/poses.csv", tracked.id, CaptureId("poses"), Digest(), 1}};
+  if (!with_pictures) return input;
+  input.manifest.header.sensors.push_back(camera);
+  input.manifest.payloads.push_back({"eye/07.png", camera.id, CaptureId("07"), Digest(), 1});
+  return input;
+}
+
+// A file of poses is of the whole session: a row of its own would say "no file" of every camera.
+TEST(ReportSession, PosesAreNoCapture) {
+  const std::string page = RenderSession(SessionWithPoses(true)).value();
+  EXPECT_THAT(page, HasSubstr("<bdi>07</bdi>"));
+  EXPECT_THAT(page, Not(HasSubstr("no file")));
+  EXPECT_THAT(page, Not(HasSubstr("<bdi>poses</bdi>")));
+  EXPECT_THAT(page, HasSubstr("The poses of <bdi>body</bdi> come in one file for the whole session."));
+  EXPECT_THAT(RenderSession(SessionWithPoses(false)).value(), Not(HasSubstr("class=\"sheet\"")));
 }
 
 TEST(ReportRobot, RevisionsNewestFirst) {

@@ -18,6 +18,7 @@
 </tbody>
 </table>
 </div>
+{{#CUT}}<p class="hint">{{TEXT}}</p>{{/CUT}}
 </section>
 {{/LIST}}
 {{#EMPTY}}

@@ -21,6 +21,7 @@
 </section>
 <section class="card">
 <h2 id="captures">Captures <span class="soft">who saw what</span></h2>
+{{#SHEET}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="captures">
 <table class="sheet">
 <thead><tr><th scope="col">Capture</th>{{#SENSOR}}<th scope="col"><bdi>{{NAME}}</bdi></th>{{/SENSOR}}<th scope="col">Used by</th></tr></thead>
@@ -30,6 +31,8 @@
 </tbody>
 </table>
 </div>
+{{/SHEET}}
+{{#POSES}}<p class="hint">The poses of <bdi>{{NAMES}}</bdi> come in one file for the whole session.</p>{{/POSES}}
 {{#MORE}}<p class="hint">{{COUNT}} more captures are in the session's manifest.</p>{{/MORE}}
 <p class="hint"><a href="../../../../api/v1/session?id={{ID}}">Manifest as JSON</a> <code>{{ID}}</code></p>
 </section>
