@@ -36,7 +36,9 @@ std::string List(const std::vector<std::string>& names) {
 std::string NameOfEdge(const Edge& edge) { return edge.frame_a.str() + " - " + edge.frame_b.str(); }
 
 std::string OffText(const Vector6d& e) {
-  return Number(1e3 * e.head<3>().norm(), "mm") + " and " + Number(kDegreesPerRadian * e.tail<3>().norm(), "deg");
+  // Less than a millionth of a millimetre or degree is arithmetic, not a disagreement.
+  const auto amount = [](double value, const char* unit) { return Number(value < 1e-6 ? 0.0 : value, unit); };
+  return amount(1e3 * e.head<3>().norm(), "mm") + " and " + amount(kDegreesPerRadian * e.tail<3>().norm(), "deg");
 }
 
 }  // namespace rigcal::fleet
