@@ -63,8 +63,25 @@ void FillParts(Dictionary& section, const Edge& edge) {
   }
 }
 
+bool AnyUsed(const Edge& edge) {
+  return std::any_of(edge.captures.begin(), edge.captures.end(), [](const auto& one) { return one.used; });
+}
+
+// One sentence where no capture was used, all for the same reason: the same line again and again says no more.
+bool FillNoneUsed(Dictionary& notes, const Edge& edge) {
+  const std::string& note = edge.captures.front().note;
+  const bool same =
+      std::all_of(edge.captures.begin(), edge.captures.end(), [&](const auto& one) { return one.note == note; });
+  if (edge.captures.size() == 1 || AnyUsed(edge) || !same) return false;
+  ShowValue(notes, "NONE_USED", "TEXT",
+            "None of the " + std::to_string(edge.captures.size()) + " captures was used" +
+                (note.empty() ? "" : ": " + note) + ".");
+  return true;
+}
+
 void FillUnused(Dictionary& notes, const Edge& edge) {
   constexpr std::size_t kUnusedMax = 30;
+  if (FillNoneUsed(notes, edge)) return;
   std::size_t shown = 0;
   for (const CaptureResidual& capture : edge.captures) {
     if (capture.used || shown++ >= kUnusedMax) continue;
@@ -85,13 +102,14 @@ std::vector<CaptureResidual> Shown(const Edge& edge) {
 
 void FillCaptures(Dictionary& section, const Edge& edge) {
   if (edge.captures.empty()) return;
+  Dictionary* notes = section.AddSectionDictionary("CAPTURE_NOTES");
+  FillUnused(*notes, edge);
+  if (!AnyUsed(edge)) return;  // axes without a bar
   Dictionary* captures = section.AddSectionDictionary("CAPTURES");
   const std::string unit = IsMetric(edge) ? "mm" : "px";
   captures->SetValue("UNIT", unit);
   const std::string cut = FillBars(*captures, Shown(edge), unit);
-  Dictionary* notes = section.AddSectionDictionary("CAPTURE_NOTES");
   if (!cut.empty()) ShowValue(*notes, "BARS_CUT", "TEXT", cut);
-  FillUnused(*notes, edge);
 }
 
 void FillInfluence(Dictionary& section, const ReportInput& input, const Edge& edge) {

@@ -102,6 +102,18 @@ TEST(ReportRevision, UnobservableAxisIsFreeAndNeverANumber) {
   EXPECT_THAT(page, HasSubstr("5 of 6 directions are observed; free: z."));
 }
 
+// An edge without a residual has no axes to look at, and one sentence in place of a line per capture.
+TEST(ReportRevision, AnEdgeThatUsedNoCaptureSaysSoOnce) {
+  ReportInput input = SampleReport();
+  input.revision.edges = {FailedEdge()};
+  EXPECT_NE(PageOf(input).find("Residual of each capture"), std::string::npos);
+  for (CaptureResidual& capture : input.revision.edges[0].captures) capture.used = false, capture.note = "not solved";
+  const std::string page = PageOf(input);
+  EXPECT_EQ(page.find("Residual of each capture"), std::string::npos);
+  EXPECT_NE(page.find("None of the 3 captures was used: not solved."), std::string::npos);
+  EXPECT_EQ(page.find("was not used: not solved"), std::string::npos);
+}
+
 TEST(ReportRevision, FailedEdgeComesFirstWithReasonAndCure) {
   const std::string page = PageOf(SampleReport());
   const auto failed = page.find("<details class=\"card edge failed\"");

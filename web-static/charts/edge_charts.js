@@ -98,7 +98,7 @@ function directionOption(edge) {
 
 // `place` holds what the server drew; that is hidden where a chart takes its place.
 export function drawEdge(place, edge) {
-  if (edge.captures.length) {
+  if (edge.captures.some((capture) => !capture.unused)) {
     for (const fallback of place.querySelectorAll("[data-fallback]")) fallback.hidden = true;
     draw(figure(place, "Residual of each capture", "rms; dashed: over all used captures", 190), () => residualOption(edge));
   }

@@ -55,6 +55,7 @@
 </div>
 {{#CAPTURE_NOTES}}
 {{#BARS_CUT}}<p class="hint">{{TEXT}}</p>{{/BARS_CUT}}
+{{#NONE_USED}}<p class="hint" dir="auto">{{TEXT}}</p>{{/NONE_USED}}
 {{#UNUSED}}<p class="hint" dir="auto"><strong>{{CAPTURE}}</strong> was not used{{#REASON}}: {{NOTE}}{{/REASON}}.</p>
 {{/UNUSED}}
 {{/CAPTURE_NOTES}}
