@@ -116,7 +116,7 @@ TEST(ReportSession, PosesAreNoCapture) {
   EXPECT_THAT(page, HasSubstr("<bdi>07</bdi>"));
   EXPECT_THAT(page, Not(HasSubstr("no file")));
   EXPECT_THAT(page, Not(HasSubstr("<bdi>poses</bdi>")));
-  EXPECT_THAT(page, HasSubstr("The poses of <bdi>body</bdi> come in one file for the whole session."));
+  EXPECT_THAT(page, HasSubstr("The poses of <bdi>body</bdi> come as one file per sensor, of the whole session."));
   EXPECT_THAT(RenderSession(SessionWithPoses(false)).value(), Not(HasSubstr("class=\"sheet\"")));
 }
 

@@ -32,7 +32,7 @@
 </table>
 </div>
 {{/SHEET}}
-{{#POSES}}<p class="hint">The poses of <bdi>{{NAMES}}</bdi> come in one file for the whole session.</p>{{/POSES}}
+{{#POSES}}<p class="hint">The poses of <bdi>{{NAMES}}</bdi> come as one file per sensor, of the whole session.</p>{{/POSES}}
 {{#MORE}}<p class="hint">{{COUNT}} more captures are in the session's manifest.</p>{{/MORE}}
 <p class="hint"><a href="../../../../api/v1/session?id={{ID}}">Manifest as JSON</a> <code>{{ID}}</code></p>
 </section>
