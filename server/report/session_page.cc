@@ -56,7 +56,7 @@ void FillCell(Dictionary& cell, const SensorId& sensor, const Evidence* picture,
     shown->SetValue("ALT", picture->title.empty() ? sensor.str() : picture->title);
     return;
   }
-  ShowValue(cell, "BLANK", "TEXT", has_file ? "not looked at" : "no file");
+  ShowValue(cell, "BLANK", "TEXT", has_file ? "nothing drawn" : "no file");
 }
 
 // What each pair of sensors did with the capture.
