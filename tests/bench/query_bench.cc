@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <thread>
 #include <vector>
 
 #include "client/connection.h"
@@ -15,7 +14,6 @@ struct Options {
   rigcal::wire::ParticipantOptions participant;
   std::string robot, a, b;
   int count = 1000;
-  int pause_ms = 0;  // after each
 };
 
 rigcal::Result<std::vector<double>> RoundTrips(const Options& options) {
@@ -29,7 +27,6 @@ rigcal::Result<std::vector<double>> RoundTrips(const Options& options) {
     const auto start = std::chrono::steady_clock::now();
     RIGCAL_TRY(connection.Ask("lookup", json, kTimeout));
     times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    if (options.pause_ms > 0) std::this_thread::sleep_for(std::chrono::milliseconds(options.pause_ms));
   }
   std::sort(times_ms.begin(), times_ms.end());
   return times_ms;
@@ -46,7 +43,6 @@ int main(int argc, char** argv) {
   app.add_option("--a", options.a)->required();
   app.add_option("--b", options.b)->required();
   app.add_option("--count", options.count)->check(CLI::Range(1, 1000000));
-  app.add_option("--pause-ms", options.pause_ms)->check(CLI::Range(0, 60000));
   CLI11_PARSE(app, argc, argv);
   // As if on a machine of its own: its own waiting for a processor is not the service's.
   rigcal::SetThreadRank(rigcal::ThreadRank::kAnswers);
