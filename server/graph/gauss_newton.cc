@@ -16,6 +16,9 @@ constexpr double kRoundingRelative = 1e-12;  // of the cost: below this a rise i
 constexpr double kLambdaFirst = 1e-6, kLambdaMax = 1e12, kLambdaFactor = 10.0, kLambdaLeast = 1e-9;
 constexpr double kLambdaTrusted = 1e-3;  // a short step under heavier damping says nothing
 constexpr int kClimbsMax = 2;
+// Of what the coordinate has. Where edges leave open nearly the same direction, but not quite, the descent would creep
+// along what they seem to say of it.
+constexpr double kPinRatio = 1e6;
 constexpr double kStepReuse = 0.05;      // m and rad
 constexpr double kGainReuse = 0.1;       // as long as each step gains this much less than the one before
 constexpr double kShrinkLeast = 1e-4;    // one good step does not promise that the next shrinks as well
@@ -55,12 +58,16 @@ class Descent {
 
  private:
   void Prepare() {
-    if (reuse_factor_) return LinearizeGradient(problem_, T_ref_, equations_);
-    if (std::exchange(rough_, false))
-      LinearizeRoughly(problem_, T_ref_, equations_);
-    else
-      Linearize(problem_, T_ref_, equations_);
-    AddPins(pins_, equations_.H);
+    if (reuse_factor_) {
+      LinearizeGradient(problem_, T_ref_, equations_);
+    } else {
+      if (std::exchange(rough_, false))
+        LinearizeRoughly(problem_, T_ref_, equations_);
+      else
+        Linearize(problem_, T_ref_, equations_);
+      AddPins(pins_, equations_.H);
+    }
+    for (const Pin& pin : pins_) equations_.g[pin.row] = 0.0;
   }
 
   // True once nothing is left to gain.
@@ -169,7 +176,7 @@ void AddPins(const std::vector<Pin>& pins, BlockMatrix<6>& H) {
   const double typical = trace > 0.0 ? trace / (6.0 * static_cast<double>(H.diagonal.size())) : 1.0;
   for (const Pin& pin : pins) {
     double& entry = H.diagonal[static_cast<std::size_t>(pin.row / 6)](pin.row % 6, pin.row % 6);
-    entry += std::max(entry, 1e-9 * typical);
+    entry += kPinRatio * std::max(entry, 1e-9 * typical);
   }
 }
 

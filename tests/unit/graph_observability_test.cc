@@ -161,6 +161,34 @@ TEST(GraphObservability, NoiseOnFreeSensorsDoesNotTaintHeldOnes) {
   EXPECT_LT(Distance(solution.poses[4].T_ref_sensor, T_0_4), 0.02);
 }
 
+// A robot on a flat floor: every edge leaves the height open, each along an axis of its own that is off by noise. What
+// the axes seem to say together of the heights does not keep the rest from settling.
+TEST(GraphObservability, ADirectionThatAllLeaveNearlyOpenDoesNotKeepTheRestFromSettling) {
+  std::mt19937 random(53);
+  Graph graph{Name(0), {}, {}};
+  std::vector<Se3> truth;
+  for (std::size_t v = 0; v < 10; ++v) {
+    graph.sensors.push_back(Name(v));
+    truth.push_back(
+        v == 0 ? Se3()
+               : Se3::Exp((Vector6d() << RandomVector(random, 0.5, 0).head<3>(), 0, 0, 0.6 * static_cast<double>(v))
+                              .finished()));
+  }
+  for (std::size_t a = 0, k = 0; a < truth.size(); ++a)
+    for (std::size_t b = a + 1; b < truth.size(); ++b)
+      graph.edges.push_back(MakeEdge(
+          k++, a, b, truth[a].Inverse() * truth[b] * Se3::Exp(RandomVector(random, 0.002, 0.002)), Blind({2})));
+  const GraphSolution solution = Solve(graph);
+  EXPECT_TRUE(solution.converged);
+  EXPECT_LE(solution.iterations, 10);
+  EXPECT_LT(solution.cost, 2 * 1e6 * 45 * 5 * 0.002 * 0.002);
+  for (std::size_t v = 1; v < truth.size(); ++v) {
+    EXPECT_FALSE(solution.poses[v].known) << v;
+    ASSERT_EQ(solution.poses[v].unobservable_basis.size(), 1U) << v;
+    EXPECT_LT((solution.poses[v].unobservable_basis[0] - Vector6d::Unit(2)).norm(), 0.02) << v;
+  }
+}
+
 // A long chain of deficient edges is more than is judged: said so, sensor by sensor, and quickly.
 TEST(GraphObservability, TooManyDeficientEdgesAreNotJudged) {
   Graph graph{Name(0), {Name(0)}, {}};
