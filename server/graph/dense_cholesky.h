@@ -2,10 +2,11 @@
 // column on.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
-#include "server/graph/block_kernels.h"
 #include "server/graph/block_matrix.h"
+#include "server/graph/lane_kernels.h"
 
 namespace rigcal::graph {
 
@@ -13,93 +14,73 @@ template <int B>
 class DenseCholesky final : public BlockCholesky<B> {
  public:
   using typename BlockCholesky<B>::Block;
-  using Column = BlockColumn<B>;
 
   // Reads `pattern` as long as it lives; blocks off the diagonal may be added between calls.
   explicit DenseCholesky(const BlockPattern& pattern)
-      : count_(static_cast<std::size_t>(pattern.block_count)), pattern_(pattern), L_(count_ * (count_ + 1) / 2) {}
+      : count_(pattern.block_count),
+        pattern_(pattern),
+        rows_((B * count_ + kPanel - 1) / kPanel * kPanel),
+        L_(static_cast<std::size_t>((rows_ + kLanes) * rows_)) {
+    for (Eigen::Index k = B * count_; k < rows_; ++k) At(k, k) = 1.0;
+  }
 
   bool Factor(const BlockMatrix<B>& matrix, double lambda) override { return FactorFrom(0, matrix, lambda); }
 
   // Factor() where the block columns before `first` of `matrix` are those of the call before.
-  [[nodiscard]] bool FactorFrom(std::size_t first, const BlockMatrix<B>& matrix, double lambda) {
-    Write(first, matrix, lambda);
-    for (std::size_t c = first; c < count_; ++c) {
-      for (std::size_t k = 0; k < c; ++k) {
-        const Block& L_ck = At(c, k);
-        for (std::size_t r = c; r < count_; ++r) SubtractProduct<B>(At(r, k), L_ck, At(r, c));
-      }
-      if (!FactorBlock<B>(At(c, c))) return false;
-      for (std::size_t r = c + 1; r < count_; ++r) DivideByTransposed<B>(At(c, c), At(r, c));
-    }
-    return true;
+  [[nodiscard]] bool FactorFrom(Eigen::Index first, const BlockMatrix<B>& matrix, double lambda) {
+    const Eigen::Index panel = B * first / kPanel;
+    Write(panel * kPanel / B, matrix, lambda);
+    return Kernels().Factor(View(), panel);
   }
 
   void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) override {
-    for (Eigen::Index column = 0; column < rhs.cols(); ++column) SolveColumn(0, &rhs(0, column));
+    x_.setZero(rows_ + kLanes);
+    for (Eigen::Index column = 0; column < rhs.cols(); ++column) {
+      x_.head(B * count_) = rhs.col(column);
+      Kernels().Solve(View(), x_.data());
+      rhs.col(column) = x_.head(B * count_);
+    }
   }
 
   std::vector<Block> InverseDiagonal() override {
-    std::vector<Block> blocks(count_, Block::Zero());
-    std::vector<Block> rows(count_);  // of one block column of L^-1, transposed
-    for (std::size_t c = 0; c < count_; ++c) {
-      for (std::size_t r = c; r < count_; ++r) {
-        Block& row = rows[r];
-        row.setZero();
-        if (r == c) row.setIdentity();
-        for (std::size_t k = c; k < r; ++k) SubtractProduct<B>(rows[k], At(r, k), row);
-        DivideByTransposed<B>(At(r, r), row);
-        for (int q = 0; q < B; ++q)
-          for (int p = 0; p < B; ++p) blocks[c].col(q) += row.col(p) * row(q, p);
-      }
+    constexpr Eigen::Index kWidth = 2 * kLanes;
+    std::vector<Block> blocks(static_cast<std::size_t>(count_));
+    Eigen::Matrix<double, kWidth, Eigen::Dynamic> columns(kWidth, rows_);  // of L^-1, as rows
+    for (Eigen::Index c = 0; c < count_; ++c) {
+      const Eigen::Index begin = B * c / 3 * 3;
+      Kernels().InverseColumns(View(), begin, columns.data());
+      const auto rows = columns.template middleRows<B>(B * c - begin).leftCols(rows_ - begin);
+      blocks[static_cast<std::size_t>(c)] = rows.lazyProduct(rows.transpose());
     }
     return blocks;
   }
 
  private:
-  Block& At(std::size_t row, std::size_t col) { return L_[col * (2 * count_ - col + 1) / 2 + row - col]; }
+  [[nodiscard]] Triangle View() { return {L_.data(), rows_, rows_ + kLanes}; }
+  [[nodiscard]] double& At(Eigen::Index row, Eigen::Index col) {
+    return L_[static_cast<std::size_t>(col * (rows_ + kLanes) + row)];
+  }
+  [[nodiscard]] auto BlockAt(Eigen::Index row, Eigen::Index col) {
+    return Eigen::Map<Block, 0, Eigen::OuterStride<>>(&At(B * row, B * col), Eigen::OuterStride<>(rows_ + kLanes));
+  }
 
-  void Write(std::size_t first, const BlockMatrix<B>& matrix, double lambda) {
-    for (std::size_t c = first; c < count_; ++c) {
-      for (std::size_t r = c + 1; r < count_; ++r) At(r, c).setZero();
-      At(c, c) = matrix.diagonal[c];
-      if (lambda > 0.0) At(c, c).diagonal() *= 1.0 + lambda;
+  void Write(Eigen::Index first, const BlockMatrix<B>& matrix, double lambda) {
+    for (Eigen::Index c = first; c < count_; ++c) {
+      for (Eigen::Index q = B * c; q < B * (c + 1); ++q) std::fill(&At(q, q), &At(B * count_, q), 0.0);
+      BlockAt(c, c) = matrix.diagonal[static_cast<std::size_t>(c)];
+      if (lambda > 0.0) BlockAt(c, c).diagonal() *= 1.0 + lambda;
     }
     for (std::size_t s = 0; s < pattern_.off_diagonal.size(); ++s) {
-      const auto row = static_cast<std::size_t>(pattern_.off_diagonal[s].row),
-                 col = static_cast<std::size_t>(pattern_.off_diagonal[s].col);
-      if (col >= first) At(row, col) = matrix.off_diagonal[s];
+      const auto [row, col] = pattern_.off_diagonal[s];
+      if (col >= first) BlockAt(row, col) = matrix.off_diagonal[s];
     }
   }
 
-  void SolveColumn(std::size_t first, double* x) {
-    const auto part = [x](std::size_t v) { return Eigen::Map<Column>(x + B * v); };
-    for (std::size_t c = first; c < count_; ++c) {
-      Column x_c = part(c);
-      SolveLower<B>(At(c, c), x_c);
-      part(c) = x_c;
-      for (std::size_t r = c + 1; r < count_; ++r) {
-        Column x_r = part(r);
-        for (int k = 0; k < B; ++k) x_r -= At(r, c).col(k) * x_c(k);
-        part(r) = x_r;
-      }
-    }
-    for (std::size_t c = count_; c-- > 0;) {
-      Block products = Block::Zero();  // summed over their rows once, at the end
-      for (std::size_t r = c + 1; r < count_; ++r) {
-        const Column x_r = part(r);
-        for (int k = 0; k < B; ++k) products.col(k) += At(r, c).col(k).cwiseProduct(x_r);
-      }
-      Column x_c = part(c);
-      x_c -= products.colwise().sum().transpose();
-      SolveLowerTransposed<B>(At(c, c), x_c);
-      part(c) = x_c;
-    }
-  }
-
-  std::size_t count_;
+  Eigen::Index count_;
   const BlockPattern& pattern_;
-  std::vector<Block> L_;  // lower triangle, block column by block column
+  Eigen::Index rows_;
+  std::vector<double> L_;  // see Triangle
+  Eigen::VectorXd x_;      // one right-hand side
 };
 
 }  // namespace rigcal::graph

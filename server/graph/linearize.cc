@@ -1,6 +1,9 @@
 #include "server/graph/linearize.h"
 
-#include "server/graph/edge_pair.h"
+#include <algorithm>
+
+#include "server/graph/edge_terms.h"
+#include "server/graph/lane_kernels.h"
 
 namespace rigcal::graph {
 namespace {
@@ -57,22 +60,33 @@ void AddHessian(const Constraint& constraint, const EdgeState& state, BlockMatri
   AddBlocks(constraint, TimesUpper(half, J_j), state.T_i_j, H);
 }
 
-void AddForces(const Constraint& constraint, const Vector6d& g_i, const Vector6d& g_j, Eigen::VectorXd& g) {
-  if (constraint.j > 0) g.segment<6>(6 * (constraint.j - 1)) += g_j;
-  if (constraint.i > 0) g.segment<6>(6 * (constraint.i - 1)) -= g_i;
+// Constraints `first` on; the last stands in for those that are missing.
+EdgeLanes LanesOf(const std::vector<Constraint>& constraints, std::size_t first, const Poses& T_ref) {
+  EdgeLanes lanes;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Constraint& c = constraints[std::min(first + lane, constraints.size() - 1)];
+    const Se3 &T_ref_i = PoseOf(T_ref, c.i), &T_ref_j = PoseOf(T_ref, c.j);
+    lanes.Omega[lane] = c.Omega.data();
+    lanes.p_j_i_m[lane] = c.T_j_i.p_m.data();
+    lanes.q_j_i[lane] = c.T_j_i.q.coeffs().data();
+    lanes.p_i_m[lane] = T_ref_i.p_m.data();
+    lanes.q_i[lane] = T_ref_i.q.coeffs().data();
+    lanes.p_j_m[lane] = T_ref_j.p_m.data();
+    lanes.q_j[lane] = T_ref_j.q.coeffs().data();
+  }
+  return lanes;
 }
 
-// False if one of the two needs the closed forms.
-bool AddGradients(const Constraint& a, const Constraint& b, const Poses& T_ref, NormalEquations& equations) {
-  pair::State state;
-  if (!pair::StateAt(a, b, T_ref, state)) return false;
-  const pair::Twist weighted = pair::Weighted(a.Omega, b.Omega, state.e);
-  const pair::Double2 cost = pair::Dot(state.e.linear, weighted.linear) + pair::Dot(state.e.angular, weighted.angular);
-  equations.cost += cost[0] + cost[1];
-  const pair::Twist g_j = pair::ForceOnJ(state.e, weighted), g_i = pair::ForceOnI(state, g_j);
-  AddForces(a, g_i.Lane(0), g_j.Lane(0), equations.g);
-  AddForces(b, g_i.Lane(1), g_j.Lane(1), equations.g);
-  return true;
+Vector6d LaneOf(const EdgeTwists& twists, std::size_t lane) {
+  Vector6d twist;
+  for (int k = 0; k < 6; ++k) twist(k) = twists.numbers[k][lane];
+  return twist;
+}
+
+void AddForces(const Constraint& constraint, const EdgeForces& forces, std::size_t lane, NormalEquations& equations) {
+  equations.cost += forces.cost[lane];
+  if (constraint.j > 0) equations.g.segment<6>(6 * (constraint.j - 1)) += LaneOf(forces.on_j, lane);
+  if (constraint.i > 0) equations.g.segment<6>(6 * (constraint.i - 1)) -= LaneOf(forces.on_i, lane);
 }
 
 void Clear(const Problem& problem, NormalEquations& equations) {
@@ -89,14 +103,11 @@ Vector6d Residual(const Constraint& constraint, const Poses& T_ref) {
 std::vector<Vector6d> Residuals(const Problem& problem, const Poses& T_ref) {
   const std::vector<Constraint>& constraints = problem.constraints;
   std::vector<Vector6d> residuals(constraints.size());
-  for (std::size_t k = 0; k < constraints.size(); ++k) {
-    pair::State state;
-    if (k + 1 < constraints.size() && pair::StateAt(constraints[k], constraints[k + 1], T_ref, state)) {
-      residuals[k] = state.e.Lane(0);
-      residuals[++k] = state.e.Lane(1);
-    } else {
-      residuals[k] = Residual(constraints[k], T_ref);
-    }
+  for (std::size_t first = 0; first < constraints.size(); first += kLanes) {
+    EdgeTwists e;
+    const bool small = Kernels().Residuals(LanesOf(constraints, first, T_ref), e);
+    for (std::size_t k = first; k < std::min(first + kLanes, constraints.size()); ++k)
+      residuals[k] = small ? LaneOf(e, k - first) : Residual(constraints[k], T_ref);
   }
   return residuals;
 }
@@ -138,11 +149,15 @@ void LinearizeEdge(const Constraint& constraint, const Poses& T_ref, BlockMatrix
 void LinearizeGradient(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
   Clear(problem, equations);
   const std::vector<Constraint>& constraints = problem.constraints;
-  for (std::size_t k = 0; k < constraints.size(); ++k) {
-    if (k + 1 < constraints.size() && AddGradients(constraints[k], constraints[k + 1], T_ref, equations))
-      ++k;
-    else
-      AddGradient(constraints[k], T_ref, equations);
+  for (std::size_t first = 0; first < constraints.size(); first += kLanes) {
+    EdgeForces forces;
+    const bool small = Kernels().Forces(LanesOf(constraints, first, T_ref), forces);
+    for (std::size_t k = first; k < std::min(first + kLanes, constraints.size()); ++k) {
+      if (small)
+        AddForces(constraints[k], forces, k - first, equations);
+      else
+        AddGradient(constraints[k], T_ref, equations);
+    }
   }
 }
 

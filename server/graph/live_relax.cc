@@ -42,7 +42,7 @@ bool LiveSolver::FactorNow(UpdateWork& work) {
   if (count != factored_count_) solver_ = std::make_unique<DenseCholesky<6>>(problem_->pattern);
   factored_count_ = count;
   work.products += ProductsOfDense(first, count);
-  return static_cast<DenseCholesky<6>&>(*solver_).FactorFrom(static_cast<std::size_t>(first), equations_.H, 0.0);
+  return static_cast<DenseCholesky<6>&>(*solver_).FactorFrom(first, equations_.H, 0.0);
 }
 
 // x <- H^-1 x.

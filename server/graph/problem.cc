@@ -2,13 +2,14 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <string_view>
 #include <tuple>
 
+#include "server/graph/lane_kernels.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/union_find.h"
 #include "server/math/covariance.h"
@@ -66,44 +67,30 @@ std::string WhyUnusable(const GraphEdge& edge) {
   return {};
 }
 
-// The smallest pivot of L D L^T as a part of its diagonal entry, and the product of all; no square roots, for it is
-// asked of every edge of every solve. Zero if the matrix is not positive definite.
-struct Pivots {
-  double least_ratio = std::numeric_limits<double>::infinity(), product = 1.0;
-};
-Pivots PivotsOf(const Matrix6d& matrix) {
-  Pivots pivots;
-  Matrix6d columns = matrix;  // of L D
-  Vector6d inverse;
-  for (int c = 0; c < 6; ++c) {
-    Vector6d column = matrix.col(c);
-    for (int k = 0; k < c; ++k) column -= columns.col(k) * (columns(c, k) * inverse(k));
-    columns.col(c) = column;
-    if (!(column(c) > 0.0)) {
-      pivots.least_ratio = 0.0;
-      break;
-    }
-    inverse(c) = 1.0 / column(c);
-    pivots.product *= column(c);
-    pivots.least_ratio = std::min(pivots.least_ratio, column(c) / matrix(c, c));
-  }
-  return pivots;
+// What four edges' information is like. An edge that is missing is stood in for by the first.
+InformationLanes Judge(const std::array<const GraphEdge*, kLanes>& edges) {
+  const double* entries[kLanes];
+  for (std::size_t lane = 0; lane < kLanes; ++lane)
+    entries[lane] = (edges[lane] != nullptr ? edges[lane] : edges[0])->Omega.data();
+  InformationLanes lanes;
+  Kernels().Information(entries, lanes);
+  return lanes;
 }
 
 // Log det Omega and rank, cheaply where Omega is clearly positive definite; false if it is indefinite, asymmetric or
 // zero.
-bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
-  constraint.Omega = 0.5 * edge.Omega + 0.5 * edge.Omega.transpose();
-  constexpr double kClearPivotRatio = 1e-10;  // far above the tolerance of a rank
-  const Pivots pivots = PivotsOf(constraint.Omega);
-  const bool clear = pivots.least_ratio > kClearPivotRatio && std::isfinite(pivots.product);
+bool JudgeInformation(const GraphEdge& edge, const InformationLanes& lanes, std::size_t lane, Constraint& constraint) {
+  const double asymmetry = lanes.asymmetry[lane];
+  const bool clear = lanes.is_clear[lane] != 0.0 && std::isfinite(lanes.pivot_product[lane]);
   // Of a positive definite matrix no entry is larger than the largest of the diagonal.
-  const double scale = clear ? constraint.Omega.diagonal().maxCoeff() : edge.Omega.cwiseAbs().maxCoeff();
+  const double scale = clear ? lanes.largest_of_diagonal[lane] : edge.Omega.cwiseAbs().maxCoeff();
   if (!(scale >= kInformationMin && scale <= kInformationMax) || (!clear && !edge.Omega.allFinite())) return false;
-  if (!((edge.Omega - constraint.Omega).cwiseAbs().maxCoeff() <= 0.5e-9 * scale)) return false;
+  if (!(asymmetry <= 1e-9 * scale)) return false;
+  constraint.Omega = edge.Omega;
+  if (asymmetry > 0.0) constraint.Omega = 0.5 * edge.Omega + 0.5 * edge.Omega.transpose();
   if (edge.rank == 6 && clear) {
     constraint.rank = 6;
-    constraint.log_det_Omega = std::log(pivots.product);
+    constraint.log_det_Omega = std::log(lanes.pivot_product[lane]);
     return true;
   }
   if (!IsPositiveSemidefinite(constraint.Omega)) return false;
@@ -113,10 +100,15 @@ bool JudgeInformation(const GraphEdge& edge, Constraint& constraint) {
   return constraint.rank > 0;
 }
 
-struct Link {
-  int a = 0, b = 0;       // sensor ranks (position in the canonical order of sensors)
-  Constraint constraint;  // without vertices
-};
+// Everything of a constraint but its vertices and slot; otherwise why it cannot be used.
+std::string Fill(const GraphEdge& edge, const InformationLanes& lanes, std::size_t lane, Constraint& constraint) {
+  if (std::string why = WhyUnusable(edge); !why.empty()) return why;
+  if (!JudgeInformation(edge, lanes, lane, constraint))
+    return "has an information matrix that is zero, out of range, not symmetric or not positive semi-definite";
+  constraint.T_i_j = edge.T_a_b.Normalized();
+  constraint.T_j_i = constraint.T_i_j.Inverse();
+  return {};
+}
 
 // The graph with sensors replaced by their rank in canonical order.
 struct Ranked {
@@ -129,7 +121,6 @@ struct Ranked {
   };
   std::vector<Name> names;  // sorted
   int reference = -1;
-  std::vector<Link> links;
 };
 
 std::vector<std::size_t> CanonicalSensors(const Graph& graph) {
@@ -160,17 +151,30 @@ int FindRank(const Ranked& ranked, const SensorId& sensor) {
   return found != ranked.names.end() && found->text == wanted.text ? found->rank : -1;
 }
 
-void CollectLinks(const Graph& graph, Ranked& ranked, Problem& problem) {
-  ranked.links.reserve(graph.edges.size());
-  for (std::size_t e = 0; e < problem.edges_by_id.size(); ++e) {
-    const GraphEdge& edge = graph.edges[problem.edges_by_id[e]];
-    const int a = FindRank(ranked, edge.frame_a), b = FindRank(ranked, edge.frame_b);
-    ranked.links.push_back({a, b, Constraint()});
-    Constraint& constraint = ranked.links.back().constraint;
-    const std::string why =
-        a < 0 || b < 0 ? "names a sensor that is not in the graph" : FillConstraint(edge, e, constraint);
-    if (!why.empty()) {
-      ranked.links.pop_back();
+// Edges `first` on, by id.
+std::array<const GraphEdge*, kLanes> FourEdges(const Graph& graph, const Problem& problem, std::size_t first) {
+  std::array<const GraphEdge*, kLanes> edges{};
+  for (std::size_t lane = 0; lane < kLanes && first + lane < graph.edges.size(); ++lane)
+    edges[lane] = &graph.edges[problem.edges_by_id[first + lane]];
+  return edges;
+}
+
+// Usable edges as constraints between ranks of sensors, a diagnosis for every other.
+void CollectConstraints(const Graph& graph, const Ranked& ranked, Problem& problem) {
+  problem.constraints.reserve(graph.edges.size());
+  for (std::size_t first = 0; first < graph.edges.size(); first += kLanes) {
+    const auto edges = FourEdges(graph, problem, first);
+    const InformationLanes information = Judge(edges);
+    for (std::size_t lane = 0; lane < kLanes && edges[lane] != nullptr; ++lane) {
+      const GraphEdge& edge = *edges[lane];
+      Constraint& constraint = problem.constraints.emplace_back();
+      constraint.i = FindRank(ranked, edge.frame_a);
+      constraint.j = FindRank(ranked, edge.frame_b);
+      constraint.edge = first + lane;
+      const std::string why = constraint.i < 0 || constraint.j < 0 ? "names a sensor that is not in the graph"
+                                                                   : Fill(edge, information, lane, constraint);
+      if (why.empty()) continue;
+      problem.constraints.pop_back();
       problem.diagnoses.push_back({"edge_not_usable", NameOfEdge(edge) + " " + why + " and takes no part",
                                    "Withdraw this edge, mend it where it was made and push it again."});
     }
@@ -190,9 +194,9 @@ Diagnosis NotConnected(const Graph& graph, const SensorId& sensor, bool has_edge
 std::vector<int> ReferenceComponent(const Graph& graph, const Ranked& ranked, Problem& problem) {
   UnionFind sets(ranked.sensor_of_rank.size());
   std::vector<bool> has_edge(ranked.sensor_of_rank.size(), false);
-  for (const Link& link : ranked.links) {
-    sets.Join(link.a, link.b);
-    has_edge[static_cast<std::size_t>(link.a)] = has_edge[static_cast<std::size_t>(link.b)] = true;
+  for (const Constraint& c : problem.constraints) {
+    sets.Join(c.i, c.j);
+    has_edge[static_cast<std::size_t>(c.i)] = has_edge[static_cast<std::size_t>(c.j)] = true;
   }
   std::vector<int> component;
   if (ranked.reference >= 0) component.push_back(ranked.reference);
@@ -209,19 +213,19 @@ std::vector<int> ReferenceComponent(const Graph& graph, const Ranked& ranked, Pr
 }
 
 // Vertex of every rank (-1: not in the component): the reference 0, the others in elimination order.
-std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& component, EliminationCost& cost) {
+std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& component, Problem& problem) {
   std::vector<int> member(ranked.sensor_of_rank.size(), -1);
   for (std::size_t k = 0; k < component.size(); ++k)
     member[static_cast<std::size_t>(component[k])] = static_cast<int>(k);
   std::vector<std::pair<int, int>> links;
-  links.reserve(ranked.links.size());
-  for (const Link& link : ranked.links) {
-    const int a = member[static_cast<std::size_t>(link.a)], b = member[static_cast<std::size_t>(link.b)];
+  links.reserve(problem.constraints.size());
+  for (const Constraint& c : problem.constraints) {
+    const int a = member[static_cast<std::size_t>(c.i)], b = member[static_cast<std::size_t>(c.j)];
     if (a > 0 && b > 0) links.emplace_back(a - 1, b - 1);
   }
   const Elimination elimination = EliminationOrder(static_cast<int>(component.size()) - 1, links);
   const std::vector<int>& order = elimination.order;
-  cost = elimination.cost;
+  problem.elimination_cost = elimination.cost;
   std::vector<int> vertex_of_rank(ranked.sensor_of_rank.size(), -1);
   vertex_of_rank[static_cast<std::size_t>(component[0])] = 0;
   for (std::size_t p = 0; p < order.size(); ++p)
@@ -256,38 +260,39 @@ void FillVertices(const Ranked& ranked, const std::vector<int>& vertex_of_rank, 
   }
 }
 
+// Constraints between vertices instead of ranks; those outside the component go.
+void FillConstraints(const std::vector<int>& vertex_of_rank, Problem& problem) {
+  std::erase_if(problem.constraints,
+                [&](const Constraint& c) { return vertex_of_rank[static_cast<std::size_t>(c.i)] < 0; });
+  for (Constraint& c : problem.constraints) {
+    c.i = vertex_of_rank[static_cast<std::size_t>(c.i)];
+    c.j = vertex_of_rank[static_cast<std::size_t>(c.j)];
+  }
+}
+
 }  // namespace
 
 std::string FillConstraint(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint) {
-  if (std::string why = WhyUnusable(edge); !why.empty()) return why;
-  if (!JudgeInformation(edge, constraint))
-    return "has an information matrix that is zero, out of range, not symmetric or not positive semi-definite";
-  constraint.T_i_j = edge.T_a_b.Normalized();
-  constraint.T_j_i = constraint.T_i_j.Inverse();
   constraint.edge = edge_idx;
-  return {};
+  return Fill(edge, Judge({&edge}), 0, constraint);
 }
 
 Problem MakeProblem(const Graph& graph) {
   Problem problem;
   problem.edges_by_id = SortedById(graph.edges);
   problem.vertex_of_sensor.assign(graph.sensors.size(), -1);
-  Ranked ranked = RankSensors(graph);
-  CollectLinks(graph, ranked, problem);
+  const Ranked ranked = RankSensors(graph);
+  CollectConstraints(graph, ranked, problem);
   const std::vector<int> component = ReferenceComponent(graph, ranked, problem);
-  if (component.empty()) return problem;
+  if (component.empty()) {
+    problem.constraints.clear();
+    return problem;
+  }
   problem.vertex_count = static_cast<int>(component.size());
   problem.sensor_of_vertex.resize(component.size());
-  const std::vector<int> vertex_of_rank = NumberVertices(ranked, component, problem.elimination_cost);
+  const std::vector<int> vertex_of_rank = NumberVertices(ranked, component, problem);
   FillVertices(ranked, vertex_of_rank, problem);
-  problem.constraints.reserve(ranked.links.size());
-  for (const Link& link : ranked.links) {
-    const int i = vertex_of_rank[static_cast<std::size_t>(link.a)];
-    if (i < 0) continue;
-    problem.constraints.push_back(link.constraint);
-    problem.constraints.back().i = i;
-    problem.constraints.back().j = vertex_of_rank[static_cast<std::size_t>(link.b)];
-  }
+  FillConstraints(vertex_of_rank, problem);
   problem.pattern.block_count = problem.free_count();
   AssignSlots(problem);
   return problem;

@@ -71,7 +71,7 @@ double HalfCotangentRestOver2(double theta) {
   return (1 - half * std::cos(half) / std::sin(half)) / (theta * theta);
 }
 
-// The left Jacobian of SO(3), which is also V of SE(3)'s Exp.
+// The left Jacobian of SO(3), which is also V of SE(3)'s Exp (there by cross products).
 Matrix3d LeftJacobianSo3(const Vector3d& phi) {
   const double theta = phi.norm();
   const Matrix3d phi_hat = Hat(phi);
@@ -118,12 +118,13 @@ Vector3d LogSo3(const Eigen::Quaterniond& q) {
 }  // namespace
 
 Se3 Se3::Exp(const Vector6d& xi) {
-  const Vector3d phi = Rotation(xi);
-  const double theta = phi.norm();
+  const Vector3d phi = Rotation(xi), rho = Translation(xi);
+  const double theta = phi.norm(), half_sine_over = HalfSineOver(theta);
+  const Vector3d turned = phi.cross(rho);
   Se3 T;
   T.q.w() = std::cos(theta / 2);
-  T.q.vec() = HalfSineOver(theta) * phi;
-  T.p_m = LeftJacobianSo3(phi) * Translation(xi);
+  T.q.vec() = half_sine_over * phi;
+  T.p_m = rho + 2.0 * half_sine_over * half_sine_over * turned + ThetaMinusSineOver3(theta) * phi.cross(turned);
   return T;
 }
 

@@ -1,0 +1,67 @@
+// The innermost loops of a solve on plain numbers, compiled twice: for every x86-64, and for processors with AVX. Both
+// do the same operations in the same order, without fused multiply-add, so that bytes do not depend on the machine.
+#pragma once
+
+#include <cstddef>
+
+namespace rigcal::graph {
+
+constexpr int kLanes = 4;  // numbers side by side
+constexpr int kPanel = 6;  // columns that are factored together
+
+// The lower triangle of a square matrix, column by column. `rows` is a multiple of kPanel; kLanes more zeros follow
+// every column, and stride >= rows + kLanes. Once factored, the diagonal holds the inverses of the pivots.
+struct Triangle {
+  double* entries = nullptr;
+  std::ptrdiff_t rows = 0, stride = 0;
+};
+
+// Numbers of four edges, see Constraint: 36 of Omega, 3 of a translation, 4 of a quaternion (x y z w).
+struct EdgeLanes {
+  const double* Omega[kLanes];
+  const double *p_j_i_m[kLanes], *q_j_i[kLanes];                               // as measured, inverted
+  const double *p_i_m[kLanes], *q_i[kLanes], *p_j_m[kLanes], *q_j[kLanes];  // poses of both ends
+};
+
+// A twist or a force [translation, rotation] per edge.
+struct EdgeTwists {
+  double numbers[6][kLanes];
+};
+
+struct EdgeForces {
+  EdgeTwists on_i, on_j;  // -J_i^T Omega e and J_j^T Omega e
+  double cost[kLanes];    // e^T Omega e
+};
+
+// What four information matrices are like, of their symmetric parts: L D L^T without square roots, for it is asked of
+// every edge of every solve.
+struct InformationLanes {
+  double asymmetry[kLanes];            // the largest difference between an entry and its mirror image
+  double largest_of_diagonal[kLanes];  // where it is clear
+  double is_clear[kLanes];             // not 0: every pivot is above kClearPivotRatio of its diagonal entry
+  double pivot_product[kLanes];        // the determinant, where it is clear
+};
+constexpr double kClearPivotRatio = 1e-10;  // far above the tolerance of a rank
+
+struct LaneKernels {
+  // The Cholesky factor in place, from panel `first` on, where the panels before it are those of a factor; false if
+  // the matrix is not positive definite.
+  bool (*Factor)(Triangle matrix, std::ptrdiff_t first);
+  // x <- (L L^T)^-1 x. x has rows + kLanes numbers, the last of them zero.
+  void (*Solve)(Triangle L, double* x);
+  // Rows `begin` .. rows - 1 of columns begin .. begin + 7 of L^-1, row by row, 8 numbers each. `begin` is a multiple
+  // of 3; columns beyond the last are zero.
+  void (*InverseColumns)(Triangle L, std::ptrdiff_t begin, double* columns);
+  // `Omega`: 36 numbers of each matrix.
+  void (*Information)(const double* const Omega[kLanes], InformationLanes& lanes);
+  // False where a residual's rotation is too large for the series: then nothing is written.
+  bool (*Residuals)(const EdgeLanes& edges, EdgeTwists& e);
+  bool (*Forces)(const EdgeLanes& edges, EdgeForces& forces);
+};
+
+// Those for the processor at hand.
+[[nodiscard]] const LaneKernels& Kernels();
+// Those that every x86-64 runs, for comparison.
+[[nodiscard]] const LaneKernels& PortableKernels();
+
+}  // namespace rigcal::graph
