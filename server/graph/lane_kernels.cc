@@ -7,27 +7,30 @@ namespace {
 
 constexpr double kFinite = __DBL_MAX__;
 
+// The first of the files serves the others.
+// clang-format off
 namespace portable {
 #include "server/graph/lanes.inc"
-#include "server/graph/triangle_lanes.inc"
-#include "server/graph/information_lanes.inc"
 #include "server/graph/edge_lanes.inc"
-}
+#include "server/graph/information_lanes.inc"
+#include "server/graph/triangle_lanes.inc"
+}  // namespace portable
 
 #pragma GCC push_options
 #pragma GCC target("avx")
 namespace avx {
 #include "server/graph/lanes.inc"
-#include "server/graph/triangle_lanes.inc"
-#include "server/graph/information_lanes.inc"
 #include "server/graph/edge_lanes.inc"
-}
+#include "server/graph/information_lanes.inc"
+#include "server/graph/triangle_lanes.inc"
+}  // namespace avx
+// clang-format on
 #pragma GCC pop_options
 
-constexpr LaneKernels kPortable{portable::Factor, portable::Solve, portable::InverseColumns,
- portable::Information, portable::Residuals, portable::Forces};
-constexpr LaneKernels kAvx{avx::Factor, avx::Solve, avx::InverseColumns,
- avx::Information, avx::Residuals, avx::Forces};
+constexpr LaneKernels kPortable{portable::Factor,    portable::Solve,  portable::InverseColumns, portable::Information,
+                                portable::Residuals, portable::Forces, portable::Blocks};
+constexpr LaneKernels kAvx{avx::Factor,    avx::Solve,  avx::InverseColumns, avx::Information,
+                           avx::Residuals, avx::Forces, avx::Blocks};
 
 }  // namespace
 

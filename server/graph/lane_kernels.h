@@ -19,8 +19,13 @@ struct Triangle {
 // Numbers of four edges, see Constraint: 36 of Omega, 3 of a translation, 4 of a quaternion (x y z w).
 struct EdgeLanes {
   const double* Omega[kLanes];
-  const double *p_j_i_m[kLanes], *q_j_i[kLanes];                               // as measured, inverted
+  const double *p_j_i_m[kLanes], *q_j_i[kLanes];                            // as measured, inverted
   const double *p_i_m[kLanes], *q_i[kLanes], *p_j_m[kLanes], *q_j[kLanes];  // poses of both ends
+};
+
+// W: 36 numbers of a symmetric matrix; T_i_j.
+struct BlockLanes {
+  const double *W[kLanes], *p_i_j_m[kLanes], *q_i_j[kLanes];
 };
 
 // A twist or a force [translation, rotation] per edge.
@@ -57,6 +62,8 @@ struct LaneKernels {
   // False where a residual's rotation is too large for the series: then nothing is written.
   bool (*Residuals)(const EdgeLanes& edges, EdgeTwists& e);
   bool (*Forces)(const EdgeLanes& edges, EdgeForces& forces);
+  // W A and A^T W A with A = Ad(T_j_i), 36 numbers each.
+  void (*Blocks)(const BlockLanes& edges, double* const WA[kLanes], double* const AWA[kLanes]);
 };
 
 // Those for the processor at hand.

@@ -1,6 +1,7 @@
 #include "server/graph/linearize.h"
 
 #include <algorithm>
+#include <array>
 
 #include "server/graph/edge_terms.h"
 #include "server/graph/lane_kernels.h"
@@ -9,12 +10,6 @@ namespace rigcal::graph {
 namespace {
 
 using Eigen::Matrix3d;
-
-// Ad(T_i_j^-1).
-UpperBlocks InverseAdjointBlocks(const Se3& T_i_j) {
-  const Matrix3d R_j_i = T_i_j.R().transpose();
-  return {R_j_i, -R_j_i * Hat(T_i_j.p_m)};
-}
 
 // S * [D U; 0 D].
 Matrix6d TimesUpper(const Matrix6d& S, const UpperBlocks& A) {
@@ -42,22 +37,62 @@ EdgeState AddGradient(const Constraint& constraint, const Poses& T_ref, NormalEq
   return state;
 }
 
-// W = J_j^T Omega J_j serves three blocks.
-void AddBlocks(const Constraint& constraint, const Matrix6d& W, const Se3& T_i_j, BlockMatrix<6>& H) {
-  const auto i = static_cast<std::size_t>(constraint.i), j = static_cast<std::size_t>(constraint.j);
-  if (j > 0) H.diagonal[j - 1] += W;
-  if (i == 0) return;
-  const UpperBlocks A = InverseAdjointBlocks(T_i_j);
-  const Matrix6d WA = TimesUpper(W, A), WA_transposed = WA.transpose();
-  H.diagonal[i - 1] += TimesUpper(WA_transposed, A);
-  if (constraint.slot < 0) return;
-  H.off_diagonal[static_cast<std::size_t>(constraint.slot)] -= j > i ? WA : WA_transposed;
-}
+// Four edges' W = J_j^T Omega J_j, which serves three blocks of H each.
+class BlockSums {
+ public:
+  explicit BlockSums(BlockMatrix<6>& H) : H_(H) {}
+  ~BlockSums() { Flush(); }
+  BlockSums(const BlockSums&) = delete;
+  BlockSums& operator=(const BlockSums&) = delete;
 
-void AddHessian(const Constraint& constraint, const EdgeState& state, BlockMatrix<6>& H) {
+  void Add(const Constraint& constraint, const Matrix6d& W, const Se3& T_i_j) {
+    constraints_[count_] = &constraint;
+    W_[count_] = W;
+    T_i_j_[count_] = T_i_j;
+    if (++count_ == kLanes) Flush();
+  }
+
+ private:
+  void Flush() {
+    if (count_ == 0) return;
+    BlockLanes lanes;
+    double *WA[kLanes], *AWA[kLanes];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      lanes.W[lane] = W_[lane].data();
+      lanes.p_i_j_m[lane] = T_i_j_[lane].p_m.data();
+      lanes.q_i_j[lane] = T_i_j_[lane].q.coeffs().data();
+      WA[lane] = WA_[lane].data();
+      AWA[lane] = AWA_[lane].data();
+    }
+    Kernels().Blocks(lanes, WA, AWA);
+    for (std::size_t lane = 0; lane < count_; ++lane) AddLane(*constraints_[lane], lane);
+    count_ = 0;
+  }
+
+  void AddLane(const Constraint& constraint, std::size_t lane) {
+    const auto i = static_cast<std::size_t>(constraint.i), j = static_cast<std::size_t>(constraint.j);
+    if (j > 0) H_.diagonal[j - 1] += W_[lane];
+    if (i == 0) return;
+    H_.diagonal[i - 1] += AWA_[lane];
+    if (constraint.slot < 0) return;
+    Matrix6d& block = H_.off_diagonal[static_cast<std::size_t>(constraint.slot)];
+    if (j > i)
+      block -= WA_[lane];
+    else
+      block -= WA_[lane].transpose();
+  }
+
+  BlockMatrix<6>& H_;
+  std::size_t count_ = 0;
+  std::array<const Constraint*, kLanes> constraints_{};
+  std::array<Matrix6d, kLanes> W_{}, WA_, AWA_;
+  std::array<Se3, kLanes> T_i_j_;
+};
+
+void AddHessian(const Constraint& constraint, const EdgeState& state, BlockSums& sums) {
   const UpperBlocks J_j = JacobianOf(state.e);
   const Matrix6d half = TimesUpper(constraint.Omega, J_j).transpose();
-  AddBlocks(constraint, TimesUpper(half, J_j), state.T_i_j, H);
+  sums.Add(constraint, TimesUpper(half, J_j), state.T_i_j);
 }
 
 // Constraints `first` on; the last stands in for those that are missing.
@@ -128,21 +163,23 @@ void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equa
   Clear(problem, equations);
   equations.H.Resize(problem.pattern);
   equations.H.SetZero();
+  BlockSums sums(equations.H);
   for (const Constraint& constraint : problem.constraints)
-    AddHessian(constraint, AddGradient(constraint, T_ref, equations), equations.H);
+    AddHessian(constraint, AddGradient(constraint, T_ref, equations), sums);
 }
 
 void LinearizeRoughly(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
   LinearizeGradient(problem, T_ref, equations);
   equations.H.Resize(problem.pattern);
   equations.H.SetZero();
-  for (const Constraint& constraint : problem.constraints)
-    AddBlocks(constraint, constraint.Omega, constraint.T_i_j, equations.H);
+  BlockSums sums(equations.H);
+  for (const Constraint& constraint : problem.constraints) sums.Add(constraint, constraint.Omega, constraint.T_i_j);
 }
 
 void LinearizeEdge(const Constraint& constraint, const Poses& T_ref, BlockMatrix<6>& H, Eigen::VectorXd* g) {
   const EdgeState state = EdgeStateAt(constraint, PoseOf(T_ref, constraint.i), PoseOf(T_ref, constraint.j));
-  AddHessian(constraint, state, H);
+  BlockSums sums(H);
+  AddHessian(constraint, state, sums);
   if (g != nullptr) AddForces(constraint, state, *g);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "server/graph/union_find.h"
 
@@ -21,35 +22,47 @@ std::vector<std::size_t> ByCertainty(const Problem& problem) {
   return order;
 }
 
-// The tree's edges by vertex. Placed vertices count as one.
-std::vector<std::vector<std::size_t>> TreeEdges(const Problem& problem, const std::vector<bool>& placed) {
+// The tree's edges at each vertex, as lists through arrays: entry 2 k is constraint k at its i, 2 k + 1 at its j.
+struct TreeEdges {
+  static constexpr std::size_t kEnd = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> first, next;  // by vertex, by entry
+
+  TreeEdges(std::size_t vertices, std::size_t constraints) : first(vertices, kEnd), next(2 * constraints, kEnd) {}
+  void Add(int vertex, std::size_t entry) {
+    next[entry] = std::exchange(first[static_cast<std::size_t>(vertex)], entry);
+  }
+};
+
+// Placed vertices count as one.
+TreeEdges FindTree(const Problem& problem, const std::vector<bool>& placed) {
   const auto count = static_cast<std::size_t>(problem.vertex_count);
   UnionFind sets(count);
   for (std::size_t v = 1; v < count; ++v)
     if (placed[v]) sets.Join(0, static_cast<int>(v));
-  std::vector<std::vector<std::size_t>> edges_at(count);
+  TreeEdges tree(count, problem.constraints.size());
   for (const std::size_t k : ByCertainty(problem)) {
     const Constraint& c = problem.constraints[k];
     if (!sets.Join(c.i, c.j)) continue;
-    edges_at[static_cast<std::size_t>(c.i)].push_back(k);
-    edges_at[static_cast<std::size_t>(c.j)].push_back(k);
+    tree.Add(c.i, 2 * k);
+    tree.Add(c.j, 2 * k + 1);
   }
-  return edges_at;
+  return tree;
 }
 
 }  // namespace
 
 Poses GrowTree(const Problem& problem, Poses T_ref, std::vector<bool> placed) {
   placed[0] = true;
-  const auto edges_at = TreeEdges(problem, placed);
+  const TreeEdges tree = FindTree(problem, placed);
   std::vector<std::size_t> queue;
+  queue.reserve(placed.size());
   for (std::size_t v = 0; v < placed.size(); ++v)
     if (placed[v]) queue.push_back(v);
   for (std::size_t at = 0; at < queue.size(); ++at) {
     const std::size_t v = queue[at];
-    for (const std::size_t k : edges_at[v]) {
-      const Constraint& c = problem.constraints[k];
-      const bool forward = static_cast<std::size_t>(c.i) == v;
+    for (std::size_t entry = tree.first[v]; entry != TreeEdges::kEnd; entry = tree.next[entry]) {
+      const Constraint& c = problem.constraints[entry / 2];
+      const bool forward = entry % 2 == 0;
       const auto other = static_cast<std::size_t>(forward ? c.j : c.i);
       if (placed[other]) continue;
       T_ref[other] = (T_ref[v] * (forward ? c.T_i_j : c.T_j_i)).Normalized();

@@ -6,7 +6,7 @@ import sources
 
 FUNCTION_LINES_MAX = 60
 FILE_LINES_MAX = 400
-FILE_SUFFIXES = {".cc", ".h", ".py", ".js", ".css", ".tpl", ".html", ".sql", ".idl", ".sh", ".cmake"}
+FILE_SUFFIXES = {".cc", ".h", ".inc", ".py", ".js", ".css", ".tpl", ".html", ".sql", ".idl", ".sh", ".cmake"}
 SCOPE = re.compile(r'\bnamespace\b|\bextern\s*$|(?:^|\s)(?:class|struct|union|enum)\b(?![^{]*\))')
 
 
@@ -68,7 +68,7 @@ class TheProject(unittest.TestCase):
     def test_functions_are_short(self):
         long, count = [], 0
         for path in sources.tracked():
-            if path.suffix not in (".cc", ".h"):
+            if path.suffix not in (".cc", ".h", ".inc"):
                 continue
             for first, last in functions(sources.read(path)):
                 count += 1

@@ -10,7 +10,7 @@ rigcal_test(graph_test COMPUTES
 rigcal_library(graph_ceres SOURCES unit/graph_ceres.cc DEPS rigcal_graph Ceres::ceres)
 
 rigcal_test(graph_numbers_test COMPUTES
-  SOURCES unit/graph_numbers_test.cc unit/clique_tree_test.cc
+  SOURCES unit/graph_numbers_test.cc unit/graph_lanes_test.cc unit/clique_tree_test.cc
   DEPS rigcal_graph rigcal_formats graph_ceres)
 
 rigcal_test(graph_honesty_test COMPUTES
