@@ -41,8 +41,8 @@ double VarianceOf(const CameraMotion& motion) { return std::max(motion.camera.va
 
 }  // namespace
 
-tl::expected<CameraMotion, Diagnosis> CameraMotionOf(const CameraProblem& problem) {
-  auto camera = EstimateCamera(problem);
+tl::expected<CameraMotion, Diagnosis> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver) {
+  auto camera = EstimateCameraBy(solver, problem);
   if (!camera) return tl::unexpected(camera.error());
   CameraMotion motion;
   motion.camera = std::move(*camera);

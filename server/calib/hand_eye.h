@@ -28,6 +28,7 @@ struct HandEyeProblem {
   std::string method;  // "non_overlapping", "tracker_camera", "pose_streams"
   HandEyeSide a, b;
   std::optional<Se3> T_a_b_nominal;  // one more start, and the value of what the motion leaves open
+  CameraSolver solve_camera = {};
 };
 
 // How noisy a side's poses are, as their residuals say; one sigma per axis, mean over the captures.

@@ -48,7 +48,7 @@ OrDiagnosis<CandidateMap> CandidatesOf(const HandEyeProblem& problem, const Hand
     for (const TimedPose& row : side.poses) candidates[row.capture] = CandidatesOf(row);
     return candidates;
   }
-  auto motion = CameraMotionOf({side.sensor, *side.board, side.views});
+  auto motion = CameraMotionOf({side.sensor, *side.board, side.views}, problem.solve_camera);
   if (!motion) return tl::unexpected(CameraFailed(problem, side, motion.error()));
   camera = std::move(*motion);
   for (const auto& [capture, why] : camera->camera.unused) unused[capture] = side.sensor.id.str() + ": " + why;

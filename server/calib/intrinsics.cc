@@ -264,4 +264,8 @@ OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const C
   }
 }
 
+OrDiagnosis<CameraEstimate> EstimateCameraBy(const CameraSolver& solver, const CameraProblem& problem) {
+  return solver ? solver(problem) : EstimateCamera(problem);
+}
+
 }  // namespace rigcal::calib

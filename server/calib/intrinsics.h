@@ -1,6 +1,7 @@
 // One camera and one board: intrinsics, if they are not given, and the board's pose in every view.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <tl/expected.hpp>
@@ -19,6 +20,7 @@ struct CameraProblem {
   Sensor camera;  // intrinsics given (with sigmas: refined within them), or estimated as camera_model
   Target board;
   std::vector<std::pair<CaptureId, BoardView>> views;  // sorted by id; a view may be not found
+  friend bool operator==(const CameraProblem&, const CameraProblem&) = default;
 };
 
 struct CameraEstimate {
@@ -38,11 +40,16 @@ struct CameraEstimate {
   std::map<CaptureId, ViewOfIntrinsics> of_intrinsics;
 };
 
+// EstimateCamera without a start, or something that remembers what it said; empty: EstimateCamera.
+using CameraSolver = std::function<tl::expected<CameraEstimate, Diagnosis>(const CameraProblem&)>;
+
 // Pure and deterministic. Given intrinsics without sigmas stay as given: poses only, one view is enough. With sigmas
 // all views refine them within those, and one view is enough too. Estimated ones need 3 views with tilted boards. With
 // `start`, from its intrinsics and poses: the captures it has, with their alternatives kept as they are, unrefined
 // (leave-one-out). Never throws.
 [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCamera(const CameraProblem& problem,
                                                                      const CameraEstimate* start = nullptr);
+[[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCameraBy(const CameraSolver& solver,
+                                                                       const CameraProblem& problem);
 
 }  // namespace rigcal::calib

@@ -55,7 +55,7 @@ OrDiagnosis<CameraEstimate> CameraOf(const LidarCameraProblem& problem) {
   CameraProblem camera{problem.camera, problem.board, {}};
   for (const LidarCameraCapture& capture : problem.captures)
     if (capture.view && capture.view->found) camera.views.emplace_back(capture.capture, *capture.view);
-  return EstimateCamera(camera);
+  return EstimateCameraBy(problem.solve_camera, camera);
 }
 
 // A board that was left standing, or a file that was copied, is no second measurement. Empty: it is none.

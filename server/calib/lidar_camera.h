@@ -31,6 +31,7 @@ struct LidarCameraProblem {
   bool camera_is_a = true;                 // the edge's frame_a is the camera's
   double range_bias_m = 0.0;               // known: ranges are too short by this much
   std::optional<Se3> T_cam_lidar_nominal;  // one more start, and the judge between two that fit equally
+  CameraSolver solve_camera = {};
 };
 
 struct LidarCameraCheck {

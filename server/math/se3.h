@@ -15,6 +15,7 @@ struct Se3 {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();  // unit; canonical sign (w >= 0) after Normalized()
 
+  friend bool operator==(const Se3&, const Se3&) = default;
   [[nodiscard]] static Se3 Exp(const Vector6d& xi);
   [[nodiscard]] static Se3 FromMatrix(const Eigen::Matrix4d& matrix);
   [[nodiscard]] Vector6d Log() const;  // rotation part in [0, pi]

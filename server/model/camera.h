@@ -22,6 +22,7 @@ struct CameraIntrinsics {
   double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
   std::vector<double> distortion = std::vector<double>(5, 0.0);  // DistortionCount(model) values
   CameraModel model = CameraModel::kPinholeRadtan;
+  friend bool operator==(const CameraIntrinsics&, const CameraIntrinsics&) = default;
 };
 
 }  // namespace rigcal

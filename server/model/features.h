@@ -19,6 +19,7 @@ struct BoardView {
   int image_width_px = 0, image_height_px = 0;
   std::vector<Eigen::Vector2d> corners_px;
   std::vector<int> corner_idx = {};
+  friend bool operator==(const BoardView&, const BoardView&) = default;
 };
 
 // The same with the picture of it, encoded, for reports.

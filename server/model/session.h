@@ -35,6 +35,7 @@ struct Sensor {
       range_bias_sigma_m;            // of a lidar: how far all its ranges may be off together; absent: not known
   std::optional<TargetId> sees;      // the one target this sensor looks at; absent: any
   std::optional<Se3> T_ref_nominal;  // CAD pose of the sensor in the reference sensor
+  friend bool operator==(const Sensor&, const Sensor&) = default;
 };
 
 struct SensorPair {

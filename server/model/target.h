@@ -34,6 +34,7 @@ struct Target {
   double spacing_ratio = 0.0;  // grids: gap between tags over the tag's side
   std::optional<Eigen::Vector2d> plate_m =
       {};  // outer width (along columns) and height of the plate; pattern centred on it
+  friend bool operator==(const Target&, const Target&) = default;
 };
 
 // All points of the pattern, metres, z = 0. Checkerboard and charuco: point r * cols + c is inner corner (c, r) at

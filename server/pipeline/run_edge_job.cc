@@ -52,7 +52,16 @@ Result<Edge> LidarLidarEdge(storage::Store& store, const Manifest& manifest, con
   return edge;
 }
 
-Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
+template <typename Inputs>
+Result<Inputs> Remembering(calib::CameraMemory& cameras, Result<Inputs> inputs) {
+  if (inputs)
+    inputs->problem.solve_camera = [&cameras](const calib::CameraProblem& problem) {
+      return cameras.Estimate(problem);
+    };
+  return inputs;
+}
+
+Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, job.session));
   if (!manifest)
     return FailedEdge(
@@ -62,11 +71,12 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
   const std::string method(a && b ? MethodFor(manifest->header, *a, *b) : "stereo");
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
-    return EdgeFrom(store, job.pair, method, LoadLidarCamera(store, *manifest, job.pair),
+    return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadLidarCamera(store, *manifest, job.pair)),
                     calib::EstimateLidarCameraEdge);
   if (method == "lidar_lidar") return LidarLidarEdge(store, *manifest, job.pair);
   if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
-    return EdgeFrom(store, job.pair, method, LoadHandEye(store, *manifest, job.pair), calib::EstimateHandEyeEdge);
+    return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadHandEye(store, *manifest, job.pair)),
+                    calib::EstimateHandEyeEdge);
   return FailedEdge(
       job.pair, method.empty() ? "none" : method,
       {ErrorCode::kUnsupported, "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),
@@ -74,9 +84,9 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job) {
 }
 
 // What a library throws (no memory for a cloud, say) costs this pair, not the server.
-Result<Edge> EstimateOrFail(storage::Store& store, const storage::JobRow& job) {
+Result<Edge> EstimateOrFail(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
   try {
-    return EstimatePair(store, job);
+    return EstimatePair(store, job, cameras);
   } catch (const std::exception& exception) {
     return FailedEdge(job.pair, "none",
                       {ErrorCode::kInternal, std::string("the estimate broke off: ") + exception.what(),
@@ -86,8 +96,9 @@ Result<Edge> EstimateOrFail(storage::Store& store, const storage::JobRow& job) {
 
 }  // namespace
 
-Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock) {
-  RIGCAL_ASSIGN(Edge edge, EstimateOrFail(store, job));
+Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock,
+                        calib::CameraMemory& cameras) {
+  RIGCAL_ASSIGN(Edge edge, EstimateOrFail(store, job, cameras));
   edge.robot = job.robot;
   edge.session = job.session;
   edge.id = EstimatedEdgeId(job.robot, job.session, edge.method, edge.frame_a, edge.frame_b);

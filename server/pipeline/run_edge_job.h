@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/base/stamp.h"
+#include "server/calib/camera_memory.h"
 #include "server/model/edge.h"
 #include "storage/jobs.h"
 
@@ -10,6 +11,7 @@ namespace rigcal::pipeline {
 // Loads the pair's captures, detects (cached by content), estimates with its jackknife, and commits the edge together
 // with the end of the job. What cannot be calibrated becomes a failed edge with its diagnoses, never an error; an error
 // means that the store failed and the job is still waiting. One job of a robot at a time.
-[[nodiscard]] Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock);
+[[nodiscard]] Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock,
+                                      calib::CameraMemory& cameras);
 
 }  // namespace rigcal::pipeline

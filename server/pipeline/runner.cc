@@ -19,6 +19,7 @@ struct Runner::Impl {
   Announcer announcer;
   LiveGraphs live;
   Claims claims;
+  calib::CameraMemory cameras;
   std::vector<storage::Store> stores;
   std::mutex mutex;
   std::condition_variable changed;
@@ -30,7 +31,7 @@ struct Runner::Impl {
     SetThreadRank(ThreadRank::kWorks);
     std::uint64_t seen = 0;
     while (Seen(seen)) {
-      const auto result = Step({store, *options.clock, live, claims, announcer});
+      const auto result = Step({store, *options.clock, live, claims, announcer, cameras});
       if (!result) LogError(result.error());
       if (result && result->worked)
         Signal();  // its robot may be free for another thread now

@@ -143,7 +143,7 @@ Result<StepResult> ReviseNext(const StepContext& context) {
 }
 
 Status RunJob(const StepContext& context, const storage::JobRow& job) {
-  RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, job, context.clock));
+  RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, job, context.clock, context.cameras));
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
   return UpdateLive(context, job.robot);

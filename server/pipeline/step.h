@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/base/stamp.h"
+#include "server/calib/camera_memory.h"
 #include "server/model/graph.h"
 #include "server/pipeline/live_graphs.h"
 #include "storage/store.h"
@@ -47,6 +48,7 @@ struct StepContext {
   LiveGraphs& live;
   Claims& claims;
   const Announcer& announcer;
+  calib::CameraMemory& cameras;
 };
 
 struct StepResult {

@@ -144,12 +144,17 @@ std::vector<SensorPair> PairsOf(const FeatureSession& session) {
   return pairs;
 }
 
-Edge EdgeOf(const FeatureSession& session, const SensorPair& pair) {
+Edge EdgeOf(const FeatureSession& session, const SensorPair& pair, calib::CameraMemory* cameras) {
   const std::string_view method = MethodOf(session, pair);
+  const auto remembering = [cameras](auto problem) {
+    if (cameras != nullptr)
+      problem.solve_camera = [cameras](const calib::CameraProblem& camera) { return cameras->Estimate(camera); };
+    return problem;
+  };
   Edge edge = method == "stereo"         ? calib::EstimateEdge(StereoOf(session, pair))
-              : method == "lidar_camera" ? calib::EstimateLidarCameraEdge(LidarCameraOf(session, pair))
+              : method == "lidar_camera" ? calib::EstimateLidarCameraEdge(remembering(LidarCameraOf(session, pair)))
               : method == "lidar_lidar"  ? calib::EstimateLidarLidarEdge(LidarLidarOf(session, pair))
-                                         : calib::EstimateHandEyeEdge(HandEyeOf(session, pair));
+                                         : calib::EstimateHandEyeEdge(remembering(HandEyeOf(session, pair)));
   edge.robot = session.header.robot;
   edge.session = SessionId(Sha256Of("seed " + std::to_string(session.experiment.options.seed)).str());
   edge.id = EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b);
@@ -159,7 +164,8 @@ Edge EdgeOf(const FeatureSession& session, const SensorPair& pair) {
 std::vector<Edge> EdgesOf(const FeatureSession& session) {
   const std::vector<SensorPair> pairs = PairsOf(session);
   std::vector<Edge> edges(pairs.size());
-  ParallelFor(pairs.size(), [&](std::size_t i) { edges[i] = EdgeOf(session, pairs[i]); });
+  calib::CameraMemory cameras;  // as the service has it
+  ParallelFor(pairs.size(), [&](std::size_t i) { edges[i] = EdgeOf(session, pairs[i], &cameras); });
   return edges;
 }
 

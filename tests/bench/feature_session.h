@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/sim/observe.h"
+#include "server/calib/camera_memory.h"
 #include "server/calib/hand_eye.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_lidar.h"
@@ -33,7 +34,8 @@ struct FeatureSession {
 
 // The pairs that it has data for, in the header's order.
 [[nodiscard]] std::vector<SensorPair> PairsOf(const FeatureSession& session);
-[[nodiscard]] Edge EdgeOf(const FeatureSession& session, const SensorPair& pair);
+[[nodiscard]] Edge EdgeOf(const FeatureSession& session, const SensorPair& pair,
+                          calib::CameraMemory* cameras = nullptr);
 [[nodiscard]] std::vector<Edge> EdgesOf(const FeatureSession& session);
 // Optimum of the good edges, its covariances by the jackknife through the graph.
 [[nodiscard]] GraphSolution SolveRig(const std::vector<Edge>& edges, const SensorId& reference);

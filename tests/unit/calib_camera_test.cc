@@ -1,6 +1,7 @@
 // One camera by itself: board poses with what is known of them, and intrinsics.
 #include <gmock/gmock.h>
 
+#include "server/calib/camera_memory.h"
 #include "server/calib/intrinsics.h"
 #include "server/calib/projection.h"
 #include "tests/unit/calib_virtual_pair.h"
@@ -183,6 +184,53 @@ TEST(Camera, ARationalLensInTheMiddleOfThePictureIsADiagnosis) {
   ASSERT_FALSE(estimate);
   EXPECT_THAT(estimate.error().what, HasSubstr("front_left"));
   EXPECT_FALSE(estimate.error().cure.empty());
+}
+
+TEST(CameraMemory, SolvesEveryProblemOnceWhileItIsAmongTheNewest) {
+  int solved = 0;
+  CameraMemory memory([&](const CameraProblem& problem) {
+    ++solved;
+    return EstimateCamera(problem);
+  });
+  const VirtualPair pair = PairOf(CameraModel::kPinholeRadtan);
+  CameraProblem problem = ViewsOf(pair, TiltedBoards(3), 0.2);
+  problem.camera.intrinsics = pair.a;
+  const auto first = memory.Estimate(problem), again = memory.Estimate(problem), direct = EstimateCamera(problem);
+  ASSERT_TRUE(first && again && direct);
+  EXPECT_EQ(solved, 1);
+  EXPECT_EQ(first->T_cam_board, direct->T_cam_board);
+  EXPECT_EQ(again->T_cam_board, direct->T_cam_board);
+  CameraProblem moved = problem;
+  moved.views[1].second.corners_px[7].x() += 1e-9;
+  ASSERT_TRUE(memory.Estimate(moved));
+  EXPECT_EQ(solved, 2);
+  moved = problem;
+  moved.board.square_m *= 1.001;
+  ASSERT_TRUE(memory.Estimate(moved));
+  EXPECT_EQ(solved, 3);
+  moved = problem;
+  moved.camera.intrinsics_sigma = std::vector<double>(9, 1.0);
+  ASSERT_TRUE(memory.Estimate(moved));
+  EXPECT_EQ(solved, 4);
+  ASSERT_TRUE(memory.Estimate(problem));
+  EXPECT_EQ(solved, 4);
+  for (int k = 0; k < 60; ++k) {
+    moved.board.square_m = 0.05 + 0.001 * k;
+    ASSERT_TRUE(memory.Estimate(moved));
+  }
+  ASSERT_TRUE(memory.Estimate(problem));
+  EXPECT_EQ(solved, 65);
+}
+
+TEST(CameraMemory, RemembersThatThereIsNoAnswer) {
+  int solved = 0;
+  CameraMemory memory([&](const CameraProblem& problem) {
+    ++solved;
+    return EstimateCamera(problem);
+  });
+  const CameraProblem two_views = ViewsOf(PairOf(CameraModel::kPinholeRadtan), TiltedBoards(2), 0.2);
+  for (int k = 0; k < 2; ++k) EXPECT_FALSE(memory.Estimate(two_views));
+  EXPECT_EQ(solved, 1);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ class PipelineTest : public testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  Result<StepResult> StepOnce() { return Step({*store_, clock_, live_, claims_, announcer_}); }
+  Result<StepResult> StepOnce() { return Step({*store_, clock_, live_, claims_, announcer_, cameras_}); }
   // Steps until there is nothing to do; the number of steps that worked.
   int StepAll() {
     for (int worked = 0; worked < 1000; ++worked) {
@@ -142,6 +142,7 @@ class PipelineTest : public testing::Test {
   std::unique_ptr<storage::Store> store_;
   StandingClock clock_;
   LiveGraphs live_;
+  calib::CameraMemory cameras_;
   Claims claims_;
   Announcer announcer_;
   std::vector<std::pair<std::string, std::string>> events_;

@@ -104,7 +104,7 @@ TEST_F(PipelineLiveTest, TheRevisionDoesNotDependOnTheLiveState) {
   std::reverse(edges.begin(), edges.end());
   StoreEdges(edges);
   LiveGraphs fresh;
-  ASSERT_TRUE(Step({*store_, clock_, fresh, claims_, announcer_}));
+  ASSERT_TRUE(Step({*store_, clock_, fresh, claims_, announcer_, cameras_}));
   ASSERT_EQ(revisions_.size(), 2u);
   EXPECT_EQ(revisions_[0].document, revisions_[1].document);
 }

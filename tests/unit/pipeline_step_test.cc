@@ -30,7 +30,7 @@ TEST_F(PipelineTest, PushedEdgesBecomeOneRevisionWhatTheOrder) {
   StoreEdges({reversed[0]});
   StoreEdges({reversed[1]});
   StoreEdges({reversed[2]});
-  ASSERT_TRUE(Step({*store_, clock_, live, claims_, announcer_}));
+  ASSERT_TRUE(Step({*store_, clock_, live, claims_, announcer_, cameras_}));
   ASSERT_EQ(revisions_.size(), 2u);
   EXPECT_EQ(revisions_[0].document, revisions_[1].document);
 }
@@ -180,7 +180,7 @@ TEST_F(PipelineTest, WorkLeftByACrashIsFoundAgain) {
   ASSERT_TRUE(first && first->worked);
   LiveGraphs fresh_live;  // a new process has neither live graphs nor claims
   Claims fresh_claims;
-  const auto second = Step({*store_, clock_, fresh_live, fresh_claims, announcer_});
+  const auto second = Step({*store_, clock_, fresh_live, fresh_claims, announcer_, cameras_});
   ASSERT_TRUE(second && second->worked);
   EXPECT_EQ(Count("published"), 1);
   EXPECT_EQ(revisions_.size(), 1u);

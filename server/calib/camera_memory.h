@@ -1,0 +1,31 @@
+// What EstimateCamera said of the newest problems: a camera takes part in many pairs of a session, with the same views.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+
+#include "server/calib/intrinsics.h"
+
+namespace rigcal::calib {
+
+// May be asked from several threads; two that ask the same at once both solve it. Answers are those of the solver.
+class CameraMemory {
+ public:
+  explicit CameraMemory(CameraSolver solver = {}) : solver_(std::move(solver)) {}
+  [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> Estimate(const CameraProblem& problem);
+
+ private:
+  using Answer = tl::expected<CameraEstimate, Diagnosis>;
+  struct Entry {
+    CameraProblem problem;
+    std::shared_ptr<const Answer> answer;
+  };
+  [[nodiscard]] std::shared_ptr<const Answer> Find(const CameraProblem& problem);
+
+  CameraSolver solver_;
+  std::mutex mutex_;
+  std::deque<Entry> entries_;  // most recently used first
+};
+
+}  // namespace rigcal::calib
