@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -170,6 +171,11 @@ std::string AgeText(std::int64_t age_ns) {
     const std::int64_t parts = age_s % unit_s / part_s;
     return parts == 0 ? whole : whole + " " + std::to_string(parts) + " " + part;
   };
+  constexpr double kDaysPerYear = 365.25;
+  const std::int64_t days = age_s / kSecondsPerDay;
+  if (const auto tenths = std::lround(10.0 * static_cast<double>(days) / kDaysPerYear); days >= 366)
+    return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " years";
+  if (days >= 14) return std::to_string(days) + " d";
   if (age_s >= kSecondsPerDay) return both(kSecondsPerDay, "d", kSecondsPerHour, "h");
   if (age_s >= kSecondsPerHour) return both(kSecondsPerHour, "h", kSecondsPerMinute, "min");
   if (age_s >= kSecondsPerMinute) return both(kSecondsPerMinute, "min", 1, "s");

@@ -23,11 +23,22 @@ std::string NameOfIntrinsic(CameraModel model, int idx) {
 
 }  // namespace
 
+namespace {
+
+// "in only 2 of 9 captures"; nothing is only of nothing.
+std::string SeenText(std::size_t usable, std::size_t views) {
+  if (views == 0) return "in no capture: none has a usable picture of it";
+  if (usable == 0) return "in none of " + std::to_string(views) + (views == 1 ? " capture" : " captures");
+  return "in only " + std::to_string(usable) + " of " + std::to_string(views) + (views == 1 ? " capture" : " captures");
+}
+
+}  // namespace
+
 Diagnosis TooFewViews(const CameraProblem& problem, std::size_t usable, std::size_t needed, const std::string& why) {
   return {"too_few_captures",
-          problem.camera.id.str() + " sees target '" + problem.board.id.str() + "' in only " + std::to_string(usable) +
-              " of " + std::to_string(problem.views.size()) + " captures; at least " + std::to_string(needed) +
-              " are needed." + (why.empty() ? "" : " The first of the others: " + why + "."),
+          problem.camera.id.str() + " sees target '" + problem.board.id.str() + "' " +
+              SeenText(usable, problem.views.size()) + "; at least " + std::to_string(needed) + " are needed." +
+              (why.empty() ? "" : " The first of the others: " + why + "."),
           "Take 10 to 20 captures that show the board sharp and evenly lit, tilted in different directions."};
 }
 

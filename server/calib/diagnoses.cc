@@ -15,6 +15,7 @@ std::string PairOf(const StereoProblem& problem) {
 }
 
 std::string CapturesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " capture" : " captures"); }
+std::string OnlyCapturesText(std::size_t count) { return count == 0 ? "no capture" : "only " + CapturesText(count); }
 
 std::string Number(const char* format, double value) {
   char text[32];
@@ -34,7 +35,7 @@ std::string NamesOf(const std::vector<CaptureId>& captures) {
 
 Diagnosis TooFewCaptures(const StereoProblem& problem, std::size_t both) {
   return {"too_few_captures",
-          PairOf(problem) + " see the board together in only " + CapturesText(both) + "; at least " +
+          PairOf(problem) + " see the board together in " + OnlyCapturesText(both) + "; at least " +
               std::to_string(kCapturesMin) + " are needed.",
           "Take 10 to 20 captures in which both cameras see the board, tilted in different directions."};
 }

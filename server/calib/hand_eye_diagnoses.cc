@@ -15,6 +15,7 @@ std::string PairOf(const HandEyeProblem& problem) {
 }
 
 std::string CountText(std::size_t count) { return std::to_string(count) + (count == 1 ? " capture" : " captures"); }
+std::string OnlyCountText(std::size_t count) { return count == 0 ? "no capture" : "only " + CountText(count); }
 
 std::string DegreesOf(double value_rad) {
   char text[32];
@@ -36,7 +37,7 @@ constexpr const char* kTurnMore =
 
 Diagnosis TooFewMotions(const HandEyeProblem& problem, std::size_t both) {
   return {"too_few_captures",
-          PairOf(problem) + " have a pose each in only " + CountText(both) + "; at least " +
+          PairOf(problem) + " have a pose each in " + OnlyCountText(both) + "; at least " +
               std::to_string(kHandEyeMin) + " are needed.",
           "Take 20 to 40 captures from different places, turned differently, with each sensor's board in view."};
 }

@@ -18,6 +18,7 @@ std::string PairOf(const LidarCameraProblem& problem) {
 std::string BoardOf(const LidarCameraProblem& problem) { return "target '" + problem.board.id.str() + "'"; }
 
 std::string CapturesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " capture" : " captures"); }
+std::string OnlyCapturesText(std::size_t count) { return count == 0 ? "no capture" : "only " + CapturesText(count); }
 
 std::string Formatted(const char* format, double value) {
   char text[48];
@@ -47,7 +48,7 @@ std::string DegreesText(double value_rad) { return Formatted("%.1f deg", value_r
 
 Diagnosis TooFewLidarCaptures(const LidarCameraProblem& problem, std::size_t both) {
   return {"too_few_captures",
-          PairOf(problem) + " see " + BoardOf(problem) + " together in only " + CapturesText(both) + "; at least " +
+          PairOf(problem) + " see " + BoardOf(problem) + " together in " + OnlyCapturesText(both) + "; at least " +
               std::to_string(kLidarCapturesMin) + " are needed.",
           kTakeMore};
 }
@@ -167,7 +168,7 @@ Diagnosis TooFewForIntrinsics(const LidarCameraProblem& problem, std::size_t vie
 
 Diagnosis CapturesDisagree(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
   return {"captures_disagree",
-          "picture of " + problem.camera.id.str() + " and cloud of " + problem.lidar.id.str() +
+          "The picture of " + problem.camera.id.str() + " and the cloud of " + problem.lidar.id.str() +
               " do not show the board in the same place in " + CapturesText(captures.size()) + ": " +
               NamesOf(captures) + ".",
           "Check that the names of these files were not exchanged, and that the board stood still and free."};

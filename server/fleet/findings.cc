@@ -154,7 +154,7 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
       Number(1e3 * policy.sigma_max_m, "mm") + " and " + Number(kDegreesPerRadian * policy.sigma_max_rad, "deg");
   return Finding{"the pose of " + List(names) + " is less certain than the policy asks (worst " + names.front() + ": " +
                      worst + " at 1 sigma, limit " + limit + ")",
-                 "Add captures of " + List(names) + " with the board at more distances and tilts"};
+                 "Add captures of " + List(names) + " at more distances and tilts"};
 }
 
 std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {

@@ -190,7 +190,7 @@ SESSIONS = [
     yaml_case("a session without targets", r"session\.yaml line \d+: targets: the session has 0", ("targets:\n" + BOARD, "targets: {}\n")),
     yaml_case("targets left out", r'session\.yaml line \d+: "targets" is missing', ("targets:\n" + BOARD, "")),
     yaml_case("sensors without entries", r"session\.yaml line \d+: sensors: the session has 0", (YAML[YAML.index("sensors:"):], "sensors: {}\n")),
-    yaml_case("a sensor without pictures", r"left and right see the board together in only 0 captures", kind="stored",
+    yaml_case("a sensor without pictures", r"left and right see the board together in no capture", kind="stored",
               files={path: content for path, content in GOOD.items() if path.startswith("left")}),
     yaml_case("wrong counts of the board", r"left does not show the 8 x 5 target 'board' in 6 captures", ("[9, 6]", "[8, 5]"), kind="stored", files=GOOD),
     yaml_case("one inner corner", r"session\.yaml line \d+: target board: 1x6 inner corners is out of range", ("[9, 6]", "[1, 6]")),

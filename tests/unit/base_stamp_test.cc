@@ -82,6 +82,10 @@ TEST(AgeText, ShowsTwoUnits) {
   EXPECT_EQ(AgeText(303 * kSecond_ns), "5 min 3 s");
   EXPECT_EQ(AgeText(7200 * kSecond_ns), "2 h");
   EXPECT_EQ(AgeText((3 * 86400 + 4 * 3600 + 59) * kSecond_ns), "3 d 4 h");
+  EXPECT_EQ(AgeText((20 * 86400 + 4 * 3600) * kSecond_ns), "20 d");
+  EXPECT_EQ(AgeText(365 * 86400 * kSecond_ns), "365 d");
+  EXPECT_EQ(AgeText(366 * 86400 * kSecond_ns), "1.0 years");
+  EXPECT_EQ(AgeText((2151 * 86400 + 4 * 3600) * kSecond_ns), "5.9 years");
 }
 
 TEST(SystemClock, LiesInThisCentury) {
