@@ -86,6 +86,31 @@ Stand StandOf(const Eigen::Vector3d& up, const Eigen::Vector3d& forward) {
   return stand;
 }
 
+Stand FacingMost(const Stand& stand, const std::vector<Eigen::Vector3f>& points_m) {
+  constexpr int kHeadings = 16;
+  constexpr std::size_t kLookedAt = 20'000;
+  constexpr float kHalfHeight = 0.62F * kFrontHalfWidth;
+  const std::size_t jump = std::max<std::size_t>(1, points_m.size() / kLookedAt);
+  constexpr double kNearlyAsMany = 1.5;
+  Stand best = stand;
+  double most = 0;
+  for (int heading = 0; heading < kHeadings; ++heading) {
+    Stand turned = stand;
+    turned.forward = Eigen::AngleAxisf(2 * static_cast<float>(M_PI) * heading / kHeadings, stand.up) * stand.forward;
+    const Eigen::Matrix3f R = RotationOf(turned, Angle::kFront);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < points_m.size(); i += jump) {
+      const Eigen::Vector3f p = R * points_m[i];
+      const bool inside = std::abs(p.x()) < kFrontHalfWidth * p.z() && std::abs(p.y()) < kHalfHeight * p.z();
+      seen += p.z() > 0.3F && inside ? 1 : 0;
+    }
+    const double worth = static_cast<double>(seen) * (heading == 0 ? kNearlyAsMany : 1.0);
+    if (worth <= most) continue;
+    most = worth, best = turned;
+  }
+  return best;
+}
+
 Viewpoint ViewpointOf(const std::vector<Eigen::Vector3f>& points_m, const Stand& stand, Angle angle, int width_px,
                       int height_px) {
   Viewpoint view;

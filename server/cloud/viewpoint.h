@@ -13,6 +13,10 @@ struct Stand {
 // Of two directions that need be neither unit nor at right angles; the lidar's own z and x where they say nothing.
 [[nodiscard]] Stand StandOf(const Eigen::Vector3d& up, const Eigen::Vector3d& forward);
 
+// The same, turned about its up to where most of the points lie in the front view, unless it shows nearly as many as it
+// is: for cameras that look all around, where no direction is ahead.
+[[nodiscard]] Stand FacingMost(const Stand& stand, const std::vector<Eigen::Vector3f>& points_m);
+
 enum class Angle { kFront, kTop, kOblique };
 
 struct Viewpoint {

@@ -91,6 +91,19 @@ TEST(Stand, FollowsWhatIsGivenAndFallsBackOnTheLidar) {
   EXPECT_EQ(nothing.forward, Eigen::Vector3f::UnitX());
 }
 
+// A wall on the left alone: ahead there is nothing to see. What shows nearly as much stays where it is.
+TEST(Stand, FacesWhereMostPointsAre) {
+  std::vector<Eigen::Vector3f> wall;
+  for (int i = 0; i < 900; ++i) wall.emplace_back(-1.0F + 2.0F * (i % 30) / 29, 3.0F, -1.0F + 2.0F * (i / 30) / 29);
+  const Stand turned = FacingMost(Stand{}, wall);
+  EXPECT_GT(turned.forward.y(), 0.7);
+  EXPECT_NEAR(turned.forward.norm(), 1, 1e-5);
+  std::vector<Eigen::Vector3f> both = wall;
+  for (std::size_t i = 0; i < 700; ++i) both.emplace_back(3.0F, wall[i].x(), wall[i].z());
+  EXPECT_NEAR(FacingMost(Stand{}, both).forward.x(), 1, 1e-5);
+  EXPECT_EQ(FacingMost(Stand{}, {}).forward, Eigen::Vector3f::UnitX());
+}
+
 TEST(Overlay, PointsLieWhereTheyAreAndBothPicturesHaveOneSize) {
   const int width = 2000, height = 1000;
   const Picture picture{width, height, std::vector<std::uint8_t>(3 * width * height, 90)};
