@@ -2,17 +2,24 @@
 import { drawEdge } from "./charts/edge_charts.js";
 import { drawTrend } from "./charts/trend.js";
 
+import { beforePaper } from "./charts/paper.js";
+import { readGraph } from "./charts/graph_readout.js";
+
 const data = window.rigcal ?? {};
 
+// What is printed is drawn as well, seen or not, as far as its section is open.
 function whenSeen(places, action) {
+  const waiting = new Set(places);
+  const act = (place) => {
+    if (!waiting.delete(place)) return;
+    observer.unobserve(place);
+    action(place);
+  };
   const observer = new IntersectionObserver((entries) => {
-    for (const entry of entries) {
-      if (!entry.isIntersecting) continue;
-      observer.unobserve(entry.target);
-      action(entry.target);
-    }
+    for (const entry of entries) if (entry.isIntersecting) act(entry.target);
   }, { rootMargin: "300px" });
   for (const place of places) observer.observe(place);
+  beforePaper(() => [...waiting].filter((place) => !place.closest("details:not([open])")).forEach(act));
 }
 
 function edgesByAnchor() {
@@ -29,3 +36,4 @@ whenSeen(document.querySelectorAll("[data-trend]"), (place) => {
   const rows = trends.get(place.dataset.trend);
   if (rows?.length) drawTrend(place, place.dataset.trend, rows);
 });
+readGraph(document.querySelector("svg.graph"));

@@ -1,9 +1,9 @@
 // The rig in 3D: sensors where they are, how sure that is, where they were meant to be and where they were before.
 import { Group, Raycaster, Vector2 } from "three";
 import { Box3, Vector3, View, hasWebGl } from "./rig/scene.js";
-import { makeGhost, makeSensor, poseMatrix, scaleEllipsoid, showName } from "./rig/sensor_shapes.js";
+import { makeGhost, makeSensor, paint, poseMatrix, reachOf, scaleEllipsoid } from "./rig/sensor_shapes.js";
 import { button, choice, element, number, showSensor, slider, toggle } from "./rig/panel.js";
-import { pageColor } from "./rig/colors.js";
+import { Labels } from "./rig/labels.js";
 import { showClouds } from "./rig/cloud_view.js";
 
 const GHOSTS = [["nominal", "Nominal poses", "ghost"], ["previous", "Last revision", "second"]];
@@ -12,7 +12,7 @@ function boxOf(sensors) {
   const box = new Box3();
   for (const sensor of sensors) box.expandByPoint(new Vector3(...sensor.p));
   const size = Math.max(box.getSize(new Vector3()).length(), 0.05);
-  return { box: box.expandByScalar(size * 0.16), size };
+  return { box: box.expandByScalar(size * 0.1), size };
 }
 
 // A round number of times, such that the largest ellipsoid is a tenth of the rig.
@@ -33,10 +33,12 @@ function addGhosts(view, sensors, size, bar) {
     const group = new Group();
     for (const sensor of moved) group.add(makeGhost(sensor, sensor[key], size * 0.8, color));
     view.scene.add(group);
-    bar.append(toggle(name, true, (shown) => {
+    const box = toggle(name, true, (shown) => {
       group.visible = shown;
       view.request();
-    }));
+    });
+    box.classList.add("key", color);
+    bar.append(box);
   }
 }
 
@@ -61,9 +63,9 @@ function addScale(view, shapes, sensors, size, bar) {
     const scale = 10 ** exponent;
     for (const blob of blobs) scaleEllipsoid(blob, scale);
     view.request();
-    return `${number(scale, 2)} \u03c3`;
+    return `${number(scale, 2)} \u00d7 \u03c3`;
   };
-  bar.append(slider("Ellipsoids", { min: 0, max: 5, step: 0.05, value: Math.log10(startScale(sensors, size)) }, update));
+  bar.append(slider("Uncertainty, drawn", { min: 0, max: 5, step: 0.05, value: Math.log10(startScale(sensors, size)) }, update));
 }
 
 function showRig(section, data) {
@@ -74,15 +76,20 @@ function showRig(section, data) {
   const view = new View(place, reference?.kind === "camera" ? "-y" : "z");
   view.canvas.setAttribute("aria-label", `The rig in 3D: ${sensors.length} sensors. Arrow keys turn it, plus and minus zoom. The table of sensors has the same numbers.`);
   const shapeSize = size * (sensors.length > 40 ? 0.03 : 0.11);
-  const shapes = sensors.map((sensor) => makeSensor(sensor, shapeSize, sensors.length <= NAMED_MAX));
+  const shapes = sensors.map((sensor) => makeSensor(sensor, shapeSize));
   for (const shape of shapes) view.scene.add(shape.group);
   const floor = view.up === "z" ? [0, 0, box.min.z] : [0, box.max.y, 0];
   const step = view.addGrid(size, floor);
   const list = choice("Sensor", sensors.map((sensor) => [sensor.id, sensor.id]), (id) => select(id));
+  let shownId = "";
+  const importance = (id) => (id === shownId ? 2 : id === reference?.id ? 1 : sensors.length <= NAMED_MAX ? 0 : -1);
+  const labels = new Labels(place, sensors.map((sensor) => ({ id: sensor.id, at: sensor.p })), importance);
+  view.afterDraw = () => labels.layOut(view.camera, { width: place.clientWidth, height: place.clientHeight });
   const select = (id) => {
     const chosen = sensors.findIndex((sensor) => sensor.id === id);
-    shapes.forEach((shape, index) => shape.outline.color.copy(pageColor(index === chosen ? "select" : sensors[index].reference ? "accent" : "text")));
-    shapes.forEach((shape, index) => showName(shape, shape.named || index === chosen));
+    shapes.forEach((shape, index) => paint(shape.outline, index === chosen ? "select" : sensors[index].reference ? "accent" : "text"));
+    shownId = id;
+    labels.select(id);
     list.field.value = id;
     showSensor(panel, sensors[chosen]);
     view.request();
@@ -92,10 +99,11 @@ function showRig(section, data) {
   bar.append(list);
   addScale(view, shapes, sensors, size, bar);
   addGhosts(view, sensors, shapeSize, bar);
-  bar.append(element("span", { className: "soft", textContent: `grid ${number(step)} m` }));
+  bar.append(element("span", { className: "soft axes" }, "axes: ", ...["x", "y", "z"].map((axis) => element("span", { className: "key axis-" + axis, textContent: axis }))));
+  bar.append(element("span", { className: "soft", textContent: `grid: ${step < 1 ? number(step * 100) + " cm" : number(step) + " m"}` }));
   addPicking(view, shapes, select);
   view.resize();
-  view.fit(box);
+  view.fit(box, sensors.flatMap((sensor) => reachOf(sensor, shapeSize)));
   select((sensors.find((sensor) => !sensor.reference) ?? sensors[0]).id);
 }
 

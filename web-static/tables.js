@@ -1,6 +1,16 @@
 // Tables that sort and filter. Without this script they are plain tables in the order that matters most.
 import { makeSortable } from "./tables/sorting.js";
 import { addFilter } from "./tables/filter.js";
+import { addContents, addOpenAll, openTarget } from "./tables/contents.js";
+import { closeWaysOut } from "./tables/on_disk.js";
 
 for (const table of document.querySelectorAll("table[data-sortable]")) makeSortable(table);
 for (const table of document.querySelectorAll("table[data-filter]")) addFilter(table);
+if (location.protocol === "file:") closeWaysOut();
+addOpenAll(document.getElementById("details"));
+// After all scripts: which parts there are is known then.
+document.addEventListener("DOMContentLoaded", () => {
+  addContents();
+  openTarget();
+});
+window.addEventListener("hashchange", openTarget);

@@ -69,7 +69,9 @@ Status WriteOverlay(Work& work, const CloudChoice& choice, const PlacedCamera& c
            choice.cloud->capture.str(),
            "overlay/" + camera.id.str() + ".jpg",
            "overlay/" + camera.id.str() + "_picture.jpg",
-           points};
+           points,
+           picture.width_px,
+           picture.height_px};
   RIGCAL_TRY(WriteBelow(work.folder, shown.points_jpg, overlay.points_jpg));
   return WriteBelow(work.folder, shown.picture_jpg, overlay.picture_jpg);
 }
@@ -89,11 +91,16 @@ Result<std::vector<cloud::CameraView>> SeeAll(Work& work, const CloudChoice& cho
   return views;
 }
 
-// Up is where the pictures' tops are on average, unless that is nearly the lidar's own z; ahead is where the cameras
-// look, nearly the lidar's own x included.
-cloud::Stand StandOf(const CloudChoice& choice) {
-  constexpr double kUpright = 0.8;
+// Where the pictures' tops are on average, unless that is nearly the lidar's own z; ahead is where the cameras look,
+// nearly the lidar's own x included.
+struct UpAndAhead {
   Eigen::Vector3d up = Eigen::Vector3d::Zero(), forward = Eigen::Vector3d::Zero();
+};
+
+UpAndAhead UpAndAheadOf(const CloudChoice& choice) {
+  constexpr double kUpright = 0.8;
+  UpAndAhead found;
+  auto& [up, forward] = found;
   for (const PlacedCamera& camera : choice.cameras) {
     const Eigen::Matrix3d R_lidar_cam = camera.camera.T_cam_lidar.R().transpose();
     up -= R_lidar_cam.col(1), forward += R_lidar_cam.col(2);
@@ -102,15 +109,21 @@ cloud::Stand StandOf(const CloudChoice& choice) {
   up /= count, forward /= count;
   const double level = up.normalized().z();
   if (up.norm() < 0.2 || std::abs(level) > kUpright) up = (level < 0 ? -1.0 : 1.0) * Eigen::Vector3d::UnitZ();
-  return cloud::StandOf(up, forward);
+  return found;
 }
 
 Status WriteViews(Work& work, const CloudChoice& choice, const cloud::ColouredCloud& coloured,
                   const report::ColouredLidar& names) {
-  const cloud::Stand stand = StandOf(choice);
+  constexpr double kSomeAhead = 0.5;  // mean of the cameras' directions: of cameras all around it is near zero
+  const UpAndAhead axes = UpAndAheadOf(choice);
+  const cloud::Stand stand = cloud::StandOf(axes.up, axes.forward);
+  const bool ahead = axes.forward.norm() > kSomeAhead;
+  const cloud::Stand facing = ahead ? stand : cloud::FacingMost(stand, coloured.points_m);
   const std::array<cloud::Angle, 3> angles = {cloud::Angle::kFront, cloud::Angle::kTop, cloud::Angle::kOblique};
   std::array<std::string, 3> pictures;
-  ParallelFor(angles.size(), [&](std::size_t i) { pictures[i] = cloud::RenderPng(coloured, stand, angles[i]); });
+  ParallelFor(angles.size(), [&](std::size_t i) {
+    pictures[i] = cloud::RenderPng(coloured, angles[i] == cloud::Angle::kFront ? facing : stand, angles[i]);
+  });
   RIGCAL_TRY(WriteBelow(work.folder, names.front_png, pictures[0]));
   RIGCAL_TRY(WriteBelow(work.folder, names.top_png, pictures[1]));
   return WriteBelow(work.folder, names.oblique_png, pictures[2]);
@@ -123,6 +136,8 @@ report::ColouredLidar NamesOf(const CloudChoice& choice) {
   names.front_png = folder + "front.png", names.top_png = folder + "top.png",
   names.oblique_png = folder + "oblique.png";
   names.ply = folder + "cloud.ply", names.viewer_points = folder + "points.bin";
+  for (const PlacedCamera& camera : choice.cameras) names.camera_names.push_back(camera.id.str());
+  if (const Eigen::Vector3d up = UpAndAheadOf(choice).up; up.allFinite() && up.norm() > 0) names.up = up.normalized();
   return names;
 }
 

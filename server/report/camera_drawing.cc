@@ -133,6 +133,28 @@ void FillVectors(Dictionary& section, const CameraFit& fit, const ResidualShape&
                                           : std::to_string(drawn) + " of " + std::to_string(all) + " corners drawn");
 }
 
+namespace {
+
+double PlaceOf(double in_sigmas) { return kMapWidth * (in_sigmas + kReach) / (2 * kReach); }
+
+// Round numbers of pixels, at most four to either side.
+void FillTicks(Dictionary& histogram, double sigma_px) {
+  if (!(sigma_px > 0.0)) return;
+  const double reach_px = kReach * sigma_px;
+  double step_px = std::pow(10.0, std::floor(std::log10(reach_px / 5)));
+  for (const double factor : {2.0, 2.5, 2.0})
+    if (reach_px / step_px >= 5.0) step_px *= factor;
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step_px) + 1e-9)));
+  const int most = static_cast<int>(std::floor(reach_px / step_px * 0.96));
+  for (int tick = -most; tick <= most; ++tick) {
+    Dictionary* mark = histogram.AddSectionDictionary("TICK");
+    mark->SetValue("X", Short(PlaceOf(tick * step_px / sigma_px)));
+    mark->SetValue("TEXT", Fixed(tick * step_px, decimals));
+  }
+}
+
+}  // namespace
+
 void FillHistogram(Dictionary& section, const ResidualShape& shape) {
   constexpr double kHeight = 150.0, kFloor = 165.0;
   const double top = std::max(0.42, *std::max_element(shape.density.begin(), shape.density.end()) * 1.05);
@@ -152,11 +174,11 @@ void FillHistogram(Dictionary& section, const ResidualShape& shape) {
   Dictionary* histogram = section.AddSectionDictionary("HISTOGRAM");
   histogram->SetValue("BARS", bars);
   histogram->SetValue("CURVE", curve);
-  for (int sigmas = -3; sigmas <= 3; ++sigmas) {
-    Dictionary* tick = histogram->AddSectionDictionary("TICK");
-    tick->SetValue("X", Short(kMapWidth * (sigmas + kReach) / (2 * kReach)));
-    tick->SetValue("TEXT", Significant(sigmas * shape.sigma_px, 2));
-  }
+  histogram->SetValue("LIMITS",
+                      Move(PlaceOf(-3), 12) + "V" + Short(kFloor) + Move(PlaceOf(3), 12) + "V" + Short(kFloor));
+  histogram->SetValue("LOW", Short(PlaceOf(-3)));
+  histogram->SetValue("HIGH", Short(PlaceOf(3)));
+  FillTicks(*histogram, shape.sigma_px);
 }
 
 namespace {

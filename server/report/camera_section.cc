@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/report/camera_drawing.h"
+#include "server/report/figure_words.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -32,7 +33,7 @@ std::string SigmaSourceText(const CameraFit& fit) {
     return fit.sigma.empty() ? "given in session.yaml without a sigma: taken as exact"
                              : "given in session.yaml with this sigma";
   if (fit.source == IntrinsicsSource::kRefined)
-    return "given in session.yaml and refined by the pictures within the sigma given there; this is the sigma of both";
+    return "given in session.yaml and refined by the pictures; this is the sigma of both together";
   if (fit.sigma.empty()) return "sigma is not known: the pictures leave a value open";
   return fit.sigma_by_jackknife ? "sigma from a jackknife over the pictures"
                                 : "sigma from the scatter of the corners: too few pictures for a jackknife";
@@ -55,25 +56,37 @@ std::vector<Value> ValuesOf(const CameraIntrinsics& intrinsics) {
   return values;
 }
 
-// As many decimals as sigma has with two digits.
-std::string ValueText(double value, double sigma) {
-  if (!(sigma > 0) || !std::isfinite(sigma)) return Significant(value, 6);
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, 8);
-  return Fixed(value, decimals);
+// A sigma of exactly zero belongs to a value that was not estimated.
+std::string SigmaText(const CameraFit& fit, double sigma) {
+  if (sigma > 0) return "\xC2\xB1 " + Significant(sigma, 2);
+  if (!fit.sigma.empty()) return "held";
+  return fit.source == IntrinsicsSource::kGiven ? "" : "\xC2\xB1 not known";
+}
+
+std::string ModelText(CameraModel model) {
+  switch (model) {
+    case CameraModel::kPinholeRational:
+      return "pinhole with rational distortion";
+    case CameraModel::kFisheyeKb4:
+      return "fisheye (Kannala-Brandt)";
+    case CameraModel::kPinholeRadtan:
+      break;
+  }
+  return "pinhole with radial and tangential distortion";
 }
 
 void FillIntrinsics(Dictionary& section, const CameraFit& fit) {
   if (fit.source == IntrinsicsSource::kNone) return;
   Dictionary* table = section.AddSectionDictionary("INTRINSICS");
-  table->SetValue("MODEL", NameOf(fit.intrinsics.model));
+  table->SetValue("MODEL", ModelText(fit.intrinsics.model));
   table->SetValue("SIGMA_FROM", SigmaSourceText(fit));
   const std::vector<Value> values = ValuesOf(fit.intrinsics);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double sigma = i < fit.sigma.size() ? fit.sigma[i] : 0.0;
     Dictionary* row = table->AddSectionDictionary("VALUE");
     row->SetValue("NAME", values[i].name);
-    row->SetValue("VALUE", ValueText(values[i].value, sigma));
-    row->SetValue("SIGMA", sigma > 0 ? Significant(sigma, 2) : fit.sigma.empty() ? "not known" : "0");
+    row->SetValue("VALUE", AsCertainAs(values[i].value, sigma));
+    row->SetValue("SIGMA", SigmaText(fit, sigma));
     row->SetValue("UNIT", values[i].in_px ? "px" : "");
   }
 }
@@ -121,7 +134,7 @@ void FillSection(Dictionary& section, const ReportInput& input, const CameraRepo
     Dictionary* from = section.AddSectionDictionary("EDGE");
     from->SetValue("FROM", edge->frame_a.str());
     from->SetValue("TO", edge->frame_b.str());
-    from->SetValue("METHOD", edge->method);
+    from->SetValue("METHOD", MethodText(edge->method));
   }
   if (const std::string advice = AdviceOf(fit); !advice.empty()) ShowValue(section, "ADVICE", "TEXT", advice);
   if (const std::string others = OtherEdgesText(input, camera); !others.empty())
@@ -148,7 +161,7 @@ void FillRow(Dictionary& row, const CameraReport& camera) {
   row.SetValue("SOURCE", SourceText(fit));
   if (fit.source == IntrinsicsSource::kNone) return;
   const double sigma = fit.sigma.empty() ? 0.0 : fit.sigma.front();
-  row.SetValue("FX", ValueText(fit.intrinsics.fx_px, sigma));
+  row.SetValue("FX", AsCertainAs(fit.intrinsics.fx_px, sigma));
   row.SetValue("FX_SIGMA", sigma > 0 ? Significant(sigma, 2) : "");
 }
 

@@ -43,10 +43,10 @@ void FillVerdictLine(Dictionary& changes, const Verdict& before, const Verdict& 
 void FillEdgeLines(Dictionary& lines, const Changes& changes) {
   if (!changes.edges_gained.empty())
     AddLine(lines, Count(changes.edges_gained.size(), "edge", "edges") +
-                       " came: " + Listed(NamesOf(changes.edges_gained)) + ".");
+                       " new: " + Listed(NamesOf(changes.edges_gained)) + ".");
   if (!changes.edges_lost.empty())
     AddLine(lines,
-            Count(changes.edges_lost.size(), "edge", "edges") + " went: " + Listed(NamesOf(changes.edges_lost)) + ".");
+            Count(changes.edges_lost.size(), "edge", "edges") + " gone: " + Listed(NamesOf(changes.edges_lost)) + ".");
   if (!changes.sensors_gained.empty()) AddLine(lines, "Now known: " + Listed(NamesOf(changes.sensors_gained)) + ".");
   if (!changes.sensors_lost.empty()) AddLine(lines, "No longer known: " + Listed(NamesOf(changes.sensors_lost)) + ".");
 }

@@ -37,6 +37,10 @@ void FillOverlay(Dictionary& row, const CameraOverlay& overlay) {
   row.SetValue("FILE", overlay.points_jpg);
   row.SetValue("PICTURE", overlay.picture_jpg);
   row.SetValue("POINTS", Count(overlay.points, "point", "points"));
+  if (overlay.width_px <= 0 || overlay.height_px <= 0) return;
+  Dictionary* size = row.AddSectionDictionary("SIZE");
+  size->SetValue("WIDTH", std::to_string(overlay.width_px));
+  size->SetValue("HEIGHT", std::to_string(overlay.height_px));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ std::size_t ItemsOf(const Edge& edge) {
 }
 
 bool HasDetails(const Edge& edge) {
-  return !edge.captures.empty() || !edge.evidence.empty() || !edge.diagnoses.empty();
+  return !edge.captures.empty() || !edge.evidence.empty() || !edge.diagnoses.empty() || !edge.figures.empty();
 }
 
 double InSigmas(const Edge& edge, const EdgeResidual* residual) {

@@ -7,6 +7,7 @@
 #include "server/formats/camera_fit.h"
 #include "server/report/bars.h"
 #include "server/report/edge_axes.h"
+#include "server/report/figure_words.h"
 #include "server/report/influence.h"
 #include "server/report/text.h"
 
@@ -14,9 +15,11 @@ namespace rigcal::report {
 namespace {
 
 void FillDiagnoses(Dictionary& section, const Edge& edge) {
+  if (edge.diagnoses.empty()) return;
+  Dictionary* diagnoses = section.AddSectionDictionary("DIAGNOSES");
+  diagnoses->SetValue("LEVEL", edge.state == EdgeState::kFailed ? "fail" : "warn");
   for (const Diagnosis& diagnosis : edge.diagnoses) {
-    Dictionary* one = section.AddSectionDictionary("DIAGNOSIS");
-    one->SetValue("LEVEL", edge.state == EdgeState::kFailed ? "fail" : "warn");
+    Dictionary* one = diagnoses->AddSectionDictionary("DIAGNOSIS");
     one->SetValue("WHAT", diagnosis.what);
     one->SetValue("CURE", diagnosis.cure);
   }
@@ -41,14 +44,18 @@ void FillPose(Dictionary& section, const Edge& edge) {
   }
 }
 
-void FillFigures(Dictionary& section, const Edge& edge) {
-  if (edge.figures.empty()) return;
-  Dictionary* figures = section.AddSectionDictionary("FIGURES");
-  for (const auto& [name, value] : edge.figures) {
-    Dictionary* row = figures->AddSectionDictionary("FIGURE");
-    row->SetValue("NAME", FigureName(name));
-    row->SetValue("VALUE", FigureValue(name, value));
+void FillRows(Dictionary& list, const std::vector<FigureRow>& rows) {
+  for (const FigureRow& figure : rows) {
+    Dictionary* row = list.AddSectionDictionary("FIGURE");
+    row->SetValue("NAME", figure.name);
+    row->SetValue("VALUE", figure.value);
   }
+}
+
+void FillFigures(Dictionary& section, const Edge& edge) {
+  const FigureRows rows = RowsOf(edge);
+  if (!rows.checks.empty()) FillRows(*section.AddSectionDictionary("FIGURES"), rows.checks);
+  if (!rows.lens.empty()) FillRows(*section.AddSectionDictionary("LENS"), rows.lens);
 }
 
 void FillParts(Dictionary& section, const Edge& edge) {
@@ -161,11 +168,11 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   section.SetValue("LEVEL", failed ? "fail" : "pass");
   section.SetValue("FROM", edge.frame_a.str());
   section.SetValue("TO", edge.frame_b.str());
-  section.SetValue("METHOD", edge.method);
+  section.SetValue("METHOD", MethodText(edge.method));
   section.SetValue("ANCHOR", shown.anchor);
   section.SetValue("ID", edge.id.str());
   section.SetValue("PROVENANCE", edge.session.empty() ? "Pushed as a finished result."
-                                                      : "Session " + ShortDigest(edge.session.str()) + ".");
+                                                      : "From session " + ShortDigest(edge.session.str()) + ".");
   if (open) section.ShowSection("OPEN");
   FillDiagnoses(section, edge);
   if (!failed) FillPose(section, edge);

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/model/unchecked.h"
 #include "server/report/edge_axes.h"
 #include "server/report/edge_fit.h"
+#include "server/report/figure_words.h"
 #include "server/report/influence.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
@@ -10,20 +12,28 @@
 namespace rigcal::report {
 namespace {
 
-std::string ThreeNumbers(const Eigen::Vector3d& values, double scale) {
+// Of three axes, each with the decimals of its sigma.
+std::string ThreeNumbers(const Vector6d& e, const Uncertainty& uncertainty, int first_axis, double scale) {
   std::string text;
-  for (int axis = 0; axis < 3; ++axis) text += (text.empty() ? "" : " / ") + Significant(values(axis) * scale, 2);
+  for (int axis = first_axis; axis < first_axis + 3; ++axis) {
+    const AxisSigma sigma = SigmaOf(uncertainty, axis);
+    text += (text.empty() ? "" : " / ") + (sigma.known && sigma.value > 0.0
+                                               ? AsCertainAs(e(axis) * scale, sigma.value * scale)
+                                               : Significant(e(axis) * scale, 2));
+  }
   return text;
 }
 
-void FillFit(Dictionary& good, const ShownEdge& shown) {
-  if (!shown.residual) return good.ShowSection("NO_FIT");
+// Where nothing checks an edge, its residual is zero by construction: no number to show.
+void FillFit(Dictionary& good, const ShownEdge& shown, bool unchecked) {
+  if (!shown.residual || unchecked)
+    return ShowValue(good, "NO_FIT", "WHY", shown.residual ? "nothing checks it" : "not solved");
   Dictionary* fit = good.AddSectionDictionary("FIT");
   const Vector6d& e = shown.residual->e;
-  fit->SetValue("E_MM", ThreeNumbers(e.head<3>(), kMmPerMetre));
+  const Uncertainty& uncertainty = shown.edge->uncertainty;
+  fit->SetValue("E_MM", ThreeNumbers(e, uncertainty, tangent::kTranslation, kMmPerMetre));
   fit->SetValue("E_MM_KEY", Significant(e.head<3>().norm() * kMmPerMetre, 6));
-  fit->SetValue("E_DEG", ThreeNumbers(e.tail<3>(), kDegPerRad));
-  fit->SetValue("E_DEG_KEY", Significant(e.tail<3>().norm() * kDegPerRad, 6));
+  fit->SetValue("E_DEG", ThreeNumbers(e, uncertainty, tangent::kRotation, kDegPerRad));
   fit->SetValue("E_SIGMA", Fixed(shown.in_sigmas, 2));
 }
 
@@ -57,16 +67,24 @@ void FillWithout(Dictionary& good, const Influences& influences, const EdgeId& e
   without->SetValue("SENSOR", found->most_moved.str());
 }
 
-void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown) {
+// Only what is not the rule is said.
+void FillSource(Dictionary& good, UncertaintySource source) {
+  if (source == UncertaintySource::kJackknife) return;
+  ShowValue(good, "SOURCE", "TEXT",
+            source == UncertaintySource::kModel   ? "model alone"
+            : source == UncertaintySource::kGiven ? "as given"
+                                                  : "assumed");
+}
+
+void FillGood(Dictionary& row, const ReportInput& input, const ShownEdge& shown, bool unchecked) {
   Dictionary* good = row.AddSectionDictionary("GOOD");
   const Edge& edge = *shown.edge;
-  FillFit(*good, shown);
+  FillFit(*good, shown, unchecked);
   FillTest(*good, input, edge.id);
   good->SetValue("S_MM", ThreeSigmas(edge.uncertainty, tangent::kTranslation));
   good->SetValue("S_MM_KEY", SigmaKey(edge.uncertainty, tangent::kTranslation));
   good->SetValue("S_DEG", ThreeSigmas(edge.uncertainty, tangent::kRotation));
-  good->SetValue("S_DEG_KEY", SigmaKey(edge.uncertainty, tangent::kRotation));
-  good->SetValue("SOURCE", NameOf(edge.uncertainty.source));
+  FillSource(*good, edge.uncertainty.source);
   FillInfluenceCell(*good, input, edge);
   FillWithout(*good, input.revision.solution.influences, edge.id);
 }
@@ -77,7 +95,8 @@ std::ptrdiff_t UsedCount(const Edge& edge) {
 
 std::string CapturesText(const Edge& edge) {
   if (edge.captures.empty()) return "";
-  return std::to_string(UsedCount(edge)) + " of " + std::to_string(edge.captures.size());
+  const auto used = static_cast<std::size_t>(UsedCount(edge)), all = edge.captures.size();
+  return std::to_string(used) + (used == all ? "" : " of " + std::to_string(all));
 }
 
 void FillState(Dictionary& row, const ShownEdge& shown, const Contradictions& contradictions) {
@@ -88,26 +107,31 @@ void FillState(Dictionary& row, const ShownEdge& shown, const Contradictions& co
   if (contradictions.alternatives.contains(shown.edge->id)) row.ShowSection("ALTERNATIVE");
 }
 
-void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, const Contradictions& contradictions) {
+struct Judged {
+  Contradictions contradictions;
+  std::set<EdgeId> unchecked;
+};
+
+void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, const Judged& judged) {
   const Edge& edge = *shown.edge;
   Dictionary* name = row.AddSectionDictionary(shown.detailed ? "LINK" : "PLAIN");
   name->SetValue("ANCHOR", shown.anchor);
   name->SetValue("FROM", edge.frame_a.str());
   name->SetValue("TO", edge.frame_b.str());
-  FillState(row, shown, contradictions);
-  row.SetValue("METHOD", edge.method);
+  FillState(row, shown, judged.contradictions);
+  row.SetValue("METHOD", MethodText(edge.method));
   row.SetValue("CAPTURES", CapturesText(edge));
   row.SetValue("CAPTURES_KEY", edge.captures.empty() ? "" : std::to_string(UsedCount(edge)));
-  if (edge.state == EdgeState::kGood) return FillGood(row, input, shown);
+  if (edge.state == EdgeState::kGood) return FillGood(row, input, shown, judged.unchecked.contains(edge.id));
   ShowValue(row, "FAILED", "WHY", edge.diagnoses.empty() ? "no reason was given" : edge.diagnoses.front().what);
 }
 
 }  // namespace
 
 void FillEdges(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges) {
-  const Contradictions contradictions = ContradictionsOf(input.revision.solution.suspects);
+  const Judged judged{ContradictionsOf(input.revision.solution.suspects), UncheckedEdges(input.revision.solution)};
   for (std::size_t i = 0; i < std::min(edges.size(), kEdgeRowsMax); ++i)
-    FillRow(*page.AddSectionDictionary("EDGE"), input, edges[i], contradictions);
+    FillRow(*page.AddSectionDictionary("EDGE"), input, edges[i], judged);
   if (edges.size() > kEdgeRowsMax) ShowValue(page, "MORE_EDGES", "COUNT", std::to_string(edges.size() - kEdgeRowsMax));
   if (const std::string& why_not = input.revision.solution.influences.why_not; !why_not.empty())
     ShowValue(page, "NO_EDGE_INFLUENCE", "TEXT", why_not);

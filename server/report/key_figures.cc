@@ -41,10 +41,10 @@ Figure GlobalErrorFigure(const GraphSolution& solution) {
                 Significant(before.total, 3) + kArrow + Significant(after.total, 3),
                 "",
                 {}};
-  figure.details.push_back("translation rms " + RmsText(before.translation_m2, kMmPerMetre) + kArrow +
-                           RmsText(after.translation_m2, kMmPerMetre) + " mm, rotation rms " +
+  figure.details.push_back("edges off the rig by " + RmsText(before.translation_m2, kMmPerMetre) + kArrow +
+                           RmsText(after.translation_m2, kMmPerMetre) + " mm and " +
                            RmsText(before.rotation_rad2, kDegPerRad) + kArrow +
-                           RmsText(after.rotation_rad2, kDegPerRad) + " deg");
+                           RmsText(after.rotation_rad2, kDegPerRad) + " deg, rms");
   if (after.total > before.total)
     figure.details.push_back(
         "It rose, and may: E_global counts every edge alike, while the solution trusts certain edges "
@@ -56,11 +56,12 @@ Figure CostFigure(const GraphSolution& solution) {
   const std::string name = "\xCF\x87\xC2\xB2 per degree of freedom";
   if (!solution.converged) return {name, "not converged", "fail", {"The numbers of this revision are not an optimum."}};
   if (solution.dof <= 0) return {name, "no loop", "warn", {"Nothing is measured twice."}};
-  return {name,
-          Significant(solution.cost / solution.dof, 3),
-          "",
-          {Significant(solution.cost, 5) + " / " + std::to_string(solution.dof) +
-           "; near 1 where edges are independent. Edges of one session share captures: then it is no verdict."}};
+  return {
+      name,
+      Significant(solution.cost / solution.dof, 3),
+      "",
+      {Significant(solution.cost, 5) + " / " + std::to_string(solution.dof) +
+       ". Near 1 where edges are independent; edges of one session share captures, so it decides nothing by itself."}};
 }
 
 std::string PairText(const Edge& edge) { return edge.frame_a.str() + kArrow + edge.frame_b.str(); }
@@ -74,7 +75,8 @@ Figure WorstEdgeFigure(const std::vector<ShownEdge>& edges, int dof) {
   if (failed > 0) return {"Worst edge", PairText(*worst.edge), "fail", {"failed", counts}};
   if (dof <= 0) return {"Worst edge", "none is checked", "warn", {"Without a loop every edge fits.", counts}};
   const char* tone = worst.in_sigmas < 3.0 ? "pass" : "warn";
-  return {"Worst edge", PairText(*worst.edge), tone, {Fixed(worst.in_sigmas, 1) + " \xCF\x83 off the solution", counts}};
+  return {
+      "Worst edge", PairText(*worst.edge), tone, {Fixed(worst.in_sigmas, 1) + " \xCF\x83 off the solution", counts}};
 }
 
 // The sensor whose position is least certain.

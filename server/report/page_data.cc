@@ -90,8 +90,7 @@ void WriteSensors(JsonWriter& out, const ReportInput& input) {
 // What is drawn needs no more digits.
 double Rounded(double value) {
   std::array<char, 32> text{};
-  const char* end =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3).ptr;
+  const char* end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 3).ptr;
   std::from_chars(text.data(), end, value);
   return value;
 }
@@ -138,12 +137,27 @@ void WriteEdge(JsonWriter& out, const ReportInput& input, const ShownEdge& shown
   });
 }
 
+// For the viewer: whose colours are in the points, and which way is up.
+void WriteClouds(JsonWriter& out, const CloudSection& clouds) {
+  out.List("clouds", [&] {
+    for (const ColouredLidar& lidar : clouds.lidars)
+      out.Object([&] {
+        out.Text("lidar", lidar.lidar);
+        WriteNumbers(out, "up", lidar.up);
+        out.List("cameras", [&] {
+          for (const std::string& name : lidar.camera_names) out.Text(name);
+        });
+      });
+  });
+}
+
 }  // namespace
 
 std::string PageData(const ReportInput& input, const std::vector<ShownEdge>& edges) {
   const std::string json = formats::WriteObject([&](JsonWriter& out) {
     out.Integer("number", input.number);
     out.List("sensors", [&] { WriteSensors(out, input); });
+    WriteClouds(out, input.clouds);
     out.List("edges", [&] {
       for (const ShownEdge& shown : edges)
         if (shown.detailed) out.Object([&] { WriteEdge(out, input, shown); });

@@ -16,8 +16,12 @@ void FillFacts(Dictionary& row, const ReportInput& input, const SessionId& sessi
     shown->SetValue("FILES", Count(facts.files, "file", "files"));
     if (!facts.operator_name.empty()) ShowValue(*shown, "OPERATOR", "NAME", facts.operator_name);
     if (!facts.rig_model.empty()) ShowValue(*shown, "RIG", "NAME", facts.rig_model);
-    for (const std::string& board : facts.boards) ShowValue(*shown, "BOARD", "NAME", board);
+    if (facts.boards.empty()) return;
+    Dictionary* boards = shown->AddSectionDictionary("BOARDS");
+    for (const std::string& board : facts.boards) ShowValue(*boards, "BOARD", "NAME", board);
+    return;
   }
+  row.ShowSection("NO_FACTS");
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ void FillSections(Dictionary& page, const ReportInput& input, const std::vector<
   const std::set<Digest> stored(input.evidence.begin(), input.evidence.end());
   std::size_t detailed = 0, left = 0, shown_sections = 0;
   for (const ShownEdge& shown : edges) detailed += shown.detailed ? 1 : 0;
+  if (detailed > 0) page.ShowSection("DETAILS");
   const std::size_t pictures_max = detailed > kManySections ? kPicturesPerEdgeMax / 2 : kPicturesPerEdgeMax;
   for (const ShownEdge& shown : edges) {
     const Edge& edge = *shown.edge;
@@ -83,6 +84,6 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
                                             {"style.css", StyleSheet()}};
 }
 
-std::string StyleSheet() { return std::string(embedded::kstyle_css); }
+std::string StyleSheet() { return std::string(embedded::kstyle_css) + std::string(embedded::kreport_css); }
 
 }  // namespace rigcal::report

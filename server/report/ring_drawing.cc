@@ -96,6 +96,13 @@ void DrawName(Dictionary& node, const std::string& id, const Eigen::Vector2d& pl
   name->SetValue("TEXT", id.size() > kNameMax ? id.substr(0, kNameMax - 1) + "\xE2\x80\xA6" : id);
 }
 
+// A triangle does not reach as far down as a ring: no empty space below it.
+double HeightOf(const std::map<SensorId, Eigen::Vector2d>& places, const RingSize& size) {
+  double lowest_px = size.height_px / 2;
+  for (const auto& [sensor, place] : places) lowest_px = std::max(lowest_px, place.y());
+  return lowest_px + size.height_px / 2 - size.radius_y_px;
+}
+
 void DrawNode(Ring& ring, const SensorPose& pose, bool is_reference, const Eigen::Vector2d& centre) {
   const Eigen::Vector2d place = ring.places.at(pose.sensor);
   const char* state = is_reference ? "reference" : pose.known ? "known" : "unknown";
@@ -118,10 +125,11 @@ std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, co
   std::size_t longest = 0;
   for (const SensorPose& pose : poses) longest = std::max(longest, std::min(pose.sensor.str().size(), kNameMax));
   const RingSize size = RingSizeOf(poses.size(), longest);
+  const auto places = RingPlaces(poses, revision.reference, size);
   svg.SetValue("WIDTH", Fixed(size.width_px, 0));
-  svg.SetValue("HEIGHT", Fixed(size.height_px, 0));
+  svg.SetValue("HEIGHT", Fixed(HeightOf(places, size), 0));
   Ring ring{svg,
-            RingPlaces(poses, revision.reference, size),
+            places,
             poses.size() <= kNamedMax,
             UncheckedEdges(revision.solution),
             InformationScale(edges),

@@ -65,6 +65,11 @@ std::string Significant(double value, int digits) {
   return Fixed(value, std::max(0, digits - 1 - exponent));
 }
 
+std::string AsCertainAs(double value, double sigma) {
+  if (!(sigma > 0) || !std::isfinite(sigma)) return Significant(value, 6);
+  return Fixed(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, 8));
+}
+
 std::string Mm(double value_m) { return Fixed(value_m * kMmPerMetre, 2); }
 std::string Deg(double value_rad) { return Fixed(value_rad * kDegPerRad, 3); }
 std::string SigmaMm(double value_m) { return Significant(value_m * kMmPerMetre, 2); }
@@ -83,6 +88,11 @@ std::string FigureName(const std::string& figure) {
   std::string name = unit ? figure.substr(0, figure.size() - unit->suffix.size()) : figure;
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
+}
+
+FigureUnit UnitOfFigure(const std::string& figure) {
+  const Unit* unit = UnitOf(figure);
+  return unit ? FigureUnit{std::string(unit->shown), unit->scale} : FigureUnit{};
 }
 
 std::string FigureValue(const std::string& figure, double value) {

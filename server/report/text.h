@@ -17,6 +17,8 @@ inline constexpr double kDegPerRad = 57.295779513082320877;
 [[nodiscard]] std::string Fixed(double value, int decimals);
 // `digits` significant digits, in fixed notation between 1e-4 and 1e7.
 [[nodiscard]] std::string Significant(double value, int digits);
+// As many decimals as sigma has with two digits; six digits where sigma is not known.
+[[nodiscard]] std::string AsCertainAs(double value, double sigma);
 [[nodiscard]] std::string Mm(double value_m);       // 2 decimals
 [[nodiscard]] std::string Deg(double value_rad);    // 3 decimals
 [[nodiscard]] std::string SigmaMm(double value_m);  // 2 significant digits
@@ -31,6 +33,12 @@ struct RollPitchYaw {
 // "reprojection_rms_px", 0.21 -> "reprojection rms", "0.21 px"; _m as mm, _rad as deg.
 [[nodiscard]] std::string FigureName(const std::string& figure);
 [[nodiscard]] std::string FigureValue(const std::string& figure, double value);
+// What is shown behind the number, with its space, and what the figure is multiplied by for it.
+struct FigureUnit {
+  std::string shown;
+  double scale = 1.0;
+};
+[[nodiscard]] FigureUnit UnitOfFigure(const std::string& figure);
 
 [[nodiscard]] std::string Count(std::size_t count, const std::string& one, const std::string& many);  // "1 edge"
 [[nodiscard]] std::string TimeText(Stamp stamp);  // "2026-01-31 12:00:00 UTC"

@@ -4,7 +4,7 @@ const { accessible, assert, close, colors, facts, open, withBrowser } = require(
 withBrowser(async (browser) => {
   const page = await open(browser, facts.address + facts.path);
   const start = Date.now();
-  await page.click("text=Turn the cloud of top");
+  await page.click("text=Open top in 3D");
   await page.waitForSelector(".cloud .view[data-frames]");
   console.log(JSON.stringify({ visible_s: (Date.now() - start) / 1000 }));
   assert.ok((await colors(page, ".cloud canvas")) > 100, "the points are drawn in their colours");

@@ -125,7 +125,7 @@ TEST(CameraShape, MeansTellWhereTheModelDoesNotFit) {
 TEST(ReportCameras, PageHasPicturesAndNumbers) {
   const std::string page = PageOf(ReportWith(FitWith({ViewWith({{10, 10}, {1190, 890}, {600, 450}}, {0.3, -0.4})})));
   for (const char* part : {"id=\"cameras\"", "class=\"heat1\"", "class=\"usual\"", "class=\"normal\"",
-                           "class=\"compass\"", "700.12 px <span class=\"soft\">&plusmn; 0.25</span>",
+                           "class=\"compass\"", "700.12 px <span class=\"soft\">\xC2\xB1 0.25</span>",
                            "jackknife over the pictures", "01: tilted 29 deg, 2.00 m away", "rms 0.500 px"})
     EXPECT_THAT(page, HasSubstr(part)) << part;
   EXPECT_THAT(page, HasSubstr("cameras/" + Sha256Of("fit").str() + ".json"));

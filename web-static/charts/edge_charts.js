@@ -25,11 +25,20 @@ function figure(parent, title, hint, height) {
 }
 
 const grid = { left: 8, right: 12, top: 26, bottom: 6, containLabel: true };
+const unitOf = (edge) => (edge.unit === "m" ? { scale: MM, unit: "mm" } : { scale: 1, unit: "px" });
 
+// Over all captures that were used, in the unit shown; null where there is none.
+export function rmsOf(edge) {
+  const used = edge.captures.filter((capture) => !capture.unused).map((capture) => capture.rms * unitOf(edge).scale);
+  return used.length ? Math.sqrt(used.reduce((sum, value) => sum + value * value, 0) / used.length) : null;
+}
+
+// What was not used has no bar but a cross.
+const CROSS = { show: true, formatter: "\u00d7", position: "top", distance: 0, fontSize: 13, fontWeight: 700 };
+
+// The line stands at the value itself: by default ECharts rounds it to two decimals.
 function residualOption(edge) {
-  const scale = edge.unit === "m" ? MM : 1, unit = edge.unit === "m" ? "mm" : "px";
-  const used = edge.captures.filter((capture) => !capture.unused).map((capture) => capture.rms * scale);
-  const mean = used.length ? Math.sqrt(used.reduce((sum, value) => sum + value * value, 0) / used.length) : 0;
+  const { scale, unit } = unitOf(edge), rms = rmsOf(edge);
   return {
     grid,
     tooltip: {
@@ -40,18 +49,24 @@ function residualOption(edge) {
       },
     },
     xAxis: { type: "category", data: edge.captures.map((capture) => capture.capture) },
-    yAxis: { type: "value", name: unit, min: 0 },
+    yAxis: { type: "value", name: unit, min: 0, nameTextStyle: { align: "left" } },
     series: [{
       type: "bar", barMaxWidth: 26,
-      data: edge.captures.map((capture) => (!capture.unused ? { value: capture.rms * scale } : { value: 0, itemStyle: { color: colorOf("soft") } })),
+      data: edge.captures.map((capture) => (!capture.unused ? { value: capture.rms * scale } : { value: 0, label: { ...CROSS, color: colorOf("fail-strong") } })),
       itemStyle: { color: colorOf("link"), borderRadius: [2, 2, 0, 0] },
       markLine: {
-        silent: true, symbol: "none", label: { formatter: "rms", color: colorOf("soft"), position: "insideEndTop" },
-        lineStyle: { color: colorOf("soft"), type: "dashed" }, data: used.length ? [{ yAxis: mean }] : [],
+        silent: true, symbol: "none", label: { show: false }, precision: 12,
+        lineStyle: { color: colorOf("text"), type: "dashed", width: 1.4 }, data: rms === null ? [] : [{ yAxis: rms }],
       },
     }],
   };
 }
+
+// Each axis has the colour of its bars.
+const axesOf = (left, right) => [
+  { type: "value", name: left, min: 0, nameTextStyle: { color: colorOf("link"), fontWeight: 700, align: "left" } },
+  { type: "value", name: right, min: 0, splitLine: { show: false }, nameTextStyle: { color: colorOf("second"), fontWeight: 700, align: "right" } },
+];
 
 const shift = (d, first, scale) => Math.hypot(d[first], d[first + 1], d[first + 2]) * scale;
 
@@ -69,7 +84,7 @@ function influenceOption(edge) {
         points.map((point) => `${point.seriesName} moves ${digits(point.value)} ${point.seriesIndex === 0 ? "mm" : "deg"}`).join("\n"),
     },
     xAxis: { type: "category", data: edge.blocks.map((block) => block.id) },
-    yAxis: [{ type: "value", name: "mm", min: 0 }, { type: "value", name: "deg", min: 0, splitLine: { show: false } }],
+    yAxis: axesOf("mm", "deg"),
     series: [bar("position", 0, MM, "mm", 0, colorOf("link")), bar("rotation", 3, DEG, "deg", 1, colorOf("second"))],
   };
 }
@@ -91,7 +106,7 @@ function directionOption(edge) {
       },
     },
     xAxis: { type: "category", data: AXES.map((name, axis) => (edge.sigma[axis] === null ? name + "\nfree" : name)) },
-    yAxis: [{ type: "value", name: "\u03c3, mm", min: 0 }, { type: "value", name: "\u03c3, deg", min: 0, splitLine: { show: false } }],
+    yAxis: axesOf("\u03c3, mm", "\u03c3, deg"),
     series: [bars(0, 0, colorOf("link")), bars(3, 1, colorOf("second"))],
   };
 }
@@ -100,7 +115,8 @@ function directionOption(edge) {
 export function drawEdge(place, edge) {
   if (edge.captures.some((capture) => !capture.unused)) {
     for (const fallback of place.querySelectorAll("[data-fallback]")) fallback.hidden = true;
-    draw(figure(place, "Residual of each capture", "rms; dashed: over all used captures", 190), () => residualOption(edge));
+    const unused = edge.captures.some((capture) => capture.unused) ? "; \u00d7: not used" : "";
+    draw(figure(place, "Residual of each capture", `dashed: rms of all, ${digits(rmsOf(edge))} ${unitOf(edge).unit}${unused}`, 190), () => residualOption(edge));
   }
   if (edge.blocks.length)
     draw(figure(place, "Which capture moves the answer", "how far the pose moves when one capture is left out", 200), () => influenceOption(edge));

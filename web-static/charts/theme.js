@@ -42,7 +42,9 @@ function axisStyle(base) {
 function withStyle(option) {
   const { soft, line, ...base } = common();
   const style = axisStyle({ soft, line });
-  const styled = (axis) => [].concat(axis).map((one) => ({ ...style, ...one, axisLabel: { ...style.axisLabel, ...one.axisLabel } }));
+  const styled = (axis) => [].concat(axis).map((one) => ({
+    ...style, ...one, axisLabel: { ...style.axisLabel, ...one.axisLabel }, nameTextStyle: { ...style.nameTextStyle, ...one.nameTextStyle },
+  }));
   return { ...base, ...option, tooltip: { ...base.tooltip, ...option.tooltip }, xAxis: styled(option.xAxis), yAxis: styled(option.yAxis) };
 }
 
@@ -51,9 +53,14 @@ export function draw(container, make) {
   const chart = echarts.init(container, null, { renderer: "canvas" });
   const paint = () => chart.setOption(withStyle(make()), true);
   paint();
-  drawn.set(container, paint);
+  drawn.set(container, () => {
+    chart.resize();
+    paint();
+  });
   new ResizeObserver(() => chart.resize()).observe(container);
   return chart;
 }
 
-dark.addEventListener("change", () => drawn.forEach((paint) => paint()));
+const repaint = () => drawn.forEach((paint) => paint());
+dark.addEventListener("change", repaint);
+document.addEventListener("rigcal:colors", repaint);

@@ -1,8 +1,9 @@
 // The coloured cloud, to be turned by hand. Its points are fetched when asked for; a page from disk may not fetch, there the
 // file is chosen by hand.
-import { BufferGeometry, GLSL3, IntType, InterleavedBuffer, InterleavedBufferAttribute, Points, RawShaderMaterial, Vector3 } from "three";
+import { BufferGeometry, GLSL3, Group, IntType, InterleavedBuffer, InterleavedBufferAttribute, Points, Quaternion, RawShaderMaterial, Vector3 } from "three";
 import { Box3, View, hasWebGl } from "./scene.js";
 import { button, choice, element, number, slider } from "./panel.js";
+import { RAMP_GLSL, fillLegend } from "./cloud_legend.js";
 import { compareOverlays } from "./overlay.js";
 
 const HEADER_BYTES = 28, RECORD_BYTES = 12;
@@ -33,7 +34,12 @@ uniform vec3 sensor;
 in ivec4 position;
 in vec4 tail;
 out vec3 shown;
-vec3 ramp(float t) { return clamp(vec3(1.5 - abs(4.0 * t - 3.0), 1.5 - abs(4.0 * t - 2.0), 1.5 - abs(4.0 * t - 1.0)), 0.0, 1.0); }
+vec3 ramp(float t) {
+  vec3 colors[4] = ${RAMP_GLSL};
+  float at = clamp(t, 0.0, 1.0) * 3.0;
+  int first = min(int(at), 2);
+  return mix(colors[first], colors[first + 1], at - float(first));
+}
 vec3 wheel(float k) { return 0.55 + 0.45 * cos(6.2831853 * (k * 0.381966 + vec3(0.0, 0.33, 0.67))); }
 void main() {
   float camera = tail.y * 255.0;
@@ -41,7 +47,7 @@ void main() {
   vec3 meters = (modelMatrix * vec4(vec3(position.xyz), 1.0)).xyz;
   if (mode == 0) shown = vec3(float(position.w & 255) / 255.0, float((position.w >> 8) & 255) / 255.0, tail.x);
   else if (mode == 1) shown = covered ? wheel(camera) : vec3(0.45);
-  else if (mode == 2) shown = ramp(1.0 - clamp(length(meters - sensor) / far, 0.0, 1.0));
+  else if (mode == 2) shown = ramp(length(meters - sensor) / far);
   else if (mode == 3) shown = vec3(0.1 + 0.9 * tail.z);
   else shown = covered ? vec3(0.42) : vec3(1.0, 0.35, 0.2);
   gl_Position = projectionMatrix * viewMatrix * vec4(meters, 1.0);
@@ -50,16 +56,17 @@ void main() {
 const FRAGMENT = "precision mediump float;\nin vec3 shown;\nout vec4 color;\nvoid main() { color = vec4(shown, 1.0); }";
 
 // Where nearly all points are: a few far ones must not make the rest small.
-function boxOf({ count, shorts, origin, step }) {
+function boxOf({ count, shorts, origin, step }, upright) {
   const jump = Math.max(1, Math.floor(count / 20000));
-  const box = new Box3();
-  const sorted = [0, 1, 2].map((axis) => {
-    const values = [];
-    for (let index = 0; index < count; index += jump) values.push(origin[axis] + step * shorts[index * 6 + axis]);
-    return values.sort((a, b) => a - b);
-  });
+  const box = new Box3(), point = new Vector3();
+  const sorted = [[], [], []];
+  for (let index = 0; index < count; index += jump) {
+    point.set(...[0, 1, 2].map((axis) => origin[axis] + step * shorts[index * 6 + axis])).applyQuaternion(upright);
+    point.toArray().forEach((value, axis) => sorted[axis].push(value));
+  }
+  for (const values of sorted) values.sort((a, b) => a - b);
   const part = (ratio) => new Vector3(...sorted.map((values) => values[Math.floor((values.length - 1) * ratio)]));
-  return box.set(part(0.05), part(0.95));
+  return box.set(part(0.03), part(0.97));
 }
 
 function pointsOf(cloud, box) {
@@ -84,29 +91,38 @@ function pointsOf(cloud, box) {
 function show(place, name, buffer) {
   const cloud = readPoints(buffer);
   if (!cloud.count) throw new Error("The cloud holds no point.");
-  const frame = element("div", { className: "view" }), bar = element("div", { className: "bar" });
-  place.replaceChildren(frame, bar);
-  const box = boxOf(cloud), points = pointsOf(cloud, box), view = new View(frame, "z", false);
+  const frame = element("div", { className: "view" }), bar = element("div", { className: "bar" }), legend = element("p", { className: "legend" });
+  place.replaceChildren(frame, bar, legend);
+  // A lidar may be mounted askew: what is up for the cameras is up here, too.
+  const { up = [0, 0, 1], cameras = [] } = (window.rigcal?.clouds ?? []).find((one) => one.lidar === name) ?? {};
+  const upright = new Quaternion().setFromUnitVectors(new Vector3(...up), new Vector3(0, 0, 1));
+  const box = boxOf(cloud, upright), points = pointsOf(cloud, box), view = new View(frame, "z", false, "cloud");
+  const turned = new Group();
+  turned.quaternion.copy(upright);
+  turned.add(points);
   view.canvas.setAttribute("aria-label", `Coloured cloud of ${name}: ${cloud.count} points. Arrow keys turn it, plus and minus zoom.`);
-  view.scene.add(points);
+  view.scene.add(turned);
   for (const [key, text] of [["oblique", "All"], ["front", "Front"], ["top", "Top"], ["side", "Side"]]) bar.append(button(text, () => view.look(key)));
   bar.append(choice("Colour", MODES, (mode) => {
     points.material.uniforms.mode.value = MODES.findIndex(([key]) => key === mode);
+    fillLegend(legend, mode, { cameras, far: points.material.uniforms.far.value });
     view.request();
   }));
+  fillLegend(legend, "color", {});
   bar.append(slider("Point size", { min: 1, max: 8, step: 0.5, value: 2 }, (size) => {
     points.material.uniforms.size.value = size * view.renderer.getPixelRatio();
     view.request();
     return `${size} px`;
   }));
-  bar.append(element("span", { className: "soft", textContent: `${number(cloud.count / 1e6, 3)} million points` }));
+  bar.append(element("span", { className: "soft", textContent: cloud.count < 1e6 ? `${cloud.count.toLocaleString("en")} points` : `${number(cloud.count / 1e6, 3)} million points` }));
   view.resize();
   view.fit(box);
+  view.canvas.focus({ preventScroll: true });
 }
 
 function chooseFile(place, name, address) {
   const field = element("input", { type: "file", accept: ".bin" });
-  const label = element("label", { className: "filter" }, `A page from disk may not read files by itself. Choose ${address} to turn the cloud: `, field);
+  const label = element("label", { className: "filter" }, `To see ${name} in 3D choose the file ${address} (a page from disk may not read it by itself): `, field);
   field.addEventListener("change", async () => attempt(place, async () => show(place, name, await field.files[0].arrayBuffer())));
   place.append(label);
 }
@@ -134,7 +150,7 @@ export function showClouds() {
     link.closest("p").before(place);
     if (!hasWebGl()) continue;
     if (location.protocol === "file:") chooseFile(place, name, address);
-    else place.append(button(`Turn the cloud of ${name}`, () => attempt(place, () => load(place, name, address))));
+    else place.append(button(`Open ${name} in 3D`, () => attempt(place, () => load(place, name, address))));
   }
   compareOverlays();
 }

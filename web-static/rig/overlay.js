@@ -6,17 +6,19 @@ export function compareOverlays() {
     const figure = image.closest("figure");
     const plain = figure?.querySelector('figcaption a[href$="_picture.jpg"]');
     if (!plain) continue;
-    const stack = element("div", { className: "overlay" });
+    const stack = element("span", { className: "overlay" });
     const picture = element("img", { src: plain.getAttribute("href"), alt: "", loading: "lazy" });
-    const link = image.closest("a") ?? image;
-    link.before(stack);
+    if (image.getAttribute("width")) [picture.width, picture.height] = [image.getAttribute("width"), image.getAttribute("height")];
+    image.before(stack);
     stack.append(picture, image);
-    if (link !== image) link.remove();
     const field = element("input", { type: "range", min: 0, max: 100, value: 70 });
-    field.setAttribute("aria-label", "How much of the cloud is shown over the picture");
-    const update = () => { image.style.opacity = String(field.value / 100); };
+    field.setAttribute("aria-label", "How much of the cloud is shown over the picture: " + image.alt);
+    const update = () => {
+      image.style.opacity = String(field.value / 100);
+      field.setAttribute("aria-valuetext", `${field.value} % cloud`);
+    };
     field.addEventListener("input", update);
     update();
-    stack.after(element("label", { className: "blend" }, "picture ", field, " cloud"));
+    (stack.closest("a") ?? stack).after(element("label", { className: "blend" }, "picture ", field, " cloud"));
   }
 }

@@ -49,8 +49,6 @@ function row(list, name, value) {
   list.append(element("dt", { textContent: name }), element("dd", { textContent: value }));
 }
 
-const fixed = (values, scale, decimals) => values.map((value) => (value * scale).toFixed(decimals)).join(", ");
-const triple = (values, scale, digits) => values.map((value) => number(value * scale, digits)).join(", ");
 
 // Roll, pitch, yaw of a unit quaternion, R = Rz(yaw) Ry(pitch) Rx(roll).
 export function rollPitchYaw([x, y, z, w]) {
@@ -67,18 +65,28 @@ export function angleBetween(a, b) {
   return 2 * Math.acos(Math.min(1, dot)) * DEG;
 }
 
+function cells(tag, texts) {
+  return texts.map((textContent, index) => element(index === 0 ? "th" : tag, { textContent, scope: index === 0 ? "row" : tag === "th" ? "col" : "" }));
+}
+
+// One line for each axis: where along it, turned how much about it, and how sure both is.
+function poseTable(sensor) {
+  const turns = rollPitchYaw(sensor.q);
+  const sigma = (index, scale) => (sensor.sigma ? number(sensor.sigma[index] * scale, 2) : "");
+  const lines = ["x, roll", "y, pitch", "z, yaw"].map((name, axis) => element("tr", {}, ...cells("td", [
+    name, (sensor.p[axis] * MM).toFixed(2), sigma(axis, MM), (turns[axis] * DEG).toFixed(3), sigma(axis + 3, DEG)])));
+  const head = element("tr", {}, ...cells("th", ["", "mm", "\u03c3, mm", "deg", "\u03c3, deg"]));
+  return element("table", { className: "pose" }, element("thead", {}, head), element("tbody", {}, ...lines));
+}
+
+const SOURCES = { jackknife: "leaving out captures", analytic: "the edges' own \u03c3" };
+
 export function showSensor(panel, sensor) {
   const list = element("dl", { className: "pairs" });
-  row(list, "kind", sensor.kind || "not known");
-  row(list, "x, y, z", fixed(sensor.p, MM, 2) + " mm");
-  row(list, "roll, pitch, yaw", fixed(rollPitchYaw(sensor.q), DEG, 3) + " deg");
-  if (sensor.reference) row(list, "\u03c3", "reference: fixed");
-  if (sensor.sigma) {
-    row(list, "\u03c3 x, y, z", triple(sensor.sigma.slice(0, 3), MM, 2) + " mm");
-    row(list, "\u03c3 rx, ry, rz", triple(sensor.sigma.slice(3), DEG, 2) + " deg");
-    row(list, "\u03c3 from", sensor.sigma_source);
-  }
-  for (const [name, pose] of [["from nominal", sensor.nominal], ["since the last revision", sensor.previous]])
+  if (sensor.kind) row(list, "kind", sensor.kind.replace(/_/g, " "));
+  if (sensor.reference) row(list, "\u03c3", "none: the reference is fixed");
+  if (sensor.sigma) row(list, "\u03c3 from", SOURCES[sensor.sigma_source] ?? sensor.sigma_source);
+  for (const [name, pose] of [["from its nominal pose", sensor.nominal], ["since the last revision", sensor.previous]])
     if (pose && !sensor.reference) row(list, name, `${number(distance(sensor, pose))} mm, ${number(angleBetween(sensor, pose))} deg`);
-  panel.replaceChildren(element("h3", { textContent: sensor.id }), list);
+  panel.replaceChildren(element("h3", { textContent: sensor.id }), poseTable(sensor), list);
 }

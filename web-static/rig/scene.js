@@ -1,5 +1,5 @@
 // A canvas with a camera to turn around a thing. Draws only when something changed.
-import { Box3, GridHelper, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from "three";
+import { Box3, GridHelper, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { pageColor } from "./colors.js";
 
@@ -11,14 +11,16 @@ export function hasWebGl() {
   }
 }
 
-const DIRECTIONS = { oblique: [0.55, -0.6, -0.75], front: [0, 0, -1], top: [0, -1, -0.001], side: [1, 0, 0] };
+// From where the views look: ahead is z where y is down (a camera), else x.
+const Y_DOWN = { oblique: [0.55, -0.6, -0.75], front: [0, 0, -1], top: [0, -1, -0.001], side: [1, 0, 0] };
 const Z_UP = { oblique: [-0.75, -0.75, 0.55], front: [-1, 0, 0], top: [-0.001, 0, 1], side: [0, -1, 0] };
 
 export class View {
   // `up`: "-y" where the reference is a camera (y down), else "z". Millions of points need no antialiasing.
-  constructor(place, up, antialias = true) {
+  constructor(place, up, antialias = true, background = "view") {
     this.place = place;
     this.up = up;
+    this.background = background;
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(38, 1, 0.001, 1000);
     this.camera.up.set(...(up === "z" ? [0, 0, 1] : [0, -1, 0]));
@@ -33,6 +35,11 @@ export class View {
     canvas.addEventListener("keydown", (event) => this.onKey(event));
     new ResizeObserver(() => this.resize()).observe(place);
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolor());
+    // Paper waits for nobody: it is drawn at once.
+    document.addEventListener("rigcal:colors", () => {
+      this.recolor();
+      this.draw();
+    });
     this.recolor();
   }
 
@@ -41,7 +48,10 @@ export class View {
   }
 
   recolor() {
-    this.renderer.setClearColor(pageColor("view", "#eef2f6"));
+    this.renderer.setClearColor(pageColor(this.background, "#eef2f6"));
+    this.scene.traverse(({ material }) => {
+      if (material?.userData.pageColor) material.color.copy(pageColor(material.userData.pageColor));
+    });
     this.request();
   }
 
@@ -65,26 +75,42 @@ export class View {
 
   draw() {
     this.renderer.render(this.scene, this.camera);
+    this.afterDraw?.();
     this.place.dataset.frames = String(Number(this.place.dataset.frames ?? 0) + 1);
   }
 
-  // Sets the distances for things in `box` and looks at all of it.
-  fit(box) {
-    const sphere = box.getBoundingSphere(new Sphere());
-    this.center = sphere.center;
-    this.radius = Math.max(sphere.radius, 1e-6);
-    this.camera.near = this.radius / 200;
-    this.camera.far = this.radius * 200;
+  // Sets the distances for things in `box` and looks at all of it: at its corners, or at `points` in it.
+  fit(box, points = null) {
+    this.center = box.getCenter(new Vector3());
+    const radius = Math.max(box.getSize(new Vector3()).length() / 2, 1e-6);
+    this.points = points ?? [0, 1, 2, 3, 4, 5, 6, 7].map((bits) => new Vector3(
+      bits & 1 ? box.max.x : box.min.x, bits & 2 ? box.max.y : box.min.y, bits & 4 ? box.max.z : box.min.z));
+    this.camera.near = radius / 200;
+    this.camera.far = radius * 200;
     this.look("oblique");
   }
 
+  // Where to look at, and from how far, so that all points just fit into the picture, seen against `direction`.
+  framing(direction) {
+    const halfHeight = Math.tan((this.camera.fov * Math.PI) / 360), halfWidth = halfHeight * this.camera.aspect;
+    const right = this.camera.up.clone().cross(direction).normalize(), up = direction.clone().cross(right);
+    const target = this.center.clone();
+    for (const side of [right, up]) {
+      const along = this.points.map((point) => point.clone().sub(target).dot(side));
+      target.addScaledVector(side, (Math.max(...along) + Math.min(...along)) / 2);
+    }
+    const distance = Math.max(...this.points.map((point) => {
+      const offset = point.clone().sub(target);
+      return offset.dot(direction) + Math.max(Math.abs(offset.dot(right)) / halfWidth, Math.abs(offset.dot(up)) / halfHeight);
+    }));
+    return { target, distance };
+  }
+
   look(name) {
-    const direction = new Vector3(...(this.up === "z" ? Z_UP : DIRECTIONS)[name]).normalize();
-    const halfHeight_rad = (this.camera.fov * Math.PI) / 360;
-    const halfWidth_rad = Math.atan(Math.tan(halfHeight_rad) * this.camera.aspect);
-    const distance = (this.radius / Math.sin(Math.min(halfHeight_rad, halfWidth_rad))) * 0.92;
-    this.controls.target.copy(this.center);
-    this.camera.position.copy(this.center).addScaledVector(direction, distance);
+    const direction = new Vector3(...(this.up === "z" ? Z_UP : Y_DOWN)[name]).normalize();
+    const { target, distance } = this.framing(direction);
+    this.controls.target.copy(target);
+    this.camera.position.copy(target).addScaledVector(direction, distance * 1.08);
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.request();
@@ -93,9 +119,9 @@ export class View {
   addGrid(size, height) {
     const step = 10 ** Math.round(Math.log10(Math.max(size, 1e-3) / 4));
     const lines = Math.max(4, 2 * Math.ceil(size / step));
-    const grid = new GridHelper(lines * step, lines, pageColor("soft"), pageColor("line"));
+    const grid = new GridHelper(lines * step, lines, "#808a98", "#808a98");
     grid.material.transparent = true;
-    grid.material.opacity = 0.5;
+    grid.material.opacity = 0.3;
     if (this.up === "z") grid.rotateX(Math.PI / 2);
     grid.position.set(...height);
     this.scene.add(grid);

@@ -1,7 +1,7 @@
 // One sensor as shapes: axes, camera frustum, name, uncertainty ellipsoid, and ghosts of other poses of it.
 import {
-  BufferGeometry, CanvasTexture, DoubleSide, Float32BufferAttribute, Group, LineBasicMaterial, LineDashedMaterial,
-  LineSegments, Matrix4, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Sprite, SpriteMaterial, Vector3,
+  BufferGeometry, DoubleSide, Float32BufferAttribute, Group, LineBasicMaterial, LineDashedMaterial,
+  LineSegments, Matrix4, Mesh, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
 import { pageColor } from "./colors.js";
 
@@ -9,6 +9,13 @@ const AXIS_NAMES = ["axis-x", "axis-y", "axis-z"];
 
 export function poseMatrix(pose) {
   return new Matrix4().compose(new Vector3(...pose.p), new Quaternion(...pose.q), new Vector3(1, 1, 1));
+}
+
+// A colour of the page by its name: the view takes it anew when the page's colours change.
+export function paint(material, name) {
+  material.userData.pageColor = name;
+  material.color.copy(pageColor(name));
+  return material;
 }
 
 function segments(points, material) {
@@ -22,7 +29,7 @@ function axes(size, ghost) {
   AXIS_NAMES.forEach((name, axis) => {
     const end = [0, 0, 0];
     end[axis] = size;
-    const material = new LineBasicMaterial({ color: pageColor(name), transparent: true, opacity: ghost ? 0.35 : 1 });
+    const material = paint(new LineBasicMaterial({ transparent: true, opacity: ghost ? 0.35 : 1 }), name);
     group.add(segments([[0, 0, 0], end], material));
   });
   return group;
@@ -51,28 +58,6 @@ function body(sensor, size, material) {
   return sensor.kind === "lidar" ? ring(size * 0.8, material) : ring(size * 0.3, material);
 }
 
-export function nameSprite(text, size) {
-  const canvas = document.createElement("canvas");
-  const context = canvas.getContext("2d");
-  const font = "600 44px system-ui, sans-serif";
-  const shown = text.length > 28 ? text.slice(0, 27) + "\u2026" : text;
-  context.font = font;
-  canvas.width = Math.ceil(context.measureText(shown).width) + 16;
-  canvas.height = 60;
-  context.font = font;
-  context.textBaseline = "middle";
-  context.lineWidth = 8;
-  context.strokeStyle = "#" + pageColor("card").getHexString();
-  context.strokeText(shown, 8, 30);
-  context.fillStyle = "#" + pageColor("text").getHexString();
-  context.fillText(shown, 8, 30);
-  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false, transparent: true }));
-  sprite.scale.set((size * canvas.width) / canvas.height, size, 1);
-  sprite.center.set(0.5, -0.35);
-  sprite.renderOrder = 3;
-  return sprite;
-}
-
 // Lower Cholesky factor of a 3 x 3 covariance [xx xy xz yy yz zz]: it takes the unit sphere to the one-sigma ellipsoid.
 export function cholesky([xx, xy, xz, yy, yz, zz]) {
   const a = Math.sqrt(Math.max(xx, 0));
@@ -89,7 +74,7 @@ function ellipsoid(sensor) {
   const factor = sensor.cov && cholesky(sensor.cov);
   if (!factor) return null;
   const { a, b, c, d, e, f } = factor;
-  const material = new MeshBasicMaterial({ color: pageColor("accent"), transparent: true, opacity: 0.28, side: DoubleSide, depthWrite: false });
+  const material = paint(new MeshBasicMaterial({ transparent: true, opacity: 0.34, side: DoubleSide, depthWrite: false }), "accent");
   const mesh = new Mesh(new SphereGeometry(1, 28, 18), material);
   mesh.userData.shape = new Matrix4().set(a, 0, 0, 0, b, d, 0, 0, c, e, f, 0, 0, 0, 0, 1);
   mesh.matrixAutoUpdate = false;
@@ -102,35 +87,35 @@ export function scaleEllipsoid(mesh, scale) {
   mesh.matrixWorldNeedsUpdate = true;
 }
 
-// Names of very many sensors would hide them: then only the chosen one and the reference have theirs.
-export function showName(shape, shown) {
-  if (!shape.name && shown) shape.group.add((shape.name = nameSprite(shape.target.userData.sensor, shape.size * 0.62)));
-  if (shape.name) shape.name.visible = shown;
+// The outermost points of a sensor's shape.
+export function reachOf(sensor, size) {
+  const [w, h] = sensor.half ?? [0.7, 0.7], depth = size * 1.6;
+  const local = sensor.half ? [[0, 0, 0], ...[[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => [x * w * depth, y * h * depth, depth])]
+    : [[size, 0, 0], [-size, 0, 0], [0, size, 0], [0, -size, 0], [0, 0, size], [0, 0, -size]];
+  const pose = poseMatrix(sensor);
+  return local.map((point) => new Vector3(...point).applyMatrix4(pose));
 }
 
-export function makeSensor(sensor, size, named) {
+export function makeSensor(sensor, size) {
   const group = new Group();
   group.applyMatrix4(poseMatrix(sensor));
-  const outline = new LineBasicMaterial({ color: pageColor(sensor.reference ? "accent" : "text") });
+  const outline = paint(new LineBasicMaterial(), sensor.reference ? "accent" : "text");
   group.add(axes(size, false), body(sensor, size, outline));
   const target = new Mesh(new SphereGeometry(size * 0.55, 8, 6), new MeshBasicMaterial({ visible: false }));
   target.userData.sensor = sensor.id;
   const blob = ellipsoid(sensor);
   if (blob) group.add(blob);
   group.add(target);
-  const shape = { group, target, blob, outline, size, named: named || sensor.reference };
-  showName(shape, shape.named);
-  return shape;
+  return { group, target, blob, outline };
 }
 
 // Where else the sensor was, or was meant to be: pale, joined to where it is by a dashed line.
 export function makeGhost(sensor, pose, size, colorName) {
   const group = new Group();
-  const color = pageColor(colorName);
   const shape = new Group();
   shape.applyMatrix4(poseMatrix(pose));
-  shape.add(axes(size, true), body(sensor, size, new LineBasicMaterial({ color, transparent: true, opacity: 0.75 })));
-  const join = segments([sensor.p, pose.p], new LineDashedMaterial({ color, dashSize: size / 6, gapSize: size / 9 }));
+  shape.add(axes(size, true), body(sensor, size, paint(new LineBasicMaterial({ transparent: true, opacity: 0.75 }), colorName)));
+  const join = segments([sensor.p, pose.p], paint(new LineDashedMaterial({ dashSize: size / 6, gapSize: size / 9 }), colorName));
   join.computeLineDistances();
   group.add(shape, join);
   return group;

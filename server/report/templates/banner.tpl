@@ -4,6 +4,6 @@
 <div>
 <p class="word">{{WORD}}</p>
 <p class="why" dir="auto">{{WHY}}</p>
-{{#DO}}<p class="do" dir="auto">{{WHAT_TO_DO}}</p>{{/DO}}
+{{#DO}}<p class="do" dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO}}</p>{{/DO}}
 </div>
 </section>

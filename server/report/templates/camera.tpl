@@ -21,18 +21,18 @@
 {{#FAR}}<path class="far" d="{{D}}"/>{{/FAR}}
 {{#MEANS}}<path class="means" d="{{D}}"/>{{/MEANS}}
 </svg>
-<p class="legend small"><span class="key usual">a corner</span><span class="key far">beyond 3 &sigma;</span><span class="key means">mean of its surroundings: short, unless the camera model does not fit</span></p>
+<p class="legend small"><span class="key usual">a corner</span><span class="key far">longer than 3 &sigma; (normal: 1.1 %)</span><span class="key means">mean of its surroundings: short, unless the camera model does not fit</span></p>
 </figure>
 {{/VECTORS}}
 {{#HISTOGRAM}}
 <figure class="plot">
-<figcaption><strong>How residuals are spread</strong> u and v, &sigma; {{SIGMA_PX}} px; curve: normal distribution</figcaption>
+<figcaption><strong>How residuals are spread</strong> across and down the picture, &sigma; {{SIGMA_PX}} px; curve: normal distribution</figcaption>
 <svg class="map" viewBox="0 0 360 190" role="img" aria-label="Histogram of the residuals against the normal distribution; {{BEYOND}} percent are beyond three sigma">
 <path class="spread" d="{{BARS}}"/><path class="normal" d="{{CURVE}}"/>
-<path class="axis" d="M0 165h360"/>
+<path class="axis" d="M0 165h360"/><path class="limit" d="{{LIMITS}}"/><text x="{{LOW}}" y="9" text-anchor="middle">-3 &sigma;</text><text x="{{HIGH}}" y="9" text-anchor="middle">3 &sigma;</text>
 {{#TICK}}<text x="{{X}}" y="182" text-anchor="middle">{{TEXT}}</text>{{/TICK}}
 </svg>
-<p class="legend small">{{BEYOND}} % are beyond 3 &sigma; (normal: 0.27 %), the longest is {{WORST_PX}} px. Axis in px.</p>
+<p class="legend small">Axis in px. {{BEYOND}} % are beyond 3 &sigma; (normal: 0.27 %); the longest residual is {{WORST_PX}} px.</p>
 </figure>
 {{/HISTOGRAM}}
 {{#STAND}}
@@ -40,7 +40,7 @@
 <figcaption><strong>How the boards stood</strong> tilt against the line of sight, deg, and distance</figcaption>
 <div class="stand">
 <svg class="compass" viewBox="0 0 200 200" role="img" aria-label="Tilt of each board">
-{{#RING}}<circle class="ring" cx="100" cy="100" r="{{R}}"/><text x="103" y="{{Y}}">{{TEXT}}</text>{{/RING}}
+{{#RING}}<circle class="ring" cx="100" cy="100" r="{{R}}"/><text x="103" y="{{Y}}">{{TEXT}}&deg;</text>{{/RING}}
 <path class="ring" d="M100 12v176M12 100h176"/>
 {{#DOT}}<circle class="dot" cx="{{X}}" cy="{{Y}}" r="3.4"><title>{{TITLE}}</title></circle>{{/DOT}}
 </svg>
@@ -57,7 +57,7 @@
 {{#UNSOLVED}}<p class="hint">The camera was not solved: there are no residuals to draw.</p>{{/UNSOLVED}}
 {{#INTRINSICS}}
 <h3>Intrinsics <span class="soft">{{MODEL}}; {{SIGMA_FROM}}</span></h3>
-<dl class="values">{{#VALUE}}<div><dt>{{NAME}}</dt><dd>{{VALUE}} {{UNIT}} <span class="soft">&plusmn; {{SIGMA}}</span></dd></div>{{/VALUE}}</dl>
+<dl class="values">{{#VALUE}}<div><dt>{{NAME}}</dt><dd>{{VALUE}} {{UNIT}} <span class="soft">{{SIGMA}}</span></dd></div>{{/VALUE}}</dl>
 {{/INTRINSICS}}
 <p class="hint">{{#EDGE}}From the edge {{FROM}} &rarr; {{TO}} (<bdi>{{METHOD}}</bdi>). {{/EDGE}}{{#OTHERS}}{{TEXT}} {{/OTHERS}}<a href="{{FILE}}" download>Corners and residuals as JSON</a></p>
 </div>

@@ -1,6 +1,6 @@
 {{%AUTOESCAPE context="HTML"}}
 <section class="card">
-<h2 id="cameras">Cameras <span class="soft">what their pictures say, corner by corner</span></h2>
+<h2 id="cameras" data-part="Cameras">Cameras <span class="soft">what their pictures say, corner by corner</span></h2>
 {{#TABLE}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="cameras">
 <table data-sortable>

@@ -2,9 +2,12 @@
 <details class="card edge {{STATE}}"{{#OPEN}} open{{/OPEN}}>
 <summary><h2>{{FROM}} &rarr; {{TO}}</h2> <span class="badge {{LEVEL}}">{{STATE}}</span> <span class="soft"><bdi>{{METHOD}}</bdi></span></summary>
 <div id="{{ANCHOR}}" class="body">
-{{#DIAGNOSIS}}
-<div class="diagnosis {{LEVEL}}"><p class="what" dir="auto">{{WHAT}}</p><p class="cure" dir="auto">{{CURE}}</p></div>
+{{#DIAGNOSES}}
+<div class="diagnosis {{LEVEL}}">
+{{#DIAGNOSIS}}<p class="what" dir="auto">{{WHAT}}</p><p class="cure" dir="auto">{{CURE}}</p>
 {{/DIAGNOSIS}}
+</div>
+{{/DIAGNOSES}}
 <div class="columns">
 {{#POSE}}
 <div>
@@ -23,7 +26,7 @@
 {{/POSE}}
 {{#FIGURES}}
 <div class="wide">
-<h3>Figures</h3>
+<h3>What the method says of itself</h3>
 <dl class="pairs">
 {{#FIGURE}}<div><dt><bdi>{{NAME}}</bdi></dt><dd>{{VALUE}}</dd></div>
 {{/FIGURE}}
@@ -32,7 +35,7 @@
 {{/FIGURES}}
 {{#PARTS}}
 <div>
-<h3>Given constants inside &sigma;</h3>
+<h3>Part of &sigma; that comes from what was given</h3>
 <table class="small">
 <thead><tr><th scope="col">From</th><th scope="col">mm</th><th scope="col">deg</th></tr></thead>
 <tbody>
@@ -69,6 +72,12 @@
 </div>
 {{#MORE}}<p class="hint">{{SHOWN}} of {{COUNT}} pictures are shown. {{#SESSION}}<a href="../../sessions/{{ID}}/#captures">All of them are on the page of the session.</a>{{/SESSION}}</p>{{/MORE}}
 {{/PICTURES}}
-<p class="hint">{{PROVENANCE}} <code>edge {{ID}}</code></p>
+{{#LENS}}
+<details class="words">
+<summary>Lens values that this edge was solved with</summary>
+<dl class="values">{{#FIGURE}}<div><dt><bdi>{{NAME}}</bdi></dt><dd>{{VALUE}}</dd></div>{{/FIGURE}}</dl>
+</details>
+{{/LENS}}
+<p class="hint">{{PROVENANCE}} Edge <code>{{ID}}</code></p>
 </div>
 </details>

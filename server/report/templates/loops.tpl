@@ -1,6 +1,6 @@
 {{%AUTOESCAPE context="HTML"}}
 <section class="card">
-<h2 id="loops">Loops <span class="soft">how well edges close, the worst first</span></h2>
+<h2 id="loops" data-part="Loops">Loops <span class="soft">how well edges close, the worst first</span></h2>
 <p>{{SUMMARY}}</p>
 {{#TABLE}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="loops">

@@ -45,7 +45,7 @@
 </section>
 {{/CHANGES}}
 {{#FIRST}}<p class="hint first">The first revision of this robot: there is nothing to compare it with.</p>{{/FIRST}}
-<section class="card" id="rig" aria-label="The rig in 3D" hidden>
+<section class="card" id="rig" data-part="Rig in 3D" aria-label="The rig in 3D" hidden>
 <h2>The rig <span class="soft">select a sensor for its numbers</span></h2>
 <div class="rig">
 <div class="view"></div>
@@ -53,8 +53,8 @@
 </div>
 <div class="bar"></div>
 </section>
-<section class="card" aria-label="Sensor graph">
-<h2>Sensor graph</h2>
+<section class="card" aria-labelledby="graph">
+<h2 id="graph" data-part="Graph">Sensor graph</h2>
 {{>GRAPH}}
 <p class="legend">
 <span class="key fit0">below 1 &sigma;</span>
@@ -67,10 +67,10 @@
 <span class="key known">known</span>
 <span class="key unknown">unknown</span>
 </p>
-<p class="hint">Colour: residual of the edge in its &sigma;. Width: how certain its position is. {{GRAPH_NOTE}}</p>
+<p class="hint">Colour: how far the edge is from the solution, in its &sigma;. Width: the wider, the more certain its position. {{GRAPH_NOTE}}</p>
 </section>
 <section class="card">
-<h2 id="poses">Sensors <span class="soft">in the frame of {{REFERENCE}}</span></h2>
+<h2 id="poses" data-part="Sensors">Sensors <span class="soft">in the frame of {{REFERENCE}}</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="poses">
 <table>
 <thead>
@@ -91,15 +91,15 @@
 {{>CLOUDS}}
 {{/CLOUDS_SECTION}}
 <section class="card">
-<h2 id="edges">Edges <span class="soft">failed first, then the worst fit</span></h2>
+<h2 id="edges" data-part="Edges">Edges <span class="soft">failed first, then the worst fit</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
 <table class="edges" data-sortable data-filter="Filter edges">
 <thead>
-<tr><th scope="col" data-column="0">Edge</th><th scope="col" class="text" data-column="1">State</th><th scope="col" class="text" data-column="2">Method</th><th scope="col" data-column="3">Captures</th><th scope="col" data-column="4">Residual<br>x / y / z, mm</th><th scope="col" data-column="5">rx / ry / rz,<br>deg</th><th scope="col" data-column="6">in &sigma;</th><th scope="col" data-column="7">T&sup2;<br>(limit)</th><th scope="col" data-column="8">Without the edge<br>mm / deg / &sigma;</th><th scope="col" class="sigma" data-column="9">&sigma;<br>x / y / z, mm</th><th scope="col" class="sigma" data-column="10">&sigma; rx / ry / rz,<br>deg</th><th scope="col" class="text" data-column="11">&sigma; from</th><th scope="col" data-column="12">Capture that<br>counts, mm</th></tr>
+<tr><th scope="col" data-column="0">Edge</th><th scope="col" class="text" data-column="1">State</th><th scope="col" class="text" data-column="2">Method</th><th scope="col" data-column="3">Captures</th><th scope="col" data-column="4">Residual, mm: x / y / z<br>deg: rx / ry / rz</th><th scope="col" data-column="5">Residual<br>in &sigma;</th><th scope="col" data-column="6">T&sup2;<br>(limit)</th><th scope="col" class="sigma" data-column="7">&sigma;, mm: x / y / z<br>deg: rx / ry / rz</th><th scope="col" data-column="8">Without the edge<br>mm / deg / &sigma;</th><th scope="col" data-column="9">Capture that<br>counts, mm</th></tr>
 </thead>
 <tbody>
 {{#EDGE}}
-<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}</td><td data-v="{{E_DEG_KEY}}">{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">not solved</td><td data-v=""></td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}</td><td class="sigma" data-v="{{S_DEG_KEY}}">{{S_DEG}}</td><td class="text">{{SOURCE}}</td>{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}} <span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="9" dir="auto">{{WHY}}</td>{{/FAILED}}</tr>
+<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" dir="auto">{{WHY}}</td>{{/FAILED}}</tr>
 {{/EDGE}}
 </tbody>
 </table>
@@ -107,7 +107,17 @@
 {{#MORE_EDGES}}<p class="hint">{{COUNT}} more edges, all of them better than these, are in <a href="edges.csv">edges.csv</a>.</p>{{/MORE_EDGES}}
 {{#UNCHECKED}}<p class="hint">{{TEXT}}</p>{{/UNCHECKED}}
 {{#NO_EDGE_INFLUENCE}}<p class="hint">{{TEXT}}</p>{{/NO_EDGE_INFLUENCE}}
-<p class="hint">&sigma;: one standard deviation along and about the axes of the second sensor. In &sigma;: root mean square of the residual over the directions that are checked. T&sup2;: the residual by its own covariance; beyond the limit the edge contradicts the others. Without the edge: how far the pose of the sensor named, the most moved of all, changes when the edge is left out, in its &sigma; too. Capture that counts: how far the position of this edge moves without the capture named, the one that matters most. <a href="edges.csv" download>All edges as CSV</a></p>
+<p class="downloads"><a class="button" href="edges.csv" download>All edges as CSV</a></p>
+<details class="words">
+<summary>What the columns mean</summary>
+<dl class="pairs">
+<dt>Residual</dt><dd>How far the measured edge is from the solved rig, along and about the axes of the second sensor. In &sigma;: its root mean square over the directions that are checked; up to about 2 is usual.</dd>
+<dt>T&sup2; (limit)</dt><dd>The residual by its own covariance. Beyond the limit the edge contradicts the others.</dd>
+<dt>&sigma;</dt><dd>One standard deviation of the edge itself, along and about the axes of the second sensor; from leaving out one capture at a time, unless something else is said.</dd>
+<dt>Without the edge</dt><dd>How far the pose of the sensor named, the most moved of all, changes when the edge is left out; in its &sigma;, too.</dd>
+<dt>Capture that counts</dt><dd>How far the position of the edge moves without the capture named, the one that matters most.</dd>
+</dl>
+</details>
 </section>
 {{#LOOPS_SECTION}}
 {{>LOOPS}}
@@ -115,21 +125,25 @@
 {{#CAMERAS_SECTION}}
 {{>CAMERAS}}
 {{/CAMERAS_SECTION}}
+{{#DETAILS}}<h2 class="part" id="details" data-part="Each edge">Each edge <span class="soft">open one to see what stands behind it</span></h2>
+<p class="paper">Only what was open on the screen is printed here.</p>
+{{/DETAILS}}
 {{#DETAIL_SECTION}}
 {{>DETAIL}}
 {{/DETAIL_SECTION}}
 {{#MORE_DETAILS}}<p class="hint">Details of {{COUNT}} more edges are in <a href="revision.json">revision.json</a>.</p>{{/MORE_DETAILS}}
 <section class="card provenance">
-<h2>Where this comes from</h2>
+<h2 id="source" data-part="Source">Where this comes from</h2>
 <dl>
 <dt>Robot</dt><dd>{{ROBOT}}</dd>
 <dt>Revision</dt><dd>{{NUMBER}}</dd>
-<dt>Solved at</dt><dd>{{TIME}}</dd>
+<dt>Solved</dt><dd>{{TIME}}</dd>
 <dt>Software</dt><dd>rigcald <bdi>{{SOFTWARE}}</bdi></dd>
 <dt>Document</dt><dd><a href="revision.json">revision.json</a> <code>sha256 {{DIGEST}}</code></dd>
-<dt>Sessions</dt><dd>{{#SESSION}}<a href="../../sessions/{{ID}}/"><code>{{ID}}</code></a> <span class="soft">{{EDGES}}</span>{{#FACTS}}<br>captured {{CAPTURED}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{#BOARD}}; <bdi>{{NAME}}</bdi>{{/BOARD}}{{/FACTS}}<br>{{/SESSION}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
+<dt>Sessions</dt><dd>{{#SESSION}}<div class="session"><a href="../../sessions/{{ID}}/">{{#FACTS}}Captured {{CAPTURED}}{{/FACTS}}{{#NO_FACTS}}Session{{/NO_FACTS}}</a>{{#FACTS}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{/FACTS}}, {{EDGES}}<br><code>{{ID}}</code>{{#FACTS}}{{#BOARDS}}<ul>{{#BOARD}}<li><bdi>{{NAME}}</bdi></li>{{/BOARD}}</ul>{{/BOARDS}}{{/FACTS}}</div>{{/SESSION}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
 </dl>
-<p class="downloads"><a href="revision.json" download>revision.json</a> <a href="edges.csv" download>edges.csv</a></p>
+<p class="downloads"><a class="button" href="revision.json" download>Everything as JSON</a> <a class="button" href="edges.csv" download>Edges as CSV</a></p>
+<p class="hint">The whole report as one file: <code>rigcal report {{ROBOT}} --out report.zip</code></p>
 </section>
 </main>
 {{#SCRIPT}}<script defer src="{{PATH}}"></script>

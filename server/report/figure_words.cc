@@ -1,0 +1,157 @@
+#include "server/report/figure_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+// One row: its first figure decides whether it is shown. "{a}" and "{b}" are the edge's sensors.
+struct Word {
+  const char* name;
+  enum Shape { kEach, kWithSigma, kOutOf } shape;
+  std::array<const char*, 2> figures;
+};
+
+constexpr std::array kWords = {
+    Word{"Captures used", Word::kOutOf, {"captures_used", "captures_total"}},
+    Word{"Samples used", Word::kEach, {"samples_used", ""}},
+    Word{"Captures with the board in both pictures", Word::kEach, {"captures_both", ""}},
+    Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},
+    Word{"Reprojection error in {a}, rms", Word::kEach, {"rms_a_px", ""}},
+    Word{"Reprojection error in {b}, rms", Word::kEach, {"rms_b_px", ""}},
+    Word{"Board in the cloud off the board in the picture, rms",
+         Word::kEach,
+         {"plane_distance_rms_m", "plane_angle_rms_rad"}},
+    Word{"Points on boards", Word::kEach, {"points_used", ""}},
+    Word{"Noise of one range of {b}", Word::kEach, {"range_sigma_m", ""}},
+    Word{"Error that the points of one capture share", Word::kEach, {"capture_sigma_m", ""}},
+    Word{"Ranges too short by", Word::kWithSigma, {"range_bias_m", "range_bias_sigma_m"}},
+    Word{"Boards larger than given by", Word::kWithSigma, {"board_scale_ratio", "board_scale_sigma_ratio"}},
+    Word{"Motions of {a} and {b} differ by, rms", Word::kEach, {"motion_rms_m", "motion_rms_rad"}},
+    Word{"Noise of one pose of {a}", Word::kEach, {"noise_a_m", "noise_a_rad"}},
+    Word{"Noise of one pose of {b}", Word::kEach, {"noise_b_m", "noise_b_rad"}},
+    Word{"Turned about the main axis, rms", Word::kEach, {"turn_rad", ""}},
+    Word{"Tilted away from the main axis, rms", Word::kWithSigma, {"tilt_rad", "tilt_noise_rad"}},
+    Word{"Main axis in {a}: x", Word::kEach, {"axis_a_x_ratio", ""}},
+    Word{"Main axis in {a}: y", Word::kEach, {"axis_a_y_ratio", ""}},
+    Word{"Main axis in {a}: z", Word::kEach, {"axis_a_z_ratio", ""}},
+    Word{"Clock of {a} ahead of {b} by", Word::kWithSigma, {"clock_offset_s", "clock_offset_sigma_s"}},
+    Word{"Offset of surfaces in captures left out, E_l", Word::kEach, {"held_out_captures_E_l_m", ""}},
+    Word{"Points off surfaces in captures left out, rms", Word::kEach, {"held_out_captures_E_l_rms_m", ""}},
+    Word{"Normals of surfaces in captures left out, D",
+         Word::kEach,
+         {"held_out_captures_D_ratio", "held_out_captures_D_angle_rad"}},
+    Word{"Cells behind E_l", Word::kEach, {"held_out_captures_pairs", ""}},
+    Word{"Cells behind D", Word::kEach, {"held_out_captures_normals", ""}},
+    Word{"Offset of surfaces in the half left out, E_l", Word::kEach, {"held_out_halves_E_l_m", ""}},
+    Word{"Points off surfaces in the half left out, rms", Word::kEach, {"held_out_halves_E_l_rms_m", ""}},
+    Word{"Normals of surfaces in the half left out, D",
+         Word::kEach,
+         {"held_out_halves_D_ratio", "held_out_halves_D_angle_rad"}},
+    Word{"Cells behind E_l", Word::kEach, {"held_out_halves_pairs", ""}},
+    Word{"Cells behind D", Word::kEach, {"held_out_halves_normals", ""}},
+    Word{"Answers from either half differ by", Word::kEach, {"halves_differ_m", "halves_differ_rad"}},
+    Word{"Points that lie on the other's surfaces", Word::kEach, {"match_ratio", ""}},
+    Word{"Overlap of the clouds", Word::kEach, {"overlap_ratio", ""}},
+    Word{"Starts that end at this pose", Word::kEach, {"starts_agreeing_ratio", ""}},
+    Word{"GICP differs from NDT by", Word::kEach, {"polish_moved_m", "polish_moved_rad"}},
+    Word{"Answer from", Word::kEach, {"polished_ratio", ""}},
+    Word{"Finest cell of NDT", Word::kEach, {"voxel_m", ""}},
+    Word{"\xCF\x83 from captures over \xCF\x83 from the model", Word::kEach, {"model_sigma_ratio", ""}},
+    Word{"Steps of the solution", Word::kEach, {"iterations", ""}},
+};
+
+bool IsPercent(std::string_view figure) {
+  constexpr std::array<std::string_view, 5> kPercent = {"match_ratio", "overlap_ratio", "starts_agreeing_ratio",
+                                                        "board_scale_ratio", "board_scale_sigma_ratio"};
+  return std::find(kPercent.begin(), kPercent.end(), figure) != kPercent.end();
+}
+
+std::string ValueText(const std::string& figure, double value) {
+  if (figure == "polished_ratio") return value > 0 ? "GICP" : "NDT";
+  if (IsPercent(figure)) return Significant(100 * value, 3) + " %";
+  return FigureValue(figure, value);
+}
+
+std::string NameOf(const Word& word, const Edge& edge) {
+  std::string name = word.name;
+  for (const auto& [mark, sensor] : {std::pair{"{a}", edge.frame_a.str()}, std::pair{"{b}", edge.frame_b.str()}})
+    if (const auto at = name.find(mark); at != std::string::npos) name.replace(at, 3, sensor);
+  return name;
+}
+
+// As many decimals as sigma has with two digits, so that both read as one number.
+std::string WithSigma(const std::string& figure, double value, double sigma) {
+  const FigureUnit unit = IsPercent(figure) ? FigureUnit{" %", 100.0} : UnitOfFigure(figure);
+  return AsCertainAs(value * unit.scale, sigma * unit.scale) + " \xC2\xB1 " + Significant(sigma * unit.scale, 2) +
+         unit.shown;
+}
+
+std::string RowText(const Word& word, const std::map<std::string, double>& figures) {
+  const auto first = figures.find(word.figures[0]), second = figures.find(word.figures[1]);
+  const std::string text = ValueText(first->first, first->second);
+  if (second == figures.end()) return text;
+  if (word.shape == Word::kOutOf) return text + " of " + Fixed(second->second, 0);
+  if (word.shape == Word::kWithSigma) return WithSigma(first->first, first->second, second->second);
+  return text + ", " + ValueText(second->first, second->second);
+}
+
+// fx_px, k1_a_ratio: a parameter of a lens, perhaps of one of the two.
+bool IsLens(const std::string& figure) {
+  constexpr std::string_view kFirst = "fckps";
+  return figure.size() > 3 && kFirst.find(figure[0]) != std::string_view::npos &&
+         (figure[1] == 'x' || figure[1] == 'y' || std::isdigit(static_cast<unsigned char>(figure[1])) != 0) &&
+         figure[2] == '_';
+}
+
+std::string LensName(const std::string& figure, const Edge& edge) {
+  const std::string name = figure.substr(0, 2);
+  if (figure.compare(2, 3, "_a_") == 0) return name + " of " + edge.frame_a.str();
+  return figure.compare(2, 3, "_b_") == 0 ? name + " of " + edge.frame_b.str() : name;
+}
+
+// Both 0: the captures could not tell them apart, and they mean nothing.
+bool MeansNothing(const Word& word, const std::map<std::string, double>& figures) {
+  if (word.shape != Word::kWithSigma) return false;
+  const auto sigma = figures.find(word.figures[1]);
+  return sigma != figures.end() && sigma->second == 0.0 && figures.at(word.figures[0]) == 0.0;
+}
+
+}  // namespace
+
+FigureRows RowsOf(const Edge& edge) {
+  FigureRows rows;
+  std::set<std::string> told;
+  for (const Word& word : kWords) {
+    if (!edge.figures.contains(word.figures[0])) continue;
+    for (const char* figure : word.figures) told.insert(figure);
+    if (!MeansNothing(word, edge.figures)) rows.checks.push_back({NameOf(word, edge), RowText(word, edge.figures)});
+  }
+  for (const auto& [figure, value] : edge.figures) {
+    if (told.contains(figure)) continue;
+    if (IsLens(figure))
+      rows.lens.push_back({LensName(figure, edge), FigureValue(figure, value)});
+    else
+      rows.checks.push_back({FigureName(figure), FigureValue(figure, value)});
+  }
+  return rows;
+}
+
+std::string MethodText(const std::string& method) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 5> kNames = {{{"non_overlapping", "non-overlapping"},
+                                                                               {"lidar_camera", "lidar-camera"},
+                                                                               {"lidar_lidar", "lidar-lidar"},
+                                                                               {"tracker_camera", "tracker-camera"},
+                                                                               {"pose_streams", "pose streams"}}};
+  for (const auto& [code, name] : kNames)
+    if (method == code) return name;
+  return method;
+}
+
+}  // namespace rigcal::report

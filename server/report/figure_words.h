@@ -1,0 +1,23 @@
+// The figures of an edge in words, what matters first: numbers that belong together in one row, codes never shown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/model/edge.h"
+
+namespace rigcal::report {
+
+struct FigureRow {
+  std::string name, value;
+};
+struct FigureRows {
+  std::vector<FigureRow>
+      checks;                   // what the method says of its own result; figures of other programs by their own names
+  std::vector<FigureRow> lens;  // intrinsics that this edge was solved with
+};
+[[nodiscard]] FigureRows RowsOf(const Edge& edge);
+// "lidar_camera" -> "lidar-camera"; a method that is not ours stays as it is.
+[[nodiscard]] std::string MethodText(const std::string& method);
+
+}  // namespace rigcal::report
