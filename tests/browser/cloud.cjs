@@ -11,14 +11,21 @@ withBrowser(async (browser) => {
   assert.ok((await page.textContent(".cloud .bar")).includes("2 million points"));
   const drawn = () => page.$eval(".cloud canvas", (canvas) => canvas.toDataURL());
   const seen = new Set([await drawn()]);
+  const legend = () => page.textContent(".cloud .legend");
+  const legends = new Set([await legend()]);
   for (const mode of ["camera", "depth", "intensity", "uncovered"]) {
     const before = await drawn();
     await page.selectOption(".cloud select", mode);
     const changed = (old) => document.querySelector(".cloud canvas").toDataURL() !== old;
     await page.waitForFunction(changed, before, { polling: 200 });
     seen.add(await drawn());
+    legends.add(await legend());
   }
+  assert.strictEqual(legends.size, 5, "what the colours mean, for each way");
   assert.strictEqual(seen.size, 5, "each way of colouring looks different");
+  await page.focus(".blend input");
+  for (const key of ["Home", "ArrowRight"]) await page.keyboard.press(key);
+  assert.strictEqual(await page.$eval(".overlay img + img", (image) => getComputedStyle(image).opacity), "0.01", "by the keyboard, too");
   await page.$eval(".blend input", (field) => { field.value = 0; field.dispatchEvent(new Event("input")); });
   assert.strictEqual(await page.$eval(".overlay img + img", (image) => getComputedStyle(image).opacity), "0");
   await accessible(page);

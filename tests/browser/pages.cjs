@@ -95,6 +95,80 @@ async function edgeTable(browser) {
   await close(page);
 }
 
+// The heading stays in view, and a window of usual width shows every column.
+async function edgeTableFits(browser) {
+  const page = await open(browser, at(`/robots/${facts.pictures ? "stereo/revisions/1" : "rover/revisions/2"}/`));
+  const fits = await page.$eval(".scroll:has(> .edges)", (box) => box.scrollWidth <= box.clientWidth);
+  assert.ok(fits, "no column is cut");
+  const heading = page.locator("table.edges thead th").first();
+  assert.strictEqual(await heading.evaluate((cell) => getComputedStyle(cell).position), "sticky");
+  await close(page);
+}
+
+async function contents(browser) {
+  const page = await open(browser, at("/robots/rover/revisions/2/"));
+  const parts = await page.$$eval("nav.contents a", (links) => links.map((link) => link.hash));
+  assert.ok(parts.length >= 5, "the parts of the page: " + parts);
+  for (const part of parts) assert.ok(await page.locator(part).count(), part);
+  await page.click("nav.contents a:has-text('Source')");
+  await page.waitForFunction(() => document.getElementById("source").getBoundingClientRect().top < innerHeight);
+  await close(page);
+}
+
+// An edge at the pointer or the keyboard says its numbers, and shows itself without a frame around its box.
+async function graph(browser) {
+  const page = await open(browser, at(`/robots/${facts.pictures ? "stereo/revisions/1" : "broken/revisions/1"}/`));
+  const edge = page.locator("svg.graph a").first();
+  const look = () => edge.locator(".link").evaluate((link) => [getComputedStyle(link).stroke, getComputedStyle(link).strokeWidth]);
+  const before = await look();
+  await page.focus("nav.contents a:last-child");
+  for (let step = 0; step < 40 && !(await edge.evaluate((link) => link === document.activeElement)); ++step) await page.keyboard.press("Tab");
+  assert.strictEqual(await edge.evaluate((link) => getComputedStyle(link).outlineStyle), "none");
+  assert.notDeepStrictEqual(await look(), before, "the focus is seen");
+  assert.strictEqual(await page.textContent(".readout"), await edge.getAttribute("aria-label"));
+  await page.evaluate(() => document.activeElement.blur());
+  assert.ok((await page.textContent(".readout")).startsWith("Point at an edge"));
+  await page.locator("svg.graph a .link").first().hover({ force: true });
+  await page.waitForFunction(() => document.querySelector(".readout").textContent.includes("\u2192"));
+  await close(page);
+}
+
+// Names beside sensors never cover each other.
+async function names(browser) {
+  const page = await open(browser, at("/robots/rover/revisions/2/"));
+  await page.waitForSelector("#rig .view[data-frames]");
+  for (const view of ["All", "Front", "Top", "Side"]) {
+    await page.click(`#rig button:text-is('${view}')`);
+    await page.waitForTimeout(0);
+    const boxes = await page.$$eval("#rig .labels span", (labels) => labels.filter((label) => label.style.visibility === "visible")
+      .map((label) => { const { left, right, top, bottom } = label.getBoundingClientRect(); return { left, right, top, bottom }; }));
+    assert.ok(boxes.length > 0, "names in the view " + view);
+    const covers = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+    assert.ok(!boxes.some((a, index) => boxes.slice(index + 1).some((b) => covers(a, b))), "names cover each other in the view " + view);
+  }
+  assert.ok(await page.locator("#rig .labels .chosen").count(), "the chosen sensor stands out");
+  await close(page);
+}
+
+// Paper is light whatever the screen is, holds every chart of what is open, and cuts nothing.
+async function paper(browser) {
+  const page = await open(browser, at(`/robots/${facts.pictures ? "stereo/revisions/1" : "rover/revisions/2"}/`), { colorScheme: "dark", viewport: { width: 703, height: 995 } });
+  const color = (name) => page.evaluate((key) => getComputedStyle(document.documentElement).getPropertyValue("--" + key).trim(), name);
+  const dark = await color("text");
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  assert.notStrictEqual(await color("text"), dark, "light colours");
+  if (facts.pictures) assert.strictEqual(await page.locator("[data-edge-charts] .plot canvas").count(), 3, "charts are drawn though nobody scrolled to them");
+  await page.emulateMedia({ media: "print" });
+  const cut = await page.evaluate(() => [...document.querySelectorAll("main *")].filter((one) => one.getClientRects().length && !one.closest("svg, .labels, .view") &&
+    one.getBoundingClientRect().right > 704).slice(0, 3).map((one) => one.outerHTML.slice(0, 120)));
+  assert.deepStrictEqual(cut, [], "beyond the paper's edge");
+  assert.ok(!(await page.locator("nav.contents").isVisible()), "nothing to press on paper");
+  await page.emulateMedia({ media: "screen" });
+  await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  assert.strictEqual(await color("text"), dark, "the screen is as it was");
+  await close(page);
+}
+
 async function rig(browser) {
   const page = await open(browser, at("/robots/rover/revisions/2/"));
   await drawn(page, "#rig canvas");
@@ -126,6 +200,17 @@ async function charts(browser) {
   await drawn(page, "[data-edge-charts] canvas");
   assert.ok((await colors(page, "[data-edge-charts] canvas")) > 5, "the residuals are drawn");
   assert.strictEqual(await page.locator("[data-edge-charts] .plot").count(), 3);
+  const rms = await page.evaluate(() => {
+    const used = window.rigcal.edges[0].captures.filter((one) => !one.unused).map((one) => one.rms);
+    return Math.sqrt(used.reduce((sum, one) => sum + one * one, 0) / used.length).toPrecision(3);
+  });
+  assert.ok((await page.textContent("[data-edge-charts] .plot figcaption")).includes(`${Number(rms)} px`), "the rms of all captures");
+  const checks = await page.textContent(".columns .pairs");
+  assert.ok(checks.includes("Reprojection error in left, rms") && !/_|fx /.test(checks), "figures in words: " + checks);
+  await page.click("button:text-is('Close all')");
+  assert.strictEqual(await page.locator("details.edge:not(.camera)[open]").count(), 0);
+  await page.click("button:text-is('Open all')");
+  assert.ok(await page.locator("[data-edge-charts]").first().isVisible());
   await page.hover("[data-edge-charts] canvas");
   const shown = await page.$$eval("img[src^='evidence/']", (pictures) => pictures.length);
   assert.ok(shown >= 10, "pictures of detections");
@@ -153,6 +238,7 @@ async function fromDisk(browser) {
   await drawn(page, "#rig canvas");
   assert.ok((await colors(page, "#rig canvas")) > 10, "the rig is drawn from disk");
   await page.click("table.edges th[data-column='0'] button");
+  assert.strictEqual(await page.locator("a[href^='..']").count(), 0, "no way out of the folder");
   assert.ok((await page.pdf()).length > 20000, "it prints");
   await close(page);
 }
@@ -173,7 +259,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, fleetColumns, experiments, cameras, edgeTable, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

@@ -165,6 +165,9 @@ TEST(Camera, WhatCannotBeDoneIsSaid) {
   none.camera.intrinsics = pair.a;
   for (auto& [capture, view] : none.views) view = NotFoundView();
   ExpectRefused(none, "too_few_captures", "no 9 x 6 board in the picture");
+  ExpectRefused(none, "too_few_captures", "sees target 'board' in none of 2 captures; at least");
+  none.views.clear();
+  ExpectRefused(none, "too_few_captures", "in no capture: none has a usable picture of it; at least");
   CameraProblem resized = ViewsOf(pair, TiltedBoards(6), 0.1);
   resized.views[2].second.image_width_px = 1280;
   ExpectRefused(resized, "image_size_changed", "those of 002");
