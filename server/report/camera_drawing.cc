@@ -29,14 +29,6 @@ std::string Short(double value) {
 std::string Move(double x, double y) { return "M" + Short(x) + " " + Short(y); }
 std::string Line(double dx, double dy) { return "l" + Short(dx) + " " + Short(dy); }
 
-double NiceBelow(double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) return 1.0;
-  const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {5.0, 2.0})
-    if (step * decade <= value) return step * decade;
-  return decade;
-}
-
 struct Vector {
   Eigen::Vector2d at_px, residual_px;
 };
@@ -94,6 +86,14 @@ std::string FieldsOf(const Coverage& coverage, std::size_t level) {
 }
 
 }  // namespace
+
+double NiceBelow(double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) return 1.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double step : {5.0, 2.0})
+    if (step * decade <= value) return step * decade;
+  return decade;
+}
 
 void FillCoverage(Dictionary& section, const CameraFit& fit) {
   const Coverage coverage = CoverageOf(fit);

@@ -13,4 +13,7 @@ void FillVectors(Dictionary& section, const CameraFit& fit, const ResidualShape&
 void FillHistogram(Dictionary& section, const ResidualShape& shape);
 void FillStand(Dictionary& section, const CameraFit& fit);
 
+// 1, 2 or 5 times a power of ten, at or below `value`; 1 of what is not positive.
+[[nodiscard]] double NiceBelow(double value);
+
 }  // namespace rigcal::report

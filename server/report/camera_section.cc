@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/report/camera_drawing.h"
+#include "server/report/camera_views.h"
 #include "server/report/figure_words.h"
 #include "server/report/text.h"
 
@@ -135,6 +136,7 @@ void FillSection(Dictionary& section, const ReportInput& input, const CameraRepo
     from->SetValue("FROM", edge->frame_a.str());
     from->SetValue("TO", edge->frame_b.str());
     from->SetValue("METHOD", MethodText(edge->method));
+    FillWorstViews(section, fit, *edge, std::set<Digest>(input.evidence.begin(), input.evidence.end()));
   }
   if (const std::string advice = AdviceOf(fit); !advice.empty()) ShowValue(section, "ADVICE", "TEXT", advice);
   if (const std::string others = OtherEdgesText(input, camera); !others.empty())

@@ -26,6 +26,14 @@ std::string ShortExponent(std::string text) {
 
 bool IsZeroText(const std::string& text) { return text.find_first_not_of("-0.") == std::string::npos; }
 
+// "0.00960000" -> "0.0096", "5.00000" -> "5".
+std::string WithoutEndingZeros(std::string text) {
+  if (text.find('.') == std::string::npos || text.find('e') != std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
 struct Unit {
   std::string_view suffix, shown;
   double scale;
@@ -66,7 +74,7 @@ std::string Significant(double value, int digits) {
 }
 
 std::string AsCertainAs(double value, double sigma) {
-  if (!(sigma > 0) || !std::isfinite(sigma)) return Significant(value, 6);
+  if (!(sigma > 0) || !std::isfinite(sigma)) return WithoutEndingZeros(Significant(value, 6));
   return Fixed(value, std::clamp(1 - static_cast<int>(std::floor(std::log10(sigma))), 0, 8));
 }
 

@@ -17,7 +17,7 @@ inline constexpr double kDegPerRad = 57.295779513082320877;
 [[nodiscard]] std::string Fixed(double value, int decimals);
 // `digits` significant digits, in fixed notation between 1e-4 and 1e7.
 [[nodiscard]] std::string Significant(double value, int digits);
-// As many decimals as sigma has with two digits; six digits where sigma is not known.
+// As many decimals as sigma has with two digits; at most six digits where sigma is not known.
 [[nodiscard]] std::string AsCertainAs(double value, double sigma);
 [[nodiscard]] std::string Mm(double value_m);       // 2 decimals
 [[nodiscard]] std::string Deg(double value_rad);    // 3 decimals

@@ -131,6 +131,33 @@ TEST(ReportCameras, PageHasPicturesAndNumbers) {
   EXPECT_THAT(page, HasSubstr("cameras/" + Sha256Of("fit").str() + ".json"));
 }
 
+// Of four pictures the three with the largest residuals, the worst first; one that is not stored is not shown.
+TEST(ReportCameras, ShowsThePicturesThatFitWorst) {
+  std::vector<ViewFit> views;
+  for (const double residual_px : {0.1, 0.4, 0.2, 0.3, 9.0})
+    views.push_back(ViewWith({{500, 400}, {700, 400}, {700, 500}}, {residual_px, 0.0}));
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].capture = CaptureId("v" + std::to_string(i));
+  ReportInput input = ReportWith(FitWith(views));
+  for (Edge& edge : input.revision.edges) {
+    if (edge.id != input.cameras.front().edge) continue;
+    for (const ViewFit& view : views) {
+      const Digest digest(Sha256Of("worst " + view.capture.str()).str());
+      edge.evidence.push_back({"", input.cameras.front().fit.camera, view.capture, digest, "jpg"});
+      if (view.capture.str() != "v4") input.evidence.push_back(digest);
+    }
+  }
+  const std::string page = PageOf(input);
+  const std::string section = page.substr(page.find("class=\"views\""), 6000);
+  EXPECT_EQ(section.find("<bdi>v4</bdi>"), std::string::npos);
+  EXPECT_LT(section.find("<bdi>v1</bdi>: rms 0.400 px"), section.find("<bdi>v3</bdi>: rms 0.300 px"));
+  EXPECT_LT(section.find("<bdi>v3</bdi>"), section.find("<bdi>v2</bdi>"));
+  EXPECT_EQ(section.substr(0, section.find("</details>")).find("<bdi>v0</bdi>"), std::string::npos);
+  // Cut to the board, 200 px wide, with room; a line leads from the corner as seen to where the estimate puts it.
+  EXPECT_THAT(section, HasSubstr("viewBox=\"476.0 357.0 248.0 186.0\""));
+  EXPECT_THAT(section, HasSubstr("lines 10 times as long"));
+  EXPECT_THAT(section, HasSubstr("d=\"M500.5 400.5l-4.0 0.0M"));
+}
+
 TEST(ReportCameras, WhatWasNotKeptIsSaid) {
   const std::string page = PageOf(ReportWith(FitWith({ViewWith({{10, 10}}, {0.3, -0.4})})));
   EXPECT_THAT(page, HasSubstr("No residuals are kept of <bdi>front_right</bdi>"));

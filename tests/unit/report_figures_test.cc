@@ -66,7 +66,9 @@ TEST(ReportText, AsCertainAsItsSigma) {
   EXPECT_EQ(AsCertainAs(123.456, 0.25), "123.46");
   EXPECT_EQ(AsCertainAs(123.456, 25), "123");
   EXPECT_EQ(AsCertainAs(-0.00001, 0.0021), "0.0000");
-  EXPECT_EQ(AsCertainAs(1.5, 0.0), "1.50000");
+  EXPECT_EQ(AsCertainAs(1.5, 0.0), "1.5");
+  EXPECT_EQ(AsCertainAs(-0.0096, 0.0), "-0.0096");
+  EXPECT_EQ(AsCertainAs(700.0, 0.0), "700");
 }
 
 // A pose stream has no captures to draw and no pictures: what it says of itself is all there is to see.

@@ -54,6 +54,14 @@
 </figure>
 {{/STAND}}
 </div>
+{{#WORST_VIEWS}}
+<h3>Pictures that fit worst <span class="soft">dot: a corner as seen; line: towards where the solved camera puts it</span></h3>
+<div class="views">
+{{#VIEW}}
+<figure><a href="evidence/{{FILE}}"><svg class="zoom" viewBox="{{CROP}}" role="img" aria-label="Corners of capture {{CAPTURE}} and where the solved camera puts them"><foreignObject x="0" y="0" width="{{WIDTH}}" height="{{HEIGHT}}"><img loading="lazy" src="evidence/{{FILE}}" width="{{WIDTH}}" height="{{HEIGHT}}" alt=""></foreignObject><path class="shifts" d="{{SHIFTS}}"/><path class="seen" d="{{SEEN}}"/></svg></a><figcaption>Capture <bdi>{{CAPTURE}}</bdi>: rms {{RMS}} px; lines {{MAGNIFIED}} times as long</figcaption></figure>
+{{/VIEW}}
+</div>
+{{/WORST_VIEWS}}
 {{#UNSOLVED}}<p class="hint">The camera was not solved: there are no residuals to draw.</p>{{/UNSOLVED}}
 {{#INTRINSICS}}
 <h3>Intrinsics <span class="soft">{{MODEL}}; {{SIGMA_FROM}}</span></h3>
