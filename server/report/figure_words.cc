@@ -20,6 +20,7 @@ struct Word {
 
 constexpr std::array kWords = {
     Word{"Captures used", Word::kOutOf, {"captures_used", "captures_total"}},
+    Word{"Captures", Word::kEach, {"captures_total", ""}},
     Word{"Samples used", Word::kEach, {"samples_used", ""}},
     Word{"Captures with the board in both pictures", Word::kEach, {"captures_both", ""}},
     Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},
@@ -129,7 +130,7 @@ FigureRows RowsOf(const Edge& edge) {
   FigureRows rows;
   std::set<std::string> told;
   for (const Word& word : kWords) {
-    if (!edge.figures.contains(word.figures[0])) continue;
+    if (!edge.figures.contains(word.figures[0]) || told.contains(word.figures[0])) continue;
     for (const char* figure : word.figures) told.insert(figure);
     if (!MeansNothing(word, edge.figures)) rows.checks.push_back({NameOf(word, edge), RowText(word, edge.figures)});
   }

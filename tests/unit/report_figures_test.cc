@@ -38,6 +38,10 @@ TEST(FigureWords, NumbersThatBelongTogetherAreOneRowInTheirOrder) {
             "Noise of one pose of top = 2.000 mm, 2.000 deg\n");
 }
 
+TEST(FigureWords, WithoutAUsedCaptureTheirNumberIsLeft) {
+  EXPECT_EQ(Joined(RowsOf(EdgeWith({{"captures_total", 16}})).checks), "Captures = 16\n");
+}
+
 TEST(FigureWords, AValueHasTheDecimalsOfItsSigma) {
   const FigureRows rows = RowsOf(EdgeWith({{"clock_offset_s", -126.83591234},
                                            {"clock_offset_sigma_s", 0.0015},

@@ -66,7 +66,8 @@ export function angleBetween(a, b) {
 }
 
 function cells(tag, texts) {
-  return texts.map((textContent, index) => element(index === 0 ? "th" : tag, { textContent, scope: index === 0 ? "row" : tag === "th" ? "col" : "" }));
+  return texts.map((textContent, index) => (index > 0 && tag === "td" ? element("td", { textContent })
+    : element("th", { textContent, scope: tag === "th" ? "col" : "row" })));
 }
 
 // One line for each axis: where along it, turned how much about it, and how sure both is.
@@ -75,7 +76,7 @@ function poseTable(sensor) {
   const sigma = (index, scale) => (sensor.sigma ? number(sensor.sigma[index] * scale, 2) : "");
   const lines = ["x, roll", "y, pitch", "z, yaw"].map((name, axis) => element("tr", {}, ...cells("td", [
     name, (sensor.p[axis] * MM).toFixed(2), sigma(axis, MM), (turns[axis] * DEG).toFixed(3), sigma(axis + 3, DEG)])));
-  const head = element("tr", {}, ...cells("th", ["", "mm", "\u03c3, mm", "deg", "\u03c3, deg"]));
+  const head = element("tr", {}, ...cells("th", ["axis", "mm", "\u03c3, mm", "deg", "\u03c3, deg"]));
   return element("table", { className: "pose" }, element("thead", {}, head), element("tbody", {}, ...lines));
 }
 

@@ -12,7 +12,7 @@
 {{#POSE}}
 <div>
 <h3>Pose of {{TO}} in {{FROM}}</h3>
-<div class="scroll" tabindex="0" role="region" aria-label="Pose and uncertainty">
+<div class="scroll" tabindex="0" role="region" aria-label="Pose of {{TO}} in {{FROM}}">
 <table class="small">
 <thead><tr><th scope="col">Axis</th><th scope="col">Position, mm</th><th scope="col">&sigma;, mm</th><th scope="col">Rotation, deg</th><th scope="col">&sigma;, deg</th></tr></thead>
 <tbody>
@@ -35,7 +35,7 @@
 {{/FIGURES}}
 {{#PARTS}}
 <div>
-<h3>Part of &sigma; that comes from what was given</h3>
+<h3>Within &sigma;, besides the captures</h3>
 <table class="small">
 <thead><tr><th scope="col">From</th><th scope="col">mm</th><th scope="col">deg</th></tr></thead>
 <tbody>
@@ -50,7 +50,7 @@
 {{#CAPTURES}}
 <div data-fallback>
 <h3>Residual of each capture <span class="soft">rms, {{UNIT}}</span></h3>
-<div class="scroll" tabindex="0" role="region" aria-label="Residual of each capture">
+<div class="scroll" tabindex="0" role="region" aria-label="Residual of each capture, {{FROM}} to {{TO}}">
 {{>BARS}}
 </div>
 </div>
