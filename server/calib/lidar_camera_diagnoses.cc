@@ -177,7 +177,8 @@ Diagnosis CapturesDisagree(const LidarCameraProblem& problem, const std::vector<
 Diagnosis BoardSizeSuspected(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const double fitted_m = problem.board.square_m * (1 + estimate.board_scale_ratio);
   return {"board_size_suspected",
-          BoardOf(problem) + " seems to be " + Formatted("%.2f", 100 * std::abs(estimate.board_scale_ratio)) + " % " +
+          "The size of " + BoardOf(problem) + " seems to be " +
+              Formatted("%.2f", 100 * std::abs(estimate.board_scale_ratio)) + " % " +
               (estimate.board_scale_ratio > 0 ? "larger" : "smaller") + " than given: picture and cloud agree with " +
               Formatted("%.2f", 1e3 * fitted_m) + " mm (+- " +
               Formatted("%.2f", 1e3 * problem.board.square_m * estimate.board_scale_sigma_ratio) + ") instead of " +

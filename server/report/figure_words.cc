@@ -103,10 +103,11 @@ std::string RowText(const Word& word, const std::map<std::string, double>& figur
   return text + ", " + ValueText(second->first, second->second);
 }
 
+constexpr std::string_view kLensFirst = "fckps";  // first letters, in the order in which they are shown
+
 // fx_px, k1_a_ratio: a parameter of a lens, perhaps of one of the two.
 bool IsLens(const std::string& figure) {
-  constexpr std::string_view kFirst = "fckps";
-  return figure.size() > 3 && kFirst.find(figure[0]) != std::string_view::npos &&
+  return figure.size() > 3 && kLensFirst.find(figure[0]) != std::string_view::npos &&
          (figure[1] == 'x' || figure[1] == 'y' || std::isdigit(static_cast<unsigned char>(figure[1])) != 0) &&
          figure[2] == '_';
 }
@@ -137,10 +138,13 @@ FigureRows RowsOf(const Edge& edge) {
   for (const auto& [figure, value] : edge.figures) {
     if (told.contains(figure)) continue;
     if (IsLens(figure))
-      rows.lens.push_back({LensName(figure, edge), FigureValue(figure, value)});
+      rows.lens.push_back({LensName(figure, edge), AsCertainAs(value, 0.0) + UnitOfFigure(figure).shown});
     else
       rows.checks.push_back({FigureName(figure), FigureValue(figure, value)});
   }
+  const auto place = [](const FigureRow& row) { return kLensFirst.find(row.name[0]); };
+  std::stable_sort(rows.lens.begin(), rows.lens.end(),
+                   [&](const FigureRow& a, const FigureRow& b) { return place(a) < place(b); });
   return rows;
 }
 

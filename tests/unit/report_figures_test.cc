@@ -58,7 +58,7 @@ TEST(FigureWords, LensValuesAreApartAndUnknownFiguresKeepTheirNames) {
   const FigureRows rows =
       RowsOf(EdgeWith({{"fx_a_px", 700.25}, {"k1_b_ratio", -0.08}, {"cy_px", 510}, {"my_own_m", 0.5}}));
   EXPECT_EQ(Joined(rows.checks), "my own = 500.0 mm\n");
-  EXPECT_EQ(Joined(rows.lens), "cy = 510.0 px\nfx of left = 700.2 px\nk1 of top = -0.08000\n");
+  EXPECT_EQ(Joined(rows.lens), "fx of left = 700.25 px\ncy = 510 px\nk1 of top = -0.08\n");
 }
 
 TEST(FigureWords, MethodsHaveNames) {
