@@ -45,7 +45,7 @@ ExitCode Answer(const Context& context, const Question& question);
 // "pass" or "fail: why. What to do."
 void PrintVerdict(const Document& verdict, std::ostream& out);
 [[nodiscard]] std::string VerdictText(const Document& verdict);
-// "3 d 4 h", or "-".
+// "12 days", or "-".
 [[nodiscard]] std::string AgeOf(const Document& age_ns);
 // Text of a number, or "-".
 [[nodiscard]] std::string CountOf(const Document& number);

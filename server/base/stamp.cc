@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -16,6 +15,7 @@ namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kSecondsPerMinute = 60, kSecondsPerHour = 3600, kSecondsPerDay = 86400;
+constexpr std::int64_t kSecondsPerYear = 31'556'952;  // of the Gregorian calendar, on average
 constexpr int kYearMin = 1970, kYearMax = 2200;
 
 // A cursor over text: each function consumes what it recognises, or reports that it is not there.
@@ -164,22 +164,17 @@ Result<std::int64_t> ParseDuration(std::string_view text) {
   return count * unit->second * kNsPerSecond;
 }
 
+// One unit, rounded down: an age is never overstated, and a person needs no more of it.
 std::string AgeText(std::int64_t age_ns) {
   const std::int64_t age_s = std::max<std::int64_t>(age_ns, 0) / kNsPerSecond;
-  const auto both = [&](std::int64_t unit_s, const char* unit, std::int64_t part_s, const char* part) {
-    const std::string whole = std::to_string(age_s / unit_s) + " " + unit;
-    const std::int64_t parts = age_s % unit_s / part_s;
-    return parts == 0 ? whole : whole + " " + std::to_string(parts) + " " + part;
-  };
-  constexpr double kDaysPerYear = 365.25;
-  const std::int64_t days = age_s / kSecondsPerDay;
-  if (const auto tenths = std::lround(10.0 * static_cast<double>(days) / kDaysPerYear); days >= 366)
-    return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " years";
-  if (days >= 14) return std::to_string(days) + " d";
-  if (age_s >= kSecondsPerDay) return both(kSecondsPerDay, "d", kSecondsPerHour, "h");
-  if (age_s >= kSecondsPerHour) return both(kSecondsPerHour, "h", kSecondsPerMinute, "min");
-  if (age_s >= kSecondsPerMinute) return both(kSecondsPerMinute, "min", 1, "s");
-  return std::to_string(age_s) + " s";
+  const auto in = [&](std::int64_t unit_s, const char* unit) { return std::to_string(age_s / unit_s) + " " + unit; };
+  if (age_s < kSecondsPerMinute) return in(1, "s");
+  if (age_s < kSecondsPerHour) return in(kSecondsPerMinute, "min");
+  if (age_s < 2 * kSecondsPerDay) return in(kSecondsPerHour, "h");
+  if (age_s < 100 * kSecondsPerDay) return in(kSecondsPerDay, "days");
+  if (age_s < 2 * kSecondsPerYear) return in(kSecondsPerYear / 12, "months");
+  const std::int64_t tenths = 10 * age_s / kSecondsPerYear;
+  return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " years";
 }
 
 const Clock& SystemClock() {

@@ -21,7 +21,7 @@ struct Stamp {
 [[nodiscard]] Result<Stamp> ParseIso(std::string_view text);
 // "90d", "12h", "30m", "45s" -> nanoseconds.
 [[nodiscard]] Result<std::int64_t> ParseDuration(std::string_view text);
-// "12 s", "3 d 4 h", "20 d", "5.9 years": for people.
+// "12 s", "5 min", "30 h", "12 days", "4 months", "5.9 years": for people.
 [[nodiscard]] std::string AgeText(std::int64_t age_ns);
 
 // Seam for tests. Thread-safe.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <string>
 
 #include "server/base/limits_in_force.h"
@@ -11,6 +12,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr std::array<std::uint8_t, 4> kIhdr = {'I', 'H', 'D', 'R'};
+
+// No camera has more; a damaged header easily says so.
+constexpr std::int64_t kSideMax_px = 1'000'000;
 
 using Bytes = std::span<const std::byte>;
 
@@ -79,6 +83,12 @@ Result<ImageSize> ReadUnchecked(Bytes bytes) {
   return Fail(ErrorCode::kInvalidInput, "the picture is neither PNG nor JPEG", "export it as PNG or JPEG");
 }
 
+std::string MegapixelsText(std::int64_t pixels) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g megapixels", static_cast<double>(pixels) * 1e-6);
+  return text.data();
+}
+
 }  // namespace
 
 Result<ImageSize> ReadImageSize(Bytes encoded) {
@@ -87,10 +97,13 @@ Result<ImageSize> ReadImageSize(Bytes encoded) {
   if (size.width_px == 0 || size.height_px == 0)
     return Fail(ErrorCode::kInvalidInput, "the picture claims " + text, "save or copy the picture again");
   const std::int64_t pixels_max = limits::InForce().image_pixels;
+  if (std::max(size.width_px, size.height_px) > kSideMax_px)
+    return Fail(ErrorCode::kInvalidInput, "the picture is damaged: the size in its header is impossible",
+                "save or copy the picture again");
   // Both factors are below 2^32, so the division decides without overflow.
   if (size.width_px > pixels_max / size.height_px)
     return Fail(ErrorCode::kInvalidInput,
-                "the picture claims " + text + ", more than the limit of " + std::to_string(pixels_max) + " pixels",
+                "the picture claims " + text + ", more than the limit of " + MegapixelsText(pixels_max),
                 "use smaller pictures");
   return size;
 }

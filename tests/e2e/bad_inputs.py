@@ -136,7 +136,7 @@ PICTURES = [
     file_case("JPEG without its end", r"1 picture of left cannot be read .*the picture is cut off", "left/07.jpg",
               b"\xff\xd8\xff\xc0\x00\x0b\x08\x00\x40\x00\x40\x01\x01\x11\x00\xff\xda\x00\x08\x01\x01\x00\x00\x3f\x00" + b"x" * 200, kind="noted"),
     file_case("PNG of 100000 x 100000", r"1 picture of left cannot be read .*the picture claims 100000 x 100000 pixels", "left/01.png", png(100_000, 100_000, [b"\0" * 10]), kind="noted"),
-    file_case("PNG of 2^31 x 2^31", r"1 picture of left cannot be read .*the picture claims 2147483648 x 2147483648", "left/01.png", png(2**31, 2**31, []), kind="noted"),
+    file_case("PNG of 2^31 x 2^31", r"1 picture of left cannot be read .*the picture is damaged: the size in its header is impossible", "left/01.png", png(2**31, 2**31, []), kind="noted"),
     file_case("PNG of 0 x 0", r"1 picture of left cannot be read .*the picture claims 0 x 0 pixels", "left/01.png", png(0, 0, []), kind="noted"),
     file_case("PNG with a wrong checksum", r"1 picture of left cannot be read", "left/01.png", GOOD["left/01.png"][:60] + b"\xff\xff" + GOOD["left/01.png"][62:], kind="noted"),
     file_case("PNG with less rows than it claims", r"1 picture of left cannot be read", "left/01.png", png(240, 180, [b"\0" * 240] * 20), kind="noted"),

@@ -75,17 +75,22 @@ TEST(Duration, RefusesTheRest) {
     EXPECT_FALSE(ParseDuration(text).has_value()) << text;
 }
 
-TEST(AgeText, ShowsTwoUnits) {
-  EXPECT_EQ(AgeText(0), "0 s");
-  EXPECT_EQ(AgeText(-5 * kSecond_ns), "0 s");
-  EXPECT_EQ(AgeText(12 * kSecond_ns), "12 s");
-  EXPECT_EQ(AgeText(303 * kSecond_ns), "5 min 3 s");
-  EXPECT_EQ(AgeText(7200 * kSecond_ns), "2 h");
-  EXPECT_EQ(AgeText((3 * 86400 + 4 * 3600 + 59) * kSecond_ns), "3 d 4 h");
-  EXPECT_EQ(AgeText((20 * 86400 + 4 * 3600) * kSecond_ns), "20 d");
-  EXPECT_EQ(AgeText(365 * 86400 * kSecond_ns), "365 d");
-  EXPECT_EQ(AgeText(366 * 86400 * kSecond_ns), "1.0 years");
-  EXPECT_EQ(AgeText((2151 * 86400 + 4 * 3600) * kSecond_ns), "5.9 years");
+TEST(AgeText, OneUnitThatAPersonReads) {
+  constexpr std::int64_t kDay_s = 86400;
+  const std::pair<std::int64_t, const char*> cases[] = {{0, "0 s"},
+                                                        {-5, "0 s"},
+                                                        {59, "59 s"},
+                                                        {303, "5 min"},
+                                                        {3599, "59 min"},
+                                                        {7200, "2 h"},
+                                                        {2 * kDay_s - 1, "47 h"},
+                                                        {3 * kDay_s + 4 * 3600 + 59, "3 days"},
+                                                        {100 * kDay_s - 1, "99 days"},
+                                                        {100 * kDay_s, "3 months"},
+                                                        {629 * kDay_s, "20 months"},
+                                                        {2151 * kDay_s, "5.8 years"},
+                                                        {36500 * kDay_s, "99.9 years"}};
+  for (const auto& [age_s, text] : cases) EXPECT_EQ(AgeText(age_s * kSecond_ns), text) << age_s;
 }
 
 TEST(SystemClock, LiesInThisCentury) {

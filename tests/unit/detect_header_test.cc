@@ -56,7 +56,9 @@ TEST(ImageHeader, AJpegNeedsItsEnd) {
 TEST(ImageHeader, RefusesMoreThanTheLimit) {
   const auto size = SizeOf(Png(0xFFFFFFFF, 0xFFFFFFFF));
   ASSERT_FALSE(size);
-  EXPECT_THAT(size.error().what, HasSubstr("limit"));
+  EXPECT_THAT(size.error().what, HasSubstr("the size in its header is impossible"));
+  EXPECT_THAT(SizeOf(Png(100'000, 50'000)).error().what,
+              HasSubstr("100000 x 50000 pixels, more than the limit of 200 megapixels"));
   EXPECT_TRUE(SizeOf(Png(20'000, 10'000)));
   EXPECT_FALSE(SizeOf(Png(20'000, 10'001)));
 }
