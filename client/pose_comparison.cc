@@ -68,6 +68,12 @@ tl::unexpected<Error> Missing(const std::string& what) {
   return Fail(ErrorCode::kNotFound, what, "Compare poses of one rig: sensors are matched by their names.");
 }
 
+// Two revisions of a robot share measurements: so the sigma of their difference is at most about the larger one.
+std::optional<Vector6d> Larger(const std::optional<Vector6d>& sigma, const std::optional<Vector6d>& other) {
+  if (!sigma || !other) return sigma;
+  return Vector6d(sigma->cwiseMax(*other));
+}
+
 }  // namespace
 
 KnownPoses PosesOfRevision(const Document& revision) {
@@ -108,7 +114,8 @@ Result<std::vector<PoseDifference>> ComparePoses(const KnownPoses& poses, const 
     const auto match = others.find(sensor);
     if (sensor == reference || match == others.end()) continue;
     const Se3 T_other = T_ref_other * match->second.T_ref_sensor;
-    differences.push_back({sensor, (T_other.Inverse() * pose.T_ref_sensor).Log(), pose.sigma});
+    differences.push_back(
+        {sensor, (T_other.Inverse() * pose.T_ref_sensor).Log(), Larger(pose.sigma, match->second.sigma)});
   }
   if (differences.empty()) return Missing("no sensor but the reference has a pose to compare with");
   return differences;

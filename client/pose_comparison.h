@@ -27,7 +27,7 @@ using KnownPoses = std::map<std::string, KnownPose>;
 struct PoseDifference {
   std::string sensor;
   Vector6d e = Vector6d::Zero();  // Log(T_other^-1 T), along and about the sensor's axes; m, rad
-  std::optional<Vector6d> sigma;  // of T
+  std::optional<Vector6d> sigma;  // of T, or of T_other where that is known and larger
   // The largest |e_i| / sigma_i; absent without sigma.
   [[nodiscard]] std::optional<double> WorstSigmas() const;
 };

@@ -31,4 +31,17 @@ Result<std::map<RobotId, FleetFacts>> LoadFleetFacts(Store& store) {
   });
 }
 
+Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const RobotId& robot) {
+  using Facts = std::map<SessionId, SessionFacts>;
+  return Load<Facts>(store, "results of the sessions of robot " + robot.str(), [&]() -> Result<Facts> {
+    Facts facts;
+    Query query(store,
+                "SELECT session_id, sum(state = 'good'), sum(state = 'failed') FROM edge WHERE robot_id = ? AND "
+                "session_id IS NOT NULL GROUP BY session_id");
+    query.Bind(robot);
+    while (query.Step()) facts[query.IdAt<SessionId>(0)] = {query.Int(1), query.Int(2)};
+    return facts;
+  });
+}
+
 }  // namespace rigcal::storage

@@ -1,4 +1,4 @@
-// What a list of all robots shows beyond their newest revisions: two queries, however many robots.
+// What lists of robots and of sessions show beyond their own rows: one or two queries, however many.
 #pragma once
 
 #include <map>
@@ -22,5 +22,11 @@ struct FleetFacts {
   std::optional<WorstEdge> worst;        // of the newest revision; absent: nothing checks an edge, or it was not kept
 };
 [[nodiscard]] Result<std::map<RobotId, FleetFacts>> LoadFleetFacts(Store& store);
+
+// What the pairs of a session gave.
+struct SessionFacts {
+  std::int64_t good = 0, failed = 0;
+};
+[[nodiscard]] Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const RobotId& robot);
 
 }  // namespace rigcal::storage

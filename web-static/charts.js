@@ -1,6 +1,6 @@
 // Draws charts where the page has room for them, when that place comes into view.
 import { drawEdge } from "./charts/edge_charts.js";
-import { drawTrend } from "./charts/trend.js";
+import { byFarthestStep, drawTrend, heading, historyText } from "./charts/trend.js";
 
 import { beforePaper } from "./charts/paper.js";
 import { readGraph } from "./charts/graph_readout.js";
@@ -31,6 +31,24 @@ whenSeen(document.querySelectorAll("[data-edge-charts]"), (place) => {
   const edge = edges.get(place.dataset.edgeCharts);
   if (edge) drawEdge(place, edge);
 });
+
+// The sensor that stepped farthest comes first, and a sentence says which did.
+function tellHistory(history, trends) {
+  const told = document.createElement("p");
+  told.className = "what";
+  told.textContent = historyText(trends);
+  history.querySelector("h2").after(told);
+  const places = new Map([...history.querySelectorAll("[data-trend]")].map((place) => [place.dataset.trend, place]));
+  for (const { sensor, rows } of byFarthestStep(trends)) {
+    const place = places.get(sensor);
+    if (!place) continue;
+    place.append(heading(sensor, rows));
+    history.append(place);
+  }
+}
+
+const history = document.getElementById("history");
+if (history && data.trends) tellHistory(history, data.trends);
 const trends = new Map((data.trends ?? []).map((trend) => [trend.sensor, trend.rows]));
 whenSeen(document.querySelectorAll("[data-trend]"), (place) => {
   const rows = trends.get(place.dataset.trend);

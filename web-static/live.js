@@ -1,17 +1,32 @@
-// Keeps a page up to date: asks a small document now and then, and takes the page's live part anew when it changed. On the
+// Keeps a page up to date: asks a small document now and then, and takes the page's fresh parts anew when it changed. On the
 // fleet's page it also searches while one types.
 const PERIOD_MS = 3000;
 const live = document.getElementById("live");
 const form = document.querySelector('form[role="search"]');
 let seen = null, turn = 0;
 
+// Whoever reads along keeps their place: the link in focus, and what was unfolded.
+function replace(part, next) {
+  const focused = part.contains(document.activeElement) ? document.activeElement.getAttribute("href") : null;
+  const open = [...part.querySelectorAll("details")].map((one) => one.open);
+  part.replaceChildren(...next.childNodes);
+  const details = part.querySelectorAll("details");
+  if (details.length === open.length) details.forEach((one, index) => (one.open = open[index]));
+  if (focused !== null) [...part.querySelectorAll("a")].find((link) => link.getAttribute("href") === focused)?.focus();
+}
+
 async function refresh(address) {
+  const parts = document.querySelectorAll("[data-fresh]");
+  if (parts.length === 0) return location.reload();
   const mine = ++turn;
   const reply = await fetch(address, { headers: { Accept: "text/html" } });
   if (!reply.ok || mine !== turn) return;
   const page = new DOMParser().parseFromString(await reply.text(), "text/html");
-  const next = page.getElementById("live");
-  if (next && mine === turn) live.replaceChildren(...next.childNodes);
+  if (mine !== turn) return;
+  for (const part of parts) {
+    const next = page.getElementById(part.id);
+    if (next) replace(part, next);
+  }
   document.dispatchEvent(new Event("rigcal:refreshed"));
 }
 
@@ -33,9 +48,10 @@ function addressOf() {
   return "./?" + new URLSearchParams(new FormData(form));
 }
 
-if (live && location.protocol !== "file:") {
+if (live?.dataset.live && location.protocol !== "file:") {
   poll();
   setInterval(poll, PERIOD_MS);
+  document.addEventListener("visibilitychange", poll);
 }
 if (live && form) {
   let waiting = 0;

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <map>
+#include <set>
 
 #include "server/fleet/findings.h"
 #include "server/fleet/wording.h"
@@ -39,15 +41,38 @@ Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
           "Repeat the sessions of these edges, or calibrate one more pair of their sensors to see which"};
 }
 
+std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
+  std::set<SessionId> sessions;
+  for (const EdgeId& id : ids)
+    if (const auto edge = by_id.find(id); edge != by_id.end()) sessions.insert(edge->second->session);
+  return sessions;
+}
+
+std::string NamesOf(const std::set<SessionId>& sessions) {
+  constexpr std::size_t kDigits = 12;  // as pages show them
+  std::vector<std::string> names;
+  for (const SessionId& session : sessions) names.push_back(session.str().substr(0, kDigits));
+  return (names.size() == 1 ? "session " : "sessions ") + List(names);
+}
+
+// A sensor that was bumped has one pose in the sessions before and another in those after: then these are what to name.
+std::string GroupsText(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id) {
+  const auto a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
+  const bool apart = std::none_of(a.begin(), a.end(), [&](const SessionId& session) { return b.contains(session); });
+  if (apart && !a.contains(SessionId()) && !b.contains(SessionId()))
+    return NamesOf(a) + (a.size() == 1 ? " says one, " : " say one, ") + NamesOf(b) + " the other";
+  return "edges " + List(NamesOf(two.group_a, by_id)) + " agree on one, " + List(NamesOf(two.group_b, by_id)) +
+         " on the other";
+}
+
 }  // namespace
 
 std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution) {
   if (solution.suspects.two_poses.empty()) return std::nullopt;
   const TwoPoses& two = solution.suspects.two_poses.front();
   const auto by_id = ById(edges);
-  std::string why = "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) + " apart: edges " +
-                    List(NamesOf(two.group_a, by_id)) + " agree on one, " + List(NamesOf(two.group_b, by_id)) +
-                    " on the other";
+  std::string why =
+      "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) + " apart: " + GroupsText(two, by_id);
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
   return Finding{why, "Find out whether " + two.sensor.str() +

@@ -1,6 +1,7 @@
 #include "server/http/error_body.h"
 
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace rigcal::http {
 namespace {
@@ -44,6 +45,30 @@ std::string TitleOf(int status) {
   }
 }
 
+// Errors are written as parts of a sentence; a page shows them by themselves.
+std::string Sentence(std::string text) {
+  if (text.empty()) return text;
+  if (text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  if (std::string_view(".?!/").find(text.back()) == std::string_view::npos) text += '.';
+  std::string html;
+  bool is_code = false;
+  for (const char c : Escaped(text)) {
+    if (c != '`') {
+      html += c;
+      continue;
+    }
+    html += is_code ? "</code>" : "<code>";
+    is_code = !is_code;
+  }
+  return html + (is_code ? "</code>" : "");
+}
+
+std::string LinksOf(const std::string& robot) {
+  const std::string fleet = "<p class=\"downloads\"><a class=\"button\" href=\"/\">All robots</a>";
+  if (robot.empty()) return fleet + "</p>";
+  return fleet + "<a class=\"button\" href=\"/robots/" + Escaped(robot) + "/\">" + Escaped(robot) + "</a></p>";
+}
+
 }  // namespace
 
 int StatusOf(ErrorCode code) {
@@ -57,20 +82,20 @@ std::string ErrorDocument(const Error& error) {
   return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string ErrorPage(int status, const Error& error) {
+std::string ErrorPage(int status, const Error& error, const std::string& robot) {
   const std::string title = TitleOf(status);
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+         "<meta name=\"color-scheme\" content=\"light dark\">"
          "<title>" +
          title +
          "</title><link rel=\"icon\" href=\"data:,\">"
          "<link rel=\"stylesheet\" href=\"/style.css\"></head>\n<body><main>"
-         "<nav class=\"crumbs\"><a href=\"/\">Fleet</a></nav><h1>" +
-         title +
-         "</h1>"
-         "<section class=\"card empty\"><p dir=\"auto\">" +
-         Escaped(error.what) + "</p><p dir=\"auto\" class=\"soft\">" + Escaped(error.cure) +
-         "</p></section><p class=\"hint\">HTTP " + std::to_string(status) + "</p></main></body></html>\n";
+         "<nav class=\"crumbs\" aria-label=\"Where you are\"><a href=\"/\">Fleet</a></nav><header><h1>" +
+         title + "</h1><p class=\"meta\">Error " + std::to_string(status) +
+         "</p></header><section class=\"card empty\"><p class=\"what\" dir=\"auto\">" + Sentence(error.what) +
+         "</p><p dir=\"auto\" class=\"soft\">" + Sentence(error.cure) + "</p>" + LinksOf(robot) +
+         "</section></main></body></html>\n";
 }
 
 }  // namespace rigcal::http

@@ -5,6 +5,7 @@
 #include "server/base/sha256.h"
 #include "server/http/conditions.h"
 #include "server/http/error_body.h"
+#include "server/http/request_path.h"
 
 namespace rigcal::http {
 namespace {
@@ -71,8 +72,19 @@ int SendRedirect(mg_connection* connection, int status, const std::string& locat
   return status;
 }
 
+namespace {
+
+std::string RobotOf(const mg_connection* connection) {
+  const mg_request_info* request = mg_get_request_info(connection);
+  if (!request || !request->local_uri_raw) return "";
+  const auto path = NormalPath(request->local_uri_raw);
+  return path ? RobotAbove(*path) : "";
+}
+
+}  // namespace
+
 int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers) {
-  const std::string body = as_json ? ErrorDocument(error) : ErrorPage(status, error);
+  const std::string body = as_json ? ErrorDocument(error) : ErrorPage(status, error, RobotOf(connection));
   Headers all = {{"Content-Type", as_json ? "application/json; charset=utf-8" : "text/html; charset=utf-8"},
                  {"Cache-Control", "no-store"}};
   all.insert(all.end(), headers.begin(), headers.end());

@@ -80,6 +80,12 @@ std::optional<std::string> WithSlash(const std::string& path) {
   return path + "/";
 }
 
+std::string RobotAbove(const std::string& path) {
+  const auto segments = Segments(path);
+  const bool below = segments.size() > 2 && segments[0] == "robots" && RobotId::Parse(segments[1]).has_value();
+  return below ? segments[1] : "";
+}
+
 bool IsApi(const std::string& path) { return path == "/api" || path.rfind("/api/", 0) == 0; }
 
 }  // namespace rigcal::http

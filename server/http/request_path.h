@@ -20,6 +20,9 @@ namespace rigcal::http {
 // Where a page's address lacks its last slash, without which relative links lead astray: the right address.
 [[nodiscard]] std::optional<std::string> WithSlash(const std::string& path);
 
+// The robot whose pages `path` is below, but not its own page; "" if none.
+[[nodiscard]] std::string RobotAbove(const std::string& path);
+
 [[nodiscard]] bool IsApi(const std::string& path);
 
 }  // namespace rigcal::http

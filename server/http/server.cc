@@ -37,12 +37,20 @@ Result<Page> Ask(const Site& site, const std::string& path, const std::string& q
   return Fail(ErrorCode::kInternal, "the server failed to answer " + path, "See the server's log.");
 }
 
+// `file`: "<robot>/<number>/<file>".
+std::string MissingText(const std::string& file) {
+  const std::size_t number = file.find('/') + 1, name = file.find('/', number) + 1;
+  const std::string report = "revision " + file.substr(number, name - 1 - number) + " of " + file.substr(0, number - 1);
+  const bool is_page = file.substr(name) == "index.html";
+  return is_page ? "there is no report of " + report : "the report of " + report + " has no file " + file.substr(name);
+}
+
 int ServeFile(mg_connection* connection, const Site& site, const std::string& file) {
   const int status = SendFile(connection, site.folder, file);
   if (status != 404) return status;
   return SendError(connection, 404,
-                   {ErrorCode::kNotFound, "There is no report file here: " + file,
-                    "The report may not be published yet: look again in a moment, or start at the fleet."},
+                   {ErrorCode::kNotFound, MissingText(file),
+                    "If it was made just now, its report is still being drawn: reload this page in a moment."},
                    false);
 }
 

@@ -101,7 +101,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
   if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);
   if (path.rfind(experiments, 0) == 0) return AnswerExperiments(context, path.substr(experiments.size()));
-  return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots: /");
+  return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots.");
 }
 
 }  // namespace rigcal::pipeline

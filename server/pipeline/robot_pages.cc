@@ -1,13 +1,17 @@
 #include "server/pipeline/robot_pages.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <set>
 
 #include "server/formats/parameters.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/pipeline/unreadable.h"
 #include "server/report/robot_pages.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
+#include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -19,7 +23,7 @@ constexpr std::size_t kTrendRevisionsMax = 24, kTrendBytesMax = 64u << 20, kTren
 constexpr std::size_t kPictureBytesMax = 64u << 20;
 
 tl::unexpected<Error> NoPage(const std::string& rest) {
-  return Fail(ErrorCode::kNotFound, "there is no page /robots/" + rest, "Start at the list of robots: /");
+  return Fail(ErrorCode::kNotFound, "there is no page /robots/" + rest, "Start at the list of robots.");
 }
 
 report::SessionRow SessionRowOf(const formats::SessionAnswer& answer) {
@@ -33,6 +37,34 @@ report::SessionRow SessionRowOf(const formats::SessionAnswer& answer) {
   row.pairs = answer.jobs_total;
   row.pairs_waiting = answer.jobs_waiting;
   return row;
+}
+
+Status AddResults(const AnswerContext& context, const RobotId& robot, std::vector<report::SessionRow>& rows) {
+  RIGCAL_ASSIGN(const auto facts, storage::LoadSessionFacts(context.store, robot));
+  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(context.store, robot));
+  const std::set<SessionId> old(superseded.begin(), superseded.end());
+  for (report::SessionRow& row : rows) {
+    row.superseded = old.contains(row.id);
+    const auto found = facts.find(row.id);
+    if (found != facts.end()) row.good = found->second.good, row.failed = found->second.failed;
+  }
+  return {};
+}
+
+Result<std::map<SessionId, Stamp>> CapturedAt(const AnswerContext& context, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(context.store, robot));
+  std::map<SessionId, Stamp> captured_at;
+  for (const storage::SessionRow& session : sessions) captured_at[session.id] = session.captured_at;
+  return captured_at;
+}
+
+// When the newest session of its edges was captured.
+Stamp NewestCapture(const formats::RevisionInput& revision, const std::map<SessionId, Stamp>& captured_at) {
+  Stamp newest;
+  for (const Edge& edge : revision.edges)
+    if (const auto found = captured_at.find(edge.session); found != captured_at.end())
+      newest = std::max(newest, found->second);
+  return newest;
 }
 
 // Of the newest revision; none if there are more than charts would show.
@@ -54,6 +86,7 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot));
   RIGCAL_ASSIGN(const auto sessions, LoadSessionRows(context.store, robot));
   for (const auto& session : sessions) input.sessions.push_back(SessionRowOf(session));
+  RIGCAL_TRY(AddResults(context, robot, input.sessions));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.revisions.size()));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
   return PageText{std::move(body), kHtmlType};
@@ -62,13 +95,15 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
 // The newest revisions, as many as stay within bounds.
 Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
+  RIGCAL_ASSIGN(const auto captured_at, CapturedAt(context, robot));
   std::vector<report::SolvedRevision> solved;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < std::min(revisions.size(), kTrendRevisionsMax) && bytes < kTrendBytesMax; ++i) {
     RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(context.store, robot, revisions[i].number));
     RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(whole.document));
     bytes += whole.document.size();
-    solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document))});
+    const Stamp newest = NewestCapture(document, captured_at);
+    solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document)), newest});
   }
   std::reverse(solved.begin(), solved.end());
   return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
@@ -88,6 +123,7 @@ Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(const ParsedRevision second, context.revisions.Load(context.store, robot, std::max(before, now)));
   input.before = {first.summary.number, first.document};
   input.now = {second.summary.number, second.document};
+  RIGCAL_ASSIGN(input.captured_at, CapturedAt(context, robot));
   RIGCAL_ASSIGN(std::string body, report::RenderCompare(input));
   return PageText{std::move(body), kHtmlType};
 }
@@ -103,10 +139,14 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
   report::SessionInput input;
   input.robot = robot;
-  input.row = SessionRowOf(row);
+  std::vector<report::SessionRow> rows = {SessionRowOf(row)};
+  RIGCAL_TRY(AddResults(context, robot, rows));
+  input.row = rows.front();
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
+  if (input.row.closed && input.row.pairs_waiting == 0)
+    input.unreadable = WhyUnreadable(context.store, input.manifest, input.edges);
   RIGCAL_ASSIGN(std::string body, report::RenderSession(input));
   return PageText{std::move(body), kHtmlType};
 }
@@ -137,6 +177,7 @@ report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
   fleet.sessions = row.sessions;
   fleet.edges = row.edges;
   fleet.overdue = row.overdue;
+  fleet.pairs_waiting = row.jobs_waiting;
   return fleet;
 }
 

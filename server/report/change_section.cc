@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "server/report/banner.h"
+#include "server/report/sigmas.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kMovesMax = 6, kNamesMax = 8;
-constexpr double kMovedSigmas = 3.0;
 
 void AddLine(Dictionary& changes, const std::string& text) { ShowValue(changes, "LINE", "TEXT", text); }
 
@@ -55,7 +55,7 @@ void FillMoves(Dictionary& section, const Changes& changes) {
   if (!changes.same_reference) return AddLine(section, "The reference sensor is another one: poses are not compared.");
   const auto moved =
       static_cast<std::size_t>(std::count_if(changes.moves.begin(), changes.moves.end(),
-                                             [](const SensorMove& move) { return move.in_sigmas > kMovedSigmas; }));
+                                             [](const SensorMove& move) { return move.in_sigmas >= kOff_sigmas; }));
   if (changes.moves.empty()) return;
   AddLine(section, moved == 0 ? "No sensor moved by more than 3 \xCF\x83."
                               : Count(moved, "sensor", "sensors") + " moved by more than 3 \xCF\x83.");
@@ -72,8 +72,8 @@ void FillMove(Dictionary& row, const SensorMove& move) {
   row.SetValue("DEG", Significant(move.angle_rad * kDegPerRad, 3));
   row.SetValue("SIGMA_MM", SigmaMm(move.sigma.head<3>().maxCoeff()));
   row.SetValue("SIGMA_DEG", SigmaDeg(move.sigma.tail<3>().maxCoeff()));
-  row.SetValue("IN_SIGMAS", Fixed(move.in_sigmas, 1));
-  row.SetValue("LEVEL", move.in_sigmas > kMovedSigmas ? "warn" : "pass");
+  row.SetValue("IN_SIGMAS", SigmasText(move.in_sigmas));
+  row.SetValue("LEVEL", SigmasClass(move.in_sigmas));
 }
 
 void FillChanges(Dictionary& page, const ReportInput& input) {

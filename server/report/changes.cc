@@ -19,6 +19,8 @@ Poses KnownPoses(const formats::RevisionInput& revision) {
 
 Vector6d SigmaOf(const SensorPose& pose) { return pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(); }
 
+}  // namespace
+
 SensorMove MoveOf(const SensorPose& before, const SensorPose& now) {
   SensorMove move;
   move.sensor = now.sensor;
@@ -30,6 +32,8 @@ SensorMove MoveOf(const SensorPose& before, const SensorPose& now) {
     if (move.sigma(axis) > 0.0) move.in_sigmas = std::max(move.in_sigmas, std::abs(move.d(axis)) / move.sigma(axis));
   return move;
 }
+
+namespace {
 
 std::vector<SensorId> Missing(const Poses& of, const Poses& in) {
   std::vector<SensorId> missing;

@@ -15,6 +15,8 @@ struct SensorMove {
   double distance_m = 0.0, angle_rad = 0.0;
   double in_sigmas = 0.0;  // the largest |d| / sigma of the six axes; 0 where no sigma is known
 };
+[[nodiscard]] SensorMove MoveOf(const SensorPose& before, const SensorPose& now);
+
 struct Changes {
   bool same_reference = true;  // false: poses are not compared
   std::vector<SensorMove> moves;  // sensors known in both, but for the reference; the largest in_sigmas first

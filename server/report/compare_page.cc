@@ -1,17 +1,20 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include "server/report/assets.h"
+#include "server/report/banner.h"
 #include "server/report/change_section.h"
+#include "server/report/edge_moves.h"
+#include "server/report/moved_text.h"
 #include "server/report/robot_pages.h"
+#include "server/report/sigmas.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
 namespace {
 
-constexpr double kFar_m = 10.0;
+constexpr double kFar_m = 10.0, kMradPerRad = 1000.0;
 constexpr std::size_t kRowsMax = 3000;
 
 // The focal length that the newer revision's edges estimated for a camera.
@@ -44,55 +47,56 @@ void FillNumbers(Dictionary& page, const char* section, const std::vector<int>& 
 }
 
 void FillSensors(Dictionary& page, const CompareInput& input, const Changes& changes) {
+  if (changes.moves.empty()) return;
   const auto focal_px = FocalLengths(*input.now.revision);
+  Dictionary* sensors = page.AddSectionDictionary("SENSORS");
   for (std::size_t i = 0; i < std::min(changes.moves.size(), kRowsMax); ++i) {
     const SensorMove& move = changes.moves[i];
-    Dictionary* row = page.AddSectionDictionary("MOVE");
+    Dictionary* row = sensors->AddSectionDictionary("MOVE");
     FillMove(*row, move);
-    row->SetValue("MRAD", Significant(move.angle_rad * 1e3, 3));
+    row->SetValue("MRAD", Significant(move.angle_rad * kMradPerRad, 3));
     const auto focal = focal_px.find(move.sensor);
     row->SetValue("PIXELS", focal == focal_px.end() ? "" : Significant(Pixels(move, focal->second), 2));
   }
 }
 
-using EdgeKey = std::tuple<SensorId, SensorId, std::string>;
-
-std::map<EdgeKey, const Edge*> GoodEdges(const formats::RevisionInput& revision) {
-  std::map<EdgeKey, const Edge*> edges;
-  for (const Edge& edge : revision.edges)
-    if (edge.state == EdgeState::kGood) edges[{edge.frame_a, edge.frame_b, edge.method}] = &edge;
-  return edges;
-}
-
-double LargestSigma_m(const Edge& edge) {
-  double largest_m = 0.0;
-  for (int axis = 0; axis < 3; ++axis)
-    if (const AxisSigma sigma = SigmaOf(edge.uncertainty, axis); sigma.known)
-      largest_m = std::max(largest_m, sigma.value);
-  return largest_m;
-}
-
-void FillEdge(Dictionary& row, const Edge& edge, const Edge* before) {
+void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
+  const Edge& edge = move.now ? *move.now : *move.before;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
   row.SetValue("METHOD", edge.method);
-  row.SetValue("SIGMA_NOW", SigmaMm(LargestSigma_m(edge)));
-  if (!before) return row.ShowSection("NEW");
+  if (!move.measured_again) {
+    const char* why = !move.before ? "new" : !move.now ? "gone" : "not measured again";
+    return ShowValue(row, "ALONE", "WHY", why);
+  }
   Dictionary* both = row.AddSectionDictionary("BOTH");
-  const Vector6d d = (before->T_a_b.Inverse() * edge.T_a_b).Log();
-  both->SetValue("MM", Significant(d.head<3>().norm() * kMmPerMetre, 3));
-  both->SetValue("MRAD", Significant(d.tail<3>().norm() * 1e3, 3));
-  both->SetValue("SIGMA_BEFORE", SigmaMm(LargestSigma_m(*before)));
+  both->SetValue("MM", Significant(move.d.head<3>().norm() * kMmPerMetre, 3));
+  both->SetValue("SIGMA_MM", SigmaMm(move.sigma.head<3>().maxCoeff()));
+  both->SetValue("MRAD", Significant(move.d.tail<3>().norm() * kMradPerRad, 3));
+  both->SetValue("SIGMA_MRAD", Significant(move.sigma.tail<3>().maxCoeff() * kMradPerRad, 2));
+  both->SetValue("IN_SIGMAS", SigmasText(move.in_sigmas));
+  both->SetValue("LEVEL", SigmasClass(move.in_sigmas));
 }
 
-void FillEdges(Dictionary& page, const CompareInput& input) {
-  const auto before = GoodEdges(*input.before.revision);
-  std::size_t shown = 0;
-  for (const auto& [key, edge] : GoodEdges(*input.now.revision)) {
-    if (shown++ == kRowsMax) break;
-    const auto found = before.find(key);
-    FillEdge(*page.AddSectionDictionary("EDGE"), *edge, found == before.end() ? nullptr : found->second);
-  }
+void FillEdges(Dictionary& page, const std::vector<EdgeMove>& moves) {
+  for (std::size_t i = 0; i < std::min(moves.size(), kRowsMax); ++i)
+    FillEdgeMove(*page.AddSectionDictionary("EDGE"), moves[i]);
+}
+
+void FillWhatMoved(Dictionary& page, const CompareInput& input, const Changes& changes,
+                   const std::vector<EdgeMove>& edges) {
+  const MovedText text = WhatMoved(changes, input.now.revision->reference);
+  page.SetValue("MOVED", text.sentence);
+  const std::string measured = WhatMeasured(edges);
+  page.SetValue("MOVED_LEVEL", text.moved ? "off" : measured.empty() ? "still" : "warn");
+  if (!measured.empty()) ShowValue(page, "MEASURED", "TEXT", measured);
+  if (text.moved || !measured.empty()) page.ShowSection("LOOK");
+}
+
+void FillVerdict(Dictionary& page, const char* section, const SolvedRevision& solved) {
+  Dictionary* one = page.AddSectionDictionary(section);
+  one->SetValue("NUMBER", std::to_string(solved.number));
+  FillBadge(*one, solved.revision->verdict.level);
 }
 
 }  // namespace
@@ -106,14 +110,15 @@ Result<std::string> RenderCompare(const CompareInput& input) {
   page.SetValue("ROBOT", input.robot.str());
   page.SetValue("BEFORE", std::to_string(input.before.number));
   page.SetValue("NOW", std::to_string(input.now.number));
-  page.SetValue("VERDICT_BEFORE", VerdictWord(input.before.revision->verdict.level));
-  page.SetValue("VERDICT_NOW", VerdictWord(input.now.revision->verdict.level));
+  FillVerdict(page, "VERDICT_BEFORE", input.before);
+  FillVerdict(page, "VERDICT_NOW", input.now);
   FillNumbers(page, "CHOICE_A", input.numbers, input.before.number);
   FillNumbers(page, "CHOICE_B", input.numbers, input.now.number);
   const Changes changes = Compare(*input.before.revision, *input.now.revision);
-  if (!changes.same_reference) page.ShowSection("OTHER_REFERENCE");
+  const std::vector<EdgeMove> edges = EdgeMoves(*input.before.revision, *input.now.revision, input.captured_at);
+  FillWhatMoved(page, input, changes, edges);
   FillSensors(page, input, changes);
-  FillEdges(page, input);
+  FillEdges(page, edges);
   AddScript(page, "../../" + AssetPath("tables.js"));
   return Expand("compare.tpl", page);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "server/report/sigmas.h"
+
 namespace rigcal::report {
 namespace {
 
@@ -24,9 +26,7 @@ std::optional<double> InformationOf(const Edge& edge) {
 const char* FitClass(const ShownEdge& shown, bool checked) {
   if (shown.edge->state == EdgeState::kFailed) return "failed";
   if (!checked || !shown.residual) return "unchecked";
-  if (shown.in_sigmas < 1.0) return "fit0";
-  if (shown.in_sigmas < 2.0) return "fit1";
-  return shown.in_sigmas < 3.0 ? "fit2" : "fit3";
+  return SigmasClass(shown.in_sigmas);
 }
 
 Contradictions ContradictionsOf(const Suspects& suspects) {

@@ -9,7 +9,7 @@
 
 namespace rigcal::report {
 
-// "fit0" (below 1 sigma), "fit1" (2), "fit2" (3), "fit3" (beyond); "unchecked" if no other edge checks it; "failed".
+// SigmasClass() of its residual; "unchecked" if no other edge checks it; "failed".
 [[nodiscard]] const char* FitClass(const ShownEdge& shown, bool checked);
 
 // Edges that the others speak against, and those that may be wrong instead.

@@ -8,6 +8,7 @@
 #include "server/report/banner.h"
 #include "server/report/fleet_view.h"
 #include "server/report/render.h"
+#include "server/report/sigmas.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -21,22 +22,25 @@ bool IsNever(const FleetRow& robot) { return robot.revision == 0 || robot.calibr
 
 namespace {
 
-std::string FleetSummary(const std::vector<FleetRow>& rows) {
+// Each count leads to the robots that it counts.
+void FillSummary(Dictionary& page, const std::vector<FleetRow>& rows) {
   std::size_t overdue = 0;
   std::map<VerdictLevel, std::size_t> levels;
   for (const FleetRow& row : rows) {
     ++levels[row.verdict.level];
     overdue += row.overdue ? 1 : 0;
   }
-  std::string text = Count(rows.size(), "robot", "robots");
-  const char* separator = ": ";
+  page.SetValue("SUMMARY", Count(rows.size(), "robot", "robots"));
+  const auto add = [&](const std::string& value, std::size_t count) {
+    if (count == 0) return;
+    Dictionary* part = page.AddSectionDictionary("PART");
+    part->SetValue("VALUE", value);
+    part->SetValue("TEXT", std::to_string(count) + " " + value);
+  };
   for (const VerdictLevel level :
-       {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass}) {
-    if (levels[level] == 0) continue;
-    text += separator + std::to_string(levels[level]) + " " + NameOf(level);
-    separator = ", ";
-  }
-  return text + (overdue > 0 ? "; " + std::to_string(overdue) + " overdue" : "");
+       {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass})
+    add(NameOf(level), levels[level]);
+  add("overdue", overdue);
 }
 
 void FillWorst(Dictionary& row, const std::optional<WorstFit>& worst) {
@@ -44,14 +48,19 @@ void FillWorst(Dictionary& row, const std::optional<WorstFit>& worst) {
   Dictionary* one = row.AddSectionDictionary("WORST");
   one->SetValue("FROM", worst->frame_a);
   one->SetValue("TO", worst->frame_b);
-  one->SetValue("SIGMAS", Fixed(worst->in_sigmas, 1));
-  one->SetValue("LEVEL", worst->in_sigmas < kOff_sigmas ? "soft" : "badge warn");
+  one->SetValue("SIGMAS", SigmasText(worst->in_sigmas));
+  one->SetValue("LEVEL", SigmasClass(worst->in_sigmas));
 }
 
 void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
+  if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())
+    ShowValue(row, "DO", "WHAT_TO_DO", robot.verdict.what_to_do);
+  if (robot.pairs_waiting > 0)
+    ShowValue(row, "WORKING", "TEXT",
+              Count(static_cast<std::size_t>(robot.pairs_waiting), "pair", "pairs") + " being calibrated");
   row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(robot.calibrated_at, now));
   row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
   FillWorst(row, robot.worst);
@@ -147,7 +156,7 @@ Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, co
     page.ShowSection("EMPTY");
     return Expand("fleet.tpl", page);
   }
-  page.SetValue("SUMMARY", FleetSummary(rows));
+  FillSummary(page, rows);
   const FleetSlice slice = SliceOf(rows, query, now);
   Dictionary* list = page.AddSectionDictionary("ROBOTS");
   FillForm(*list, query);

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "server/report/render.h"
+#include "server/report/sigmas.h"
 
 namespace rigcal::report {
 
 inline constexpr std::size_t kFleetRowsMax = 100;  // of one page
-inline constexpr double kOff_sigmas = 3.0;         // an edge beyond this is "off"
 inline constexpr std::int64_t kQuiet_ns = 30LL * 24 * 3600 * 1'000'000'000;  // "quiet" for longer
 
 struct FleetSlice {

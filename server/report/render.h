@@ -69,6 +69,7 @@ struct FleetRow {
   bool overdue = false;
   std::optional<Stamp> last_session_at = {};  // captured; absent: no session
   std::optional<WorstFit> worst = {};         // of the newest revision; absent: nothing checks an edge
+  std::int64_t pairs_waiting = 0;             // to be calibrated
 };
 // What the fleet's page is asked for; each part comes from its address and may be anything.
 struct FleetQuery {

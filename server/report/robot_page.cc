@@ -25,7 +25,13 @@ void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now)
     row->SetValue("WHY", revisions[i].verdict.why);
     row->SetValue("TIME", TimeText(revisions[i].created_at));
     row->SetValue("AGE", AgeOf(revisions[i].created_at, now));
-    row->SetValue("DIGEST", ShortDigest(revisions[i].digest.str()));
+    if (i + 1 == revisions.size()) {
+      row->ShowSection("FIRST");
+      continue;
+    }
+    Dictionary* changed = row->AddSectionDictionary("CHANGED");
+    changed->SetValue("NUMBER", std::to_string(revisions[i].number));
+    changed->SetValue("BEFORE", std::to_string(revisions[i + 1].number));
   }
   if (revisions.size() > kRevisionsMax)
     ShowValue(*list, "MORE", "COUNT", std::to_string(revisions.size() - kRevisionsMax));
@@ -42,6 +48,17 @@ void FillOpen(Dictionary& page, const SessionRow& session) {
   open->SetValue("UNIT", arriving ? "files" : "pairs");
 }
 
+// Of a session that came whole; the others stand above the list, with their progress.
+void FillResult(Dictionary& row, const SessionRow& session) {
+  if (session.superseded) return ShowValue(row, "SUPERSEDED", "WORD", "superseded");
+  if (!session.closed || session.pairs_waiting > 0)
+    return ShowValue(row, "WORKING", "WORD", session.closed ? "being calibrated" : "arriving");
+  if (session.pairs == 0) return ShowValue(row, "WORKING", "WORD", "no pair of sensors to calibrate");
+  row.SetValue("GOOD", std::to_string(session.good) + " of " +
+                           Count(static_cast<std::size_t>(session.pairs), "pair", "pairs") + " good");
+  if (session.failed > 0) ShowValue(row, "FAILED", "COUNT", std::to_string(session.failed));
+}
+
 void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Stamp now) {
   for (const SessionRow& session : sessions)
     if (!session.closed || session.pairs_waiting > 0) FillOpen(page, session);
@@ -56,7 +73,7 @@ void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Sta
     row->SetValue("AGE", AgeOf(session.captured_at, now));
     row->SetValue("OPERATOR", session.operator_name);
     row->SetValue("FILES", std::to_string(session.files));
-    row->SetValue("PAIRS", std::to_string(session.pairs));
+    FillResult(*row, session);
   }
 }
 
@@ -83,10 +100,10 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   const FleetRow& row = input.row;
   FillHead(page, row.robot.str() + ": " + VerdictWord(row.verdict.level), "../../");
   page.SetValue("ROBOT", row.robot.str());
-  page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
-                                         : "Calibrated " + AgeOf(row.calibrated_at, now)) +
-                               ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
-                               Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
+  page.SetValue("SUMMARY",
+                (IsNever(row) ? std::string("Not calibrated yet") : "Calibrated " + AgeOf(row.calibrated_at, now)) +
+                    ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
+                    Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
   if (row.overdue) page.ShowSection("OVERDUE");
   FillBanner(page, row.verdict);
   FillSessions(page, input.sessions, now);

@@ -1,8 +1,10 @@
 // The pages about one robot that are made when asked for: its history, a comparison of two revisions, a session.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/report/render.h"
@@ -16,6 +18,8 @@ struct SessionRow {
   std::string operator_name;
   bool closed = false;
   std::int64_t files = 0, files_held = 0, pairs = 0, pairs_waiting = 0;
+  std::int64_t good = 0, failed = 0;  // of the pairs that are done
+  bool superseded = false;            // pushed again later, in a corrected form
 };
 struct RobotInput {
   FleetRow row;
@@ -25,10 +29,12 @@ struct RobotInput {
 };
 [[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);
 
-// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one.
+// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one, and
+// how far it moved from each to the next.
 struct SolvedRevision {
   int number = 0;
   std::shared_ptr<const formats::RevisionInput> revision;
+  Stamp captured_at = {};  // of its newest session; 0: not known
 };
 [[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
 
@@ -36,6 +42,7 @@ struct CompareInput {
   RobotId robot;
   SolvedRevision before, now;
   std::vector<int> numbers;  // of all revisions, to choose from
+  std::map<SessionId, Stamp> captured_at = {};
 };
 [[nodiscard]] Result<std::string> RenderCompare(const CompareInput& input);
 
@@ -43,7 +50,8 @@ struct SessionInput {
   RobotId robot;
   SessionRow row;
   Manifest manifest;
-  std::vector<Edge> edges;  // that it gave
+  std::vector<Edge> edges;                                                // that it gave
+  std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

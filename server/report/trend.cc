@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "server/formats/json_writer.h"
+#include "server/report/changes.h"
 #include "server/report/robot_pages.h"
 
 namespace rigcal::report {
@@ -12,20 +13,28 @@ using formats::JsonWriter;
 
 struct Row {
   int revision = 0;
+  Stamp captured_at;
+  std::optional<SensorMove> step;  // since the row before
   Vector6d d = Vector6d::Zero(), sigma = Vector6d::Zero();
 };
 
 struct Trend {
   std::optional<Se3> T_ref_first;
+  std::optional<SensorPose> last;
   SensorId reference;
   std::vector<Row> rows;
 };
 
 // A new reference begins a new history: poses in different frames are not compared.
-void Take(Trend& trend, int number, const SensorId& reference, const SensorPose& pose) {
-  if (trend.reference != reference) trend = {std::nullopt, reference, {}};
+void Take(Trend& trend, const SolvedRevision& solved, const SensorPose& pose) {
+  const SensorId& reference = solved.revision->reference;
+  if (trend.reference != reference) trend = {std::nullopt, std::nullopt, reference, {}};
   if (!trend.T_ref_first) trend.T_ref_first = pose.T_ref_sensor;
-  trend.rows.push_back({number, (trend.T_ref_first->Inverse() * pose.T_ref_sensor).Log(),
+  std::optional<SensorMove> step;
+  if (trend.last) step = MoveOf(*trend.last, pose);
+  trend.last = pose;
+  trend.rows.push_back({solved.number, solved.captured_at, std::move(step),
+                        (trend.T_ref_first->Inverse() * pose.T_ref_sensor).Log(),
                         pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt()});
 }
 
@@ -35,12 +44,20 @@ void WriteVector(JsonWriter& out, const char* key, const Vector6d& values) {
   });
 }
 
+void WriteStep(JsonWriter& out, const SensorMove& step) {
+  out.Number("moved_m", step.distance_m);
+  out.Number("turned_rad", step.angle_rad);
+  out.Number("in_sigmas", step.in_sigmas);
+}
+
 void WriteTrend(JsonWriter& out, const SensorId& sensor, const Trend& trend) {
   out.Text("sensor", sensor.str());
   out.List("rows", [&] {
     for (const Row& row : trend.rows)
       out.Object([&] {
         out.Integer("revision", row.revision);
+        if (row.captured_at.ns > 0) out.Text("date", ToIso(row.captured_at).substr(0, 10));
+        if (row.step) WriteStep(out, *row.step);
         WriteVector(out, "d", row.d);
         WriteVector(out, "sigma", row.sigma);
       });
@@ -53,8 +70,7 @@ std::string TrendData(const std::vector<SolvedRevision>& revisions) {
   std::map<SensorId, Trend> trends;
   for (const SolvedRevision& solved : revisions)
     for (const SensorPose& pose : solved.revision->solution.poses)
-      if (pose.known && pose.sensor != solved.revision->reference)
-        Take(trends[pose.sensor], solved.number, solved.revision->reference, pose);
+      if (pose.known && pose.sensor != solved.revision->reference) Take(trends[pose.sensor], solved, pose);
   const std::string json = formats::WriteObject([&](JsonWriter& out) {
     out.List("trends", [&] {
       for (const auto& [sensor, trend] : trends) out.Object([&] { WriteTrend(out, sensor, trend); });

@@ -49,6 +49,15 @@ TEST(Compare, TheErrorIsAlongTheSensorsOwnAxes) {
   EXPECT_NEAR(*differences->at(0).WorstSigmas(), 2.0, 1e-9);
 }
 
+// As on the page that compares two revisions.
+TEST(Compare, TheLargerSigmaOfBothCounts) {
+  const KnownPoses now{{"a", {At(0, 0, 0), {}}}, {"b", {At(1.006, 0, 0), Vector6d::Constant(0.001)}}};
+  KnownPoses before{{"a", {At(0, 0, 0), {}}}, {"b", {At(1, 0, 0), Vector6d::Constant(0.003)}}};
+  EXPECT_NEAR(*ComparePoses(now, before, "a")->at(0).WorstSigmas(), 2.0, 1e-9);
+  before["b"].sigma.reset();
+  EXPECT_NEAR(*ComparePoses(now, before, "a")->at(0).WorstSigmas(), 6.0, 1e-9);
+}
+
 TEST(Compare, ARigidMotionOfTheOtherRigDoesNotShow) {
   const Se3 moved = At(5, -3, 1, 0.7);
   const KnownPoses poses{{"a", {At(0, 0, 0), {}}}, {"b", {At(1, 2, 3, 0.2), {}}}, {"c", {At(-1, 0, 0), {}}}};

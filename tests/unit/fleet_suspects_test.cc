@@ -88,6 +88,8 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, HasSubstr("Sensor top has two poses, 40 mm and 0 deg apart: edges right - top agree on one, "
                                      "left - top on the other"));
+  rig.edges[1].session = SessionId(std::string(64, 'a')), rig.edges[2].session = SessionId(std::string(64, 'b'));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: session aaaaaaaaaaaa says one, session bbbbbbbbbbbb the other"));
 }
 
 TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "server/http/conditions.h"
@@ -6,6 +7,9 @@
 
 namespace rigcal::http {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(HttpPath, IsDecodedAndNormal) {
   EXPECT_EQ(NormalPath("/").value(), "/");
@@ -51,6 +55,22 @@ TEST(HttpConditions, RangeOfAnEmptyFile) {
   EXPECT_EQ(ParseRange("bytes=-5", 0).kind, RangeKind::kUnsatisfiable);
   EXPECT_EQ(ParseRange("lines=0-", 10).kind, RangeKind::kWhole);
   EXPECT_EQ(ParseRange("bytes=-0", 10).kind, RangeKind::kUnsatisfiable);
+}
+
+TEST(HttpPath, RobotAbove) {
+  EXPECT_EQ(RobotAbove("/robots/m/revisions/7/"), "m");
+  EXPECT_EQ(RobotAbove("/robots/m/compare"), "m");
+  for (const std::string path : {"/", "/robots/m/", "/robots/-m/revisions/7/", "/x/m/revisions/7/"})
+    EXPECT_EQ(RobotAbove(path), "") << path;
+}
+
+TEST(HttpErrors, PageIsASentenceWithAWayOn) {
+  const Error error{ErrorCode::kNotFound, "robot '<b>' is not known", "`rigcal robots` lists those that are"};
+  const std::string page = ErrorPage(404, error, "mapper-01");
+  EXPECT_THAT(page, HasSubstr("Robot &#39;&lt;b&gt;&#39; is not known.</p>"));
+  EXPECT_THAT(page, HasSubstr("<code>rigcal robots</code> lists those that are.</p>"));
+  EXPECT_THAT(page, HasSubstr("href=\"/robots/mapper-01/\">mapper-01</a>"));
+  EXPECT_THAT(ErrorPage(404, error), Not(HasSubstr("/robots/")));
 }
 
 TEST(HttpErrors, DocumentKeepsBrokenText) {

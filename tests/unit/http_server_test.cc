@@ -71,7 +71,7 @@ TEST_F(HttpFixture, ErrorsAreMappedAndShapedByPath) {
   EXPECT_THAT(api.headers.at("content-type"), HasSubstr("application/json"));
   EXPECT_EQ(page.status, 404);
   EXPECT_THAT(page.headers.at("content-type"), HasSubstr("text/html"));
-  EXPECT_THAT(page.body, HasSubstr("robot &quot;&lt;b&gt;&quot; is not known"));
+  EXPECT_THAT(page.body, HasSubstr("Robot &quot;&lt;b&gt;&quot; is not known."));
   EXPECT_THAT(page.body, HasSubstr("List them."));
   EXPECT_EQ(Get(port, "/api/v1/wrong").status, 400);
   EXPECT_EQ(Get(port, "/api/v1/x").status, 503);

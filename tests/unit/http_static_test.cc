@@ -103,6 +103,10 @@ TEST_F(HttpFixture, WhatIsNotThereIsAFriendlyPage) {
     EXPECT_EQ(reply.status, 404) << target;
     EXPECT_THAT(reply.body, HasSubstr("There is nothing here")) << target;
   }
+  EXPECT_THAT(Get(port, "/robots/mapper-01/revisions/8/").body,
+              HasSubstr("There is no report of revision 8 of mapper-01."));
+  EXPECT_THAT(Get(port, kRevision + "nothing").body,
+              HasSubstr("The report of revision 7 of mapper-01 has no file nothing."));
 }
 
 TEST_F(HttpFixture, NothingOutsideTheFolderAndNothingHidden) {

@@ -4,10 +4,13 @@
 
 #include "server/report/changes.h"
 #include "server/report/edge_fit.h"
+#include "server/report/edge_moves.h"
 #include "server/report/fleet_view.h"
 #include "server/report/influence.h"
+#include "server/report/moved_text.h"
 #include "server/report/page_data.h"
 #include "server/report/robot_pages.h"
+#include "server/report/sigmas.h"
 #include "tests/unit/report_sample.h"
 
 namespace rigcal::report {
@@ -65,6 +68,70 @@ TEST(ReportChanges, PageSaysWhatMoved) {
   EXPECT_THAT(page, HasSubstr("The verdict went from pass to warn."));
   EXPECT_THAT(page, HasSubstr("1 sensor moved by more than 3 \xCF\x83."));
   EXPECT_THAT(page, HasSubstr("<bdi>lidar</bdi></th><td>50.0</td>"));
+}
+
+TEST(ReportSigmas, OneScaleForAllPages) {
+  const std::pair<double, const char*> cases[] = {
+      {0.99, "fit0"}, {1.0, "fit1"}, {2.0, "fit2"}, {2.99, "fit2"}, {3.0, "fit3"}};
+  for (const auto& [in_sigmas, name] : cases) EXPECT_STREQ(SigmasClass(in_sigmas), name);
+  EXPECT_EQ(SigmasText(2.99), "2.9");  // "3.0" would look like the limit
+  EXPECT_EQ(SigmasText(118.68), "118.7");
+}
+
+Changes Moved(std::initializer_list<double> in_sigmas) {
+  Changes changes;
+  for (const double sigmas : in_sigmas) {
+    SensorMove move;
+    move.sensor = SensorId("s" + std::to_string(changes.moves.size()));
+    move.distance_m = 0.0019, move.angle_rad = 0.003, move.in_sigmas = sigmas;
+    changes.moves.push_back(move);
+  }
+  return changes;
+}
+
+TEST(ReportMoved, OneSentence) {
+  const auto said = [](const Changes& changes) { return WhatMoved(changes, SensorId("base")).sentence; };
+  EXPECT_EQ(said(Moved({2.7, 1.0})), "Nothing moved: every sensor is where it was, to within 2.7 \xCF\x83.");
+  EXPECT_EQ(
+      said(Moved({67.7, 2.9, 1.0})),
+      "s0 moved by 1.9 mm and 0.17 deg (67.7 \xCF\x83). The other 2 are where they were, to within 2.9 \xCF\x83.");
+  EXPECT_THAT(said(Moved({9.0, 5.0, 1.0})), HasSubstr("2 of 3 sensors moved, most of all s0, by 1.9 mm"));
+  EXPECT_THAT(said(Moved({9.0, 5.0})), HasSubstr("look first whether base itself moved"));
+  EXPECT_THAT(said({}), HasSubstr("No sensor but the reference"));
+  EXPECT_TRUE(WhatMoved(Moved({3.0}), SensorId("base")).moved);
+  EXPECT_FALSE(WhatMoved(Moved({2.9}), SensorId("base")).moved);
+}
+
+Edge MeasuredAt(const std::string& session, double x_m, double sigma_m) {
+  Edge edge = SampleEdge("a", "b", SamplePose(x_m, 0, 0, 0));
+  edge.session = SessionId(Sha256Of(session).str());
+  edge.id = EdgeId(Sha256Of("edge of " + session).str());
+  edge.uncertainty = SampleUncertainty(sigma_m, 0.001, 8);
+  return edge;
+}
+
+// The graph fuses old and new measurements; here the newest of each revision stand against each other.
+TEST(ReportEdgeMoves, NewestMeasurementsInTheirSigmas) {
+  formats::RevisionInput before, now;
+  before.edges = {MeasuredAt("may", 1.0, 0.003), MeasuredAt("june", 1.001, 0.003)};
+  now.edges = before.edges;
+  now.edges.push_back(MeasuredAt("july", 1.026, 0.004));
+  now.edges.push_back(SampleEdge("a", "c", Se3()));
+  std::map<SessionId, Stamp> captured_at;
+  for (const auto& [session, ns] : {std::pair{"may", 5}, {"june", 6}, {"july", 7}})
+    captured_at[SessionId(Sha256Of(session).str())] = Stamp{ns};
+  const auto moves = EdgeMoves(before, now, captured_at);
+  ASSERT_EQ(moves.size(), 2U);
+  EXPECT_TRUE(moves[0].measured_again);
+  EXPECT_NEAR(moves[0].d(tangent::kX), 0.025, 1e-12);
+  EXPECT_NEAR(moves[0].in_sigmas, 5.0, 1e-9);  // of 3 mm and 4 mm
+  EXPECT_EQ(moves[1].before, nullptr);
+  EXPECT_EQ(WhatMeasured(moves), "Measured anew, a \xE2\x86\x92 b is off by 25 mm and 0 deg (5.0 \xCF\x83).");
+  const auto same = EdgeMoves(before, before, captured_at);
+  EXPECT_EQ(WhatMeasured(same), "");
+  ASSERT_EQ(same.size(), 1U);
+  EXPECT_FALSE(same[0].measured_again);
+  EXPECT_EQ(same[0].now->id, before.edges[1].id);
 }
 
 TEST(ReportInfluence, NamesTheCaptureThatMovesThePositionMost) {
@@ -153,7 +220,9 @@ TEST(Trend, CountsFromTheFirstPoseAndBeginsAnewWithANewReference) {
     return revision;
   };
   const std::string data = TrendData({{1, at(1.0, "a")}, {2, at(1.5, "a")}});
-  EXPECT_THAT(data, HasSubstr("\"d\":[0.5,0.0,0.0,0.0,0.0,0.0],\"revision\":2"));
+  EXPECT_THAT(data, HasSubstr("\"d\":[0.5,0.0,0.0,0.0,0.0,0.0],\"in_sigmas\":500.0,\"moved_m\":0.5,\"revision\":2"));
+  EXPECT_THAT(TrendData({{1, at(1.0, "a"), Stamp{1'800'000'000LL * 1'000'000'000}}}),
+              HasSubstr("\"date\":\"2027-01-15\",\"revision\":1"));
   EXPECT_THAT(TrendData({{1, at(1.0, "a")}, {2, at(1.5, "b")}}), Not(HasSubstr("\"revision\":1")));
 }
 

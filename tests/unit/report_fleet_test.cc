@@ -9,6 +9,7 @@
 namespace rigcal::report {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -36,7 +37,20 @@ TEST(ReportFleet, WorstFirstWithAgeAndLinks) {
   EXPECT_THAT(page, HasSubstr("href=\"robots/late/revisions/4/\""));
   EXPECT_THAT(page, HasSubstr("href=\"robots/bad/\""));
   EXPECT_THAT(page, HasSubstr(AgeText(3 * kDay_ns) + " ago"));
-  EXPECT_THAT(page, HasSubstr("3 robots: 1 fail, 2 pass; 1 overdue"));
+  EXPECT_THAT(page,
+              HasSubstr("3 robots &middot; <a href=\"?verdict=fail\">1 fail</a> &middot; "
+                        "<a href=\"?verdict=pass\">2 pass</a> &middot; <a href=\"?verdict=overdue\">1 overdue</a>"));
+}
+
+TEST(ReportFleet, SaysWhatToDoAndWhatIsUnderWay) {
+  FleetRow bad = RowOf("bad", VerdictLevel::kFail, 2), good = RowOf("good", VerdictLevel::kPass, 2);
+  bad.verdict.what_to_do = "Repeat the session.";
+  good.verdict.what_to_do = "Go on as before.";
+  bad.pairs_waiting = 3;
+  const std::string page = RenderFleet({bad, good}, Stamp{103 * kDay_ns}).value();
+  EXPECT_THAT(page, HasSubstr("Repeat the session."));
+  EXPECT_THAT(page, HasSubstr("3 pairs being calibrated"));
+  EXPECT_THAT(page, Not(HasSubstr("Go on as before.")));
 }
 
 TEST(ReportFleet, RobotWithoutRevisionHasNoAge) {
@@ -60,8 +74,9 @@ TEST(ReportFleet, LastSessionAndWorstEdgeAreShownSearchedAndSorted) {
   const std::vector<FleetRow> rows = {quiet, off, fine};
   const Stamp now{100 * kDay_ns};
   const std::string page = RenderFleet(rows, now).value();
-  EXPECT_THAT(page, HasSubstr("4.2 &sigma;</span> <span class=\"pair\">left &rarr; mast"));
-  EXPECT_THAT(page, HasSubstr(AgeText(90 * kDay_ns) + " ago"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"badge fit3\">4.2 &sigma;</span> <span class=\"pair\">left &rarr; mast"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"badge fit0\">0.5 &sigma;</span>"));
+  EXPECT_THAT(page, HasSubstr("90 days ago"));
   const auto order = [&](const FleetQuery& query) {
     std::string names;
     for (const FleetRow* row : SliceOf(rows, query, now).rows) names += row->robot.str() + " ";
@@ -120,6 +135,77 @@ TEST(ReportSession, PosesAreNoCapture) {
   EXPECT_THAT(RenderSession(SessionWithPoses(false)).value(), Not(HasSubstr("class=\"sheet\"")));
 }
 
+Edge SessionEdge(const std::string& a, const std::string& b, EdgeState state) {
+  Edge edge = SampleEdge(a, b, Se3());
+  edge.state = state;
+  return edge;
+}
+
+// One good pair that used capture 01 and not 02, one failed pair, a picture that nobody could read.
+SessionInput SessionOfThree() {
+  SessionInput input;
+  input.robot = RobotId("r");
+  input.row = {SessionId(Sha256Of("session").str()), Stamp{kDay_ns}, "", true, 4, 4, 2, 0, 1, 1};
+  for (const char* name : {"left", "right", "rear"}) {
+    Sensor camera;
+    camera.id = SensorId(name);
+    input.manifest.header.sensors.push_back(camera);
+    for (const char* capture : {"01", "02"})
+      input.manifest.payloads.push_back(
+          {std::string(name) + "/" + capture + ".png", camera.id, CaptureId(capture), Digest(), 1});
+  }
+  Edge good = SessionEdge("left", "right", EdgeState::kGood), bad = SessionEdge("left", "rear", EdgeState::kFailed);
+  good.captures = {{CaptureId("01"), 0.2, true, ""}, {CaptureId("02"), 0.0, false, "left: no board"}};
+  bad.captures = {{CaptureId("01"), 0.0, false, "the pair was not solved"}};
+  bad.diagnoses = {{"too_few_captures", "rear sees nothing.", "Turn the robot."}};
+  for (const char* capture : {"01", "02"})
+    good.evidence.push_back({std::string("left / ") + capture + ": 54 corners", SensorId("left"), CaptureId(capture),
+                             Digest(Sha256Of(capture).str()), "jpg"});
+  bad.evidence.push_back(
+      {"rear / 01: 54 corners", SensorId("rear"), CaptureId("01"), Digest(Sha256Of("rear").str()), "jpg"});
+  input.edges = {good, bad};
+  input.unreadable[{CaptureId("02"), SensorId("rear")}] = "the picture is cut off";
+  return input;
+}
+
+TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
+  SessionInput input = SessionOfThree();
+  EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("1 of 2 pairs of sensors were calibrated, 1 failed. "
+                                                            "1 picture of rear cannot be read."),
+                                                  HasSubstr("cannot be read again. Turn the robot.</p>")));
+  input.row.good = 0, input.row.failed = 2;
+  EXPECT_THAT(RenderSession(input).value(), HasSubstr("None of 2 pairs of sensors could be calibrated."));
+  input.row.superseded = true;
+  EXPECT_THAT(RenderSession(input).value(), HasSubstr("it was pushed again later in a corrected form"));
+  input.row.pairs_waiting = 1;
+  const std::string working = RenderSession(input).value();
+  EXPECT_THAT(working, HasSubstr("is being calibrated: 1 of 2 pairs are done."));
+  EXPECT_THAT(working, HasSubstr("data-live=\"../../../../api/v1/live?robot=r\""));
+  input.row.closed = false, input.row.files_held = 3;
+  EXPECT_THAT(RenderSession(input).value(), HasSubstr("is arriving: 3 of 4 files are here."));
+}
+
+TEST(ReportSession, EachPictureIsUsedOrSaysWhyNot) {
+  const std::string page = RenderSession(SessionOfThree()).value();
+  EXPECT_THAT(page, Not(HasSubstr("data-live")));
+  EXPECT_THAT(page, HasSubstr("<span class=\"used\">used</span>: 54 corners</span>"));
+  EXPECT_THAT(page, HasSubstr("54 corners<br><span class=\"unused\">not used</span>: left: no board</span>"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"unused\">not used</span>: none of its pairs could be solved</span>"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"unused\">not readable</span>: the picture is cut off</span>"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"soft\">nothing drawn</span>"));
+}
+
+TEST(ReportRobot, SessionsSayWhatTheyGave) {
+  RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
+  input.sessions = {{SessionId(Sha256Of("a").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 11, 3},
+                    {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, true},
+                    {SessionId(Sha256Of("c").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 5, 9, 0}};
+  const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
+  EXPECT_THAT(page, HasSubstr("11 of 14 pairs good <span class=\"badge fail\">3 failed</span>"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"badge unknown\">superseded</span>"));
+  EXPECT_THAT(page, HasSubstr("is being calibrated: 9 of 14 pairs"));
+}
+
 TEST(ReportRobot, RevisionsNewestFirst) {
   std::vector<Revision> revisions(3);
   for (int i = 0; i < 3; ++i) {
@@ -132,7 +218,8 @@ TEST(ReportRobot, RevisionsNewestFirst) {
       RenderRobot({RowOf("mapper", VerdictLevel::kPass, 3), revisions, {}, {}}, Stamp{101 * kDay_ns}).value();
   EXPECT_LT(page.find("revisions/3/"), page.find("revisions/2/"));
   EXPECT_LT(page.find("revisions/2/"), page.find("revisions/1/"));
-  EXPECT_THAT(page, HasSubstr(Sha256Of("3").str().substr(0, 12)));
+  EXPECT_THAT(page, HasSubstr("href=\"compare?a=2&amp;b=3\">against revision 2</a>"));
+  EXPECT_THAT(page, HasSubstr("the first"));
   EXPECT_THAT(page, HasSubstr("href=\"../../style.css\""));
   EXPECT_THAT(page, HasSubstr("banner pass"));
 }

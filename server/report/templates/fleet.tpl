@@ -4,7 +4,7 @@
 <main>
 <header>
 <h1>Fleet</h1>
-<p class="meta">{{SUMMARY}}{{#EXPERIMENTS}} &middot; <a href="experiments/">{{COUNT}}</a>{{/EXPERIMENTS}}</p>
+<p class="meta" id="summary" data-fresh>{{SUMMARY}}{{#PART}} &middot; <a href="?verdict={{VALUE}}">{{TEXT}}</a>{{/PART}}{{#EXPERIMENTS}} &middot; <a href="experiments/">{{COUNT}}</a>{{/EXPERIMENTS}}</p>
 </header>
 {{#ROBOTS}}
 <form class="search" role="search" action="./" method="get">
@@ -13,14 +13,14 @@
 <input type="hidden" name="sort" value="{{SORT}}"><input type="hidden" name="order" value="{{ORDER}}">
 <button>Show</button>
 </form>
-<section class="card" id="live" data-live="api/v1/live">
+<section class="card" id="live" data-fresh data-live="api/v1/live">
 <p class="count" role="status">{{COUNT}}</p>
 <div class="scroll" tabindex="0" role="region" aria-label="Robots">
 <table class="list fleet">
 <thead><tr>{{#COLUMN}}<th scope="col"{{#NUMERIC}} class="num"{{/NUMERIC}}{{#SORTED}} aria-sort="{{DIRECTION}}"{{/SORTED}}><a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}">{{NAME}} <span aria-hidden="true">{{ARROW}}</span></a></th>{{/COLUMN}}</tr></thead>
 <tbody>
 {{#ROW}}
-<tr><th scope="row"><a href="robots/{{ROBOT}}/">{{ROBOT}}</a></th><td class="text verdict"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text" data-label="Calibrated">{{AGE}}{{#OVERDUE}} <span class="badge fail">overdue</span>{{/OVERDUE}}</td><td class="text" data-label="Last session">{{LAST}}</td><td class="text" data-label="Worst edge">{{#WORST}}<span class="{{LEVEL}}">{{SIGMAS}} &sigma;</span> <span class="pair">{{FROM}} &rarr; {{TO}}</span>{{/WORST}}{{#NO_WORST}}<span class="soft">not checked</span>{{/NO_WORST}}</td><td data-label="Revision">{{#REVISION}}<a href="robots/{{ROBOT}}/revisions/{{NUMBER}}/">{{NUMBER}}</a>{{/REVISION}}{{#NO_REVISION}}none{{/NO_REVISION}}</td><td data-label="Sessions">{{SESSIONS}}</td><td data-label="Edges">{{EDGES}}</td></tr>
+<tr><th scope="row"><a href="robots/{{ROBOT}}/">{{ROBOT}}</a></th><td class="text verdict"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span>{{#DO}} <span class="do" dir="auto">{{WHAT_TO_DO}}</span>{{/DO}}</td><td class="text" data-label="Calibrated">{{AGE}}{{#OVERDUE}} <span class="badge fail">overdue</span>{{/OVERDUE}}</td><td class="text" data-label="Last session">{{LAST}}{{#WORKING}} <span class="busy">{{TEXT}}</span>{{/WORKING}}</td><td class="text" data-label="Worst edge">{{#WORST}}<span class="badge {{LEVEL}}">{{SIGMAS}} &sigma;</span> <span class="pair">{{FROM}} &rarr; {{TO}}</span>{{/WORST}}{{#NO_WORST}}<span class="soft">not known</span>{{/NO_WORST}}</td><td data-label="Revision">{{#REVISION}}<a href="robots/{{ROBOT}}/revisions/{{NUMBER}}/">{{NUMBER}}</a>{{/REVISION}}{{#NO_REVISION}}none{{/NO_REVISION}}</td><td data-label="Sessions">{{SESSIONS}}</td><td data-label="Edges">{{EDGES}}</td></tr>
 {{/ROW}}
 </tbody>
 </table>
@@ -30,7 +30,7 @@
 </section>
 {{/ROBOTS}}
 {{#EMPTY}}
-<section class="card empty">
+<section class="card empty" id="live" data-live="api/v1/live">
 <h2>No robot has pushed anything yet</h2>
 <p>Push a capture session from the machine that has its folder:</p>
 <pre><code>rigcal push path/to/session</code></pre>

@@ -3,7 +3,7 @@
 <body>
 <main>
 <nav class="crumbs" aria-label="Where you are"><a href="../../">Fleet</a> / <span>{{ROBOT}}</span></nav>
-<div id="live" data-live="../../api/v1/live?robot={{ROBOT}}">
+<div id="live" data-fresh data-live="../../api/v1/live?robot={{ROBOT}}">
 <header>
 <h1>{{ROBOT}}</h1>
 <p class="meta">{{SUMMARY}}{{#OVERDUE}} <span class="badge fail">overdue</span>{{/OVERDUE}}</p>
@@ -17,10 +17,10 @@
 <h2 id="revisions">Revisions <span class="soft">newest first</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="revisions">
 <table class="list">
-<thead><tr><th scope="col">Revision</th><th scope="col">Verdict</th><th scope="col">Solved</th><th scope="col">Digest</th></tr></thead>
+<thead><tr><th scope="col">Revision</th><th scope="col">Verdict</th><th scope="col">Solved</th><th scope="col">What changed</th></tr></thead>
 <tbody>
 {{#REVISION}}
-<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text"><code>{{DIGEST}}</code></td></tr>
+<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
 {{/REVISION}}
 </tbody>
 </table>
@@ -33,10 +33,10 @@
 <h2 id="sessions">Sessions <span class="soft">newest first</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="sessions">
 <table class="list">
-<thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col" class="num">Files</th><th scope="col" class="num">Pairs</th></tr></thead>
+<thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Result</th><th scope="col" class="num">Files</th></tr></thead>
 <tbody>
 {{#SESSION}}
-<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td data-label="Files">{{FILES}}</td><td data-label="Pairs">{{PAIRS}}</td></tr>
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#SUPERSEDED}}<span class="badge unknown">{{WORD}}</span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
 {{/SESSION}}
 </tbody>
 </table>
@@ -53,8 +53,8 @@
 </form>
 {{/COMPARE}}
 {{#TRENDS}}
-<section class="card" aria-labelledby="trends">
-<h2 id="trends">History of each sensor</h2>
+<section class="card" id="history" aria-labelledby="trends">
+<h2 id="trends">History of each sensor <span class="soft">the farthest step first</span></h2>
 <noscript><p class="hint">The charts need a script. Compare two revisions to read how far each sensor moved.</p></noscript>
 {{#TREND}}<div class="plots trend" data-trend="{{SENSOR}}"></div>
 {{/TREND}}

@@ -5,28 +5,36 @@
 <nav class="crumbs" aria-label="Where you are"><a href="../../../../">Fleet</a> / <a href="../../">{{ROBOT}}</a> / <span>session {{SHORT}}</span></nav>
 <header>
 <h1>{{ROBOT}} <span class="soft">session {{SHORT}}</span></h1>
-<p class="meta">Captured {{TIME}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}, {{FILES}}{{#WAITING}}, {{COUNT}} pairs still to be calibrated{{/WAITING}}{{#CONDITION}}; <bdi>{{NAME}}</bdi>: <bdi>{{VALUE}}</bdi>{{/CONDITION}}</p>
+<p class="meta">Captured {{TIME}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}, {{FILES}}{{#CONDITION}}; <bdi>{{NAME}}</bdi>: <bdi>{{VALUE}}</bdi>{{/CONDITION}}</p>
 </header>
+<div id="live" data-fresh{{#LIVE}} data-live="../../../../api/v1/live?robot={{ROBOT}}"{{/LIVE}}>
+<section class="card moved {{OUTCOME_LEVEL}}" aria-label="Outcome">
+<p class="what" role="status">{{OUTCOME}}{{#PROGRESS}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress"></progress>{{/PROGRESS}}</p>
+{{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO}}</p>{{/DO}}
+</section>
 <section class="card">
-<h2 id="edges">What it gave <span class="soft">failed edges first</span></h2>
+<h2 id="edges">What it gave{{#EDGES}} <span class="soft">failed pairs first</span>{{/EDGES}}</h2>
+{{#NO_EDGES}}<p class="soft">Nothing yet: a pair of sensors appears here once it was calibrated, or once it is known why it cannot be.</p>{{/NO_EDGES}}
+{{#EDGES}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
 <table class="list">
-<thead><tr><th scope="col">Edge</th><th scope="col">State</th><th scope="col">Method</th></tr></thead>
+<thead><tr><th scope="col">Pair</th><th scope="col">State</th><th scope="col">Method</th></tr></thead>
 <tbody>
-{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
+{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY}}</span>{{#CURE}} <span class="cure" dir="auto">{{TEXT}}</span>{{/CURE}}</td><td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
 {{/EDGE}}
 </tbody>
 </table>
 </div>
+{{/EDGES}}
 </section>
 <section class="card">
-<h2 id="captures">Captures <span class="soft">who saw what</span></h2>
+<h2 id="captures">Captures <span class="soft">who saw what, and whether it was used</span></h2>
 {{#SHEET}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="captures">
 <table class="sheet">
 <thead><tr><th scope="col">Capture</th>{{#SENSOR}}<th scope="col"><bdi>{{NAME}}</bdi></th>{{/SENSOR}}<th scope="col">Used by</th></tr></thead>
 <tbody>
-{{#CAPTURE}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th>{{#CELL}}<td>{{#PICTURE}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" width="160" height="120" src="evidence/{{FILE}}" alt="{{ALT}}"></a><span class="alt" dir="auto">{{ALT}}</span>{{/PICTURE}}{{#BLANK}}<span class="soft">{{TEXT}}</span>{{/BLANK}}</td>{{/CELL}}<td class="text"><details{{#OPEN}} open{{/OPEN}}><summary>{{USED}}</summary>{{#USE}}<p><span class="badge {{LEVEL}}">{{WORD}}</span> {{FROM}} &rarr; {{TO}}{{#NOTE}} <span class="soft" dir="auto">{{TEXT}}</span>{{/NOTE}}</p>{{/USE}}</details></td></tr>
+{{#CAPTURE}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th>{{#CELL}}<td>{{#PICTURE}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" width="160" height="120" src="evidence/{{FILE}}" alt="{{ALT}}"></a><span class="alt" dir="auto">{{#USED}}<span class="used">used</span>: {{/USED}}{{FOUND}}{{#UNUSED}}<br><span class="unused">not used</span>: {{WHY}}{{/UNUSED}}</span>{{/PICTURE}}{{#UNREADABLE}}<span class="alt" dir="auto"><span class="unused">not readable</span>: {{WHY}}</span>{{/UNREADABLE}}{{#BLANK}}<span class="soft">{{TEXT}}</span>{{/BLANK}}</td>{{/CELL}}<td class="text"><details{{#OPEN}} open{{/OPEN}}><summary>{{USED}}</summary>{{#USE}}<p><span class="badge {{LEVEL}}">{{WORD}}</span> {{FROM}} &rarr; {{TO}}{{#NOTE}} <span class="soft" dir="auto">{{TEXT}}</span>{{/NOTE}}</p>{{/USE}}</details></td></tr>
 {{/CAPTURE}}
 </tbody>
 </table>
@@ -36,6 +44,9 @@
 {{#MORE}}<p class="hint">{{COUNT}} more captures are in the session's manifest.</p>{{/MORE}}
 <p class="hint"><a href="../../../../api/v1/session?id={{ID}}">Manifest as JSON</a> <code>{{ID}}</code></p>
 </section>
+</div>
 </main>
+{{#SCRIPT}}<script defer src="{{PATH}}"></script>
+{{/SCRIPT}}
 </body>
 </html>

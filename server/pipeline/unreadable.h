@@ -1,0 +1,19 @@
+// READ: why pictures of a session could not be read, as far as their headers and ends tell.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "server/model/edge.h"
+#include "server/model/session.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Of pictures that no edge shows, which are those that nothing could be drawn of; at most some dozens are looked at.
+[[nodiscard]] std::map<std::pair<CaptureId, SensorId>, std::string> WhyUnreadable(storage::Store& store,
+                                                                                  const Manifest& manifest,
+                                                                                  const std::vector<Edge>& edges);
+
+}  // namespace rigcal::pipeline
