@@ -2,7 +2,9 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "client/edge_table.h"
 #include "client/table.h"
@@ -27,16 +29,20 @@ struct WatchOptions {
   int count = 0;
 };
 
+std::string DoneText(const Document& data) {
+  const std::int64_t all = data["jobs_total"].Integer().value_or(0),
+                     waiting = data["jobs_waiting"].Integer().value_or(0);
+  return std::to_string(all - waiting) + " of " + std::to_string(all) + " pairs done";
+}
+
 std::string TextOf(const std::string& kind, const Document& data) {
   if (kind == "edge") {
     const Document edge = data["edge"].IsNull() ? data : data["edge"];
-    return EdgeLine(edge) + (data["jobs_total"].IsNull() ? ""
-                                                         : "  (" + CountOf(data["jobs_waiting"]) + " of " +
-                                                               CountOf(data["jobs_total"]) + " jobs waiting)");
+    return EdgeLine(edge) + (data["jobs_total"].IsNull() ? "" : "  (" + DoneText(data) + ")");
   }
   if (kind == "session_closed")
-    return "session " + data["session"].Text("?").substr(0, 16) + ", " + CountOf(data["jobs_total"]) +
-           " sensor pairs to calibrate";
+    return "session " + data["session"].Text("?").substr(0, 16) + " came whole: " + CountOf(data["payloads"]) +
+           " files, " + CountOf(data["jobs_total"]) + " pairs of sensors to calibrate";
   if (kind == "graph_update")
     return CountOf(data["sensors_known"]) + " of " + CountOf(data["sensors"]) + " sensors known, " +
            CountOf(data["edges"]) + " edges (provisional)";
@@ -45,7 +51,24 @@ std::string TextOf(const std::string& kind, const Document& data) {
   return data.Dump();
 }
 
-void PrintWatch(const Context& context, const rigcal_wire_Event& event) {
+// For people: to the second, in UTC.
+std::string TimeText(std::int64_t stamp_ns) {
+  std::string text = ToIso({stamp_ns}).substr(0, 19);
+  text[10] = ' ';
+  return text;
+}
+
+// How many sensors each robot knows. The graph is announced with every edge; people are told when this changes.
+using KnownSensors = std::map<std::string, std::string>;
+
+bool IsOldNews(const rigcal_wire_Event& event, const Document& data, KnownSensors& known) {
+  if (std::string(event.kind) != "graph_update") return false;
+  const std::string now = CountOf(data["sensors_known"]) + "/" + CountOf(data["sensors"]);
+  return std::exchange(known[event.robot_id], now) == now;
+}
+
+// False if there was nothing worth a line.
+bool PrintWatch(const Context& context, const rigcal_wire_Event& event, KnownSensors& known) {
   const auto data = Document::Parse(event.json ? event.json : "{}", "the event");
   const std::string robot = event.robot_id, kind = event.kind;
   if (context.json) {
@@ -56,11 +79,13 @@ void PrintWatch(const Context& context, const rigcal_wire_Event& event) {
                                {"stamp", ToIso({event.stamp_ns})},
                                {"subject_id", event.subject_id}})
                 << std::endl;
-    return;
+    return true;
   }
+  if (data && IsOldNews(event, *data, known)) return false;
   const std::string text = data ? TextOf(kind, *data) : "(not readable)";
-  context.out << ToIso({event.stamp_ns}) << "  " << Plain(robot) << "  " << Plain(kind) << "  " << Plain(text)
+  context.out << TimeText(event.stamp_ns) << "  " << Plain(robot) << "  " << Plain(kind) << "  " << Plain(text)
               << std::endl;
+  return true;
 }
 
 Status WatchLoop(const Context& context, const WatchOptions& options) {
@@ -73,6 +98,7 @@ Status WatchLoop(const Context& context, const WatchOptions& options) {
   const auto is_over = [&] { return context.timeout_is_given && SteadyClock::now() - start >= context.timeout; };
   bool hinted = false;
   int seen = 0;
+  KnownSensors known;
   const auto is_enough = [&] { return options.count > 0 && seen >= options.count; };
   while (!interrupted && !is_over() && !is_enough()) {
     RIGCAL_TRY(waitset.Wait(kTick));
@@ -83,8 +109,7 @@ Status WatchLoop(const Context& context, const WatchOptions& options) {
     }
     RIGCAL_TRY(events.Take(256, [&](const rigcal_wire_Event& event, const wire::SampleOrigin&) {
       if (is_enough()) return;
-      PrintWatch(context, event);
-      ++seen;
+      if (PrintWatch(context, event, known)) ++seen;
     }));
   }
   return {};
@@ -109,7 +134,7 @@ void AddWatch(CLI::App& app, Context& context) {
   verb->add_option("ROBOT", options->robot, "Only this robot");
   verb->add_option("--count", options->count, "End after so many events")->check(CLI::PositiveNumber)->type_name("N");
   verb->footer(
-      "With --json: one JSON object a line. --timeout S ends after S seconds.\n"
+      "Times are UTC. With --json: one JSON object a line, every event. --timeout S ends after S seconds.\n"
       "Examples:\n"
       "  rigcal watch\n"
       "  rigcal watch mapper-01 --count 10\n"

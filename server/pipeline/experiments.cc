@@ -4,6 +4,9 @@
 #include <array>
 #include <chrono>
 #include <fstream>
+#include <sstream>
+
+#include "server/base/text.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -64,6 +67,23 @@ Result<PageText> ExperimentFile(const fs::path& file, const std::string& rest) {
   return PageText{std::move(body), type->second};
 }
 
+// Of a page, as far as it is plain text near the page's beginning; "" otherwise.
+std::string TitleOf(const fs::path& page) {
+  constexpr std::size_t kHeadBytesMax = 4096, kTitleBytesMax = 200;
+  std::string head(kHeadBytesMax, '\0');
+  std::ifstream stream(page, std::ios::binary);
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string open = "<title>";
+  const std::size_t start = head.find(open), end = head.find("</title>");
+  if (start == std::string::npos || end == std::string::npos || end < start) return "";
+  std::istringstream words(head.substr(start + open.size(), end - start - open.size()));
+  std::string title, word;
+  while (words >> word) title += (title.empty() ? "" : " ") + word;
+  const bool is_plain = title.find_first_of("&<") == std::string::npos && IsPrintableUtf8(title);
+  return is_plain && title.size() <= kTitleBytesMax ? title : "";
+}
+
 }  // namespace
 
 std::vector<report::ExperimentRow> ListExperiments(const fs::path& folder) {
@@ -83,7 +103,9 @@ std::vector<report::ExperimentRow> ListExperiments(const fs::path& folder) {
 Result<PageText> AnswerExperiments(const AnswerContext& context, const std::string& rest) {
   const fs::path all = context.store.folder() / "experiments";
   if (rest.empty()) {
-    RIGCAL_ASSIGN(std::string body, report::RenderExperiments(ListExperiments(context.store.folder())));
+    std::vector<report::ExperimentRow> rows = ListExperiments(context.store.folder());
+    for (report::ExperimentRow& row : rows) row.title = TitleOf(all / row.name / "index.html");
+    RIGCAL_ASSIGN(std::string body, report::RenderExperiments(rows));
     return PageText{std::move(body), kTypes[0].second};
   }
   const std::size_t slash = rest.find('/');

@@ -6,6 +6,7 @@
 #include "server/formats/answers.h"
 #include "server/pipeline/publish.h"
 #include "server/pipeline/revise.h"
+#include "server/pipeline/robot_rows.h"
 #include "server/pipeline/run_edge_job.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -142,7 +143,16 @@ Result<StepResult> ReviseNext(const StepContext& context) {
   return result;
 }
 
+// A session is told of when the first of its pairs is taken up: then it came whole and is on disk.
+Status TellOfSession(const StepContext& context, const storage::JobRow& job) {
+  RIGCAL_ASSIGN(const auto session, LoadSessionRow(context.store, job.session));
+  if (session.jobs_waiting < session.jobs_total) return {};
+  context.announcer.event(job.robot, "session_closed", job.session.str(), formats::WriteSessionEvent(session));
+  return {};
+}
+
 Status RunJob(const StepContext& context, const storage::JobRow& job) {
+  RIGCAL_TRY(TellOfSession(context, job));
   RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, job, context.clock, context.cameras));
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));

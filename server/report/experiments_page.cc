@@ -31,7 +31,7 @@ Result<std::string> RenderExperiments(const std::vector<ExperimentRow>& rows) {
     const ExperimentRow& row = rows[idx];
     Dictionary* one = list->AddSectionDictionary("EXPERIMENT");
     one->SetValue("NAME", row.name);
-    one->SetValue("TITLE", TitleOf(row.name));
+    one->SetValue("TITLE", row.title.empty() ? TitleOf(row.name) : row.title);
     one->SetValue("TIME", TimeText(row.written_at));
     if (row.has_figures) ShowValue(*one, "FIGURES", "NAME", row.name);
   }

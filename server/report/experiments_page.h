@@ -13,6 +13,7 @@ struct ExperimentRow {
   std::string name;  // of its folder
   Stamp written_at;
   bool has_figures = false;  // experiment.json
+  std::string title = {};    // of its page; empty: its name
 };
 [[nodiscard]] Result<std::string> RenderExperiments(const std::vector<ExperimentRow>& rows);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <string_view>
 
 namespace rigcal::report {
 namespace {
@@ -58,6 +58,34 @@ int Urgency(VerdictLevel level) {
   return 3;
 }
 
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+// The digits from `at` on, without leading zeros.
+std::string_view NumberAt(std::string_view text, std::size_t at) {
+  while (at + 1 < text.size() && text[at] == '0' && IsDigit(text[at + 1])) ++at;
+  std::size_t end = at;
+  while (end < text.size() && IsDigit(text[end])) ++end;
+  return text.substr(at, end - at);
+}
+
+// "robot-9" before "robot-10": as people count.
+bool IsBefore(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (IsDigit(a[i]) && IsDigit(b[j])) {
+      const std::string_view left = NumberAt(a, i), right = NumberAt(b, j);
+      if (left.size() != right.size()) return left.size() < right.size();
+      if (left != right) return left < right;
+      i = static_cast<std::size_t>(left.data() - a.data()) + left.size();
+      j = static_cast<std::size_t>(right.data() - b.data()) + right.size();
+      continue;
+    }
+    if (a[i] != b[j]) return a[i] < b[j];
+    ++i, ++j;
+  }
+  return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
 // A number to sort by, the smallest first; equal ones by name.
 std::int64_t KeyOf(const FleetRow& row, const std::string& sort) {
   if (sort == "robot") return 0;
@@ -80,13 +108,17 @@ FleetSlice SliceOf(const std::vector<FleetRow>& rows, const FleetQuery& query, S
     if (IsLike(row, now, query.verdict) && HasWords(row, words)) slice.rows.push_back(&row);
   std::sort(slice.rows.begin(), slice.rows.end(), [&](const FleetRow* a, const FleetRow* b) {
     const std::int64_t left = KeyOf(*a, query.sort), right = KeyOf(*b, query.sort);
-    return left != right ? (left < right) != query.descending : a->robot < b->robot;
+    if (left != right) return (left < right) != query.descending;
+    // Only a list by name is turned; elsewhere equal ones keep one order.
+    return query.sort == "robot" && query.descending ? IsBefore(b->robot.str(), a->robot.str())
+                                                     : IsBefore(a->robot.str(), b->robot.str());
   });
   slice.matches = slice.rows.size();
   slice.pages = std::max<std::size_t>(1, (slice.matches + kFleetRowsMax - 1) / kFleetRowsMax);
   slice.page = std::clamp<std::size_t>(query.page, 1, slice.pages);
   const auto first = slice.rows.begin() + static_cast<std::ptrdiff_t>((slice.page - 1) * kFleetRowsMax);
-  const auto last = slice.rows.begin() + static_cast<std::ptrdiff_t>(std::min(slice.page * kFleetRowsMax, slice.matches));
+  const auto last =
+      slice.rows.begin() + static_cast<std::ptrdiff_t>(std::min(slice.page * kFleetRowsMax, slice.matches));
   slice.rows = std::vector<const FleetRow*>(first, last);
   return slice;
 }

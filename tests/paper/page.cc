@@ -6,7 +6,7 @@ namespace rigcal::paper {
 namespace {
 
 constexpr const char* kHead = R"(<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><link rel="icon" href="data:,">
 <title>The paper's experiments</title><link rel="stylesheet" href="style.css"></head><body><main>
 <h1>The paper's experiments</h1>
 )";
@@ -20,6 +20,7 @@ h2 { margin-top: 3rem; }
 figure { margin: 1rem 0; overflow-x: auto; }
 figcaption { color: var(--soft); font-size: .9rem; }
 svg { max-width: 100%; height: auto; }
+@media (max-width: 48rem) { figure svg { max-width: none; width: 44rem; } }
 .table { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem; }
 td, th { padding: .25rem .7rem; border-bottom: 1px solid var(--line); text-align: right; }
@@ -46,7 +47,7 @@ std::string Escaped(const std::string& text) {
 
 std::string Figure(const std::string& name, const std::string& svg, const std::string& caption, Section& section) {
   section.pictures.push_back({name, svg});
-  return "<figure>" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
+  return "<figure tabindex=\"0\">" + svg + "<figcaption>" + caption + "</figcaption></figure>\n";
 }
 
 std::vector<PageFile> PageFiles(const std::string& introduction, const std::vector<Section>& sections) {

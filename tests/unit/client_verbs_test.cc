@@ -169,6 +169,27 @@ TEST(Verbs, WatchPrintsEventsAndEndsAfterItsCount) {
   EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 2);
 }
 
+TEST(Verbs, WatchTellsOfTheGraphWhenMoreSensorsAreKnown) {
+  FakeServer server("r");
+  std::atomic<bool> ended{false};
+  Ran ran;
+  std::thread watcher([&] {
+    ran = Rigcal({"watch", "r", "--count", "3"});
+    ended = true;
+  });
+  while (!ended)
+    if (server.HasWatcher()) {
+      server.SendEvent("graph_update", R"({"robot":"r","edges":7,"sensors":5,"sensors_known":3})");
+      server.SendEvent("session_closed", R"({"session":"0123456789abcdef0","payloads":71,"jobs_total":14})");
+    }
+  watcher.join();
+  EXPECT_EQ(ran.code, 0);
+  const std::size_t told = ran.out.find("3 of 5 sensors known, 7 edges");
+  ASSERT_NE(told, std::string::npos) << ran.out;
+  EXPECT_EQ(ran.out.find("sensors known", told + 20), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("session 0123456789abcdef came whole: 71 files, 14 pairs"), std::string::npos) << ran.out;
+}
+
 TEST(Verbs, DoctorFindsTheServer) {
   FakeServer server("r", [](const std::string& verb, const std::string&) -> Result<std::string> {
     EXPECT_EQ(verb, "health");

@@ -45,16 +45,34 @@ TEST_F(FleetPageTest, RowKnowsTheNewestClosedSession) {
   EXPECT_EQ(facts->at(RobotId("r")).last_session_at->ns, clock_.now.ns);
 }
 
+TEST_F(FleetPageTest, SessionSaysWhyItsPicturesCouldNotBeRead) {
+  const SessionId session = StoreSession("r", {{"left/1.png", "no picture"}, {"right/1.jpg", "\xFF\xD8\xFF"}});
+  const std::string path = "/robots/r/sessions/" + session.str() + "/";
+  EXPECT_NE(Page(path)->body.find("not looked at yet"), std::string::npos);
+  StepAll();
+  const auto page = Page(path);
+  ASSERT_TRUE(page) << Sentence(page.error());
+  for (const char* text : {"None of 1 pair of sensors could be calibrated. 2 pictures of left, right cannot be read.",
+                           "the picture is neither PNG nor JPEG", "header is cut off"})
+    EXPECT_NE(page->body.find(text), std::string::npos) << text;
+  EXPECT_NE(Page("/robots/r/")->body.find("0 of 1 pair good <span class=\"badge fail\">1 failed</span>"),
+            std::string::npos);
+}
+
 TEST_F(FleetPageTest, ExperimentsAreServedFromTheirFolders) {
   EXPECT_TRUE(ListExperiments(folder_).empty());
   EXPECT_NE(Page("/experiments/")->body.find("No experiment is here yet"), std::string::npos);
   Put("noise_whitening/index.html", "<!doctype html>page");
+  Put("titled/index.html", "<!doctype html><title> The paper's\n experiments </title>page");
+  Put("odd/index.html", "<!doctype html><title>a &amp; <b></title>page");
   Put("noise_whitening/experiment.json", "{}");
   Put("noise_whitening/plot.svg", "<svg/>");
   Put("empty/notes.txt", "no page");
   const auto list = Page("/experiments/");
   ASSERT_TRUE(list) << Sentence(list.error());
-  EXPECT_NE(list->body.find("href=\"noise_whitening/\""), std::string::npos);
+  EXPECT_NE(list->body.find("href=\"noise_whitening/\"><bdi>Noise whitening</bdi>"), std::string::npos);
+  EXPECT_NE(list->body.find("<bdi>The paper&#39;s experiments</bdi>"), std::string::npos);
+  EXPECT_NE(list->body.find("<bdi>Odd</bdi>"), std::string::npos);
   EXPECT_EQ(list->body.find("empty"), std::string::npos);
   EXPECT_EQ(Page("/experiments/noise_whitening/")->body, "<!doctype html>page");
   EXPECT_EQ(Page("/experiments/noise_whitening/experiment.json")->content_type, "application/json; charset=utf-8");

@@ -57,6 +57,7 @@ TEST_F(PipelineTest, AnOpenBatchIsWaitedForButNotForEver) {
 TEST_F(PipelineTest, APictureThatCannotBeReadGivesAFailedEdgeWithACure) {
   StoreSession("r", {{"left/01.png", "not a picture"}, {"right/01.png", "nor this"}});
   StepAll();
+  EXPECT_EQ(Count("session_closed"), 1);
   const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
   ASSERT_TRUE(edges);
   ASSERT_EQ(edges->size(), 1u);
@@ -167,6 +168,7 @@ TEST_F(PipelineTest, ALostBlobCostsOnePictureNotTheRobot) {
   StoreSession("r", {{"left/01.png", "one"}, {"right/01.png", "two"}});
   std::filesystem::remove(storage::BlobPath(store_->BlobFolder(), Sha256Of(std::string("one"))));
   StepAll();
+  EXPECT_EQ(Count("session_closed"), 1);
   const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
   ASSERT_TRUE(edges);
   ASSERT_EQ(edges->size(), 1u);

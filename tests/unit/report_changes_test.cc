@@ -212,6 +212,16 @@ TEST(FleetView, SearchesFiltersSortsAndTurnsPages) {
   EXPECT_EQ(last.rows.back()->robot.str(), "more-1249");
 }
 
+TEST(FleetView, NamesAreOrderedAsPeopleCount) {
+  std::vector<FleetRow> rows;
+  for (const char* name : {"r10", "r9", "r010", "r9b", "r", "r9a10", "r9a9"})
+    rows.push_back(Robot(name, VerdictLevel::kPass, 1));
+  EXPECT_THAT(Names(SliceOf(rows, {"", "", "robot", false, 1})),
+              ElementsAre("r", "r9", "r9a9", "r9a10", "r9b", "r010", "r10"));
+  EXPECT_THAT(Names(SliceOf(rows, {"", "", "robot", true, 1})),
+              ElementsAre("r10", "r010", "r9b", "r9a10", "r9a9", "r9", "r"));
+}
+
 TEST(Trend, CountsFromTheFirstPoseAndBeginsAnewWithANewReference) {
   const auto at = [](double x_m, const char* reference) {
     auto revision = std::make_shared<formats::RevisionInput>();

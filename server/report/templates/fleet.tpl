@@ -25,7 +25,7 @@
 </tbody>
 </table>
 </div>
-{{#NOTHING}}<p class="hint">No robot is like that.</p>{{/NOTHING}}
+{{#NOTHING}}<p class="hint">No robot is like that. <a href="./">Show all robots</a></p>{{/NOTHING}}
 {{#PAGER}}<nav class="pager" aria-label="Pages">{{#BEFORE}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}">Previous</a>{{/BEFORE}} <span>page {{PAGE}} of {{PAGES}}</span> {{#NEXT}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}">Next</a>{{/NEXT}}</nav>{{/PAGER}}
 </section>
 {{/ROBOTS}}
