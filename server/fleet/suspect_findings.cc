@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <map>
 #include <set>
 
@@ -48,21 +47,15 @@ std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<Ed
   return sessions;
 }
 
-std::string NamesOf(const std::set<SessionId>& sessions) {
+// Of a group whose edges all come from sessions these are named, as what can be looked at and repeated.
+std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
   constexpr std::size_t kDigits = 12;  // as pages show them
+  const std::set<SessionId> sessions = SessionsOf(ids, by_id);
+  if (sessions.empty() || sessions.contains(SessionId())) return "edges " + List(NamesOf(ids, by_id));
   std::vector<std::string> names;
   for (const SessionId& session : sessions) names.push_back(session.str().substr(0, kDigits));
-  return (names.size() == 1 ? "session " : "sessions ") + List(names);
-}
-
-// A sensor that was bumped has one pose in the sessions before and another in those after: then these are what to name.
-std::string GroupsText(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id) {
-  const auto a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
-  const bool apart = std::none_of(a.begin(), a.end(), [&](const SessionId& session) { return b.contains(session); });
-  if (apart && !a.contains(SessionId()) && !b.contains(SessionId()))
-    return NamesOf(a) + (a.size() == 1 ? " says one, " : " say one, ") + NamesOf(b) + " the other";
-  return "edges " + List(NamesOf(two.group_a, by_id)) + " agree on one, " + List(NamesOf(two.group_b, by_id)) +
-         " on the other";
+  return std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ") +
+         (names.size() == 1 ? "session " : "sessions ") + List(names);
 }
 
 }  // namespace
@@ -71,8 +64,9 @@ std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphS
   if (solution.suspects.two_poses.empty()) return std::nullopt;
   const TwoPoses& two = solution.suspects.two_poses.front();
   const auto by_id = ById(edges);
-  std::string why =
-      "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) + " apart: " + GroupsText(two, by_id);
+  std::string why = "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) +
+                    " apart: " + GroupText(two.group_a, by_id) + " agree on one, " + GroupText(two.group_b, by_id) +
+                    " on the other";
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
   return Finding{why, "Find out whether " + two.sensor.str() +

@@ -10,6 +10,16 @@
 namespace rigcal::pipeline {
 namespace {
 
+// Of a robot without a revision.
+Verdict FirstVerdict(const formats::RobotAnswer& row) {
+  if (row.jobs_waiting > 0)
+    return {VerdictLevel::kUnknown, "The first session is being calibrated.", "Wait: the result appears by itself."};
+  if (row.sessions > 0)
+    return {VerdictLevel::kUnknown, "The first session is arriving, or its push broke off.",
+            "Wait a moment; if nothing changes, push it again: what is here already is not sent twice."};
+  return {VerdictLevel::kUnknown, "There is no revision yet.", "Push a capture session or finished edges."};
+}
+
 Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRow& robot, Stamp now) {
   formats::RobotAnswer row;
   row.robot = robot.robot;
@@ -18,7 +28,7 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
-    row.verdict = {VerdictLevel::kUnknown, "there is no revision yet", "Push a capture session or finished edges."};
+    row.verdict = FirstVerdict(row);
     return row;
   }
   row.revision = revision->number;

@@ -80,16 +80,24 @@ Outcome OutcomeOf(const SessionInput& input) {
                 " are done.",
             ""};
   if (row.superseded)
-    return {"busy", "This session no longer counts: it was pushed again later in a corrected form.",
+    return {"under-way", "This session no longer counts: it was pushed again later in a corrected form.",
             "Open the newer session of the same capture time on the robot's page."};
   if (row.pairs == 0)
     return {"warn", "This session has no pair of sensors that could be calibrated.",
             "Name at least two sensors in session.yaml that see one target, or that move together."};
-  if (row.failed == 0) return {"still", "All " + pairs + " of sensors were calibrated." + UnreadableText(input), ""};
-  const std::string cure = CommonestCure(input.edges);
   const std::string unreadable = UnreadableText(input);
+  if (row.failed == 0)
+    return {"still",
+            (row.pairs == 1 ? "The pair of sensors was" : "All " + pairs + " of sensors were") +
+                std::string(" calibrated.") + unreadable,
+            ""};
+  const std::string cure = CommonestCure(input.edges);
   const std::string first = unreadable.empty() ? cure : "Save or copy the pictures that cannot be read again. " + cure;
-  if (row.good == 0) return {"off", "None of " + pairs + " of sensors could be calibrated." + unreadable, first};
+  if (row.good == 0)
+    return {"off",
+            (row.pairs == 1 ? "The pair of sensors could not" : "None of " + pairs + " of sensors could") +
+                std::string(" be calibrated.") + unreadable,
+            first};
   return {"warn",
           std::to_string(row.good) + " of " + pairs + " of sensors were calibrated, " + std::to_string(row.failed) +
               " failed." + unreadable,

@@ -38,8 +38,46 @@ async function fleet(browser) {
   await page.goto(at("/"));
   await page.click("thead a:has-text('Robot')");
   await page.waitForURL(/sort=robot/);
-  assert.deepStrictEqual(await robots(), [...(await robots())].sort(), "sorted by name");
+  const byName = await robots();
+  assert.deepStrictEqual(byName, [...byName].sort(), "sorted by name");
+  await page.click("thead a:has-text('Robot')");
+  await page.waitForURL(/order=down/);
+  assert.deepStrictEqual(await robots(), byName.reverse(), "and the other way");
+  await page.click("#summary a:has-text('fail')");
+  await page.waitForURL(/verdict=fail/);
+  assert.ok((await robots()).includes("broken"), "a count leads to what it counts");
   await close(page);
+}
+
+// What the table of a comparison says is what the history draws, and a sentence says it first.
+async function moved(browser) {
+  const page = await open(browser, at("/robots/rover/"));
+  const steps = await page.evaluate(() => Object.fromEntries(window.rigcal.trends.map(({ sensor, rows }) => [sensor, rows.find((row) => row.revision === 2).in_sigmas])));
+  assert.ok((await page.textContent("#history .what")).includes("3 \u03c3"), "the history in a sentence");
+  const drawn = await page.$$eval("#history [data-trend]", (places) => places.map((place) => place.dataset.trend));
+  assert.deepStrictEqual(drawn, Object.keys(steps).sort((a, b) => steps[b] - steps[a]), "the farthest step first");
+  await page.click("a:has-text('against revision 1')");
+  await page.waitForURL(/compare\?a=1&b=2/);
+  assert.match(await page.textContent("section[aria-label='What moved'] .what"), /moved/);
+  const rows = await page.$$eval("table[data-filter='Filter sensors'] tbody tr", (all) => all.map((row) => [row.cells[0].textContent, Number(row.cells[1].textContent)]));
+  assert.strictEqual(rows.length, Object.keys(steps).length);
+  for (const [sensor, sigmas] of rows) assert.ok(Math.abs(sigmas - steps[sensor]) <= 0.1, `${sensor}: ${sigmas} and ${steps[sensor]}`);
+  await close(page);
+}
+
+async function errors(browser) {
+  const cases = [["/nope", "There is no page /nope.", "/"], ["/robots/nobody/", "is not known.", "/"],
+    ["/robots/rover/revisions/99/", "There is no report of revision 99 of rover.", "/robots/rover/"]];
+  for (const [path, text, on] of cases) {
+    const context = await browser.newContext({ viewport: { width: 390, height: 844 } });
+    const page = await context.newPage();
+    assert.strictEqual((await page.goto(at(path))).status(), 404, path);
+    assert.ok((await page.textContent("main")).includes(text), path);
+    await accessible(page);
+    await page.click(`a.button[href='${on}']`);
+    await page.waitForURL(at(on));
+    await context.close();
+  }
 }
 
 async function fleetColumns(browser) {
@@ -57,7 +95,7 @@ async function fleetColumns(browser) {
 async function experiments(browser) {
   const page = await open(browser, at("/"));
   await page.click("a:has-text('1 experiment')");
-  await page.click("a:has-text('Noise whitening')");
+  await page.click("a:has-text('Noise')");
   await page.waitForURL(/noise_whitening\/$/);
   assert.strictEqual(await page.$eval("h1", (one) => getComputedStyle(one).color), "rgb(1, 2, 3)", "its own style sheet");
   await close(page);
@@ -249,9 +287,11 @@ async function live(browser) {
   const rows = () => page.locator("#live table a[href^='revisions/']").count();
   const before = await rows();
   await page.waitForResponse((reply) => reply.url().includes("/api/v1/live"));
+  await page.focus("#live a[href='revisions/1/']");
   const pushed = spawnSync(facts.push[0], facts.push.slice(1));
   assert.strictEqual(pushed.status, 0, String(pushed.stderr));
   await page.waitForFunction((old) => document.querySelectorAll("#live table a[href^='revisions/']").length > old, before);
+  assert.strictEqual(await page.evaluate(() => document.activeElement.getAttribute("href")), "revisions/1/", "the focus stays where it was");
   const first = await fetch(at("/api/v1/live?robot=rover"));
   const again = await fetch(at("/api/v1/live?robot=rover"), { headers: { "If-None-Match": first.headers.get("etag") } });
   assert.strictEqual(again.status, 304, "nothing new costs nothing");
@@ -259,7 +299,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, moved, errors, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

@@ -87,9 +87,10 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, HasSubstr("Sensor top has two poses, 40 mm and 0 deg apart: edges right - top agree on one, "
-                                     "left - top on the other"));
+                                     "edges left - top on the other"));
   rig.edges[1].session = SessionId(std::string(64, 'a')), rig.edges[2].session = SessionId(std::string(64, 'b'));
-  EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: session aaaaaaaaaaaa says one, session bbbbbbbbbbbb the other"));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: 1 edge of session aaaaaaaaaaaa agree on one, "
+                                         "1 edge of session bbbbbbbbbbbb on the other"));
 }
 
 TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {

@@ -49,10 +49,11 @@ TEST_F(FleetPageTest, SessionSaysWhyItsPicturesCouldNotBeRead) {
   const SessionId session = StoreSession("r", {{"left/1.png", "no picture"}, {"right/1.jpg", "\xFF\xD8\xFF"}});
   const std::string path = "/robots/r/sessions/" + session.str() + "/";
   EXPECT_NE(Page(path)->body.find("not looked at yet"), std::string::npos);
+  EXPECT_NE(Page("/")->body.find("The first session is being calibrated."), std::string::npos);
   StepAll();
   const auto page = Page(path);
   ASSERT_TRUE(page) << Sentence(page.error());
-  for (const char* text : {"None of 1 pair of sensors could be calibrated. 2 pictures of left, right cannot be read.",
+  for (const char* text : {"The pair of sensors could not be calibrated. 2 pictures of left, right cannot be read.",
                            "the picture is neither PNG nor JPEG", "header is cut off"})
     EXPECT_NE(page->body.find(text), std::string::npos) << text;
   EXPECT_NE(Page("/robots/r/")->body.find("0 of 1 pair good <span class=\"badge fail\">1 failed</span>"),

@@ -20,7 +20,7 @@
 <thead><tr><th scope="col">Revision</th><th scope="col">Verdict</th><th scope="col">Solved</th><th scope="col">What changed</th></tr></thead>
 <tbody>
 {{#REVISION}}
-<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
+<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text whole">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
 {{/REVISION}}
 </tbody>
 </table>
