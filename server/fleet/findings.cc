@@ -47,7 +47,7 @@ std::optional<Finding> FindWorstLoop(const Cycles& cycles) {
   std::vector<std::string> names;
   for (const SensorId& sensor : worst.sensors) names.push_back(sensor.str());
   std::string why = "the loop of " + List(names) + " does not close: it is off by " + OffText(worst.e) + ", " +
-                    Number(worst.t_squared / worst.limit, "times") + " the limit of its test";
+                    Number(worst.t_squared / worst.limit, "times") + " what chance allows";
   if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
   return Finding{why, "Repeat the sessions of its edges, the one first that the failing loops have in common"};
 }
@@ -73,7 +73,7 @@ std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const G
   const std::string off = Number(1e3 * worst_residual->e.head<3>().norm(), "mm") + " and " +
                           Number(kDegreesPerRadian * worst_residual->e.tail<3>().norm(), "deg");
   return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " + off + ", " +
-                     Number(worst_ratio, "times") + " the limit of its test",
+                     Number(worst_ratio, "times") + " what chance allows",
                  "Check that " + worst->frame_a.str() + " and " + worst->frame_b.str() +
                      " have not moved and are named right, then repeat their session"};
 }

@@ -85,7 +85,7 @@ std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const Gr
   return Finding{(names.size() == 1 ? "edge " : "edges ") + List(names) +
                      (names.size() == 1 ? " contradicts" : " contradict") + " the other edges: " + them + " off by " +
                      OffText(worst.e) + ", " + Number(worst.statistic / worst.limit, "times") +
-                     " the limit of its test",
+                     " what chance allows",
                  "Check that " + worst.frame_a.str() + " and " + worst.frame_b.str() +
                      " have not moved and are named right, then repeat their session"};
 }

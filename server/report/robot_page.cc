@@ -77,6 +77,20 @@ void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Sta
   }
 }
 
+// The way on: the newest report, and what is different in it.
+void FillNewest(Dictionary& page, const std::vector<Revision>& revisions) {
+  std::vector<int> numbers;
+  for (const Revision& revision : revisions) numbers.push_back(revision.number);
+  if (numbers.empty()) return;
+  std::sort(numbers.rbegin(), numbers.rend());
+  Dictionary* newest = page.AddSectionDictionary("NEWEST");
+  newest->SetValue("NUMBER", std::to_string(numbers[0]));
+  if (numbers.size() < 2) return;
+  Dictionary* since = newest->AddSectionDictionary("SINCE");
+  since->SetValue("NUMBER", std::to_string(numbers[0]));
+  since->SetValue("BEFORE", std::to_string(numbers[1]));
+}
+
 // Two revisions to compare: the newest and the one before it.
 void FillCompare(Dictionary& page, const std::vector<Revision>& revisions) {
   constexpr std::size_t kChoicesMax = 500;
@@ -106,6 +120,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
                     Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
   if (row.overdue) page.ShowSection("OVERDUE");
   FillBanner(page, row.verdict);
+  FillNewest(page, input.revisions);
   FillSessions(page, input.sessions, now);
   FillRevisions(page, input.revisions, now);
   FillCompare(page, input.revisions);

@@ -39,7 +39,9 @@ void FillEdge(Dictionary& row, const Edge& edge) {
 void FillEdges(Dictionary& page, const std::vector<Edge>& edges) {
   if (edges.empty()) return page.ShowSection("NO_EDGES");
   Dictionary* list = page.AddSectionDictionary("EDGES");
-  for (const Edge* edge : Sorted(edges)) FillEdge(*list->AddSectionDictionary("EDGE"), *edge);
+  const std::vector<const Edge*> sorted = Sorted(edges);
+  if (sorted.front()->state == EdgeState::kFailed) page.ShowSection("FAILED_FIRST");
+  for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge);
 }
 
 // What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet.

@@ -1,6 +1,6 @@
 #include "server/report/sigmas.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include "server/report/text.h"
 
@@ -13,7 +13,8 @@ const char* SigmasClass(double in_sigmas) {
 }
 
 std::string SigmasText(double in_sigmas) {
-  return Fixed(in_sigmas < kOff_sigmas ? std::floor(in_sigmas * 10.0) / 10.0 : in_sigmas, 1);
+  constexpr double kMostBelow_sigmas = 2.9;
+  return Fixed(in_sigmas < kOff_sigmas ? std::min(in_sigmas, kMostBelow_sigmas) : in_sigmas, 1);
 }
 
 }  // namespace rigcal::report

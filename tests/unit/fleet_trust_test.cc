@@ -107,8 +107,8 @@ TEST(Trust, AnOpenLoopOfEstimatedEdgesIsNamedByItsOwnTest) {
   const Verdict verdict = chain.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_EQ(verdict.why,
-            "The loop of left, right and top does not close: it is off by 10 mm and 2 deg, 2 times the limit of its "
-            "test.");
+            "The loop of left, right and top does not close: it is off by 10 mm and 2 deg, 2 times what chance "
+            "allows.");
   chain.solution.cycles.worst = {Loop(39.0, 40.0)};
   chain.solution.cycles.failing = 0;
   EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);

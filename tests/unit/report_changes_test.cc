@@ -75,6 +75,7 @@ TEST(ReportSigmas, OneScaleForAllPages) {
       {0.99, "fit0"}, {1.0, "fit1"}, {2.0, "fit2"}, {2.99, "fit2"}, {3.0, "fit3"}};
   for (const auto& [in_sigmas, name] : cases) EXPECT_STREQ(SigmasClass(in_sigmas), name);
   EXPECT_EQ(SigmasText(2.99), "2.9");  // "3.0" would look like the limit
+  EXPECT_EQ(SigmasText(2.66), "2.7");
   EXPECT_EQ(SigmasText(118.68), "118.7");
 }
 

@@ -21,7 +21,7 @@ const farthest = (rows) => rows.reduce((most, row) => ((row.in_sigmas ?? 0) > (m
 // As the server writes them: never rounded up to the limit.
 const sigmas = (row) => {
   const value = row.in_sigmas ?? 0;
-  return `${(value < OFF_SIGMAS ? Math.floor(value * 10) / 10 : value).toFixed(1)} \u03c3`;
+  return `${(value < OFF_SIGMAS ? Math.min(value, 2.9) : value).toFixed(1)} \u03c3`;
 };
 
 function steps(rows) {

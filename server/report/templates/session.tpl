@@ -13,7 +13,7 @@
 {{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO}}</p>{{/DO}}
 </section>
 <section class="card">
-<h2 id="edges">What it gave{{#EDGES}} <span class="soft">failed pairs first</span>{{/EDGES}}</h2>
+<h2 id="edges">What it gave{{#FAILED_FIRST}} <span class="soft">failed pairs first</span>{{/FAILED_FIRST}}</h2>
 {{#NO_EDGES}}<p class="soft">Nothing yet: a pair of sensors appears here once it was calibrated, or once it is known why it cannot be.</p>{{/NO_EDGES}}
 {{#EDGES}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
@@ -32,9 +32,9 @@
 {{#SHEET}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="captures">
 <table class="sheet">
-<thead><tr><th scope="col">Capture</th>{{#SENSOR}}<th scope="col"><bdi>{{NAME}}</bdi></th>{{/SENSOR}}<th scope="col">Used by</th></tr></thead>
+<thead><tr><th scope="col">Capture</th><th scope="col">Used by</th>{{#SENSOR}}<th scope="col"><bdi>{{NAME}}</bdi></th>{{/SENSOR}}</tr></thead>
 <tbody>
-{{#CAPTURE}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th>{{#CELL}}<td>{{#PICTURE}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" width="160" height="120" src="evidence/{{FILE}}" alt="{{ALT}}"></a><span class="alt" dir="auto">{{#USED}}<span class="used">used</span>: {{/USED}}{{FOUND}}{{#UNUSED}}<br><span class="unused">not used</span>: {{WHY}}{{/UNUSED}}</span>{{/PICTURE}}{{#UNREADABLE}}<span class="alt" dir="auto"><span class="unused">not readable</span>: {{WHY}}</span>{{/UNREADABLE}}{{#BLANK}}<span class="soft">{{TEXT}}</span>{{/BLANK}}</td>{{/CELL}}<td class="text"><details{{#OPEN}} open{{/OPEN}}><summary>{{USED}}</summary>{{#USE}}<p><span class="badge {{LEVEL}}">{{WORD}}</span> {{FROM}} &rarr; {{TO}}{{#NOTE}} <span class="soft" dir="auto">{{TEXT}}</span>{{/NOTE}}</p>{{/USE}}</details></td></tr>
+{{#CAPTURE}}<tr><th scope="row"><bdi>{{NAME}}</bdi></th><td class="text"><details{{#OPEN}} open{{/OPEN}}><summary>{{USED}}</summary>{{#USE}}<p><span class="badge {{LEVEL}}">{{WORD}}</span> {{FROM}} &rarr; {{TO}}{{#NOTE}} <span class="soft" dir="auto">{{TEXT}}</span>{{/NOTE}}</p>{{/USE}}</details></td>{{#CELL}}<td>{{#PICTURE}}<a href="evidence/{{FILE}}"><img loading="lazy" decoding="async" width="160" height="120" src="evidence/{{FILE}}" alt="{{ALT}}"></a><span class="alt" dir="auto">{{#USED}}<span class="used">used</span>: {{/USED}}{{FOUND}}{{#UNUSED}}<br><span class="unused">not used</span>: {{WHY}}{{/UNUSED}}</span>{{/PICTURE}}{{#UNREADABLE}}<span class="alt" dir="auto"><span class="unused">not readable</span>: {{WHY}}</span>{{/UNREADABLE}}{{#BLANK}}<span class="soft">{{TEXT}}</span>{{/BLANK}}</td>{{/CELL}}</tr>
 {{/CAPTURE}}
 </tbody>
 </table>
