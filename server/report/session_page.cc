@@ -72,12 +72,12 @@ Outcome OutcomeOf(const SessionInput& input) {
   const SessionRow& row = input.row;
   const std::string pairs = Count(static_cast<std::size_t>(row.pairs), "pair", "pairs");
   if (!row.closed)
-    return {"busy",
+    return {"under-way",
             "This session is arriving: " + std::to_string(row.files_held) + " of " + std::to_string(row.files) +
                 " files are here.",
             ""};
   if (row.pairs_waiting > 0)
-    return {"busy",
+    return {"under-way",
             "This session is being calibrated: " + std::to_string(row.pairs - row.pairs_waiting) + " of " + pairs +
                 " are done.",
             ""};

@@ -121,7 +121,13 @@ void FillUse(Dictionary& row, const Edge& edge, const CaptureResidual& residual)
 }
 
 // What each pair of sensors did with the capture; those that did not use it first.
-void FillUses(Dictionary& row, const std::vector<Edge>& edges, const CaptureId& capture) {
+void FillUses(Dictionary& capture_row, const std::vector<Edge>& edges, const CaptureId& capture) {
+  const auto asks = [&](const Edge& edge) {
+    return std::any_of(edge.captures.begin(), edge.captures.end(),
+                       [&](const auto& one) { return one.capture == capture; });
+  };
+  if (std::none_of(edges.begin(), edges.end(), asks)) return;
+  Dictionary& row = *capture_row.AddSectionDictionary("USES");
   std::size_t used = 0, all = 0;
   for (const bool of_used : {false, true})
     for (const Edge& edge : edges)

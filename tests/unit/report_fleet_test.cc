@@ -193,6 +193,10 @@ TEST(ReportSession, EachPictureIsUsedOrSaysWhyNot) {
   EXPECT_THAT(page, HasSubstr("<span class=\"unused\">not used</span>: none of its pairs could be solved</span>"));
   EXPECT_THAT(page, HasSubstr("<span class=\"unused\">not readable</span>: the picture is cut off</span>"));
   EXPECT_THAT(page, HasSubstr("<span class=\"soft\">nothing drawn</span>"));
+  EXPECT_THAT(page, HasSubstr("<summary>1 of 2 pairs</summary>"));
+  SessionInput fresh = SessionOfThree();
+  fresh.edges.clear();
+  EXPECT_THAT(RenderSession(fresh).value(), Not(HasSubstr("<summary>")));
 }
 
 TEST(ReportRobot, SessionsSayWhatTheyGave) {

@@ -54,16 +54,19 @@ function option(rows, group) {
   };
 }
 
-const listed = (words) => (words.length < 2 ? words.join("") : words.slice(0, -1).join(", ") + " and " + words.at(-1));
+// The solution is a mean of old and new measurements: what moved once keeps stepping while new ones come.
+function whenMoved(rows) {
+  const off = rows.filter(isOff), last = off.at(-1);
+  return `revision ${off[0].revision} (${sigmas(off[0])})` + (off.length > 1 ? `, and on until ${last.revision}` : "");
+}
 
 // "front_right moved at revision 3 (67.7 sigma) ...": what the charts show, in one sentence.
 export function historyText(trends) {
-  const known = trends.filter((trend) => trend.rows.length > 1);
+  const known = byFarthestStep(trends).filter((trend) => trend.rows.length > 1);
   if (known.length === 0) return "No sensor is known in two revisions with one reference.";
   const moved = known.filter((trend) => trend.rows.some(isOff));
   if (moved.length === 0) return "No sensor stepped by 3 \u03c3 or more from one revision to the next.";
-  const said = moved.slice(0, 3).map(({ sensor, rows }) =>
-    `${sensor} at revision ${listed(rows.filter(isOff).map((row) => `${row.revision} (${sigmas(row)})`))}`);
+  const said = moved.slice(0, 3).map(({ sensor, rows }) => `${sensor} at ${whenMoved(rows)}`);
   const more = moved.length > 3 ? `, and ${moved.length - 3} more sensors` : "";
   const rest = known.length - moved.length;
   return `Moved: ${said.join("; ")}${more}.` + (rest > 0 ? ` The other ${rest === 1 ? "one" : rest} stepped by less than 3 \u03c3.` : "");
