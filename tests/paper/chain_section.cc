@@ -46,7 +46,8 @@ std::string Row(const Route& route) {
 
 std::string Table(const ChainExperiment& experiment) {
   std::string table =
-      "<div class='table'><table><tr><th>chain</th><th>direct by</th><th>chained, mm</th><th>deg</th><th>direct, "
+      "<div class='table' tabindex='0'><table><tr><th>chain</th><th>direct by</th><th>chained, "
+      "mm</th><th>deg</th><th>direct, "
       "mm</th>"
       "<th>deg</th><th>graph, mm</th><th>deg</th></tr>\n";
   for (const Route& route : experiment.routes) table += Row(route);

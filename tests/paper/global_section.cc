@@ -38,7 +38,8 @@ std::string Row(const std::string& name, const GlobalRun& run) {
 }
 
 std::string Table(const GlobalExperiment& experiment) {
-  return "<div class='table'><table><tr><th>mean (predicted)</th><th>before</th><th>after</th><th>ratio</th><th>poses, "
+  return "<div class='table' tabindex='0'><table><tr><th>mean "
+         "(predicted)</th><th>before</th><th>after</th><th>ratio</th><th>poses, "
          "mm</th><th>poses, deg</th></tr>\n" +
          Row("visits, full", experiment.visits.full) + Row("visits, diagonal", experiment.visits.diagonal) +
          Row("drawn, full", experiment.realistic.full) + Row("drawn, diagonal", experiment.realistic.diagonal) +
@@ -90,7 +91,7 @@ std::string NoisySentence(const GlobalExperiment& experiment) {
   if (experiment.noisy_pairs.empty()) return {};
   std::string html = fmt::format(
       "<p>Sensors {:.0f} times as noisy (corners, ranges, tracker, lenses) do not give such a graph. What the "
-      "estimators of four pairs say:</p>\n<div class='table'><table>\n",
+      "estimators of four pairs say:</p>\n<div class='table' tabindex='0'><table>\n",
       experiment.noise_factor);
   for (const NoisyPair& pair : experiment.noisy_pairs)
     html += fmt::format("<tr><th>{}</th><td class='text'>{}</td></tr>\n", pair.method,

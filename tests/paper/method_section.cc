@@ -45,7 +45,8 @@ std::string Norms(const MethodPair& pair, Vector6d MethodSample::*part) {
 
 std::string Table(const MethodFamily& family) {
   std::string table = fmt::format(
-      "<div class='table'><table><tr><th>pair</th><th>sigma: {0}</th><th>sigma: {1}</th><th>error: {0}</th><th>error: "
+      "<div class='table' tabindex='0'><table><tr><th>pair</th><th>sigma: {0}</th><th>sigma: {1}</th><th>error: "
+      "{0}</th><th>error: "
       "{1}</th><th>difference</th><th>sigma of it</th></tr>\n",
       family.first, family.second);
   for (const MethodPair& pair : family.pairs) {

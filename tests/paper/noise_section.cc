@@ -29,7 +29,7 @@ std::string Row(const std::string& name, double noise, double optimised, double 
 std::string Table(const NoiseExperiment& experiment) {
   const NoiseSums noise = MeanNoise(experiment), optimised = MeanOptimised(experiment);
   const NoiseSums &before = experiment.expected_noise, &after = experiment.expected_optimised;
-  return "<div class='table'><table><tr><th></th><th>noise of the "
+  return "<div class='table' tabindex='0'><table><tr><th>sum</th><th>noise of the "
          "edges</th><th>optimised</th><th>ratio</th><th>predicted</th></tr>\n" +
          Row("translation, m&sup2;", noise.translation_m2, optimised.translation_m2,
              after.translation_m2 / before.translation_m2) +
