@@ -16,12 +16,18 @@ namespace {
 
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
+// How far an edge is off in what it says. Along directions that it leaves open it holds what a drawing or nobody said.
+Vector6d OffBy(const Edge& edge, const EdgeResidual& residual) {
+  const auto& open = edge.uncertainty.unobservable_basis;
+  return residual.e - open * (open.transpose() * residual.e);
+}
+
 // How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limits.
-double RatioOf(const EdgeTest& test, const EdgeResidual& residual, const Policy& policy) {
+double RatioOf(const Edge& edge, const EdgeResidual& residual, const EdgeTest& test, const Policy& policy) {
   if (!residual.in_solution) return 0.0;
   if (test.limit > 0.0) return test.statistic / test.limit;
-  return std::max(residual.e.head<3>().norm() / policy.residual_max_m,
-                  residual.e.tail<3>().norm() / policy.residual_max_rad);
+  const Vector6d off = OffBy(edge, residual);
+  return std::max(off.head<3>().norm() / policy.residual_max_m, off.tail<3>().norm() / policy.residual_max_rad);
 }
 
 const Diagnosis* DiagnosisOf(const GraphSolution& solution, const std::string& sensor) {
@@ -66,14 +72,14 @@ std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const G
   for (const EdgeResidual& residual : solution.residuals) {
     const auto found = by_id.find(residual.edge);
     if (found == by_id.end()) continue;
-    const double ratio = RatioOf(TestResidual(*found->second, residual, edge_count, policy), residual, policy);
+    const double ratio =
+        RatioOf(*found->second, residual, TestResidual(*found->second, residual, edge_count, policy), policy);
     if (ratio > worst_ratio) worst = found->second, worst_residual = &residual, worst_ratio = ratio;
   }
   if (worst == nullptr) return std::nullopt;
-  const std::string off = Number(1e3 * worst_residual->e.head<3>().norm(), "mm") + " and " +
-                          Number(kDegreesPerRadian * worst_residual->e.tail<3>().norm(), "deg");
-  return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " + off + ", " +
-                     Number(worst_ratio, "times") + " what chance allows",
+  return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " +
+                     OffText(OffBy(*worst, *worst_residual)) + ", " + Number(worst_ratio, "times") +
+                     " what chance allows",
                  "Check that " + worst->frame_a.str() + " and " + worst->frame_b.str() +
                      " have not moved and are named right, then repeat their session"};
 }

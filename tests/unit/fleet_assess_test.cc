@@ -201,5 +201,22 @@ TEST(TestResidual, CountsOnlyTheDirectionsAnEdgeSees) {
   EXPECT_NEAR(TestResidual(edge, ResidualOf(edge, 0.001), 1, policy).limit, 11.070, 1e-3);  // 5 degrees of freedom
 }
 
+// Turned on the spot: nothing is known along the axis z, nor about it, 0.3 m away.
+TEST(Assess, WhatAnEdgeLeavesOpenContradictsNothing) {
+  Rig rig;
+  Eigen::Matrix<double, 6, 2> open = Eigen::Matrix<double, 6, 2>::Zero();
+  open(tangent::kZ, 0) = 1;
+  open(tangent::kX, 1) = 0.3, open(tangent::kRz, 1) = 1;
+  open.col(1).normalize();
+  const Matrix6d Omega = 1e6 * (Matrix6d::Identity() - open * open.transpose());
+  rig.edges[1].uncertainty = FromInformation(Omega, UncertaintySource::kJackknife, 5);  // too few to be tested
+  ASSERT_EQ(rig.edges[1].uncertainty.rank, 4);
+  rig.solution.residuals[1].e = 0.3 * open.col(0) - 0.2 * open.col(1);
+  EXPECT_NE(rig.Judge().level, VerdictLevel::kFail) << rig.Judge().why;
+  rig.solution.residuals[1].e(tangent::kY) = 0.06;
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kFail);
+  EXPECT_THAT(rig.Judge().why, HasSubstr("right - top contradicts the other edges: it is off by 60 mm and 0 deg"));
+}
+
 }  // namespace
 }  // namespace rigcal::fleet
