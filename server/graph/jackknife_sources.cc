@@ -1,5 +1,7 @@
 #include "server/graph/jackknife_sources.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -12,6 +14,8 @@ namespace {
 
 using Eigen::MatrixXd;
 
+constexpr double kShareRounding = 1e-6;
+
 // The session's key; an edge that belongs to none stands for itself. '/' is in no id.
 std::string SessionKey(const GraphEdge& edge) {
   return edge.session.empty() ? "/" + edge.id.str() : edge.session.str();
@@ -22,15 +26,26 @@ const EdgeBlocks* FindBlocks(const BlocksByEdge& blocks, const EdgeId& edge) {
   return found == blocks.end() || found->second.blocks.size() < kJackknifeBlocksMin ? nullptr : &found->second;
 }
 
+Eigen::Index PlaceOf(const std::string& id, const std::vector<std::string>& ids) {
+  return std::lower_bound(ids.begin(), ids.end(), id) - ids.begin();
+}
+
 // d of every block of the session, centred and scaled so that columns * columns^T is the jackknife's sum. A block that
 // an edge does not have changes nothing in it.
 MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<std::string>& ids) {
-  const auto m = static_cast<double>(ids.size());
-  MatrixXd d = MatrixXd::Zero(6, static_cast<Eigen::Index>(ids.size()));
-  for (const BlockVector& block : own)
-    d.col(std::lower_bound(ids.begin(), ids.end(), block.block_id) - ids.begin()) = block.d;
-  const Vector6d mean = d.rowwise().sum() / m;
-  return std::sqrt((m - 1.0) / m) * (d.colwise() - mean);
+  const auto count = static_cast<Eigen::Index>(ids.size());
+  MatrixXd d = MatrixXd::Zero(6, count);
+  for (const BlockVector& block : own) d.col(PlaceOf(block.block_id, ids)) = block.d;
+  const Vector6d mean = d.rowwise().mean();
+  return BlockScale(count) * (d.colwise() - mean);
+}
+
+// What an Omega that the blocks made lacks without each of them; nothing where Omega is known apart from them.
+std::optional<WeightBlocks> WeightOf(const EdgeBlocks& own, const MatrixXd& d, const std::vector<std::string>& ids) {
+  if (!(own.weight_share > 0.0)) return std::nullopt;
+  WeightBlocks weight{d, std::vector<char>(ids.size(), 0), own.weight_share};
+  for (const BlockVector& block : own.blocks) weight.own[static_cast<std::size_t>(PlaceOf(block.block_id, ids))] = 1;
+  return weight;
 }
 
 ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size_t>& members) {
@@ -47,7 +62,8 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
   source.column_count = static_cast<Eigen::Index>(ids.size());
   for (const std::size_t k : members) {
     const EdgeBlocks& own = *FindBlocks(work.blocks, work.EdgeOf(k).id);
-    source.parts.push_back({k, work.jacobians[k].D * CentredBlocks(own.blocks, ids)});
+    const MatrixXd d = CentredBlocks(own.blocks, ids);
+    source.parts.push_back({k, work.jacobians[k].D * d, WeightOf(own, d, ids)});
   }
   return source;
 }
@@ -63,7 +79,7 @@ void AddGiven(const JackknifeWork& work, std::size_t constraint, const std::stri
     MatrixXd columns(6, static_cast<Eigen::Index>(shifts.size()));
     for (std::size_t i = 0; i < shifts.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = shifts[i];
     source.column_count = std::max(source.column_count, columns.cols());
-    source.parts.push_back({constraint, work.jacobians[constraint].D * columns});
+    source.parts.push_back({constraint, work.jacobians[constraint].D * columns, {}});
   }
 }
 
@@ -78,8 +94,19 @@ ErrorSource OwnError(std::size_t constraint, const MatrixXd& de, int dof) {
   ErrorSource source;
   source.dof = dof;
   source.column_count = de.cols();
-  source.parts.push_back({constraint, de});
+  source.parts.push_back({constraint, de, {}});
   return source;
+}
+
+// Of what the blocks show in the covariance that Omega stands for; 0 where it is less than they alone would make it.
+double ShareInOmega(const Uncertainty& uncertainty) {
+  if (uncertainty.source != UncertaintySource::kJackknife || uncertainty.dof < 1) return 0.0;
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : uncertainty.blocks) d.push_back(block.d);
+  const double share = JackknifeShare(uncertainty.dof + 1);
+  const Matrix6d F = SquareRoot(uncertainty.Omega);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(F.transpose() * JackknifeCovariance(d) * F));
+  return share * eigen.eigenvalues()(5) <= 1.0 + kShareRounding ? share : 0.0;
 }
 
 // Block vectors that say something in every direction that the edge sees, each for a block of its own.
@@ -96,6 +123,23 @@ bool SpeakForTheirEdge(const Uncertainty& uncertainty) {
 
 }  // namespace
 
+double BlockScale(Eigen::Index m) { return std::sqrt(1.0 - 1.0 / static_cast<double>(m)); }
+
+// The covariance that the blocks show is C = sum d_i d_i^T. Without block i it is expected to be the same: what is left
+// counts for (m - 1) / (m - 2) of itself, so that C changes by (C - m d_i d_i^T) / (m - 2).
+MatrixXd PullByWeight(const WeightBlocks& weight, const Matrix6d& Omega, const MatrixXd& residuals) {
+  const auto m = static_cast<double>(std::count(weight.own.begin(), weight.own.end(), 1));
+  const Matrix6d C = weight.d * weight.d.transpose();
+  MatrixXd pull = MatrixXd::Zero(6, residuals.cols());
+  for (Eigen::Index i = 0; i < residuals.cols(); ++i) {
+    if (weight.own[static_cast<std::size_t>(i)] == 0) continue;
+    const Vector6d d = weight.d.col(i);
+    const Matrix6d change = weight.share / (m - 2.0) * (C - m * d * d.transpose()) * Omega;
+    pull.col(i) = -Matrix6d(Matrix6d::Identity() + change).partialPivLu().solve(change * residuals.col(i));
+  }
+  return pull;
+}
+
 BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
   BlocksByEdge blocks;
   for (const Edge& edge : edges) {
@@ -103,6 +147,7 @@ BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
     EdgeBlocks& own = blocks[edge.id];
     own.blocks = edge.uncertainty.blocks;
     own.dof = edge.uncertainty.dof;
+    own.weight_share = ShareInOmega(edge.uncertainty);
     for (const Contribution& part : edge.uncertainty.contributions)
       if (part.shifts.empty() || !own.shifts.emplace(part.name, part.shifts).second) own.C_given += part.covariance;
   }

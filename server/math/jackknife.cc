@@ -26,8 +26,13 @@ Matrix6d JackknifeCovariance(const std::vector<Vector6d>& d) {
 }
 
 Matrix6d ShrinkTowardsModel(const Matrix6d& C_jack, const Matrix6d& C_model, int m) {
+  const double share = JackknifeShare(m);
+  return share * C_jack + (1.0 - share) * C_model;
+}
+
+double JackknifeShare(int m) {
   Require(m >= 1, "at least one block");
-  return ((m - 1) * C_jack + 7 * C_model) / (m + 6);
+  return (m - 1.0) / (m + 6.0);
 }
 
 }  // namespace rigcal

@@ -11,5 +11,7 @@ namespace rigcal {
 [[nodiscard]] Matrix6d JackknifeCovariance(const std::vector<Vector6d>& d);
 // ((m-1) C_jack + 7 C_model) / (m+6): shrinks towards the model where blocks are few; invariant under a change of frame.
 [[nodiscard]] Matrix6d ShrinkTowardsModel(const Matrix6d& C_jack, const Matrix6d& C_model, int m);
+// The share of C_jack in that.
+[[nodiscard]] double JackknifeShare(int m);
 
 }  // namespace rigcal

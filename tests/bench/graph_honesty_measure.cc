@@ -148,6 +148,7 @@ Session SimulateSession(int m, unsigned seed) {
         own.blocks.push_back({std::to_string(100 + i), d.back()});
       }
       own.dof = edge.dof = m - 1;
+      own.weight_share = JackknifeShare(m);
       Vector6d variance;
       variance << Eigen::Vector3d::Constant(kSigma_m * kSigma_m), Eigen::Vector3d::Constant(kSigma_rad * kSigma_rad);
       const Matrix6d C_camera = variance.asDiagonal();

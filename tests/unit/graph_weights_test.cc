@@ -1,0 +1,132 @@
+// Information that the blocks made errs as they do: what that does to the covariance of the result.
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+
+#include "server/graph/graph_jackknife.h"
+#include "server/math/jackknife.h"
+#include "tests/unit/graph_fixture.h"
+
+namespace rigcal::graph {
+namespace {
+
+constexpr std::size_t kSensors = 6;
+constexpr int kCaptures = 20;
+constexpr double kSigma_m = 2e-3, kSigma_rad = 2e-3;
+
+// Every capture of one session errs once per edge; edges of all pairs, each the mean of its captures.
+struct Visit {
+  RandomRig rig;
+  std::vector<Edge> edges;
+};
+
+Matrix6d ModelOf() {
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(kSigma_m * kSigma_m), Eigen::Vector3d::Constant(kSigma_rad * kSigma_rad);
+  return Matrix6d(variance.asDiagonal()) / kCaptures;
+}
+
+std::vector<Vector6d> ShiftsOf(const Edge& edge) {
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : edge.uncertainty.blocks) d.push_back(block.d);
+  return d;
+}
+
+Edge MeanOfCaptures(std::size_t number, std::size_t a, std::size_t b, const Se3& truth, std::mt19937& random) {
+  Edge edge;
+  edge.id = IdOf(number);
+  edge.state = EdgeState::kGood;
+  edge.frame_a = Name(a), edge.frame_b = Name(b);
+  edge.session = SessionId(std::string(64, 'a'));
+  std::vector<Vector6d> errors;
+  Vector6d mean = Vector6d::Zero();
+  for (int i = 0; i < kCaptures; ++i) {
+    errors.push_back(RandomVector(random, kSigma_m, kSigma_rad));
+    mean += errors.back() / kCaptures;
+  }
+  std::vector<BlockVector> blocks;
+  std::vector<Vector6d> d;
+  for (int i = 0; i < kCaptures; ++i) {
+    d.push_back(-(errors[static_cast<std::size_t>(i)] - mean) / (kCaptures - 1));
+    blocks.push_back({"capture " + std::to_string(100 + i), d.back()});
+  }
+  const Matrix6d C = ShrinkTowardsModel(JackknifeCovariance(d), ModelOf(), kCaptures);
+  edge.T_a_b = truth * Se3::Exp(mean);
+  edge.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, kCaptures - 1).value();
+  edge.uncertainty.blocks = std::move(blocks);
+  return edge;
+}
+
+Visit VisitOf(unsigned seed) {
+  Visit visit{MakeRig(kSensors, kSensors - 1, 17), {}};
+  std::mt19937 random(seed);
+  for (std::size_t a = 0; a < kSensors; ++a)
+    for (std::size_t b = a + 1; b < kSensors; ++b)
+      visit.edges.push_back(
+          MeanOfCaptures(visit.edges.size(), a, b, visit.rig.truth[a].Inverse() * visit.rig.truth[b], random));
+  return visit;
+}
+
+// The edge as it would be without a capture, its covariance scaled to as many captures as it had.
+Edge WithoutCapture(Edge edge, std::size_t i) {
+  std::vector<Vector6d> d = ShiftsOf(edge);
+  edge.T_a_b = edge.T_a_b * Se3::Exp(d[i]);
+  d.erase(d.begin() + static_cast<std::ptrdiff_t>(i));
+  const double scale = (kCaptures - 1.0) * (kCaptures - 1.0) / (kCaptures * (kCaptures - 2.0));
+  const Matrix6d C_jack = scale * (kCaptures - 1.0) / (kCaptures - 2.0) * JackknifeCovariance(d);
+  const Matrix6d C = ShrinkTowardsModel(C_jack, ModelOf(), kCaptures);
+  edge.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, kCaptures - 1).value();
+  return edge;
+}
+
+TEST(GraphWeights, AreLeftOutWithTheirBlocks) {
+  const Visit visit = VisitOf(1);
+  const Graph graph = GraphOf(visit.edges, Name(0));
+  const GraphSolution solution = Solve(graph);
+  Eigen::MatrixXd x(6 * (kSensors - 1), kCaptures);
+  for (int i = 0; i < kCaptures; ++i) {
+    std::vector<Edge> edges;
+    for (const Edge& edge : visit.edges) edges.push_back(WithoutCapture(edge, static_cast<std::size_t>(i)));
+    const GraphSolution without = Solve(GraphOf(edges, Name(0)));
+    for (std::size_t v = 1; v < kSensors; ++v)
+      x.block<6, 1>(6 * (static_cast<Eigen::Index>(v) - 1), i) =
+          (solution.poses[v].T_ref_sensor.Inverse() * without.poses[v].T_ref_sensor).Log();
+  }
+  const Eigen::VectorXd mean = x.rowwise().mean();
+  x.colwise() -= mean;
+  const Eigen::VectorXd expected = (kCaptures - 1.0) / kCaptures * x.rowwise().squaredNorm();
+  BlocksByEdge blocks = BlocksOf(visit.edges);
+  const GraphJackknife jackknife = JackknifeGraph(graph, solution, blocks);
+  for (auto& [id, own] : blocks) own.weight_share = 0.0;
+  const GraphJackknife held = JackknifeGraph(graph, solution, blocks);
+  for (std::size_t v = 1; v < kSensors; ++v) {
+    const Vector6d full = expected.segment<6>(6 * (static_cast<Eigen::Index>(v) - 1));
+    const Vector6d ratio = SensorCovariance(jackknife, Name(v))->diagonal().cwiseQuotient(full);
+    EXPECT_LT((ratio - Vector6d::Ones()).cwiseAbs().maxCoeff(), 0.05) << ratio.transpose();
+    EXPECT_LT(SensorCovariance(held, Name(v))->diagonal().cwiseQuotient(full).mean(), 0.9);
+  }
+}
+
+// With weights held the mean is 1.5: weights that fit chance in the blocks find little chance left in them.
+TEST(GraphWeights, SigmasHoldWhereTwentyCapturesMadeThem) {
+  constexpr unsigned kVisits = 150;
+  double squares = 0.0;
+  for (unsigned seed = 0; seed < kVisits; ++seed) {
+    const Visit visit = VisitOf(100 + seed);
+    const Graph graph = GraphOf(visit.edges, Name(0));
+    GraphSolution solution = Solve(graph);
+    TakeHonest(graph, JackknifeGraph(graph, solution, BlocksOf(visit.edges)), solution);
+    for (std::size_t v = 1; v < kSensors; ++v) {
+      const Vector6d error = (solution.poses[v].T_ref_sensor.Inverse() * visit.rig.truth[v]).Log();
+      squares += error.cwiseAbs2().cwiseQuotient(solution.poses[v].covariance.diagonal()).mean() /
+                 (kVisits * (kSensors - 1.0));
+    }
+  }
+  RecordProperty("mean_squared_ratio", std::to_string(squares));
+  // The spread of the mean is below 0.04.
+  EXPECT_GT(squares, 0.75);
+  EXPECT_LT(squares, 1.25);
+}
+
+}  // namespace
+}  // namespace rigcal::graph
