@@ -34,6 +34,7 @@ def motions(context):
             yield at_most(title + "_pose_sigmas", case["worst_pose_sigmas"], 4.0)
             if case["edges_open"] > 0:
                 yield at_most(title + "_axis", case["axis_deg"], 2.0, "deg")
+            yield info(title + "_mean_squares", "%.2f_%.2f" % (case["edge_mean_square"], case["pose_mean_square"]))
             yield info(title + "_edges_open_failed", "%d_%d" % (case["edges_open"], case["edges_failed"]))
         yield equal(name + "_tracker_height_claimed", sum(case["body_known"] for case in result[name] if case["tilt_deg"] == 0), 0)
         yield equal(name + "_tracker_unknown_unsaid", sum(case["body_unsaid"] for case in result[name]), 0)

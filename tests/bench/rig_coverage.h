@@ -28,7 +28,7 @@ struct RigCase {
 [[nodiscard]] int CountFailed(const std::vector<Edge>& edges);
 
 void PrintCoverage(int seeds, int first);
-void PrintMotions(int seeds);
+void PrintMotions(int seeds, int first);
 void PrintGiven(int seeds);
 void PrintTurned(int seeds);
 void PrintSameBytes(int seeds);

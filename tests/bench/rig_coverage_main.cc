@@ -10,7 +10,7 @@ namespace {
 bool Print(const std::string& what, int seeds, int first) {
   using namespace rigcal;
   if (what == "coverage") return PrintCoverage(seeds, first), true;
-  if (what == "motions") return PrintMotions(seeds), true;
+  if (what == "motions") return PrintMotions(seeds, first), true;
   if (what == "given") return PrintGiven(seeds), true;
   if (what == "turned") return PrintTurned(seeds), true;
   if (what == "same_bytes") return PrintSameBytes(seeds), true;
