@@ -50,8 +50,8 @@ struct Edge {
   std::vector<Evidence> evidence;
 };
 
-// "px" (reprojection error), or "m": distance of the points from the board (lidar_camera) or of held-out points from
-// the other lidar's surfaces (lidar_lidar), or of where the two sensors of a moving body put it (non_overlapping,
+// "px" (reprojection error), or "m": distance of the points from the board (lidar_camera, tracker_lidar) or of held-out
+// points from the other lidar's surfaces (lidar_lidar), or of where the two sensors of a moving body put it (non_overlapping,
 // tracker_camera, pose_streams).
 [[nodiscard]] std::string ResidualUnitOf(const std::string& method);
 

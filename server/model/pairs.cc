@@ -15,6 +15,11 @@ bool IsSkipped(const SessionHeader& header, const Sensor& a, const Sensor& b) {
   });
 }
 
+bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor) {
+  return std::any_of(header.targets.begin(), header.targets.end(),
+                     [&](const Target& target) { return !sensor.sees || *sensor.sees == target.id; });
+}
+
 std::optional<Se3> DrawnPose(const SessionHeader& header, const Sensor& sensor) {
   return sensor.id == header.reference ? Se3{} : sensor.T_ref_nominal;
 }
@@ -30,6 +35,7 @@ std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const S
   if (kinds == Kinds{SensorKind::kCamera, SensorKind::kLidar}) return MayShareTarget(a, b) ? "lidar_camera" : "";
   if (kinds == Kinds{SensorKind::kCamera, SensorKind::kTracker}) return "tracker_camera";
   if (kinds == Kinds{SensorKind::kLidar, SensorKind::kLidar}) return "lidar_lidar";
+  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kTracker}) return MaySeeTarget(header, a) ? "tracker_lidar" : "";
   if (kinds == Kinds{SensorKind::kPoseStream, SensorKind::kPoseStream}) return "pose_streams";
   return "";
 }

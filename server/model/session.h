@@ -78,8 +78,8 @@ struct Manifest {
 [[nodiscard]] Status Validate(const SessionHeader& header);
 [[nodiscard]] Status Validate(const Manifest& manifest);
 
-// "stereo", "non_overlapping", "lidar_camera", "lidar_lidar", "tracker_camera", "pose_streams"; empty: this pair cannot
-// be calibrated. `a` and `b` in either order.
+// "stereo", "non_overlapping", "lidar_camera", "lidar_lidar", "tracker_camera", "tracker_lidar", "pose_streams"; empty:
+// this pair cannot be calibrated. `a` and `b` in either order.
 [[nodiscard]] std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const Sensor& b);
 // All pairs of sensors of a session that there is a method for and that are not to be skipped; a < b in the order of
 // the session's sensors.

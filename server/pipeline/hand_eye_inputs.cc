@@ -1,9 +1,7 @@
 #include <algorithm>
 
-#include "server/base/limits.h"
-#include "server/formats/poses.h"
 #include "server/pipeline/pair_inputs.h"
-#include "storage/blobs.h"
+#include "server/pipeline/pose_inputs.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -42,28 +40,9 @@ Result<SideInputs> LoadCamera(storage::Store& store, const Manifest& manifest, c
   return inputs;
 }
 
-std::set<CaptureId> OtherCaptures(const Manifest& manifest, const SensorId& tracker) {
-  std::set<CaptureId> captures;
-  for (const Payload& payload : manifest.payloads)
-    if (payload.sensor != tracker) captures.insert(payload.capture);
-  return captures;
-}
-
-Result<SideInputs> LoadPoses(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
-  const auto payload = std::find_if(manifest.payloads.begin(), manifest.payloads.end(),
-                                    [&](const Payload& p) { return p.sensor == sensor.id; });
-  if (payload == manifest.payloads.end())
-    return Fail(ErrorCode::kNotFound, "sensor " + sensor.id.str() + " has no poses.csv",
-                "Put its poses into " + sensor.id.str() + "/poses.csv and push the session again.");
-  const auto text = storage::LoadBlob(store.BlobFolder(), payload->digest, limits::kPoseTableBytesMax);
-  // A damaged disk costs this sensor, not the robot.
-  if (!text) return Fail(ErrorCode::kInvalidInput, text.error().what, text.error().cure);
+Result<SideInputs> LoadTable(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
   SideInputs inputs;
-  if (sensor.kind == SensorKind::kTracker) {
-    RIGCAL_ASSIGN(inputs.side.poses, formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), *text, payload->path));
-  } else {
-    RIGCAL_ASSIGN(inputs.side.poses, formats::ReadPoses(*text, sensor.kind, payload->path));
-  }
+  RIGCAL_ASSIGN(inputs.side.poses, LoadPoses(store, manifest, sensor));
   return inputs;
 }
 
@@ -73,7 +52,7 @@ Result<SideInputs> LoadSide(storage::Store& store, const Manifest& manifest, con
     return Fail(ErrorCode::kInternal, "the session has no sensor '" + id.str() + "'",
                 "Push the session again under its own manifest.");
   RIGCAL_ASSIGN(SideInputs inputs, sensor->kind == SensorKind::kCamera ? LoadCamera(store, manifest, *sensor)
-                                                                       : LoadPoses(store, manifest, *sensor));
+                                                                       : LoadTable(store, manifest, *sensor));
   inputs.side.sensor = *sensor;
   return inputs;
 }

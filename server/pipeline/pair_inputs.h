@@ -7,6 +7,7 @@
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_lidar.h"
 #include "server/calib/stereo.h"
+#include "server/calib/tracker_lidar.h"
 #include "server/pipeline/sightings.h"
 
 namespace rigcal::pipeline {
@@ -30,6 +31,11 @@ struct PairInputs {
 [[nodiscard]] Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store,
                                                                           const Manifest& manifest,
                                                                           const SensorPair& pair);
+// Every plate that the lidar may see, and every capture of either sensor. A table of poses that cannot be read is an
+// error.
+[[nodiscard]] Result<PairInputs<calib::TrackerLidarProblem>> LoadTrackerLidar(storage::Store& store,
+                                                                              const Manifest& manifest,
+                                                                              const SensorPair& pair);
 // How a pair of lidars came to fit, in its first used captures: stored, and added to the edge as evidence. Nothing for
 // an edge without a pose.
 [[nodiscard]] Status AddOverlays(storage::Store& store, const calib::LidarLidarProblem& problem, Edge& edge);

@@ -77,6 +77,11 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, cal
   if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
     return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadHandEye(store, *manifest, job.pair)),
                     calib::EstimateHandEyeEdge);
+  if (method == "tracker_lidar")
+    return EdgeFrom(store, job.pair, method, LoadTrackerLidar(store, *manifest, job.pair),
+                    [](const calib::TrackerLidarProblem& problem, std::vector<CameraFit>*) {
+                      return calib::EstimateTrackerLidarEdge(problem);
+                    });
   return FailedEdge(
       job.pair, method.empty() ? "none" : method,
       {ErrorCode::kUnsupported, "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),

@@ -8,6 +8,9 @@ rigcal_program(board_speed_measure SOURCES bench/board_speed_measure.cc bench/bo
 rigcal_program(cloud_measure SOURCES bench/cloud_measure.cc DEPS rigcal_cloud)
 rigcal_program(page_store SOURCES bench/page_store.cc DEPS rigcal_pipeline rigcal_http)
 rigcal_program(rig_measure SOURCES bench/rig_measure.cc bench/rig_edges.cc DEPS rigcal_sim rigcal_calib rigcal_graph)
+rigcal_program(tracker_lidar_simulation
+  SOURCES bench/tracker_lidar_simulation.cc bench/rig_edges.cc unit/calib_virtual_planes.cc unit/calib_virtual_motion.cc
+  DEPS rigcal_sim rigcal_calib rigcal_graph)
 rigcal_program(rig_coverage
   SOURCES bench/rig_coverage_main.cc bench/rig_coverage.cc bench/rig_motions.cc bench/rig_given.cc bench/rig_turned.cc bench/rig_bytes.cc
           bench/rig_case.cc bench/feature_session.cc

@@ -9,6 +9,7 @@
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_lidar.h"
 #include "server/calib/stereo.h"
+#include "server/calib/tracker_lidar.h"
 #include "server/graph/graph_jackknife.h"
 
 namespace rigcal::sim {
@@ -100,11 +101,31 @@ Edge HandEyeEdge(const Experiment& experiment, const Observations& seen, const s
   return calib::EstimateHandEyeEdge(problem);
 }
 
+Edge TrackerLidarEdge(const Experiment& experiment, const Observations& seen, const Sensor& a, const Sensor& b) {
+  calib::TrackerLidarProblem problem;
+  problem.tracker_is_a = a.kind == SensorKind::kTracker;
+  problem.tracker = problem.tracker_is_a ? a : b;
+  problem.lidar = problem.tracker_is_a ? b : a;
+  problem.boards = experiment.declared.targets;
+  problem.T_body_lidar_nominal = NominalOf(experiment, problem.tracker, problem.lidar);
+  std::map<CaptureId, calib::TrackerLidarCapture> captures;
+  for (const TrackerRow& row : seen.tracker.at(problem.tracker.id))
+    captures[experiment.captures[row.capture_idx]].T_world_body = row.T_world_body;
+  for (const auto& [capture, clouds] : seen.clouds.at(problem.lidar.id))
+    for (const auto& [board, cloud] : clouds) captures[capture].clouds.push_back(cloud);
+  for (auto& [id, capture] : captures) {
+    capture.capture = id;
+    problem.captures.push_back(std::move(capture));
+  }
+  return calib::EstimateTrackerLidarEdge(problem);
+}
+
 Edge EdgeOf(const Experiment& experiment, const Observations& seen, const Sensor& a, const Sensor& b) {
   const std::string method(MethodFor(experiment.declared, a, b));
   if (method == "stereo") return StereoEdge(experiment, seen, a, b);
   if (method == "lidar_camera") return LidarCameraEdge(experiment, seen, a, b);
   if (method == "lidar_lidar") return LidarLidarEdge(experiment, a, b);
+  if (method == "tracker_lidar") return TrackerLidarEdge(experiment, seen, a, b);
   return HandEyeEdge(experiment, seen, method, a, b);
 }
 

@@ -284,8 +284,13 @@ TEST(PairsToCalibrate, OfTrackersAndPoseStreams) {
   constexpr auto kCamera = SensorKind::kCamera, kLidar = SensorKind::kLidar, kTracker = SensorKind::kTracker,
                  kStream = SensorKind::kPoseStream;
   header.sensors = {Of("body", kTracker), Of("d", kCamera), Of("top", kLidar), Of("vio", kStream), Of("odo", kStream)};
-  EXPECT_EQ(PairsOf(header), "body d tracker_camera; d top lidar_camera; vio odo pose_streams");
+  EXPECT_EQ(PairsOf(header), "body d tracker_camera; body top tracker_lidar; d top lidar_camera; vio odo pose_streams");
   header.skip_pairs = {{SensorId("odo"), SensorId("vio")}, {SensorId("body"), SensorId("d")}};
+  EXPECT_EQ(PairsOf(header), "body top tracker_lidar; d top lidar_camera");
+  header.skip_pairs.push_back({SensorId("top"), SensorId("body")});
+  EXPECT_EQ(PairsOf(header), "d top lidar_camera");
+  header.skip_pairs.pop_back();
+  header.targets.clear();  // nothing that stands still for the lidar
   EXPECT_EQ(PairsOf(header), "d top lidar_camera");
 }
 

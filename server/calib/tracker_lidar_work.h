@@ -1,0 +1,48 @@
+// The numbers of a tracker-lidar problem as they shrink and improve, for tracker_lidar*.cc.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/calib/plane_consensus.h"
+#include "server/calib/tracker_lidar.h"
+
+namespace rigcal::calib {
+
+constexpr std::size_t kTrackerLidarMin = 4;           // captures of both
+constexpr std::size_t kTrackerLidarForJackknife = 5;  // fewer: the uncertainty is the model's
+constexpr std::size_t kTrackerLidarEnough = 10;       // fewer: a note says so
+
+// A patch that is a board: which of the capture's, and what it is.
+struct ChosenPatch {
+  const PlanePatch* patch = nullptr;
+  std::size_t board_idx = 0;
+};
+
+struct TrackerLidarWork {
+  std::vector<std::size_t> captures;              // of the problem, those used
+  std::vector<std::vector<ChosenPatch>> patches;  // side by side with them
+  std::map<std::size_t, std::string> unused;      // of the problem's captures: why
+  double range_sigma_m = 0.0;
+  double factor_translation = 1.0, factor_rotation = 1.0;  // on the variances that a tracker is taken to have
+  StaticProblem problem;  // in a world whose origin is in the middle of the body's places
+  StaticState state;
+  StaticFit fit;
+  PlaneReach reach;
+  MotionReach motion;
+};
+
+// Patches of a capture that may be boards; one seen under two plates' names counts once.
+[[nodiscard]] std::vector<const PlanePatch*> PatchesOf(const TrackerLidarCapture& capture);
+// Captures with a pose and a patch, each once; which patches are boards. Leaves the start in `state`.
+[[nodiscard]] tl::expected<TrackerLidarWork, Diagnosis> CollectPatches(const TrackerLidarProblem& problem);
+// Solves, finds the tracker's noise, what contradicts and what is open, until nothing changes.
+[[nodiscard]] tl::expected<void, Diagnosis> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
+[[nodiscard]] TrackerLidarCheck CheckOf(const TrackerLidarWork& work, std::size_t position);
+// Uncertainty of the edge's T_a_b.
+[[nodiscard]] Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem,
+                                                        const TrackerLidarWork& work);
+[[nodiscard]] Matrix6d ModelInformation(const TrackerLidarWork& work);
+
+}  // namespace rigcal::calib
