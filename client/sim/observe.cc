@@ -89,10 +89,12 @@ PlanePatch PatchOf(const std::vector<ScanPoint>& points, const Eigen::Vector2d& 
 
 std::vector<TargetId> BoardsOf(const Experiment& experiment, const SensorId& lidar) {
   std::set<TargetId> boards;
-  for (const RigSensor& camera : experiment.rig.sensors) {
-    if (camera.kind != SensorKind::kCamera || IsSkipped(experiment.rig, camera.id, lidar)) continue;
+  for (const RigSensor& other : experiment.rig.sensors) {
+    if (other.kind == SensorKind::kLidar || IsSkipped(experiment.rig, other.id, lidar)) continue;
+    const std::optional<TargetId>& sees =
+        other.kind == SensorKind::kCamera ? other.sees : experiment.rig.SensorOf(lidar).sees;
     for (const RigBoard& board : experiment.rig.boards)
-      if (!camera.sees || *camera.sees == board.target.id) boards.insert(board.target.id);
+      if (!sees || *sees == board.target.id) boards.insert(board.target.id);
   }
   return {boards.begin(), boards.end()};
 }

@@ -13,7 +13,8 @@
 
 namespace rigcal::sim {
 
-// Which boards a lidar's points count of: those of the cameras that it is calibrated with.
+// Which boards a lidar's points count of: those of the cameras that it is calibrated with; all that it may see if it is
+// calibrated with a tracker.
 [[nodiscard]] std::vector<TargetId> BoardsOf(const Experiment& experiment, const SensorId& lidar);
 
 // Every inner corner without noise, in the order of TargetPoints(); nothing where the board is not seen whole: cut by

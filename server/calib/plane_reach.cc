@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/math/covariance.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -22,8 +24,7 @@ struct OfLidar {
   MatrixXd planes_follow;  // 3 per plane x 6
 };
 
-OfLidar EliminatePlanes(const StaticProblem& problem, const StaticState& state) {
-  const StaticNormal normal = NormalOf(problem, state);
+OfLidar EliminatePlanes(const StaticNormal& normal) {
   const Eigen::Index planes = normal.H.rows() - 6;
   const MatrixXd mixed = normal.H.bottomLeftCorner(planes, 6);
   OfLidar of;
@@ -62,18 +63,27 @@ Matrix6d InformationOf(const StaticProblem& problem, const StaticState& state, s
   return information - mixed.transpose() * own.ldlt().solve(mixed);
 }
 
-// What noise of the poses alone makes: each pose off by a sigma in each direction.
-Matrix6d OfNoise(const StaticProblem& problem, const StaticState& state, const MatrixXd& planes_follow) {
+// One sigma of what is still open of a body's pose once its sightings have corrected it, in six independent ways.
+Matrix6d PoseNoise(const StaticNormal::Body& body) {
+  Vector6d least;
+  least << Eigen::Vector3d::Constant(kNoNoise_m * kNoNoise_m), Eigen::Vector3d::Constant(kNoNoise_rad * kNoNoise_rad);
+  return (Symmetrized(body.inverse) + Matrix6d(least.asDiagonal())).llt().matrixL();
+}
+
+// What noise of the poses alone makes: each pose off by a sigma in each way.
+Matrix6d OfNoise(const StaticProblem& problem, const StaticState& state, const StaticNormal& normal,
+                 const MatrixXd& planes_follow) {
   Matrix6d noise = Matrix6d::Zero();
-  for (std::size_t k = 0; k < problem.captures.size(); ++k)
+  for (std::size_t k = 0; k < problem.captures.size(); ++k) {
+    const Matrix6d ways = PoseNoise(normal.bodies[k]);
     for (int i = 0; i < 6; ++i) {
-      Vector6d off = Vector6d::Zero();
-      off[i] = std::max(std::sqrt(problem.captures[k].covariance(i, i)), i < 3 ? kNoNoise_m : kNoNoise_rad);
+      const Vector6d off = ways.col(i);
       auto changes = ChangesAt(problem, state, planes_follow, k, state.T_world_body[k] * Se3::Exp(off));
       const auto before = ChangesAt(problem, state, planes_follow, k, state.T_world_body[k] * Se3::Exp(-off));
       for (std::size_t s = 0; s < changes.size(); ++s) changes[s] = 0.5 * (changes[s] - before[s]);
       noise += InformationOf(problem, state, k, changes);
     }
+  }
   return noise;
 }
 
@@ -86,8 +96,9 @@ Vector6d ScaleOf(const Matrix6d& H) {
 PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state) {
   StaticProblem whole = problem;
   whole.free = Matrix6d::Identity();
-  const OfLidar of = EliminatePlanes(whole, state);
-  const Matrix6d noise = OfNoise(whole, state, of.planes_follow), both = of.information + noise;
+  const StaticNormal normal = NormalOf(whole, state);
+  const OfLidar of = EliminatePlanes(normal);
+  const Matrix6d noise = OfNoise(whole, state, normal, of.planes_follow), both = of.information + noise;
   const Vector6d scale = ScaleOf(both);
   const Matrix6d scaled_both = scale.asDiagonal() * both * scale.asDiagonal();
   const Matrix6d scaled_noise = scale.asDiagonal() * noise * scale.asDiagonal();

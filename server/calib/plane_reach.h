@@ -1,5 +1,6 @@
 // Which directions of T_body_lidar a motion before static planes tells. What the poses' own noise would tell by itself
-// does not count: from noisy poses information comes even where true ones give none.
+// does not count: from noisy poses information comes even where true ones give none. A pose that many sightings correct
+// is less noisy than the tracker's.
 #pragma once
 
 #include "server/calib/static_planes.h"

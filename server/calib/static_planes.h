@@ -46,10 +46,12 @@ struct StaticSolution {
   int iterations = 0;
 };
 
-// min sum g^T M g + delta^T covariance^-1 delta (Gauss-Newton with halved steps, the body's poses eliminated), g a
-// plane in the lidar's frame (plane_moments.h). Directions that nothing tells stay where they are. Fails if nothing
-// converges.
-[[nodiscard]] Result<StaticSolution> SolveStatic(const StaticProblem& problem, const StaticState& start);
+// min sum g^T M g + delta^T covariance^-1 delta (Gauss-Newton with halved steps, the body's poses eliminated), g a plane
+// in the lidar's frame (plane_moments.h). Directions that nothing tells stay where they are. Fails if nothing converges.
+// With fewer iterations it is on the way to the minimum.
+constexpr int kStaticIterationsMax = 60;
+[[nodiscard]] Result<StaticSolution> SolveStatic(const StaticProblem& problem, const StaticState& start,
+                                                 int iterations_max = kStaticIterationsMax);
 
 // The plane of a sighting in the lidar's frame, as g, with the body where `T_world_body` says.
 [[nodiscard]] Vector7d PlaneInLidar(const Se3& T_world_body, const Se3& T_body_lidar, const WorldPlane& plane,

@@ -42,7 +42,7 @@ void AddFigures(const TrackerLidarEstimate& estimate, Edge& edge) {
   std::size_t points = 0, patches = 0;
   for (const auto& [capture, check] : estimate.checks) points += check.points, patches += check.boards;
   edge.figures["captures_used"] = static_cast<double>(estimate.checks.size());
-  edge.figures["boards_used"] = static_cast<double>(estimate.boards.size());
+  edge.figures["planes_used"] = static_cast<double>(estimate.boards.size());
   edge.figures["patches_used"] = static_cast<double>(patches);
   edge.figures["points_used"] = static_cast<double>(points);
   edge.figures["plane_distance_rms_m"] = estimate.rms_m;

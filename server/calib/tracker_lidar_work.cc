@@ -16,12 +16,13 @@ using OrDiagnosis = tl::expected<T, Diagnosis>;
 constexpr double kTrackerSigma_m = 0.001, kTrackerSigma_rad = 0.001;
 // Poses of the body that are as near as this are one pose.
 constexpr double kSamePose_m = 0.0005, kSamePose_rad = 0.0005;
+constexpr double kFlatness_m = 0.001;  // no board is flatter, however exact the lidar
 constexpr double kSamePatch_m = 0.15, kSamePatchCosine = 0.97;
 constexpr std::size_t kCapturesPerBoardPart = 5;  // a board is seen in a fifth of the captures, or it is no board
 constexpr double kOtherRatio = 0.8;
 constexpr double kContradictingRatio = 5.0, kMadSigma = 1.4826;
 constexpr double kContradictingMin_m = 0.03, kContradictingMin_rad = 0.05;
-constexpr int kRoundsMax = 40, kRejectionsMax = 6;
+constexpr int kRoundsMax = 40, kRejectionsMax = 6, kIterationsOnTheWay = 5;
 constexpr double kSame_ratio = 0.01;   // of a factor from round to round
 constexpr double kPriorSquares = 0.5;  // that the expected noise counts as
 constexpr double kFactorMin = 1e-8;
@@ -108,6 +109,14 @@ Matrix6d CovarianceOf(const TrackerLidarWork& work) {
   return variances.asDiagonal();
 }
 
+PlaneMoments WeighedMoments(const PlanePatch& patch, double range_sigma_m) {
+  PlaneMoments moments = MomentsOf(patch, range_sigma_m);
+  const double factor = std::min(1.0, std::pow(range_sigma_m / kFlatness_m, 2));
+  moments.sum *= factor;
+  moments.weight_per_m2 *= factor;
+  return moments;
+}
+
 void FillMoments(TrackerLidarWork& work) {
   std::vector<const PlanePatch*> all;
   for (const auto& patches : work.patches)
@@ -116,7 +125,7 @@ void FillMoments(TrackerLidarWork& work) {
   for (std::size_t k = 0; k < work.patches.size(); ++k) {
     work.problem.captures[k].seen.clear();
     for (const ChosenPatch& chosen : work.patches[k])
-      work.problem.captures[k].seen.push_back({chosen.board_idx, MomentsOf(*chosen.patch, work.range_sigma_m)});
+      work.problem.captures[k].seen.push_back({chosen.board_idx, WeighedMoments(*chosen.patch, work.range_sigma_m)});
   }
 }
 
@@ -126,9 +135,9 @@ void SetProblem(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
   FillMoments(work);
 }
 
-OrDiagnosis<void> Solve(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
+OrDiagnosis<void> Solve(const TrackerLidarProblem& problem, TrackerLidarWork& work, int iterations_max) {
   for (StaticCapture& capture : work.problem.captures) capture.covariance = CovarianceOf(work);
-  auto solution = SolveStatic(work.problem, work.state);
+  auto solution = SolveStatic(work.problem, work.state, iterations_max);
   if (!solution) return tl::unexpected(TrackerLidarNotSolvable(problem, solution.error()));
   work.state = std::move(solution->state);
   return {};
@@ -168,32 +177,33 @@ bool UpdateNoise(TrackerLidarWork& work) {
   return !same;
 }
 
-OrDiagnosis<void> FindReach(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
+// As the noise shrinks from round to round more may be told; what was held stays where it was put.
+void FindReach(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
   const Eigen::Index before = work.reach.open.cols();
-  const bool first = work.reach.free.cols() == 0;
+  const bool first = work.reach.free.cols() + before == 0;
   for (StaticCapture& capture : work.problem.captures) capture.covariance = CovarianceOf(work);
-  PlaneReach reach = ReachOf(work.problem, work.state);
-  if (reach.free.cols() == 0) return tl::unexpected(NothingTold(problem));
-  // As the noise shrinks from round to round more may be told, but what was held stays where it was put.
-  const bool changed = first || reach.open.cols() != before;
-  work.reach = std::move(reach);
-  if (changed)
+  work.reach = ReachOf(work.problem, work.state);
+  if (first || work.reach.open.cols() != before)
     HoldOpen(problem, work);
   else
     work.problem.free = work.reach.free;
-  return {};
 }
 
 // Pose, noise and open directions depend on each other.
 OrDiagnosis<void> Settle(const TrackerLidarProblem& problem, TrackerLidarWork& work) {
   for (int round = 0; round < kRoundsMax; ++round) {
-    if (auto found = FindReach(problem, work); !found) return found;
-    if (auto solved = Solve(problem, work); !solved) return solved;
+    FindReach(problem, work);
+    if (auto solved = Solve(problem, work, kIterationsOnTheWay); !solved) return solved;
     auto fit = FitOf(work.problem, work.state);
     if (!fit) return tl::unexpected(TrackerLidarNotSolvable(problem, fit.error()));
     work.fit = std::move(*fit);
     if (!UpdateNoise(work)) break;
   }
+  if (work.reach.free.cols() == 0) return tl::unexpected(NothingTold(problem));
+  if (auto solved = Solve(problem, work, kStaticIterationsMax); !solved) return solved;
+  auto fit = FitOf(work.problem, work.state);
+  if (!fit) return tl::unexpected(TrackerLidarNotSolvable(problem, fit.error()));
+  work.fit = std::move(*fit);
   return {};
 }
 

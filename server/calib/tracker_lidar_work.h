@@ -25,7 +25,8 @@ struct TrackerLidarWork {
   std::vector<std::vector<ChosenPatch>> patches;  // side by side with them
   std::map<std::size_t, std::string> unused;      // of the problem's captures: why
   double range_sigma_m = 0.0;
-  double factor_translation = 1.0, factor_rotation = 1.0;  // on the variances that a tracker is taken to have
+  // On the variances that a tracker is taken to have. They begin high: what then is told is told with any noise below.
+  double factor_translation = 100.0, factor_rotation = 100.0;
   StaticProblem problem;  // in a world whose origin is in the middle of the body's places
   StaticState state;
   StaticFit fit;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
+#include "client/sim/bound.h"
 #include "client/sim/rig_yaml.h"
 #include "server/math/statistics.h"
 #include "tests/bench/rig_edges.h"
@@ -130,64 +132,69 @@ void AllRound(int seeds) {
 }
 
 }  // namespace
+
+void Plates(int seeds) {
+  General(seeds);
+  WeakMotion("planar", Drive::kFloor, seeds);
+  WeakMotion("on_the_spot", Drive::kOnTheSpot, seeds);
+  AllRound(std::max(1, seeds / 4));
+}
+
 }  // namespace rigcal::calib
 
 namespace rigcal::sim {
 namespace {
 
-bool HasTracker(const Experiment& experiment, const SensorPair& pair) {
-  const SensorKind a = experiment.rig.SensorOf(pair.a).kind, b = experiment.rig.SensorOf(pair.b).kind;
-  return (a == SensorKind::kLidar && b == SensorKind::kTracker) ||
-         (a == SensorKind::kTracker && b == SensorKind::kLidar);
+// The MARS Mapper with one lidar and the body alone, without the pairs that it leaves out.
+Rig WithOnly(Rig rig, const SensorId& lidar) {
+  std::erase_if(rig.sensors,
+                [&](const RigSensor& sensor) { return sensor.id != lidar && sensor.kind != SensorKind::kTracker; });
+  rig.reference = lidar;
+  rig.skip_pairs.clear();
+  return rig;
 }
 
-// Of the pairs only those of a lidar and the body, which the rig itself leaves out.
-void KeepTrackerLidar(Experiment& experiment) {
-  std::vector<SensorPair> others;
-  const auto& sensors = experiment.rig.sensors;
-  for (auto a = sensors.begin(); a != sensors.end(); ++a)
-    for (auto b = a + 1; b != sensors.end(); ++b)
-      if (!HasTracker(experiment, {a->id, b->id})) others.push_back({a->id, b->id});
-  experiment.rig.skip_pairs = std::move(others);
+void Visits(const Rig& whole, const SensorId& lidar, int seeds) {
+  calib::Statistics statistics;
+  const Rig rig = WithOnly(whole, lidar);
+  for (int i = 0; i < seeds; ++i) {
+    Options options;
+    options.seed = static_cast<std::uint64_t>(i + 1);
+    const auto experiment = Prepare(rig, options);
+    if (!experiment) continue;
+    const Edge edge = RigEdges(*experiment, Observe(*experiment)).front();
+    const auto bound = CramerRaoCovariance(*experiment, edge.frame_b);
+    if (edge.state != EdgeState::kGood || edge.uncertainty.rank < 6 || !bound) {
+      ++statistics.failed;
+      continue;
+    }
+    statistics.Add(EdgeError(*experiment, edge), edge.uncertainty);
+    statistics.AddBound(*bound);
+  }
+  statistics.Print(lidar.str().c_str());
 }
 
 void MarsMapper(int seeds) {
   const auto rig = LoadRig("mars-mapper");
-  std::map<std::string, calib::Statistics> by_lidar;
-  for (int i = 0; rig && i < seeds; ++i) {
-    Options options;
-    options.seed = static_cast<std::uint64_t>(i + 1);
-    auto experiment = Prepare(*rig, options);
-    if (!experiment) continue;
-    const Observations seen = Observe(*experiment);
-    KeepTrackerLidar(*experiment);
-    for (const Edge& edge : RigEdges(*experiment, seen, {false})) {
-      calib::Statistics& statistics = by_lidar[edge.frame_a.str()];
-      if (edge.state != EdgeState::kGood || edge.uncertainty.rank < 6)
-        ++statistics.failed;
-      else
-        statistics.Add(EdgeError(*experiment, edge), edge.uncertainty);
-    }
-  }
-  for (const auto& [lidar, statistics] : by_lidar) statistics.Print(lidar.c_str());
+  if (!rig) return;
+  for (const RigSensor& sensor : rig->sensors)
+    if (sensor.kind == SensorKind::kLidar) Visits(*rig, sensor.id, seeds);
 }
 
 }  // namespace
 }  // namespace rigcal::sim
 
 int main(int argc, char** argv) {
-  const int seeds = argc == 2 ? std::atoi(argv[1]) : 0;
+  const bool only_visits = argc == 3 && std::string(argv[1]) == "--visits";
+  const int seeds = argc == 2 || only_visits ? std::atoi(argv[argc - 1]) : 0;
   if (seeds < 1) {
-    std::fprintf(stderr, "usage: tracker_lidar_simulation SEEDS\n");
+    std::fprintf(stderr, "usage: tracker_lidar_simulation [--visits] SEEDS\n");
     return 2;
   }
   const auto start = std::chrono::steady_clock::now();
   std::printf("{");
-  rigcal::calib::General(seeds);
-  rigcal::calib::WeakMotion("planar", rigcal::calib::Drive::kFloor, seeds);
-  rigcal::calib::WeakMotion("on_the_spot", rigcal::calib::Drive::kOnTheSpot, seeds);
-  rigcal::calib::AllRound(std::max(1, seeds / 4));
-  rigcal::sim::MarsMapper(std::max(2, seeds / 2));
+  if (!only_visits) rigcal::calib::Plates(seeds);
+  rigcal::sim::MarsMapper(seeds);
   std::printf("\"seconds\": %.1f}\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return 0;
 }
