@@ -164,7 +164,7 @@ Result<std::int64_t> ParseDuration(std::string_view text) {
   return count * unit->second * kNsPerSecond;
 }
 
-// One unit, rounded down: an age is never overstated, and a person needs no more of it.
+// One unit, of which whole ones count; years have a decimal. A person needs no more of it.
 std::string AgeText(std::int64_t age_ns) {
   const std::int64_t age_s = std::max<std::int64_t>(age_ns, 0) / kNsPerSecond;
   const auto in = [&](std::int64_t unit_s, const char* unit) { return std::to_string(age_s / unit_s) + " " + unit; };
@@ -173,7 +173,7 @@ std::string AgeText(std::int64_t age_ns) {
   if (age_s < 2 * kSecondsPerDay) return in(kSecondsPerHour, "h");
   if (age_s < 100 * kSecondsPerDay) return in(kSecondsPerDay, "days");
   if (age_s < 2 * kSecondsPerYear) return in(kSecondsPerYear / 12, "months");
-  const std::int64_t tenths = 10 * age_s / kSecondsPerYear;
+  const std::int64_t tenths = (10 * age_s + kSecondsPerYear / 2) / kSecondsPerYear;
   return std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " years";
 }
 

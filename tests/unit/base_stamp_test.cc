@@ -88,7 +88,7 @@ TEST(AgeText, OneUnitThatAPersonReads) {
                                                         {100 * kDay_s - 1, "99 days"},
                                                         {100 * kDay_s, "3 months"},
                                                         {629 * kDay_s, "20 months"},
-                                                        {2151 * kDay_s, "5.8 years"},
+                                                        {2151 * kDay_s, "5.9 years"},
                                                         {36500 * kDay_s, "99.9 years"}};
   for (const auto& [age_s, text] : cases) EXPECT_EQ(AgeText(age_s * kSecond_ns), text) << age_s;
 }
