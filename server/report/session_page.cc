@@ -94,7 +94,7 @@ Outcome OutcomeOf(const SessionInput& input) {
                 std::string(" calibrated.") + unreadable,
             ""};
   const std::string cure = CommonestCure(input.edges);
-  const std::string first = unreadable.empty() ? cure : "Save or copy the pictures that cannot be read again. " + cure;
+  const std::string first = unreadable.empty() ? cure : "Save or copy anew the pictures that cannot be read. " + cure;
   if (row.good == 0)
     return {"off",
             (row.pairs == 1 ? "The pair of sensors could not" : "None of " + pairs + " of sensors could") +

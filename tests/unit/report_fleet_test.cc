@@ -172,7 +172,7 @@ TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
   SessionInput input = SessionOfThree();
   EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("1 of 2 pairs of sensors were calibrated, 1 failed. "
                                                             "1 picture of rear cannot be read."),
-                                                  HasSubstr("cannot be read again. Turn the robot.</p>")));
+                                                  HasSubstr("that cannot be read. Turn the robot.</p>")));
   input.row.good = 0, input.row.failed = 2;
   EXPECT_THAT(RenderSession(input).value(), HasSubstr("None of 2 pairs of sensors could be calibrated."));
   input.row.superseded = true;
