@@ -96,7 +96,7 @@ std::string WithSigma(const std::string& figure, double value, double sigma) {
 
 std::string RowText(const Word& word, const std::map<std::string, double>& figures) {
   const auto first = figures.find(word.figures[0]), second = figures.find(word.figures[1]);
-  const std::string text = ValueText(first->first, first->second);
+  std::string text = ValueText(first->first, first->second);
   if (second == figures.end()) return text;
   if (word.shape == Word::kOutOf) return text + " of " + Fixed(second->second, 0);
   if (word.shape == Word::kWithSigma) return WithSigma(first->first, first->second, second->second);
