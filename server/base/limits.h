@@ -17,6 +17,7 @@ constexpr std::int64_t kWindowBytes = 24LL << 20;                // taken but no
 constexpr std::int64_t kIntakeBytesMax = 64LL << 20;             // the same, all sessions together
 constexpr std::int64_t kIntakeWhileAskedBytesPerS = 96LL << 20;  // somewhat less than a gigabit link brings
 constexpr std::int64_t kCachedBytes = 64LL << 20;                // of stored payloads that the page cache keeps
+constexpr std::size_t kCameraMemoryViewsMax = 2048;              // of cameras whose estimate is remembered
 constexpr std::size_t kEdgesPerBatchMax = 1'000'000;
 constexpr std::size_t kSensorsPerRobotMax = 100'000;
 constexpr std::size_t kSensorsPerSessionMax = 1024;  // its pairs are tried, so the square must stay small

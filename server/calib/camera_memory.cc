@@ -2,10 +2,15 @@
 
 #include <algorithm>
 
+#include "server/base/limits.h"
+
 namespace rigcal::calib {
 namespace {
-constexpr std::size_t kEntriesMax = 48;  // more than a robot has cameras and kinds of pairs
-}
+
+// Of a problem without views too.
+std::size_t ViewsOf(const CameraProblem& problem) { return problem.views.size() + 1; }
+
+}  // namespace
 
 std::shared_ptr<const CameraMemory::Answer> CameraMemory::Find(const CameraProblem& problem) {
   const std::lock_guard lock(mutex_);
@@ -16,12 +21,20 @@ std::shared_ptr<const CameraMemory::Answer> CameraMemory::Find(const CameraProbl
   return entries_.front().answer;
 }
 
+void CameraMemory::Keep(Entry entry) {
+  const std::lock_guard lock(mutex_);
+  views_ += ViewsOf(entry.problem);
+  entries_.push_front(std::move(entry));
+  while (views_ > limits::kCameraMemoryViewsMax) {
+    views_ -= ViewsOf(entries_.back().problem);
+    entries_.pop_back();
+  }
+}
+
 tl::expected<CameraEstimate, Diagnosis> CameraMemory::Estimate(const CameraProblem& problem) {
   if (const auto known = Find(problem)) return *known;
-  const auto answer = std::make_shared<const Answer>(EstimateCameraBy(solver_, problem));
-  const std::lock_guard lock(mutex_);
-  entries_.push_front({problem, answer});
-  if (entries_.size() > kEntriesMax) entries_.pop_back();
+  auto answer = std::make_shared<const Answer>(EstimateCameraBy(solver_, problem));
+  if (*answer || answer->error().code != "internal") Keep({problem, answer});
   return *answer;
 }
 

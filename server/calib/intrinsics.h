@@ -40,7 +40,8 @@ struct CameraEstimate {
   std::map<CaptureId, ViewOfIntrinsics> of_intrinsics;
 };
 
-// EstimateCamera without a start, or something that remembers what it said; empty: EstimateCamera.
+// EstimateCamera without a start, or something that remembers what it said (and then must outlive the problem it is put
+// into); empty: EstimateCamera.
 using CameraSolver = std::function<tl::expected<CameraEstimate, Diagnosis>(const CameraProblem&)>;
 
 // Pure and deterministic. Given intrinsics without sigmas stay as given: poses only, one view is enough. With sigmas

@@ -1,4 +1,4 @@
-// Products and triangular solves of small square blocks, column by column so that a column stays in registers.
+// Factors and inverses of small square blocks, column by column so that a column stays in registers.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,16 +10,6 @@ template <int B>
 using BlockOf = Eigen::Matrix<double, B, B>;
 template <int B>
 using BlockColumn = Eigen::Matrix<double, B, 1>;
-
-// C -= A * D^T.
-template <int B>
-inline void SubtractProduct(const BlockOf<B>& A, const BlockOf<B>& D, BlockOf<B>& C) {
-  for (int c = 0; c < B; ++c) {
-    BlockColumn<B> column = C.col(c);
-    for (int k = 0; k < B; ++k) column -= A.col(k) * D(c, k);
-    C.col(c) = column;
-  }
-}
 
 // The lower triangle of C becomes its Cholesky factor with the *inverses* of the pivots on the diagonal; false if C is
 // not positive definite. What is above the diagonal means nothing.
@@ -56,24 +46,6 @@ template <int B>
   DivideByTransposed<B>(C, rows);
   C.noalias() = rows * rows.transpose();
   return true;
-}
-
-// x <- L^-1 x with L of FactorBlock.
-template <int B>
-inline void SolveLower(const BlockOf<B>& L, BlockColumn<B>& x) {
-  for (int c = 0; c < B; ++c) {
-    x(c) *= L(c, c);
-    for (int r = c + 1; r < B; ++r) x(r) -= L(r, c) * x(c);
-  }
-}
-
-// x <- L^-T x with L of FactorBlock.
-template <int B>
-inline void SolveLowerTransposed(const BlockOf<B>& L, BlockColumn<B>& x) {
-  for (int c = B - 1; c >= 0; --c) {
-    for (int r = c + 1; r < B; ++r) x(c) -= L(r, c) * x(r);
-    x(c) *= L(c, c);
-  }
 }
 
 }  // namespace rigcal::graph

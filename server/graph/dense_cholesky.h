@@ -20,9 +20,7 @@ class DenseCholesky final : public BlockCholesky<B> {
       : count_(pattern.block_count),
         pattern_(pattern),
         rows_((B * count_ + kPanel - 1) / kPanel * kPanel),
-        L_(static_cast<std::size_t>((rows_ + kLanes) * rows_)) {
-    for (Eigen::Index k = B * count_; k < rows_; ++k) At(k, k) = 1.0;
-  }
+        L_(static_cast<std::size_t>((rows_ + kLanes) * rows_)) {}
 
   bool Factor(const BlockMatrix<B>& matrix, double lambda) override { return FactorFrom(0, matrix, lambda); }
 
@@ -34,8 +32,9 @@ class DenseCholesky final : public BlockCholesky<B> {
   }
 
   void SolveInPlace(Eigen::Ref<Eigen::MatrixXd> rhs) override {
-    x_.setZero(rows_ + kLanes);
+    x_.resize(rows_ + kLanes);
     for (Eigen::Index column = 0; column < rhs.cols(); ++column) {
+      x_.tail(x_.size() - B * count_).setZero();
       x_.head(B * count_) = rhs.col(column);
       Kernels().Solve(View(), x_.data());
       rhs.col(column) = x_.head(B * count_);
@@ -66,13 +65,17 @@ class DenseCholesky final : public BlockCholesky<B> {
 
   void Write(Eigen::Index first, const BlockMatrix<B>& matrix, double lambda) {
     for (Eigen::Index c = first; c < count_; ++c) {
-      for (Eigen::Index q = B * c; q < B * (c + 1); ++q) std::fill(&At(q, q), &At(B * count_, q), 0.0);
+      for (Eigen::Index q = B * c; q < B * (c + 1); ++q) std::fill(&At(q, q), &At(q, q) + (rows_ - q), 0.0);
       BlockAt(c, c) = matrix.diagonal[static_cast<std::size_t>(c)];
       if (lambda > 0.0) BlockAt(c, c).diagonal() *= 1.0 + lambda;
     }
     for (std::size_t s = 0; s < pattern_.off_diagonal.size(); ++s) {
       const auto [row, col] = pattern_.off_diagonal[s];
       if (col >= first) BlockAt(row, col) = matrix.off_diagonal[s];
+    }
+    for (Eigen::Index k = B * count_; k < rows_; ++k) {  // what fills the last panel
+      std::fill(&At(k, k), &At(k, k) + (rows_ - k), 0.0);
+      At(k, k) = 1.0;
     }
   }
 

@@ -16,8 +16,12 @@ namespace portable {
 #include "server/graph/triangle_lanes.inc"
 }  // namespace portable
 
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx"))), apply_to = function)
+#else
 #pragma GCC push_options
 #pragma GCC target("avx")
+#endif
 namespace avx {
 #include "server/graph/lanes.inc"
 #include "server/graph/edge_lanes.inc"
@@ -25,7 +29,11 @@ namespace avx {
 #include "server/graph/triangle_lanes.inc"
 }  // namespace avx
 // clang-format on
-#pragma GCC pop_options
+#ifdef __clang__
+#  pragma clang attribute pop
+#else
+#  pragma GCC pop_options
+#endif
 
 constexpr LaneKernels kPortable{portable::Factor,    portable::Solve,  portable::InverseColumns, portable::Information,
                                 portable::Residuals, portable::Forces, portable::Blocks};

@@ -10,7 +10,7 @@ constexpr int kLanes = 4;  // numbers side by side
 constexpr int kPanel = 6;  // columns that are factored together
 
 // The lower triangle of a square matrix, column by column. `rows` is a multiple of kPanel; kLanes more zeros follow
-// every column, and stride >= rows + kLanes. Once factored, the diagonal holds the inverses of the pivots.
+// every column, and stride >= rows + kLanes. Once factored, the diagonal of L is stored inverted.
 struct Triangle {
   double* entries = nullptr;
   std::ptrdiff_t rows = 0, stride = 0;

@@ -9,8 +9,6 @@
 namespace rigcal::graph {
 namespace {
 
-using Eigen::Matrix3d;
-
 // S * [D U; 0 D].
 Matrix6d TimesUpper(const Matrix6d& S, const UpperBlocks& A) {
   Matrix6d product;
@@ -41,26 +39,24 @@ EdgeState AddGradient(const Constraint& constraint, const Poses& T_ref, NormalEq
 class BlockSums {
  public:
   explicit BlockSums(BlockMatrix<6>& H) : H_(H) {}
-  ~BlockSums() { Flush(); }
-  BlockSums(const BlockSums&) = delete;
-  BlockSums& operator=(const BlockSums&) = delete;
 
   void Add(const Constraint& constraint, const Matrix6d& W, const Se3& T_i_j) {
     constraints_[count_] = &constraint;
     W_[count_] = W;
     T_i_j_[count_] = T_i_j;
-    if (++count_ == kLanes) Flush();
+    if (++count_ == kLanes) Finish();
   }
 
- private:
-  void Flush() {
+  // Adds what is still waiting: the last thing to call.
+  void Finish() {
     if (count_ == 0) return;
     BlockLanes lanes;
     double *WA[kLanes], *AWA[kLanes];
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      lanes.W[lane] = W_[lane].data();
-      lanes.p_i_j_m[lane] = T_i_j_[lane].p_m.data();
-      lanes.q_i_j[lane] = T_i_j_[lane].q.coeffs().data();
+      const std::size_t known = lane < count_ ? lane : 0;  // the first stands in for those that are missing
+      lanes.W[lane] = W_[known].data();
+      lanes.p_i_j_m[lane] = T_i_j_[known].p_m.data();
+      lanes.q_i_j[lane] = T_i_j_[known].q.coeffs().data();
       WA[lane] = WA_[lane].data();
       AWA[lane] = AWA_[lane].data();
     }
@@ -69,6 +65,7 @@ class BlockSums {
     count_ = 0;
   }
 
+ private:
   void AddLane(const Constraint& constraint, std::size_t lane) {
     const auto i = static_cast<std::size_t>(constraint.i), j = static_cast<std::size_t>(constraint.j);
     if (j > 0) H_.diagonal[j - 1] += W_[lane];
@@ -85,7 +82,7 @@ class BlockSums {
   BlockMatrix<6>& H_;
   std::size_t count_ = 0;
   std::array<const Constraint*, kLanes> constraints_{};
-  std::array<Matrix6d, kLanes> W_{}, WA_, AWA_;
+  std::array<Matrix6d, kLanes> W_, WA_, AWA_;
   std::array<Se3, kLanes> T_i_j_;
 };
 
@@ -166,6 +163,7 @@ void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equa
   BlockSums sums(equations.H);
   for (const Constraint& constraint : problem.constraints)
     AddHessian(constraint, AddGradient(constraint, T_ref, equations), sums);
+  sums.Finish();
 }
 
 void LinearizeRoughly(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
@@ -174,12 +172,14 @@ void LinearizeRoughly(const Problem& problem, const Poses& T_ref, NormalEquation
   equations.H.SetZero();
   BlockSums sums(equations.H);
   for (const Constraint& constraint : problem.constraints) sums.Add(constraint, constraint.Omega, constraint.T_i_j);
+  sums.Finish();
 }
 
 void LinearizeEdge(const Constraint& constraint, const Poses& T_ref, BlockMatrix<6>& H, Eigen::VectorXd* g) {
   const EdgeState state = EdgeStateAt(constraint, PoseOf(T_ref, constraint.i), PoseOf(T_ref, constraint.j));
   BlockSums sums(H);
   AddHessian(constraint, state, sums);
+  sums.Finish();
   if (g != nullptr) AddForces(constraint, state, *g);
 }
 

@@ -81,7 +81,7 @@ InformationLanes Judge(const std::array<const GraphEdge*, kLanes>& edges) {
 // zero.
 bool JudgeInformation(const GraphEdge& edge, const InformationLanes& lanes, std::size_t lane, Constraint& constraint) {
   const double asymmetry = lanes.asymmetry[lane];
-  const bool clear = lanes.is_clear[lane] != 0.0 && std::isfinite(lanes.pivot_product[lane]);
+  const bool clear = lanes.is_clear[lane] != 0.0 && std::isnormal(lanes.pivot_product[lane]);
   // Of a positive definite matrix no entry is larger than the largest of the diagonal.
   const double scale = clear ? lanes.largest_of_diagonal[lane] : edge.Omega.cwiseAbs().maxCoeff();
   if (!(scale >= kInformationMin && scale <= kInformationMax) || (!clear && !edge.Omega.allFinite())) return false;

@@ -1,6 +1,7 @@
 // One camera by itself: board poses with what is known of them, and intrinsics.
 #include <gmock/gmock.h>
 
+#include "server/base/limits.h"
 #include "server/calib/camera_memory.h"
 #include "server/calib/intrinsics.h"
 #include "server/calib/projection.h"
@@ -217,12 +218,29 @@ TEST(CameraMemory, SolvesEveryProblemOnceWhileItIsAmongTheNewest) {
   EXPECT_EQ(solved, 4);
   ASSERT_TRUE(memory.Estimate(problem));
   EXPECT_EQ(solved, 4);
-  for (int k = 0; k < 60; ++k) {
-    moved.board.square_m = 0.05 + 0.001 * k;
+  for (std::size_t k = 0; k <= limits::kCameraMemoryViewsMax / 4; ++k) {  // four per problem of three views
+    moved.board.square_m = 0.05 + 1e-5 * static_cast<double>(k);
+    moved.views.resize(3);
     ASSERT_TRUE(memory.Estimate(moved));
   }
+  const int before = solved;
+  ASSERT_TRUE(memory.Estimate(moved));
+  EXPECT_EQ(solved, before);
   ASSERT_TRUE(memory.Estimate(problem));
-  EXPECT_EQ(solved, 65);
+  EXPECT_EQ(solved, before + 1);
+}
+
+TEST(CameraMemory, ForgetsAnAnswerThatBrokeOff) {
+  int solved = 0;
+  CameraMemory memory([&](const CameraProblem& problem) -> tl::expected<CameraEstimate, Diagnosis> {
+    if (++solved == 1) return tl::unexpected(Diagnosis{"internal", "no memory", "Report this."});
+    return EstimateCamera(problem);
+  });
+  CameraProblem problem = ViewsOf(PairOf(CameraModel::kPinholeRadtan), TiltedBoards(5), 0.2);
+  EXPECT_FALSE(memory.Estimate(problem));
+  EXPECT_TRUE(memory.Estimate(problem));
+  EXPECT_TRUE(memory.Estimate(problem));
+  EXPECT_EQ(solved, 2);
 }
 
 TEST(CameraMemory, RemembersThatThereIsNoAnswer) {

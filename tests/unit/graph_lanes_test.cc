@@ -10,7 +10,9 @@
 #include <random>
 
 #include "server/graph/block_matrix.h"
+#include "server/graph/edge_jacobian.h"
 #include "server/graph/lane_kernels.h"
+#include "server/graph/linearize.h"
 #include "server/math/se3.h"
 #include "tests/unit/graph_fixture.h"
 
@@ -121,7 +123,14 @@ void ExpectSolvedDense(int count) {
     full.block<B, B>(B * c, B * (c + 1)).setConstant(0.3);
   }
   const auto cholesky = MakeCholesky<B>(pattern);
+  BlockMatrix<B> spoilt = matrix;
+  (count > 1 ? spoilt.off_diagonal : spoilt.diagonal)[0].setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(cholesky->Factor(spoilt, 0.0));  // and leaves nothing behind
   ASSERT_TRUE(cholesky->Factor(matrix, 0.0));
+  Eigen::MatrixXd infinite = Eigen::MatrixXd::Ones(B * count, 2);
+  infinite(0, 0) = std::numeric_limits<double>::infinity();
+  cholesky->SolveInPlace(infinite);
+  EXPECT_TRUE(infinite.col(1).allFinite());
   Eigen::MatrixXd x = Eigen::MatrixXd::Ones(B * count, 2);
   cholesky->SolveInPlace(x);
   EXPECT_LT((full * x - Eigen::MatrixXd::Ones(B * count, 2)).norm(), 1e-12);
@@ -195,13 +204,45 @@ TEST(GraphLanes, ForcesAreThoseOfTheClosedForms) {
   }
 }
 
-TEST(GraphLanes, LargeRotationsAreLeftToTheClosedForms) {
-  const FourEdges edges(61, 1.0);
+TEST(GraphLanes, OneLargeRotationLeavesAllFourToTheClosedForms) {
   EdgeForces forces;
   EdgeTwists e;
-  for (const LaneKernels* kernels : {&Kernels(), &PortableKernels()}) {
-    EXPECT_FALSE(kernels->Forces(edges.Lanes(), forces));
-    EXPECT_FALSE(kernels->Residuals(edges.Lanes(), e));
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    FourEdges edges(61);
+    edges.T_j_i[lane].q = edges.T_j_i[lane].q * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitY());
+    for (const LaneKernels* kernels : {&Kernels(), &PortableKernels()}) {
+      EXPECT_FALSE(kernels->Forces(edges.Lanes(), forces)) << lane;
+      EXPECT_FALSE(kernels->Residuals(edges.Lanes(), e)) << lane;
+    }
+  }
+}
+
+// One to nine edges of a graph, one of them with a large rotation: groups that are not full, and mixed.
+TEST(GraphLanes, GraphsOfAnySizeHaveTheGradientOfTheClosedForms) {
+  for (unsigned count = 1; count <= 9; ++count) {
+    RandomRig rig = MakeRig(4, 9, 70 + count, 0.05, 0.02);
+    rig.graph.edges.resize(count);
+    rig.graph.edges.back().T_a_b = rig.graph.edges.back().T_a_b * Se3::Exp(Vector6d::Constant(count % 2 ? 0.0 : 0.7));
+    const Problem problem = MakeProblem(rig.graph);
+    const Poses T_ref(static_cast<std::size_t>(problem.vertex_count));
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(6 * problem.free_count());
+    double cost = 0.0;
+    const std::vector<Vector6d> residuals = Residuals(problem, T_ref);
+    for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+      const Constraint& c = problem.constraints[k];
+      const EdgeJacobian jacobian = JacobianOf(c, T_ref);
+      EXPECT_LT((residuals[k] - jacobian.e).norm(), 1e-12) << count << " " << k;
+      Eigen::MatrixXd column = g;
+      AddToGradient(c, jacobian, jacobian.e, column);
+      g = column;
+      cost += jacobian.e.dot(c.Omega * jacobian.e);
+    }
+    NormalEquations exact, gradient;
+    Linearize(problem, T_ref, exact);
+    LinearizeGradient(problem, T_ref, gradient);
+    EXPECT_LT((exact.g - g).norm(), 1e-10 * g.norm() + 1e-300) << count;
+    EXPECT_LT((gradient.g - g).norm(), 1e-10 * g.norm() + 1e-300) << count;
+    EXPECT_NEAR(gradient.cost, cost, 1e-10 * cost) << count;
   }
 }
 
@@ -246,6 +287,32 @@ TEST(GraphLanes, InformationIsJudgedMatrixByMatrix) {
     EXPECT_NEAR(lanes.pivot_product[0], Omega[0].determinant(), 1e-10 * Omega[0].determinant());
     EXPECT_EQ(lanes.largest_of_diagonal[0], Omega[0].diagonal().maxCoeff());
   }
+}
+
+TEST(GraphLanes, APivotIsClearOnlyFarAboveRounding) {
+  for (const auto& [ratio, is_clear] : {std::pair(1e-9, true), std::pair(1e-11, false)}) {
+    Matrix6d Omega = Matrix6d::Identity();
+    Omega(5, 4) = Omega(4, 5) = std::sqrt(1.0 - ratio);  // the last pivot is `ratio`
+    const std::array<const double*, kLanes> at = {Omega.data(), Omega.data(), Omega.data(), Omega.data()};
+    for (const LaneKernels* kernels : {&Kernels(), &PortableKernels()}) {
+      InformationLanes lanes;
+      kernels->Information(at.data(), lanes);
+      for (const double clear : lanes.is_clear) EXPECT_EQ(clear != 0.0, is_clear) << ratio;
+    }
+  }
+}
+
+TEST(GraphLanes, AnEdgeOfRankFiveIsNotBelievedToHaveSix) {
+  GraphEdge edge;
+  edge.id = EdgeId("e");
+  edge.frame_a = SensorId("a");
+  edge.frame_b = SensorId("b");
+  const Vector6d free = Vector6d::LinSpaced(1.0, 2.0).normalized();
+  edge.Omega = 100.0 * (Matrix6d::Identity() - free * free.transpose());
+  edge.rank = 6;
+  Constraint constraint;
+  EXPECT_EQ(FillConstraint(edge, 0, constraint), "");
+  EXPECT_EQ(constraint.rank, 5);
 }
 
 }  // namespace
