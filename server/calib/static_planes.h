@@ -46,9 +46,9 @@ struct StaticSolution {
   int iterations = 0;
 };
 
-// min sum g^T M g + delta^T covariance^-1 delta (Gauss-Newton with halved steps, the body's poses eliminated), g a plane
-// in the lidar's frame (plane_moments.h). Directions that nothing tells stay where they are. Fails if nothing converges.
-// With fewer iterations it is on the way to the minimum.
+// min sum g^T M g + delta^T covariance^-1 delta (Gauss-Newton with halved steps, the body's poses eliminated), g a
+// plane in the lidar's frame (plane_moments.h). Directions that nothing tells stay where they are. Fails if nothing
+// converges. With fewer iterations it is on the way to the minimum.
 constexpr int kStaticIterationsMax = 60;
 [[nodiscard]] Result<StaticSolution> SolveStatic(const StaticProblem& problem, const StaticState& start,
                                                  int iterations_max = kStaticIterationsMax);

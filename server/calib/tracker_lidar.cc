@@ -1,5 +1,6 @@
 #include "server/calib/tracker_lidar.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "server/calib/tracker_lidar_diagnoses.h"
@@ -45,18 +46,15 @@ TrackerLidarEstimate EstimateOf(const TrackerLidarProblem& problem, const Tracke
 tl::expected<TrackerLidarResult, Diagnosis> EstimateTrackerLidar(const TrackerLidarProblem& problem) {
   auto work = CollectPatches(problem);
   if (!work) return tl::unexpected(work.error());
-  const std::size_t begun = work->unused.size();
   if (auto fitted = FitPatches(problem, *work); !fitted) return tl::unexpected(fitted.error());
   auto uncertainty = JackknifeTrackerLidar(problem, *work);
   if (!uncertainty) return tl::unexpected(TrackerLidarNotSolvable(problem, uncertainty.error()));
   TrackerLidarResult result{EstimateOf(problem, *work), std::move(*uncertainty), {}};
   result.notes = OpenDirections(problem, result.estimate);
   std::vector<CaptureId> contradicting;
-  for (const auto& [idx, why] : work->unused)
-    if (why.rfind("its boards", 0) == 0 || why.rfind("no patch", 0) == 0)
-      contradicting.push_back(problem.captures[idx].capture);
-  if (!contradicting.empty() && begun + contradicting.size() > 0)
-    result.notes.push_back(PlacedContradict(problem, contradicting));
+  for (const std::size_t idx : work->contradicting) contradicting.push_back(problem.captures[idx].capture);
+  std::sort(contradicting.begin(), contradicting.end());
+  if (!contradicting.empty()) result.notes.push_back(PlacedContradict(problem, contradicting));
   return result;
 }
 

@@ -94,6 +94,7 @@ void TakeConsensus(const TrackerLidarProblem& problem, const PlaneConsensus& con
       if (consensus.board_of_patch[k][i]) chosen.push_back({patches[i], *consensus.board_of_patch[k][i]});
     if (chosen.empty()) {
       work.unused[captures[k]] = "no patch of its cloud is where a board stands in the other captures";
+      work.contradicting.push_back(captures[k]);
       continue;
     }
     work.captures.push_back(captures[k]);
@@ -210,6 +211,7 @@ OrDiagnosis<void> Settle(const TrackerLidarProblem& problem, TrackerLidarWork& w
 // Where most of a capture's boards are apart from where the others' say: the body, or a board, was elsewhere.
 void Drop(TrackerLidarWork& work, std::size_t position, const std::string& why) {
   work.unused[work.captures[position]] = why;
+  work.contradicting.push_back(work.captures[position]);
   const auto at = static_cast<std::ptrdiff_t>(position);
   work.captures.erase(work.captures.begin() + at);
   work.patches.erase(work.patches.begin() + at);

@@ -24,6 +24,7 @@ struct TrackerLidarWork {
   std::vector<std::size_t> captures;              // of the problem, those used
   std::vector<std::vector<ChosenPatch>> patches;  // side by side with them
   std::map<std::size_t, std::string> unused;      // of the problem's captures: why
+  std::vector<std::size_t> contradicting;         // of those: the ones whose boards are elsewhere
   double range_sigma_m = 0.0;
   // On the variances that a tracker is taken to have. They begin high: what then is told is told with any noise below.
   double factor_translation = 100.0, factor_rotation = 100.0;

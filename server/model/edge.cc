@@ -65,8 +65,8 @@ Status CheckFigures(const Edge& edge) {
 }  // namespace
 
 std::string ResidualUnitOf(const std::string& method) {
-  for (const char* in_metres : {"lidar_camera", "lidar_lidar", "non_overlapping", "tracker_camera", "tracker_lidar",
-                               "pose_streams"})
+  for (const char* in_metres :
+       {"lidar_camera", "lidar_lidar", "non_overlapping", "tracker_camera", "tracker_lidar", "pose_streams"})
     if (method == in_metres) return "m";
   return "px";
 }

@@ -51,8 +51,8 @@ struct Edge {
 };
 
 // "px" (reprojection error), or "m": distance of the points from the board (lidar_camera, tracker_lidar) or of held-out
-// points from the other lidar's surfaces (lidar_lidar), or of where the two sensors of a moving body put it (non_overlapping,
-// tracker_camera, pose_streams).
+// points from the other lidar's surfaces (lidar_lidar), or of where the two sensors of a moving body put it
+// (non_overlapping, tracker_camera, pose_streams).
 [[nodiscard]] std::string ResidualUnitOf(const std::string& method);
 
 // id = sha256 over robot, source digest and index (design, words). For an estimated edge the source is its session and
