@@ -70,6 +70,23 @@ double RangeBiasSigma_m(const LidarCameraProblem& problem, const LidarCameraEsti
   return std::max(shown_m, problem.lidar.range_bias_sigma_m.value_or(0.0));
 }
 
+// Every group of beams errs by the given sigma alone as well; one constant per group, so that edges of a lidar share
+// them by their order.
+void AddBeams(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+              std::vector<GivenConstant>& constants) {
+  const double sigma_m = problem.lidar.range_bias_sigma_m.value_or(0.0);
+  if (!(sigma_m > 0)) return;
+  const std::vector<char> seen = BeamsSeen(problem, estimate);
+  for (std::size_t group = 0; group < seen.size(); ++group)
+    constants.push_back({"range biases of single beams of " + problem.lidar.id.str(),
+                         [&problem, &estimate, sigma_m, group, is_seen = seen[group]](double steps) -> Result<Se3> {
+                           if (is_seen == 0) return EdgePose(problem, estimate.T_cam_lidar);
+                           RIGCAL_ASSIGN(const LidarCameraEstimate moved,
+                                         SolvedWithBeamsMoved(problem, estimate, group, steps * sigma_m));
+                           return EdgePose(problem, moved.T_cam_lidar);
+                         }});
+}
+
 std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   std::vector<GivenConstant> constants;
   AddBoardSize(problem, estimate, constants);
@@ -80,6 +97,7 @@ std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const 
                            moved.range_bias_m += steps * sigma_m;
                            return PoseFrom(moved, estimate);
                          }});
+  AddBeams(problem, estimate, constants);
   return constants;
 }
 

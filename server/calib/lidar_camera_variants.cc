@@ -1,5 +1,8 @@
 #include "server/calib/lidar_camera_variants.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "server/calib/intrinsics_variants.h"
 
 namespace rigcal::calib {
@@ -16,6 +19,15 @@ tl::expected<CameraEstimate, Diagnosis> CameraWithout(const LidarCameraProblem& 
     if (capture.capture != without) camera.views.emplace_back(capture.capture, *capture.view);
   }
   return EstimateCamera(camera, &estimate.camera);
+}
+
+constexpr double kGroupsFrom_rad = -M_PI / 4, kGroup_rad = M_PI / 2 / kBeamGroups;
+
+// By elevation above the plane across the lidar's z, about which beams turn.
+std::size_t BeamGroupOf(const Eigen::Vector3f& p_m) {
+  const double elevation_rad = std::atan2(p_m.z(), std::hypot(p_m.x(), p_m.y()));
+  const double at = std::floor((elevation_rad - kGroupsFrom_rad) / kGroup_rad);
+  return static_cast<std::size_t>(std::clamp(at, 0.0, kBeamGroups - 1.0));
 }
 
 }  // namespace
@@ -72,6 +84,28 @@ Result<LidarCameraEstimate> SolvedWithChange(const LidarCameraProblem& problem, 
 std::vector<std::size_t> UncertainIntrinsics(const LidarCameraProblem& problem) {
   const std::vector<int> refined = RefinedOf(problem.camera);
   return {refined.begin(), refined.end()};
+}
+
+std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  std::vector<char> seen(kBeamGroups, 0);
+  for (const LidarCameraCapture& capture : problem.captures)
+    if (const auto used = estimate.patch_idx.find(capture.capture); used != estimate.patch_idx.end())
+      for (const Eigen::Vector3f& p : capture.cloud->candidates[used->second].points_m) seen[BeamGroupOf(p)] = 1;
+  return seen;
+}
+
+Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                                 std::size_t group, double longer_m) {
+  LidarCameraEstimate start = estimate;
+  for (const LidarCameraCapture& capture : problem.captures) {
+    const auto used = estimate.patch_idx.find(capture.capture);
+    if (used == estimate.patch_idx.end()) continue;
+    PlanePatch patch = capture.cloud->candidates[used->second];
+    for (Eigen::Vector3f& p : patch.points_m)
+      if (BeamGroupOf(p) == group) p += static_cast<float>(longer_m) * p.normalized();
+    start.moments[capture.capture] = MomentsOf(patch, estimate.range_sigma_m);
+  }
+  return SolvedAgain(problem, start);
 }
 
 }  // namespace rigcal::calib
