@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -22,6 +23,7 @@ struct PushOptions {
   double give_up_s = 60.0;
   std::optional<std::uint64_t> shuffle_seed;
   bool no_wait = false;
+  std::vector<std::string> remounted;
 };
 
 struct Folder {
@@ -29,15 +31,26 @@ struct Folder {
   FileMarks marks;
 };
 
+// As if session.yaml had named them.
+Status AddRemounted(const std::vector<std::string>& names, SessionHeader& header) {
+  for (const std::string& name : names) {
+    RIGCAL_ASSIGN(SensorId sensor, SensorId::Parse(name));
+    if (std::find(header.remounted.begin(), header.remounted.end(), sensor) == header.remounted.end())
+      header.remounted.push_back(std::move(sensor));
+  }
+  return Validate(header);
+}
+
 Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
   Folder folder;
   folder.marks = MarkFiles(options.folder);
   Progress progress(context.err, context.err_is_terminal, "Reading", SteadyNow_ns());
-  const auto manifest = formats::ReadSessionFolder(options.folder, [&](std::int64_t done, std::int64_t total) {
+  auto manifest = formats::ReadSessionFolder(options.folder, [&](std::int64_t done, std::int64_t total) {
     progress.Show({done, total, ""}, SteadyNow_ns());
   });
   progress.Clear();
   if (!manifest) return Fail(manifest.error());
+  RIGCAL_TRY(AddRemounted(options.remounted, manifest->header));
   folder.session = SessionOf(*manifest);
   return folder;
 }
@@ -152,6 +165,10 @@ void AddPush(CLI::App& app, Context& context) {
   verb->add_option("--shuffle", options->shuffle_seed,
                    "Send the files in an order drawn from this seed; the result is the same")
       ->type_name("SEED");
+  verb->add_option("--remounted", options->remounted,
+                   "Sensors that were moved on purpose since the sessions before: what those say of them is past")
+      ->type_name("SENSOR[,SENSOR...]")
+      ->delimiter(',');
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
   verb->add_option("--timeout-total", options->give_up_s,
                    "Give up after so many seconds without any answer (default 60)")
@@ -162,6 +179,7 @@ void AddPush(CLI::App& app, Context& context) {
       "Examples:\n"
       "  rigcal push visit-2026-01-31/\n"
       "  rigcal push visit-2026-01-31/ --no-wait\n"
+      "  rigcal push visit-2026-01-31/ --remounted lidar   the lidar was moved since the visit before\n"
       "  rigcal push visit-2026-01-31/ --json > result.json\n");
   verb->callback([&context, options] {
     if (const Status done = RunPush(context, *options); !done) context.exit_code = Report(done.error(), context);

@@ -1,5 +1,6 @@
 #include "storage/sessions.h"
 
+#include <algorithm>
 #include <set>
 
 #include "server/formats/documents.h"
@@ -149,6 +150,25 @@ Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot
     std::vector<SessionId> sessions;
     while (query.Step()) sessions.push_back(query.IdAt<SessionId>(0));
     return sessions;
+  });
+}
+
+Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const std::vector<SessionId> superseded, LoadSuperseded(store, robot));
+  return Load<std::vector<Remount>>(store, Subject(robot), [&]() -> Result<std::vector<Remount>> {
+    Query query(store,
+                "SELECT sensor.value, session.session_id, session.captured_ns FROM session "
+                "JOIN session_closed ON session_closed.session_number = session.number, "
+                "json_each(session.manifest, '$.remounted') AS sensor WHERE robot_id = ? "
+                "ORDER BY session.captured_ns, session.session_id, sensor.value");
+    query.Bind(robot);
+    std::vector<Remount> remounts;
+    while (query.Step()) {
+      Remount remount{query.IdAt<SensorId>(0), query.IdAt<SessionId>(1), query.Time(2)};
+      if (std::find(superseded.begin(), superseded.end(), remount.session) == superseded.end())
+        remounts.push_back(std::move(remount));
+    }
+    return remounts;
   });
 }
 

@@ -29,7 +29,8 @@ struct SessionRow {
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
 
 // Closed sessions that a later closed session of the robot repeats: it holds half or more of the same payloads, pushed
-// again with a corrected session.yaml, say. The same pictures are no second measurement, and the correction is what counts.
+// again with a corrected session.yaml, say. The same pictures are no second measurement, and the correction is what
+// counts.
 [[nodiscard]] Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot);
 
 // held[i]: payload i of the manifest is durable. kNotFound if the session is unknown.
@@ -45,6 +46,14 @@ struct SessionRow {
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
 // All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
+// Sensors that whole sessions of the robot name as remounted, with when; sessions that a later one repeats do not
+// count.
+struct Remount {
+  SensorId sensor;
+  SessionId session;
+  Stamp captured_at;
+};
+[[nodiscard]] Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot);
 [[nodiscard]] Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot);
 
 struct RobotRow {

@@ -70,7 +70,8 @@ std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphS
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
   return Finding{why, "Find out whether " + two.sensor.str() +
-                          " was moved between these sessions, and withdraw or repeat those from before"};
+                          " was moved between these sessions. If so, push the later one again with --remounted " +
+                          two.sensor.str() + "; if not, repeat it"};
 }
 
 std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
@@ -84,8 +85,7 @@ std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const Gr
   const std::string them = names.size() == 1 ? "it is" : "worst is the first,";
   return Finding{(names.size() == 1 ? "edge " : "edges ") + List(names) +
                      (names.size() == 1 ? " contradicts" : " contradict") + " the other edges: " + them + " off by " +
-                     OffText(worst.e) + ", " + Number(worst.statistic / worst.limit, "times") +
-                     " what chance allows",
+                     OffText(worst.e) + ", " + Number(worst.statistic / worst.limit, "times") + " what chance allows",
                  "Check that " + worst.frame_a.str() + " and " + worst.frame_b.str() +
                      " have not moved and are named right, then repeat their session"};
 }

@@ -82,6 +82,10 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   out.Integer("format", header.format);
   out.Text("operator", header.operator_name);
   out.Text("reference", header.reference.str());
+  if (!header.remounted.empty())
+    out.List("remounted", [&] {
+      for (const SensorId& sensor : header.remounted) out.Text(sensor.str());
+    });
   out.Text("rig_model", header.rig_model);
   out.Text("robot", header.robot.str());
   out.List("sensors", [&] {
@@ -197,6 +201,9 @@ SessionHeader ReadHeader(const JsonField& root) {
     header.sensors.push_back(ReadSensor(sensor));
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
+  if (const auto remounted = root.Find("remounted"))
+    for (const JsonField& sensor : remounted->Items(limits::kSensorsPerSessionMax))
+      header.remounted.push_back(ReadId<SensorId>(sensor));
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
   return header;

@@ -164,7 +164,7 @@ SensorPair ReadSkipPair(const YamlField& field) {
 
 SessionHeader ReadHeader(const YamlField& root) {
   root.AllowOnly({"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors",
-                  "skip_pairs", "conditions"});
+                  "skip_pairs", "remounted", "conditions"});
   SessionHeader header;
   header.format = static_cast<int>(root.At("format").Integer(1, 1));
   header.robot = ReadId<RobotId>(root.At("robot"));
@@ -184,6 +184,8 @@ SessionHeader ReadHeader(const YamlField& root) {
     header.reference = header.sensors.front().id;
   if (const auto pairs = root.Find("skip_pairs"))
     for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
+  if (const auto remounted = root.Find("remounted"))
+    for (const YamlField& sensor : remounted->Items()) header.remounted.push_back(ReadId<SensorId>(sensor));
   if (const auto conditions = root.Find("conditions"))
     for (const YamlField& condition : conditions->Members())
       header.conditions.emplace(condition.Key(), condition.Text());
@@ -203,6 +205,9 @@ YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
       const std::string a = pair.Items()[0].Text(), b = pair.Items()[1].Text();
       if (a == b || !is_sensor(a) || !is_sensor(b)) return pair;
     }
+  if (const auto remounted = root.Find("remounted"))
+    for (const YamlField& sensor : remounted->Items())
+      if (!is_sensor(sensor.Text())) return sensor;
   const auto reference = root.Find("reference");
   return reference && !root.At("sensors").Find(header.reference.str()) ? *reference : root;
 }

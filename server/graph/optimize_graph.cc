@@ -50,7 +50,7 @@ Diagnosis NotJudged(const SensorId& sensor) {
 
 Diagnosis NotConverged(const Optimum& optimum) {
   return {"no_convergence", "the graph did not settle within " + std::to_string(optimum.iterations) + " iterations",
-          "Look for edges with a large residual: one that is grossly wrong keeps the graph from settling. Withdraw or "
+          "Look for edges with a large residual: one that is grossly wrong keeps the graph from settling. "
           "repeat it."};
 }
 

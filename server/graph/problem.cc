@@ -176,7 +176,7 @@ void CollectConstraints(const Graph& graph, const Ranked& ranked, Problem& probl
       if (why.empty()) continue;
       problem.constraints.pop_back();
       problem.diagnoses.push_back({"edge_not_usable", NameOfEdge(edge) + " " + why + " and takes no part",
-                                   "Withdraw this edge, mend it where it was made and push it again."});
+                                   "Mend this edge where it was made and push it again."});
     }
   }
 }

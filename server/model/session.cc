@@ -68,6 +68,14 @@ Status CheckSkipPairs(const SessionHeader& header) {
   return {};
 }
 
+Status CheckRemounted(const SessionHeader& header) {
+  for (const SensorId& id : header.remounted)
+    if (!HasSensor(header, id))
+      return Fail(ErrorCode::kInvalidInput, "remounted: " + Quoted(id.str()) + " is not a sensor",
+                  "Name sensors of the session, which measures them anew.");
+  return {};
+}
+
 Status CheckReference(const SessionHeader& header) {
   if (HasSensor(header, header.reference)) return {};
   return Fail(ErrorCode::kInvalidInput, "reference sensor " + Quoted(header.reference.str()) + " is not a sensor",
@@ -145,6 +153,7 @@ Status Validate(const SessionHeader& header) {
   RIGCAL_TRY(CheckUnique("sensor", header.sensors));
   RIGCAL_TRY(CheckSightings(header));
   RIGCAL_TRY(CheckSkipPairs(header));
+  RIGCAL_TRY(CheckRemounted(header));
   return CheckReference(header);
 }
 

@@ -53,6 +53,7 @@ struct SessionHeader {
   std::vector<Target> targets;
   std::vector<Sensor> sensors;
   std::vector<SensorPair> skip_pairs;  // not to be calibrated; in either order
+  std::vector<SensorId> remounted;     // moved on purpose since the sessions before: what those say of them is past
   std::map<std::string, std::string> conditions;
 };
 

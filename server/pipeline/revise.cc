@@ -1,6 +1,7 @@
 #include "server/pipeline/revise.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -41,12 +42,44 @@ void Supersede(Edge& edge) {
                      "Nothing: the edge of the later session counts."}};
 }
 
+// The remount that made the edge a thing of the past, if any. Edges without a session have no date: they stay.
+const storage::Remount* RemountAfter(const Edge& edge, const std::map<SessionId, Stamp>& captured_at,
+                                     const std::vector<storage::Remount>& remounts) {
+  const auto measured = captured_at.find(edge.session);
+  if (measured == captured_at.end()) return nullptr;
+  const auto found = std::find_if(remounts.begin(), remounts.end(), [&](const storage::Remount& remount) {
+    return (remount.sensor == edge.frame_a || remount.sensor == edge.frame_b) && measured->second < remount.captured_at;
+  });
+  return found != remounts.end() ? &*found : nullptr;
+}
+
+void MakePast(const storage::Remount& remount, Edge& edge) {
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = {{"remounted",
+                     "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
+                         remount.session.str().substr(0, 16),
+                     "Nothing: its sessions since then count. What they leave out has to be measured anew."}};
+}
+
+Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
+  RIGCAL_ASSIGN(const std::vector<storage::Remount> remounts, storage::LoadRemounts(store, robot));
+  if (remounts.empty()) return {};
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessions(store, robot));
+  std::map<SessionId, Stamp> captured_at;
+  for (const storage::SessionRow& row : rows) captured_at.emplace(row.id, row.captured_at);
+  for (Edge& edge : edges)
+    if (const auto* remount = RemountAfter(edge, captured_at, remounts); remount && edge.state == EdgeState::kGood)
+      MakePast(*remount, edge);
+  return {};
+}
+
 Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
   RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, blocks));
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   const std::set<SessionId> old(superseded.begin(), superseded.end());
   for (Edge& edge : edges)
     if (edge.state == EdgeState::kGood && old.contains(edge.session)) Supersede(edge);
+  RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
   return edges;
 }
 

@@ -32,10 +32,12 @@ TEST(ManifestDocument, ComesBackWhole) {
 TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
   Manifest manifest = SampleManifest();
   EXPECT_EQ(WriteManifest(manifest).find("skip_pairs"), std::string::npos);
+  EXPECT_EQ(WriteManifest(manifest).find("remounted"), std::string::npos);
   Sensor vicon;
   vicon.id = SensorId("vicon");
   vicon.kind = SensorKind::kTracker;
   manifest.header.sensors.push_back(vicon);
+  manifest.header.remounted = {SensorId("left")};
   manifest.header.skip_pairs = {{SensorId("vicon"), SensorId("left")}, {SensorId("left"), SensorId("right")}};
   Payload table = manifest.payloads.back();
   table.path = "vicon/poses.csv";
@@ -45,6 +47,7 @@ TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
   const Result<Manifest> read = ReadManifest(WriteManifest(manifest));
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_EQ(read->header.skip_pairs, manifest.header.skip_pairs);
+  EXPECT_EQ(read->header.remounted, manifest.header.remounted);
   EXPECT_EQ(read->header.sensors.back().kind, SensorKind::kTracker);
   EXPECT_EQ(read->payloads.back().capture, CaptureId("poses"));
   EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));

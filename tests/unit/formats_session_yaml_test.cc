@@ -123,6 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadYaml{
             "sensors:", "skip_pairs: [[left, up]]\nsensors:", "line 7: skip_pairs: [left, up]: \"up\" is not a sensor"},
         BadYaml{"sensors:", "skip_pairs: [[left]]\nsensors:", "line 7: skip_pairs: must be two names of sensors"},
+        BadYaml{"sensors:", "remounted: [up]\nsensors:", "line 7: remounted: \"up\" is not a sensor"},
+        BadYaml{"sensors:", "remounted: left\nsensors:", "line 7: remounted: must be a list"},
         BadYaml{"sensors:", "skip_pairs: left\nsensors:", "line 7: skip_pairs: must be a list"},
         BadYaml{"left: {", ".left: {", "line 8: sensor id \".left\" is not a valid name"},
         BadYaml{"fx_px: 535.4", "fx_px: 535,4", "line 11: sensor 'right': intrinsics: unknown key \"4\"; known here: "},

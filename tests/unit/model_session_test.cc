@@ -100,6 +100,10 @@ TEST(ValidateHeader, SkippedPairsAreOfTwoSensors) {
               }).what,
               HasSubstr("skip_pairs: [left, top]: \"top\" is not a sensor"));
   EXPECT_THAT(RefusalAfter([](auto& h) {
+                h.remounted = {SensorId("left"), SensorId("top")};
+              }).what,
+              HasSubstr("remounted: \"top\" is not a sensor"));
+  EXPECT_THAT(RefusalAfter([](auto& h) {
                 h.skip_pairs = {{SensorId("left"), SensorId("left")}};
               }).what,
               HasSubstr("no pair with itself"));

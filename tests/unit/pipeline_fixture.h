@@ -66,8 +66,10 @@ class PipelineTest : public testing::Test {
   }
 
   // A closed session whose payloads are `files` (path -> bytes), as the recorder would leave it.
-  SessionId StoreSession(const std::string& robot, const std::map<std::string, std::string>& files) {
+  SessionId StoreSession(const std::string& robot, const std::map<std::string, std::string>& files,
+                         const std::vector<SensorId>& remounted = {}) {
     Manifest manifest;
+    manifest.header.remounted = remounted;
     manifest.header.robot = RobotId(robot);
     manifest.header.reference = SensorId("left");
     manifest.header.captured_at = clock_.now;

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
 
 #include "storage/revisions.h"
 #include "tests/unit/pipeline_fixture.h"
@@ -129,6 +131,52 @@ TEST_F(PipelineTest, ACorrectedSessionSupersedesTheOneItRepeats) {
   StepAll();
   EXPECT_EQ(revisions_.back().document.find("\"state\":\"good\""), std::string::npos);
   EXPECT_NE(revisions_.back().document.find("superseded"), std::string::npos);
+}
+
+// Good edges of the newest revision, by session.
+std::set<std::string> GoodSessions(const std::string& document) {
+  std::set<std::string> sessions;
+  const auto parsed = nlohmann::json::parse(document);
+  for (const auto& edge : parsed["edges"])
+    if (edge["state"] == "good") sessions.insert(edge["session"].get<std::string>());
+  return sessions;
+}
+
+TEST_F(PipelineTest, WhatWasMeasuredBeforeASensorWasRemountedIsPast) {
+  const auto measure = [this](const SessionId& session, double x_m) {
+    Edge edge = GivenEdge("r", "left", "right", x_m);
+    edge.session = session;
+    edge.method = "given_" + session.str().substr(0, 4);
+    edge.id = EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b);
+    StoreEdges({edge});
+    StepAll();
+  };
+  const std::int64_t hour_ns = 3'600'000'000'000;
+  const Stamp start = clock_.now;
+  const SessionId first = StoreSession("r", {{"left/01.png", "1"}, {"right/01.png", "2"}});
+  StepAll();
+  measure(first, 0.1);
+  EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>{first.str()});
+
+  clock_.now.ns = start.ns + hour_ns;
+  const SessionId second = StoreSession("r", {{"left/01.png", "3"}, {"right/01.png", "4"}}, {SensorId("right")});
+  StepAll();
+  EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>());
+  EXPECT_NE(revisions_.back().document.find("sensor right was remounted after this was measured"), std::string::npos);
+  measure(second, 0.2);
+  EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>{second.str()});
+
+  // It comes last and was captured first: what it says was remounted, was so before all others.
+  clock_.now.ns = start.ns - hour_ns;
+  StoreSession("r", {{"left/01.png", "5"}, {"right/01.png", "6"}}, {SensorId("right")});
+  StepAll();
+  EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>{second.str()});
+
+  // Pushed again without it: the remount was a mistake.
+  clock_.now.ns = start.ns + hour_ns + 1'000'000'000;
+  StoreSession("r", {{"left/01.png", "3"}, {"right/01.png", "4"}});
+  StepAll();
+  EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>{first.str()});
 }
 
 TEST_F(PipelineTest, ASensorInNoPairIsUnknownNotAbsent) {
