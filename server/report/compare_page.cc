@@ -6,6 +6,7 @@
 #include "server/report/banner.h"
 #include "server/report/change_section.h"
 #include "server/report/edge_moves.h"
+#include "server/report/figure_words.h"
 #include "server/report/moved_text.h"
 #include "server/report/robot_pages.h"
 #include "server/report/sigmas.h"
@@ -64,7 +65,7 @@ void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
   const Edge& edge = move.now ? *move.now : *move.before;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
-  row.SetValue("METHOD", edge.method);
+  row.SetValue("METHOD", MethodText(edge.method));
   if (!move.measured_again) {
     const char* why = !move.before ? "new" : !move.now ? "gone" : "not measured again";
     return ShowValue(row, "ALONE", "WHY", why);

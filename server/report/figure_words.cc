@@ -149,7 +149,8 @@ FigureRows RowsOf(const Edge& edge) {
 }
 
 std::string MethodText(const std::string& method) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 5> kNames = {{{"non_overlapping", "non-overlapping"},
+  constexpr std::array<std::pair<std::string_view, const char*>, 6> kNames = {{{"non_overlapping", "non-overlapping"},
+                                                                               {"tracker_lidar", "tracker-lidar"},
                                                                                {"lidar_camera", "lidar-camera"},
                                                                                {"lidar_lidar", "lidar-lidar"},
                                                                                {"tracker_camera", "tracker-camera"},

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "server/report/assets.h"
+#include "server/report/figure_words.h"
 #include "server/report/page.h"
 #include "server/report/robot_pages.h"
 #include "server/report/session_sheet.h"
@@ -28,7 +29,7 @@ void FillEdge(Dictionary& row, const Edge& edge) {
   const bool good = edge.state == EdgeState::kGood;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
-  row.SetValue("METHOD", edge.method);
+  row.SetValue("METHOD", MethodText(edge.method));
   row.SetValue("LEVEL", good ? "pass" : "fail");
   row.SetValue("STATE", good ? "good" : "failed");
   if (edge.diagnoses.empty()) return;
