@@ -36,7 +36,7 @@ def main():
         check(along > 0.9994, "the open direction is within 2 deg of upright: %r" % edge["unobservable_basis"])
         check("planar_motion" in [diagnosis["code"] for diagnosis in edge["diagnoses"]], "words: %r" % edge["diagnoses"])
         page = flow.get("/robots/%s/revisions/1/" % level.name)
-        check("tracker_lidar" in page and "turned about one axis only" in page, "the report says so")
+        check("tracker-lidar" in page and "turned about one axis only" in page, "the report says so")
     print("tracker-lidar: good")
 
 
