@@ -12,7 +12,7 @@ VISITS_OPTIONS = ("--captures", "30")
 def of_weak_motion(name, cases):
     for case in cases:
         title = "%s_tilt_over_noise_%g" % (name, case["ratio"])
-        yield at_most(title + "_sigmas", case["worst_sigmas"], 5.0)  # 4 is exceeded once in 30 such runs: 24 seeds, 5 axes, 39 degrees of freedom
+        yield at_most(title + "_sigmas", case["worst_sigmas"], 4.0)
         yield at_most(title + "_axis", case["axis_deg"], 2.0, "deg")
         yield equal(title + "_failed", case["failed"], 0)
         yield info(title + "_ranks", "4:%d_5:%d_6:%d" % (case["rank4"], case["rank5"], case["rank6"]))
