@@ -58,7 +58,7 @@ void MakePast(const storage::Remount& remount, Edge& edge) {
   edge.diagnoses = {{"remounted",
                      "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
                          remount.session.str().substr(0, 16),
-                     "Nothing: its sessions since then count. What they leave out has to be measured anew."}};
+                     "Where no later session measured this pair, measure it anew; where one did, that one counts."}};
 }
 
 Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
