@@ -16,26 +16,12 @@ namespace {
 
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
-// How far an edge is off in what it says. Along directions that it leaves open it holds what a drawing or nobody said.
-Vector6d OffBy(const Edge& edge, const EdgeResidual& residual) {
-  const auto& open = edge.uncertainty.unobservable_basis;
-  return residual.e - open * (open.transpose() * residual.e);
-}
-
 // How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limits.
-double RatioOf(const Edge& edge, const EdgeResidual& residual, const EdgeTest& test, const Policy& policy) {
+double RatioOf(const EdgeResidual& residual, const EdgeTest& test, const Policy& policy) {
   if (!residual.in_solution) return 0.0;
   if (test.limit > 0.0) return test.statistic / test.limit;
-  const Vector6d off = OffBy(edge, residual);
-  return std::max(off.head<3>().norm() / policy.residual_max_m, off.tail<3>().norm() / policy.residual_max_rad);
-}
-
-const Diagnosis* DiagnosisOf(const GraphSolution& solution, const std::string& sensor) {
-  for (const Diagnosis& diagnosis : solution.diagnoses)
-    if (diagnosis.what.find("sensor " + sensor + " ") != std::string::npos ||
-        diagnosis.what.find("sensor " + sensor + ":") != std::string::npos)
-      return &diagnosis;
-  return nullptr;
+  return std::max(residual.e.head<3>().norm() / policy.residual_max_m,
+                  residual.e.tail<3>().norm() / policy.residual_max_rad);
 }
 
 // Independent edges of known information.
@@ -72,14 +58,12 @@ std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const G
   for (const EdgeResidual& residual : solution.residuals) {
     const auto found = by_id.find(residual.edge);
     if (found == by_id.end()) continue;
-    const double ratio =
-        RatioOf(*found->second, residual, TestResidual(*found->second, residual, edge_count, policy), policy);
+    const double ratio = RatioOf(residual, TestResidual(*found->second, residual, edge_count, policy), policy);
     if (ratio > worst_ratio) worst = found->second, worst_residual = &residual, worst_ratio = ratio;
   }
   if (worst == nullptr) return std::nullopt;
   return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " +
-                     OffText(OffBy(*worst, *worst_residual)) + ", " + Number(worst_ratio, "times") +
-                     " what chance allows",
+                     OffText(worst_residual->e) + ", " + Number(worst_ratio, "times") + " what chance allows",
                  "Check that " + worst->frame_a.str() + " and " + worst->frame_b.str() +
                      " have not moved and are named right, then repeat their session"};
 }
@@ -95,31 +79,6 @@ std::optional<Finding> FindUnsettled(const GraphSolution& solution) {
   if (solution.converged) return std::nullopt;
   return Finding{"the graph did not settle",
                  "Look for an edge with a large residual and push its session again, corrected"};
-}
-
-std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
-  std::set<SensorId> solved;
-  std::vector<std::string> unknown;
-  for (const SensorPose& pose : solution.poses) {
-    solved.insert(pose.sensor);
-    if (!pose.known) unknown.push_back(pose.sensor.str());
-  }
-  std::set<SensorId> only_failed;
-  for (const Edge& edge : edges)
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!solved.contains(sensor)) only_failed.insert(sensor);
-  for (const SensorId& sensor : only_failed) unknown.push_back(sensor.str());
-  if (unknown.empty()) return std::nullopt;
-  const Diagnosis* diagnosis = DiagnosisOf(solution, unknown.front());
-  if (unknown.size() == 1 && diagnosis != nullptr) {
-    std::string cure = diagnosis->cure;
-    if (!cure.empty() && cure.back() == '.') cure.pop_back();
-    return Finding{diagnosis->what, cure};
-  }
-  const std::string them = unknown.size() == 1 ? "it" : "them";
-  return Finding{
-      "the pose of " + List(unknown) + " is not known: no good edges tie " + them + " fully to the reference",
-      "Capture a session that shows " + List(unknown) + " together with sensors that are known"};
 }
 
 std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/graph/step_solver.h"
+#include "server/math/covariance.h"
 
 namespace rigcal::graph {
 namespace {
@@ -51,7 +52,7 @@ Diagnosis NotJudged(const SensorId& sensor) {
 Diagnosis NotConverged(const Optimum& optimum) {
   return {"no_convergence", "the graph did not settle within " + std::to_string(optimum.iterations) + " iterations",
           "Look for edges with a large residual: one that is grossly wrong keeps the graph from settling. "
-          "repeat it."};
+          "Repeat its session."};
 }
 
 Diagnosis Singular() {
@@ -121,6 +122,17 @@ GraphSolution TooLarge(const Graph& graph, const Problem& problem) {
   return solution;
 }
 
+// Along what it leaves open an edge disagrees with nobody: its pose holds there what a drawing or nobody said.
+std::vector<Vector6d> WithoutOpenDirections(const Problem& problem, std::vector<Vector6d> residuals) {
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const Constraint& constraint = problem.constraints[k];
+    if (constraint.rank == 6) continue;
+    const auto open = Observable(constraint.Omega).unobservable_basis;
+    residuals[k] -= (open * (open.transpose() * residuals[k])).eval();
+  }
+  return residuals;
+}
+
 }  // namespace
 
 GlobalError MeanSquares(const std::vector<Vector6d>& residuals) {
@@ -167,10 +179,11 @@ GraphSolution OptimizeGraph(const Graph& graph, const Problem& problem, const st
   solution.iterations = settled.optimum.iterations;
   if (!solution.converged) solution.diagnoses.push_back(NotConverged(settled.optimum));
   const std::vector<Vector6d> e =
-      settled.optimum.residuals.empty() ? Residuals(problem, settled.optimum.T_ref) : settled.optimum.residuals;
+      WithoutOpenDirections(problem, settled.optimum.residuals.empty() ? Residuals(problem, settled.optimum.T_ref)
+                                                                       : settled.optimum.residuals);
   solution.residuals = ByEdge(graph, problem, e);
   for (const EdgeResidual& residual : solution.residuals) solution.cost += residual.weighted;
-  solution.before = MeanSquares(tree_residuals);
+  solution.before = MeanSquares(WithoutOpenDirections(problem, tree_residuals));
   solution.after = MeanSquares(e);
   solution.dof = DegreesOfFreedom(problem, settled.observability);
   FillPoses(graph, problem, settled, solution);

@@ -50,7 +50,8 @@ struct SensorPose {
 struct EdgeResidual {
   EdgeId edge;
   bool in_solution = false;        // false: its part of the graph is not connected to the reference
-  Vector6d e = Vector6d::Zero();   // Log(T_ij_measured^-1 T_i^-1 T_j), at the solution
+  // Log(T_ij_measured^-1 T_i^-1 T_j), at the solution, without its part along the directions that the edge leaves open.
+  Vector6d e = Vector6d::Zero();
   double weighted = 0.0;           // e^T Omega e
   // T^2 = e^T C_e^+ e by the covariance of this very residual, which edges of shared captures correlate.
   bool by_jackknife = false;       // false: the rest has no meaning
@@ -59,7 +60,7 @@ struct EdgeResidual {
   double dof = 0.0;                // behind the estimate of C_e; 0: known
 };
 
-// (1/N_E) sum |e|^2 and its two parts (paper, eq. for E_global).
+// (1/N_E) sum |e|^2 and its two parts (paper, eq. for E_global); directions that an edge leaves open are not counted.
 struct GlobalError {
   double total = 0.0;
   double translation_m2 = 0.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/formats/json_writer.h"
 #include "server/math/statistics.h"
 
 namespace rigcal {
@@ -50,20 +51,38 @@ void AddEdges(const RigCase& rig, std::map<std::string, Coverage>& methods) {
   }
 }
 
+// One sentence per edge that failed.
+void AddFailures(int seed, const std::vector<Edge>& edges, std::vector<std::string>& failures) {
+  for (const Edge& edge : edges)
+    if (edge.state != EdgeState::kGood)
+      failures.push_back("seed " + std::to_string(seed) + ": " +
+                         (edge.diagnoses.empty() ? "no reason" : edge.diagnoses.front().what));
+}
+
+void Print(const std::vector<std::string>& sentences) {
+  formats::JsonWriter out;
+  out.List([&] {
+    for (const std::string& sentence : sentences) out.Text(sentence);
+  });
+  std::printf("%s", out.Finish().c_str());
+}
+
 }  // namespace
 
 void PrintCoverage(int seeds, int first) {
   std::map<std::string, Coverage> sensors, methods;
-  int failed = 0;
+  std::vector<std::string> failures;
   for (int seed = first; seed < first + seeds; ++seed) {
     sim::Options options;
     options.seed = static_cast<std::uint64_t>(seed);
     const RigCase rig = Calibrated(RecordFeatures(MarsMapper(options), kLidarCaptures));
-    failed += CountFailed(rig.edges);
+    AddFailures(seed, rig.edges, failures);
     AddSensors(rig, sensors);
     AddEdges(rig, methods);
   }
-  std::printf("\"coverage\": {\"seeds\": %d, \"failed_edges\": %d, \"sensors\": {", seeds, failed);
+  std::printf("\"coverage\": {\"seeds\": %d, \"failed_edges\": %zu, \"failures\": ", seeds, failures.size());
+  Print(failures);
+  std::printf(", \"sensors\": {");
   Print(sensors);
   std::printf("},\n\"methods\": {");
   Print(methods);

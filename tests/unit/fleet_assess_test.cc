@@ -201,21 +201,35 @@ TEST(TestResidual, CountsOnlyTheDirectionsAnEdgeSees) {
   EXPECT_NEAR(TestResidual(edge, ResidualOf(edge, 0.001), 1, policy).limit, 11.070, 1e-3);  // 5 degrees of freedom
 }
 
-// Turned on the spot: nothing is known along the axis z, nor about it, 0.3 m away.
-TEST(Assess, WhatAnEdgeLeavesOpenContradictsNothing) {
+Edge OpenEdge(char letter, const std::string& a, const std::string& b, const std::string& code) {
+  Edge edge = MakeEdge(letter, a, b);
+  Matrix6d Omega = edge.uncertainty.Omega;
+  Omega(tangent::kZ, tangent::kZ) = 0.0;
+  edge.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
+  edge.diagnoses.push_back({code, "how far is not known", "Use ramps for " + code + "."});
+  return edge;
+}
+
+SensorPose OpenPose(const std::string& name) {
+  SensorPose pose = PoseOf(name, false);
+  pose.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  return pose;
+}
+
+TEST(Assess, ADirectionThatTheMotionLeavesOpenIsToldByTheMotion) {
   Rig rig;
-  Eigen::Matrix<double, 6, 2> open = Eigen::Matrix<double, 6, 2>::Zero();
-  open(tangent::kZ, 0) = 1;
-  open(tangent::kX, 1) = 0.3, open(tangent::kRz, 1) = 1;
-  open.col(1).normalize();
-  const Matrix6d Omega = 1e6 * (Matrix6d::Identity() - open * open.transpose());
-  rig.edges[1].uncertainty = FromInformation(Omega, UncertaintySource::kJackknife, 5);  // too few to be tested
-  ASSERT_EQ(rig.edges[1].uncertainty.rank, 4);
-  rig.solution.residuals[1].e = 0.3 * open.col(0) - 0.2 * open.col(1);
-  EXPECT_NE(rig.Judge().level, VerdictLevel::kFail) << rig.Judge().why;
-  rig.solution.residuals[1].e(tangent::kY) = 0.06;
-  EXPECT_EQ(rig.Judge().level, VerdictLevel::kFail);
-  EXPECT_THAT(rig.Judge().why, HasSubstr("right - top contradicts the other edges: it is off by 60 mm and 0 deg"));
+  rig.edges.push_back(OpenEdge('d', "left", "rear", "pure_translation"));
+  rig.edges.push_back(OpenEdge('e', "right", "rear", "planar_motion"));
+  rig.edges.push_back(OpenEdge('f', "top", "arm", "planar_motion"));
+  rig.solution.poses.push_back(OpenPose("rear"));
+  rig.solution.poses.push_back(OpenPose("arm"));
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.why,
+            "The pose of rear and arm is known but for one direction: the robot was turned about one axis only.");
+  EXPECT_EQ(verdict.what_to_do, "Use ramps for planar_motion.");
+  rig.solution.poses.push_back(PoseOf("lidar", false));
+  EXPECT_THAT(rig.Judge().why, HasSubstr("one axis only; no good edges tie lidar to the reference."));
 }
 
 }  // namespace

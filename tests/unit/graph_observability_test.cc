@@ -48,6 +48,33 @@ TEST(GraphObservability, AFreeAxisMakesTheSensorUnknownAndIsNamed) {
   }
 }
 
+Vector6d ResidualOf(const GraphSolution& solution, const EdgeId& id) {
+  for (const EdgeResidual& residual : solution.residuals)
+    if (residual.edge == id) return residual.e;
+  ADD_FAILURE() << "no residual of " << id.str();
+  return Vector6d::Zero();
+}
+
+// Turned on the spot: nothing is known along the axis z, nor about it, 0.3 m away.
+TEST(GraphObservability, WhatAnEdgeLeavesOpenIsNoDisagreement) {
+  Eigen::Matrix<double, 6, 2> open = Eigen::Matrix<double, 6, 2>::Zero();
+  open(tangent::kZ, 0) = 1;
+  open(tangent::kX, 1) = 0.3, open(tangent::kRz, 1) = 1;
+  open.col(1).normalize();
+  RandomRig rig = RigWithDeficientEdge(Blind({}));
+  const GraphSolution without = Solve(rig.graph);
+  const Vector6d off = 0.3 * open.col(0) + 0.02 * open.col(1);
+  rig.graph.edges.push_back(MakeEdge(71, 0, 1, without.poses[1].T_ref_sensor * Se3::Exp(Vector6d(-off)),
+                                     1e6 * (Matrix6d::Identity() - open * open.transpose())));
+  const GraphSolution solution = Solve(rig.graph);
+  EXPECT_LT(ResidualOf(solution, rig.graph.edges.back().id).norm(), 0.01);  // of second order in the 0.02
+  const auto count = static_cast<double>(without.residuals.size());
+  EXPECT_NEAR(solution.after.total, without.after.total * count / (count + 1), 1e-4 / count);
+  EXPECT_LT(solution.before.total, 1e-3);
+  rig.graph.edges.back().Omega = 1e-3 * Matrix6d::Identity();  // says something of every direction, if little
+  EXPECT_GT(ResidualOf(Solve(rig.graph), rig.graph.edges.back().id).norm(), 0.29);
+}
+
 // A deficient edge takes nothing from what the others say, and adds nothing to sensors it cannot reach.
 TEST(GraphObservability, KnownSensorsKeepTheirUncertainty) {
   const RandomRig rig = RigWithDeficientEdge(Blind({2, 5}));
