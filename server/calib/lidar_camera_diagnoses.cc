@@ -196,7 +196,9 @@ Diagnosis BoardSizeTakenAsExact(const LidarCameraProblem& problem) {
 }
 
 Diagnosis NotSolvable(const LidarCameraProblem& problem, const Error& error) {
-  return {"ill_conditioned", PairOf(problem) + ": " + error.what + ".", error.cure};
+  const std::string pair = PairOf(problem) + ": ";
+  const bool names_it = error.what.starts_with(pair);  // of a solve without a capture, say: a diagnosis of its own
+  return {"ill_conditioned", names_it ? error.what : pair + error.what + ".", error.cure};
 }
 
 }  // namespace rigcal::calib

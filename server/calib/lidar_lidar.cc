@@ -216,6 +216,20 @@ OrDiagnosis<LidarLidarEstimate> Finished(const LidarLidarProblem& problem, const
   return estimate;
 }
 
+const StartEnd& BestOf(const std::vector<StartEnd>& ends) {
+  return *std::max_element(ends.begin(), ends.end(),
+                           [](const StartEnd& x, const StartEnd& y) { return x.score < y.score; });
+}
+
+// Coarse maps of rings on a floor may lead nearly all starts astray; then the finer ones are asked, if what they find
+// fits as well.
+void AskFinerMaps(const LidarLidarWork& work, const Solved& solved, std::vector<StartEnd>& ends) {
+  const StartEnd& best = BestOf(ends);
+  if (AgreeingRatio(ends, best, solved.unknown, work.voxel_m) >= kAgreeingMin_ratio) return;
+  std::vector<StartEnd> finer = TryStarts(work, 1);
+  if (BestOf(finer).score > kOtherScoreRatio * best.score) ends = std::move(finer);
+}
+
 }  // namespace
 
 OrDiagnosis<LidarLidarEstimate> EstimateLidarLidar(const LidarLidarProblem& problem, std::vector<Diagnosis>* notes) {
@@ -223,11 +237,11 @@ OrDiagnosis<LidarLidarEstimate> EstimateLidarLidar(const LidarLidarProblem& prob
   if (std::none_of(problem.captures.begin(), problem.captures.end(), IsUsable))
     return tl::unexpected(NoCommonClouds(problem));
   const LidarLidarWork work = WorkOf(problem);
-  const std::vector<StartEnd> ends = TryStarts(work);
-  const StartEnd& best = *std::max_element(ends.begin(), ends.end(),
-                                           [](const StartEnd& x, const StartEnd& y) { return x.score < y.score; });
-  if (auto judged = JudgeStart(problem, work, best); !judged) return tl::unexpected(judged.error());
-  const Solved solved = SolveFrom(work, best.T);
+  std::vector<StartEnd> ends = TryStarts(work, 0);
+  if (auto judged = JudgeStart(problem, work, BestOf(ends)); !judged) return tl::unexpected(judged.error());
+  const Solved solved = SolveFrom(work, BestOf(ends).T);
+  AskFinerMaps(work, solved, ends);
+  const StartEnd& best = BestOf(ends);
   if (auto judged = Judge(problem, work, solved, ends, best); !judged) return tl::unexpected(judged.error());
   auto estimate = Finished(problem, work, solved);
   if (!estimate) return estimate;

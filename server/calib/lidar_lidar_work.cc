@@ -156,7 +156,7 @@ std::vector<std::size_t> StartCaptures(const LidarLidarWork& work) {
   return Every((work.clouds.size() + kStartCaptures - 1) / kStartCaptures, work.clouds.size());
 }
 
-std::vector<StartEnd> TryStarts(const LidarLidarWork& work) {
+std::vector<StartEnd> TryStarts(const LidarLidarWork& work, std::size_t first_level) {
   std::vector<Vector6d> offsets{Vector6d::Zero()};
   for (int axis = 0; axis < 6; ++axis)
     for (const double sign : {1.0, -1.0})
@@ -165,7 +165,7 @@ std::vector<StartEnd> TryStarts(const LidarLidarWork& work) {
   std::vector<StartEnd> ends(offsets.size());
   ParallelFor(offsets.size(), [&](std::size_t i) {
     ends[i].T = work.nominal * Se3::Exp(offsets[i]);
-    for (std::size_t level = 0; level < kNdtLevels; ++level) {
+    for (std::size_t level = first_level; level < kNdtLevels; ++level) {
       const NdtFit fit = FitNdt(TermsOf(work, level, few), ends[i].T, kStepCoarse);
       ends[i] = {fit.T_a_b, -fit.score.cost / std::max(fit.score.points, 1.0), MetRatio(fit.score)};
     }

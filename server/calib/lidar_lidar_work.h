@@ -44,8 +44,8 @@ struct StartEnd {
   Se3 T;
   double score = 0, met_ratio = 0;  // as LidarLidarPose's
 };
-// The nominal pose first, then it turned and shifted to all sides.
-[[nodiscard]] std::vector<StartEnd> TryStarts(const LidarLidarWork& work);
+// The nominal pose first, then it turned and shifted to all sides; from a level of NDT on.
+[[nodiscard]] std::vector<StartEnd> TryStarts(const LidarLidarWork& work, std::size_t first_level);
 // Which of `work.clouds` these few captures are.
 [[nodiscard]] std::vector<std::size_t> StartCaptures(const LidarLidarWork& work);
 

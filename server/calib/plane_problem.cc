@@ -9,6 +9,8 @@ namespace {
 
 constexpr int kIterationsMax = 100, kHalvingsMax = 20;
 constexpr double kStepTolerance = 1e-12;  // metres and radians
+// Square of a step in sigmas: what less gains is lost in the rounding of the cost, a difference of large moments.
+constexpr double kStepTolerance_sigmas2 = 1e-14;
 // Of the information matrix scaled to a unit diagonal.
 constexpr double kSmallestEigenvalue = 1e-10;
 
@@ -147,7 +149,7 @@ Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, con
     solution.information.setZero();
     solution.information.topLeftCorner(size, size) = H.topLeftCorner(size, size);
     solution.cost = cost;
-    if (step.norm() < kStepTolerance) return solution;
+    if (step.norm() < kStepTolerance || step.dot(H * step) < kStepTolerance_sigmas2) return solution;
     double length = 1;
     PlaneState moved = Moved(solution.state, normals, step, length);
     double moved_cost = CostOf(captures, moved);
