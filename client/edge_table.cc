@@ -7,6 +7,7 @@
 
 #include "client/pose_text.h"
 #include "client/table.h"
+#include "server/model/past.h"
 
 namespace rigcal::client {
 namespace {
@@ -33,11 +34,16 @@ std::string SentenceOf(const Document& diagnosis) {
 
 std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
 
-// What a reader of good edges should know: each sentence once, with the pairs that it is about.
+// By itself: edges of the past were good.
+bool HasFailed(const Document& edge) {
+  return edge["state"].Text() == "failed" && !MeansPast(edge["diagnoses"][0]["code"].Text());
+}
+
+// What a reader of edges that did not fail should know: each sentence once, with the pairs that it is about.
 void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
   std::vector<std::pair<std::string, std::string>> notes;  // sentence, pairs; in the order of the edges
   for (const Document& edge : edges) {
-    if (edge["state"].Text() == "failed") continue;
+    if (HasFailed(edge)) continue;
     for (const Document& item : edge["diagnoses"].Items()) {
       const std::string sentence = SentenceOf(item);
       const auto known =
@@ -71,7 +77,7 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
     if (edge["state"].Text() != "failed") AddRow(edge, table);
   if (!table.empty()) table.Print(out);
   for (const Document& edge : edges) {
-    if (edge["state"].Text() != "failed") continue;
+    if (!HasFailed(edge)) continue;
     out << Plain(PairOf(edge)) << ": FAILED\n";
     PrintDiagnoses(edge["diagnoses"], out);
   }

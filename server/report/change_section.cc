@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/report/banner.h"
+#include "server/report/edge_state.h"
 #include "server/report/sigmas.h"
 #include "server/report/text.h"
 
@@ -30,7 +31,7 @@ std::vector<std::string> NamesOf(const std::vector<const Edge*>& edges) {
   std::vector<std::string> names;
   for (const Edge* edge : edges)
     names.push_back(edge->frame_a.str() + " \xE2\x86\x92 " + edge->frame_b.str() +
-                    (edge->state == EdgeState::kFailed ? " (failed)" : ""));
+                    (HasFailed(*edge) ? " (failed)" : ""));
   return names;
 }
 
@@ -47,6 +48,9 @@ void FillEdgeLines(Dictionary& lines, const Changes& changes) {
   if (!changes.edges_lost.empty())
     AddLine(lines,
             Count(changes.edges_lost.size(), "edge", "edges") + " gone: " + Listed(NamesOf(changes.edges_lost)) + ".");
+  if (!changes.edges_past.empty())
+    AddLine(lines, Count(changes.edges_past.size(), "edge does", "edges do") +
+                       " not count any more: " + Listed(NamesOf(changes.edges_past)) + ".");
   if (!changes.sensors_gained.empty()) AddLine(lines, "Now known: " + Listed(NamesOf(changes.sensors_gained)) + ".");
   if (!changes.sensors_lost.empty()) AddLine(lines, "No longer known: " + Listed(NamesOf(changes.sensors_lost)) + ".");
 }

@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "server/model/past.h"
+
 namespace rigcal::report {
 namespace {
 
@@ -51,6 +53,16 @@ std::vector<const Edge*> MissingEdges(const formats::RevisionInput& of, const fo
   return missing;
 }
 
+std::vector<const Edge*> NowPast(const formats::RevisionInput& before, const formats::RevisionInput& now) {
+  std::set<EdgeId> good;
+  for (const Edge& edge : before.edges)
+    if (edge.state == EdgeState::kGood) good.insert(edge.id);
+  std::vector<const Edge*> past;
+  for (const Edge& edge : now.edges)
+    if (IsPast(edge) && good.contains(edge.id)) past.push_back(&edge);
+  return past;
+}
+
 void CompareSensors(const formats::RevisionInput& before, const formats::RevisionInput& now, Changes& changes) {
   const Poses old = KnownPoses(before), current = KnownPoses(now);
   changes.sensors_gained = Missing(current, old);
@@ -71,8 +83,7 @@ Changes Compare(const formats::RevisionInput& before, const formats::RevisionInp
   CompareSensors(before, now, changes);
   changes.edges_gained = MissingEdges(now, before);
   changes.edges_lost = MissingEdges(before, now);
-  for (const Edge* edge : changes.edges_gained)
-    if (edge->state == EdgeState::kFailed) changes.edges_failed.push_back(edge);
+  changes.edges_past = NowPast(before, now);
   return changes;
 }
 

@@ -22,7 +22,7 @@ struct Changes {
   std::vector<SensorMove> moves;  // sensors known in both, but for the reference; the largest in_sigmas first
   std::vector<SensorId> sensors_gained, sensors_lost;   // known now but not before, and the reverse; sorted
   std::vector<const Edge*> edges_gained, edges_lost;    // by id; into the revisions handed over
-  std::vector<const Edge*> edges_failed;                // of the gained ones, those that failed
+  std::vector<const Edge*> edges_past;                  // good before and past now; of the newer revision
 };
 [[nodiscard]] Changes Compare(const formats::RevisionInput& before, const formats::RevisionInput& now);
 

@@ -15,8 +15,8 @@ inline constexpr std::size_t kNamedMax = 60;
 inline constexpr std::size_t kRingMax = 400;
 inline constexpr std::size_t kTracesMax = 20'000;  // dots, and lines, on a map
 
-// Fills graph.tpl's dictionary; returns the sentence that explains the drawing.
-std::string FillGraph(Dictionary& svg, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);
+// Fills graph.tpl's dictionary; returns the sentence that explains the drawing. Past edges are left out.
+std::string FillGraph(Dictionary& svg, const formats::RevisionInput& revision, std::vector<ShownEdge> edges);
 
 // The two kinds.
 std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);

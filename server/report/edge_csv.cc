@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "server/report/edge_axes.h"
+#include "server/report/edge_state.h"
 #include "server/report/influence.h"
 #include "server/report/page_data.h"
 
@@ -51,7 +52,7 @@ std::string CsvRow(const ReportInput& input, const ShownEdge& shown) {
   const Edge& edge = *shown.edge;
   const bool good = edge.state == EdgeState::kGood;
   std::string row = CsvField(edge.frame_a.str()) + "," + CsvField(edge.frame_b.str()) + "," +
-                    (good ? "good" : "failed") + "," + CsvField(edge.method) + "," +
+                    StateWord(edge) + "," + CsvField(edge.method) + "," +
                     (good ? NameOf(edge.uncertainty.source) : "");
   Vector6d pose;
   pose << edge.T_a_b.p_m, edge.T_a_b.q.x(), edge.T_a_b.q.y(), edge.T_a_b.q.z();

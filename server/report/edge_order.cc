@@ -5,6 +5,9 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "server/model/past.h"
+#include "server/report/edge_state.h"
+
 namespace rigcal::report {
 namespace {
 
@@ -26,10 +29,12 @@ double InSigmas(const Edge& edge, const EdgeResidual* residual) {
   return rank > 0 && statistic > 0.0 ? std::sqrt(statistic / rank) : 0.0;
 }
 
+int RankOf(const Edge& edge) { return HasFailed(edge) ? 0 : IsPast(edge) ? 2 : 1; }
+
 bool Before(const ShownEdge& left, const ShownEdge& right) {
   const auto key = [](const ShownEdge& shown) {
-    return std::make_tuple(shown.edge->state != EdgeState::kFailed, -shown.in_sigmas, shown.edge->frame_a,
-                           shown.edge->frame_b, shown.edge->id);
+    return std::make_tuple(RankOf(*shown.edge), -shown.in_sigmas, shown.edge->frame_a, shown.edge->frame_b,
+                           shown.edge->id);
   };
   return key(left) < key(right);
 }

@@ -1,4 +1,4 @@
-// Edges as the report shows them: joined with their residuals, failed first, then the worst fit.
+// Edges as the report shows them: joined with their residuals, failed first, then the worst fit, past ones last.
 #pragma once
 
 #include <vector>

@@ -7,6 +7,7 @@
 #include "server/formats/camera_fit.h"
 #include "server/report/bars.h"
 #include "server/report/edge_axes.h"
+#include "server/report/edge_state.h"
 #include "server/report/figure_words.h"
 #include "server/report/influence.h"
 #include "server/report/text.h"
@@ -17,7 +18,7 @@ namespace {
 void FillDiagnoses(Dictionary& section, const Edge& edge) {
   if (edge.diagnoses.empty()) return;
   Dictionary* diagnoses = section.AddSectionDictionary("DIAGNOSES");
-  diagnoses->SetValue("LEVEL", edge.state == EdgeState::kFailed ? "fail" : "warn");
+  diagnoses->SetValue("LEVEL", HasFailed(edge) ? "fail" : "warn");
   for (const Diagnosis& diagnosis : edge.diagnoses) {
     Dictionary* one = diagnoses->AddSectionDictionary("DIAGNOSIS");
     one->SetValue("WHAT", diagnosis.what);
@@ -164,8 +165,8 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
                      const std::set<Digest>& stored, std::size_t pictures_max, bool open) {
   const Edge& edge = *shown.edge;
   const bool failed = edge.state == EdgeState::kFailed;
-  section.SetValue("STATE", failed ? "failed" : "good");
-  section.SetValue("LEVEL", failed ? "fail" : "pass");
+  section.SetValue("STATE", StateWord(edge));
+  section.SetValue("LEVEL", StateLevel(edge));
   section.SetValue("FROM", edge.frame_a.str());
   section.SetValue("TO", edge.frame_b.str());
   section.SetValue("METHOD", MethodText(edge.method));

@@ -4,6 +4,7 @@
 #include "server/model/unchecked.h"
 #include "server/report/edge_axes.h"
 #include "server/report/edge_fit.h"
+#include "server/report/edge_state.h"
 #include "server/report/figure_words.h"
 #include "server/report/influence.h"
 #include "server/report/tables.h"
@@ -100,9 +101,8 @@ std::string CapturesText(const Edge& edge) {
 }
 
 void FillState(Dictionary& row, const ShownEdge& shown, const Contradictions& contradictions) {
-  const bool failed = shown.edge->state == EdgeState::kFailed;
-  row.SetValue("LEVEL", failed ? "fail" : "pass");
-  row.SetValue("STATE", failed ? "failed" : "good");
+  row.SetValue("LEVEL", StateLevel(*shown.edge));
+  row.SetValue("STATE", StateWord(*shown.edge));
   if (contradictions.suspects.contains(shown.edge->id)) row.ShowSection("SUSPECT");
   if (contradictions.alternatives.contains(shown.edge->id)) row.ShowSection("ALTERNATIVE");
 }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/model/past.h"
+#include "server/report/edge_state.h"
+#include "server/report/sigmas.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -23,9 +26,9 @@ void Add(Dictionary& page, const Figure& figure) {
   for (const std::string& detail : figure.details) ShowValue(*card, "DETAIL", "TEXT", detail);
 }
 
-std::size_t FailedCount(const std::vector<ShownEdge>& edges) {
-  return static_cast<std::size_t>(std::count_if(
-      edges.begin(), edges.end(), [](const ShownEdge& shown) { return shown.edge->state == EdgeState::kFailed; }));
+std::size_t CountIf(const std::vector<ShownEdge>& edges, bool (*is)(const Edge&)) {
+  return static_cast<std::size_t>(
+      std::count_if(edges.begin(), edges.end(), [is](const ShownEdge& shown) { return is(*shown.edge); }));
 }
 
 std::string RmsText(double square, double scale) { return Significant(std::sqrt(std::max(square, 0.0)) * scale, 3); }
@@ -68,15 +71,18 @@ std::string PairText(const Edge& edge) { return edge.frame_a.str() + kArrow + ed
 
 // The first in the page's order: a failed one, else the worst fit.
 Figure WorstEdgeFigure(const std::vector<ShownEdge>& edges, int dof) {
-  const std::size_t failed = FailedCount(edges);
-  const std::string counts = std::to_string(edges.size() - failed) + " good, " + std::to_string(failed) + " failed";
+  const std::size_t failed = CountIf(edges, HasFailed), past = CountIf(edges, IsPast);
+  const std::string counts = std::to_string(edges.size() - failed - past) + " good, " + std::to_string(failed) +
+                             " failed" + (past > 0 ? ", " + std::to_string(past) + " past" : "");
   if (edges.empty()) return {"Worst edge", "no edges", "warn", {}};
   const ShownEdge& worst = edges.front();
   if (failed > 0) return {"Worst edge", PairText(*worst.edge), "fail", {"failed", counts}};
   if (dof <= 0) return {"Worst edge", "none is checked", "warn", {"Without a loop every edge fits.", counts}};
-  const char* tone = worst.in_sigmas < 3.0 ? "pass" : "warn";
-  return {
-      "Worst edge", PairText(*worst.edge), tone, {Fixed(worst.in_sigmas, 1) + " \xCF\x83 off the solution", counts}};
+  const char* tone = worst.in_sigmas < kOff_sigmas ? "pass" : "warn";
+  return {"Worst edge",
+          PairText(*worst.edge),
+          tone,
+          {SigmasText(worst.in_sigmas) + " \xCF\x83 off the solution", counts}};
 }
 
 // The sensor whose position is least certain.

@@ -9,6 +9,7 @@
 #include "server/report/change_section.h"
 #include "server/report/drawing.h"
 #include "server/report/edge_section.h"
+#include "server/report/edge_state.h"
 #include "server/report/key_figures.h"
 #include "server/report/loop_section.h"
 #include "server/report/page_data.h"
@@ -49,7 +50,7 @@ void FillSections(Dictionary& page, const ReportInput& input, const std::vector<
       left += edge.captures.empty() && edge.evidence.empty() && edge.diagnoses.empty() ? 0 : 1;
       continue;
     }
-    const bool failed = edge.state == EdgeState::kFailed;
+    const bool failed = HasFailed(edge);
     Dictionary* section = page.AddSectionDictionary("DETAIL_SECTION")->AddIncludeDictionary("DETAIL");
     section->SetFilename("edge.tpl");
     FillEdgeSection(*section, input, shown, stored, pictures_max,

@@ -6,6 +6,7 @@
 #include "server/report/edge_axes.h"
 #include "server/report/edge_fit.h"
 #include "server/report/ring.h"
+#include "server/report/sigmas.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -21,7 +22,7 @@ std::string TagText(const Edge& edge) {
   return "\xC2\xB1 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm");
 }
 
-std::string TitleOf(const ShownEdge& shown) {
+std::string TitleOf(const ShownEdge& shown, bool unchecked) {
   const Edge& edge = *shown.edge;
   const std::string pair = edge.frame_a.str() + " \xE2\x86\x92 " + edge.frame_b.str() + ": ";
   if (edge.state == EdgeState::kFailed)
@@ -29,8 +30,9 @@ std::string TitleOf(const ShownEdge& shown) {
   const std::string sigma = pair + "\xCF\x83 " + LargestSigma(edge.uncertainty, tangent::kTranslation, " mm") + "; " +
                             LargestSigma(edge.uncertainty, tangent::kRotation, " deg");
   if (!shown.residual) return sigma;
+  if (unchecked) return sigma + "; nothing checks it";
   return sigma + "; residual " + Significant(shown.residual->e.head<3>().norm() * kMmPerMetre, 2) + " mm, " +
-         Significant(shown.residual->e.tail<3>().norm() * kDegPerRad, 2) + " deg, " + Fixed(shown.in_sigmas, 1) +
+         Significant(shown.residual->e.tail<3>().norm() * kDegPerRad, 2) + " deg, " + SigmasText(shown.in_sigmas) +
          " \xCF\x83";
 }
 
@@ -60,12 +62,13 @@ void PlaceLinks(Ring& ring, const std::vector<ShownEdge>& edges) {
 
 void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
   const bool failed = shown.edge->state == EdgeState::kFailed;
+  const bool unchecked = ring.unchecked.contains(shown.edge->id);
   Dictionary* link = ring.svg.AddSectionDictionary("LINK");
-  link->SetValue("STATE", FitClass(shown, !ring.unchecked.contains(shown.edge->id)));
+  link->SetValue("STATE", FitClass(shown, !unchecked));
   link->SetValue("STROKE", failed ? kFailedStroke : kGoodStroke);
   link->SetValue("THICK", ring.named ? Fixed(ring.widths.Width_px(*shown.edge), 1) : "1");
   link->SetValue("D", std::string("M").append(Point(curve.a)) + "Q" + Point(curve.control) + " " + Point(curve.b));
-  link->SetValue("TITLE", TitleOf(shown));
+  link->SetValue("TITLE", TitleOf(shown, unchecked));
   if (failed) link->ShowSection("DASHED");
   if (!shown.detailed) return;
   ShowValue(*link, "JUMP", "ANCHOR", shown.anchor);

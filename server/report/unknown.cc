@@ -3,15 +3,20 @@
 #include <set>
 #include <vector>
 
+#include "server/model/past.h"
+#include "server/report/edge_state.h"
+
 namespace rigcal::report {
 namespace {
 
 using Neighbours = std::map<SensorId, std::set<SensorId>>;
 
-Neighbours NeighboursBy(const std::vector<Edge>& edges, EdgeState state) {
+bool IsGood(const Edge& edge) { return edge.state == EdgeState::kGood; }
+
+Neighbours NeighboursBy(const std::vector<Edge>& edges, bool (*is)(const Edge&)) {
   Neighbours neighbours;
   for (const Edge& edge : edges) {
-    if (edge.state != state) continue;
+    if (!is(edge)) continue;
     neighbours[edge.frame_a].insert(edge.frame_b);
     neighbours[edge.frame_b].insert(edge.frame_a);
   }
@@ -46,8 +51,8 @@ std::string Listed(const std::set<SensorId>& sensors) {
 }  // namespace
 
 std::map<SensorId, std::string> WhyUnknown(const formats::RevisionInput& revision) {
-  const Neighbours good = NeighboursBy(revision.edges, EdgeState::kGood);
-  const Neighbours failed = NeighboursBy(revision.edges, EdgeState::kFailed);
+  const Neighbours good = NeighboursBy(revision.edges, IsGood), failed = NeighboursBy(revision.edges, HasFailed),
+                   past = NeighboursBy(revision.edges, IsPast);
   const std::set<SensorId> reached = Reached(good, revision.reference);
   std::map<SensorId, std::string> why;
   for (const SensorPose& pose : revision.solution.poses) {
@@ -59,6 +64,8 @@ std::map<SensorId, std::string> WhyUnknown(const formats::RevisionInput& revisio
                          revision.reference.str();
     else if (const auto tried = failed.find(pose.sensor); tried != failed.end())
       why[pose.sensor] = "every edge to it failed: " + Listed(tried->second);
+    else if (const auto before = past.find(pose.sensor); before != past.end())
+      why[pose.sensor] = "its edges do not count any more: " + Listed(before->second);
     else
       why[pose.sensor] = "no edge names it";
   }

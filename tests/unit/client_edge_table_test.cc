@@ -35,6 +35,15 @@ TEST(PrintEdges, GoodOnesInTheTableFailedOnesWithReasonAndCure) {
       << text;
 }
 
+TEST(PrintEdges, WhatIsPastIsNoFailure) {
+  std::string edges = kEdges;
+  edges.replace(edges.find("too_few_captures"), 16, "remounted");
+  std::ostringstream out;
+  PrintEdges(Parsed(edges).Items(), out);
+  EXPECT_EQ(out.str().find("FAILED"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("left - top:\n  only 2 captures"), std::string::npos) << out.str();
+}
+
 TEST(PrintEdges, NothingForNoEdges) {
   std::ostringstream out;
   PrintEdges({}, out);

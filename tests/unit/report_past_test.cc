@@ -1,0 +1,73 @@
+// Edges that were good and do not count any more are neither failures nor measurements.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/model/past.h"
+#include "server/report/changes.h"
+#include "server/report/page_data.h"
+#include "server/report/unknown.h"
+#include "tests/unit/report_sample.h"
+
+namespace rigcal::report {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void MakePast(Edge& edge, const char* code) {
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = {{code, "its session was pushed again", "Nothing."}};
+}
+
+// Four good edges and one of the past, which was the pair's first; none failed.
+ReportInput OnePast(const char* code) {
+  ReportInput input = SampleReport();
+  input.revision.edges.pop_back();
+  Edge old = SampleEdge("front_left", "front_right", Se3());
+  old.id = EdgeId(Sha256Of("old").str());
+  input.revision.edges.insert(input.revision.edges.begin(), old);
+  input.previous = PastRevision{6, input.revision};
+  MakePast(input.revision.edges.front(), code);
+  return input;
+}
+
+TEST(ReportPast, APastEdgeIsNoFailure) {
+  for (const char* code : {"superseded", "remounted"}) {
+    const ReportInput input = OnePast(code);
+    const std::string page = RenderRevision(input, "{}").value().at("index.html");
+    EXPECT_THAT(page, HasSubstr("5 good, 0 failed, 1 past"));
+    EXPECT_THAT(page, HasSubstr("<span class=\"badge unknown\">past</span>"));
+    EXPECT_THAT(page, Not(HasSubstr("<span class=\"badge fail\">failed</span>")));
+    EXPECT_THAT(page, HasSubstr("1 edge does not count any more: front_left \xE2\x86\x92 front_right."));
+    EXPECT_THAT(page, HasSubstr("5 edges\""));  // of the drawing
+    EXPECT_THAT(page, HasSubstr("1 past edge is not drawn."));
+    EXPECT_EQ(InOrder(input.revision).back().edge, &input.revision.edges.front());
+    EXPECT_THAT(EdgeCsv(input, InOrder(input.revision)), HasSubstr("front_left,front_right,past,stereo"));
+  }
+}
+
+TEST(ReportPast, AnyOtherReasonIsAFailure) {
+  const std::string page = RenderRevision(OnePast("too_few_captures"), "{}").value().at("index.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("5 good, 1 failed"), Not(HasSubstr("past edge")), Not(HasSubstr("any more"))));
+  EXPECT_FALSE(IsPast(SampleEdge("a", "b", Se3())));
+}
+
+TEST(ReportPast, ChangesNameWhatBecamePast) {
+  const ReportInput input = OnePast("remounted");
+  const auto& edges = input.revision.edges;
+  EXPECT_THAT(Compare(input.previous->revision, input.revision).edges_past, ElementsAre(&edges.front()));
+  EXPECT_TRUE(Compare(input.revision, input.revision).edges_past.empty());  // it was past before
+}
+
+TEST(ReportPast, ASensorThatOnlyPastEdgesReachSaysSo) {
+  ReportInput input = SampleReport();
+  Edge old = SampleEdge("front_left", "tracker", Se3());
+  MakePast(old, "remounted");
+  input.revision.edges.push_back(old);
+  EXPECT_EQ(WhyUnknown(input.revision).at(SensorId("tracker")), "its edges do not count any more: front_left");
+}
+
+}  // namespace
+}  // namespace rigcal::report
