@@ -62,9 +62,10 @@ double WorstSigmas(const Comparison& comparison) {
   return worst;
 }
 
-std::optional<double> Length(const std::optional<Vector6d>& sigma, int start) {
+// Of the least certain axis, as on the page.
+std::optional<double> Largest(const std::optional<Vector6d>& sigma, int start) {
   if (!sigma) return std::nullopt;
-  return sigma->segment<3>(start).norm();
+  return sigma->segment<3>(start).maxCoeff();
 }
 
 void PrintCompare(const Comparison& comparison, std::ostream& out) {
@@ -79,8 +80,8 @@ void PrintCompare(const Comparison& comparison, std::ostream& out) {
   for (const PoseDifference& difference : comparison.differences) {
     const auto worst = difference.WorstSigmas();
     table.Add({difference.sensor, Scaled(difference.e.head<3>().norm(), kMmPerM, 3),
-               Scaled(Length(difference.sigma, 0), kMmPerM, 3), Scaled(difference.e.tail<3>().norm(), kDegPerRad, 4),
-               Scaled(Length(difference.sigma, 3), kDegPerRad, 4), worst ? Fixed(worst, 1) + " sigma" : "-"});
+               Scaled(Largest(difference.sigma, 0), kMmPerM, 3), Scaled(difference.e.tail<3>().norm(), kDegPerRad, 4),
+               Scaled(Largest(difference.sigma, 3), kDegPerRad, 4), worst ? Fixed(worst, 1) + " sigma" : "-"});
   }
   table.Print(out);
   out << "rms " << Fixed(Rms(comparison.differences, 0) * kMmPerM, 3) << " mm, "

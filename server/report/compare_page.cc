@@ -2,9 +2,11 @@
 #include <cmath>
 #include <map>
 
+#include "server/formats/camera_fit.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
 #include "server/report/change_section.h"
+#include "server/report/choices.h"
 #include "server/report/edge_moves.h"
 #include "server/report/figure_words.h"
 #include "server/report/moved_text.h"
@@ -28,6 +30,8 @@ std::map<SensorId, double> FocalLengths(const formats::RevisionInput& revision) 
     };
     take("fx_a_px", edge.frame_a);
     take("fx_b_px", edge.frame_b);
+    for (const Evidence& evidence : edge.evidence)  // of the only camera of the edge
+      if (evidence.suffix == formats::kCameraFitSuffix) take("fx_px", evidence.sensor);
   }
   return focal_px;
 }
@@ -39,12 +43,8 @@ double Pixels(const SensorMove& move, double focal_px) {
   return focal_px * std::hypot(across_x, across_y);
 }
 
-void FillNumbers(Dictionary& page, const char* section, const std::vector<int>& numbers, int chosen) {
-  for (const int number : numbers) {
-    Dictionary* option = page.AddSectionDictionary(section);
-    option->SetValue("NUMBER", std::to_string(number));
-    if (number == chosen) option->ShowSection("CHOSEN");
-  }
+void FillMore(Dictionary& page, const char* section, std::size_t count) {
+  if (count > kRowsMax) ShowValue(page, section, "COUNT", std::to_string(count - kRowsMax));
 }
 
 void FillSensors(Dictionary& page, const CompareInput& input, const Changes& changes) {
@@ -59,6 +59,20 @@ void FillSensors(Dictionary& page, const CompareInput& input, const Changes& cha
     const auto focal = focal_px.find(move.sensor);
     row->SetValue("PIXELS", focal == focal_px.end() ? "" : Significant(Pixels(move, focal->second), 2));
   }
+  FillMore(*sensors, "MORE", changes.moves.size());
+}
+
+// Of three axes. What one of the measurements leaves free is no movement: it is named beside the sigma.
+void FillAxes(Dictionary& row, const EdgeMove& move, int first_axis, double scale) {
+  std::vector<std::string> free;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis)
+    if (!move.known[static_cast<std::size_t>(axis)]) free.emplace_back(tangent::kNames[static_cast<std::size_t>(axis)]);
+  Dictionary* axes = row.AddSectionDictionary(first_axis == tangent::kTranslation ? "TRANSLATION" : "ROTATION");
+  if (free.size() == 3) return axes->ShowSection("FREE");
+  Dictionary* known = axes->AddSectionDictionary("KNOWN");
+  known->SetValue("MOVED", Significant(move.d.segment<3>(first_axis).norm() * scale, 3));
+  known->SetValue("SIGMA", Significant(move.sigma.segment<3>(first_axis).maxCoeff() * scale, 2));
+  if (!free.empty()) ShowValue(*known, "PARTLY", "NAMES", free.size() == 1 ? free[0] : free[0] + " " + free[1]);
 }
 
 void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
@@ -71,10 +85,8 @@ void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
     return ShowValue(row, "ALONE", "WHY", why);
   }
   Dictionary* both = row.AddSectionDictionary("BOTH");
-  both->SetValue("MM", Significant(move.d.head<3>().norm() * kMmPerMetre, 3));
-  both->SetValue("SIGMA_MM", SigmaMm(move.sigma.head<3>().maxCoeff()));
-  both->SetValue("MRAD", Significant(move.d.tail<3>().norm() * kMradPerRad, 3));
-  both->SetValue("SIGMA_MRAD", Significant(move.sigma.tail<3>().maxCoeff() * kMradPerRad, 2));
+  FillAxes(*both, move, tangent::kTranslation, kMmPerMetre);
+  FillAxes(*both, move, tangent::kRotation, kMradPerRad);
   both->SetValue("IN_SIGMAS", SigmasText(move.in_sigmas));
   both->SetValue("LEVEL", SigmasClass(move.in_sigmas));
 }
@@ -82,6 +94,7 @@ void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
 void FillEdges(Dictionary& page, const std::vector<EdgeMove>& moves) {
   for (std::size_t i = 0; i < std::min(moves.size(), kRowsMax); ++i)
     FillEdgeMove(*page.AddSectionDictionary("EDGE"), moves[i]);
+  FillMore(page, "MORE_EDGES", moves.size());
 }
 
 void FillWhatMoved(Dictionary& page, const CompareInput& input, const Changes& changes,
@@ -113,8 +126,8 @@ Result<std::string> RenderCompare(const CompareInput& input) {
   page.SetValue("NOW", std::to_string(input.now.number));
   FillVerdict(page, "VERDICT_BEFORE", input.before);
   FillVerdict(page, "VERDICT_NOW", input.now);
-  FillNumbers(page, "CHOICE_A", input.numbers, input.before.number);
-  FillNumbers(page, "CHOICE_B", input.numbers, input.now.number);
+  FillChoices(page, "CHOICE_A", input.numbers, input.before.number);
+  FillChoices(page, "CHOICE_B", input.numbers, input.now.number);
   const Changes changes = Compare(*input.before.revision, *input.now.revision);
   const std::vector<EdgeMove> edges = EdgeMoves(*input.before.revision, *input.now.revision, input.captured_at);
   FillWhatMoved(page, input, changes, edges);

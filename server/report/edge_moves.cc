@@ -41,10 +41,12 @@ EdgeMove MoveBetween(const Edge* before, const Edge* now) {
   EdgeMove move{before, now};
   if (!before || !now || before->id == now->id) return move;
   move.measured_again = true;
-  move.d = (before->T_a_b.Inverse() * now->T_a_b).Log();
+  const Vector6d d = (before->T_a_b.Inverse() * now->T_a_b).Log();
   for (int axis = 0; axis < 6; ++axis) {
     const AxisSigma left = SigmaOf(before->uncertainty, axis), right = SigmaOf(now->uncertainty, axis);
     if (!left.known || !right.known) continue;
+    move.known[static_cast<std::size_t>(axis)] = true;
+    move.d(axis) = d(axis);
     move.sigma(axis) = std::hypot(left.value, right.value);
     if (move.sigma(axis) > 0.0) move.in_sigmas = std::max(move.in_sigmas, std::abs(move.d(axis)) / move.sigma(axis));
   }

@@ -1,6 +1,7 @@
 // Measurements of one pair of sensors in two revisions, against each other.
 #pragma once
 
+#include <array>
 #include <map>
 #include <vector>
 
@@ -13,9 +14,10 @@ struct EdgeMove {
   const Edge* before = nullptr;  // nullptr: the pair was not calibrated before
   const Edge* now = nullptr;     // nullptr: it no longer is
   bool measured_again = false;   // else both are the same measurement, and the rest is zero
-  Vector6d d = Vector6d::Zero(),
-           sigma = Vector6d::Zero();  // Log(before^-1 now), and of the two independent sigmas; right tangent at b
-  double in_sigmas = 0.0;             // the largest |d| / sigma of the axes that both know
+  // Log(before^-1 now), and of the two independent sigmas; right tangent at b. Zero along axes that one leaves free.
+  Vector6d d = Vector6d::Zero(), sigma = Vector6d::Zero();
+  std::array<bool, 6> known = {};  // axes that both know
+  double in_sigmas = 0.0;          // the largest |d| / sigma of these
 };
 // Good edges by pair and method: the newest measurement of each revision, by when its session was captured. The
 // farthest in sigmas first, then what is in one revision only, then what was not measured again.

@@ -23,8 +23,9 @@ std::string NothingMoved(const Changes& changes) {
 std::string OthersText(const Changes& changes, std::size_t moved) {
   if (moved == changes.moves.size()) return "";
   const std::size_t others = changes.moves.size() - moved;
-  return (others == 1 ? " The other one is" : " The other " + std::to_string(others) + " are") +
-         " where they were, to within " + SigmasText(changes.moves[moved].in_sigmas) + " \xCF\x83.";
+  return (others == 1 ? " The other one is where it was"
+                      : " The other " + std::to_string(others) + " are where they were") +
+         ", to within " + SigmasText(changes.moves[moved].in_sigmas) + " \xCF\x83.";
 }
 
 // The sensor that all of them have in common; empty if there is none, or if it could be either of two.

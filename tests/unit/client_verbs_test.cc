@@ -91,6 +91,7 @@ TEST(Verbs, CompareAsksForBothRevisionsAndJudgesBySigmas) {
   EXPECT_NE(ran.out.find("r, revision 2, against revision 1, in a"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("2.000"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("2.0 sigma"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("  1.000  "), std::string::npos) << ran.out;  // sigma of the least certain axis, not their sum
   EXPECT_EQ(Rigcal({"compare", "r", "--with", "1", "--sigmas-max", "1.9"}).code, 1);
   EXPECT_EQ(Rigcal({"compare", "r", "--with", "1", "--sigmas-max", "2.1"}).code, 0);
   EXPECT_EQ(Rigcal({"compare", "r"}).code, 2);

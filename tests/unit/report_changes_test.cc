@@ -96,6 +96,7 @@ TEST(ReportMoved, OneSentence) {
   EXPECT_EQ(
       said(Moved({67.7, 2.9, 1.0})),
       "s0 moved by 1.9 mm and 0.17 deg (67.7 \xCF\x83). The other 2 are where they were, to within 2.9 \xCF\x83.");
+  EXPECT_THAT(said(Moved({9.0, 1.0})), HasSubstr("The other one is where it was, to within 1.0"));
   EXPECT_THAT(said(Moved({9.0, 5.0, 1.0})), HasSubstr("2 of 3 sensors moved, most of all s0, by 1.9 mm"));
   EXPECT_THAT(said(Moved({9.0, 5.0})), HasSubstr("look first whether base itself moved"));
   EXPECT_THAT(said({}), HasSubstr("No sensor but the reference"));
@@ -133,6 +134,56 @@ TEST(ReportEdgeMoves, NewestMeasurementsInTheirSigmas) {
   ASSERT_EQ(same.size(), 1U);
   EXPECT_FALSE(same[0].measured_again);
   EXPECT_EQ(same[0].now->id, before.edges[1].id);
+}
+
+// What a planar motion leaves open is not compared: there any number may stand.
+TEST(ReportEdgeMoves, AFreeAxisIsNoMovement) {
+  const auto input = [](const std::string& session, const Se3& T) {
+    formats::RevisionInput revision;
+    revision.reference = SensorId("a");
+    revision.edges = {MeasuredAt(session, 1.0, 0.003)};
+    revision.edges[0].T_a_b = revision.edges[0].T_a_b * T;
+    Matrix6d Omega = revision.edges[0].uncertainty.Omega;
+    Omega.row(tangent::kZ).setZero();
+    Omega.col(tangent::kZ).setZero();
+    revision.edges[0].uncertainty = FromInformation(Omega, UncertaintySource::kJackknife, 8);
+    return std::make_shared<const formats::RevisionInput>(std::move(revision));
+  };
+  const auto before = input("may", Se3()), now = input("june", SamplePose(0.006, 0, 0.9, 0));
+  const EdgeMove move = EdgeMoves(*before, *now, {}).at(0);
+  EXPECT_NEAR(move.d(tangent::kX), 0.006, 1e-9);
+  EXPECT_EQ(move.d(tangent::kZ), 0.0);
+  EXPECT_FALSE(move.known[tangent::kZ]);
+  const std::string page = RenderCompare({RobotId("r"), {1, before}, {2, now}, {1, 2}}).value();
+  EXPECT_THAT(page, HasSubstr("<td>6.00</td><td class=\"sigma\" data-v=\"5.3\">5.3, free: z</td>"));
+}
+
+// One page stays of one size, however long the history: but for what is compared.
+TEST(ReportCompare, OffersTheNewestRevisionsAndTheChosen) {
+  const auto empty = std::make_shared<const formats::RevisionInput>();
+  CompareInput input{RobotId("r"), {3, empty}, {2000, empty}, {}};
+  for (int number = 1; number <= 2000; ++number) input.numbers.push_back(number);
+  const std::string page = RenderCompare(input).value();
+  EXPECT_THAT(page, HasSubstr("<option selected>3</option>"));
+  EXPECT_THAT(page, HasSubstr("<option>1501</option>"));
+  EXPECT_THAT(page, Not(HasSubstr("<option>1500</option>")));
+}
+
+// Of an edge with one camera the figures do not say which: the pictures' residuals do.
+TEST(ReportCompare, PixelsByTheFocalLengthOfAnyEdge) {
+  const auto turned = [](double yaw_rad) {
+    formats::RevisionInput revision;
+    revision.reference = SensorId("base");
+    Se3 T_base_cam;
+    T_base_cam.q = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitY());
+    AddPose(revision, "cam", true, T_base_cam, 0.001);
+    revision.edges = {SampleEdge("cam", "base", Se3())};
+    revision.edges[0].figures = {{"fx_px", 1500.0}};
+    revision.edges[0].evidence = {{"", SensorId("cam"), CaptureId("01"), Digest(), "fit"}};
+    return std::make_shared<const formats::RevisionInput>(std::move(revision));
+  };
+  const std::string page = RenderCompare({RobotId("r"), {1, turned(0.0)}, {2, turned(0.002)}, {1, 2}}).value();
+  EXPECT_THAT(page, HasSubstr("<td>3.0</td></tr>"));
 }
 
 TEST(ReportInfluence, NamesTheCaptureThatMovesThePositionMost) {

@@ -29,6 +29,7 @@
 </tbody>
 </table>
 </div>
+{{#MORE}}<p class="hint">{{COUNT}} more sensors moved less than these.</p>{{/MORE}}
 <p class="hint">In &sigma;: the worst of the six axes; from 3 on the sensor moved. &sigma;: the larger one of both revisions, along the sensor's own axes. Pixels: how far the image of a point 10 m ahead of a camera moves, by turn and shift, at most.</p>
 </section>
 {{/SENSORS}}
@@ -38,12 +39,13 @@
 <table class="moves" data-sortable data-filter="Filter measurements">
 <thead><tr><th scope="col" data-column="0">Pair</th><th scope="col" data-column="1">in &sigma;</th><th scope="col" data-column="2">moved, mm</th><th scope="col" class="sigma" data-column="3">&sigma;, mm</th><th scope="col" data-column="4">turned, mrad</th><th scope="col" class="sigma" data-column="5">&sigma;, mrad</th><th scope="col" class="text" data-column="6">Method</th></tr></thead>
 <tbody>
-{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th>{{#BOTH}}<td><span class="badge {{LEVEL}}">{{IN_SIGMAS}}</span></td><td>{{MM}}</td><td class="sigma">{{SIGMA_MM}}</td><td>{{MRAD}}</td><td class="sigma">{{SIGMA_MRAD}}</td>{{/BOTH}}{{#ALONE}}<td class="soft" data-v="">{{WHY}}</td><td></td><td></td><td></td><td></td>{{/ALONE}}<td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
+{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th>{{#BOTH}}<td><span class="badge {{LEVEL}}">{{IN_SIGMAS}}</span></td>{{#TRANSLATION}}{{#KNOWN}}<td>{{MOVED}}</td><td class="sigma" data-v="{{SIGMA}}">{{SIGMA}}{{#PARTLY}}, free: {{NAMES}}{{/PARTLY}}</td>{{/KNOWN}}{{#FREE}}<td data-v="">free</td><td data-v=""></td>{{/FREE}}{{/TRANSLATION}}{{#ROTATION}}{{#KNOWN}}<td>{{MOVED}}</td><td class="sigma" data-v="{{SIGMA}}">{{SIGMA}}{{#PARTLY}}, free: {{NAMES}}{{/PARTLY}}</td>{{/KNOWN}}{{#FREE}}<td data-v="">free</td><td data-v=""></td>{{/FREE}}{{/ROTATION}}{{/BOTH}}{{#ALONE}}<td class="soft" data-v="">{{WHY}}</td><td></td><td></td><td></td><td></td>{{/ALONE}}<td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
 {{/EDGE}}
 </tbody>
 </table>
 </div>
-<p class="hint">Each pair was measured by itself here: what the graph of all pairs makes of it stands above. &sigma;: of both measurements together, taken as independent.</p>
+{{#MORE_EDGES}}<p class="hint">{{COUNT}} more pairs are not shown: they are the least off.</p>{{/MORE_EDGES}}
+<p class="hint">Each pair was measured by itself here: what the graph of all pairs makes of it stands above. &sigma;: of both measurements together, taken as independent. Free: one of them says nothing along or about this axis, so nothing is compared there.</p>
 </section>
 </main>
 {{#SCRIPT}}<script defer src="{{PATH}}"></script>
