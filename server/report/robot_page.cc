@@ -3,6 +3,7 @@
 #include "server/report/age.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
+#include "server/report/choices.h"
 #include "server/report/page.h"
 #include "server/report/robot_pages.h"
 #include "server/report/text.h"
@@ -10,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::size_t kSessionsMax = 200;
+constexpr std::size_t kSessionsMax = 200, kOpenSessionsMax = 5;
 
 void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now) {
   constexpr std::size_t kRevisionsMax = 500;
@@ -42,10 +43,18 @@ void FillOpen(Dictionary& page, const SessionRow& session) {
   open->SetValue("ID", session.id.str());
   open->SetValue("SHORT", ShortDigest(session.id.str()));
   const bool arriving = !session.closed;
-  open->SetValue("STATE", arriving ? "is arriving" : "is being calibrated");
+  open->SetValue("STATE", arriving ? "is arriving (or its push broke off)" : "is being calibrated");
   open->SetValue("DONE", std::to_string(arriving ? session.files_held : session.pairs - session.pairs_waiting));
   open->SetValue("ALL", std::to_string(arriving ? session.files : session.pairs));
   open->SetValue("UNIT", arriving ? "files" : "pairs");
+}
+
+// Pushes that broke off and were never taken up again stay: the newest stand for all.
+void FillOpenOnes(Dictionary& page, const std::vector<SessionRow>& sessions) {
+  std::size_t open = 0;
+  for (const SessionRow& session : sessions)
+    if ((!session.closed || session.pairs_waiting > 0) && open++ < kOpenSessionsMax) FillOpen(page, session);
+  if (open > kOpenSessionsMax) ShowValue(page, "MORE_OPEN", "COUNT", Count(open - kOpenSessionsMax, "older session", "older sessions"));
 }
 
 // Of a session that came whole; the others stand above the list, with their progress.
@@ -60,8 +69,7 @@ void FillResult(Dictionary& row, const SessionRow& session) {
 }
 
 void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Stamp now) {
-  for (const SessionRow& session : sessions)
-    if (!session.closed || session.pairs_waiting > 0) FillOpen(page, session);
+  FillOpenOnes(page, sessions);
   if (sessions.empty()) return;
   Dictionary* list = page.AddSectionDictionary("SESSIONS");
   for (std::size_t i = 0; i < std::min(sessions.size(), kSessionsMax); ++i) {
@@ -75,6 +83,8 @@ void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Sta
     row->SetValue("FILES", std::to_string(session.files));
     FillResult(*row, session);
   }
+  if (sessions.size() > kSessionsMax)
+    ShowValue(*list, "MORE", "COUNT", std::to_string(sessions.size() - kSessionsMax));
 }
 
 // The way on: the newest report, and what is different in it.
@@ -93,18 +103,13 @@ void FillNewest(Dictionary& page, const std::vector<Revision>& revisions) {
 
 // Two revisions to compare: the newest and the one before it.
 void FillCompare(Dictionary& page, const std::vector<Revision>& revisions) {
-  constexpr std::size_t kChoicesMax = 500;
   if (revisions.size() < 2) return;
   std::vector<int> numbers;
   for (const Revision& revision : revisions) numbers.push_back(revision.number);
   std::sort(numbers.rbegin(), numbers.rend());
   Dictionary* compare = page.AddSectionDictionary("COMPARE");
-  for (std::size_t i = 0; i < std::min(numbers.size(), kChoicesMax); ++i)
-    for (const char* section : {"CHOICE_A", "CHOICE_B"}) {
-      Dictionary* option = compare->AddSectionDictionary(section);
-      option->SetValue("NUMBER", std::to_string(numbers[i]));
-      if (i == (section == std::string("CHOICE_A") ? 1U : 0U)) option->ShowSection("CHOSEN");
-    }
+  FillChoices(*compare, "CHOICE_A", numbers, numbers[1]);
+  FillChoices(*compare, "CHOICE_B", numbers, numbers[0]);
 }
 
 }  // namespace

@@ -74,9 +74,9 @@ Outcome OutcomeOf(const SessionInput& input) {
   const std::string pairs = Count(static_cast<std::size_t>(row.pairs), "pair", "pairs");
   if (!row.closed)
     return {"under-way",
-            "This session is arriving: " + std::to_string(row.files_held) + " of " + std::to_string(row.files) +
-                " files are here.",
-            ""};
+            "This session is arriving, or its push broke off: " + std::to_string(row.files_held) + " of " +
+                std::to_string(row.files) + " files are here.",
+            "Wait a moment; if nothing changes, push it again: what is here already is not sent twice."};
   if (row.pairs_waiting > 0)
     return {"under-way",
             "This session is being calibrated: " + std::to_string(row.pairs - row.pairs_waiting) + " of " + pairs +

@@ -15,6 +15,16 @@ constexpr std::size_t kOpenUses = 6;  // of a capture; more are folded
 
 using Place = std::pair<CaptureId, SensorId>;
 
+// What each pair of sensors did with a capture, in the order of the edges.
+using Asked = std::vector<std::pair<const Edge*, const CaptureResidual*>>;
+
+std::map<CaptureId, Asked> AskedOf(const std::vector<Edge>& edges) {
+  std::map<CaptureId, Asked> asked;
+  for (const Edge& edge : edges)
+    for (const CaptureResidual& residual : edge.captures) asked[residual.capture].emplace_back(&edge, &residual);
+  return asked;
+}
+
 // The first picture of each: several edges may show the same one.
 std::map<Place, const Evidence*> PicturesOf(const std::vector<Edge>& edges) {
   std::map<Place, const Evidence*> pictures;
@@ -28,7 +38,7 @@ std::map<Place, const Evidence*> PicturesOf(const std::vector<Edge>& edges) {
 // A capture of a sensor counts if a good edge used it; else the first reason that is about this capture alone says why
 // not.
 struct Use {
-  bool used = false, asked = false;
+  bool used = false, asked = false, by_good = false;
   std::string why_not;
 };
 
@@ -39,8 +49,10 @@ std::map<Place, Use> UsesOf(const std::vector<Edge>& edges) {
       for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) {
         Use& use = uses[{residual.capture, sensor}];
         use.asked = true;
-        use.used = use.used || (residual.used && edge.state == EdgeState::kGood);
-        if (edge.state == EdgeState::kGood && !residual.used && use.why_not.empty()) use.why_not = residual.note;
+        const bool good = edge.state == EdgeState::kGood;
+        use.by_good = use.by_good || good;
+        use.used = use.used || (residual.used && good);
+        if (good && !residual.used && use.why_not.empty()) use.why_not = residual.note;
       }
   return uses;
 }
@@ -77,7 +89,10 @@ std::string FoundText(const Evidence& picture) {
 void FillVerdictOfCell(Dictionary& cell, const Use& use) {
   if (!use.asked) return;
   if (use.used) return cell.ShowSection("USED");
-  ShowValue(cell, "UNUSED", "WHY", use.why_not.empty() ? "none of its pairs could be solved" : use.why_not);
+  ShowValue(cell, "UNUSED", "WHY",
+            !use.why_not.empty() ? use.why_not
+            : use.by_good        ? "no reason was kept"
+                                 : "none of its pairs could be solved");
 }
 
 class Sheet {
@@ -97,7 +112,7 @@ class Sheet {
     if (!has_file) return ShowValue(cell, "BLANK", "TEXT", "no file");
     if (const auto why = input_.unreadable.find(place); why != input_.unreadable.end())
       return ShowValue(cell, "UNREADABLE", "WHY", why->second);
-    ShowValue(cell, "BLANK", "TEXT", input_.row.pairs_waiting > 0 ? "not looked at yet" : "nothing drawn");
+    ShowValue(cell, "BLANK", "TEXT", !input_.row.closed || input_.row.pairs_waiting > 0 ? "not looked at yet" : "nothing drawn");
   }
 
  private:
@@ -120,24 +135,18 @@ void FillUse(Dictionary& row, const Edge& edge, const CaptureResidual& residual)
   if (!residual.note.empty()) ShowValue(*use, "NOTE", "TEXT", residual.note);
 }
 
-// What each pair of sensors did with the capture; those that did not use it first.
-void FillUses(Dictionary& capture_row, const std::vector<Edge>& edges, const CaptureId& capture) {
-  const auto asks = [&](const Edge& edge) {
-    return std::any_of(edge.captures.begin(), edge.captures.end(),
-                       [&](const auto& one) { return one.capture == capture; });
-  };
-  if (std::none_of(edges.begin(), edges.end(), asks)) return;
+// Those that did not use it first.
+void FillUses(Dictionary& capture_row, const Asked& asked) {
   Dictionary& row = *capture_row.AddSectionDictionary("USES");
-  std::size_t used = 0, all = 0;
+  std::size_t used = 0;
   for (const bool of_used : {false, true})
-    for (const Edge& edge : edges)
-      for (const CaptureResidual& residual : edge.captures) {
-        if (residual.capture != capture || residual.used != of_used) continue;
-        used += residual.used ? 1 : 0, ++all;
-        FillUse(row, edge, residual);
-      }
-  row.SetValue("USED", std::to_string(used) + " of " + Count(all, "pair", "pairs"));
-  if (all <= kOpenUses) row.ShowSection("OPEN");
+    for (const auto& [edge, residual] : asked) {
+      if (residual->used != of_used) continue;
+      used += of_used ? 1 : 0;
+      FillUse(row, *edge, *residual);
+    }
+  row.SetValue("USED", std::to_string(used) + " of " + Count(asked.size(), "pair", "pairs"));
+  if (asked.size() <= kOpenUses) row.ShowSection("OPEN");
 }
 
 }  // namespace
@@ -148,6 +157,7 @@ void FillSheet(Dictionary& page, const SessionInput& input) {
   FillPoses(page, with_poses);
   if (captures.empty()) return;
   const Sheet cells(input);
+  const std::map<CaptureId, Asked> asked = AskedOf(input.edges);
   Dictionary* sheet = page.AddSectionDictionary("SHEET");
   for (const Sensor& sensor : input.manifest.header.sensors)
     if (!with_poses.contains(sensor.id))
@@ -160,7 +170,7 @@ void FillSheet(Dictionary& page, const SessionInput& input) {
     for (const Sensor& sensor : input.manifest.header.sensors)
       if (!with_poses.contains(sensor.id))
         cells.FillCell(*row->AddSectionDictionary("CELL"), {capture, sensor.id}, sensors.contains(sensor.id));
-    FillUses(*row, input.edges, capture);
+    if (const auto of_capture = asked.find(capture); of_capture != asked.end()) FillUses(*row, of_capture->second);
   }
   if (captures.size() > kCapturesMax) ShowValue(page, "MORE", "COUNT", std::to_string(captures.size() - kCapturesMax));
 }

@@ -182,7 +182,9 @@ TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
   EXPECT_THAT(working, HasSubstr("is being calibrated: 1 of 2 pairs are done."));
   EXPECT_THAT(working, HasSubstr("data-live=\"../../../../api/v1/live?robot=r\""));
   input.row.closed = false, input.row.files_held = 3;
-  EXPECT_THAT(RenderSession(input).value(), HasSubstr("is arriving: 3 of 4 files are here."));
+  EXPECT_THAT(RenderSession(input).value(), HasSubstr("is arriving, or its push broke off: 3 of 4 files are here."));
+  input.edges.clear();
+  EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("not looked at yet"), Not(HasSubstr("nothing drawn"))));
 }
 
 TEST(ReportSession, EachPictureIsUsedOrSaysWhyNot) {
@@ -208,6 +210,20 @@ TEST(ReportRobot, SessionsSayWhatTheyGave) {
   EXPECT_THAT(page, HasSubstr("11 of 14 pairs good <span class=\"badge fail\">3 failed</span>"));
   EXPECT_THAT(page, HasSubstr("<span class=\"badge unknown\">superseded</span>"));
   EXPECT_THAT(page, HasSubstr("is being calibrated: 9 of 14 pairs"));
+}
+
+TEST(ReportRobot, WhatIsLeftOutIsNamed) {
+  RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
+  for (int i = 0; i < 203; ++i)
+    input.sessions.push_back(
+        {SessionId(Sha256Of(std::to_string(i)).str()), Stamp{kDay_ns}, "", i % 20 != 0, 4, i % 20 != 0 ? 4 : 1, 0, 0});
+  const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
+  EXPECT_THAT(page, HasSubstr("3 older sessions are kept: <code>rigcal sessions mapper</code> lists them."));
+  std::size_t open = 0;
+  for (std::size_t at = page.find("is arriving ("); at != std::string::npos; at = page.find("is arriving (", at + 1))
+    ++open;
+  EXPECT_EQ(open, 5U);  // of 11 pushes that broke off
+  EXPECT_THAT(page, HasSubstr("6 older sessions did not come whole"));
 }
 
 TEST(ReportRobot, RevisionsNewestFirst) {

@@ -13,6 +13,7 @@
 {{#OPEN}}
 <p class="working"><a href="sessions/{{ID}}/">Session {{SHORT}}</a> {{STATE}}: {{DONE}} of {{ALL}} {{UNIT}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress of session {{SHORT}}"></progress></p>
 {{/OPEN}}
+{{#MORE_OPEN}}<p class="hint">{{COUNT}} did not come whole, or are not calibrated yet, either.</p>{{/MORE_OPEN}}
 {{#REVISIONS}}
 <section class="card">
 <h2 id="revisions">Revisions <span class="soft">newest first</span></h2>
@@ -26,7 +27,7 @@
 </tbody>
 </table>
 </div>
-{{#MORE}}<p class="hint">{{COUNT}} older revisions are kept: <code>rigcal show</code> names them.</p>{{/MORE}}
+{{#MORE}}<p class="hint">{{COUNT}} older revisions are kept: <code>rigcal show {{ROBOT}} --revision N</code> shows one.</p>{{/MORE}}
 </section>
 {{/REVISIONS}}
 {{#SESSIONS}}
@@ -42,9 +43,11 @@
 </tbody>
 </table>
 </div>
+{{#MORE}}<p class="hint">{{COUNT}} older sessions are kept: <code>rigcal sessions {{ROBOT}}</code> lists them.</p>{{/MORE}}
 </section>
 {{/SESSIONS}}
 </div>
+<div id="compare" data-fresh>
 {{#COMPARE}}
 <form class="search card" action="compare" method="get">
 <h2>Compare</h2>
@@ -53,6 +56,7 @@
 <button>Compare</button>
 </form>
 {{/COMPARE}}
+</div>
 {{#TRENDS}}
 <section class="card" id="history" aria-labelledby="trends">
 <h2 id="trends">History of each sensor <span class="soft">the farthest step first</span></h2>
