@@ -15,29 +15,32 @@ function replace(part, next) {
   if (focused !== null) [...part.querySelectorAll("a")].find((link) => link.getAttribute("href") === focused)?.focus();
 }
 
+// False if the server gave no page: then this one is as old as before. A page that is still empty becomes another page.
 async function refresh(address) {
-  const parts = document.querySelectorAll("[data-fresh]");
-  if (parts.length === 0) return location.reload();
+  if (!live.matches("[data-fresh]")) return location.reload();
   const mine = ++turn;
   const reply = await fetch(address, { headers: { Accept: "text/html" } });
-  if (!reply.ok || mine !== turn) return;
+  if (!reply.ok) return false;
   const page = new DOMParser().parseFromString(await reply.text(), "text/html");
-  if (mine !== turn) return;
-  for (const part of parts) {
+  if (mine !== turn) return true;
+  document.title = page.title;
+  for (const part of document.querySelectorAll("[data-fresh]")) {
     const next = page.getElementById(part.id);
     if (next) replace(part, next);
   }
   document.dispatchEvent(new Event("rigcal:refreshed"));
+  return true;
 }
 
-// The server answers 304 while nothing changed: the browser then gives the same text.
+// The server answers 304 while nothing changed: the browser then gives the same text. A page that nobody sees waits, but it
+// asks once: what it shows is of now, not of when somebody looks.
 async function poll() {
-  if (document.hidden) return;
+  if (document.hidden && seen !== null) return;
   try {
     const reply = await fetch(live.dataset.live, { cache: "no-cache" });
     if (!reply.ok) return;
     const text = await reply.text();
-    if (seen !== null && text !== seen) await refresh(location.href);
+    if (seen !== null && text !== seen && !(await refresh(location.href))) return;
     seen = text;
   } catch {
     // The server is away for a moment: the page stays as it is, and the next round asks again.

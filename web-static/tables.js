@@ -3,10 +3,12 @@ import { makeSortable } from "./tables/sorting.js";
 import { addFilter } from "./tables/filter.js";
 import { addContents, addOpenAll, openTarget } from "./tables/contents.js";
 import { closeWaysOut } from "./tables/on_disk.js";
+import { tellOfNewer } from "./tables/newest.js";
 
 for (const table of document.querySelectorAll("table[data-sortable]")) makeSortable(table);
 for (const table of document.querySelectorAll("table[data-filter]")) addFilter(table);
 if (location.protocol === "file:") closeWaysOut();
+else tellOfNewer();
 addOpenAll(document.getElementById("details"));
 // After all scripts: which parts there are is known then.
 document.addEventListener("DOMContentLoaded", () => {

@@ -65,6 +65,16 @@ async function moved(browser) {
   await close(page);
 }
 
+// Whoever keeps an old report's address must not take its verdict for the robot's.
+async function oldReport(browser) {
+  const page = await open(browser, at("/robots/rover/revisions/1/"));
+  const asked = page.waitForResponse((reply) => reply.request().frame().url().endsWith("/2/") && reply.url().includes("/api/v1/live"));
+  await page.click("header a:text-is('Open revision 2')");
+  await asked;
+  assert.strictEqual(await page.locator("header .working").count(), 0, "the newest says nothing");
+  await close(page);
+}
+
 async function errors(browser) {
   const cases = [["/nope", "There is no page /nope.", "/"], ["/robots/nobody/", "is not known.", "/"],
     ["/robots/rover/revisions/99/", "There is no report of revision 99 of rover.", "/robots/rover/"]];
@@ -281,17 +291,51 @@ async function fromDisk(browser) {
   await close(page);
 }
 
+const revisions = (page) => page.locator("#live table a[href^='revisions/']").count();
+const more = (page, old) => page.waitForFunction((before) => document.querySelectorAll("#live table a[href^='revisions/']").length > before, old);
+const asked = (page) => page.waitForResponse((reply) => reply.url().includes("/api/v1/live"));
+
+// As in a tab behind others, until it is looked at.
+async function hidden(browser, path) {
+  const page = await (await browser.newContext()).newPage();
+  await page.addInitScript(() => Object.defineProperty(document, "hidden", { get: () => !window.shown }));
+  await Promise.all([asked(page), page.goto(at(path))]);
+  return page;
+}
+
+// The first time that it is asked for anew, the page does not come.
+async function broken(browser, path) {
+  const page = await open(browser, at(path));
+  let failed = 0;
+  await page.route("**" + path, (route) => (failed++ ? route.continue() : route.fulfill({ status: 503, body: "later" })));
+  return page;
+}
+
 // A page that is open tells what arrives meanwhile.
 async function live(browser) {
   const page = await open(browser, at("/robots/rover/"));
-  const rows = () => page.locator("#live table a[href^='revisions/']").count();
-  const before = await rows();
-  await page.waitForResponse((reply) => reply.url().includes("/api/v1/live"));
+  const others = [await hidden(browser, "/robots/rover/"), await broken(browser, "/robots/rover/")];
+  const before = await revisions(page);
+  await asked(page);
+  await page.locator("[data-trend]").first().scrollIntoViewIfNeeded();
+  await drawn(page, "[data-trend] canvas");
   await page.focus("#live a[href='revisions/1/']");
+  await page.evaluate(() => { document.title = "of before"; });
   const pushed = spawnSync(facts.push[0], facts.push.slice(1));
   assert.strictEqual(pushed.status, 0, String(pushed.stderr));
-  await page.waitForFunction((old) => document.querySelectorAll("#live table a[href^='revisions/']").length > old, before);
+  await more(page, before);
   assert.strictEqual(await page.evaluate(() => document.activeElement.getAttribute("href")), "revisions/1/", "the focus stays where it was");
+  assert.match(await page.title(), /^rover: /);
+  assert.strictEqual(await page.locator("#compare select[name=a] option").count(), before + 1, "the new one can be compared");
+  await page.waitForFunction((count) => window.rigcal.trends.every(({ rows }) => rows.at(-1).revision === count), before + 1);
+  await drawn(page, "[data-trend] canvas");
+  assert.strictEqual(await page.locator("#history .what").count(), 1, "one sentence");
+  assert.strictEqual(await page.locator("[data-trend]").first().locator("canvas").count(), 2, "position and rotation, once");
+  await others[0].evaluate(() => { window.shown = true; document.dispatchEvent(new Event("visibilitychange")); });
+  for (const other of others) {
+    await more(other, before);
+    await other.context().close();
+  }
   const first = await fetch(at("/api/v1/live?robot=rover"));
   const again = await fetch(at("/api/v1/live?robot=rover"), { headers: { "If-None-Match": first.headers.get("etag") } });
   assert.strictEqual(again.status, 304, "nothing new costs nothing");
@@ -299,7 +343,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, moved, errors, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, moved, oldReport, errors, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

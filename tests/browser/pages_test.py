@@ -1,12 +1,13 @@
 """Every page in Chromium: works, is accessible, asks nobody else, runs nothing that a person typed."""
 import shutil
 
-from stage import Flow, edge, edge_file, fill, run_script, skip_without_browser
+from stage import Flow, edge, edge_file, fill, rover_edges, run_script, skip_without_browser
 
 
 def main():
     skip_without_browser()
     with Flow() as flow:
+        run_script(flow, "first.cjs", push=flow.server.client("push-edges", rover_edges(flow), "--robot", "rover"))
         pictures = fill(flow)
         archive, copy = flow.folder / "rover.zip", flow.folder / "copy"
         flow.rigcal("report", "rover", "--out", archive)

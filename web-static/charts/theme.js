@@ -53,14 +53,24 @@ export function draw(container, make) {
   const chart = echarts.init(container, null, { renderer: "canvas" });
   const paint = () => chart.setOption(withStyle(make()), true);
   paint();
-  drawn.set(container, () => {
+  const resized = new ResizeObserver(() => chart.resize());
+  resized.observe(container);
+  const repaint = () => {
     chart.resize();
     paint();
-  });
-  new ResizeObserver(() => chart.resize()).observe(container);
-  return chart;
+  };
+  drawn.set(container, { repaint, end: () => (resized.disconnect(), chart.dispose()) });
 }
 
-const repaint = () => drawn.forEach((paint) => paint());
+// The charts below `place` end.
+export function erase(place) {
+  for (const [container, { end }] of [...drawn]) {
+    if (!place.contains(container)) continue;
+    drawn.delete(container);
+    end();
+  }
+}
+
+const repaint = () => drawn.forEach((chart) => chart.repaint());
 dark.addEventListener("change", repaint);
 document.addEventListener("rigcal:colors", repaint);

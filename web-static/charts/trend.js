@@ -57,7 +57,14 @@ function option(rows, group) {
 // The solution is a mean of old and new measurements: what moved once keeps stepping while new ones come.
 function whenMoved(rows) {
   const off = rows.filter(isOff), last = off.at(-1);
-  return `revision ${off[0].revision} (${sigmas(off[0])})` + (off.length > 1 ? `, and on until ${last.revision}` : "");
+  if (off.length === 1) return `revision ${last.revision} (${sigmas(last)})`;
+  return `revision ${off[0].revision} (${sigmas(off[0])}), ` + (off.length > 2 ? `${off.length - 1} times more until` : "again at") + ` revision ${last.revision}`;
+}
+
+// Of a long history only the newest revisions are drawn.
+function sinceWhen(trends) {
+  const first = Math.min(...trends.map(({ rows }) => rows[0].revision));
+  return first > 1 ? `Since revision ${first}: ` : "";
 }
 
 // "front_right moved at revision 3 (67.7 sigma) ...": what the charts show, in one sentence.
@@ -65,11 +72,12 @@ export function historyText(trends) {
   const known = byFarthestStep(trends).filter((trend) => trend.rows.length > 1);
   if (known.length === 0) return "No sensor is known in two revisions with one reference.";
   const moved = known.filter((trend) => trend.rows.some(isOff));
-  if (moved.length === 0) return "No sensor stepped by 3 \u03c3 or more from one revision to the next.";
+  const since = sinceWhen(known), told = (text) => (since ? since + text[0].toLowerCase() + text.slice(1) : text);
+  if (moved.length === 0) return told("No sensor stepped by 3 \u03c3 or more from one revision to the next.");
   const said = moved.slice(0, 3).map(({ sensor, rows }) => `${sensor} at ${whenMoved(rows)}`);
   const more = moved.length > 3 ? `, and ${moved.length - 3} more sensors` : "";
   const rest = known.length - moved.length;
-  return `Moved: ${said.join("; ")}${more}.` + (rest > 0 ? ` The other ${rest === 1 ? "one" : rest} stepped by less than 3 \u03c3.` : "");
+  return told(`Moved: ${said.join("; ")}${more}.` + (rest > 0 ? ` The other ${rest === 1 ? "one" : rest} stepped by less than 3 \u03c3.` : ""));
 }
 
 export function byFarthestStep(trends) {
