@@ -159,6 +159,16 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
   if (!edge.session.empty()) ShowValue(*more, "SESSION", "ID", edge.session.str());
 }
 
+// People know a session by its time.
+std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
+  if (edge.session.empty()) return "Pushed as a finished result.";
+  const auto facts = std::find_if(input.sessions.begin(), input.sessions.end(),
+                                  [&](const SessionFacts& session) { return session.id == edge.session; });
+  const std::string id = ShortDigest(edge.session.str());
+  if (facts == input.sessions.end()) return "From session " + id + ".";
+  return "From the session of " + TimeText(facts->captured_at) + ", " + id + ".";
+}
+
 }  // namespace
 
 void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownEdge& shown,
@@ -172,8 +182,7 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   section.SetValue("METHOD", MethodText(edge.method));
   section.SetValue("ANCHOR", shown.anchor);
   section.SetValue("ID", edge.id.str());
-  section.SetValue("PROVENANCE", edge.session.empty() ? "Pushed as a finished result."
-                                                      : "From session " + ShortDigest(edge.session.str()) + ".");
+  section.SetValue("PROVENANCE", ProvenanceOf(input, edge));
   if (open) section.ShowSection("OPEN");
   FillDiagnoses(section, edge);
   if (!failed) FillPose(section, edge);

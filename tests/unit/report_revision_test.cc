@@ -173,6 +173,17 @@ TEST(ReportRevision, ProvenanceNamesEverything) {
 }
 
 // A strict content policy holds, and the folder opens from disk.
+TEST(ReportRevision, AnEdgeNamesItsSessionByItsTime) {
+  ReportInput input = SampleReport();
+  const std::string id = Sha256Of("session").str();
+  EXPECT_THAT(PageOf(input), HasSubstr("From session " + id.substr(0, 12) + "."));
+  SessionFacts facts;
+  facts.id = SessionId(id);
+  facts.captured_at = *ParseIso("2026-01-30T09:05:00Z");
+  input.sessions = {facts};
+  EXPECT_THAT(PageOf(input), HasSubstr("From the session of 2026-01-30 09:05:00 UTC, " + id.substr(0, 12) + "."));
+}
+
 TEST(ReportRevision, NoInlineScriptNoInlineStyleNoOutsideLink) {
   const std::string page = PageOf(SampleReport());
   EXPECT_FALSE(std::regex_search(page, std::regex("<script(?! defer src=\"[a-z0-9./-]+\"></script>)")));
