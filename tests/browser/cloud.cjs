@@ -7,6 +7,8 @@ withBrowser(async (browser) => {
   await page.click("text=Open top in 3D");
   await page.waitForSelector(".cloud .view[data-frames]");
   console.log(JSON.stringify({ visible_s: (Date.now() - start) / 1000 }));
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+  assert.strictEqual(await page.getAttribute(".cloud .view", "data-frames"), "1", "millions of points are drawn once");
   assert.ok((await colors(page, ".cloud canvas")) > 100, "the points are drawn in their colours");
   assert.ok((await page.textContent(".cloud .bar")).includes("2 million points"));
   const drawn = () => page.$eval(".cloud canvas", (canvas) => canvas.toDataURL());
@@ -30,6 +32,14 @@ withBrowser(async (browser) => {
   assert.strictEqual(await page.$eval(".overlay img + img", (image) => getComputedStyle(image).opacity), "0");
   await accessible(page);
   await close(page);
+  const again = await open(browser, facts.address + facts.path);
+  await again.route("**/points.bin", (route) => route.abort());
+  await again.click("text=Open top in 3D");
+  await again.waitForSelector(".cloud [role=alert]");
+  await again.unroute("**/points.bin");
+  await again.click("text=Open top in 3D");
+  await again.waitForSelector(".cloud .view[data-frames]");
+  assert.strictEqual(await again.locator(".cloud [role=alert]").count(), 0, "another attempt may be better");
 }).catch((error) => {
   console.error(error);
   process.exit(1);

@@ -9,7 +9,7 @@ import { compareOverlays } from "./overlay.js";
 const HEADER_BYTES = 28, RECORD_BYTES = 12;
 export const MODES = [["color", "Cameras' colours"], ["camera", "Which camera"], ["depth", "Distance"], ["intensity", "Intensity"], ["uncovered", "Seen by no camera"]];
 
-// {count, origin, step, shorts, bytes} of a points.bin; throws a sentence for anything else.
+// {count, origin, step, shorts} of a points.bin; throws a sentence for anything else.
 export function readPoints(buffer) {
   const view = new DataView(buffer);
   if (buffer.byteLength < HEADER_BYTES || view.getUint32(0) !== 0x52434c44 || view.getUint32(4, true) !== 1)
@@ -19,12 +19,12 @@ export function readPoints(buffer) {
   const float = (at) => view.getFloat32(at, true);
   return {
     count, origin: [float(12), float(16), float(20)], step: float(24),
-    shorts: new Int16Array(buffer, HEADER_BYTES, count * 6), bytes: new Uint8Array(buffer, HEADER_BYTES, count * RECORD_BYTES),
+    shorts: new Int16Array(buffer, HEADER_BYTES, count * 6),
   };
 }
 
-// A record as the graphics memory likes it: four whole shorts (x, y, z, and red with green), four whole bytes (blue, camera,
-// intensity, nothing). Other groupings would be converted on the processor first.
+// A record as the graphics memory likes it, all of it in one buffer: four whole shorts (x, y, z, and red with green), two more
+// (blue with camera, intensity). Other groupings would be converted on the processor first.
 const VERTEX = `
 precision highp float;
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
@@ -32,7 +32,7 @@ uniform float size, far;
 uniform int mode;
 uniform vec3 sensor;
 in ivec4 position;
-in vec4 tail;
+in ivec2 tail;
 out vec3 shown;
 vec3 ramp(float t) {
   vec3 colors[4] = ${RAMP_GLSL};
@@ -42,13 +42,13 @@ vec3 ramp(float t) {
 }
 vec3 wheel(float k) { return 0.55 + 0.45 * cos(6.2831853 * (k * 0.381966 + vec3(0.0, 0.33, 0.67))); }
 void main() {
-  float camera = tail.y * 255.0;
-  bool covered = camera < 254.5;
+  int camera = (tail.x >> 8) & 255;
+  bool covered = camera != 255;
   vec3 meters = (modelMatrix * vec4(vec3(position.xyz), 1.0)).xyz;
-  if (mode == 0) shown = vec3(float(position.w & 255) / 255.0, float((position.w >> 8) & 255) / 255.0, tail.x);
-  else if (mode == 1) shown = covered ? wheel(camera) : vec3(0.45);
+  if (mode == 0) shown = vec3(float(position.w & 255) / 255.0, float((position.w >> 8) & 255) / 255.0, float(tail.x & 255) / 255.0);
+  else if (mode == 1) shown = covered ? wheel(float(camera)) : vec3(0.45);
   else if (mode == 2) shown = ramp(length(meters - sensor) / far);
-  else if (mode == 3) shown = vec3(0.1 + 0.9 * tail.z);
+  else if (mode == 3) shown = vec3(0.1 + 0.9 * float(tail.y & 255) / 255.0);
   else shown = covered ? vec3(0.42) : vec3(1.0, 0.35, 0.2);
   gl_Position = projectionMatrix * viewMatrix * vec4(meters, 1.0);
   gl_PointSize = size;
@@ -71,11 +71,12 @@ function boxOf({ count, shorts, origin, step }, upright) {
 
 function pointsOf(cloud, box) {
   const geometry = new BufferGeometry();
-  const shorts = new InterleavedBuffer(cloud.shorts, 6), bytes = new InterleavedBuffer(cloud.bytes, RECORD_BYTES);
-  const places = new InterleavedBufferAttribute(shorts, 4, 0, false);
-  places.gpuType = IntType;
-  geometry.setAttribute("position", places);
-  geometry.setAttribute("tail", new InterleavedBufferAttribute(bytes, 4, 8, true));
+  const records = new InterleavedBuffer(cloud.shorts, 6);
+  for (const [name, size, offset] of [["position", 4, 0], ["tail", 2, 4]]) {
+    const attribute = new InterleavedBufferAttribute(records, size, offset, false);
+    attribute.gpuType = IntType;
+    geometry.setAttribute(name, attribute);
+  }
   const far = Math.max(box.min.length(), box.max.length());
   const material = new RawShaderMaterial({
     glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT,
@@ -123,15 +124,20 @@ function show(place, name, buffer) {
 function chooseFile(place, name, address) {
   const field = element("input", { type: "file", accept: ".bin" });
   const label = element("label", { className: "filter" }, `To see ${name} in 3D choose the file ${address} (a page from disk may not read it by itself): `, field);
-  field.addEventListener("change", async () => attempt(place, async () => show(place, name, await field.files[0].arrayBuffer())));
+  const showChosen = async ([file]) => show(place, name, await file.arrayBuffer());
+  field.addEventListener("change", () => field.files.length && attempt(place, () => showChosen(field.files)));
   place.append(label);
 }
 
+// After an error all is as before, for another attempt, with the error below it.
 async function attempt(place, work) {
+  const before = [...place.children].filter((child) => !child.matches("[role=alert]"));
   try {
     await work();
   } catch (error) {
-    place.replaceChildren(element("p", { className: "hint", textContent: error.message }));
+    const told = element("p", { className: "hint", textContent: error.message });
+    told.setAttribute("role", "alert");
+    place.replaceChildren(...before, told);
   }
 }
 

@@ -55,9 +55,11 @@ export class View {
     this.request();
   }
 
+  // Where nothing changed nothing is drawn again: an observer tells of the first size, too.
   resize() {
     const { clientWidth: width, clientHeight: height } = this.place;
-    if (!width || !height) return;
+    if (!width || !height || (width === this.width && height === this.height)) return;
+    [this.width, this.height] = [width, height];
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
