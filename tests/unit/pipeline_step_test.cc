@@ -2,6 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "server/formats/documents.h"
+#include "server/model/past.h"
 #include "storage/revisions.h"
 #include "tests/unit/pipeline_fixture.h"
 
@@ -112,6 +114,12 @@ TEST_F(PipelineTest, OneFileForBothCamerasIsNoMeasurement) {
   EXPECT_EQ(edges->front().captures.size(), files.size() / 2);
 }
 
+// Edges that do not count any more, as pages tell them from failed ones.
+std::ptrdiff_t PastCount(const std::string& document) {
+  const auto revision = formats::ReadRevisionDocument(document);
+  return revision ? std::count_if(revision->edges.begin(), revision->edges.end(), IsPast) : -1;
+}
+
 TEST_F(PipelineTest, ACorrectedSessionSupersedesTheOneItRepeats) {
   const std::map<std::string, std::string> files = {{"left/01.png", "one"}, {"right/01.png", "two"}};
   StoreSession("r", files);
@@ -131,6 +139,7 @@ TEST_F(PipelineTest, ACorrectedSessionSupersedesTheOneItRepeats) {
   StepAll();
   EXPECT_EQ(revisions_.back().document.find("\"state\":\"good\""), std::string::npos);
   EXPECT_NE(revisions_.back().document.find("superseded"), std::string::npos);
+  EXPECT_EQ(PastCount(revisions_.back().document), 1);
 }
 
 // Good edges of the newest revision, by session.
@@ -163,6 +172,7 @@ TEST_F(PipelineTest, WhatWasMeasuredBeforeASensorWasRemountedIsPast) {
   StepAll();
   EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>());
   EXPECT_NE(revisions_.back().document.find("sensor right was remounted after this was measured"), std::string::npos);
+  EXPECT_EQ(PastCount(revisions_.back().document), 1);
   measure(second, 0.2);
   EXPECT_EQ(GoodSessions(revisions_.back().document), std::set<std::string>{second.str()});
 
