@@ -52,23 +52,24 @@ std::vector<Finding> Collect(std::initializer_list<std::optional<Finding>> candi
 // Suspects are found with edges taken as independent. Where captures are shared, they count only if the honest test of
 // the residuals finds a contradiction too; they tell better than a residual at the plain optimum who is to blame.
 std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                        const Policy& policy) {
+                                        const Policy& policy, const SessionTimes& captured_at) {
   const auto contradiction = FindContradiction(edges, solution, policy);
   const bool shared = std::any_of(solution.residuals.begin(), solution.residuals.end(),
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
-  std::vector<Finding> suspects = Collect({FindTwoPoses(edges, solution), FindSuspectEdges(edges, solution)});
+  std::vector<Finding> suspects = Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
   if (suspects.empty() && contradiction) suspects.push_back(*contradiction);
   return suspects;
 }
 
 }  // namespace
 
-Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+               const SessionTimes& captured_at) {
   if (const auto none = FindNoEdges(edges)) return VerdictFrom(VerdictLevel::kUnknown, {*none});
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
-  if (const auto contradictions = FindContradictions(edges, solution, policy); !contradictions.empty())
+  if (const auto contradictions = FindContradictions(edges, solution, policy, captured_at); !contradictions.empty())
     return VerdictFrom(VerdictLevel::kFail, contradictions);
   if (const auto open = FindOpenLoops(edges, solution, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())

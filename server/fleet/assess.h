@@ -5,8 +5,10 @@
 // applies is the verdict; of several reasons of one level all are named.
 #pragma once
 
+#include <map>
 #include <vector>
 
+#include "server/base/stamp.h"
 #include "server/model/graph.h"
 
 namespace rigcal::fleet {
@@ -24,8 +26,11 @@ struct Policy {
 // means that nothing checks the result: warn. Edges in loops that nothing checks (see UncheckedEdges), or that cannot
 // be tested: warn, by name. "The edges agree" is said only where loops, or the cost, were tested. Unknown sensors
 // (those that occur only in failed edges too): unknown, by name. Failed edges: warn, by name, unless the same two
-// sensors have a good edge as well (the failure was repaired since).
-[[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {});
+// sensors have a good edge as well (the failure was repaired since). Sessions are named by when they were captured, as
+// far as that is known.
+using SessionTimes = std::map<SessionId, Stamp>;
+[[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
+                             const SessionTimes& captured_at = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has
 // it, else e^T Omega e (edge covariance minus what the solution explains is not used: conservative). limit is 0 where

@@ -162,7 +162,8 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
     const auto edge = by_id.find(residual.edge);
     if (edge == by_id.end() || !residual.in_solution) continue;
     const EdgeTest test = TestResidual(*edge->second, residual, solution.residuals.size(), policy);
-    if (test.limit <= 0.0) names.push_back(NameOfEdge(*edge->second));
+    const std::string name = NameOfEdge(*edge->second);
+    if (test.limit <= 0.0 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
   if (names.empty()) return std::nullopt;
   return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",

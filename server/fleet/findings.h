@@ -17,7 +17,8 @@ struct Finding {
 [[nodiscard]] std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                        const Policy& policy);
 // A sensor whose edges fall into two groups; no side is chosen.
-[[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution);
+[[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                  const SessionTimes& captured_at);
 // Edges that the robust optimum rejects, the worst first; a loop that alone does not close is named whole.
 [[nodiscard]] std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution);
 // Edges in loops that check them in no direction. Bridges are left to FindUncheckedSensors.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -47,26 +48,42 @@ std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<Ed
   return sessions;
 }
 
-// Of a group whose edges all come from sessions these are named, as what can be looked at and repeated.
-std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
-  constexpr std::size_t kDigits = 12;  // as pages show them
+// "2026-01-31 12:00 UTC", as people know a session; where that is not known by its id, where it is the same of two by both.
+std::string NameOf(const SessionId& session, const SessionTimes& captured_at) {
+  constexpr std::size_t kDigits = 12, kToMinute = 16;  // as pages show them
+  const std::string id = session.str().substr(0, kDigits);
+  const auto minute_of = [](Stamp stamp) { return ToIso(stamp).substr(0, kToMinute); };
+  const auto found = captured_at.find(session);
+  if (found == captured_at.end()) return id;
+  std::string time = minute_of(found->second);
+  const auto alike = std::count_if(captured_at.begin(), captured_at.end(),
+                                   [&](const auto& one) { return minute_of(one.second) == time; });
+  std::replace(time.begin(), time.end(), 'T', ' ');
+  return time + " UTC" + (alike > 1 ? " (" + id + ")" : "");
+}
+
+// Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest first.
+std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id,
+                      const SessionTimes& captured_at) {
   const std::set<SessionId> sessions = SessionsOf(ids, by_id);
   if (sessions.empty() || sessions.contains(SessionId())) return "edges " + List(NamesOf(ids, by_id));
   std::vector<std::string> names;
-  for (const SessionId& session : sessions) names.push_back(session.str().substr(0, kDigits));
+  for (const SessionId& session : sessions) names.push_back(NameOf(session, captured_at));
+  std::sort(names.begin(), names.end());
   return std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ") +
          (names.size() == 1 ? "session " : "sessions ") + List(names);
 }
 
 }  // namespace
 
-std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution) {
+std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                    const SessionTimes& captured_at) {
   if (solution.suspects.two_poses.empty()) return std::nullopt;
   const TwoPoses& two = solution.suspects.two_poses.front();
   const auto by_id = ById(edges);
   std::string why = "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) +
-                    " apart: " + GroupText(two.group_a, by_id) + " agree on one, " + GroupText(two.group_b, by_id) +
-                    " on the other";
+                    " apart: " + GroupText(two.group_a, by_id, captured_at) + " agree on one, " +
+                    GroupText(two.group_b, by_id, captured_at) + " on the other";
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
   return Finding{why, "Find out whether " + two.sensor.str() +

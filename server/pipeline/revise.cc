@@ -61,12 +61,17 @@ void MakePast(const storage::Remount& remount, Edge& edge) {
                      "Where no later session measured this pair, measure it anew; where one did, that one counts."}};
 }
 
-Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(const std::vector<storage::Remount> remounts, storage::LoadRemounts(store, robot));
-  if (remounts.empty()) return {};
+Result<std::map<SessionId, Stamp>> CapturedAt(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessions(store, robot));
   std::map<SessionId, Stamp> captured_at;
   for (const storage::SessionRow& row : rows) captured_at.emplace(row.id, row.captured_at);
+  return captured_at;
+}
+
+Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
+  RIGCAL_ASSIGN(const std::vector<storage::Remount> remounts, storage::LoadRemounts(store, robot));
+  if (remounts.empty()) return {};
+  RIGCAL_ASSIGN(const auto captured_at, CapturedAt(store, robot));
   for (Edge& edge : edges)
     if (const auto* remount = RemountAfter(edge, captured_at, remounts); remount && edge.state == EdgeState::kGood)
       MakePast(*remount, edge);
@@ -138,7 +143,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   input.robot = robot;
   input.reference = loaded.graph.reference;
   input.solution = SolveHonestly(loaded);
-  input.verdict = fleet::Assess(loaded.edges, input.solution);
+  RIGCAL_ASSIGN(const fleet::SessionTimes captured_at, CapturedAt(store, robot));
+  input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at);
   input.edges = std::move(loaded.edges);
 
   const auto worst = WorstEdgeOf(input);

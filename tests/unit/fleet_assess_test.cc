@@ -56,6 +56,15 @@ struct Rig {
   [[nodiscard]] Verdict Judge() const { return Assess(edges, solution); }
 };
 
+// However often a pair was measured.
+TEST(Assess, APairThatCannotBeTestedIsNamedOnce) {
+  Rig rig;
+  rig.edges.push_back(MakeEdge('d', "left", "right"));
+  rig.solution.residuals.push_back(ResidualOf(rig.edges.back(), 0.0005));
+  for (const std::size_t few : {0U, 3U}) rig.edges[few].uncertainty.dof = 3;
+  EXPECT_THAT(rig.Judge().why, testing::HasSubstr("few captures stand behind left - right to test"));
+}
+
 TEST(Assess, PassesWhereAllIsWell) {
   const Verdict verdict = Rig().Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kPass);
