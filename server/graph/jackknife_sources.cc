@@ -41,10 +41,19 @@ MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<st
 }
 
 // What an Omega that the blocks made lacks without each of them; nothing where Omega is known apart from them.
-std::optional<WeightBlocks> WeightOf(const EdgeBlocks& own, const MatrixXd& d, const std::vector<std::string>& ids) {
+// Captures that the edge does not have made nothing of it, whatever other edges of the session made of them.
+std::optional<WeightBlocks> WeightOf(const EdgeBlocks& own, const std::vector<std::string>& ids) {
   if (!(own.weight_share > 0.0)) return std::nullopt;
-  WeightBlocks weight{d, std::vector<char>(ids.size(), 0), own.weight_share};
-  for (const BlockVector& block : own.blocks) weight.own[static_cast<std::size_t>(PlaceOf(block.block_id, ids))] = 1;
+  WeightBlocks weight{MatrixXd::Zero(6, static_cast<Eigen::Index>(ids.size())), std::vector<char>(ids.size(), 0),
+                      own.weight_share};
+  Vector6d mean = Vector6d::Zero();
+  for (const BlockVector& block : own.blocks) mean += block.d / static_cast<double>(own.blocks.size());
+  const double scale = BlockScale(static_cast<Eigen::Index>(own.blocks.size()));
+  for (const BlockVector& block : own.blocks) {
+    const Eigen::Index place = PlaceOf(block.block_id, ids);
+    weight.d.col(place) = scale * (block.d - mean);
+    weight.own[static_cast<std::size_t>(place)] = 1;
+  }
   return weight;
 }
 
@@ -63,19 +72,18 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
   for (const std::size_t k : members) {
     const EdgeBlocks& own = *FindBlocks(work.blocks, work.EdgeOf(k).id);
     const MatrixXd d = CentredBlocks(own.blocks, ids);
-    source.parts.push_back({k, work.jacobians[k].D * d, WeightOf(own, d, ids)});
+    source.parts.push_back({k, work.jacobians[k].D * d, WeightOf(own, ids)});
   }
   return source;
 }
 
-// The given constants of one name, which every edge of the session that knows them errs by at once.
-using GivenKey = std::pair<std::string, std::string>;  // session, name
-using GivenSources = std::map<GivenKey, ErrorSource>;
+// The given constants of one name, which every edge that knows them errs by at once: it is the same board, lens or
+// lidar in every session, and more of them do not average its error away.
+using GivenSources = std::map<std::string, ErrorSource>;
 
-void AddGiven(const JackknifeWork& work, std::size_t constraint, const std::string& session, const EdgeBlocks& own,
-              GivenSources& given) {
+void AddGiven(const JackknifeWork& work, std::size_t constraint, const EdgeBlocks& own, GivenSources& given) {
   for (const auto& [name, shifts] : own.shifts) {
-    ErrorSource& source = given[{session, name}];
+    ErrorSource& source = given[name];
     MatrixXd columns(6, static_cast<Eigen::Index>(shifts.size()));
     for (std::size_t i = 0; i < shifts.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = shifts[i];
     source.column_count = std::max(source.column_count, columns.cols());
@@ -162,7 +170,7 @@ std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work) {
     const EdgeBlocks* blocks = FindBlocks(work.blocks, edge.id);
     if (blocks == nullptr) continue;
     sessions[SessionKey(edge)].push_back(k);
-    AddGiven(work, k, SessionKey(edge), *blocks, given);
+    AddGiven(work, k, *blocks, given);
   }
   std::vector<ErrorSource> sources;
   for (const auto& [key, members] : sessions) sources.push_back(SessionSource(work, members));

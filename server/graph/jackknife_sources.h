@@ -11,7 +11,7 @@ namespace rigcal::graph {
 
 // Blocks that made Omega as well as they move the measurement.
 struct WeightBlocks {
-  Eigen::MatrixXd d;      // one column per block of the session, as in `de` but right tangents at the edge's b
+  Eigen::MatrixXd d;  // one column per block of the session, right tangents at the edge's b; d d^T is their covariance
   std::vector<char> own;  // whether the edge has that block
   double share = 0.0;     // of the blocks in the edge's covariance
 };

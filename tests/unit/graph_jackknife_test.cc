@@ -208,6 +208,23 @@ TEST(GraphJackknife, GivenConstantsAddToTheirEdge) {
   EXPECT_LT((with - without - C_given).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+// A board that is given too large is so on every visit: two edges of two sessions are off alike, and so is their mean.
+TEST(GraphJackknife, GivenConstantsAreTheSameInAllSessions) {
+  const Matrix6d Omega = 1e6 * Matrix6d::Identity();
+  Graph graph;
+  graph.reference = Name(0);
+  graph.sensors = {Name(0), Name(1)};
+  graph.edges = {MakeEdge(0, 0, 1, Se3(), Omega), MakeEdge(1, 0, 1, Se3(), Omega)};
+  BlocksByEdge blocks = GiveBlocks(graph, 2, 1e-4, 9);
+  ASSERT_NE(graph.edges[0].session, graph.edges[1].session);
+  const GraphSolution solution = Solve(graph);
+  const Matrix6d without = *SensorCovariance(JackknifeGraph(graph, solution, blocks), Name(1));
+  const Vector6d shift = 2e-3 * Vector6d::Unit(2);
+  for (auto& [id, own] : blocks) own.shifts["size of board front"] = {shift};
+  const Matrix6d with = *SensorCovariance(JackknifeGraph(graph, solution, blocks), Name(1));
+  EXPECT_LT((with - without - shift * shift.transpose()).cwiseAbs().maxCoeff(), 1e-10);
+}
+
 TEST(GraphJackknife, BlocksThatSayTooLittleAreLeftOut) {
   std::mt19937 random(1);
   Edge edge;

@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 
 #include "server/graph/graph_jackknife.h"
+#include "server/graph/jackknife_sources.h"
+#include "server/graph/solved_poses.h"
 #include "server/math/jackknife.h"
 #include "tests/unit/graph_fixture.h"
 
@@ -104,6 +106,44 @@ TEST(GraphWeights, AreLeftOutWithTheirBlocks) {
     const Vector6d ratio = SensorCovariance(jackknife, Name(v))->diagonal().cwiseQuotient(full);
     EXPECT_LT((ratio - Vector6d::Ones()).cwiseAbs().maxCoeff(), 0.05) << ratio.transpose();
     EXPECT_LT(SensorCovariance(held, Name(v))->diagonal().cwiseQuotient(full).mean(), 0.9);
+  }
+}
+
+// An edge that has few of the session's captures, one of which says almost all: its weights are its own affair, and
+// without that capture they are still weights.
+TEST(GraphWeights, AreOfTheCapturesThatAnEdgeHas) {
+  Visit visit = VisitOf(3);
+  Edge& few = visit.edges[0];
+  few.uncertainty.blocks.resize(9);
+  few.uncertainty.blocks[4].d *= 30;
+  const Matrix6d C = ShrinkTowardsModel(JackknifeCovariance(ShiftsOf(few)), 1e-2 * ModelOf(), 9);
+  std::vector<BlockVector> blocks = few.uncertainty.blocks;
+  few.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, 8).value();
+  few.uncertainty.blocks = std::move(blocks);
+  const auto weight_in = [](const std::vector<Edge>& edges) {
+    const Graph graph = GraphOf(edges, Name(0));
+    const Problem problem = MakeProblem(graph);
+    const BlocksByEdge own = BlocksOf(edges);
+    JackknifeWork work{graph, problem, own, {}};
+    const Poses T_ref = SolvedPoses(graph, problem, Solve(graph));
+    for (const Constraint& constraint : problem.constraints) work.jacobians.push_back(JacobianOf(constraint, T_ref));
+    const std::vector<ErrorSource> sources = SharedSourcesOf(work);
+    for (const ErrorPart& part : sources.front().parts)
+      if (work.EdgeOf(part.constraint).id == IdOf(0)) return part.weight.value();
+    return WeightBlocks{};
+  };
+  const WeightBlocks alone = weight_in({few}), among = weight_in(visit.edges);
+  ASSERT_EQ(alone.d.cols(), 9);
+  ASSERT_EQ(among.d.cols(), kCaptures);
+  EXPECT_LT((among.d * among.d.transpose() - alone.d * alone.d.transpose()).norm(), 1e-12 * alone.d.squaredNorm());
+  const Eigen::MatrixXd pull =
+      PullByWeight(among, few.uncertainty.Omega, Eigen::MatrixXd::Constant(6, kCaptures, 1e-3));
+  EXPECT_TRUE(pull.allFinite());
+  for (Eigen::Index i = 0; i < kCaptures; ++i) {
+    if (among.own[static_cast<std::size_t>(i)] == 0) continue;
+    const Vector6d d = among.d.col(i);
+    const Matrix6d without = C + among.share / 7.0 * (among.d * among.d.transpose() - 9.0 * d * d.transpose());
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6d>(without).eigenvalues()(0), 0.0) << i;
   }
 }
 
