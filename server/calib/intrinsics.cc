@@ -74,7 +74,7 @@ OrDiagnosis<void> CheckSizes(const CameraProblem& problem) {
   const BoardView* first = nullptr;
   std::vector<CaptureId> resized;
   for (const auto& [capture, view] : problem.views) {
-    if (view.image_width_px == 0) continue;
+    if (!view.found) continue;
     if (first == nullptr) first = &view;
     if (view.image_width_px != first->image_width_px || view.image_height_px != first->image_height_px)
       resized.push_back(capture);

@@ -51,10 +51,11 @@ void TakePose(CameraEstimate& camera, const CaptureId& capture, std::size_t idx)
   if (idx > 0) std::swap(camera.T_cam_board.at(capture), camera.alternatives.at(capture)[idx - 1]);
 }
 
+// Every picture, also one without the board: so it is the same problem as that of the camera's other pairs.
 OrDiagnosis<CameraEstimate> CameraOf(const LidarCameraProblem& problem) {
   CameraProblem camera{problem.camera, problem.board, {}};
   for (const LidarCameraCapture& capture : problem.captures)
-    if (capture.view && capture.view->found) camera.views.emplace_back(capture.capture, *capture.view);
+    if (capture.view) camera.views.emplace_back(capture.capture, *capture.view);
   return EstimateCameraBy(problem.solve_camera, camera);
 }
 
