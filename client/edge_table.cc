@@ -34,16 +34,11 @@ std::string SentenceOf(const Document& diagnosis) {
 
 std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
 
-// By itself: edges of the past were good.
-bool HasFailed(const Document& edge) {
-  return edge["state"].Text() == "failed" && !MeansPast(edge["diagnoses"][0]["code"].Text());
-}
-
-// What a reader of edges that did not fail should know: each sentence once, with the pairs that it is about.
+// What a reader of good edges should know: each sentence once, with the pairs that it is about.
 void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
   std::vector<std::pair<std::string, std::string>> notes;  // sentence, pairs; in the order of the edges
   for (const Document& edge : edges) {
-    if (HasFailed(edge)) continue;
+    if (edge["state"].Text() == "failed") continue;
     for (const Document& item : edge["diagnoses"].Items()) {
       const std::string sentence = SentenceOf(item);
       const auto known =
@@ -55,6 +50,26 @@ void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
     }
   }
   for (const auto& [sentence, pairs] : notes) out << Plain(pairs) << ":\n  " << Plain(sentence) << '\n';
+}
+
+// Good where it was measured, and no part of the solution any more.
+bool IsPast(const Document& edge) {
+  const std::string code = edge["state"].Text() == "failed" ? edge["diagnoses"][0]["code"].Text() : "";
+  return MeansPast(code);
+}
+
+void PrintPast(const std::vector<Document>& edges, std::ostream& out) {
+  std::vector<std::pair<std::string, std::string>> reasons;  // reason, pairs; in the order of the edges
+  for (const Document& edge : edges) {
+    if (!IsPast(edge)) continue;
+    const std::string why = edge["diagnoses"][0]["what"].Text();
+    const auto known = std::find_if(reasons.begin(), reasons.end(), [&](const auto& one) { return one.first == why; });
+    if (known == reasons.end())
+      reasons.emplace_back(why, PairOf(edge));
+    else
+      known->second += ", " + PairOf(edge);
+  }
+  for (const auto& [why, pairs] : reasons) out << Plain(pairs) << ": PAST\n  " << Plain(why) << '\n';
 }
 
 }  // namespace
@@ -77,10 +92,11 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
     if (edge["state"].Text() != "failed") AddRow(edge, table);
   if (!table.empty()) table.Print(out);
   for (const Document& edge : edges) {
-    if (!HasFailed(edge)) continue;
+    if (edge["state"].Text() != "failed" || IsPast(edge)) continue;
     out << Plain(PairOf(edge)) << ": FAILED\n";
     PrintDiagnoses(edge["diagnoses"], out);
   }
+  PrintPast(edges, out);
   PrintNotes(edges, out);
 }
 

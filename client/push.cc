@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -14,6 +13,7 @@
 #include "client/verbs.h"
 #include "server/base/thread_rank.h"
 #include "server/formats/session_folder.h"
+#include "server/model/past.h"
 
 namespace rigcal::client {
 namespace {
@@ -32,11 +32,10 @@ struct Folder {
 };
 
 // As if session.yaml had named them.
-Status AddRemounted(const std::vector<std::string>& names, SessionHeader& header) {
+Status TakeRemounted(const std::vector<std::string>& names, SessionHeader& header) {
   for (const std::string& name : names) {
     RIGCAL_ASSIGN(SensorId sensor, SensorId::Parse(name));
-    if (std::find(header.remounted.begin(), header.remounted.end(), sensor) == header.remounted.end())
-      header.remounted.push_back(std::move(sensor));
+    rigcal::AddRemounted(std::move(sensor), header);
   }
   return Validate(header);
 }
@@ -50,7 +49,7 @@ Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
   });
   progress.Clear();
   if (!manifest) return Fail(manifest.error());
-  RIGCAL_TRY(AddRemounted(options.remounted, manifest->header));
+  RIGCAL_TRY(TakeRemounted(options.remounted, manifest->header));
   folder.session = SessionOf(*manifest);
   return folder;
 }

@@ -1,6 +1,5 @@
 #include "storage/sessions.h"
 
-#include <algorithm>
 #include <set>
 
 #include "server/formats/documents.h"
@@ -153,23 +152,33 @@ Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot
   });
 }
 
-Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const std::vector<SessionId> superseded, LoadSuperseded(store, robot));
+namespace {
+
+// Few manifests have the word; only those are parsed.
+Result<std::vector<Remount>> LoadNamedRemounts(Store& store, const RobotId& robot) {
   return Load<std::vector<Remount>>(store, Subject(robot), [&]() -> Result<std::vector<Remount>> {
     Query query(store,
                 "SELECT sensor.value, session.session_id, session.captured_ns FROM session "
                 "JOIN session_closed ON session_closed.session_number = session.number, "
-                "json_each(session.manifest, '$.remounted') AS sensor WHERE robot_id = ? "
+                "json_each(CASE WHEN instr(session.manifest, '\"remounted\"') > 0 THEN session.manifest ELSE '{}' END, "
+                "'$.remounted') AS sensor WHERE robot_id = ? "
                 "ORDER BY session.captured_ns, session.session_id, sensor.value");
     query.Bind(robot);
     std::vector<Remount> remounts;
-    while (query.Step()) {
-      Remount remount{query.IdAt<SensorId>(0), query.IdAt<SessionId>(1), query.Time(2)};
-      if (std::find(superseded.begin(), superseded.end(), remount.session) == superseded.end())
-        remounts.push_back(std::move(remount));
-    }
+    while (query.Step()) remounts.push_back({query.IdAt<SensorId>(0), query.IdAt<SessionId>(1), query.Time(2)});
     return remounts;
   });
+}
+
+}  // namespace
+
+Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(std::vector<Remount> remounts, LoadNamedRemounts(store, robot));
+  if (remounts.empty()) return remounts;
+  RIGCAL_ASSIGN(const std::vector<SessionId> superseded, LoadSuperseded(store, robot));
+  const std::set<SessionId> old(superseded.begin(), superseded.end());
+  std::erase_if(remounts, [&](const Remount& remount) { return old.contains(remount.session); });
+  return remounts;
 }
 
 Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot) {

@@ -45,15 +45,16 @@ struct SessionRow {
 // while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
-// All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
-// Sensors that whole sessions of the robot name as remounted, with when; sessions that a later one repeats do not
-// count.
+// Sensors that closed sessions of the robot name as remounted, the earliest captured first; sessions that a later one
+// repeats do not count.
 struct Remount {
   SensorId sensor;
   SessionId session;
   Stamp captured_at;
 };
 [[nodiscard]] Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot);
+
+// All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
 [[nodiscard]] Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot);
 
 struct RobotRow {

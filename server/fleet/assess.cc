@@ -74,9 +74,9 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto open = FindOpenLoops(edges, solution, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings =
-      Collect({FindFailedEdges(edges), FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
-               FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy)});
+  const auto warnings = Collect({FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
+                                 FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
+                                 FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return Pass(UntestedLoops(edges, solution));
 }

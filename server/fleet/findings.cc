@@ -9,6 +9,7 @@
 #include "server/fleet/wording.h"
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
+#include "server/model/past.h"
 #include "server/model/unchecked.h"
 
 namespace rigcal::fleet {
@@ -33,7 +34,17 @@ bool CostIsChiSquare(const std::vector<Edge>& edges) {
   });
 }
 
-std::optional<Finding> FindWorstLoop(const Cycles& cycles) {
+// Moved between two visits, a sensor is contradicted by its own past, which no repetition takes away.
+std::string CureOfLoop(const CycleResidual& loop, const std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges)
+    if (std::find(loop.edges.begin(), loop.edges.end(), edge.id) != loop.edges.end()) sessions.insert(edge.session);
+  const std::string repeat = "Repeat the sessions of its edges, the one first that the failing loops have in common";
+  if (sessions.size() < 2) return repeat;
+  return repeat + "; if a sensor was moved between them, push the later one again with --remounted and its name";
+}
+
+std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges) {
   if (cycles.failing < 1 || cycles.worst.empty() || !cycles.worst.front().fails()) return std::nullopt;
   const CycleResidual& worst = cycles.worst.front();
   std::vector<std::string> names;
@@ -41,7 +52,7 @@ std::optional<Finding> FindWorstLoop(const Cycles& cycles) {
   std::string why = "the loop of " + List(names) + " does not close: it is off by " + OffText(worst.e) + ", " +
                     Number(worst.t_squared / worst.limit, "times") + " what chance allows";
   if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
-  return Finding{why, "Repeat the sessions of its edges, the one first that the failing loops have in common"};
+  return Finding{why, CureOfLoop(worst, edges)};
 }
 
 }  // namespace
@@ -65,13 +76,16 @@ std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const G
   return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " +
                      OffText(worst_residual->e) + ", " + Number(worst_ratio, "times") + " what chance allows",
                  "Check that " + worst->frame_a.str() + " and " + worst->frame_b.str() +
-                     " have not moved and are named right, then repeat their session"};
+                     " have not moved and are named right, then repeat their session, with --remounted if one has"};
 }
 
 std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
   const bool any = std::any_of(edges.begin(), edges.end(), [](const Edge& e) { return e.state == EdgeState::kGood; });
   if (any) return std::nullopt;
   if (edges.empty()) return Finding{"nothing has been calibrated yet", "Push a capture session"};
+  if (std::all_of(edges.begin(), edges.end(), IsPast))
+    return Finding{"all that was calibrated is past: sensors were remounted since, or sessions corrected",
+                   "Push a session that calibrates them anew"};
   return Finding{"every calibration failed", "Open the failed edges, do what each of them says, and push again"};
 }
 
@@ -79,6 +93,19 @@ std::optional<Finding> FindUnsettled(const GraphSolution& solution) {
   if (solution.converged) return std::nullopt;
   return Finding{"the graph did not settle",
                  "Look for an edge with a large residual and push its session again, corrected"};
+}
+
+std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges) {
+  std::set<std::pair<SensorId, SensorId>> measured;
+  for (const Edge& edge : edges)
+    if (!IsPast(edge)) measured.insert(PairOf(edge));
+  std::vector<std::string> past;
+  for (const Edge& edge : edges)
+    if (IsPast(edge) && edge.diagnoses.front().code == kRemountedCode && measured.insert(PairOf(edge)).second)
+      past.push_back(NameOfEdge(edge));
+  if (past.empty()) return std::nullopt;
+  return Finding{List(past) + (past.size() == 1 ? " was" : " were") + " not measured since a sensor was remounted",
+                 "Push a session that calibrates " + List(past) + " anew"};
 }
 
 std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges) {
@@ -89,7 +116,8 @@ std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges) {
   std::vector<std::string> failed;
   std::string cure;
   for (const Edge& edge : edges) {
-    if (edge.state == EdgeState::kGood || good.contains(PairOf(edge)) || !seen.insert(PairOf(edge)).second) continue;
+    if (edge.state == EdgeState::kGood || IsPast(edge)) continue;
+    if (good.contains(PairOf(edge)) || !seen.insert(PairOf(edge)).second) continue;
     if (failed.empty() && !edge.diagnoses.empty()) cure = edge.diagnoses.front().cure;
     failed.push_back(NameOfEdge(edge));
   }
@@ -173,7 +201,7 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
 std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                      const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
-  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles);
+  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles, edges);
   const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
   if (solution.cost <= limit) return std::nullopt;
   return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) +

@@ -37,6 +37,8 @@ struct Finding {
 [[nodiscard]] std::optional<Finding> FindUnsettled(const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges);
+// Pairs that were measured before one of their sensors was remounted, and not since.
+[[nodiscard]] std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
 [[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges,

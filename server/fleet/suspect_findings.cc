@@ -48,6 +48,22 @@ std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<Ed
   return sessions;
 }
 
+// Only sessions have a date, and only what two of them say can be told apart by it.
+std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id) {
+  const std::string name = two.sensor.str();
+  const std::set<SessionId> a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
+  if (a.contains(SessionId()) || b.contains(SessionId()))
+    return "Find out whether " + name +
+           " was moved between these measurements. If not, repeat the wrong one. If so, edges that were pushed without "
+           "a session keep counting, as they have no date: push what was measured since under a new robot name";
+  const bool apart = std::none_of(a.begin(), a.end(), [&](const SessionId& session) { return b.contains(session); });
+  if (!apart)
+    return "Find out whether " + name + " was moved during a session, and repeat that with " + name + " fixed";
+  return "Find out whether " + name +
+         " was moved between these sessions. If so, push the one with the later captured_at again with --remounted " +
+         name + "; if not, repeat it";
+}
+
 // "2026-01-31 12:00 UTC", as people know a session; where that is not known by its id, where it is the same of two by both.
 std::string NameOf(const SessionId& session, const SessionTimes& captured_at) {
   constexpr std::size_t kDigits = 12, kToMinute = 16;  // as pages show them
@@ -86,9 +102,7 @@ std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphS
                     GroupText(two.group_b, by_id, captured_at) + " on the other";
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
-  return Finding{why, "Find out whether " + two.sensor.str() +
-                          " was moved between these sessions. If so, push the later one again with --remounted " +
-                          two.sensor.str() + "; if not, repeat it"};
+  return Finding{why, CureOf(two, by_id)};
 }
 
 std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
@@ -104,7 +118,7 @@ std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const Gr
                      (names.size() == 1 ? " contradicts" : " contradict") + " the other edges: " + them + " off by " +
                      OffText(worst.e) + ", " + Number(worst.statistic / worst.limit, "times") + " what chance allows",
                  "Check that " + worst.frame_a.str() + " and " + worst.frame_b.str() +
-                     " have not moved and are named right, then repeat their session"};
+                     " have not moved and are named right, then repeat their session, with --remounted if one has"};
 }
 
 }  // namespace rigcal::fleet

@@ -4,6 +4,7 @@
 #include "server/base/text.h"
 #include "server/formats/session_folder.h"
 #include "server/formats/yaml_field.h"
+#include "server/model/past.h"
 
 namespace rigcal::formats {
 namespace {
@@ -185,7 +186,7 @@ SessionHeader ReadHeader(const YamlField& root) {
   if (const auto pairs = root.Find("skip_pairs"))
     for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
-    for (const YamlField& sensor : remounted->Items()) header.remounted.push_back(ReadId<SensorId>(sensor));
+    for (const YamlField& sensor : remounted->Items()) AddRemounted(ReadId<SensorId>(sensor), header);
   if (const auto conditions = root.Find("conditions"))
     for (const YamlField& condition : conditions->Members())
       header.conditions.emplace(condition.Key(), condition.Text());

@@ -9,10 +9,13 @@ namespace {
 
 bool MayShareTarget(const Sensor& a, const Sensor& b) { return !a.sees || !b.sees || *a.sees == *b.sees; }
 
-bool IsSkipped(const SessionHeader& header, const Sensor& a, const Sensor& b) {
-  return std::any_of(header.skip_pairs.begin(), header.skip_pairs.end(), [&](const SensorPair& pair) {
-    return (pair.a == a.id && pair.b == b.id) || (pair.a == b.id && pair.b == a.id);
-  });
+using Names = std::pair<SensorId, SensorId>;
+
+// Whichever comes first.
+std::set<Names> Skipped(const SessionHeader& header) {
+  std::set<Names> skipped;
+  for (const SensorPair& pair : header.skip_pairs) skipped.insert(std::minmax(pair.a, pair.b));
+  return skipped;
 }
 
 bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor) {
@@ -41,10 +44,12 @@ std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const S
 }
 
 std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
+  const std::set<Names> skipped = Skipped(header);
   std::vector<SensorPair> pairs;
   for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
     for (auto b = a + 1; b != header.sensors.end(); ++b)
-      if (!MethodFor(header, *a, *b).empty() && !IsSkipped(header, *a, *b)) pairs.push_back({a->id, b->id});
+      if (!MethodFor(header, *a, *b).empty() && !skipped.contains(std::minmax(a->id, b->id)))
+        pairs.push_back({a->id, b->id});
   return pairs;
 }
 

@@ -1,13 +1,20 @@
 #include "server/model/past.h"
 
+#include <algorithm>
+
 namespace rigcal {
 
 bool MeansPast(std::string_view diagnosis_code) {
-  return diagnosis_code == "superseded" || diagnosis_code == "remounted";
+  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode;
 }
 
 bool IsPast(const Edge& edge) {
   return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && MeansPast(edge.diagnoses.front().code);
+}
+
+void AddRemounted(SensorId sensor, SessionHeader& header) {
+  const auto place = std::lower_bound(header.remounted.begin(), header.remounted.end(), sensor);
+  if (place == header.remounted.end() || *place != sensor) header.remounted.insert(place, std::move(sensor));
 }
 
 }  // namespace rigcal

@@ -1,14 +1,21 @@
-// Edges that were good and do not count any more.
+// Edges that a revision does not count any more, and why; sensors that were moved on purpose.
 #pragma once
 
 #include <string_view>
 
 #include "server/model/edge.h"
+#include "server/model/session.h"
 
 namespace rigcal {
 
-// The code of a diagnosis: its session was pushed again in a corrected form, or a sensor was remounted since.
+// Codes of what takes a good edge out of a revision: its session was corrected by a later one, or one of its sensors
+// was remounted since. Such an edge is failed in the revision, with this as its only diagnosis, and is good in the
+// store.
+inline constexpr std::string_view kSupersededCode = "superseded", kRemountedCode = "remounted";
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);
+
+// Once, where it belongs among those that are named: in which order they are does not make another session.
+void AddRemounted(SensorId sensor, SessionHeader& header);
 
 }  // namespace rigcal

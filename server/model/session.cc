@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
@@ -68,11 +69,20 @@ Status CheckSkipPairs(const SessionHeader& header) {
   return {};
 }
 
+// A session without any pair of such a sensor would begin no work, and so change nothing.
 Status CheckRemounted(const SessionHeader& header) {
-  for (const SensorId& id : header.remounted)
+  if (header.remounted.empty()) return {};
+  std::set<SensorId> measured;
+  for (const SensorPair& pair : PairsToCalibrate(header)) measured.insert({pair.a, pair.b});
+  for (const SensorId& id : header.remounted) {
     if (!HasSensor(header, id))
       return Fail(ErrorCode::kInvalidInput, "remounted: " + Quoted(id.str()) + " is not a sensor",
                   "Name sensors of the session, which measures them anew.");
+    if (!measured.contains(id))
+      return Fail(
+          ErrorCode::kInvalidInput, "remounted: " + Quoted(id.str()) + " is in no pair that is calibrated",
+          "Name it in a session that measures it anew, with a sensor that sees the same target or moves along.");
+  }
   return {};
 }
 
@@ -153,8 +163,8 @@ Status Validate(const SessionHeader& header) {
   RIGCAL_TRY(CheckUnique("sensor", header.sensors));
   RIGCAL_TRY(CheckSightings(header));
   RIGCAL_TRY(CheckSkipPairs(header));
-  RIGCAL_TRY(CheckRemounted(header));
-  return CheckReference(header);
+  RIGCAL_TRY(CheckReference(header));
+  return CheckRemounted(header);
 }
 
 }  // namespace rigcal

@@ -1,7 +1,6 @@
 #include "server/pipeline/revise.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <tuple>
 
@@ -14,6 +13,8 @@
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
+#include "server/model/past.h"
+#include "server/pipeline/remounts.h"
 #include "server/report/edge_order.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
@@ -37,25 +38,14 @@ Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
 // The edge stays visible, with its reason, but takes no part.
 void Supersede(Edge& edge) {
   edge.state = EdgeState::kFailed;
-  edge.diagnoses = {{"superseded",
+  edge.diagnoses = {{std::string(kSupersededCode),
                      "session " + edge.session.str().substr(0, 16) + " was pushed again in a corrected form",
                      "Nothing: the edge of the later session counts."}};
 }
 
-// The remount that made the edge a thing of the past, if any. Edges without a session have no date: they stay.
-const storage::Remount* RemountAfter(const Edge& edge, const std::map<SessionId, Stamp>& captured_at,
-                                     const std::vector<storage::Remount>& remounts) {
-  const auto measured = captured_at.find(edge.session);
-  if (measured == captured_at.end()) return nullptr;
-  const auto found = std::find_if(remounts.begin(), remounts.end(), [&](const storage::Remount& remount) {
-    return (remount.sensor == edge.frame_a || remount.sensor == edge.frame_b) && measured->second < remount.captured_at;
-  });
-  return found != remounts.end() ? &*found : nullptr;
-}
-
 void MakePast(const storage::Remount& remount, Edge& edge) {
   edge.state = EdgeState::kFailed;
-  edge.diagnoses = {{"remounted",
+  edge.diagnoses = {{std::string(kRemountedCode),
                      "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
                          remount.session.str().substr(0, 16),
                      "Where no later session measured this pair, measure it anew; where one did, that one counts."}};
@@ -69,12 +59,11 @@ Result<std::map<SessionId, Stamp>> CapturedAt(storage::Store& store, const Robot
 }
 
 Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(const std::vector<storage::Remount> remounts, storage::LoadRemounts(store, robot));
-  if (remounts.empty()) return {};
-  RIGCAL_ASSIGN(const auto captured_at, CapturedAt(store, robot));
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
   for (Edge& edge : edges)
-    if (const auto* remount = RemountAfter(edge, captured_at, remounts); remount && edge.state == EdgeState::kGood)
-      MakePast(*remount, edge);
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
+        MakePast(*remount, edge);
   return {};
 }
 

@@ -8,9 +8,9 @@
 namespace rigcal::pipeline {
 
 // The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list.
-// Edges of a session that a later one repeats (storage::LoadSuperseded) are shown as superseded and take no part. The
-// reference is the one that the earliest captured session names (ties: smaller session id); without a session,
-// GraphOf's own rule.
+// Edges of a session that a later one repeats (storage::LoadSuperseded), and those of a sensor that was remounted
+// since, are failed there with that reason (IsPast) and take no part. The reference is the one that the earliest
+// captured session names (ties: smaller session id); without a session, GraphOf's own rule.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id
   Graph graph;

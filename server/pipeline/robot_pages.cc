@@ -6,6 +6,7 @@
 #include <set>
 
 #include "server/formats/parameters.h"
+#include "server/model/past.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/unreadable.h"
 #include "server/report/robot_pages.h"
@@ -135,6 +136,17 @@ Result<formats::SessionAnswer> SessionOf(const AnswerContext& context, const Rob
   return Fail(ErrorCode::kNotFound, "session " + name + " is of another robot", "See /robots/" + row.robot.str() + "/");
 }
 
+// What the newest revision says of good edges that it does not count.
+Result<std::map<EdgeId, Diagnosis>> PastEdges(const AnswerContext& context, const RobotId& robot) {
+  std::map<EdgeId, Diagnosis> past;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
+  if (!newest) return past;
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
+  for (const Edge& edge : revision.document->edges)
+    if (IsPast(edge)) past.emplace(edge.id, edge.diagnoses.front());
+  return past;
+}
+
 Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot, const std::string& name) {
   RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
   report::SessionInput input;
@@ -145,6 +157,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
+  RIGCAL_ASSIGN(input.past, PastEdges(context, robot));
   if (input.row.closed && input.row.pairs_waiting == 0)
     input.unreadable = WhyUnreadable(context.store, input.manifest, input.edges);
   RIGCAL_ASSIGN(std::string body, report::RenderSession(input));

@@ -51,6 +51,7 @@ struct SessionInput {
   SessionRow row;
   Manifest manifest;
   std::vector<Edge> edges;                                                // that it gave
+  std::map<EdgeId, Diagnosis> past = {};                                  // of those: no longer counted, and why
   std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.

@@ -25,11 +25,19 @@ std::vector<const Edge*> Sorted(const std::vector<Edge>& edges) {
   return sorted;
 }
 
-void FillEdge(Dictionary& row, const Edge& edge) {
+void FillPast(Dictionary& row, const Diagnosis& past) {
+  row.SetValue("LEVEL", "unknown");
+  row.SetValue("STATE", "past");
+  row.SetValue("WHY", past.what);
+  ShowValue(row, "CURE", "TEXT", past.cure);
+}
+
+void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosis>& past) {
   const bool good = edge.state == EdgeState::kGood;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
   row.SetValue("METHOD", MethodText(edge.method));
+  if (const auto why = past.find(edge.id); good && why != past.end()) return FillPast(row, why->second);
   row.SetValue("LEVEL", good ? "pass" : "fail");
   row.SetValue("STATE", good ? "good" : "failed");
   if (edge.diagnoses.empty()) return;
@@ -37,12 +45,13 @@ void FillEdge(Dictionary& row, const Edge& edge) {
   if (!good && !edge.diagnoses.front().cure.empty()) ShowValue(row, "CURE", "TEXT", edge.diagnoses.front().cure);
 }
 
-void FillEdges(Dictionary& page, const std::vector<Edge>& edges) {
+void FillEdges(Dictionary& page, const SessionInput& input) {
+  const std::vector<Edge>& edges = input.edges;
   if (edges.empty()) return page.ShowSection("NO_EDGES");
   Dictionary* list = page.AddSectionDictionary("EDGES");
   const std::vector<const Edge*> sorted = Sorted(edges);
   if (sorted.front()->state == EdgeState::kFailed) page.ShowSection("FAILED_FIRST");
-  for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge);
+  for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge, input.past);
 }
 
 // What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet.
@@ -144,7 +153,7 @@ Result<std::string> RenderSession(const SessionInput& input) {
   page.SetValue("ID", input.row.id.str());
   FillFacts(page, input);
   FillOutcome(page, input);
-  FillEdges(page, input.edges);
+  FillEdges(page, input);
   FillSheet(page, input);
   AddScript(page, "../../../../" + AssetPath("live.js"));
   return Expand("session.tpl", page);

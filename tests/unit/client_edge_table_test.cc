@@ -35,13 +35,15 @@ TEST(PrintEdges, GoodOnesInTheTableFailedOnesWithReasonAndCure) {
       << text;
 }
 
-TEST(PrintEdges, WhatIsPastIsNoFailure) {
-  std::string edges = kEdges;
-  edges.replace(edges.find("too_few_captures"), 16, "remounted");
+TEST(PrintEdges, PastOnesByReasonAndNotAsFailed) {
+  const std::string past = R"("state": "failed", "method": "stereo",
+    "diagnoses": [{"code": "remounted", "what": "sensor top was remounted", "cure": "Measure it anew"}]})";
   std::ostringstream out;
-  PrintEdges(Parsed(edges).Items(), out);
-  EXPECT_EQ(out.str().find("FAILED"), std::string::npos) << out.str();
-  EXPECT_NE(out.str().find("left - top:\n  only 2 captures"), std::string::npos) << out.str();
+  PrintEdges(Parsed(R"([{"frame_a": "left", "frame_b": "top", )" + past +
+                    R"(, {"frame_a": "top", "frame_b": "rear", )" + past + "]")
+                 .Items(),
+             out);
+  EXPECT_EQ(out.str(), "left - top, top - rear: PAST\n  sensor top was remounted\n");
 }
 
 TEST(PrintEdges, NothingForNoEdges) {

@@ -2,6 +2,7 @@
 
 #include "server/fleet/assess.h"
 #include "server/math/statistics.h"
+#include "server/model/past.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -69,6 +70,31 @@ TEST(Assess, PassesWhereAllIsWell) {
   const Verdict verdict = Rig().Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kPass);
   EXPECT_EQ(verdict.why, "Every sensor is known well enough and the edges agree with each other.");
+}
+
+Edge PastEdge(char letter, const std::string& a, const std::string& b, std::string_view code) {
+  Edge edge = FailedEdge(letter, a, b);
+  edge.diagnoses = {{std::string(code), "it was another time", "Measure it anew."}};
+  return edge;
+}
+
+TEST(Assess, PastEdgesHaveNotFailed) {
+  Rig rig;
+  rig.edges.push_back(PastEdge('d', "left", "right", kRemountedCode));  // measured again since
+  rig.edges.push_back(PastEdge('e', "left", "rear", kSupersededCode));  // left out of the correction
+  rig.solution.poses.push_back(PoseOf("rear"));
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  rig.edges.push_back(PastEdge('f', "top", "rear", kRemountedCode));
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why, "Top - rear was not measured since a sensor was remounted.");
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("calibrates top - rear anew"));
+}
+
+TEST(Assess, NothingIsKnownWhereAllIsPast) {
+  const Verdict verdict = Assess({PastEdge('a', "left", "right", kRemountedCode)}, GraphSolution());
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_THAT(verdict.why, HasSubstr("All that was calibrated is past"));
 }
 
 TEST(Assess, FailsByTheWorstEdge) {

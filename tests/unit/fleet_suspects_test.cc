@@ -100,6 +100,21 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why, HasSubstr("2026-02-01 09:30 UTC (bbbbbbbbbbbb) on the other"));
 }
 
+// What helps depends on where the edges come from.
+TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
+  Rig rig;
+  TwoPoses two;
+  two.sensor = SensorId("top");
+  two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[2].id};
+  rig.solution.suspects.two_poses.push_back(two);
+  rig.edges[1].session = SessionId(std::string(64, 'a'));
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("pushed without a session keep counting"));
+  rig.edges[2].session = SessionId(std::string(64, 'b'));
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("push the one with the later captured_at again with --remounted top"));
+  rig.edges[2].session = rig.edges[1].session;
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("whether top was moved during a session"));
+}
+
 TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
   Rig rig;
   rig.Suspect(1, 0.02);

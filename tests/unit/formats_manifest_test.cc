@@ -37,7 +37,7 @@ TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
   vicon.id = SensorId("vicon");
   vicon.kind = SensorKind::kTracker;
   manifest.header.sensors.push_back(vicon);
-  manifest.header.remounted = {SensorId("left")};
+  manifest.header.remounted = {SensorId("right")};
   manifest.header.skip_pairs = {{SensorId("vicon"), SensorId("left")}, {SensorId("left"), SensorId("right")}};
   Payload table = manifest.payloads.back();
   table.path = "vicon/poses.csv";

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 
+#include "server/model/past.h"
 #include "server/model/session.h"
 
 namespace rigcal {
@@ -107,6 +108,22 @@ TEST(ValidateHeader, SkippedPairsAreOfTwoSensors) {
                 h.skip_pairs = {{SensorId("left"), SensorId("left")}};
               }).what,
               HasSubstr("no pair with itself"));
+}
+
+TEST(ValidateHeader, ARemountedSensorIsMeasuredAnew) {
+  EXPECT_THAT(RefusalAfter([](auto& h) {
+                h.remounted = {SensorId("left")};
+                h.skip_pairs = {{SensorId("left"), SensorId("right")}};
+              }).what,
+              HasSubstr("remounted: \"left\" is in no pair that is calibrated"));
+}
+
+TEST(AddRemounted, InWhateverOrderAndHoweverOftenSensorsAreNamed) {
+  SessionHeader one, other;
+  for (const char* name : {"left", "top", "left", "body"}) AddRemounted(SensorId(name), one);
+  for (const char* name : {"top", "body", "left"}) AddRemounted(SensorId(name), other);
+  EXPECT_EQ(one.remounted, (std::vector<SensorId>{SensorId("body"), SensorId("left"), SensorId("top")}));
+  EXPECT_EQ(other.remounted, one.remounted);
 }
 
 TEST(ValidateHeader, TextsMustBeReadable) {

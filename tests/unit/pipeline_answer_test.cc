@@ -37,6 +37,27 @@ TEST_F(AnswerTest, LookupComposesThroughTheReference) {
   EXPECT_NE(answer->find("\"p_m\":[1.00"), std::string::npos) << *answer;
 }
 
+TEST_F(AnswerTest, EdgesThatNoLongerCountArePastWithTheirReason) {
+  const SessionId first = StoreSession("r", {{"left/01.png", "1"}, {"right/01.png", "2"}});
+  Edge edge = GivenEdge("r", "left", "right", 0.1);
+  edge.session = first;
+  edge.id = EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b);
+  StoreEdges({edge});
+  clock_.now.ns += 1'000'000'000;
+  StoreSession("r", {{"left/01.png", "3"}, {"right/01.png", "4"}}, {SensorId("right")});
+  StepAll();
+  const auto edges = Ask("edges", R"({"robot":"r"})");
+  ASSERT_TRUE(edges) << Sentence(edges.error());
+  EXPECT_EQ(edges->find("\"state\":\"good\""), std::string::npos) << *edges;
+  EXPECT_NE(edges->find("\"code\":\"remounted\""), std::string::npos) << *edges;
+  const auto page = AnswerPage({*store_, clock_, revisions_cache_, clock_.now, "http://127.0.0.1:1"},
+                               "/robots/r/sessions/" + first.str() + "/", "");
+  ASSERT_TRUE(page) << Sentence(page.error());
+  EXPECT_NE(page->body.find(">past</span> <span class=\"why\" dir=\"auto\">sensor right was remounted"),
+            std::string::npos)
+      << page->body;
+}
+
 // Block vectors that scatter twice as far as the edges' own information says.
 std::vector<Edge> TriangleWithBlocks(const std::string& robot) {
   std::vector<Edge> edges = Triangle(robot);

@@ -42,8 +42,9 @@ std::string WallPly() {
 class PipelineCloudsTest : public PipelineTest {
  protected:
   // Two cameras and a lidar; cameras see different boards, so that they give no pair.
-  SessionId StoreRig(const std::map<std::string, std::string>& files) {
+  SessionId StoreRig(const std::map<std::string, std::string>& files, const std::vector<SensorId>& remounted = {}) {
     Manifest manifest;
+    manifest.header.remounted = remounted;
     manifest.header.robot = RobotId("r");
     manifest.header.reference = SensorId("lidar");
     manifest.header.captured_at = clock_.now;
@@ -131,6 +132,17 @@ TEST_F(PipelineCloudsTest, APublishedRevisionHoldsTheColouredCloud) {
   EXPECT_GT(red, 700);  // of 41 x 41 before the camera, without the column in the middle and its neighbours
   EXPECT_GT(blue, 700);
   EXPECT_EQ(green, 1681);  // all that lie behind
+}
+
+// A picture from where the camera was before does not fit where it is now.
+TEST_F(PipelineCloudsTest, NoColourComesFromACameraThatWasRemountedSince) {
+  StorePoses();
+  StoreRig({{"near/01.png", PngOf(kRed, kBlue)}, {"far/01.png", PngOf(kRed, kBlue)}, {"lidar/01.ply", WallPly()}});
+  clock_.now.ns += 1'000'000'000;
+  StoreRig({{"near/01.png", PngOf(kBlue, kBlue)}}, {SensorId("near")});
+  StepAll();
+  EXPECT_TRUE(std::filesystem::exists(Newest() / "overlay/far.jpg"));
+  EXPECT_FALSE(std::filesystem::exists(Newest() / "overlay/near.jpg"));
 }
 
 TEST_F(PipelineCloudsTest, PublishingAgainGivesTheSameBytes) {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <regex>
 
+#include "server/model/past.h"
 #include "tests/unit/report_sample.h"
 
 namespace rigcal::report {
@@ -40,6 +41,27 @@ TEST(ReportRevision, VerdictSaysWhyAndWhatToDo) {
   const std::string banner = Between(PageOf(SampleReport()), "<section class=\"banner warn\"", "</section>");
   EXPECT_THAT(banner, HasSubstr("One edge failed: front_left to rear"));
   EXPECT_THAT(banner, HasSubstr("Repeat the session for front_left and rear"));
+}
+
+TEST(ReportRevision, PastEdgesComeLastAndHaveNotFailed) {
+  ReportInput input = SampleReport();
+  const std::string before = PageOf(input);
+  Edge past = FailedEdge();
+  past.frame_b = SensorId("front_right");
+  past.id = EdgeId(Sha256Of("past").str());
+  past.diagnoses = {{std::string(kRemountedCode), "sensor front_right was remounted", "Measure it anew."}};
+  input.revision.edges.push_back(past);
+  const std::string page = PageOf(input);
+  EXPECT_THAT(page, HasSubstr("1 failed, 1 past"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"badge unknown\">past</span>"));
+  const auto count = [](const std::string& text, const std::string& word) {
+    std::size_t found = 0;
+    for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count(page, "<path"), count(before, "<path"));  // no line of the drawing
+  EXPECT_GT(page.rfind("badge unknown\">past<"), page.rfind("badge pass\">good<"));
+  EXPECT_THAT(RenderRevision(input, "{}").value().at("edges.csv"), HasSubstr("front_left,front_right,past,"));
 }
 
 TEST(ReportRevision, ErrorOnOneAxisIsShownAtThatAxis) {

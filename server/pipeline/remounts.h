@@ -1,0 +1,24 @@
+// READ: which sensors of a robot were moved on purpose, and after which of its sessions.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+
+class Remounts {
+ public:
+  [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const RobotId& robot);
+  // The earliest remount of the sensor after this session was captured; null: none. What has no session has no date.
+  [[nodiscard]] const storage::Remount* After(const SessionId& session, const SensorId& sensor) const;
+
+ private:
+  [[nodiscard]] bool Names(const SessionId& session, const SensorId& sensor) const;
+
+  std::vector<storage::Remount> remounts_;  // the earliest captured first
+  std::map<SessionId, Stamp> captured_at_;
+};
+
+}  // namespace rigcal::pipeline
