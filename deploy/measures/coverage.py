@@ -49,6 +49,14 @@ def given(context):
         yield equal(name + "_failed_edges", case["failed_edges"], 0)
 
 
+def lidar_beams(context):
+    result = context.run_json("rig_coverage", "lidar_beams", 24 if context.full else 6, timeout=20000)["lidar_beams"]
+    yield equal("lidar_pair_beams_5_mm_off_failed_edges", result["failed"], 0)
+    yield at_most("lidar_pair_beams_5_mm_off_sigmas", result["worst_sigmas"], 4.0)
+    yield at_most("lidar_pair_beams_5_mm_off_mean_square", result["mean_square"], 2.0)
+    yield info("lidar_pair_beams_5_mm_off_mean_square_if_not_given", result["mean_square_without_beams"])
+
+
 def turned(context):
     result = context.run_json("rig_coverage", "turned", 5 if context.full else 1, timeout=20000)["turned"]
     for name, case in result.items():
@@ -94,5 +102,5 @@ def jackknives(context):
 
 
 def run(context):
-    for part in (jackknives, same_bytes, coverage, motions, given, turned):
+    for part in (jackknives, same_bytes, coverage, motions, given, lidar_beams, turned):
         yield from part(context)

@@ -78,7 +78,7 @@ void AddBeams(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
   if (!(sigma_m > 0)) return;
   const std::vector<char> seen = BeamsSeen(problem, estimate);
   for (std::size_t group = 0; group < seen.size(); ++group)
-    constants.push_back({"range biases of single beams of " + problem.lidar.id.str(),
+    constants.push_back({SingleBeamsOf(problem.lidar.id),
                          [&problem, &estimate, sigma_m, group, is_seen = seen[group]](double steps) -> Result<Se3> {
                            if (is_seen == 0) return EdgePose(problem, estimate.T_cam_lidar);
                            RIGCAL_ASSIGN(const LidarCameraEstimate moved,

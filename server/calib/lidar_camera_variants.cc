@@ -1,8 +1,5 @@
 #include "server/calib/lidar_camera_variants.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "server/calib/intrinsics_variants.h"
 
 namespace rigcal::calib {
@@ -19,15 +16,6 @@ tl::expected<CameraEstimate, Diagnosis> CameraWithout(const LidarCameraProblem& 
     if (capture.capture != without) camera.views.emplace_back(capture.capture, *capture.view);
   }
   return EstimateCamera(camera, &estimate.camera);
-}
-
-constexpr double kGroupsFrom_rad = -M_PI / 4, kGroup_rad = M_PI / 2 / kBeamGroups;
-
-// By elevation above the plane across the lidar's z, about which beams turn.
-std::size_t BeamGroupOf(const Eigen::Vector3f& p_m) {
-  const double elevation_rad = std::atan2(p_m.z(), std::hypot(p_m.x(), p_m.y()));
-  const double at = std::floor((elevation_rad - kGroupsFrom_rad) / kGroup_rad);
-  return static_cast<std::size_t>(std::clamp(at, 0.0, kBeamGroups - 1.0));
 }
 
 }  // namespace
@@ -90,7 +78,7 @@ std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCamera
   std::vector<char> seen(kBeamGroups, 0);
   for (const LidarCameraCapture& capture : problem.captures)
     if (const auto used = estimate.patch_idx.find(capture.capture); used != estimate.patch_idx.end())
-      for (const Eigen::Vector3f& p : capture.cloud->candidates[used->second].points_m) seen[BeamGroupOf(p)] = 1;
+      MarkBeams(capture.cloud->candidates[used->second], seen);
   return seen;
 }
 
@@ -100,9 +88,7 @@ Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& probl
   for (const LidarCameraCapture& capture : problem.captures) {
     const auto used = estimate.patch_idx.find(capture.capture);
     if (used == estimate.patch_idx.end()) continue;
-    PlanePatch patch = capture.cloud->candidates[used->second];
-    for (Eigen::Vector3f& p : patch.points_m)
-      if (BeamGroupOf(p) == group) p += static_cast<float>(longer_m) * p.normalized();
+    const PlanePatch patch = WithBeamsMoved(capture.cloud->candidates[used->second], group, longer_m);
     start.moments[capture.capture] = MomentsOf(patch, estimate.range_sigma_m);
   }
   return SolvedAgain(problem, start);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "server/calib/beam_groups.h"
 #include "server/calib/lidar_camera.h"
 
 namespace rigcal::calib {
@@ -27,9 +28,7 @@ namespace rigcal::calib {
 // Indices of those whose sigma is above zero; none if the intrinsics are not given or exact.
 [[nodiscard]] std::vector<std::size_t> UncertainIntrinsics(const LidarCameraProblem& problem);
 
-// Beams of a turning lidar err each by its own constant. Which beam took a point is not said: points whose elevation is
-// the same to 1.5 degrees count as of one, the same groups in every problem of a lidar.
-constexpr std::size_t kBeamGroups = 60;
+// Of the groups of beams (beam_groups.h): which took a point of a board; all of one with longer ranges.
 [[nodiscard]] std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& problem,
                                                                const LidarCameraEstimate& estimate, std::size_t group,

@@ -3,8 +3,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 
+#include "server/calib/beam_groups.h"
 #include "server/calib/leave_one_out.h"
+#include "server/calib/lidar_lidar_beams.h"
 #include "server/math/jackknife.h"
 
 namespace rigcal::calib {
@@ -46,6 +49,25 @@ Result<std::vector<Contribution>> RangeContributions(const LidarLidarProblem& pr
   return ContributionsOf(constants);
 }
 
+// Every group of beams errs by the given sigma alone as well.
+void AddBeams(const Sensor& lidar, const Directions& shifts, std::vector<Contribution>& contributions) {
+  const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
+  if (!(sigma_m > 0)) return;
+  Contribution beams{SingleBeamsOf(lidar.id), Matrix6d(sigma_m * sigma_m * shifts * shifts.transpose())};
+  for (Eigen::Index group = 0; group < shifts.cols(); ++group) beams.shifts.push_back(sigma_m * shifts.col(group));
+  contributions.push_back(std::move(beams));
+}
+
+void AddBeams(const LidarLidarProblem& problem, const LidarLidarWork& work, const Se3& T_map_moving,
+              const Directions& unknown, std::vector<Contribution>& contributions) {
+  if (!(std::max(problem.lidar_a.range_bias_sigma_m.value_or(0.0), problem.lidar_b.range_bias_sigma_m.value_or(0.0)) >
+        0))
+    return;
+  const BeamShifts shifts = ShiftsByBeams(problem, work, T_map_moving, unknown);
+  AddBeams(problem.lidar_a, work.a_is_map ? shifts.of_map : shifts.of_moving, contributions);
+  AddBeams(problem.lidar_b, work.a_is_map ? shifts.of_moving : shifts.of_map, contributions);
+}
+
 }  // namespace
 
 Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
@@ -65,6 +87,7 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
   const bool jackknife = m >= kCloudsForJackknife;
   Matrix6d C = jackknife ? ShrinkTowardsModel(JackknifeCovariance(d), C_model, static_cast<int>(m)) : C_model;
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
+  AddBeams(problem, work, T_map_moving, unknown, contributions);
   contributions.push_back(MethodContribution(pose, B, C));
   for (const Contribution& contribution : contributions) C += contribution.covariance;
   Matrix6d Omega = Symmetrized(B * (B.transpose() * C * B).inverse() * B.transpose());

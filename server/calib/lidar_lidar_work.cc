@@ -173,16 +173,18 @@ std::vector<StartEnd> TryStarts(const LidarLidarWork& work, std::size_t first_le
   return ends;
 }
 
+Directions StepsTo(const Matrix6d& H, const Directions& gradients, const Directions& locked) {
+  const Matrix6d keep = Matrix6d::Identity() - locked * locked.transpose();
+  const double largest = std::max(H.diagonal().maxCoeff(), 1e-9);
+  const Matrix6d solvable = keep * H * keep + largest * (locked * locked.transpose() + 1e-9 * Matrix6d::Identity());
+  return -solvable.ldlt().solve(keep * gradients);
+}
+
 LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const Directions& locked) {
   const std::vector<NormalSums> sums = SumsOfBlocks(work, T);
   NormalSums all;
   for (const NormalSums& sum : sums) all.H += sum.H, all.g += sum.g;
-  const Matrix6d keep = Matrix6d::Identity() - locked * locked.transpose();
-  const auto step_without = [&](const Matrix6d& H, const Vector6d& g) -> Vector6d {
-    const double largest = std::max(H.diagonal().maxCoeff(), 1e-9);
-    const Matrix6d solvable = keep * H * keep + largest * (locked * locked.transpose() + 1e-9 * Matrix6d::Identity());
-    return -solvable.ldlt().solve(keep * g);
-  };
+  const auto step_without = [&](const Matrix6d& H, const Vector6d& g) { return Vector6d(StepsTo(H, g, locked)); };
   // What is left of the gradient at the common pose is no block's doing.
   const Vector6d common = step_without(all.H, all.g);
   LidarLidarBlocks blocks;

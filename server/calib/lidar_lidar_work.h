@@ -49,6 +49,9 @@ struct StartEnd {
 // Which of `work.clouds` these few captures are.
 [[nodiscard]] std::vector<std::size_t> StartCaptures(const LidarLidarWork& work);
 
+// One Gauss-Newton step against each gradient (a column), but along `locked`.
+[[nodiscard]] Directions StepsTo(const Matrix6d& H, const Directions& gradients, const Directions& locked);
+
 // The pose without each block: the captures, or with one capture either half of its points. One Gauss-Newton step of
 // the last stage from the common pose, whose pairs it keeps.
 struct LidarLidarBlocks {

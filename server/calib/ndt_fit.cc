@@ -104,6 +104,30 @@ NdtScore RightScore(const LeftSums& sums, const Se3& T_a_b) {
   return score;
 }
 
+// Left, of all causes, for one point and the voxels about it.
+void AddMoves(const NdtMap& map, const NdtMoves& moves, std::size_t point, const NdtPoint& moving, const Se3& T_a_b,
+              Eigen::Matrix<double, 6, Eigen::Dynamic>& left) {
+  const double per_m = 1 / map.voxel_m, d2 = ExponentOf(map.voxel_m);
+  const Eigen::Vector3d q = T_a_b * moving.p_m;
+  if (!(q.cwiseAbs().maxCoeff() * per_m < kCellsMax - 4)) return;
+  const Eigen::Vector3i at = (q * per_m).array().floor().cast<int>();
+  const Eigen::Matrix3d R = T_a_b.R();
+  for (const auto& [dx, dy, dz] : kNeighbours) {
+    const int number = map.index.Find(CellKeyOf(at.x() + dx, at.y() + dy, at.z() + dz));
+    if (number < 0) continue;
+    const NdtVoxel& voxel = map.voxels[static_cast<std::size_t>(number)];
+    const Eigen::Vector3d e = q - voxel.mean_m;
+    const double weight = moving.weight * d2 * std::exp(-0.5 * d2 * e.dot(voxel.information * e));
+    const auto add = [&](std::size_t cause, const Eigen::Vector3d& moved_m) {
+      const Eigen::Vector3d force = weight * (voxel.information * moved_m);
+      left.col(static_cast<Eigen::Index>(cause)).head<3>() += force;
+      left.col(static_cast<Eigen::Index>(cause)).tail<3>() += q.cross(force);
+    };
+    for (const NdtMove& move : moves.of_points[point]) add(move.cause, R * move.by_m);
+    for (const NdtMove& move : moves.of_voxels[static_cast<std::size_t>(number)]) add(move.cause, -move.by_m);
+  }
+}
+
 Vector6d Limited(Vector6d step) {
   const double excess = std::max(step.head<3>().norm() / kShiftMax_m, step.tail<3>().norm() / kTurnMax_rad);
   if (excess > 1) step /= excess;
@@ -148,6 +172,14 @@ NdtScore ScoreOf(const std::vector<NdtTerm>& terms, const Se3& T_a_b) {
   LeftSums sums;
   for (const LeftSums& part : parts) sums.Add(part);
   return RightScore(sums, T_a_b);
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes,
+                                                         const Se3& T_a_b) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> left(6, static_cast<Eigen::Index>(causes));
+  left.setZero();
+  for (std::size_t i = 0; i < term.points->size(); ++i) AddMoves(*term.map, moves, i, (*term.points)[i], T_a_b, left);
+  return Adjoint(T_a_b).transpose() * left;
 }
 
 NdtFit FitNdt(const std::vector<NdtTerm>& terms, const Se3& start, double step_max, const Directions& locked) {

@@ -31,6 +31,18 @@ struct NdtScore {
 };
 [[nodiscard]] NdtScore ScoreOf(const std::vector<NdtTerm>& terms, const Se3& T_a_b);
 
+// Causes that each move a point (frame of the moving cloud) or the mean of a voxel (frame of the map).
+struct NdtMove {
+  std::size_t cause = 0;
+  Eigen::Vector3d by_m = Eigen::Vector3d::Zero();
+};
+struct NdtMoves {
+  std::vector<std::vector<NdtMove>> of_points, of_voxels;  // side by side with the term's
+};
+// What one unit of each cause does to the gradient, a column each; Gauss-Newton as the information.
+[[nodiscard]] Eigen::Matrix<double, 6, Eigen::Dynamic> GradientByMoves(const NdtTerm& term, const NdtMoves& moves,
+                                                                       std::size_t causes, const Se3& T_a_b);
+
 struct NdtFit {
   Se3 T_a_b;
   NdtScore score;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/beam_groups.h"
 #include "server/calib/leave_one_out.h"
 #include "server/calib/tracker_lidar_work.h"
 #include "server/math/covariance.h"
@@ -30,14 +31,36 @@ Result<Vector6d> WithoutCapture(const TrackerLidarProblem& problem, const Tracke
   return Vector6d((EdgePose(problem, work.state.T_body_lidar).Inverse() * T_a_b).Log());
 }
 
+std::vector<char> BeamsSeen(const TrackerLidarWork& work) {
+  std::vector<char> seen(kBeamGroups, 0);
+  for (const auto& patches : work.patches)
+    for (const ChosenPatch& chosen : patches) MarkBeams(*chosen.patch, seen);
+  return seen;
+}
+
+// Every group of beams errs by the given sigma alone as well.
+void AddBeams(const TrackerLidarProblem& problem, const TrackerLidarWork& work, double sigma_m,
+              std::vector<GivenConstant>& constants) {
+  const std::vector<char> seen = BeamsSeen(work);
+  for (std::size_t group = 0; group < seen.size(); ++group)
+    constants.push_back({SingleBeamsOf(problem.lidar.id),
+                         [&problem, &work, sigma_m, group, is_seen = seen[group]](double steps) -> Result<Se3> {
+                           if (is_seen == 0) return EdgePose(problem, work.state.T_body_lidar);
+                           return PoseFrom(problem, ProblemWithBeamsMoved(work, group, steps * sigma_m), work.state);
+                         }});
+}
+
 std::vector<GivenConstant> ConstantsOf(const TrackerLidarProblem& problem, const TrackerLidarWork& work) {
   const double sigma_m = problem.lidar.range_bias_sigma_m.value_or(0.0);
   if (!(sigma_m > 0)) return {};
-  return {{"range bias of " + problem.lidar.id.str(), [&problem, &work, sigma_m](double steps) {
-             StaticProblem moved = work.problem;
-             moved.range_bias_m += steps * sigma_m;
-             return PoseFrom(problem, moved, work.state);
-           }}};
+  std::vector<GivenConstant> constants = {
+      {"range bias of " + problem.lidar.id.str(), [&problem, &work, sigma_m](double steps) {
+         StaticProblem moved = work.problem;
+         moved.range_bias_m += steps * sigma_m;
+         return PoseFrom(problem, moved, work.state);
+       }}};
+  AddBeams(problem, work, sigma_m, constants);
+  return constants;
 }
 
 // In the edge's own tangent, right at b: X^-1 Exp(-Ad(X) xi) = (X Exp(xi))^-1.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/beam_groups.h"
 #include "server/calib/tracker_lidar_diagnoses.h"
 
 namespace rigcal::calib {
@@ -331,6 +332,15 @@ OrDiagnosis<void> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWor
                           kTrackerSigma_rad * std::sqrt(work.factor_rotation)};
   work.motion = ReachOf(work.state.T_world_body, work.state.T_body_lidar, noise);
   return {};
+}
+
+StaticProblem ProblemWithBeamsMoved(const TrackerLidarWork& work, std::size_t group, double longer_m) {
+  StaticProblem moved = work.problem;
+  for (std::size_t k = 0; k < work.patches.size(); ++k)
+    for (std::size_t i = 0; i < work.patches[k].size(); ++i)
+      moved.captures[k].seen[i].moments =
+          WeighedMoments(WithBeamsMoved(*work.patches[k][i].patch, group, longer_m), work.range_sigma_m);
+  return moved;
 }
 
 TrackerLidarCheck CheckOf(const TrackerLidarWork& work, std::size_t position) {

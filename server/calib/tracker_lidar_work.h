@@ -42,6 +42,8 @@ struct TrackerLidarWork {
 // Solves, finds the tracker's noise, what contradicts and what is open, until nothing changes.
 [[nodiscard]] tl::expected<void, Diagnosis> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
 [[nodiscard]] TrackerLidarCheck CheckOf(const TrackerLidarWork& work, std::size_t position);
+// The refinement's problem with the ranges of one group of beams longer.
+[[nodiscard]] StaticProblem ProblemWithBeamsMoved(const TrackerLidarWork& work, std::size_t group, double longer_m);
 // Uncertainty of the edge's T_a_b.
 [[nodiscard]] Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem,
                                                         const TrackerLidarWork& work);

@@ -30,6 +30,7 @@ struct RigCase {
 void PrintCoverage(int seeds, int first);
 void PrintMotions(int seeds, int first);
 void PrintGiven(int seeds);
+void PrintLidarBeams(int seeds);
 void PrintTurned(int seeds);
 void PrintSameBytes(int seeds);
 void PrintTime();

@@ -12,6 +12,7 @@ bool Print(const std::string& what, int seeds, int first) {
   if (what == "coverage") return PrintCoverage(seeds, first), true;
   if (what == "motions") return PrintMotions(seeds, first), true;
   if (what == "given") return PrintGiven(seeds), true;
+  if (what == "lidar_beams") return PrintLidarBeams(seeds), true;
   if (what == "turned") return PrintTurned(seeds), true;
   if (what == "same_bytes") return PrintSameBytes(seeds), true;
   if (what == "time") return PrintTime(), true;
@@ -24,7 +25,8 @@ int main(int argc, char** argv) {
   const int seeds = argc > 2 ? std::atoi(argv[2]) : 1, first = argc > 3 ? std::atoi(argv[3]) : 1;
   std::printf("{");
   if (argc < 2 || seeds < 1 || !Print(argv[1], seeds, first)) {
-    std::fprintf(stderr, "usage: rig_coverage coverage|motions|given|turned|same_bytes|time [SEEDS [FIRST]]\n");
+    std::fprintf(stderr,
+                 "usage: rig_coverage coverage|motions|given|lidar_beams|turned|same_bytes|time [SEEDS [FIRST]]\n");
     return 2;
   }
   std::printf("}\n");

@@ -208,9 +208,50 @@ TEST(LidarLidar, ARangeBiasGivenIsAContribution) {
   problem.lidar_b.range_bias_sigma_m = 0.02;
   const Edge edge = EstimateLidarLidarEdge(problem);
   ASSERT_EQ(edge.state, EdgeState::kGood);
-  ASSERT_EQ(edge.uncertainty.contributions.size(), 3u);
+  ASSERT_EQ(edge.uncertainty.contributions.size(), 5u);
   EXPECT_EQ(edge.uncertainty.contributions[0].name, "range bias of horizontal");
   EXPECT_GT(edge.uncertainty.contributions[0].covariance.trace(), 1e-8);
+}
+
+const Contribution& Named(const Edge& edge, const std::string& name) {
+  static const Contribution none;
+  for (const Contribution& part : edge.uncertainty.contributions)
+    if (part.name == name) return part;
+  ADD_FAILURE() << name;
+  return none;
+}
+
+// All groups of beams together are what all ranges share: that is registered anew, these are linear at the pose. Either
+// lidar makes the map in one of the two problems, and either is a in one.
+TEST(LidarLidar, BeamsTogetherMoveThePoseAsABiasOfAllRanges) {
+  for (const bool thinned : {false, true}) {
+    LidarLidarProblem problem = RecordedIn(VirtualRoom(), 2, 39);
+    for (LidarLidarCapture& capture : problem.captures) {  // the denser lidar makes the map
+      std::vector<Eigen::Vector3f>& cloud = thinned ? capture.a_m : capture.b_m;
+      std::vector<Eigen::Vector3f> half;
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        if ((i / 32) % 2 == 0) half.push_back(cloud[i]);
+      cloud = half;
+    }
+    problem.lidar_a.range_bias_sigma_m = 0.004;
+    problem.lidar_b.range_bias_sigma_m = 0.008;
+    const std::size_t shifts = 60;
+    for (const bool exchanged : {false, true}) {
+      const Edge edge = EstimateLidarLidarEdge(exchanged ? Exchanged(problem) : problem);
+      ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses.front().what;
+      for (const std::string lidar : {"horizontal", "tilted"}) {
+        const std::vector<Vector6d> beams = Named(edge, "range biases of single beams of " + lidar).shifts;
+        ASSERT_EQ(beams.size(), shifts);
+        Vector6d sum = Vector6d::Zero();
+        for (const Vector6d& beam : beams) sum += beam;
+        const Vector6d all = Named(edge, "range bias of " + lidar).shifts.at(0);
+        EXPECT_GT(all.norm(), 1e-4) << lidar;
+        EXPECT_LT((sum - all).norm(), 0.25 * all.norm())
+            << lidar << (thinned ? " thinned" : "") << (exchanged ? " exchanged\n" : "\n") << sum.transpose() << "\n"
+            << all.transpose();
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <random>
 
 #include "server/calib/tracker_lidar_work.h"
 #include "server/math/covariance.h"
@@ -315,13 +317,64 @@ TEST(TrackerLidar, AGivenRangeBiasIsAContribution) {
   problem.lidar.range_bias_sigma_m = 0.02;
   const Edge edge = EstimateTrackerLidarEdge(problem);
   ASSERT_EQ(edge.state, EdgeState::kGood);
-  ASSERT_EQ(edge.uncertainty.contributions.size(), 1u);
+  ASSERT_EQ(edge.uncertainty.contributions.size(), 2u);
   EXPECT_EQ(edge.uncertainty.contributions[0].name, "range bias of top");
+  EXPECT_EQ(edge.uncertainty.contributions[1].name, "range biases of single beams of top");
+  EXPECT_EQ(edge.uncertainty.contributions[1].shifts.size(), 60u);
   EXPECT_EQ(Find(edge.diagnoses, "range_taken_as_exact"), nullptr);
   EXPECT_LT(WorstSigmas(body.X, edge.T_a_b, edge.uncertainty), 6);
   problem.range_bias_m = 0.02;  // known: then it moves nothing
   const Edge corrected = EstimateTrackerLidarEdge(problem);
   EXPECT_LT(ErrorOf(body.X, corrected.T_a_b).head<3>().norm(), 0.004);
+}
+
+// Of all ranges at once the refinement knows by itself; groups of beams are points moved: together they are the same.
+TEST(TrackerLidar, BeamsTogetherMoveThePoseAsABiasOfAllRanges) {
+  TrackerLidarProblem problem = Scanned(Driven(Drive::kFree, 16, 0.3, 13), Noisy(), 13);
+  problem.lidar.range_bias_sigma_m = 0.01;
+  for (const bool tracker_is_a : {true, false}) {
+    problem.tracker_is_a = tracker_is_a;
+    const Edge edge = EstimateTrackerLidarEdge(problem);
+    ASSERT_EQ(edge.state, EdgeState::kGood);
+    ASSERT_EQ(edge.uncertainty.contributions.size(), 2u);
+    const Vector6d all = edge.uncertainty.contributions[0].shifts.at(0);
+    Vector6d sum = Vector6d::Zero();
+    for (const Vector6d& beam : edge.uncertainty.contributions[1].shifts) sum += beam;
+    EXPECT_GT(all.norm(), 1e-4);
+    EXPECT_LT((sum - all).norm(), 0.05 * all.norm()) << sum.transpose() << "\n" << all.transpose();
+    EXPECT_GT(edge.uncertainty.contributions[1].covariance.trace(), 1e-8);
+  }
+}
+
+// Every beam is off by a constant of its own, the same in all captures.
+TEST(TrackerLidar, AGivenRangeBiasSigmaCoversBeamsThatErrEachByItself) {
+  constexpr unsigned kSeeds = 8;
+  constexpr double kBias_m = 0.02, kBeam_rad = 1.5 * M_PI / 180;
+  double squares = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    const VirtualBody body = Driven(Drive::kFree, 16, 0.3, 800 + seed);
+    TrackerLidarProblem problem = Scanned(body, Noisy(), 800 + seed);
+    problem.tracker_is_a = seed % 2 == 0;
+    problem.lidar.range_bias_sigma_m = kBias_m;
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, kBias_m);
+    std::map<int, double> bias_m;
+    for (int beam = -60; beam < 60; ++beam) bias_m[beam] = normal(random);
+    for (TrackerLidarCapture& capture : problem.captures)
+      for (CloudView& cloud : capture.clouds)
+        for (PlanePatch& patch : cloud.candidates)
+          for (Eigen::Vector3f& p : patch.points_m) {
+            const double elevation_rad = std::atan2(p.z(), std::hypot(p.x(), p.y()));
+            p += static_cast<float>(bias_m[static_cast<int>(std::floor(elevation_rad / kBeam_rad))]) * p.normalized();
+          }
+    const Edge edge = EstimateTrackerLidarEdge(problem);
+    ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses.front().what;
+    const Vector6d error = ErrorOf(problem.tracker_is_a ? body.X : body.X.Inverse(), edge.T_a_b);
+    squares += error.dot(edge.uncertainty.Omega * error) / 6 / kSeeds;
+  }
+  RecordProperty("mean_squared_ratio", std::to_string(squares));
+  EXPECT_GT(squares, 0.05);
+  EXPECT_LT(squares, 2.0);
 }
 
 }  // namespace

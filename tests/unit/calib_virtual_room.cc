@@ -1,6 +1,8 @@
 #include "tests/unit/calib_virtual_room.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <random>
 
 namespace rigcal::calib {
@@ -101,6 +103,20 @@ LidarLidarProblem RecordedIn(const VirtualRoom& room, int captures, unsigned see
                                 {}});
   }
   return problem;
+}
+
+void SpoilBeams(double sigma_m, unsigned seed, LidarLidarProblem& problem) {
+  std::mt19937 random(seed);
+  for (std::vector<Eigen::Vector3f> LidarLidarCapture::*cloud : {&LidarLidarCapture::a_m, &LidarLidarCapture::b_m}) {
+    std::map<long, double> bias_m;
+    for (LidarLidarCapture& capture : problem.captures)
+      for (Eigen::Vector3f& p : capture.*cloud) {
+        const double elevation_deg = std::atan2(p.z(), std::hypot(p.x(), p.y())) * 180 / M_PI;
+        const auto [bias, is_new] = bias_m.try_emplace(std::lround(20 * elevation_deg), 0.0);
+        if (is_new) bias->second = sigma_m * Noise(random);
+        p += static_cast<float>(bias->second) * p.normalized();
+      }
+  }
 }
 
 LidarLidarProblem Exchanged(const LidarLidarProblem& problem) {

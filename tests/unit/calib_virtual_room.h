@@ -21,6 +21,8 @@ struct VirtualRoom {
 
 // Captures from different places of the room; every random number from `seed`.
 [[nodiscard]] LidarLidarProblem RecordedIn(const VirtualRoom& room, int captures, unsigned seed);
+// Every beam of both lidars is off by a constant of its own, drawn from `seed`; a beam is what has one elevation.
+void SpoilBeams(double sigma_m, unsigned seed, LidarLidarProblem& problem);
 // The same pair the other way round.
 [[nodiscard]] LidarLidarProblem Exchanged(const LidarLidarProblem& problem);
 
