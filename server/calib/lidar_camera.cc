@@ -152,6 +152,18 @@ bool DropContradicting(const LidarCameraProblem& problem, LidarCameraWork& work,
   return any;
 }
 
+// Boards whose normals lie in one plane, as those of a robot that turns on a flat floor, tell five of six numbers.
+OrDiagnosis<void> HoldUntold(const LidarCameraProblem& problem, LidarCameraWork& work) {
+  const NormalSpread spread = SpreadOf(work.planes);
+  work.held.reset();
+  if (spread.sigma_m <= kNormalSigmaMax_m) return {};
+  if (spread.next_sigma_m > kNormalSigmaGood_m)
+    return tl::unexpected(NoNormalSpread(problem, spread.cone_deg, spread.sigma_m));
+  const Se3& drawn = problem.T_cam_lidar_nominal ? *problem.T_cam_lidar_nominal : work.T_cam_lidar;
+  work.held = HeldDirection{spread.axis_cam, spread.axis_cam.dot(drawn.p_m)};
+  return {};
+}
+
 OrDiagnosis<void> Refine(const LidarCameraProblem& problem, LidarCameraWork& work, std::vector<Diagnosis>& notes) {
   std::vector<CaptureId> dropped;
   for (int round = 0; round < kChoicesMax; ++round) {
@@ -170,6 +182,15 @@ OrDiagnosis<void> Refine(const LidarCameraProblem& problem, LidarCameraWork& wor
     if (auto solved = Solve(problem, work); !solved) return solved;
   }
   return {};
+}
+
+// The directions count as the normals lie in the end: until then a pose of a board may be the wrong one of two.
+OrDiagnosis<void> RefineTold(const LidarCameraProblem& problem, LidarCameraWork& work, std::vector<Diagnosis>& notes) {
+  if (auto spread = HoldUntold(problem, work); !spread) return spread;
+  if (auto refined = Refine(problem, work, notes); !refined) return refined;
+  const bool held = work.held.has_value();
+  if (auto spread = HoldUntold(problem, work); !spread) return spread;
+  return held || work.held ? Refine(problem, work, notes) : OrDiagnosis<void>();
 }
 
 // Chi-square per degree of freedom: three numbers of each capture's plane against the pose.
@@ -213,12 +234,14 @@ LidarCameraEstimate Finished(const LidarCameraProblem& problem, const LidarCamer
   LidarCameraEstimate estimate;
   estimate.T_cam_lidar = work.T_cam_lidar;
   estimate.camera = work.camera;
+  estimate.held = work.held;
   estimate.range_sigma_m = work.range_sigma_m;
   estimate.capture_sigma_m = work.capture_sigma_m;
   // Never better than the noise that was put in: a few captures may fit by luck.
   const double variance_factor = std::max(1.0, VarianceFactor(work));
   const Matrix6d information = work.solution.information.topLeftCorner<6, 6>();
   estimate.C_model = Symmetrized(variance_factor * information.inverse());
+  if (work.held) estimate.untold = FollowingHeld(work.solution).normalized();
   FillResiduals(problem, work, estimate);
   return estimate;
 }
@@ -251,9 +274,7 @@ OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& p
   auto work = Choose(problem, std::move(*camera), kept);
   if (!work) return tl::unexpected(work.error());
   FillPlanes(problem, *work);
-  if (const auto weak = SpreadOf(work->planes); weak.sigma_m > kNormalSigmaMax_m)
-    return tl::unexpected(NoNormalSpread(problem, weak.cone_deg, weak.sigma_m));
-  const auto refined = Refine(problem, *work, kept);
+  const auto refined = RefineTold(problem, *work, kept);
   if (!refined) return tl::unexpected(refined.error());
   LidarCameraEstimate estimate = Finished(problem, *work);
   EstimateSystematics(problem, *work, estimate);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/calib/intrinsics.h"
-#include "server/calib/plane_moments.h"
+#include "server/calib/plane_problem.h"
 #include "server/math/se3.h"
 #include "server/model/camera_fit.h"
 #include "server/model/edge.h"
@@ -46,6 +46,8 @@ struct LidarCameraEstimate {
   std::map<CaptureId, std::size_t> patch_idx;    // of the candidate that is the board, per capture used
   std::map<CaptureId, LidarCameraCheck> checks;  // likewise
   Matrix6d C_model = Matrix6d::Zero();           // s^2 H^-1 with the intrinsics as known, right tangent at the lidar
+  std::optional<HeldDirection> held;             // where all normals lie in one plane
+  Vector6d untold = Vector6d::Zero();            // what then is not told, unit, right tangent at the lidar
   double range_sigma_m = 0.0;                    // of one point, from the scatter within patches
   double capture_sigma_m = 0.0;                  // what the points of one capture share, between captures
   // Ranges are too short by this: estimated beside, not applied.

@@ -119,6 +119,20 @@ Diagnosis NoNormalSpread(const LidarCameraProblem& problem, double cone_deg, dou
           "Tilt the board by 20 to 45 degrees, to the left and right as well as up and down, and take more captures."};
 }
 
+Diagnosis NormalsInOnePlane(const LidarCameraProblem& problem, const Eigen::Vector3d& axis_cam) {
+  Eigen::Index largest = 0;
+  axis_cam.cwiseAbs().maxCoeff(&largest);
+  const Eigen::Vector3d axis = axis_cam[largest] < 0 ? Eigen::Vector3d(-axis_cam) : axis_cam;
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
+  return {"normals_in_one_plane",
+          PairOf(problem) + ": the normals of all boards lie in one plane or nearly so: the position along " + text +
+              " of " + problem.camera.id.str() +
+              " is not told: it is near where the nominal poses or the boards' middles have it, and nothing is "
+              "claimed there.",
+          "Tilt the board by 20 to 45 degrees up and down as well, or tilt the robot, and take more captures."};
+}
+
 Diagnosis WeakNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m) {
   return {"weak_normal_spread", PairOf(problem) + ": " + SpreadText(cone_deg, sigma_m) + ".",
           "Add captures with the board tilted by 20 to 45 degrees, to the left and right as well as up and down."};

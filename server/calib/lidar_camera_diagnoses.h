@@ -34,6 +34,8 @@ constexpr double kScaleMin_ratio = 0.002, kScaleMax_ratio = 0.02, kBiasMax_m = 0
 [[nodiscard]] Diagnosis NoAgreement(const LidarCameraProblem& problem, std::size_t both, std::size_t supporters);
 [[nodiscard]] Diagnosis AmbiguousBoard(const LidarCameraProblem& problem, std::size_t supporters, std::size_t others);
 [[nodiscard]] Diagnosis NoNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m);
+[[nodiscard]] Diagnosis NormalsInOnePlane(const LidarCameraProblem& problem,
+                                          const Eigen::Vector3d& axis_cam);                                    // a note
 [[nodiscard]] Diagnosis WeakNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m);  // a note
 [[nodiscard]] Diagnosis ContradictingClouds(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
 [[nodiscard]] Diagnosis HighLidarResidual(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);

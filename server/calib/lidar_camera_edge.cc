@@ -80,7 +80,19 @@ void AddSystematics(const LidarCameraEstimate& estimate, Edge& edge) {
   edge.figures["board_scale_sigma_ratio"] = estimate.board_scale_sigma_ratio;
 }
 
-void AddFigures(const LidarCameraEstimate& estimate, Edge& edge) {
+// Across the plane of the boards' normals, in the frame of a.
+void AddAxis(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
+  if (!estimate.held) return;
+  const Eigen::Vector3d& axis_cam = estimate.held->axis_cam;
+  const Eigen::Vector3d axis_a =
+      problem.camera_is_a ? axis_cam : Eigen::Vector3d(estimate.T_cam_lidar.R().transpose() * axis_cam);
+  edge.figures["axis_a_x_ratio"] = axis_a.x();
+  edge.figures["axis_a_y_ratio"] = axis_a.y();
+  edge.figures["axis_a_z_ratio"] = axis_a.z();
+}
+
+void AddFigures(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
+  AddAxis(problem, estimate, edge);
   AddSystematics(estimate, edge);
   std::size_t points = 0;
   for (const auto& [capture, check] : estimate.checks) points += check.points;
@@ -100,7 +112,9 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
   std::vector<PlaneCapture> planes;
   for (const auto& [capture, idx] : estimate.patch_idx)
     planes.push_back({estimate.camera.T_cam_board.at(capture), {}, {}});
-  if (const NormalSpread spread = SpreadOf(planes); spread.sigma_m > kNormalSigmaGood_m)
+  if (estimate.held)
+    notes.push_back(NormalsInOnePlane(problem, estimate.held->axis_cam));
+  else if (const NormalSpread spread = SpreadOf(planes); spread.sigma_m > kNormalSigmaGood_m)
     notes.push_back(WeakNormalSpread(problem, spread.cone_deg, spread.sigma_m));
   if (estimate.SuspectsBoardSize())
     notes.push_back(BoardSizeSuspected(problem, estimate));
@@ -132,7 +146,7 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
     notes.insert(notes.begin(), HighLidarResidual(problem, *estimate));
     Edge edge = FailedEdge(problem, std::move(notes));
     edge.captures = estimate->residuals;
-    AddFigures(*estimate, edge);
+    AddFigures(problem, *estimate, edge);
     return edge;
   }
   auto uncertainty = JackknifeLidarCamera(problem, *estimate);
@@ -144,7 +158,7 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   edge.captures = estimate->residuals;
   edge.diagnoses = std::move(notes);
   AddNotes(problem, *estimate, edge.diagnoses);
-  AddFigures(*estimate, edge);
+  AddFigures(problem, *estimate, edge);
   return edge;
 }
 

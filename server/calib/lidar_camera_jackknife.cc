@@ -1,3 +1,4 @@
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -101,6 +102,17 @@ std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const 
   return constants;
 }
 
+// Columns: the directions of the edge's pose, right tangent at its b, that the boards tell.
+Eigen::Matrix<double, 6, Eigen::Dynamic> ToldBy(const LidarCameraProblem& problem,
+                                                const LidarCameraEstimate& estimate) {
+  if (!estimate.held) return Matrix6d::Identity();
+  const Vector6d untold =
+      problem.camera_is_a ? estimate.untold : Vector6d(Adjoint(estimate.T_cam_lidar) * estimate.untold);
+  const Eigen::HouseholderQR<Vector6d> qr(untold);
+  const Matrix6d Q = qr.householderQ();
+  return Q.rightCols<5>();
+}
+
 }  // namespace
 
 Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
@@ -117,7 +129,9 @@ Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, cons
     const auto without = [&](std::size_t k) { return WithoutCapture(problem, estimate, captures[k]); };
     RIGCAL_ASSIGN(blocks, LeaveOneOut(ids, without));
   }
-  return UncertaintyOf(C_model, std::move(blocks), std::move(contributions), estimate.patch_idx.size());
+  const auto told = ToldBy(problem, estimate);
+  return UncertaintyAlong(told, told.transpose() * C_model * told, std::move(blocks), std::move(contributions),
+                          estimate.patch_idx.size());
 }
 
 }  // namespace rigcal::calib

@@ -54,7 +54,7 @@ double ExtraSigma(const std::vector<double>& residuals, const std::vector<double
 }  // namespace
 
 PlaneState LidarCameraWork::StateOf() const {
-  PlaneState state{T_cam_lidar, range_bias_m, {}};
+  PlaneState state{T_cam_lidar, range_bias_m, {}, held};
   for (const PlaneCapture& plane : planes) state.T_cam_board.push_back(plane.T_cam_board);
   return state;
 }
@@ -97,6 +97,7 @@ LidarCameraWork WorkOf(const LidarCameraProblem& problem, const LidarCameraEstim
   work.range_bias_m = problem.range_bias_m;
   work.range_sigma_m = estimate.range_sigma_m;
   work.capture_sigma_m = estimate.capture_sigma_m;
+  work.held = estimate.held;
   const double shared_m2 = work.capture_sigma_m * work.capture_sigma_m;
   for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
     const CaptureId& capture = problem.captures[idx].capture;
@@ -116,7 +117,7 @@ LidarCameraCheck CheckOf(const LidarCameraProblem& problem, const LidarCameraWor
   const UsedPatch& used = work.used[position];
   const PlanePatch& patch = problem.captures[used.capture_idx].cloud->candidates[used.patch_idx];
   // Against the board as the picture alone puts it: the joint pose would hide what the two disagree about.
-  const PlaneState state{work.T_cam_lidar, work.range_bias_m, {work.planes[position].T_cam_board}};
+  const PlaneState state{work.T_cam_lidar, work.range_bias_m, {work.planes[position].T_cam_board}, {}};
   const Vector7d g = PlaneInLidar(state, 0);
   return {MeanDistance_m(work.planes[position], g), AngleBetween_rad(g.head<3>(), patch.normal), patch.points_m.size()};
 }
@@ -147,10 +148,13 @@ NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes) {
     for (const PlaneCapture& right : planes)
       cone_rad = std::max(cone_rad, AngleBetween_rad(normal, right.T_cam_board.R().col(2)));
   }
-  const double smallest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvalues()[0];
-  const double sigma_m =
-      smallest > 0 ? kTypicalPlaneSigma_m / std::sqrt(smallest) : std::numeric_limits<double>::infinity();
-  return {cone_rad * 180 / M_PI, sigma_m};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
+  const auto sigma_m = [&](int i) {
+    const double sum_of_squares = solver.eigenvalues()[i];
+    return sum_of_squares > 0 ? kTypicalPlaneSigma_m / std::sqrt(sum_of_squares)
+                              : std::numeric_limits<double>::infinity();
+  };
+  return {cone_rad * 180 / M_PI, sigma_m(0), sigma_m(1), solver.eigenvectors().col(0)};
 }
 
 }  // namespace rigcal::calib

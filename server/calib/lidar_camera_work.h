@@ -22,6 +22,7 @@ struct LidarCameraWork {
   double range_bias_m = 0.0;         // the problem's
   std::vector<PlaneCapture> planes;  // side by side with `used`
   double range_sigma_m = 0.0, capture_sigma_m = 0.0;
+  std::optional<HeldDirection> held;
   PlaneSolution solution;
 
   [[nodiscard]] PlaneState StateOf() const;  // boards where the pictures put them
@@ -42,8 +43,10 @@ void FillPlanes(const LidarCameraProblem& problem, LidarCameraWork& work);
 void Reweigh(const LidarCameraProblem& problem, LidarCameraWork& work);
 
 struct NormalSpread {
-  double cone_deg = 0.0;  // largest angle between two normals
-  double sigma_m = 0.0;   // of the worst direction of the translation if each plane is known to 10 mm
+  double cone_deg = 0.0;      // largest angle between two normals
+  double sigma_m = 0.0;       // of the worst direction of the translation if each plane is known to 10 mm
+  double next_sigma_m = 0.0;  // of the worst direction across that one
+  Eigen::Vector3d axis_cam = Eigen::Vector3d::UnitZ();  // that direction
 };
 [[nodiscard]] NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes);
 

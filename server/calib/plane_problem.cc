@@ -8,11 +8,13 @@ namespace rigcal::calib {
 namespace {
 
 constexpr int kIterationsMax = 100, kHalvingsMax = 20;
-constexpr double kStepTolerance = 1e-12;  // metres and radians
+constexpr double kStepTolerance = 1e-12;     // metres and radians
+constexpr double kHeldStepTolerance = 1e-6;  // likewise, where a direction is held: it settles slowly
 // Square of a step in sigmas: what less gains is lost in the rounding of the cost, a difference of large moments.
 constexpr double kStepTolerance_sigmas2 = 1e-14;
 // Of the information matrix scaled to a unit diagonal.
 constexpr double kSmallestEigenvalue = 1e-10;
+constexpr double kHeldSigma_m = 0.1;  // of what is held where a drawing has it
 
 using Jacobian7x7 = Eigen::Matrix<double, 7, 7>;
 using Jacobian7x6 = Eigen::Matrix<double, 7, 6>;
@@ -44,8 +46,26 @@ Linearized LinearizeAt(const PlaneState& state, std::size_t k) {
   return result;
 }
 
+double OffHeld_m(const PlaneState& state) {
+  return state.held ? state.held->axis_cam.dot(state.T_cam_lidar.p_m) - state.held->at_m : 0.0;
+}
+
+// T_cam_lidar Exp([v, w]) moves the lidar by R v.
+Vector7d ByHeld(const PlaneState& state) {
+  Vector7d by = Vector7d::Zero();
+  by.head<3>() = state.T_cam_lidar.R().transpose() * state.held->axis_cam / kHeldSigma_m;
+  return by;
+}
+
+void AddHeld(const PlaneState& state, Matrix7d& H, Vector7d& gradient) {
+  if (!state.held) return;
+  const Vector7d by = ByHeld(state);
+  H += by * by.transpose();
+  gradient += by * OffHeld_m(state) / kHeldSigma_m;
+}
+
 double CostOf(const std::vector<PlaneCapture>& captures, const PlaneState& state) {
-  double cost = 0;
+  double cost = std::pow(OffHeld_m(state) / kHeldSigma_m, 2);
   for (std::size_t k = 0; k < captures.size(); ++k) {
     const Vector7d g = PlaneInLidar(state, k);
     const Vector6d delta = (captures[k].T_cam_board.Inverse() * state.T_cam_board[k]).Log();
@@ -111,6 +131,12 @@ PlaneState Moved(const PlaneState& state, const std::vector<CaptureNormal>& norm
 
 }  // namespace
 
+// The minimum of x^T H x / 2 + (by . x - c)^2 / 2 moves along (H + by by^T)^-1 by with c, and so along H^-1 by.
+Vector6d FollowingHeld(const PlaneSolution& solution) {
+  const Matrix6d information = solution.information.topLeftCorner<6, 6>();
+  return information.ldlt().solve(ByHeld(solution.state).head<6>());
+}
+
 Vector7d PlaneInLidar(const PlaneState& state, std::size_t capture_idx) {
   const Se3& T_cam_board = state.T_cam_board[capture_idx];
   const Eigen::Vector3d n_cam = -T_cam_board.R().col(2);
@@ -145,11 +171,13 @@ Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, con
       H += normals[k].shared;
       gradient += normals[k].gradient;
     }
+    AddHeld(solution.state, H, gradient);
     RIGCAL_ASSIGN(const Vector7d step, StepOf(H, gradient, size));
     solution.information.setZero();
     solution.information.topLeftCorner(size, size) = H.topLeftCorner(size, size);
     solution.cost = cost;
-    if (step.norm() < kStepTolerance || step.dot(H * step) < kStepTolerance_sigmas2) return solution;
+    if (step.norm() < (start.held ? kHeldStepTolerance : kStepTolerance) || step.dot(H * step) < kStepTolerance_sigmas2)
+      return solution;
     double length = 1;
     PlaneState moved = Moved(solution.state, normals, step, length);
     double moved_cost = CostOf(captures, moved);

@@ -2,6 +2,7 @@
 // the pictures say about them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "server/base/result.h"
@@ -17,10 +18,18 @@ struct PlaneCapture {
   double factor = 1.0;  // on the moments: less than 1 where points of one capture share errors
 };
 
+// A direction of the translation that the boards' normals do not tell. Loosely held where a drawing has it, so that
+// noise does not carry it away; whoever holds it claims nothing along it.
+struct HeldDirection {
+  Eigen::Vector3d axis_cam = Eigen::Vector3d::UnitZ();  // unit
+  double at_m = 0.0;                                    // of the lidar along it, in the camera's frame
+};
+
 struct PlaneState {
   Se3 T_cam_lidar;
   double range_bias_m = 0.0;     // ranges are too short by this much; 0 unless estimated
   std::vector<Se3> T_cam_board;  // one per capture
+  std::optional<HeldDirection> held;
 };
 
 struct PlaneSolution {
@@ -35,6 +44,9 @@ struct PlaneSolution {
 // information's last row and column are zero. Fails where a direction is not observable or nothing converges.
 [[nodiscard]] Result<PlaneSolution> SolvePlanes(const std::vector<PlaneCapture>& captures, const PlaneState& start,
                                                 bool estimate_bias);
+// How the solution moves, right tangent at the lidar, when what is held is held farther along: that much and no more is
+// left open by it. Normals that lie nearly in one plane turn the lidar a little as well. Something must be held.
+[[nodiscard]] Vector6d FollowingHeld(const PlaneSolution& solution);
 // The board's plane in the lidar's frame, as g.
 [[nodiscard]] Vector7d PlaneInLidar(const PlaneState& state, std::size_t capture_idx);
 // Mean distance of the capture's points from the board, metres; positive: the points lie behind it (farther away).

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -29,10 +30,39 @@ Eigen::Vector3d OpenTranslation(const Uncertainty& uncertainty) {
   return Eigen::Vector3d(open.topRows(3) * turns.matrixV().rightCols(1)).normalized();
 }
 
-// What a lidar and its partner leave open is a matter of surfaces and boards, not of the axis of the motion.
-bool IsByMotion(const Edge& edge) { return edge.method != "lidar_lidar" && edge.method != "lidar_camera"; }
+const Sensor& SensorNamed(const RigCase& rig, const SensorId& id) {
+  const std::vector<Sensor>& sensors = rig.session.header.sensors;
+  return *std::find_if(sensors.begin(), sensors.end(), [&](const Sensor& sensor) { return sensor.id == id; });
+}
+
+// What two lidars leave open is a matter of surfaces.
+bool NamesAxis(const Edge& edge) { return edge.method != "lidar_lidar"; }
+
+// Across the plane in which the boards' true normals nearly lie, frame a.
+Eigen::Vector3d AcrossNormals(const RigCase& rig, const Edge& edge) {
+  const sim::Experiment& experiment = rig.session.experiment;
+  const SensorId& camera = rig.session.seen.views.contains(edge.frame_a) ? edge.frame_a : edge.frame_b;
+  const Eigen::Matrix3d R_world_plate = experiment.rig.BoardOf(*SensorNamed(rig, camera).sees).T_world_plate.R();
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < experiment.captures.size(); ++k) {
+    const auto at = std::find_if(edge.captures.begin(), edge.captures.end(),
+                                 [&](const CaptureResidual& one) { return one.capture == experiment.captures[k]; });
+    if (at == edge.captures.end() || !at->used) continue;
+    const Eigen::Vector3d normal_a = experiment.T_world_sensor(edge.frame_a, k).R().transpose() * R_world_plate.col(2);
+    sum += normal_a * normal_a.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors().col(0);
+}
+
+// Of the axis that a lidar and a camera name.
+double AcrossOff_deg(const RigCase& rig, const Edge& edge) {
+  const Eigen::Vector3d axis_a(edge.figures.at("axis_a_x_ratio"), edge.figures.at("axis_a_y_ratio"),
+                               edge.figures.at("axis_a_z_ratio"));
+  return std::acos(std::min(1.0, std::abs(axis_a.dot(AcrossNormals(rig, edge))))) / kRad;
+}
 
 double AxisOff_deg(const RigCase& rig, const Edge& edge) {
+  if (edge.method == "lidar_camera") return AcrossOff_deg(rig, edge);
   const Se3& T_body_b = rig.session.experiment.rig.SensorOf(edge.frame_b).T_body_sensor;
   const Eigen::Vector3d upright_b = T_body_b.R().transpose() * Eigen::Vector3d::UnitZ();
   return std::acos(std::min(1.0, std::abs(OpenTranslation(edge.uncertainty).dot(upright_b)))) / kRad;
@@ -47,7 +77,7 @@ void AddEdges(const RigCase& rig, MotionScore& score) {
     score.edge_claims += edge.uncertainty.rank;
     if (edge.uncertainty.rank == 6) continue;
     ++score.edges_open;
-    if (IsByMotion(edge)) score.axis_deg = std::max(score.axis_deg, AxisOff_deg(rig, edge));
+    if (NamesAxis(edge)) score.axis_deg = std::max(score.axis_deg, AxisOff_deg(rig, edge));
   }
 }
 
