@@ -18,7 +18,8 @@ rigcal_program(stereo_measure
   SOURCES bench/stereo_measure.cc
   DEPS rigcal_calib rigcal_detect)
 rigcal_test(calib_lidar_camera_test COMPUTES
-  SOURCES unit/calib_lidar_camera_test.cc unit/calib_plane_moments_test.cc unit/calib_virtual_lidar.cc
+  SOURCES unit/calib_lidar_camera_test.cc unit/calib_one_plane_test.cc unit/calib_plane_moments_test.cc
+          unit/calib_virtual_lidar.cc
   DEPS rigcal_calib)
 rigcal_program(lidar_camera_measure
   SOURCES bench/lidar_camera_measure.cc
