@@ -35,11 +35,9 @@ std::string RmsText(double square, double scale) { return Significant(std::sqrt(
 
 Figure GlobalErrorFigure(const GraphSolution& solution) {
   const GlobalError &before = solution.before, &after = solution.after;
+  // It is what arithmetic leaves over, or, of edges to sensors without a pose, nothing at all.
   if (solution.dof <= 0)
-    return {"E_global, before" + std::string(kArrow) + "after",
-            Significant(after.total, 3),
-            "warn",
-            {"No loop in the graph: every edge fits by construction, nothing checks the result."}};
+    return {"E_global", "no loop", "warn", {"Every edge that is solved fits by construction: nothing checks the result."}};
   Figure figure{"E_global, m\xC2\xB2 + rad\xC2\xB2, before" + std::string(kArrow) + "after",
                 Significant(before.total, 3) + kArrow + Significant(after.total, 3),
                 "",
