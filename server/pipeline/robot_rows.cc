@@ -10,10 +10,19 @@
 namespace rigcal::pipeline {
 namespace {
 
-// Of a robot without a revision.
-Verdict FirstVerdict(const formats::RobotAnswer& row) {
-  if (row.jobs_waiting > 0)
-    return {VerdictLevel::kUnknown, "The first session is being calibrated.", "Wait: the result appears by itself."};
+Result<bool> HasWholeSession(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
+  return std::any_of(sessions.begin(), sessions.end(), [](const auto& session) { return session.closed; });
+}
+
+// Of a robot without a revision. `whole`: a session of it came whole.
+Verdict FirstVerdict(const formats::RobotAnswer& row, bool whole) {
+  const char* wait = "Wait: the result appears by itself.";
+  if (row.jobs_waiting > 0) return {VerdictLevel::kUnknown, "The first session is being calibrated.", wait};
+  if (row.edges > 0) return {VerdictLevel::kUnknown, "The first result is being worked out.", wait};
+  if (whole)
+    return {VerdictLevel::kUnknown, "No session of it has two sensors that can be calibrated against each other.",
+            "Name at least two sensors in session.yaml that see one target, or that move together, and push it again."};
   if (row.sessions > 0)
     return {VerdictLevel::kUnknown, "The first session is arriving, or its push broke off.",
             "Wait a moment; if nothing changes, push it again: what is here already is not sent twice."};
@@ -28,7 +37,8 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
-    row.verdict = FirstVerdict(row);
+    RIGCAL_ASSIGN(const bool whole, HasWholeSession(store, robot.robot));
+    row.verdict = FirstVerdict(row, whole);
     return row;
   }
   row.revision = revision->number;

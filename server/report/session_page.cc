@@ -47,7 +47,7 @@ void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosi
 
 void FillEdges(Dictionary& page, const SessionInput& input) {
   const std::vector<Edge>& edges = input.edges;
-  if (edges.empty()) return page.ShowSection("NO_EDGES");
+  if (edges.empty()) return page.ShowSection(input.row.closed && input.row.pairs == 0 ? "NO_PAIRS" : "NO_EDGES");
   Dictionary* list = page.AddSectionDictionary("EDGES");
   const std::vector<const Edge*> sorted = Sorted(edges);
   if (sorted.front()->state == EdgeState::kFailed) page.ShowSection("FAILED_FIRST");

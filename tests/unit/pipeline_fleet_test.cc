@@ -45,6 +45,32 @@ TEST_F(FleetPageTest, RowKnowsTheNewestClosedSession) {
   EXPECT_EQ(facts->at(RobotId("r")).last_session_at->ns, clock_.now.ns);
 }
 
+// It came whole: pushing it again would change nothing.
+TEST_F(FleetPageTest, ASessionWithoutAPairIsNotWaitedFor) {
+  Manifest manifest;
+  manifest.header.robot = RobotId("r");
+  manifest.header.reference = SensorId("left");
+  manifest.header.captured_at = clock_.now;
+  Sensor sensor;
+  sensor.id = SensorId("left");
+  sensor.sees = TargetId("board");
+  manifest.header.sensors = {sensor};
+  Target board;
+  board.id = TargetId("board");
+  board.cols = 9, board.rows = 6, board.square_m = 0.025;
+  manifest.header.targets = {board};
+  manifest.payloads = {{"left/01.png", sensor.id, CaptureId("01"), *storage::AppendBlob(store_->BlobFolder(), "x"), 1}};
+  const SessionId session = Close(manifest);
+  StepAll();
+  for (const std::string path : {"/", "/robots/r/"}) {
+    const std::string page = Page(path).value_or(PageText{}).body;
+    EXPECT_NE(page.find("has two sensors that can be calibrated against each other"), std::string::npos) << page;
+    EXPECT_EQ(page.find("broke off"), std::string::npos);
+  }
+  const std::string page = Page("/robots/r/sessions/" + session.str() + "/").value_or(PageText{}).body;
+  EXPECT_NE(page.find("Nothing: it has no pair of sensors to calibrate."), std::string::npos);
+}
+
 TEST_F(FleetPageTest, SessionSaysWhyItsPicturesCouldNotBeRead) {
   const SessionId session = StoreSession("r", {{"left/1.png", "no picture"}, {"right/1.jpg", "\xFF\xD8\xFF"}});
   const std::string path = "/robots/r/sessions/" + session.str() + "/";

@@ -14,6 +14,7 @@
 </section>
 <section class="card">
 <h2 id="edges">What it gave{{#FAILED_FIRST}} <span class="soft">failed pairs first</span>{{/FAILED_FIRST}}</h2>
+{{#NO_PAIRS}}<p class="soft">Nothing: it has no pair of sensors to calibrate.</p>{{/NO_PAIRS}}
 {{#NO_EDGES}}<p class="soft">Nothing yet: a pair of sensors appears here once it was calibrated, or once it is known why it cannot be.</p>{{/NO_EDGES}}
 {{#EDGES}}
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
