@@ -50,7 +50,7 @@ def given(context):
 
 
 def lidar_beams(context):
-    result = context.run_json("rig_coverage", "lidar_beams", 24 if context.full else 6, timeout=20000)["lidar_beams"]
+    result = context.run_json("rig_coverage", "lidar_beams", 12 if context.full else 3, timeout=20000)["lidar_beams"]
     yield equal("lidar_pair_beams_5_mm_off_failed_edges", result["failed"], 0)
     yield at_most("lidar_pair_beams_5_mm_off_sigmas", result["worst_sigmas"], 4.0)
     yield at_most("lidar_pair_beams_5_mm_off_mean_square", result["mean_square"], 2.0)

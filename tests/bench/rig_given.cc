@@ -6,7 +6,7 @@
 namespace rigcal {
 namespace {
 
-constexpr std::size_t kLidarCaptures = 4, kLidarPairCaptures = 10;
+constexpr std::size_t kLidarCaptures = 4, kLidarPairCaptures = 40;
 constexpr double kBoardRatio = 1.001, kBias_m = 0.005;
 
 // Squared errors and variances of all sensors, all axes of one unit together.
