@@ -35,6 +35,6 @@ rigcal_fuzz(parameters DEPS rigcal_formats)
 rigcal_fuzz(names DEPS rigcal_formats)
 rigcal_fuzz(picture DEPS rigcal_detect)
 rigcal_fuzz(http DEPS rigcal_http)
-rigcal_fuzz(document DEPS rigcal_math
+rigcal_fuzz(document DEPS rigcal_math rigcal_model
   SOURCES client/document.cc client/edge_table.cc client/pose_text.cc client/reply_parts.cc client/table.cc)
 rigcal_fuzz(wire DEPS rigcal_formats rigcal_idl SOURCES server/dds/from_idl.cc server/dds/arrival.cc)
