@@ -126,10 +126,9 @@ Diagnosis NormalsInOnePlane(const LidarCameraProblem& problem, const Eigen::Vect
   char text[64];
   std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
   return {"normals_in_one_plane",
-          PairOf(problem) + ": the normals of all boards lie in one plane or nearly so: the position along " + text +
-              " of " + problem.camera.id.str() +
-              " is not told: it is near where the nominal poses or the boards' middles have it, and nothing is "
-              "claimed there.",
+          PairOf(problem) + ": the normals of all boards lie in one plane or nearly so, so that nothing tells where " +
+              problem.lidar.id.str() + " is along " + text + " in the frame of " + problem.camera.id.str() +
+              ". It is near where the nominal poses or the boards' middles have it, and nothing is claimed there.",
           "Tilt the board by 20 to 45 degrees up and down as well, or tilt the robot, and take more captures."};
 }
 
