@@ -64,18 +64,24 @@ std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_
          name + "; if not, repeat it";
 }
 
-// "2026-01-31 12:00 UTC", as people know a session; where that is not known by its id, where it is the same of two by both.
+// "2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31".
+std::string TimeOf(Stamp stamp) {
+  constexpr std::size_t kDay = 10, kToMinute = 16;
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  if (stamp.ns % kDay_ns == 0) return ToIso(stamp).substr(0, kDay);
+  return ToIso(stamp).substr(0, kToMinute).replace(kDay, 1, " ") + " UTC";
+}
+
+// As people know a session: by its time; where that is not known by its id, where it is the same of two by both.
 std::string NameOf(const SessionId& session, const SessionTimes& captured_at) {
-  constexpr std::size_t kDigits = 12, kToMinute = 16;  // as pages show them
+  constexpr std::size_t kDigits = 12;  // as pages show them
   const std::string id = session.str().substr(0, kDigits);
-  const auto minute_of = [](Stamp stamp) { return ToIso(stamp).substr(0, kToMinute); };
   const auto found = captured_at.find(session);
   if (found == captured_at.end()) return id;
-  std::string time = minute_of(found->second);
+  const std::string time = TimeOf(found->second);
   const auto alike = std::count_if(captured_at.begin(), captured_at.end(),
-                                   [&](const auto& one) { return minute_of(one.second) == time; });
-  std::replace(time.begin(), time.end(), 'T', ' ');
-  return time + " UTC" + (alike > 1 ? " (" + id + ")" : "");
+                                   [&](const auto& one) { return TimeOf(one.second) == time; });
+  return time + (alike > 1 ? " (" + id + ")" : "");
 }
 
 // Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest first.

@@ -27,11 +27,21 @@ std::vector<std::string> NamesOf(const std::vector<SensorId>& sensors) {
   return names;
 }
 
+std::string PairNameOf(const Edge& edge) { return edge.frame_a.str() + " \xE2\x86\x92 " + edge.frame_b.str(); }
+
+std::vector<std::string> PairsOf(const std::vector<const Edge*>& edges) {
+  std::vector<std::string> names;
+  for (const Edge* edge : edges) names.push_back(PairNameOf(*edge));
+  return names;
+}
+
+// With the state of those that are not good.
 std::vector<std::string> NamesOf(const std::vector<const Edge*>& edges) {
   std::vector<std::string> names;
-  for (const Edge* edge : edges)
-    names.push_back(edge->frame_a.str() + " \xE2\x86\x92 " + edge->frame_b.str() +
-                    (HasFailed(*edge) ? " (failed)" : ""));
+  for (const Edge* edge : edges) {
+    const bool good = edge->state == EdgeState::kGood;
+    names.push_back(PairNameOf(*edge) + (good ? "" : std::string(" (") + StateWord(*edge) + ")"));
+  }
   return names;
 }
 
@@ -50,7 +60,7 @@ void FillEdgeLines(Dictionary& lines, const Changes& changes) {
             Count(changes.edges_lost.size(), "edge", "edges") + " gone: " + Listed(NamesOf(changes.edges_lost)) + ".");
   if (!changes.edges_past.empty())
     AddLine(lines, Count(changes.edges_past.size(), "edge does", "edges do") +
-                       " not count any more: " + Listed(NamesOf(changes.edges_past)) + ".");
+                       " not count any more: " + Listed(PairsOf(changes.edges_past)) + ".");
   if (!changes.sensors_gained.empty()) AddLine(lines, "Now known: " + Listed(NamesOf(changes.sensors_gained)) + ".");
   if (!changes.sensors_lost.empty()) AddLine(lines, "No longer known: " + Listed(NamesOf(changes.sensors_lost)) + ".");
 }

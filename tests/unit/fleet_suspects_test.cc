@@ -92,10 +92,10 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: 1 edge of session aaaaaaaaaaaa agree on one, "
                                          "1 edge of session bbbbbbbbbbbb on the other"));
   const std::int64_t minute_ns = 60'000'000'000;
-  SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-01-31T12:00:00Z")},
+  SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-01-31T00:00:00Z")},
                         {rig.edges[2].session, *ParseIso("2026-02-01T09:30:10Z")}};
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why,
-              HasSubstr("1 edge of session 2026-01-31 12:00 UTC agree on one, 1 edge of session 2026-02-01 09:30 UTC on"));
+              HasSubstr("1 edge of session 2026-01-31 agree on one, 1 edge of session 2026-02-01 09:30 UTC on"));
   times[SessionId(std::string(64, 'c'))] = Stamp{times[rig.edges[2].session].ns + minute_ns / 2};
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why, HasSubstr("2026-02-01 09:30 UTC (bbbbbbbbbbbb) on the other"));
 }

@@ -61,6 +61,16 @@ TEST(ReportPast, ChangesNameWhatBecamePast) {
   EXPECT_TRUE(Compare(input.revision, input.revision).edges_past.empty());  // it was past before
 }
 
+// A visit from before a remount, pushed after it.
+TEST(ReportPast, WhatIsNewAndPastIsCalledSo) {
+  ReportInput input = OnePast("remounted");
+  auto& before = input.previous->revision.edges;
+  before.erase(before.begin());
+  const std::string page = RenderRevision(input, "{}").value().at("index.html");
+  EXPECT_THAT(page, HasSubstr("1 edge new: front_left \xE2\x86\x92 front_right (past)."));
+  EXPECT_THAT(page, Not(HasSubstr("any more")));
+}
+
 TEST(ReportPast, ASensorThatOnlyPastEdgesReachSaysSo) {
   ReportInput input = SampleReport();
   Edge old = SampleEdge("front_left", "tracker", Se3());
