@@ -8,9 +8,9 @@
 
 namespace rigcal {
 
-// Codes of what takes a good edge out of a revision: its session was corrected by a later one, or one of its sensors
-// was remounted since. Such an edge is failed in the revision, with this as its only diagnosis, and is good in the
-// store.
+// Codes of what takes an edge out of a revision: its session was corrected by a later one, or, of a good one, one of
+// its sensors was remounted since. Such an edge is failed in the revision, with this as its only diagnosis; the store
+// keeps it as it was measured.
 inline constexpr std::string_view kSupersededCode = "superseded", kRemountedCode = "remounted";
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);

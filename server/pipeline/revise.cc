@@ -72,7 +72,7 @@ Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId&
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   const std::set<SessionId> old(superseded.begin(), superseded.end());
   for (Edge& edge : edges)
-    if (edge.state == EdgeState::kGood && old.contains(edge.session)) Supersede(edge);
+    if (old.contains(edge.session)) Supersede(edge);
   RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
   return edges;
 }
