@@ -14,6 +14,11 @@ constexpr std::size_t kCapturesEnough = 8;  // likewise; fewer: the jackknife ha
 // Residuals beyond this mean that something is wrong, not noisy: a part of the picture's width, and at least one pixel.
 constexpr double kHighRmsRatio = 1.0 / 600;
 
+// The cure of a motion that leaves directions open.
+inline constexpr const char* kTurnMore =
+    "Turn the robot by 20 degrees and more about two different axes; ramps of 5 degrees under its wheels, and turns "
+    "on them, help.";
+
 // "001, 002, 003 and 9 more".
 [[nodiscard]] std::string NamesOf(const std::vector<CaptureId>& captures);
 

@@ -29,10 +29,6 @@ std::string AxisText(const Eigen::Vector3d& axis) {
   return text;
 }
 
-constexpr const char* kTurnMore =
-    "Turn the robot by 20 degrees and more about two different axes; ramps of 5 degrees under its wheels, and turns "
-    "on them, help. Or give the nominal pose from the drawing.";
-
 }  // namespace
 
 Diagnosis TooFewMotions(const HandEyeProblem& problem, std::size_t both) {

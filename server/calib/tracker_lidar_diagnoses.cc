@@ -10,9 +10,6 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr const char* kTurnMore =
-    "Turn the robot by 20 degrees and more about two different axes; ramps of 5 degrees under its wheels, and turns "
-    "on them, help. Or give the nominal pose from the drawing.";
 constexpr const char* kTakeMore =
     "Take 20 to 40 captures from different places, turned differently, with boards that stand still in the lidar's "
     "view.";

@@ -34,17 +34,6 @@ class PipelineCamerasTest : public PipelineTest {
       AddFile(name + "/" + capture + (kind == SensorKind::kCamera ? ".png" : ".ply"), robot + name + capture, manifest);
   }
 
-  void AddFile(const std::string& path, const std::string& bytes, Manifest& manifest) {
-    const std::filesystem::path file(path);
-    Payload payload;
-    payload.path = path;
-    payload.sensor = SensorId(file.parent_path().string());
-    payload.capture = CaptureId(file.stem().string());
-    payload.digest = *storage::AppendBlob(store_->BlobFolder(), bytes);
-    payload.size_bytes = static_cast<std::int64_t>(bytes.size());
-    manifest.payloads.push_back(payload);
-  }
-
   void StepAllWith(calib::CameraMemory& cameras) {
     for (bool worked = true; worked;) {
       const auto result = Step({*store_, clock_, live_, claims_, announcer_, cameras});

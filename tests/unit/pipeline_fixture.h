@@ -85,17 +85,19 @@ class PipelineTest : public testing::Test {
       sensor.sees = board.id;
       manifest.header.sensors.push_back(sensor);
     }
-    for (const auto& [path, bytes] : files) {
-      const std::filesystem::path file(path);
-      Payload payload;
-      payload.path = path;
-      payload.sensor = SensorId(file.parent_path().string());
-      payload.capture = CaptureId(file.stem().string());
-      payload.digest = *storage::AppendBlob(store_->BlobFolder(), bytes);
-      payload.size_bytes = static_cast<std::int64_t>(bytes.size());
-      manifest.payloads.push_back(payload);
-    }
+    for (const auto& [path, bytes] : files) AddFile(path, bytes, manifest);
     return Close(manifest);
+  }
+
+  void AddFile(const std::string& path, const std::string& bytes, Manifest& manifest) {
+    const std::filesystem::path file(path);
+    Payload payload;
+    payload.path = path;
+    payload.sensor = SensorId(file.parent_path().string());
+    payload.capture = CaptureId(file.stem().string());
+    payload.digest = *storage::AppendBlob(store_->BlobFolder(), bytes);
+    payload.size_bytes = static_cast<std::int64_t>(bytes.size());
+    manifest.payloads.push_back(payload);
   }
 
   SessionId Close(const Manifest& manifest) {
