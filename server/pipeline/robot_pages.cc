@@ -158,8 +158,11 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(input.past, PastEdges(context, robot));
-  if (input.row.closed && input.row.pairs_waiting == 0)
-    input.unreadable = WhyUnreadable(context.store, input.manifest, input.edges);
+  if (input.row.closed && input.row.pairs_waiting == 0) {
+    Unreadable unreadable = FindUnreadable(context.store, input.manifest, input.edges);
+    input.unreadable = std::move(unreadable.why);
+    input.all_looked_at = unreadable.all_looked_at;
+  }
   RIGCAL_ASSIGN(std::string body, report::RenderSession(input));
   return PageText{std::move(body), kHtmlType};
 }

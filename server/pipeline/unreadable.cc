@@ -24,21 +24,21 @@ std::string WhyNot(storage::Store& store, const Payload& payload) {
 
 }  // namespace
 
-std::map<std::pair<CaptureId, SensorId>, std::string> WhyUnreadable(storage::Store& store, const Manifest& manifest,
-                                                                    const std::vector<Edge>& edges) {
+Unreadable FindUnreadable(storage::Store& store, const Manifest& manifest, const std::vector<Edge>& edges) {
   std::set<std::pair<CaptureId, SensorId>> shown;
   for (const Edge& edge : edges)
     for (const Evidence& evidence : edge.evidence) shown.emplace(evidence.capture, evidence.sensor);
-  std::map<std::pair<CaptureId, SensorId>, std::string> why_not;
+  Unreadable unreadable;
   std::size_t looked_at = 0;
   for (const Payload& payload : manifest.payloads) {
     const Sensor* sensor = SensorOf(manifest.header, payload.sensor);
     const std::pair place{payload.capture, payload.sensor};
     if (!sensor || sensor->kind != SensorKind::kCamera || shown.contains(place)) continue;
-    if (looked_at++ == kLookedAtMax) break;
-    if (std::string why = WhyNot(store, payload); !why.empty()) why_not[place] = std::move(why);
+    unreadable.all_looked_at = looked_at++ < kLookedAtMax;
+    if (!unreadable.all_looked_at) break;
+    if (std::string why = WhyNot(store, payload); !why.empty()) unreadable.why[place] = std::move(why);
   }
-  return why_not;
+  return unreadable;
 }
 
 }  // namespace rigcal::pipeline

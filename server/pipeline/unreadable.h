@@ -12,8 +12,11 @@
 namespace rigcal::pipeline {
 
 // Of pictures that no edge shows, which are those that nothing could be drawn of; at most some dozens are looked at.
-[[nodiscard]] std::map<std::pair<CaptureId, SensorId>, std::string> WhyUnreadable(storage::Store& store,
-                                                                                  const Manifest& manifest,
-                                                                                  const std::vector<Edge>& edges);
+struct Unreadable {
+  std::map<std::pair<CaptureId, SensorId>, std::string> why;
+  bool all_looked_at = true;
+};
+[[nodiscard]] Unreadable FindUnreadable(storage::Store& store, const Manifest& manifest,
+                                        const std::vector<Edge>& edges);
 
 }  // namespace rigcal::pipeline

@@ -53,6 +53,7 @@ struct SessionInput {
   std::vector<Edge> edges;                                                // that it gave
   std::map<EdgeId, Diagnosis> past = {};                                  // of those: no longer counted, and why
   std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
+  bool all_looked_at = true;                                              // for that; else there may be more
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

@@ -71,7 +71,8 @@ std::string UnreadableText(const SessionInput& input) {
   if (sensors.empty()) return "";
   std::string names;
   for (const SensorId& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.str();
-  return " " + Count(input.unreadable.size(), "picture", "pictures") + " of " + names + " cannot be read.";
+  return (input.all_looked_at ? " " : " At least ") + Count(input.unreadable.size(), "picture", "pictures") + " of " +
+         names + " cannot be read.";
 }
 
 struct Outcome {

@@ -86,6 +86,16 @@ TEST_F(FleetPageTest, SessionSaysWhyItsPicturesCouldNotBeRead) {
             std::string::npos);
 }
 
+TEST_F(FleetPageTest, SessionOfManyUnreadablePicturesSaysThatThereMayBeMore) {
+  std::map<std::string, std::string> files;
+  for (int k = 0; k < 30; ++k)
+    for (const char* sensor : {"left/", "right/"}) files[sensor + std::to_string(k) + ".png"] = "no picture";
+  const SessionId session = StoreSession("r", files);
+  StepAll();
+  const std::string page = Page("/robots/r/sessions/" + session.str() + "/").value_or(PageText{}).body;
+  EXPECT_NE(page.find(" At least 48 pictures of left, right cannot be read."), std::string::npos) << page;
+}
+
 TEST_F(FleetPageTest, ExperimentsAreServedFromTheirFolders) {
   EXPECT_TRUE(ListExperiments(folder_).empty());
   EXPECT_NE(Page("/experiments/")->body.find("No experiment is here yet"), std::string::npos);

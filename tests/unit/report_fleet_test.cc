@@ -173,6 +173,8 @@ TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
   EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("1 of 2 pairs of sensors were calibrated, 1 failed. "
                                                             "1 picture of rear cannot be read."),
                                                   HasSubstr("that cannot be read. Turn the robot.</p>")));
+  input.all_looked_at = false;
+  EXPECT_THAT(RenderSession(input).value(), HasSubstr("1 failed. At least 1 picture of rear cannot be read."));
   input.row.good = 0, input.row.failed = 2;
   EXPECT_THAT(RenderSession(input).value(), HasSubstr("None of 2 pairs of sensors could be calibrated."));
   input.row.superseded = true;
