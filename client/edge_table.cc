@@ -52,12 +52,6 @@ void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
   for (const auto& [sentence, pairs] : notes) out << Plain(pairs) << ":\n  " << Plain(sentence) << '\n';
 }
 
-// Good where it was measured, and no part of the solution any more.
-bool IsPast(const Document& edge) {
-  const std::string code = edge["state"].Text() == "failed" ? edge["diagnoses"][0]["code"].Text() : "";
-  return MeansPast(code);
-}
-
 void PrintPast(const std::vector<Document>& edges, std::ostream& out) {
   std::vector<std::pair<std::string, std::string>> reasons;  // reason, pairs; in the order of the edges
   for (const Document& edge : edges) {
@@ -73,6 +67,10 @@ void PrintPast(const std::vector<Document>& edges, std::ostream& out) {
 }
 
 }  // namespace
+
+bool IsPast(const Document& edge) {
+  return edge["state"].Text() == "failed" && MeansPast(edge["diagnoses"][0]["code"].Text());
+}
 
 void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
   for (const Document& item : diagnoses.Items()) out << "  " << Plain(SentenceOf(item)) << '\n';

@@ -8,6 +8,8 @@
 
 namespace rigcal::client {
 
+// Measured before a session was corrected or a sensor remounted: no part of the solution any more.
+[[nodiscard]] bool IsPast(const Document& edge);
 // Rows as in docs/api.md, edges.
 void PrintEdges(const std::vector<Document>& edges, std::ostream& out);
 // One line: "left - right  stereo  good  sigma 0.08 0.06 0.21 mm, 0.010 0.012 0.004 deg".

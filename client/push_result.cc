@@ -1,5 +1,7 @@
 #include "client/push_result.h"
 
+#include <algorithm>
+
 #include "client/edge_table.h"
 #include "client/table.h"
 #include "client/verb.h"
@@ -32,10 +34,12 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   PrintVerdict(revision["verdict"], out);
   PrintGlobalError(revision, out);
   const auto edges = revision["edges"].Items();
+  const auto past = static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), IsPast));
   if (edges.size() <= kEdgesPrintedMax)
     PrintEdges(edges, out);
   else
-    out << edges.size() << " edges; `rigcal edges " << robot << "` lists them\n";
+    out << edges.size() - past << " edges" << (past > 0 ? " and " + std::to_string(past) + " past ones" : "")
+        << "; `rigcal edges " << robot << "` lists them\n";
   const std::string address = AddressOf(awaited);
   out << "report  " << (address.empty() ? "`rigcal report " + robot + "` tells where it is" : address) << '\n';
 }

@@ -48,7 +48,8 @@ std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<Ed
   return sessions;
 }
 
-// Only sessions have a date, and only what two of them say can be told apart by it.
+// Only sessions have a date, and only what two of them say can be told apart by it. Edges too weak to tell go with the
+// larger group, so one session may be in both.
 std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id) {
   const std::string name = two.sensor.str();
   const std::set<SessionId> a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
@@ -56,8 +57,7 @@ std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_
     return "Find out whether " + name +
            " was moved between these measurements. If not, repeat the wrong one. If so, edges that were pushed without "
            "a session keep counting, as they have no date: push what was measured since under a new robot name";
-  const bool apart = std::none_of(a.begin(), a.end(), [&](const SessionId& session) { return b.contains(session); });
-  if (!apart)
+  if (a == b)
     return "Find out whether " + name + " was moved during a session, and repeat that with " + name + " fixed";
   return "Find out whether " + name +
          " was moved between these sessions. If so, push the one with the later captured_at again with --remounted " +
@@ -84,7 +84,8 @@ std::string NameOf(const SessionId& session, const SessionTimes& captured_at) {
   return time + (alike > 1 ? " (" + id + ")" : "");
 }
 
-// Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest first.
+// Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest
+// first.
 std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id,
                       const SessionTimes& captured_at) {
   const std::set<SessionId> sessions = SessionsOf(ids, by_id);

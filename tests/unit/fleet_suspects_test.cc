@@ -97,7 +97,8 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why,
               HasSubstr("1 edge of session 2026-01-31 agree on one, 1 edge of session 2026-02-01 09:30 UTC on"));
   times[SessionId(std::string(64, 'c'))] = Stamp{times[rig.edges[2].session].ns + minute_ns / 2};
-  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why, HasSubstr("2026-02-01 09:30 UTC (bbbbbbbbbbbb) on the other"));
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).why,
+              HasSubstr("2026-02-01 09:30 UTC (bbbbbbbbbbbb) on the other"));
 }
 
 // What helps depends on where the edges come from.
@@ -111,7 +112,10 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
   EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("pushed without a session keep counting"));
   rig.edges[2].session = SessionId(std::string(64, 'b'));
   EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("push the one with the later captured_at again with --remounted top"));
-  rig.edges[2].session = rig.edges[1].session;
+  rig.edges[0].session = rig.edges[2].session;  // too weak to tell
+  rig.solution.suspects.two_poses[0].group_a.push_back(rig.edges[0].id);
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("between these sessions. If so, push the one with the later"));
+  for (Edge& edge : rig.edges) edge.session = rig.edges[1].session;
   EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("whether top was moved during a session"));
 }
 
