@@ -9,7 +9,7 @@ namespace rigcal {
 namespace {
 
 constexpr double kRad = M_PI / 180;
-constexpr int kCaptures = 40;
+constexpr int kCaptures = 20;
 constexpr std::size_t kLidarCaptures = 2;
 // Of the body's axis, rms: multiples 0, 0.5, 1, 2, 3, 5, 10 of the tracker's noise, then of a degree.
 constexpr double kTilts_deg[] = {0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.5, 1, 2, 3, 5, 10};
