@@ -53,7 +53,7 @@ def of_visits(context, folder, lidar, seeds):
         sums += sum(e * e for e in error["e"][:3])
         bounds += sum(b * b for b in bound[:3])
     yield at_most(lidar + "_visits_worst_sigmas", worst, 4.0)
-    yield info(lidar + "_visits_rms_over_cramer_rao_translation", (sums / bounds) ** 0.5)  # of few visits
+    yield at_most(lidar + "_visits_rms_over_cramer_rao_translation", (sums / bounds) ** 0.5, 1.5)
     yield info(lidar + "_visits_rms", 1e3 * (sums / seeds) ** 0.5, "mm")
 
 
