@@ -8,6 +8,7 @@
 #include "server/graph/observability.h"
 #include "server/graph/solved_poses.h"
 #include "server/math/covariance.h"
+#include "server/math/pooled_dof.h"
 
 namespace rigcal::graph {
 namespace {
@@ -16,20 +17,20 @@ using Eigen::MatrixXd;
 
 // Two come within a few hundredths of sigma of where they lead.
 constexpr int kPasses = 2;
+// What weights do is a matter of two blocks: one changes the weight, the other errs. A jackknife counts the variance of
+// what only two blocks do together twice (Efron & Stein 1981), so it takes 1 / sqrt(2) of it.
+constexpr double kOfTwoBlocks = 0.70710678118654752;
 
 // Adds up what the sources bring, a batch of columns at a time.
 class Accumulator {
  public:
-  // `analytic`: per free vertex, the measure by which its variances of different units are added up.
-  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky, const std::vector<Matrix6d>& analytic)
+  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky)
       : work_(work),
         cholesky_(cholesky),
         C_e_(work.problem.constraints.size(), Matrix6d::Zero()),
         dof_sum_(C_e_.size(), 0.0),
-        pose_trace_(analytic.size(), 0.0),
-        pose_dof_sum_(analytic.size(), 0.0) {
+        pose_dof_(static_cast<std::size_t>(work.problem.free_count())) {
     joint_ = MatrixXd::Zero(6 * work.problem.free_count(), 6 * work.problem.free_count());
-    for (const Matrix6d& C : analytic) whitening_.push_back(Symmetrized(C).llt());
   }
 
   void Add(const std::vector<ErrorSource>& sources) {
@@ -49,8 +50,9 @@ class Accumulator {
   [[nodiscard]] double Dof(std::size_t constraint) const {
     return Satterthwaite(Trace(constraint, C_e_[constraint]), dof_sum_[constraint]);
   }
-  [[nodiscard]] double PoseDof(std::size_t free_vertex) const {
-    return Satterthwaite(pose_trace_[free_vertex], pose_dof_sum_[free_vertex]);
+  [[nodiscard]] double PoseDof(int row) const {
+    const Matrix6d lower = joint_.block<6, 6>(row, row);
+    return pose_dof_[static_cast<std::size_t>(row / 6)].Of(lower.selfadjointView<Eigen::Lower>());
   }
 
  private:
@@ -68,13 +70,15 @@ class Accumulator {
       for (const ErrorPart& part : source->parts)
         AddToGradient(work_.problem.constraints[part.constraint], work_.jacobians[part.constraint], part.de,
                       pull.middleCols(at, source->column_count));
-    MatrixXd columns = Followed(pull);
+    const MatrixXd moved = Followed(pull);
+    MatrixXd columns = moved;
     for (int pass = 0; pass < kPasses && AnyWeight(begin, end); ++pass)
       columns = Followed(pull + PullsByWeight(begin, end, columns));
+    columns = moved + kOfTwoBlocks * (columns - moved);
     Centre(begin, end, columns);
     joint_.selfadjointView<Eigen::Lower>().rankUpdate(columns);
     AddResiduals(begin, end, columns);
-    for (std::size_t v = 0; v < whitening_.size(); ++v) AddPoseDof(begin, end, columns, v);
+    for (std::size_t v = 0; v < pose_dof_.size(); ++v) AddPoseDof(begin, end, columns, v);
   }
 
   // Where the optimum goes under a pull.
@@ -119,11 +123,12 @@ class Accumulator {
   }
 
   void AddPoseDof(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns, std::size_t free_vertex) {
-    const MatrixXd whitened =
-        whitening_[free_vertex].matrixL().solve(columns.middleRows<6>(6 * static_cast<Eigen::Index>(free_vertex)));
-    const Eigen::RowVectorXd weights = whitened.colwise().squaredNorm();
-    pose_trace_[free_vertex] += weights.sum();
-    pose_dof_sum_[free_vertex] += DofSum(begin, end, weights);
+    const auto rows = columns.middleRows<6>(6 * static_cast<Eigen::Index>(free_vertex));
+    Eigen::Index at = 0;
+    for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source) {
+      const auto own = rows.middleCols(at, source->column_count);
+      if (source->dof > 0) pose_dof_[free_vertex].Add(own * own.transpose(), source->dof);
+    }
   }
 
   // Squared share of every estimated source over its degrees of freedom (Welch & Satterthwaite).
@@ -156,8 +161,7 @@ class Accumulator {
   MatrixXd joint_;
   std::vector<Matrix6d> C_e_;
   std::vector<double> dof_sum_;
-  std::vector<Eigen::LLT<Matrix6d>> whitening_;
-  std::vector<double> pose_trace_, pose_dof_sum_;
+  std::vector<PooledDof> pose_dof_;
 };
 
 void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const std::vector<Matrix6d>& analytic,
@@ -174,7 +178,7 @@ void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const
     if (!jackknife.known[s] || vertex == 0) continue;
     jackknife.row_of_sensor[s] = 6 * (vertex - 1);
     jackknife.analytic[s] = Symmetrized(analytic[static_cast<std::size_t>(vertex - 1)]);
-    jackknife.dof[s] = accumulator.PoseDof(static_cast<std::size_t>(vertex - 1));
+    jackknife.dof[s] = accumulator.PoseDof(jackknife.row_of_sensor[s]);
   }
 }
 
@@ -217,7 +221,7 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   const auto cholesky = MakeCholesky<6>(problem.pattern);
   if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return jackknife;
   const std::vector<Matrix6d> analytic = cholesky->InverseDiagonal();
-  Accumulator accumulator(work, *cholesky, analytic);
+  Accumulator accumulator(work, *cholesky);
   accumulator.Add(SourcesOf(work));
   jackknife.joint = accumulator.Joint();
   if (!jackknife.joint.allFinite()) return jackknife;

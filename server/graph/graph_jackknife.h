@@ -2,7 +2,9 @@
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
 // session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Where
 // the blocks made Omega too, K is that of Omega without block i: weights that fit chance in all blocks find too little
-// of it left in them. Pure and deterministic: sessions, blocks and edges count in sorted order.
+// of it left in them. What that change of K does is the work of two blocks, and counts by 1 / sqrt(2) (Efron & Stein
+// 1981: a jackknife counts the variance of such pairs twice). Pure and deterministic: sessions, blocks and edges count
+// in sorted order.
 #pragma once
 
 #include <map>
@@ -44,7 +46,7 @@ struct GraphJackknife {
   std::vector<bool> known;                    // the reference too
   Eigen::MatrixXd joint;                      // of all known sensors' poses, right tangents
   std::vector<Matrix6d> analytic;             // H^-1's diagonal block, per sensor
-  std::vector<double> dof;                    // behind a sensor's covariance, as of the residuals; 0: nothing estimated
+  std::vector<double> dof;                    // behind a sensor's covariance (PooledDof); 0: nothing estimated
   std::vector<ResidualCovariance> residuals;  // in the order of GraphSolution::residuals
 };
 constexpr int kJackknifeSensorsMax = 500;

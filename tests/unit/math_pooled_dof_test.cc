@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <random>
+#include <vector>
+
+#include "server/math/pooled_dof.h"
+#include "server/math/se3.h"
+#include "server/math/statistics.h"
+
+namespace rigcal {
+namespace {
+
+Matrix6d RandomCovariance(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Eigen::Matrix<double, 6, 9> samples;
+  for (double& value : samples.reshaped()) value = normal(random);
+  Vector6d units;
+  units << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5;
+  return units.asDiagonal() * Matrix6d(samples * samples.transpose()) * units.asDiagonal();
+}
+
+TEST(PooledDof, OfOnePartIsItsOwn) {
+  std::mt19937 random(1);
+  const Matrix6d part = RandomCovariance(random);
+  PooledDof pooled;
+  pooled.Add(part, 39);
+  EXPECT_NEAR(pooled.Of(part), 39.0, 1e-6);
+  EXPECT_NEAR(pooled.Of(2 * part), 4 * 39.0, 1e-6);  // half of it known
+}
+
+// In one direction it is Welch's and Satterthwaite's.
+TEST(PooledDof, InOneDirectionIsSatterthwaites) {
+  const Vector6d along = (Vector6d() << 3, 0, -2, 1, 0, 5).finished();
+  const Matrix6d unit = along * along.transpose();
+  PooledDof pooled;
+  pooled.Add(2 * unit, 10);
+  pooled.Add(3 * unit, 25);
+  EXPECT_NEAR(pooled.Of(6 * unit), 36.0 / (4.0 / 10 + 9.0 / 25), 1e-6);
+}
+
+TEST(PooledDof, IsTheSameInEveryFrame) {
+  std::mt19937 random(2);
+  const Matrix6d a = RandomCovariance(random), b = RandomCovariance(random), known = RandomCovariance(random);
+  const Matrix6d M = Adjoint(Se3::Exp((Vector6d() << 0.5, -2, 1, 0.3, -1, 2).finished()));
+  PooledDof here, there;
+  here.Add(a, 19), here.Add(b, 7);
+  there.Add(M * a * M.transpose(), 19), there.Add(M * b * M.transpose(), 7);
+  const Matrix6d sum = a + b + known;
+  EXPECT_NEAR(here.Of(sum), there.Of(M * sum * M.transpose()), 1e-6 * here.Of(sum));
+}
+
+TEST(PooledDof, WithoutAnEstimateIsZero) {
+  std::mt19937 random(3);
+  EXPECT_EQ(PooledDof().Of(RandomCovariance(random)), 0.0);
+  PooledDof pooled;
+  pooled.Add(Matrix6d::Zero(), 5);
+  EXPECT_EQ(pooled.Of(Matrix6d::Zero()), 0.0);
+}
+
+Vector6d Draw(const Matrix6d& factor, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Vector6d z;
+  for (double& value : z) value = normal(random);
+  return factor * z;
+}
+
+// Two estimated parts and a known one, of very different shares by direction; the region covers what it says.
+TEST(PooledDof, MakesHotellingsRegionCover) {
+  constexpr int kTrials = 20000;
+  std::mt19937 random(4);
+  const Vector6d shares_a(0.9, 0.8, 0.1, 0.05, 0.3, 0.4), shares_b(0.05, 0.1, 0.2, 0.9, 0.3, 0.1);
+  const Matrix6d known = (Vector6d::Ones() - shares_a - shares_b).asDiagonal();
+  const Matrix6d factor_a = shares_a.cwiseSqrt().asDiagonal(), factor_b = shares_b.cwiseSqrt().asDiagonal();
+  int covered = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    PooledDof pooled;
+    Matrix6d sum = known;
+    for (const auto& [factor, dof] : {std::pair(factor_a, 39), std::pair(factor_b, 15)}) {
+      Matrix6d part = Matrix6d::Zero();
+      for (int i = 0; i < dof; ++i) {
+        const Vector6d one = Draw(factor, random);
+        part += one * one.transpose() / dof;
+      }
+      pooled.Add(part, dof);
+      sum += part;
+    }
+    const Vector6d error = Draw(Matrix6d::Identity(), random);
+    covered += error.dot(sum.ldlt().solve(error)) <= HotellingLimit(static_cast<int>(pooled.Of(sum)) + 1);
+  }
+  EXPECT_NEAR(static_cast<double>(covered) / kTrials, 0.95, 0.01);  // spread 0.0016
+}
+
+}  // namespace
+}  // namespace rigcal
