@@ -6,6 +6,8 @@ import pathlib
 from .measure import at_least, at_most, equal, info, within
 from .server import Server
 
+BEYOND_4_SIGMA = 0.077  # % of errors, where sigmas are those of 20 captures: Student's t of 19 degrees of freedom
+
 
 def coverage(context):
     seeds = 200 if context.full else 6
@@ -36,6 +38,9 @@ def motions(context):
                 yield at_most(title + "_axis", case["axis_deg"], 2.0, "deg")
             yield info(title + "_mean_squares", "%.2f_%.2f" % (case["edge_mean_square"], case["pose_mean_square"]))
             yield info(title + "_edges_open_failed", "%d_%d" % (case["edges_open"], case["edges_failed"]))
+        beyond, claims = (sum(case[key] for case in result[name]) for key in ("edge_claims_beyond_4", "edge_claims"))
+        yield at_most(name + "_edge_claims_beyond_4_sigma", 100 * beyond / claims, BEYOND_4_SIGMA, "%")
+        yield info(name + "_edge_claims", claims)
         yield equal(name + "_tracker_height_claimed", sum(case["body_known"] for case in result[name] if case["tilt_deg"] == 0), 0)
         yield equal(name + "_tracker_unknown_unsaid", sum(case["body_unsaid"] for case in result[name]), 0)
 

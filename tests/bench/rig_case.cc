@@ -38,14 +38,12 @@ double WorstAxis(const Vector6d& error, const Matrix6d& covariance) {
 }
 
 // Directions are those of the information with its diagonal scaled to one, so that metres and radians compare.
-double WorstClaim(const Vector6d& error, const Uncertainty& uncertainty) {
+Eigen::VectorXd ClaimedSigmas(const Vector6d& error, const Uncertainty& uncertainty) {
   const Vector6d scale = uncertainty.Omega.diagonal().cwiseMax(1e-12).cwiseSqrt();
   const Matrix6d scaled = scale.cwiseInverse().asDiagonal() * uncertainty.Omega * scale.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
   const Vector6d along = solver.eigenvectors().transpose() * (scale.asDiagonal() * error);
-  const Eigen::Index free = 6 - uncertainty.rank;
-  const Vector6d sigmas = along.cwiseAbs().cwiseProduct(solver.eigenvalues().cwiseMax(0).cwiseSqrt());
-  return sigmas.tail(6 - free).maxCoeff();
+  return along.cwiseAbs().cwiseProduct(solver.eigenvalues().cwiseMax(0).cwiseSqrt()).tail(uncertainty.rank);
 }
 
 int CountFailed(const std::vector<Edge>& edges) {

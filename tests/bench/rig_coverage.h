@@ -23,8 +23,8 @@ struct RigCase {
 [[nodiscard]] Vector6d PoseError(const RigCase& rig, const SensorPose& pose);
 // Largest error over sigma along and about the axes that are known.
 [[nodiscard]] double WorstAxis(const Vector6d& error, const Matrix6d& covariance);
-// The same over the principal directions of what the edge claims to know.
-[[nodiscard]] double WorstClaim(const Vector6d& error, const Uncertainty& uncertainty);
+// Error over sigma in each principal direction of what the edge claims to know.
+[[nodiscard]] Eigen::VectorXd ClaimedSigmas(const Vector6d& error, const Uncertainty& uncertainty);
 [[nodiscard]] int CountFailed(const std::vector<Edge>& edges);
 
 void PrintCoverage(int seeds, int first);

@@ -59,7 +59,7 @@ struct BeamScore {
     const double square_without = error.dot(without.ldlt().solve(error)) / edge.uncertainty.rank;
     squares_without += square_without;
     worst_without = std::max(worst_without, std::sqrt(square_without));
-    worst = std::max(worst, WorstClaim(error, edge.uncertainty));
+    worst = std::max(worst, ClaimedSigmas(error, edge.uncertainty).maxCoeff());
     ++edges;
   }
 };

@@ -17,7 +17,7 @@ constexpr double kTilts_deg[] = {0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.5, 1, 2, 3, 
 struct MotionScore {
   double worst_edge = 0, worst_pose = 0, axis_deg = 0;
   double edge_squares = 0, pose_squares = 0;  // sums of squared errors over variances, of so many
-  int edge_claims = 0, pose_claims = 0;
+  int edge_claims = 0, edge_claims_beyond = 0, pose_claims = 0;
   int edges_open = 0, edges_failed = 0, poses_unknown = 0, body_known = 0, body_unsaid = 0, visits = 0;
 };
 
@@ -72,7 +72,9 @@ void AddEdges(const RigCase& rig, MotionScore& score) {
   for (const Edge& edge : rig.edges) {
     if (edge.state != EdgeState::kGood) continue;
     const Vector6d error = EdgeError(rig, edge);
-    score.worst_edge = std::max(score.worst_edge, WorstClaim(error, edge.uncertainty));
+    const Eigen::VectorXd sigmas = ClaimedSigmas(error, edge.uncertainty);
+    score.worst_edge = std::max(score.worst_edge, sigmas.maxCoeff());
+    score.edge_claims_beyond += static_cast<int>((sigmas.array() > 4.0).count());
     score.edge_squares += error.dot(edge.uncertainty.Omega * error);
     score.edge_claims += edge.uncertainty.rank;
     if (edge.uncertainty.rank == 6) continue;
@@ -132,12 +134,14 @@ void PrintMotions(int seeds, int first) {
       const MotionScore score = ScoreOf(motion, tilt_deg, seeds, first);
       std::printf(
           "%s\n  {\"tilt_deg\": %.3f, \"worst_edge_sigmas\": %.3f, \"worst_pose_sigmas\": %.3f, "
-          "\"edge_mean_square\": %.3f, \"pose_mean_square\": %.3f, \"pose_claims\": %d, \"axis_deg\": %.4f, "
+          "\"edge_claims\": %d, \"edge_claims_beyond_4\": %d, \"edge_mean_square\": %.3f, \"pose_mean_square\": %.3f, "
+          "\"pose_claims\": %d, \"axis_deg\": %.4f, "
           "\"edges_open\": %d, \"edges_failed\": %d, \"poses_unknown\": %d, \"body_known\": %d, \"body_unsaid\": %d, "
           "\"visits\": %d}",
-          comma, tilt_deg, score.worst_edge, score.worst_pose, Mean(score.edge_squares, score.edge_claims),
-          Mean(score.pose_squares, score.pose_claims), score.pose_claims, score.axis_deg, score.edges_open,
-          score.edges_failed, score.poses_unknown, score.body_known, score.body_unsaid, score.visits);
+          comma, tilt_deg, score.worst_edge, score.worst_pose, score.edge_claims, score.edge_claims_beyond,
+          Mean(score.edge_squares, score.edge_claims), Mean(score.pose_squares, score.pose_claims), score.pose_claims,
+          score.axis_deg, score.edges_open, score.edges_failed, score.poses_unknown, score.body_known,
+          score.body_unsaid, score.visits);
       std::fflush(stdout);
       comma = ",";
     }
