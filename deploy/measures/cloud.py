@@ -59,6 +59,8 @@ def run(context):
     yield info("processor_time_of_it", result["processor_ms"], "ms")
     yield equal("same_bytes_1_and_2_threads", result["same_bytes"], True)
     yield at_most("wall_points_painted_as_plate", result["painted_as_plate"], 200)
+    yield at_most("rings_wall_points_painted_through_a_plate", result["rings_hidden_painted"], 20)
+    yield at_most("rings_points_in_sight_not_painted", 100 * result["rings_missed"] / result["rings_in_sight"], 0.2, "%")
     yield at_most("plate_points_not_painted", result["plate_missed"], result["plate_points"] // 1000)
     yield info("covered_of_the_room", 100 * result["covered_ratio"], "%")
     yield from run_real(context)

@@ -145,7 +145,7 @@ Beams BeamsOf(const Cloud& cloud) {
   Beams beams;
   TakePoints(cloud, beams);
   FindSteps(beams);
-  beams.facing = Facing(beams.points_m, beams.MeanStep_rad());
+  beams.facing = Facing(beams.points_m, beams.azimuth_step_rad, beams.elevation_step_rad);
   return beams;
 }
 

@@ -12,8 +12,8 @@ namespace rigcal::cloud {
 class Facing {
  public:
   Facing() = default;
-  // `step_rad`: between the beams; a bundle is some steps wide. The same on any number of threads.
-  Facing(const std::vector<Eigen::Vector3f>& points_m, float step_rad);
+  // Steps between the beams; a bundle is some of them wide. The same on any number of threads.
+  Facing(const std::vector<Eigen::Vector3f>& points_m, float azimuth_step_rad, float elevation_step_rad);
 
   // A unit vector towards the lidar (the origin): of the surface there; where several meet, along the ray; zero where
   // too few points say anything.

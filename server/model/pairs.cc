@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "server/model/session.h"
@@ -8,15 +7,6 @@ namespace rigcal {
 namespace {
 
 bool MayShareTarget(const Sensor& a, const Sensor& b) { return !a.sees || !b.sees || *a.sees == *b.sees; }
-
-using Names = std::pair<SensorId, SensorId>;
-
-// Whichever comes first.
-std::set<Names> Skipped(const SessionHeader& header) {
-  std::set<Names> skipped;
-  for (const SensorPair& pair : header.skip_pairs) skipped.insert(std::minmax(pair.a, pair.b));
-  return skipped;
-}
 
 bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor) {
   return std::any_of(header.targets.begin(), header.targets.end(),
@@ -44,13 +34,17 @@ std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const S
 }
 
 std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
-  const std::set<Names> skipped = Skipped(header);
   std::vector<SensorPair> pairs;
   for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
     for (auto b = a + 1; b != header.sensors.end(); ++b)
-      if (!MethodFor(header, *a, *b).empty() && !skipped.contains(std::minmax(a->id, b->id)))
-        pairs.push_back({a->id, b->id});
+      if (!MethodFor(header, *a, *b).empty() && !IsSkipped(header, a->id, b->id)) pairs.push_back({a->id, b->id});
   return pairs;
+}
+
+bool IsSkipped(const SessionHeader& header, const SensorId& a, const SensorId& b) {
+  return std::any_of(header.skip_pairs.begin(), header.skip_pairs.end(), [&](const SensorPair& pair) {
+    return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a);
+  });
 }
 
 std::optional<Se3> NominalPose(const SessionHeader& header, const Sensor& a, const Sensor& b) {

@@ -85,6 +85,8 @@ struct Manifest {
 // All pairs of sensors of a session that there is a method for and that are not to be skipped; a < b in the order of
 // the session's sensors.
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
+// Whether the session says that these two are not to be calibrated, in either order.
+[[nodiscard]] bool IsSkipped(const SessionHeader& header, const SensorId& a, const SensorId& b);
 // T_a_b as drawn; nothing where the drawing lacks one of the two. The reference sensor need not be drawn.
 [[nodiscard]] std::optional<Se3> NominalPose(const SessionHeader& header, const Sensor& a, const Sensor& b);
 

@@ -70,6 +70,13 @@ std::vector<ReadyCamera> ReadyCameras(const Manifest& manifest, const SessionId&
   return cameras;
 }
 
+// Without those that the session does not pair with the lidar, as the paper colours each lidar from its own cameras.
+std::vector<ReadyCamera> PairedWith(const SensorId& lidar, std::vector<ReadyCamera> cameras,
+                                    const SessionHeader& header) {
+  std::erase_if(cameras, [&](const ReadyCamera& camera) { return IsSkipped(header, lidar, camera.id); });
+  return cameras;
+}
+
 using PayloadsOf = std::map<SensorId, std::map<CaptureId, const Payload*>>;
 
 PayloadsOf BySensor(const Manifest& manifest) {
@@ -118,12 +125,13 @@ Poses StillThere(const Poses& poses, const SessionId& session, const Remounts& r
 
 std::vector<CloudChoice> ChoicesIn(const Manifest& manifest, const SessionId& session, const Poses& poses,
                                    const formats::RevisionInput& revision) {
-  const std::vector<ReadyCamera> cameras = ReadyCameras(manifest, session, poses, revision);
+  const std::vector<ReadyCamera> all = ReadyCameras(manifest, session, poses, revision);
   const PayloadsOf payloads = BySensor(manifest);
   std::vector<CloudChoice> choices;
   for (const Sensor& sensor : manifest.header.sensors) {
     const auto pose = poses.find(sensor.id);
     if (sensor.kind != SensorKind::kLidar || pose == poses.end()) continue;
+    const std::vector<ReadyCamera> cameras = PairedWith(sensor.id, all, manifest.header);
     CloudChoice choice = ChoiceOf(sensor.id, pose->second, payloads, cameras);
     if (!choice.cameras.empty()) choices.push_back(std::move(choice));
   }

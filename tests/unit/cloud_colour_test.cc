@@ -70,6 +70,30 @@ TEST(Colour, WhatAPlateHidesIsNotPaintedAndNothingElseIsLost) {
   EXPECT_LE(free_lost, free / 1000);  // grazing surfaces
 }
 
+// One ring on a plate and the next on the wall behind it fit a slope that nothing there has.
+TEST(Colour, ThePlateHidesTheWallFromALidarOfFewRingsToo) {
+  CloudRoom room;
+  room.plates.push_back({{3.1, 0.2, 0.1}, {0, 0.4, 0}, {0, 0, 0.3}, {250, 250, 20}});
+  const CloudRoom larger = Grown(room, 0.08), smaller = Grown(room, -0.05);
+  std::vector<int> surfaces;
+  const Beams beams = BeamsOf(room.ScanRings(1, surfaces));
+  std::size_t hidden = 0, hidden_seen = 0, free = 0, free_lost = 0;
+  for (const Eigen::Vector3d& place : {Eigen::Vector3d(0.1, -0.5, 0.3), {0.2, 0.1, -0.4}, {-0.1, 0.6, -0.2}}) {
+    const CloudCamera camera = RoomCamera(place, 0, kWidth, kHeight, 420);
+    const std::set<std::uint32_t> seen = IndicesOf(See(beams, camera, room.Take(camera, kWidth, kHeight, 1)));
+    for (std::uint32_t i = 0; i < beams.points_m.size(); ++i) {
+      const Eigen::Vector3d p_cam = camera.T_cam_lidar * Eigen::Vector3d(beams.points_m[i].cast<double>());
+      if (surfaces[i] >= CloudRoom::kWallColours || p_cam.z() < 0.9 * p_cam.norm()) continue;
+      if (IsHidden(smaller, camera, beams.points_m[i])) ++hidden, hidden_seen += seen.count(i);
+      if (!IsHidden(larger, camera, beams.points_m[i])) ++free, free_lost += 1 - seen.count(i);
+    }
+  }
+  EXPECT_GT(hidden, 200u);
+  EXPECT_LE(hidden_seen, hidden / 10);  // chinks that noise makes between two rings
+  EXPECT_GT(free, 10000u);
+  EXPECT_LE(free_lost, free / 500);
+}
+
 TEST(Colour, EveryLensPaintsEveryPointInItsSurfacesColour) {
   const CloudRoom room;
   std::vector<int> surfaces;

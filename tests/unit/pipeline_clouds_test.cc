@@ -42,9 +42,11 @@ std::string WallPly() {
 class PipelineCloudsTest : public PipelineTest {
  protected:
   // Two cameras and a lidar; cameras see different boards, so that they give no pair.
-  SessionId StoreRig(const std::map<std::string, std::string>& files, const std::vector<SensorId>& remounted = {}) {
+  SessionId StoreRig(const std::map<std::string, std::string>& files, const std::vector<SensorId>& remounted = {},
+                     const std::vector<SensorPair>& skip_pairs = {}) {
     Manifest manifest;
     manifest.header.remounted = remounted;
+    manifest.header.skip_pairs = skip_pairs;
     manifest.header.robot = RobotId("r");
     manifest.header.reference = SensorId("lidar");
     manifest.header.captured_at = clock_.now;
@@ -131,6 +133,15 @@ TEST_F(PipelineCloudsTest, NoColourComesFromACameraThatWasRemountedSince) {
   StoreRig({{"near/01.png", PngOf(kRed, kBlue)}, {"far/01.png", PngOf(kRed, kBlue)}, {"lidar/01.ply", WallPly()}});
   clock_.now.ns += 1'000'000'000;
   StoreRig({{"near/01.png", PngOf(kBlue, kBlue)}}, {SensorId("near")});
+  StepAll();
+  EXPECT_TRUE(std::filesystem::exists(Newest() / "overlay/far.jpg"));
+  EXPECT_FALSE(std::filesystem::exists(Newest() / "overlay/near.jpg"));
+}
+
+TEST_F(PipelineCloudsTest, NoColourComesFromACameraThatIsNotPairedWithTheLidar) {
+  StorePoses();
+  StoreRig({{"near/01.png", PngOf(kRed, kBlue)}, {"far/01.png", PngOf(kRed, kBlue)}, {"lidar/01.ply", WallPly()}}, {},
+           {{SensorId("near"), SensorId("lidar")}});
   StepAll();
   EXPECT_TRUE(std::filesystem::exists(Newest() / "overlay/far.jpg"));
   EXPECT_FALSE(std::filesystem::exists(Newest() / "overlay/near.jpg"));
