@@ -80,6 +80,7 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
     for (const auto& [name, value] : header.conditions) out.Text(name, value);
   });
   out.Integer("format", header.format);
+  if (header.lidar_polish != LidarPolish::kNone) out.Text("lidar_polish", NameOf(header.lidar_polish));
   out.Text("operator", header.operator_name);
   out.Text("reference", header.reference.str());
   if (!header.remounted.empty())
@@ -187,6 +188,13 @@ SensorPair ReadSkipPair(const JsonField& field) {
   return {};
 }
 
+LidarPolish ReadLidarPolish(const JsonField& field) {
+  const Result<LidarPolish> polish = LidarPolishOf(field.Text());
+  if (polish) return *polish;
+  field.Refuse(polish.error().what);
+  return LidarPolish::kNone;
+}
+
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
   header.format = static_cast<int>(root.At("format").Integer(1, 1));
@@ -204,6 +212,7 @@ SessionHeader ReadHeader(const JsonField& root) {
   if (const auto remounted = root.Find("remounted"))
     for (const JsonField& sensor : remounted->Items(limits::kSensorsPerSessionMax))
       header.remounted.push_back(ReadId<SensorId>(sensor));
+  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadLidarPolish(*polish);
   for (const auto& [name, value] : root.At("conditions").Members(kConditionsMax))
     header.conditions.emplace(name, value.Text());
   return header;

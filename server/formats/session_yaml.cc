@@ -163,9 +163,16 @@ SensorPair ReadSkipPair(const YamlField& field) {
   return {};
 }
 
+LidarPolish ReadLidarPolish(const YamlField& field) {
+  const Result<LidarPolish> polish = LidarPolishOf(field.Text());
+  if (polish) return *polish;
+  field.Refuse(polish.error().what, polish.error().cure);
+  return LidarPolish::kNone;
+}
+
 SessionHeader ReadHeader(const YamlField& root) {
   root.AllowOnly({"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors",
-                  "skip_pairs", "remounted", "conditions"});
+                  "skip_pairs", "remounted", "lidar_polish", "conditions"});
   SessionHeader header;
   header.format = static_cast<int>(root.At("format").Integer(1, 1));
   header.robot = ReadId<RobotId>(root.At("robot"));
@@ -187,6 +194,7 @@ SessionHeader ReadHeader(const YamlField& root) {
     for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))
     for (const YamlField& sensor : remounted->Items()) AddRemounted(ReadId<SensorId>(sensor), header);
+  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadLidarPolish(*polish);
   if (const auto conditions = root.Find("conditions"))
     for (const YamlField& condition : conditions->Members())
       header.conditions.emplace(condition.Key(), condition.Text());
@@ -210,7 +218,9 @@ YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
     for (const YamlField& sensor : remounted->Items())
       if (!is_sensor(sensor.Text())) return sensor;
   const auto reference = root.Find("reference");
-  return reference && !root.At("sensors").Find(header.reference.str()) ? *reference : root;
+  if (reference && !is_sensor(header.reference.str())) return *reference;
+  const auto polish = root.Find("lidar_polish");
+  return polish && header.lidar_polish != LidarPolish::kNone && !HasLidarPair(header) ? *polish : root;
 }
 
 }  // namespace

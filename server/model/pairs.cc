@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "server/model/session.h"
@@ -45,6 +46,15 @@ bool IsSkipped(const SessionHeader& header, const SensorId& a, const SensorId& b
   return std::any_of(header.skip_pairs.begin(), header.skip_pairs.end(), [&](const SensorPair& pair) {
     return (pair.a == a && pair.b == b) || (pair.a == b && pair.b == a);
   });
+}
+
+bool HasLidarPair(const SessionHeader& header) {
+  std::set<SensorId> lidars;
+  for (const Sensor& sensor : header.sensors)
+    if (sensor.kind == SensorKind::kLidar) lidars.insert(sensor.id);
+  const std::vector<SensorPair> pairs = PairsToCalibrate(header);
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [&](const SensorPair& pair) { return lidars.contains(pair.a) && lidars.contains(pair.b); });
 }
 
 std::optional<Se3> NominalPose(const SessionHeader& header, const Sensor& a, const Sensor& b) {

@@ -86,6 +86,14 @@ Status CheckRemounted(const SessionHeader& header) {
   return {};
 }
 
+// As remounted: what changes nothing was meant otherwise.
+Status CheckLidarPolish(const SessionHeader& header) {
+  if (header.lidar_polish == LidarPolish::kNone || HasLidarPair(header)) return {};
+  return Fail(ErrorCode::kInvalidInput,
+              "lidar_polish: the session has no two lidars that are calibrated with each other",
+              "Leave it away, or list both lidars and keep their pair out of skip_pairs.");
+}
+
 Status CheckReference(const SessionHeader& header) {
   if (HasSensor(header, header.reference)) return {};
   return Fail(ErrorCode::kInvalidInput, "reference sensor " + Quoted(header.reference.str()) + " is not a sensor",
@@ -147,6 +155,15 @@ Result<SensorKind> SensorKindOf(const std::string& name) {
               "Use camera, lidar, tracker or pose_stream.");
 }
 
+std::string NameOf(LidarPolish polish) { return polish == LidarPolish::kGicp ? "gicp" : "none"; }
+
+Result<LidarPolish> LidarPolishOf(const std::string& name) {
+  for (const LidarPolish polish : {LidarPolish::kNone, LidarPolish::kGicp})
+    if (NameOf(polish) == name) return polish;
+  return Fail(ErrorCode::kInvalidInput, "polish " + Quoted(name) + " is not known",
+              "Use gicp (generalised ICP after NDT), or none, as if it were left away.");
+}
+
 Status Validate(const SessionHeader& header) {
   if (header.format != 1)
     return Fail(ErrorCode::kUnsupported, "session format " + std::to_string(header.format) + " is not known",
@@ -164,7 +181,8 @@ Status Validate(const SessionHeader& header) {
   RIGCAL_TRY(CheckSightings(header));
   RIGCAL_TRY(CheckSkipPairs(header));
   RIGCAL_TRY(CheckReference(header));
-  return CheckRemounted(header);
+  RIGCAL_TRY(CheckRemounted(header));
+  return CheckLidarPolish(header);
 }
 
 }  // namespace rigcal

@@ -38,6 +38,11 @@ struct Sensor {
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
 
+// "none" | "gicp": the pose of two lidars is NDT's, or polished from there by generalised ICP.
+enum class LidarPolish { kNone, kGicp };
+[[nodiscard]] std::string NameOf(LidarPolish polish);
+[[nodiscard]] Result<LidarPolish> LidarPolishOf(const std::string& name);
+
 struct SensorPair {
   SensorId a, b;
   friend auto operator<=>(const SensorPair&, const SensorPair&) = default;
@@ -54,6 +59,7 @@ struct SessionHeader {
   std::vector<Sensor> sensors;
   std::vector<SensorPair> skip_pairs;  // not to be calibrated; in either order
   std::vector<SensorId> remounted;     // moved on purpose since the sessions before: what those say of them is past
+  LidarPolish lidar_polish = LidarPolish::kNone;  // of all its pairs of lidars; kNone where there are none
   std::map<std::string, std::string> conditions;
 };
 
@@ -87,6 +93,8 @@ struct Manifest {
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
 // Whether the session says that these two are not to be calibrated, in either order.
 [[nodiscard]] bool IsSkipped(const SessionHeader& header, const SensorId& a, const SensorId& b);
+// Whether the session has two lidars that are calibrated with each other.
+[[nodiscard]] bool HasLidarPair(const SessionHeader& header);
 // T_a_b as drawn; nothing where the drawing lacks one of the two. The reference sensor need not be drawn.
 [[nodiscard]] std::optional<Se3> NominalPose(const SessionHeader& header, const Sensor& a, const Sensor& b);
 

@@ -212,6 +212,8 @@ SESSIONS = [
     yaml_case("pose of an unknown capture", r"right/poses\.csv line 2: no other sensor has a capture 99", ("  right:\n    type: camera\n    sees: board\n" + INTRINSICS, "  right: {type: tracker}\n"),
               files={"left/01.png": GOOD["left/01.png"], "right/poses.csv": b"capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n99,0,0,0,0,0,0,0,1\n"}),
     yaml_case("skipped pair of an unknown sensor", r"session\.yaml line \d+: skip_pairs: \[left, up\]: .up. is not a sensor", ("reference: left", "reference: left\nskip_pairs: [[left, up]]")),
+    yaml_case("polish that there is not", r"session\.yaml line \d+: lidar_polish: polish .point_to_plane. is not known", ("reference: left", "reference: left\nlidar_polish: point_to_plane")),
+    yaml_case("polish without two lidars", r"session\.yaml line \d+: lidar_polish: the session has no two lidars", ("reference: left", "reference: left\nlidar_polish: gicp")),
     yaml_case("lidar with intrinsics", r"session\.yaml line \d+: sensor .?left.?: a lidar has no intrinsics", ("  left:\n    type: camera", "  left:\n    type: lidar")),
     yaml_case("folder of no sensor", r'folder "middle": session\.yaml has no sensor of this name', files={**few(), "middle/01.png": GOOD["left/01.png"]}),
     yaml_case("focal length of zero", r"session\.yaml line \d+: sensor .?left.?: intrinsics: a focal length is not positive", ("fx_px: 260.0", "fx_px: 0")),

@@ -56,6 +56,28 @@ TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
   EXPECT_EQ(Validate(manifest).error().what, "file \"vicon/01.csv\": the path is not <sensor>/poses.csv");
 }
 
+TEST(ManifestDocument, HoldsThePolishOfLidarsWhereOneIsAskedFor) {
+  Manifest manifest = SampleManifest();
+  for (const char* name : {"top", "rear"}) {
+    Sensor lidar;
+    lidar.id = SensorId(name);
+    lidar.kind = SensorKind::kLidar;
+    manifest.header.sensors.push_back(lidar);
+  }
+  const std::string plain = WriteManifest(manifest);
+  EXPECT_EQ(plain.find("lidar_polish"), std::string::npos);
+  EXPECT_EQ(ReadManifest(plain)->header.lidar_polish, LidarPolish::kNone);
+  manifest.header.lidar_polish = LidarPolish::kGicp;
+  std::string polished = WriteManifest(manifest);
+  const Result<Manifest> read = ReadManifest(polished);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->header.lidar_polish, LidarPolish::kGicp);
+  EXPECT_EQ(WriteManifest(*read), polished);
+  EXPECT_NE(Sha256Of(polished), Sha256Of(plain));  // another session
+  polished.replace(polished.find("gicp"), 4, "icp");
+  EXPECT_EQ(ReadManifest(polished).error().what, "manifest: lidar_polish: polish \"icp\" is not known");
+}
+
 struct BadManifest {
   std::string from, to, what;
 };

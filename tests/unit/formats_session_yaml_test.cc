@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "server/formats/documents.h"
 #include "server/formats/session_folder.h"
 #include "tests/unit/formats_samples.h"
 
@@ -125,6 +126,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadYaml{"sensors:", "skip_pairs: [[left]]\nsensors:", "line 7: skip_pairs: must be two names of sensors"},
         BadYaml{"sensors:", "remounted: [up]\nsensors:", "line 7: remounted: \"up\" is not a sensor"},
         BadYaml{"sensors:", "remounted: left\nsensors:", "line 7: remounted: must be a list"},
+        BadYaml{"sensors:", "lidar_polish: icp\nsensors:", "line 7: lidar_polish: polish \"icp\" is not known"},
+        BadYaml{"sensors:", "lidar_polish: [gicp]\nsensors:", "line 7: lidar_polish: must be one value"},
+        BadYaml{"sensors:", "lidar_polish: gicp\nsensors:",
+                "line 7: lidar_polish: the session has no two lidars that are calibrated with each other"},
+        BadYaml{"sensors:", "lidar_polsh: gicp\nsensors:",
+                "line 7: unknown key \"lidar_polsh\"; did you mean \"lidar_polish\"?"},
         BadYaml{"sensors:", "skip_pairs: left\nsensors:", "line 7: skip_pairs: must be a list"},
         BadYaml{"left: {", ".left: {", "line 8: sensor id \".left\" is not a valid name"},
         BadYaml{"fx_px: 535.4", "fx_px: 535,4", "line 11: sensor 'right': intrinsics: unknown key \"4\"; known here: "},
@@ -171,6 +178,24 @@ INSTANTIATE_TEST_SUITE_P(
                     BadYaml{"sensors:", " sensors:", "line 7: not YAML: "}));
 
 TEST(SessionYaml, TheGoodFileIsGood) { EXPECT_TRUE(ReadSessionYaml(kGood, "session.yaml")); }
+
+// What says that nothing is asked for is the session that does not speak of it, byte for byte.
+TEST(SessionYaml, APolishIsAskedForAndOtherwiseDoesNotShow) {
+  const std::string lidars =
+      "format: 1\nrobot: r\ncaptured_at: 2026-01-31\nsensors: {top: {type: lidar}, rear: {type: lidar}}\n";
+  const auto manifest_after = [&](const std::string& line) {
+    const auto header = ReadSessionYaml(lidars + line, "session.yaml");
+    EXPECT_TRUE(header) << Sentence(header.error());
+    return header ? WriteManifest({*header, {}}) : "";
+  };
+  const std::string plain = manifest_after("");
+  EXPECT_EQ(plain.find("polish"), std::string::npos);
+  EXPECT_EQ(manifest_after("lidar_polish: none\n"), plain);
+  std::string polished = manifest_after("lidar_polish: gicp\n");
+  const std::string member = "\"lidar_polish\":\"gicp\",";
+  ASSERT_NE(polished.find(member), std::string::npos) << polished;
+  EXPECT_EQ(polished.erase(polished.find(member), member.size()), plain);
+}
 
 TEST(SessionYaml, HostileFilesAreRefusedNotRun) {
   std::string wide = "a:\n";

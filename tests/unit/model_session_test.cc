@@ -118,6 +118,31 @@ TEST(ValidateHeader, ARemountedSensorIsMeasuredAnew) {
               HasSubstr("remounted: \"left\" is in no pair that is calibrated"));
 }
 
+TEST(ValidateHeader, APolishIsOfTwoLidars) {
+  const auto cameras = RefusalAfter([](auto& h) { h.lidar_polish = LidarPolish::kGicp; });
+  EXPECT_EQ(cameras.what, "lidar_polish: the session has no two lidars that are calibrated with each other");
+  EXPECT_FALSE(cameras.cure.empty());
+  SessionHeader header = GoodHeader();
+  header.lidar_polish = LidarPolish::kGicp;
+  header.sensors.push_back(Of("top", SensorKind::kLidar));
+  EXPECT_FALSE(Validate(header));
+  header.sensors.push_back(Of("rear", SensorKind::kLidar));
+  EXPECT_TRUE(Validate(header)) << Sentence(Validate(header).error());
+  header.skip_pairs = {{SensorId("rear"), SensorId("top")}};
+  EXPECT_THAT(Validate(header).error().what, HasSubstr("lidar_polish"));
+  header.lidar_polish = LidarPolish::kNone;
+  EXPECT_TRUE(Validate(header));
+}
+
+TEST(LidarPolish, HasTheNamesOfThoseThatThereAre) {
+  for (const LidarPolish polish : {LidarPolish::kNone, LidarPolish::kGicp})
+    EXPECT_EQ(*LidarPolishOf(NameOf(polish)), polish);
+  const auto unknown = LidarPolishOf("point_to_plane");
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().what, "polish \"point_to_plane\" is not known");
+  EXPECT_THAT(unknown.error().cure, HasSubstr("gicp"));
+}
+
 TEST(AddRemounted, InWhateverOrderAndHoweverOftenSensorsAreNamed) {
   SessionHeader one, other;
   for (const char* name : {"left", "top", "left", "body"}) AddRemounted(SensorId(name), one);
