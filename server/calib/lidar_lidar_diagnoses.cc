@@ -97,7 +97,8 @@ Diagnosis StartsScatter(const LidarLidarProblem& problem, double agreeing_ratio)
 Diagnosis NotConverged(const LidarLidarProblem& problem, double last_step) {
   return {"not_converged",
           PairOf(problem) + ": the pose still moved by " + Formatted("%.1e", last_step) + " (m, rad) in its last step.",
-          kMoreStructure};
+          (problem.polish ? "Leave lidar_polish away in session.yaml: NDT's own pose may have settled. " : "") +
+              std::string(kMoreStructure)};
 }
 
 Diagnosis NoStructure(const LidarLidarProblem& problem) {
@@ -137,6 +138,17 @@ Diagnosis CloudsLeftOut(const LidarLidarProblem& problem, const std::vector<Capt
   return {"captures_left_out",
           PairOf(problem) + ": " + Captures(captures.size()) + " without two usable clouds: " + NamesOf(captures) + ".",
           "Record both lidars in every capture."};
+}
+
+Diagnosis PolishedPose(const LidarLidarProblem& problem, const Vector6d& moved) {
+  return {
+      "polished",
+      PairOf(problem) +
+          ": the pose is not NDT's but polished from there by generalised ICP (GICP), as the session asks for; that "
+          "moved it by " +
+          Formatted("%.1f mm", 1e3 * moved.head<3>().norm()) + " and " +
+          Formatted("%.3f deg", moved.tail<3>().norm() * 180 / M_PI) + ".",
+      "Leave lidar_polish away in session.yaml for NDT's own pose."};
 }
 
 Diagnosis RangesTakenAsExact(const LidarLidarProblem& problem) {

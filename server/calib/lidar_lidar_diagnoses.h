@@ -25,6 +25,8 @@ constexpr std::size_t kPairsMin = 40;
 [[nodiscard]] Diagnosis SingleCapture(const LidarLidarProblem& problem);
 [[nodiscard]] Diagnosis FewClouds(const LidarLidarProblem& problem, std::size_t used);
 [[nodiscard]] Diagnosis CloudsLeftOut(const LidarLidarProblem& problem, const std::vector<CaptureId>& captures);
+// `moved`: the logarithm of the polished pose in NDT's.
+[[nodiscard]] Diagnosis PolishedPose(const LidarLidarProblem& problem, const Vector6d& moved);
 [[nodiscard]] Diagnosis RangesTakenAsExact(const LidarLidarProblem& problem);
 
 }  // namespace rigcal::calib

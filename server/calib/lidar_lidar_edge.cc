@@ -22,6 +22,10 @@ Edge FailedEdge(const LidarLidarProblem& problem, const Diagnosis& diagnosis) {
   return edge;
 }
 
+Vector6d MovedByPolish(const LidarLidarEstimate& estimate) {
+  return (estimate.T_a_b_ndt.Inverse() * estimate.T_a_b_polished).Log();
+}
+
 // "held_out_captures_...": of each capture by the pose without it; "held_out_halves_...": of each half of one capture's
 // points by the pose from the other half.
 void AddFigures(const LidarLidarEstimate& estimate, Edge& edge) {
@@ -46,7 +50,7 @@ void AddFigures(const LidarLidarEstimate& estimate, Edge& edge) {
     edge.figures["halves_differ_rad"] = estimate.halves_rad;
   }
   edge.figures["polished_ratio"] = estimate.polished ? 1 : 0;
-  const Vector6d moved = (estimate.T_a_b_ndt.Inverse() * estimate.T_a_b_polished).Log();
+  const Vector6d moved = MovedByPolish(estimate);
   edge.figures["polish_moved_m"] = moved.head<3>().norm();
   edge.figures["polish_moved_rad"] = moved.tail<3>().norm();
 }
@@ -61,6 +65,7 @@ Edge Solved(const LidarLidarProblem& problem) {
   edge.uncertainty = std::move(estimate->uncertainty);
   edge.captures = estimate->residuals;
   edge.diagnoses = std::move(notes);
+  if (estimate->polished) edge.diagnoses.push_back(PolishedPose(problem, MovedByPolish(*estimate)));
   AddFigures(*estimate, edge);
   return edge;
 }

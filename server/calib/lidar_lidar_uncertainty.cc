@@ -25,10 +25,11 @@ Directions Known(const Directions& unknown) {
 // the scatter within the clouds shows it. It arises where the pose rests on the surfaces, as chance does, and so has
 // the shape of the covariance by chance, along the columns of B. The scale of a covariance of known shape is, of one
 // draw, its mean square over the directions; the draw's own direction alone would leave the five others without any.
-Contribution MethodContribution(const LidarLidarPose& pose, const Directions& B, const Matrix6d& C) {
+// A polished pose is NDT's, whose error that is, and the way from there, which is as large: it has both.
+Contribution MethodContribution(const LidarLidarPose& pose, bool polished, const Directions& B, const Matrix6d& C) {
   const Eigen::MatrixXd along = B.transpose() * C * B;
   const Eigen::VectorXd apart = B.transpose() * (pose.ndt.Inverse() * pose.polished).Log();
-  const double scale = apart.dot(along.ldlt().solve(apart)) / static_cast<double>(B.cols());
+  const double scale = (polished ? 2 : 1) * apart.dot(along.ldlt().solve(apart)) / static_cast<double>(B.cols());
   return {"method (NDT against GICP)", scale * Symmetrized(B * along * B.transpose())};
 }
 
@@ -88,7 +89,7 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
   Matrix6d C = jackknife ? ShrinkTowardsModel(JackknifeCovariance(d), C_model, static_cast<int>(m)) : C_model;
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
   AddBeams(problem, work, T_map_moving, unknown, contributions);
-  contributions.push_back(MethodContribution(pose, B, C));
+  contributions.push_back(MethodContribution(pose, work.polish, B, C));
   for (const Contribution& contribution : contributions) C += contribution.covariance;
   Matrix6d Omega = Symmetrized(B * (B.transpose() * C * B).inverse() * B.transpose());
   if (!Omega.allFinite()) return failed();

@@ -88,6 +88,7 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
   inputs.problem.lidar_a = *a;
   inputs.problem.lidar_b = *b;
   inputs.problem.T_a_b_nominal = NominalPose(manifest.header, *a, *b);
+  inputs.problem.polish = manifest.header.lidar_polish == LidarPolish::kGicp;
   for (auto& [id, capture] : captures) inputs.problem.captures.push_back(std::move(capture));
   return inputs;
 }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "server/calib/lidar_lidar.h"
+#include "server/calib/lidar_lidar_diagnoses.h"
 #include "server/calib/ndt_fit.h"
 #include "tests/unit/calib_virtual_room.h"
 
@@ -61,6 +63,38 @@ TEST(LidarLidar, NoiseLeavesMillimetresAndThePolishAgrees) {
     EXPECT_LT(error.head<3>().norm(), 0.01);
     EXPECT_LT(error.tail<3>().norm(), 0.25 * kDeg);
   }
+}
+
+// Only what was asked for is marked; how far the polish moves the pose is told in either case, and goes into sigma.
+TEST(LidarLidar, APolishedPoseSaysSoAndByHowMuch) {
+  LidarLidarProblem problem = RecordedIn(VirtualRoom(), 1, 5);
+  const Edge ndt = EstimateLidarLidarEdge(problem);
+  problem.polish = true;
+  const Edge polished = EstimateLidarLidarEdge(problem);
+  ASSERT_TRUE(ndt.state == EdgeState::kGood && polished.state == EdgeState::kGood);
+  EXPECT_EQ(ndt.figures.at("polished_ratio"), 0);
+  EXPECT_EQ(polished.figures.at("polished_ratio"), 1);
+  for (const Diagnosis& note : ndt.diagnoses) EXPECT_NE(note.code, "polished");
+  ASSERT_EQ(polished.diagnoses.size(), ndt.diagnoses.size() + 1);
+  EXPECT_EQ(polished.diagnoses.back().code, "polished");
+  const Vector6d moved = (ndt.T_a_b.Inverse() * polished.T_a_b).Log();
+  EXPECT_GT(moved.head<3>().norm(), 1e-5);
+  EXPECT_NEAR(polished.figures.at("polish_moved_m"), moved.head<3>().norm(), 1e-9);
+  char text[32];
+  std::snprintf(text, sizeof text, "moved it by %.1f mm", 1e3 * moved.head<3>().norm());
+  EXPECT_NE(polished.diagnoses.back().what.find(text), std::string::npos) << polished.diagnoses.back().what;
+  const auto trace_of_method = [](const Edge& edge) {
+    return edge.uncertainty.contributions.back().covariance.trace();
+  };
+  EXPECT_GT(trace_of_method(polished), 1.5 * trace_of_method(ndt));
+}
+
+// The last stage is the polish; the one before it may be good.
+TEST(LidarLidar, APolishThatDoesNotSettleCanBeLeftAway) {
+  LidarLidarProblem problem;
+  EXPECT_EQ(NotConverged(problem, 1e-3).cure.find("lidar_polish"), std::string::npos);
+  problem.polish = true;
+  EXPECT_NE(NotConverged(problem, 1e-3).cure.find("lidar_polish"), std::string::npos);
 }
 
 TEST(LidarLidar, AStartAtTheEdgeOfWhatIsAskedForIsEnough) {
