@@ -12,9 +12,14 @@
 namespace rigcal::client {
 namespace {
 
+// A polished pose is not the plain method's.
+std::string MethodOf(const Document& edge) {
+  return edge["method"].Text("-") + (edge["figures"]["polished_ratio"].Number().value_or(0.0) > 0.0 ? "+gicp" : "");
+}
+
 void AddRow(const Document& edge, Table& table) {
   const Document e = edge["residual"]["e"];
-  table.Add({edge["frame_a"].Text("?"), edge["frame_b"].Text("?"), edge["method"].Text("-"),
+  table.Add({edge["frame_a"].Text("?"), edge["frame_b"].Text("?"), MethodOf(edge),
              Triple(edge["T_a_b"]["p_m"], kMmPerM, 2), RpyText(edge["T_a_b"], 3), Triple(edge["sigma_m"], kMmPerM, 3),
              Triple(edge["sigma_rad"], kDegPerRad, 4), Scaled(LengthOf(e, 0), kMmPerM, 3),
              Scaled(LengthOf(e, 3), kDegPerRad, 4)});
@@ -99,8 +104,8 @@ void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
 }
 
 std::string EdgeLine(const Document& edge) {
-  std::string line = edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?") + "  " + edge["method"].Text("-") +
-                     "  " + edge["state"].Text("?");
+  std::string line = edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?") + "  " + MethodOf(edge) + "  " +
+                     edge["state"].Text("?");
   if (edge["sigma_m"].size() == 3)
     line +=
         "  sigma " + Triple(edge["sigma_m"], kMmPerM, 3) + " mm, " + Triple(edge["sigma_rad"], kDegPerRad, 4) + " deg";

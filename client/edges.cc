@@ -22,7 +22,7 @@ void AddEdges(CLI::App& app, Context& context) {
   verb->add_option("ROBOT", *robot, "The robot's id")->required();
   verb->footer(
       "p, rpy: pose of B in A. sigma: one standard deviation per axis of B. |e|: how far the edge is from the graph.\n"
-      "A failed edge is listed with its reason and what to do.\n"
+      "A failed edge is listed with its reason and what to do. lidar_lidar+gicp: polished, as the session asked for.\n"
       "Examples:\n"
       "  rigcal edges mapper-01\n"
       "  rigcal edges mapper-01 --json\n");

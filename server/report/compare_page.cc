@@ -79,7 +79,7 @@ void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
   const Edge& edge = move.now ? *move.now : *move.before;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
-  row.SetValue("METHOD", MethodText(edge.method));
+  row.SetValue("METHOD", MethodText(edge));
   if (!move.measured_again) {
     const char* why = !move.before ? "new" : !move.now ? "gone" : "not measured again";
     return ShowValue(row, "ALONE", "WHY", why);

@@ -4,6 +4,7 @@
 
 #include "server/report/edge_axes.h"
 #include "server/report/edge_state.h"
+#include "server/report/figure_words.h"
 #include "server/report/influence.h"
 #include "server/report/page_data.h"
 
@@ -51,8 +52,8 @@ std::string WithoutCapture(const ReportInput& input, const Edge& edge) {
 std::string CsvRow(const ReportInput& input, const ShownEdge& shown) {
   const Edge& edge = *shown.edge;
   const bool good = edge.state == EdgeState::kGood;
-  std::string row = CsvField(edge.frame_a.str()) + "," + CsvField(edge.frame_b.str()) + "," +
-                    StateWord(edge) + "," + CsvField(edge.method) + "," +
+  std::string row = CsvField(edge.frame_a.str()) + "," + CsvField(edge.frame_b.str()) + "," + StateWord(edge) + "," +
+                    CsvField(edge.method + (IsPolished(edge) ? "+gicp" : "")) + "," +
                     (good ? NameOf(edge.uncertainty.source) : "");
   Vector6d pose;
   pose << edge.T_a_b.p_m, edge.T_a_b.q.x(), edge.T_a_b.q.y(), edge.T_a_b.q.z();

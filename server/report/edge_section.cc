@@ -179,7 +179,7 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   section.SetValue("LEVEL", StateLevel(edge));
   section.SetValue("FROM", edge.frame_a.str());
   section.SetValue("TO", edge.frame_b.str());
-  section.SetValue("METHOD", MethodText(edge.method));
+  section.SetValue("METHOD", MethodText(edge));
   section.SetValue("ANCHOR", shown.anchor);
   section.SetValue("ID", edge.id.str());
   section.SetValue("PROVENANCE", ProvenanceOf(input, edge));

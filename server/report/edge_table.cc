@@ -119,7 +119,7 @@ void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, 
   name->SetValue("FROM", edge.frame_a.str());
   name->SetValue("TO", edge.frame_b.str());
   FillState(row, shown, judged.contradictions);
-  row.SetValue("METHOD", MethodText(edge.method));
+  row.SetValue("METHOD", MethodText(edge));
   row.SetValue("CAPTURES", CapturesText(edge));
   row.SetValue("CAPTURES_KEY", edge.captures.empty() ? "" : std::to_string(UsedCount(edge)));
   if (edge.state == EdgeState::kGood) return FillGood(row, input, shown, judged.unchecked.contains(edge.id));

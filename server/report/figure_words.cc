@@ -160,4 +160,13 @@ std::string MethodText(const std::string& method) {
   return method;
 }
 
+bool IsPolished(const Edge& edge) {
+  const auto polished = edge.figures.find("polished_ratio");
+  return polished != edge.figures.end() && polished->second > 0;
+}
+
+std::string MethodText(const Edge& edge) {
+  return MethodText(edge.method) + (IsPolished(edge) ? ", polished by GICP" : "");
+}
+
 }  // namespace rigcal::report

@@ -19,5 +19,9 @@ struct FigureRows {
 [[nodiscard]] FigureRows RowsOf(const Edge& edge);
 // "lidar_camera" -> "lidar-camera"; a method that is not ours stays as it is.
 [[nodiscard]] std::string MethodText(const std::string& method);
+// Not the plain method's answer, but polished from there.
+[[nodiscard]] bool IsPolished(const Edge& edge);
+// "lidar-lidar, polished by GICP".
+[[nodiscard]] std::string MethodText(const Edge& edge);
 
 }  // namespace rigcal::report

@@ -36,7 +36,7 @@ void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosi
   const bool good = edge.state == EdgeState::kGood;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
-  row.SetValue("METHOD", MethodText(edge.method));
+  row.SetValue("METHOD", MethodText(edge));
   if (const auto why = past.find(edge.id); good && why != past.end()) return FillPast(row, why->second);
   row.SetValue("LEVEL", good ? "pass" : "fail");
   row.SetValue("STATE", good ? "good" : "failed");

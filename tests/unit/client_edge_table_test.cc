@@ -52,6 +52,23 @@ TEST(PrintEdges, NothingForNoEdges) {
   EXPECT_EQ(out.str(), "");
 }
 
+TEST(PrintEdges, APolishedPoseIsMarkedAndSaysBy) {
+  const auto text_with = [](const std::string& polished) {
+    const std::string edges =
+        R"([{"frame_a": "top", "frame_b": "rear", "state": "good", "method": "lidar_lidar", "T_a_b": null,
+             "figures": {"polished_ratio": )" +
+        polished + R"(}, "diagnoses": [{"code": "any", "what": "moved by 1.2 mm", "cure": "Leave it away"}]}])";
+    std::ostringstream out;
+    PrintEdges(Parsed(edges).Items(), out);
+    return out.str() + EdgeLine(Parsed(edges).Items()[0]);
+  };
+  EXPECT_EQ(text_with("0.0").find("gicp"), std::string::npos);
+  const std::string text = text_with("1.0");
+  EXPECT_NE(text.find("rear  lidar_lidar+gicp"), std::string::npos) << text;
+  EXPECT_NE(text.find("top - rear  lidar_lidar+gicp  good"), std::string::npos) << text;
+  EXPECT_NE(text.find("top - rear:\n  moved by 1.2 mm. Leave it away."), std::string::npos) << text;
+}
+
 TEST(EdgeLine, OneLine) {
   const auto edges = Parsed(kEdges).Items();
   EXPECT_EQ(EdgeLine(edges[0]), "left - right  stereo  good  sigma 0.100 0.200 0.300 mm, 0.0573 - 0.1719 deg");

@@ -24,8 +24,10 @@ class LidarPipelineTest : public PipelineTest {
     manifest.payloads.push_back(payload);
   }
 
-  void StoreRoom(const calib::LidarLidarProblem& problem, bool with_nominal) {
+  SessionId StoreRoom(const calib::LidarLidarProblem& problem, bool with_nominal,
+                      LidarPolish polish = LidarPolish::kNone) {
     Manifest manifest;
+    manifest.header.lidar_polish = polish;
     manifest.header.robot = RobotId("r");
     manifest.header.reference = problem.lidar_a.id;
     manifest.header.captured_at = clock_.now;
@@ -42,7 +44,7 @@ class LidarPipelineTest : public PipelineTest {
       AddFile(problem.lidar_a.id, capture.capture, Kitti(capture.a_m), manifest);
     for (const auto& capture : problem.captures)
       AddFile(problem.lidar_b.id, capture.capture, Kitti(capture.b_m), manifest);
-    Close(manifest);
+    return Close(manifest);
   }
 
   Edge OnlyEdge() {
@@ -72,6 +74,41 @@ TEST_F(LidarPipelineTest, TwoCloudsGiveAnEdgeARevisionAndAReport) {
                                       (edge.evidence[0].digest.str() + ".jpg")));
   // What is stored is what the estimator says of the same clouds.
   EXPECT_EQ(edge.T_a_b.p_m, calib::EstimateLidarLidarEdge(problem).T_a_b.p_m);
+}
+
+// The same clouds with and without: another session, which supersedes the first; the polished pose is marked wherever
+// it is shown.
+TEST_F(LidarPipelineTest, ASessionThatAsksForThePolishGetsIt) {
+  calib::LidarLidarProblem problem = calib::RecordedIn(calib::VirtualRoom(), 1, 41);
+  const SessionId plain = StoreRoom(problem, true);
+  StepAll();
+  const Edge ndt = OnlyEdge();
+  const SessionId asked = StoreRoom(problem, true, LidarPolish::kGicp);
+  EXPECT_NE(asked, plain);
+  StepAll();
+  const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
+  ASSERT_TRUE(edges);
+  ASSERT_EQ(edges->size(), 2u);
+  const Edge& polished = edges->front().session == asked ? edges->front() : edges->back();
+  ASSERT_EQ(polished.state, EdgeState::kGood) << polished.diagnoses[0].what;
+  EXPECT_EQ(ndt.figures.at("polished_ratio"), 0);
+  EXPECT_EQ(ndt.T_a_b.p_m, calib::EstimateLidarLidarEdge(problem).T_a_b.p_m);
+  problem.polish = true;
+  EXPECT_EQ(polished.figures.at("polished_ratio"), 1);
+  EXPECT_EQ(polished.T_a_b.p_m, calib::EstimateLidarLidarEdge(problem).T_a_b.p_m);
+  EXPECT_NE(polished.T_a_b.p_m, ndt.T_a_b.p_m);
+  const auto text = [&](const char* revision) {
+    std::stringstream page;
+    page << std::ifstream(store_->ReportFolder() / "r" / revision / "index.html").rdbuf();
+    return page.str();
+  };
+  EXPECT_EQ(text("1").find("polished by GICP"), std::string::npos);
+  EXPECT_NE(text("2").find("lidar-lidar, polished by GICP"), std::string::npos);
+  EXPECT_NE(text("2").find("polished from there by generalised ICP (GICP)"), std::string::npos);
+  ASSERT_EQ(revisions_.size(), 2u);
+  EXPECT_EQ(revisions_[0].document.find("\"code\":\"polished\""), std::string::npos);
+  EXPECT_NE(revisions_[1].document.find("\"code\":\"polished\""), std::string::npos);
+  EXPECT_NE(revisions_[1].document.find("\"code\":\"superseded\""), std::string::npos);
 }
 
 TEST_F(LidarPipelineTest, WithoutNominalPosesTheEdgeSaysWhatToGive) {

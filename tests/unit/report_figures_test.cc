@@ -66,6 +66,30 @@ TEST(FigureWords, MethodsHaveNames) {
   EXPECT_EQ(MethodText("theirs_2"), "theirs_2");
 }
 
+TEST(FigureWords, APolishedPoseIsNotThePlainMethods) {
+  Edge edge = EdgeWith({{"polished_ratio", 0}});
+  edge.method = "lidar_lidar";
+  EXPECT_EQ(MethodText(edge), "lidar-lidar");
+  EXPECT_EQ(Joined(RowsOf(edge).checks), "Answer from = NDT\n");
+  edge.figures["polished_ratio"] = 1;
+  EXPECT_EQ(MethodText(edge), "lidar-lidar, polished by GICP");
+  EXPECT_EQ(Joined(RowsOf(edge).checks), "Answer from = GICP\n");
+}
+
+TEST(ReportEdges, APolishedOneIsMarkedInTableSectionAndSpreadsheet) {
+  ReportInput input = SampleReport();
+  Edge& edge = input.revision.edges[1];
+  edge.method = "lidar_lidar";
+  const auto files = [&] { return RenderRevision(input, "{}").value(); };
+  EXPECT_THAT(files().at("index.html"), Not(HasSubstr("polished")));
+  EXPECT_THAT(files().at("edges.csv"), HasSubstr(",lidar_lidar,"));
+  edge.figures["polished_ratio"] = 1;
+  const std::string page = files().at("index.html");
+  EXPECT_THAT(page, HasSubstr("<td class=\"text\"><bdi>lidar-lidar, polished by GICP</bdi></td>"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"soft\"><bdi>lidar-lidar, polished by GICP</bdi></span>"));
+  EXPECT_THAT(files().at("edges.csv"), HasSubstr(",lidar_lidar+gicp,"));
+}
+
 TEST(ReportText, AsCertainAsItsSigma) {
   EXPECT_EQ(AsCertainAs(123.456, 0.25), "123.46");
   EXPECT_EQ(AsCertainAs(123.456, 25), "123");
