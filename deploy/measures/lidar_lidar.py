@@ -1,4 +1,5 @@
-"""Two lidars on real clouds: NDT, its polish and its speed against the values published or checked with the data."""
+"""Two lidars on real clouds: NDT, its polish and its speed against the values published or checked with the data; and in a
+virtual room, on captures that the pose was not made from."""
 import math
 
 from .measure import at_least, at_most, info, skip
@@ -43,10 +44,15 @@ def small_gicp(context, folder):
         yield at_most("small_gicp_%s_from_author" % name, mm, limit_mm, "mm")
         yield at_most("small_gicp_%s_turned_from_author" % name, deg, limit_deg, "deg")
     yield at_most("small_gicp_last_step", result["ndt_last_step"], 1e-4)
+    # What is timed is NDT alone, from the nominal pose: judged as the whole edge's answer is.
+    mm, deg = off(result["T_ndt_from_nominal"], SMALL_GICP, SMALL_GICP_T_M)
+    yield at_most("small_gicp_timed_ndt_from_author", mm, 25, "mm")
+    yield at_most("small_gicp_timed_ndt_turned_from_author", deg, 0.35, "deg")
     yield at_most("ndt_two_threads", result["ndt_ms"], 60, "ms")
     yield info("ndt_one_thread", result["ndt_one_thread_ms"], "ms")
     yield at_least("same_bits_from_one_and_two_threads", int(result["same_bits"]), 1)
     yield info("edge_with_starts_and_checks", result["edge_ms"], "ms")
+    yield from checks("small_gicp_other_half", result, "held_out_halves_")
 
 
 def opencalib(context, folder):
@@ -61,7 +67,36 @@ def opencalib(context, folder):
         yield info("opencalib_%s_sigma" % side, 1e3 * max(result["sigma"][:3]), "mm")
 
 
+def checks(name, figures, held_out):
+    """D (1, or the angle 0: the normals agree) and E_l of surfaces that the pose was not made from."""
+    yield info(name + "_D", figures[held_out + "D_ratio"])
+    yield info(name + "_D_angle", math.degrees(figures[held_out + "D_angle_rad"]), "deg")
+    yield info(name + "_E_l", 1e3 * figures[held_out + "E_l_m"], "mm")
+    yield info(name + "_E_l_rms", 1e3 * figures[held_out + "E_l_rms_m"], "mm")
+
+
+def room(context):
+    """E_l is the pose's error across surfaces: 3 mm, as the estimator's tests have it; its rms is the noise of a range
+    (20 mm) at most, for a cell is several points; D is of normals that are as good as voxels of such points."""
+    for seed in range(1, 11 if context.full else 4):
+        result = context.run_json("lidar_lidar_room", 8, seed)
+        for kind in ("ndt", "polished"):
+            name, edge = "room_%d_%s" % (seed, kind), result[kind]
+            yield at_least(name + "_good", int(edge["good"]), 1)
+            if not edge["good"]:
+                continue
+            held_out = "held_out_captures_"
+            yield at_least(name + "_left_out_D", edge[held_out + "D_ratio"], 0.99)
+            yield info(name + "_left_out_D_angle", math.degrees(edge[held_out + "D_angle_rad"]), "deg")
+            yield at_most(name + "_left_out_E_l", 1e3 * edge[held_out + "E_l_m"], 3, "mm")
+            yield at_most(name + "_left_out_E_l_rms", 1e3 * edge[held_out + "E_l_rms_m"], 1e3 * result["range_noise_m"], "mm")
+            yield info(name + "_error", 1e3 * edge["error_m"], "mm")
+            yield info(name + "_error_turned", math.degrees(edge["error_rad"]), "deg")
+            yield at_most(name + "_error_in_sigmas", edge["worst_in_sigmas"], 4)
+
+
 def run(context):
+    yield from room(context)
     for name, path, body in (("lidarlidar_small_gicp", "lidarlidar_small_gicp", small_gicp),
                              ("lidarlidar_opencalib", "lidarlidar_opencalib/0001", opencalib)):
         if (context.data / path).is_dir():

@@ -33,6 +33,9 @@ rigcal_test(calib_lidar_lidar_test COMPUTES
 rigcal_program(lidar_lidar_measure
   SOURCES bench/lidar_lidar_measure.cc
   DEPS rigcal_calib rigcal_formats TBB::tbb)
+rigcal_program(lidar_lidar_room
+  SOURCES bench/lidar_lidar_room.cc unit/calib_virtual_room.cc
+  DEPS rigcal_calib)
 rigcal_program(hand_eye_simulation
   SOURCES bench/hand_eye_simulation.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)
