@@ -31,13 +31,10 @@ std::string_view MethodOf(const FeatureSession& session, const SensorPair& pair)
   return MethodFor(session.header, SensorNamed(session, pair.a), SensorNamed(session, pair.b));
 }
 
-// A turn of fewer firings than the lidar's: it is whole clouds that take the time.
-constexpr int kOfFirings = 4;
-
 std::vector<Eigen::Vector3f> WholeCloud(const sim::Experiment& experiment, const sim::Scene& scene,
-                                        const sim::RigSensor& lidar, std::size_t capture_idx) {
+                                        const sim::RigSensor& lidar, std::size_t capture_idx, int of_firings) {
   sim::LidarTruth sparse = lidar.lidar;
-  sparse.firings_per_turn /= kOfFirings;
+  sparse.firings_per_turn /= of_firings;
   std::vector<Eigen::Vector3f> points_m;
   for (const sim::ScanPoint& point :
        sim::Scan(scene, sparse, experiment.T_world_sensor(lidar.id, capture_idx), experiment.beam_bias_m.at(lidar.id),
@@ -46,7 +43,7 @@ std::vector<Eigen::Vector3f> WholeCloud(const sim::Experiment& experiment, const
   return points_m;
 }
 
-void DrawClouds(std::size_t lidar_captures, FeatureSession& session) {
+void DrawClouds(std::size_t lidar_captures, int of_firings, FeatureSession& session) {
   const sim::Experiment& experiment = session.experiment;
   const sim::Scene scene = sim::SceneOf(experiment.rig);
   struct Slot {
@@ -60,7 +57,7 @@ void DrawClouds(std::size_t lidar_captures, FeatureSession& session) {
     for (std::size_t i = 0; sensor.kind == SensorKind::kLidar && i < count; ++i)
       slots.push_back({&sensor, i * experiment.captures.size() / count, {}});
   ParallelFor(slots.size(), [&](std::size_t i) {
-    slots[i].points_m = WholeCloud(experiment, scene, *slots[i].lidar, slots[i].capture_idx);
+    slots[i].points_m = WholeCloud(experiment, scene, *slots[i].lidar, slots[i].capture_idx, of_firings);
   });
   for (Slot& slot : slots)
     session.clouds[slot.lidar->id][experiment.captures[slot.capture_idx]] = std::move(slot.points_m);
@@ -81,10 +78,10 @@ calib::HandEyeSide SideOf(const FeatureSession& session, const Sensor& sensor) {
 
 }  // namespace
 
-FeatureSession RecordFeatures(const sim::Experiment& experiment, std::size_t lidar_captures) {
+FeatureSession RecordFeatures(const sim::Experiment& experiment, std::size_t lidar_captures, int of_firings) {
   FeatureSession session{experiment, experiment.declared, sim::Observe(experiment), {}};
   session.header.skip_pairs = experiment.rig.skip_pairs;
-  DrawClouds(lidar_captures, session);
+  DrawClouds(lidar_captures, of_firings, session);
   return session;
 }
 

@@ -15,6 +15,9 @@
 
 namespace rigcal {
 
+// A turn of fewer firings than the lidar's: it is whole clouds that take the time.
+inline constexpr int kFewFirings = 4;
+
 struct FeatureSession {
   sim::Experiment experiment;
   SessionHeader header;  // what session.yaml says, with the pairs that are not calibrated
@@ -23,9 +26,10 @@ struct FeatureSession {
       clouds;  // of lidars that are calibrated together
 };
 
-// Whole clouds, of every fourth firing, are drawn for `lidar_captures` captures at most, evenly spread; 0: none, and no
-// pair of lidars.
-[[nodiscard]] FeatureSession RecordFeatures(const sim::Experiment& experiment, std::size_t lidar_captures);
+// Whole clouds, of every `of_firings`-th firing, are drawn for `lidar_captures` captures at most, evenly spread; 0:
+// none, and no pair of lidars.
+[[nodiscard]] FeatureSession RecordFeatures(const sim::Experiment& experiment, std::size_t lidar_captures,
+                                            int of_firings = kFewFirings);
 
 [[nodiscard]] calib::StereoProblem StereoOf(const FeatureSession& session, const SensorPair& pair);
 [[nodiscard]] calib::LidarCameraProblem LidarCameraOf(const FeatureSession& session, const SensorPair& pair);

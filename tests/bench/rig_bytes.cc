@@ -60,9 +60,11 @@ void PrintSameBytes(int seeds) {
               differ);
 }
 
-// All edges of a visit of full size, estimates, jackknives and given constants together, on two threads.
+// All edges of a visit of full size, every capture and every firing, as a robot's visit has them: estimates, jackknives
+// and given constants together, on two threads.
 void PrintTime() {
-  const FeatureSession session = RecordFeatures(MarsMapper({}), kLidarCaptures);
+  const sim::Experiment experiment = MarsMapper({});
+  const FeatureSession session = RecordFeatures(experiment, experiment.captures.size(), 1);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t processor_start = std::clock();
