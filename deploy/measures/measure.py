@@ -1,5 +1,7 @@
 """What a measure is, and where the binaries and the data are."""
+import contextlib
 import json
+import os
 import pathlib
 import subprocess
 import tempfile
@@ -41,6 +43,17 @@ def info(name, value, unit=""):
 
 def skip(name, why):
     return Measure(name, why.replace(" ", "_"), "-", "skip")
+
+
+@contextlib.contextmanager
+def processors(count):
+    """What is started meanwhile has so many of this machine's processors."""
+    all_of_them = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, set(sorted(all_of_them)[:count]))
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, all_of_them)
 
 
 class Context:

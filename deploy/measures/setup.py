@@ -1,5 +1,5 @@
-"""A fresh clone, both commands of the README, a cold compiler cache: time and disk; the package in a fresh Debian. Only with
---full."""
+"""The first thing that people run, after the build. With --full also a fresh clone, both commands of the README, a cold
+compiler cache: time and disk; the package in a fresh Debian."""
 import os
 import pathlib
 import re
@@ -7,8 +7,9 @@ import shutil
 import subprocess
 import sys
 import time
+import uuid
 
-from .measure import at_most, equal, info, skip
+from .measure import at_most, equal, info, processors, skip
 
 
 def timed(command, clone, environment):
@@ -37,7 +38,25 @@ def package(context):
     yield equal("package_smoke", int(figures["package_smoke"]), 1)
 
 
+def quickstart(context):
+    """From nothing but binaries: the session is drawn, pushed, calibrated, shown."""
+    subprocess.run(["deploy/build", "rigcald", "rigcal"], cwd=context.root, check=True, stdout=subprocess.DEVNULL)
+    environment = {**os.environ, "RIGCAL_DDS_TAG": "measure-" + uuid.uuid4().hex[:12], "RIGCAL_DDS_LOCAL": "1"}
+    with context.folder() as work, processors(2):
+        start = time.perf_counter()
+        done = subprocess.run(["deploy/quickstart", "--once", "--work", work], cwd=context.root, env=environment, capture_output=True,
+                              text=True, timeout=900)
+        took_s = time.perf_counter() - start
+    if done.returncode != 0:
+        raise RuntimeError("deploy/quickstart: exit %d: %s" % (done.returncode, (done.stdout + done.stderr)[-500:]))
+    yield at_most("quickstart_2_processors", took_s, 180.0, "s")
+    yield equal("quickstart_good_edges", len(re.findall(r"^\w+ - \w+  \w+  good  ", done.stdout, re.MULTILINE)), 59)
+    # Beside the reference, at which both are laid together.
+    yield equal("quickstart_poses_beside_truth", len(re.findall(r"^\w+( +[\d.]+){4}  +[\d.]+ sigma$", done.stdout, re.MULTILINE)), 11)
+
+
 def run(context):
+    yield from quickstart(context)
     if not context.full:
         yield skip("package_smoke", "not run: only with --full")
         yield skip("fresh_clone", "only with --full")
