@@ -1,9 +1,9 @@
 """The virtual MARS Mapper without rendering, hundreds of visits: whether what is claimed of its sensors holds."""
 import json
-import os
 import pathlib
+import re
 
-from .measure import at_least, at_most, equal, info, within
+from .measure import at_least, at_most, equal, info, processors, within
 from .server import Server
 
 BEYOND_4_SIGMA = 0.077  # % of errors, where sigmas are those of 20 captures: Student's t of 19 degrees of freedom
@@ -71,18 +71,42 @@ def turned(context):
         yield equal("turned_%s_failed" % name, case["failed"], 0)
 
 
-def revision_of(context, session, data, processors, *extra):
+def revision_of(context, session, data, count, *extra):
     """The revision of one push, by a server that has so many processors."""
-    all_of_them = os.sched_getaffinity(0)
-    try:
-        os.sched_setaffinity(0, set(sorted(all_of_them)[:processors]))  # what it starts keeps to these
-        with Server(context, data) as server:
-            done = server.rigcal("push", session, "--json", *extra, timeout=1800)
-            if done.returncode not in (0, 1):
-                raise RuntimeError("rigcal push: exit %d: %s" % (done.returncode, done.stderr.strip()[-300:]))
-            return json.loads(server.rigcal("show", "mars-mapper", "--json").stdout)
-    finally:
-        os.sched_setaffinity(0, all_of_them)
+    with processors(count), Server(context, data) as server:
+        done = server.rigcal("push", session, "--json", *extra, timeout=1800)
+        if done.returncode not in (0, 1):
+            raise RuntimeError("rigcal push: exit %d: %s" % (done.returncode, done.stderr.strip()[-300:]))
+        return json.loads(server.rigcal("show", "mars-mapper", "--json").stdout)
+
+
+def without_clock(page):
+    """A page says when it was solved: that is the clock's, and is taken out. Times of captures stay."""
+    for solved in set(re.findall(rb"Solved (\d{4}-\d\d-\d\d \d\d:\d\d:\d\d UTC)", page)):
+        page = page.replace(solved, b"")
+    return page
+
+
+def written_by(data):
+    """Every file that a server published or keeps by its contents: name and bytes."""
+    files = {}
+    for part in ("reports", "blobs"):
+        for path in sorted((data / part).rglob("*")):
+            if path.is_file():
+                content = path.read_bytes()
+                files[str(path.relative_to(data))] = without_clock(content) if path.suffix == ".html" else content
+    return files
+
+
+def same_files(folders):
+    written = [written_by(folder) for folder in folders]
+    names = sorted(set().union(*written))
+    differ = [name for name in names if len({one.get(name) for one in written}) > 1]
+    yield equal("written_files_that_differ", ",".join(differ[:5]) or "none", "none")
+    published = [name for name in names if name.startswith("reports/")]
+    yield at_least("published_files_compared", len(published), 100)
+    kinds = {pathlib.PurePath(name).suffix for name in published}
+    yield equal("published_kinds_missing", ",".join(sorted({".html", ".js", ".json", ".csv", ".png", ".ply", ".jpg", ".bin"} - kinds)) or "none", "none")
 
 
 def same_bytes(context):
@@ -95,6 +119,7 @@ def same_bytes(context):
         shown = [revision_of(context, folder / "visit", folder / "one", 1),
                  revision_of(context, folder / "visit", folder / "two", 2, "--shuffle", 1),
                  revision_of(context, folder / "visit", folder / "three", 2, "--shuffle", 2)]
+        yield from same_files([folder / "one", folder / "two", folder / "three"])
     yield equal("revisions_that_differ", len({one["digest"] for one in shown}) - 1, 0)
     yield at_least("revision_good_edges", sum(edge["state"] == "good" for edge in shown[0]["document"]["edges"]), 50)
 
