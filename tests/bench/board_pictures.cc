@@ -8,7 +8,7 @@
 namespace rigcal::detect {
 namespace {
 
-constexpr int kSamples = 4;  // by side of a pixel
+constexpr int kSamples = 32;  // of a pixel
 
 // From squares, with the first inner corner at 0, 0, to pixels.
 Eigen::Matrix3d MapOf(const PictureWish& wish) {
@@ -28,6 +28,14 @@ Eigen::Matrix3d MapOf(const PictureWish& wish) {
   return camera * map;
 }
 
+// Part of a pixel from its centre, -1/2 to 1/2, of sample i: no two share a column or a row (Hammersley), so that edges
+// along the pixels are as exact as slanted ones.
+Eigen::Vector2d SampleAt(int i) {
+  int reversed = 0;
+  for (int bit = 1; bit < kSamples; bit *= 2) reversed = 2 * reversed + ((i & bit) != 0 ? 1 : 0);
+  return Eigen::Vector2d(i + 0.5, reversed + 0.5) / kSamples - Eigen::Vector2d(0.5, 0.5);
+}
+
 // Negative: beside the board.
 double GreyAt(const PictureWish& wish, double x, double y) {
   const double rim = 1 + wish.margin_squares;
@@ -40,13 +48,13 @@ double GreyAt(const PictureWish& wish, double x, double y) {
 void DrawPixel(const PictureWish& wish, const Eigen::Matrix3d& back, int x, int y, cv::Mat& picture) {
   double sum = 0;
   const double before = picture.at<std::uint8_t>(y, x);
-  for (int i = 0; i < kSamples * kSamples; ++i) {
-    const double dx = (i % kSamples + 0.5) / kSamples - 0.5, dy = (i / kSamples + 0.5) / kSamples - 0.5;
-    const Eigen::Vector3d at = back * Eigen::Vector3d(x + dx, y + dy, 1);
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector2d off_px = SampleAt(i);
+    const Eigen::Vector3d at = back * Eigen::Vector3d(x + off_px.x(), y + off_px.y(), 1);
     const double grey = GreyAt(wish, at.x() / at.z(), at.y() / at.z());
     sum += grey < 0 ? before : grey * (1 - wish.shade * x / picture.cols);
   }
-  picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(sum / (kSamples * kSamples));
+  picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(sum / kSamples);
 }
 
 cv::Rect Somewhere(Random& random, const cv::Mat& picture) {

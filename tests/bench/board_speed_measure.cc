@@ -55,11 +55,19 @@ struct Board {
   int cols = 9, rows = 6;
 };
 
+// How far corners are from where they should be.
+struct Off {
+  double squares = 0;
+  long corners = 0;
+
+  void Add(double squared_px, std::size_t count) { squares += squared_px, corners += static_cast<long>(count); }
+  [[nodiscard]] double Rms_px() const { return corners == 0 ? 0 : std::sqrt(squares / static_cast<double>(corners)); }
+};
+
 struct Tally {
   std::vector<double> found_ms, none_ms, charuco_none_ms, tags_none_ms, decode_png_ms, decode_jpeg_ms;
   int boards = 0, found = 0, wrong = 0;
-  double squares = 0, reference_squares = 0;
-  long corners = 0, reference_corners = 0;
+  Off truth, hard_truth, reference, other_reference, real_reference;
 };
 
 std::optional<Corners> Ordered(const GreyImage& image, const Board& board, const std::optional<Corners>& corners) {
@@ -89,10 +97,8 @@ cv::Rect Around(const Corners& corners, const cv::Mat& picture) {
          cv::Rect(0, 0, picture.cols, picture.rows);
 }
 
-// What a full-resolution search by OpenCV gives after the same refinement. It looks around the board only: among
-// clutter it would take minutes.
-std::optional<Corners> Reference(const cv::Mat& picture, const GreyImage& image, const Board& board,
-                                 const cv::Rect& around) {
+// A full-resolution search by OpenCV. It looks around the board only: among clutter it would take minutes.
+std::optional<Corners> Reference(const cv::Mat& picture, const Board& board, const cv::Rect& around) {
   std::vector<cv::Point2f> points;
   cv::Mat calm;  // noise would give it thousands of outlines; the refinement sees the picture itself
   cv::GaussianBlur(picture(around), calm, {}, 1.5);
@@ -101,15 +107,36 @@ std::optional<Corners> Reference(const cv::Mat& picture, const GreyImage& image,
     return std::nullopt;
   Corners corners;
   for (const cv::Point2f& point : points) corners.emplace_back(point.x + around.x, point.y + around.y);
-  return Ordered(image, board, RefinedCorners(image, board.cols, board.rows, corners));
+  return corners;
 }
 
-void CompareWithReference(const cv::Mat& picture, const GreyImage& image, const Board& board, const Corners& found,
-                          Tally& tally) {
-  const auto reference = Reference(picture, image, board, Around(found, picture));
-  if (!reference) return;
-  tally.reference_squares += SquaredOff(found, *reference);
-  tally.reference_corners += static_cast<long>(found.size());
+// OpenCV's own refinement with the window of its calibration sample, whatever the size of the squares.
+Corners RefinedByOpenCv(const cv::Mat& picture, const Corners& corners) {
+  std::vector<cv::Point2f> points;
+  for (const Eigen::Vector2d& corner : corners)
+    points.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
+  cv::cornerSubPix(picture, points, {11, 11}, {-1, -1}, {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 100, 1e-4});
+  Corners refined;
+  for (const cv::Point2f& point : points) refined.emplace_back(point.x, point.y);
+  return refined;
+}
+
+void AddOff(const GreyImage& image, const Board& board, const Corners& found, const Corners& reference, Off& off) {
+  if (const auto ordered = Ordered(image, board, reference)) off.Add(SquaredOff(found, *ordered), found.size());
+}
+
+// With the same refinement: whether the search is right.
+void CompareSearch(const cv::Mat& picture, const Board& board, const Corners& found, Tally& tally) {
+  const GreyImage image = AsImage(picture);
+  if (const auto reference = Reference(picture, board, Around(found, picture)))
+    AddOff(image, board, found, RefinedCorners(image, board.cols, board.rows, *reference), tally.reference);
+}
+
+// With another refinement: whether ours is right. Where noise is strong, or a small picture was enlarged, the size of
+// the window decides what either of them finds.
+void CompareRefinement(const cv::Mat& picture, const Board& board, const Corners& found, Off& off) {
+  if (const auto reference = Reference(picture, board, Around(found, picture)))
+    AddOff(AsImage(picture), board, found, RefinedByOpenCv(picture, *reference), off);
 }
 
 // Corners found where there is a board: right ones, wrong ones, none.
@@ -121,7 +148,7 @@ std::optional<Corners> SearchFor(const cv::Mat& picture, const Board& board, std
   return corners;
 }
 
-void Judge(const std::optional<Corners>& found, const Corners& truth, double square_px, Tally& tally) {
+void Judge(const std::optional<Corners>& found, const Corners& truth, double square_px, Off& off, Tally& tally) {
   ++tally.boards;
   if (!found) return;
   const double squared = SquaredOff(*found, truth);
@@ -130,8 +157,7 @@ void Judge(const std::optional<Corners>& found, const Corners& truth, double squ
     return;
   }
   ++tally.found;
-  tally.squares += squared;
-  tally.corners += static_cast<long>(truth.size());
+  off.Add(squared, truth.size());
 }
 
 // 25 pixels a square up to filling the picture, twice: gentle and hard conditions.
@@ -151,8 +177,9 @@ void MeasureDrawn(Tally& tally) {
     const Corners truth = DrawBoard(wish, picture);
     Expose(random, hard ? 1.8 : 0.7, hard ? 6 : 2, picture);
     const auto found = SearchFor(picture, board, tally.found_ms);
-    Judge(found, truth, wish.square_px, tally);
-    if (found && i % 4 < 2) CompareWithReference(picture, AsImage(picture), board, *found, tally);
+    Judge(found, truth, wish.square_px, hard ? tally.hard_truth : tally.truth, tally);
+    if (found && i % 4 < 2) CompareSearch(picture, board, *found, tally);
+    if (found && !hard) CompareRefinement(picture, board, *found, tally.other_reference);
   }
 }
 
@@ -196,7 +223,9 @@ void MeasureReal(const std::filesystem::path& data, const cv::Mat& canvas, Tally
       ++tally.boards;
       if (!found) continue;
       ++tally.found;
-      if (count % 4 == 0) CompareWithReference(picture, AsImage(picture), board, *found, tally);
+      if (count % 4 != 0) continue;
+      CompareSearch(picture, board, *found, tally);
+      CompareRefinement(picture, board, *found, tally.real_reference);
     }
   }
 }
@@ -259,7 +288,7 @@ void LookForMistakes(int count, Tally& tally) {
     if (other)
       tally.wrong += found ? 1 : 0;
     else
-      Judge(found, truth, wish.square_px, tally);
+      Judge(found, truth, wish.square_px, tally.truth, tally);
   }
 }
 
@@ -273,6 +302,10 @@ void MeasureDecoding(const cv::Mat& picture, Tally& tally) {
         if (!DecodeGrey(std::as_bytes(std::span(bytes)))) ++tally.wrong;
       }));
   }
+}
+
+void PrintOff(const char* name, const Off& off) {
+  std::printf("\"%s_rms_px\": %.5f, \"%s_corners\": %ld, ", name, off.Rms_px(), name, off.corners);
 }
 
 int Measure(const std::filesystem::path& data, int pictures) {
@@ -299,9 +332,11 @@ int Measure(const std::filesystem::path& data, int pictures) {
               Median(large.decode_jpeg_ms));
   std::printf("\"drawn\": %d, \"drawn_found\": %d, \"real\": %d, \"real_found\": %d, \"wrong\": %d, ", drawn,
               drawn_found, large.boards - drawn, large.found - drawn_found, large.wrong + small.wrong);
-  std::printf("\"reference_rms_px\": %.5f, \"reference_corners\": %ld, \"truth_rms_px\": %.5f, ",
-              std::sqrt(large.reference_squares / static_cast<double>(large.reference_corners)),
-              large.reference_corners, std::sqrt(large.squares / static_cast<double>(large.corners)));
+  PrintOff("reference", large.reference);
+  PrintOff("other_reference", large.other_reference);
+  PrintOff("real_reference", large.real_reference);
+  PrintOff("truth", large.truth);
+  PrintOff("hard_truth", large.hard_truth);
   std::printf("\"small\": %d, \"small_found\": %d, \"small_pictures\": %d}\n", small.boards, small.found, pictures);
   return 0;
 }
