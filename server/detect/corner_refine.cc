@@ -11,6 +11,8 @@
 namespace rigcal::detect {
 namespace {
 
+constexpr double kSmoothMax_px = 1.0, kSmoothPerWindow = 0.25;  // of what the window has more than 2 px
+constexpr int kSmoothReach_px = 6;
 constexpr double kReach = 2.5;      // in pitches: whose word counts
 constexpr std::size_t kAsked = 12;  // nearest corners that are asked at most
 constexpr double kTolerance = 1.0 / 12, kToleranceMin_px = 1.0;
@@ -80,20 +82,35 @@ std::size_t OnLine(const std::vector<BoardCorner>& corners, std::size_t a, std::
 
 }  // namespace
 
+Eigen::Vector2d EdgesMeet(const GreyImage& image, const Eigen::Vector2d& start_px, int window_px) {
+  const cv::Mat grey(image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  const int half_px = 2 * window_px + kSmoothReach_px;  // the window moves by its own half at most
+  const cv::Rect around(static_cast<int>(start_px.x()) - half_px, static_cast<int>(start_px.y()) - half_px,
+                        2 * half_px + 1, 2 * half_px + 1);
+  const cv::Rect part = around & cv::Rect(0, 0, grey.cols, grey.rows);
+  cv::Mat smooth;
+  grey(part).convertTo(smooth, CV_32F);
+  // Small squares have no room for it: the next edges would come in.
+  const double smooth_px = std::min(kSmoothMax_px, kSmoothPerWindow * (window_px - 2));
+  if (smooth_px > 0) cv::GaussianBlur(smooth, smooth, {}, smooth_px);
+  const Eigen::Vector2d origin_px(part.x, part.y), start_in_part = start_px - origin_px;
+  const cv::Point2f start(static_cast<float>(start_in_part.x()), static_cast<float>(start_in_part.y()));
+  std::vector<cv::Point2f> corner = {start};
+  cv::cornerSubPix(smooth, corner, {window_px, window_px}, {-1, -1},
+                   {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 100, 1e-4});
+  // OpenCV puts a corner that left its window back to the start.
+  return corner.front() == start ? start_px
+                                 : Eigen::Vector2d(origin_px.x() + corner.front().x, origin_px.y() + corner.front().y);
+}
+
 std::optional<Eigen::Vector2d> Refined(const GreyImage& image, const Eigen::Vector2d& start_px, int window_px,
                                        double move_max_px) {
   const double margin_px = window_px + 1;
   if (!(start_px.x() >= margin_px && start_px.y() >= margin_px && start_px.x() <= image.width_px - 1 - margin_px &&
         start_px.y() <= image.height_px - 1 - margin_px))
     return std::nullopt;
-  const cv::Mat grey(image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
-  const cv::Point2f start(static_cast<float>(start_px.x()), static_cast<float>(start_px.y()));
-  std::vector<cv::Point2f> corner = {start};
-  cv::cornerSubPix(grey, corner, {window_px, window_px}, {-1, -1},
-                   {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 100, 1e-4});
-  // OpenCV puts a corner that left its window back to the start.
-  if (corner.front() == start) return std::nullopt;
-  const Eigen::Vector2d refined_px(corner.front().x, corner.front().y);
+  const Eigen::Vector2d refined_px = EdgesMeet(image, start_px, window_px);
+  if (refined_px == start_px) return std::nullopt;
   if (!refined_px.allFinite() || (refined_px - start_px).norm() > move_max_px) return std::nullopt;
   return refined_px;
 }

@@ -16,6 +16,11 @@ struct BoardCorner {
   Eigen::Vector2d board_m, corner_px;
 };
 
+// Where the edges meet around `start_px`, within `window_px` (half a side), on the picture smoothed by 1 px (less
+// in small windows): the refinement takes every pixel's gradient for an edge's, and noise has gradients too. The start
+// itself where there is no such place. Throws what OpenCV throws.
+[[nodiscard]] Eigen::Vector2d EdgesMeet(const GreyImage& image, const Eigen::Vector2d& start_px, int window_px);
+
 // Where the edges meet within `window_px` (half a side) of `start_px`. Nothing if that is further away than
 // `move_max_px`, or too close to the picture's border to tell. Throws what OpenCV throws.
 [[nodiscard]] std::optional<Eigen::Vector2d> Refined(const GreyImage& image, const Eigen::Vector2d& start_px,
