@@ -6,7 +6,7 @@ import re
 from .measure import at_least, at_most, equal, info, processors, within
 from .server import Server
 
-BEYOND_4_SIGMA = 0.077  # % of errors, where sigmas are those of 20 captures: Student's t of 19 degrees of freedom
+BEYOND_4_SIGMA = 0.077  # % of errors expected, where sigmas are those of 20 captures: Student's t of 19 degrees of freedom
 
 
 def coverage(context):

@@ -16,11 +16,11 @@ def run(context):
     if result["reference_corners"] > 0:
         yield at_most("corners_rms_px", result["reference_rms_px"], 0.05, "px")
     # One refinement behind both searches would hide its own errors. The truth is that of drawn boards with noise of 1 % of
-    # their contrast; where noise is 10 %, corners scatter by more than any limit that would say something.
+    # their contrast, then of 10 %; without smoothing they are 0.030 and 0.54 px.
     yield at_most("corners_rms_to_other_refinement", result["other_reference_rms_px"], 0.05, "px")
     yield equal("corners_compared_with_other_refinement", result["other_reference_corners"], result["truth_corners"])
-    yield at_most("corners_rms_to_truth", result["truth_rms_px"], 0.05, "px")
-    yield info("corners_rms_to_truth_where_noise_is_strong", result["hard_truth_rms_px"], "px")
+    yield at_most("corners_rms_to_truth", result["truth_rms_px"], 0.025, "px")
+    yield at_most("corners_rms_to_truth_where_noise_is_strong", result["hard_truth_rms_px"], 0.4, "px")
     yield info("corners_rms_to_other_refinement_real", result["real_reference_rms_px"], "px")
     yield equal("boards_found_drawn", "%d/%d" % (result["drawn_found"], result["drawn"]), "%d/%d" % (result["drawn"], result["drawn"]))
     yield equal("boards_found_real", "%d/%d" % (result["real_found"], result["real"]), "%d/%d" % (result["real"], result["real"]))

@@ -147,7 +147,7 @@ LidarLidarPose FitFrom(const LidarLidarWork& work, const Se3& start, std::size_t
   pose.ndt = last.T_a_b;
   pose.polished = polished.T_a_b;
   pose.T = work.polish ? pose.polished : pose.ndt;
-  pose.last_step = work.polish ? polished.last_step : last.last_step;
+  pose.last_step = work.polish ? std::max(polished.last_step, last.last_step) : last.last_step;  // it builds on NDT's
   pose.converged = pose.last_step <= kNdtStepMax;
   return pose;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 
 #include "server/base/parallel_for.h"
 
@@ -82,7 +83,10 @@ Polished Polish(const std::vector<PolishTerm>& terms, const Se3& start, const Di
     const double largest = std::max(sum.H.diagonal().maxCoeff(), 1e-9);
     const Matrix6d H = keep * sum.H * keep + largest * (locked * locked.transpose() + 1e-9 * Matrix6d::Identity());
     Vector6d step = -H.ldlt().solve(keep * sum.g);
-    if (!step.allFinite()) break;
+    if (!step.allFinite()) {
+      polished.last_step = std::numeric_limits<double>::infinity();
+      break;
+    }
     // Pairs that change to and fro would keep it going for ever: later steps are shorter.
     if (polished.iterations > 20) step *= 20.0 / polished.iterations / 2;
     polished.last_step = step.norm();

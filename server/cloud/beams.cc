@@ -145,7 +145,8 @@ Beams BeamsOf(const Cloud& cloud) {
   Beams beams;
   TakePoints(cloud, beams);
   FindSteps(beams);
-  beams.facing = Facing(beams.points_m, beams.azimuth_step_rad, beams.elevation_step_rad);
+  beams.facing = Facing(beams.points_m, beams.azimuth_step_rad, beams.elevation_step_rad,
+                        [&beams](float sine) { return beams.StepUp_rad(sine); });
   return beams;
 }
 

@@ -28,17 +28,19 @@ constexpr std::size_t kParts = 8;               // summed in their order, whatev
 constexpr std::size_t kPointsWanted = 300'000;  // of a larger cloud every n-th point is enough
 
 using Bundles = std::vector<Bundle>;
+using StepUp = std::function<float(float)>;
 
 // Whether the rays are of three rings or more.
-bool OfManyRings(const Bundle& bundle, double step_rad) {
-  const double up = bundle.up / bundle.count, variance = bundle.up_squares / bundle.count - up * up;
+bool OfManyRings(const Bundle& bundle, const StepUp& step_up_rad) {
+  const double up = bundle.up / bundle.count, step_rad = step_up_rad(static_cast<float>(up));
+  const double variance = bundle.up_squares / bundle.count - up * up;
   return variance > std::pow(kManyRings * step_rad, 2) * (1 - up * up);
 }
 
-Eigen::Vector3f NormalOf(const Bundle& bundle, double width_rad, double step_rad) {
+Eigen::Vector3f NormalOf(const Bundle& bundle, double width_rad, const StepUp& step_up_rad) {
   if (bundle.count < kPointsMin) return Eigen::Vector3f::Zero();
   const Eigen::Vector3d mean = bundle.sum / bundle.count;
-  if (!OfManyRings(bundle, step_rad)) return -mean.normalized().cast<float>();
+  if (!OfManyRings(bundle, step_up_rad)) return -mean.normalized().cast<float>();
   const Eigen::Matrix3d covariance = bundle.squares / bundle.count - mean * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   const Eigen::Vector3d& variances = solver.eigenvalues();
@@ -66,7 +68,8 @@ void Add(const Bundle& other, Bundle& bundle) {
 
 }  // namespace
 
-Facing::Facing(const std::vector<Eigen::Vector3f>& points_m, float azimuth_step_rad, float elevation_step_rad) {
+Facing::Facing(const std::vector<Eigen::Vector3f>& points_m, float azimuth_step_rad, float elevation_step_rad,
+               const std::function<float(float)>& step_up_rad) {
   const float wanted_rad = std::max(kBundleSteps * std::sqrt(azimuth_step_rad * elevation_step_rad),
                                     kWiderSteps * std::max(azimuth_step_rad, elevation_step_rad));
   const float width_rad = std::clamp(wanted_rad, kBundleMin_rad, kBundleMax_rad);
@@ -85,7 +88,7 @@ Facing::Facing(const std::vector<Eigen::Vector3f>& points_m, float azimuth_step_
          ++b) {
       Bundle whole;
       for (const Bundles& part : parts) Add(part[b], whole);
-      normals_[b] = NormalOf(whole, static_cast<double>(width_rad), static_cast<double>(elevation_step_rad));
+      normals_[b] = NormalOf(whole, static_cast<double>(width_rad), step_up_rad);
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 namespace rigcal::cloud {
@@ -12,8 +13,10 @@ namespace rigcal::cloud {
 class Facing {
  public:
   Facing() = default;
-  // Steps between the beams; a bundle is some of them wide. The same on any number of threads.
-  Facing(const std::vector<Eigen::Vector3f>& points_m, float azimuth_step_rad, float elevation_step_rad);
+  // Steps between the beams; a bundle is some of them wide. `step_up_rad`: between rings, by the sine of a ray's
+  // elevation. The same on any number of threads.
+  Facing(const std::vector<Eigen::Vector3f>& points_m, float azimuth_step_rad, float elevation_step_rad,
+         const std::function<float(float)>& step_up_rad);
 
   // A unit vector towards the lidar (the origin): of the surface there; where several meet, along the ray; zero where
   // too few points say anything.

@@ -97,7 +97,7 @@ AnnotatedView NotFound(const Target& board, std::string why_not, const ImageSize
 
 std::string DetectorKey(const Target& target) {
   const std::string search =
-      target.kind == TargetKind::kCheckerboard ? "-3/opencv-" CV_VERSION "/" : "-2/opencv-" CV_VERSION "/";
+      target.kind == TargetKind::kCheckerboard ? "-4/opencv-" CV_VERSION "/" : "-3/opencv-" CV_VERSION "/";
   const std::string geometry = std::to_string(target.cols) + "x" + std::to_string(target.rows) + "/";
   if (target.kind == TargetKind::kCheckerboard) return "checkerboard" + search + geometry + target.id.str();
   std::ostringstream markers;  // only ratios show in the picture

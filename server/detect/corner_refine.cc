@@ -84,10 +84,13 @@ std::size_t OnLine(const std::vector<BoardCorner>& corners, std::size_t a, std::
 
 Eigen::Vector2d EdgesMeet(const GreyImage& image, const Eigen::Vector2d& start_px, int window_px) {
   const cv::Mat grey(image.height_px, image.width_px, CV_8U, const_cast<std::uint8_t*>(image.pixels.data()));
+  if (!(start_px.minCoeff() >= 0 && start_px.x() <= image.width_px - 1 && start_px.y() <= image.height_px - 1))
+    return start_px;
   const int half_px = 2 * window_px + kSmoothReach_px;  // the window moves by its own half at most
   const cv::Rect around(static_cast<int>(start_px.x()) - half_px, static_cast<int>(start_px.y()) - half_px,
                         2 * half_px + 1, 2 * half_px + 1);
   const cv::Rect part = around & cv::Rect(0, 0, grey.cols, grey.rows);
+  if (part.width < 2 * window_px + 5 || part.height < 2 * window_px + 5) return start_px;  // too close to the border
   cv::Mat smooth;
   grey(part).convertTo(smooth, CV_32F);
   // Small squares have no room for it: the next edges would come in.

@@ -18,7 +18,7 @@ struct BoardCorner {
 
 // Where the edges meet around `start_px`, within `window_px` (half a side), on the picture smoothed by 1 px (less
 // in small windows): the refinement takes every pixel's gradient for an edge's, and noise has gradients too. The start
-// itself where there is no such place. Throws what OpenCV throws.
+// itself where there is no such place, or where the picture ends before the window.
 [[nodiscard]] Eigen::Vector2d EdgesMeet(const GreyImage& image, const Eigen::Vector2d& start_px, int window_px);
 
 // Where the edges meet within `window_px` (half a side) of `start_px`. Nothing if that is further away than

@@ -2,8 +2,8 @@
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
 // session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Where
 // the blocks made Omega too, K is that of Omega without block i: weights that fit chance in all blocks find too little
-// of it left in them. What that change of K does is the work of two blocks, and counts by 1 / sqrt(2) (Efron & Stein
-// 1981: a jackknife counts the variance of such pairs twice). Pure and deterministic: sessions, blocks and edges count
+// of it left in them. What that change of K does is mostly the work of two blocks, whose variance a jackknife counts
+// twice (Efron & Stein 1981), and counts by 1 / sqrt(2). Pure and deterministic: sessions, blocks and edges count
 // in sorted order.
 #pragma once
 

@@ -35,10 +35,13 @@ std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const S
 }
 
 std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
+  std::set<std::pair<SensorId, SensorId>> skipped;  // whichever comes first; there may be tens of thousands
+  for (const SensorPair& pair : header.skip_pairs) skipped.insert(std::minmax(pair.a, pair.b));
   std::vector<SensorPair> pairs;
   for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
     for (auto b = a + 1; b != header.sensors.end(); ++b)
-      if (!MethodFor(header, *a, *b).empty() && !IsSkipped(header, a->id, b->id)) pairs.push_back({a->id, b->id});
+      if (!MethodFor(header, *a, *b).empty() && !skipped.contains(std::minmax(a->id, b->id)))
+        pairs.push_back({a->id, b->id});
   return pairs;
 }
 

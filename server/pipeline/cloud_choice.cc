@@ -70,11 +70,13 @@ std::vector<ReadyCamera> ReadyCameras(const Manifest& manifest, const SessionId&
   return cameras;
 }
 
-// Without those that the session does not pair with the lidar, as the paper colours each lidar from its own cameras.
-std::vector<ReadyCamera> PairedWith(const SensorId& lidar, std::vector<ReadyCamera> cameras,
+// Without those that the session does not pair with the lidar, as the paper colours each lidar from its own cameras;
+// all where it pairs none.
+std::vector<ReadyCamera> PairedWith(const SensorId& lidar, const std::vector<ReadyCamera>& cameras,
                                     const SessionHeader& header) {
-  std::erase_if(cameras, [&](const ReadyCamera& camera) { return IsSkipped(header, lidar, camera.id); });
-  return cameras;
+  std::vector<ReadyCamera> paired = cameras;
+  std::erase_if(paired, [&](const ReadyCamera& camera) { return IsSkipped(header, lidar, camera.id); });
+  return paired.empty() ? cameras : paired;
 }
 
 using PayloadsOf = std::map<SensorId, std::map<CaptureId, const Payload*>>;

@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "server/detect/board_search.h"
+#include "server/detect/corner_refine.h"
 #include "server/detect/corners.h"
 #include "server/detect/part_search.h"
 #include "server/detect/saddle_points.h"
@@ -63,6 +64,41 @@ TEST(SearchBoard, CornersStartNearWhereTheyAreRefinedTo) {
   ASSERT_EQ(start.size(), 54u);
   const auto refined = RefinedCorners(image, 9, 6, start);
   for (std::size_t i = 0; i < start.size(); ++i) EXPECT_LT((start[i] - refined[i]).norm(), 1.0) << i;
+}
+
+// Against OpenCV's refinement of the same window on the picture as it is.
+TEST(RefinedCorners, ScatterLessThanWithoutSmoothing) {
+  const Scene scene = SceneOf(9, 6, 40, 0.4);
+  const cv::Mat clean = Photo(9, 6, 40, 0.4);
+  cv::RNG random(3);
+  double smoothed_px2 = 0, plain_px2 = 0;
+  for (int draw = 0; draw < 4; ++draw) {
+    cv::Mat noise(clean.size(), CV_16S), picture;
+    random.fill(noise, cv::RNG::NORMAL, 0, 12);
+    cv::add(clean, noise, picture, cv::noArray(), CV_8U);
+    std::vector<Eigen::Vector2d> truth;
+    std::vector<cv::Point2f> plain;
+    for (int i = 0; i < 54; ++i) {
+      truth.push_back(scene.Pixel(Eigen::Vector2d(i % 9, i / 9) * kSquare_m));
+      plain.emplace_back(static_cast<float>(truth.back().x()), static_cast<float>(truth.back().y()));
+    }
+    const auto refined = RefinedCorners(ImageOf(picture), 9, 6, truth);
+    cv::cornerSubPix(picture, plain, {10, 10}, {-1, -1}, {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 100, 1e-4});
+    for (std::size_t i = 0; i < 54; ++i) {
+      smoothed_px2 += (refined[i] - truth[i]).squaredNorm();
+      plain_px2 += (Eigen::Vector2d(plain[i].x, plain[i].y) - truth[i]).squaredNorm();
+    }
+  }
+  EXPECT_LT(std::sqrt(smoothed_px2 / (2 * 4 * 54)), 0.1);
+  EXPECT_LT(smoothed_px2, 0.85 * plain_px2);
+}
+
+TEST(RefinedCorners, StayWhereThePictureEnds) {
+  const GreyImage image = ImageOf(Photo(9, 6, 40, 0.4));
+  for (const Eigen::Vector2d& start : {Eigen::Vector2d(-60, 20), {-3, -3}, {1e12, 5}, {803, 601}, {NAN, 1}})
+    EXPECT_TRUE(EdgesMeet(image, start, 10) == start || start.hasNaN());
+  const GreyImage tiny{5, 5, std::vector<std::uint8_t>(25, 100)};
+  EXPECT_EQ(EdgesMeet(tiny, {2, 2}, 10), Eigen::Vector2d(2, 2));
 }
 
 TEST(SearchBoard, LowContrastWillDo) {

@@ -147,6 +147,15 @@ TEST_F(PipelineCloudsTest, NoColourComesFromACameraThatIsNotPairedWithTheLidar) 
   EXPECT_FALSE(std::filesystem::exists(Newest() / "overlay/near.jpg"));
 }
 
+TEST_F(PipelineCloudsTest, WhereTheLidarIsPairedWithNoneAllCamerasColour) {
+  StorePoses();
+  StoreRig({{"near/01.png", PngOf(kRed, kBlue)}, {"far/01.png", PngOf(kRed, kBlue)}, {"lidar/01.ply", WallPly()}}, {},
+           {{SensorId("near"), SensorId("lidar")}, {SensorId("lidar"), SensorId("far")}});
+  StepAll();
+  for (const char* file : {"overlay/far.jpg", "overlay/near.jpg"})
+    EXPECT_TRUE(std::filesystem::exists(Newest() / file)) << file;
+}
+
 TEST_F(PipelineCloudsTest, PublishingAgainGivesTheSameBytes) {
   StorePoses();
   StoreRig({{"near/01.png", PngOf(kRed, kBlue)}, {"lidar/01.ply", WallPly()}});

@@ -8,7 +8,7 @@
 <figure><a href="{{FILE}}"><img loading="lazy" decoding="async" src="{{FILE}}" alt="{{ALT}}"></a><figcaption>{{NAME}}</figcaption></figure>
 {{/VIEW}}
 </div>
-<p class="hint">Green points are seen by no camera. <a class="screen" href="{{PLY}}" download>The cloud as PLY</a></p>
+<p class="hint">Green points are seen by none of these cameras. <a class="screen" href="{{PLY}}" download>The cloud as PLY</a></p>
 {{/CLOUD}}
 {{#OVERLAYS}}
 <h3>The cloud in each camera's picture <span class="soft">coloured by distance</span></h3>
