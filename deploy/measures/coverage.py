@@ -33,6 +33,7 @@ def motions(context):
         for case in result[name]:
             title = "%s_tilt_%g" % (name, case["tilt_deg"])
             yield at_most(title + "_edge_sigmas", case["worst_edge_sigmas"], 4.0)
+            yield at_most(title + "_edge_axis_sigmas", case["worst_edge_axis_sigmas"], 4.0)
             yield at_most(title + "_pose_sigmas", case["worst_pose_sigmas"], 4.0)
             if case["edges_open"] > 0:
                 yield at_most(title + "_axis", case["axis_deg"], 2.0, "deg")

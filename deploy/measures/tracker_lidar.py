@@ -12,7 +12,8 @@ VISITS_OPTIONS = ("--captures", "30")
 def of_weak_motion(name, cases):
     for case in cases:
         title = "%s_tilt_over_noise_%g" % (name, case["ratio"])
-        yield at_most(title + "_sigmas", case["worst_sigmas"], 4.0)
+        yield at_most(title + "_sigmas", case["worst_sigmas"], 4.0)  # in principal directions of the estimated information
+        yield at_most(title + "_axis_sigmas", case["worst_axis_sigmas"], 4.0)  # along and about the axes whose sigma is told
         yield at_most(title + "_axis", case["axis_deg"], 2.0, "deg")
         yield equal(title + "_failed", case["failed"], 0)
         yield info(title + "_ranks", "4:%d_5:%d_6:%d" % (case["rank4"], case["rank5"], case["rank6"]))

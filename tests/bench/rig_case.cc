@@ -37,6 +37,14 @@ double WorstAxis(const Vector6d& error, const Matrix6d& covariance) {
   return error.cwiseAbs().cwiseQuotient(covariance.diagonal().cwiseSqrt()).maxCoeff();
 }
 
+double WorstKnownAxis(const Vector6d& error, const Uncertainty& uncertainty) {
+  double worst = 0;
+  for (int axis = 0; axis < 6; ++axis)
+    if (const AxisSigma sigma = SigmaOf(uncertainty, axis); sigma.known)
+      worst = std::max(worst, std::abs(error[axis]) / sigma.value);
+  return worst;
+}
+
 // Directions are those of the information with its diagonal scaled to one, so that metres and radians compare.
 Eigen::VectorXd ClaimedSigmas(const Vector6d& error, const Uncertainty& uncertainty) {
   const Vector6d scale = uncertainty.Omega.diagonal().cwiseMax(1e-12).cwiseSqrt();

@@ -15,7 +15,7 @@ constexpr std::size_t kLidarCaptures = 2;
 constexpr double kTilts_deg[] = {0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.5, 1, 2, 3, 5, 10};
 
 struct MotionScore {
-  double worst_edge = 0, worst_pose = 0, axis_deg = 0;
+  double worst_edge = 0, worst_axis = 0, worst_pose = 0, axis_deg = 0;
   double edge_squares = 0, pose_squares = 0;  // sums of squared errors over variances, of so many
   int edge_claims = 0, edge_claims_beyond = 0, pose_claims = 0;
   int edges_open = 0, edges_failed = 0, poses_unknown = 0, body_known = 0, body_unsaid = 0, visits = 0;
@@ -74,6 +74,7 @@ void AddEdges(const RigCase& rig, MotionScore& score) {
     const Vector6d error = EdgeError(rig, edge);
     const Eigen::VectorXd sigmas = ClaimedSigmas(error, edge.uncertainty);
     score.worst_edge = std::max(score.worst_edge, sigmas.maxCoeff());
+    score.worst_axis = std::max(score.worst_axis, WorstKnownAxis(error, edge.uncertainty));
     score.edge_claims_beyond += static_cast<int>((sigmas.array() > 4.0).count());
     score.edge_squares += error.dot(edge.uncertainty.Omega * error);
     score.edge_claims += edge.uncertainty.rank;
@@ -133,15 +134,16 @@ void PrintMotions(int seeds, int first) {
     for (const double tilt_deg : kTilts_deg) {
       const MotionScore score = ScoreOf(motion, tilt_deg, seeds, first);
       std::printf(
-          "%s\n  {\"tilt_deg\": %.3f, \"worst_edge_sigmas\": %.3f, \"worst_pose_sigmas\": %.3f, "
+          "%s\n  {\"tilt_deg\": %.3f, \"worst_edge_sigmas\": %.3f, \"worst_edge_axis_sigmas\": %.3f, "
+          "\"worst_pose_sigmas\": %.3f, "
           "\"edge_claims\": %d, \"edge_claims_beyond_4\": %d, \"edge_mean_square\": %.3f, \"pose_mean_square\": %.3f, "
           "\"pose_claims\": %d, \"axis_deg\": %.4f, "
           "\"edges_open\": %d, \"edges_failed\": %d, \"poses_unknown\": %d, \"body_known\": %d, \"body_unsaid\": %d, "
           "\"visits\": %d}",
-          comma, tilt_deg, score.worst_edge, score.worst_pose, score.edge_claims, score.edge_claims_beyond,
-          Mean(score.edge_squares, score.edge_claims), Mean(score.pose_squares, score.pose_claims), score.pose_claims,
-          score.axis_deg, score.edges_open, score.edges_failed, score.poses_unknown, score.body_known,
-          score.body_unsaid, score.visits);
+          comma, tilt_deg, score.worst_edge, score.worst_axis, score.worst_pose, score.edge_claims,
+          score.edge_claims_beyond, Mean(score.edge_squares, score.edge_claims),
+          Mean(score.pose_squares, score.pose_claims), score.pose_claims, score.axis_deg, score.edges_open,
+          score.edges_failed, score.poses_unknown, score.body_known, score.body_unsaid, score.visits);
       std::fflush(stdout);
       comma = ",";
     }

@@ -86,7 +86,7 @@ void WeakMotion(const char* name, Drive drive, int seeds) {
   std::printf("\"%s\": [", name);
   const char* comma = "";
   for (const double ratio : {0.0, 0.5, 1.0, 2.0, 3.0, 5.0, 10.0}) {
-    double worst = 0, axis_deg = 0;
+    double worst = 0, worst_axis = 0, axis_deg = 0;
     int ranks[7] = {0, 0, 0, 0, 0, 0, 0}, failed = 0;
     for (int seed = 0; seed < seeds; ++seed) {
       const VirtualBody body = Driven(drive, 40, ratio * kTracker.rotation_rad, 100 + static_cast<unsigned>(seed));
@@ -97,13 +97,18 @@ void WeakMotion(const char* name, Drive drive, int seeds) {
       }
       ++ranks[result->uncertainty.rank];
       worst = std::max(worst, WorstSigmas(body.X, result->estimate.T_body_lidar, result->uncertainty));
+      const Vector6d error = (result->estimate.T_body_lidar.Inverse() * body.X).Log();
+      for (int axis = 0; axis < 6; ++axis)
+        if (const AxisSigma sigma = SigmaOf(result->uncertainty, axis); sigma.known)
+          worst_axis = std::max(worst_axis, std::abs(error[axis]) / sigma.value);
       for (const Eigen::Vector3d& axis : AxesOf(result->estimate.reach, result->estimate.T_body_lidar).positions)
         axis_deg = std::max(axis_deg, std::acos(std::min(1.0, std::abs(axis.z()))) / kDegree);
     }
     std::printf(
-        "%s{\"ratio\": %.1f, \"worst_sigmas\": %.3f, \"axis_deg\": %.3f, \"rank4\": %d, \"rank5\": %d, \"rank6\": %d, "
+        "%s{\"ratio\": %.1f, \"worst_sigmas\": %.3f, \"worst_axis_sigmas\": %.3f, \"axis_deg\": %.3f, \"rank4\": %d, "
+        "\"rank5\": %d, \"rank6\": %d, "
         "\"failed\": %d}",
-        comma, ratio, worst, axis_deg, ranks[4], ranks[5], ranks[6], failed);
+        comma, ratio, worst, worst_axis, axis_deg, ranks[4], ranks[5], ranks[6], failed);
     comma = ", ";
   }
   std::printf("], ");
