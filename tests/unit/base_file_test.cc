@@ -1,7 +1,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -40,12 +40,18 @@ TEST_F(Files, WriteThenReadGivesTheSameBytes) {
   EXPECT_EQ(EntryCount(), 1U) << "a temporary file was left";
 }
 
-// Read without waiting for a disk: possible of what the page cache holds.
+// Whether a page of it is in memory. A read that does not wait (RWF_NOWAIT) would ask the disk to read ahead, and now
+// and then find the answer come already.
 bool IsCached(const std::filesystem::path& path) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  char byte = 0;
-  const iovec into = {&byte, 1};
-  return ::preadv2(file.get(), &into, 1, 0, RWF_NOWAIT) == 1;
+  const std::size_t size_bytes = std::filesystem::file_size(path);
+  void* mapped = ::mmap(nullptr, size_bytes, PROT_READ, MAP_SHARED, file.get(), 0);
+  if (mapped == MAP_FAILED) return false;
+  constexpr std::size_t kPageBytes = 4096;
+  std::vector<unsigned char> pages((size_bytes + kPageBytes - 1) / kPageBytes);
+  const bool told = ::mincore(mapped, size_bytes, pages.data()) == 0;
+  ::munmap(mapped, size_bytes);
+  return told && std::any_of(pages.begin(), pages.end(), [](unsigned char page) { return (page & 1) != 0; });
 }
 
 // Whether a file written and then let go is still cached: some file systems live in memory, or do not tell.
