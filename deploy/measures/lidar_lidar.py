@@ -2,7 +2,7 @@
 virtual room, on captures that the pose was not made from."""
 import math
 
-from .measure import at_least, at_most, info, skip
+from .measure import at_least, at_most, equal, info, skip
 
 # T_target_source.txt of lidarlidar_small_gicp: a generalised ICP's result.
 SMALL_GICP = [[0.999925, 0.0121483, -0.00177009], [-0.0121523, 0.999924, -0.00228657], [0.00174218, 0.00230791, 0.999996]]
@@ -95,8 +95,24 @@ def room(context):
             yield at_most(name + "_error_in_sigmas", edge["worst_in_sigmas"], 4)
 
 
+def one_capture(context):
+    """Its uncertainty is a model's. NDT's own Hessian is shown beside what is told: it takes the points of a voxel for
+    independent and the voxel's spread for their noise, and so depends on the noise of the ranges as the error does not."""
+    seeds = 100 if context.full else 40
+    for noise_mm in (2, 5, 20, 50):
+        result = context.run_json("lidar_lidar_room", "--one-capture", noise_mm / 1e3, seeds)
+        name = "one_capture_noise_%dmm" % noise_mm
+        yield equal(name + "_uncertainty_is_a_model", result["good"] - result["model"], 0)
+        yield info(name + "_not_solved", seeds - result["good"])
+        yield at_most(name + "_worst_sigmas", result["told"]["worst"], 4)
+        yield at_most(name + "_mean_square_in_sigmas", result["told"]["mean_square"], 1)
+        yield info(name + "_ndt_hessian_worst_sigmas", result["ndt_hessian"]["worst"])
+        yield info(name + "_ndt_hessian_mean_square_in_sigmas", result["ndt_hessian"]["mean_square"])
+
+
 def run(context):
     yield from room(context)
+    yield from one_capture(context)
     for name, path, body in (("lidarlidar_small_gicp", "lidarlidar_small_gicp", small_gicp),
                              ("lidarlidar_opencalib", "lidarlidar_opencalib/0001", opencalib)):
         if (context.data / path).is_dir():

@@ -1,12 +1,18 @@
 // Two lidars in a room of flat panels, several captures and a known truth, by NDT and polished:
 //   lidar_lidar_room CAPTURES SEED
-// Prints one JSON object. "held_out_captures_...": of each capture by the pose without it.
+// "held_out_captures_...": of each capture by the pose without it. Or one capture each of many seeds, whose errors are
+// compared with the sigmas told and with those that NDT's Hessian gives, with clouds of this range noise:
+//   lidar_lidar_room --one-capture RANGE_NOISE_M SEEDS
+// Prints one JSON object.
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 #include "server/calib/lidar_lidar.h"
+#include "server/calib/lidar_lidar_work.h"
 #include "tests/unit/calib_virtual_room.h"
 
 namespace rigcal {
@@ -35,12 +41,69 @@ int Measure(int captures, unsigned seed) {
   return ndt.state == EdgeState::kGood && polished.state == EdgeState::kGood ? 0 : 1;
 }
 
+// Errors in sigmas.
+struct InSigmas {
+  double squares = 0, worst = 0;
+
+  void Add(const Vector6d& error, const Matrix6d& information) {
+    squares += error.dot(information * error) / 6;
+    const Vector6d sigma = Matrix6d(information.inverse()).diagonal().cwiseSqrt();
+    worst = std::max(worst, (error.array().abs() / sigma.array()).maxCoeff());
+  }
+  void Print(const char* name, int count) const {
+    std::printf(", \"%s\": {\"mean_square\": %.4g, \"worst\": %.4g}", name, squares / count, worst);
+  }
+};
+
+// Second derivatives of NDT's negative log likelihood at its optimum (Magnusson 2009, equation 6.13), for
+// T_map_moving Exp(xi). Magnusson's d1 is the scale of the score, of which 55 % are taken to be outliers.
+Matrix6d NdtHessian(const calib::NdtTerm& term, const Se3& T_map_moving) {
+  constexpr double kStep = 1e-4;
+  Matrix6d H;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d step = kStep * Vector6d::Unit(i);
+    H.col(i) = (calib::ScoreOf({term}, T_map_moving * Se3::Exp(step)).gradient -
+                calib::ScoreOf({term}, T_map_moving * Se3::Exp(-step)).gradient) /
+               (2 * kStep);
+  }
+  const double inliers = 10 * 0.45, outliers = 0.55 / std::pow(term.map->voxel_m, 3);
+  return std::log(1 + inliers / outliers) * 0.5 * (H + H.transpose());
+}
+
+int MeasureOneCapture(double noise_m, int seeds) {
+  calib::VirtualRoom room;
+  room.beams_a.noise_m = room.beams_b.noise_m = noise_m;
+  InSigmas told, hessian;
+  int good = 0, model = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const calib::LidarLidarProblem problem = calib::RecordedIn(room, 1, static_cast<unsigned>(seed));
+    const Edge edge = calib::EstimateLidarLidarEdge(problem);
+    if (edge.state != EdgeState::kGood || edge.uncertainty.rank < 6) continue;
+    ++good;
+    model += edge.uncertainty.source == UncertaintySource::kModel && edge.uncertainty.blocks.empty() ? 1 : 0;
+    told.Add((edge.T_a_b.Inverse() * room.T_a_b).Log(), edge.uncertainty.Omega);
+    const calib::LidarLidarWork work = calib::WorkOf(problem, {}, false);
+    const Se3 T_map_moving = work.a_is_map ? edge.T_a_b : edge.T_a_b.Inverse();
+    const Se3 truth = work.a_is_map ? room.T_a_b : room.T_a_b.Inverse();
+    const calib::NdtTerm finest{&work.clouds.front().maps.back(), &work.clouds.front().points.back()};
+    hessian.Add((T_map_moving.Inverse() * truth).Log(), NdtHessian(finest, T_map_moving));
+  }
+  std::printf("{\"range_noise_m\": %.9g, \"seeds\": %d, \"good\": %d, \"model\": %d", noise_m, seeds, good, model);
+  told.Print("told", std::max(1, good));
+  hessian.Print("ndt_hessian", std::max(1, good));
+  std::printf("}\n");
+  return good > 0 ? 0 : 1;
+}
+
 }  // namespace
 }  // namespace rigcal
 
 int main(int argc, char** argv) {
+  if (argc == 4 && std::string_view(argv[1]) == "--one-capture")
+    return rigcal::MeasureOneCapture(std::atof(argv[2]), std::max(1, std::atoi(argv[3])));
   if (argc != 3) {
-    std::fprintf(stderr, "usage: lidar_lidar_room CAPTURES SEED\n");
+    std::fprintf(stderr,
+                 "usage: lidar_lidar_room CAPTURES SEED\n       lidar_lidar_room --one-capture RANGE_NOISE_M SEEDS\n");
     return 2;
   }
   return rigcal::Measure(std::max(1, std::atoi(argv[1])), static_cast<unsigned>(std::atoi(argv[2])));
