@@ -3,6 +3,7 @@ import json
 import pathlib
 import re
 
+from .chance import by_chance
 from .measure import at_least, at_most, equal, info, processors, within
 from .server import Server
 
@@ -28,7 +29,9 @@ def coverage(context):
 
 
 def motions(context):
-    result = context.run_json("rig_coverage", "motions", 5 if context.full else 1, timeout=20000)
+    seeds = 5 if context.full else 1
+    yield from by_chance(context, "motion_edge", 20, 6, 59 * seeds)
+    result = context.run_json("rig_coverage", "motions", seeds, timeout=20000)
     for name in ("planar", "on_the_spot"):
         for case in result[name]:
             title = "%s_tilt_%g" % (name, case["tilt_deg"])

@@ -15,3 +15,6 @@ rigcal_program(rig_coverage
   SOURCES bench/rig_coverage_main.cc bench/rig_coverage.cc bench/rig_motions.cc bench/rig_given.cc bench/rig_turned.cc bench/rig_bytes.cc
           bench/rig_case.cc bench/feature_session.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph TBB::tbb)
+rigcal_program(sigma_chance
+  SOURCES bench/sigma_chance.cc bench/rig_case.cc bench/feature_session.cc
+  DEPS rigcal_sim rigcal_calib rigcal_graph)
