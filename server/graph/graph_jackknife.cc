@@ -129,7 +129,8 @@ class Accumulator {
     Eigen::Index at = 0;
     for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source) {
       const auto own = rows.middleCols(at, source->column_count);
-      if (source->dof > 0) pose_dof_[free_vertex].Add(own * own.transpose(), source->dof);
+      if (source->of_blocks) pose_dof_[free_vertex].AddBlocks(own, source->dof);
+      if (source->dof > 0 && !source->of_blocks) pose_dof_[free_vertex].Add(own * own.transpose(), source->dof);
     }
   }
 

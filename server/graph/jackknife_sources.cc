@@ -68,6 +68,7 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
   const std::vector<std::string> ids(unique.begin(), unique.end());
   ErrorSource source;
   source.dof = dof > 0 ? dof : static_cast<int>(ids.size()) - 1;
+  source.of_blocks = true;
   source.column_count = static_cast<Eigen::Index>(ids.size());
   for (const std::size_t k : members) {
     const EdgeBlocks& own = *FindBlocks(work.blocks, work.EdgeOf(k).id);

@@ -26,7 +26,8 @@ struct ErrorPart {
 // Causes that are estimated together: the blocks of a session, or one edge's own error. C of it is
 // (columns)(columns)^T.
 struct ErrorSource {
-  int dof = 0;  // 0: known
+  int dof = 0;             // 0: known
+  bool of_blocks = false;  // a column per block
   Eigen::Index column_count = 0;
   std::vector<ErrorPart> parts;
 

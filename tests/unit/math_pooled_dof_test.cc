@@ -91,5 +91,54 @@ TEST(PooledDof, MakesHotellingsRegionCover) {
   EXPECT_NEAR(static_cast<double>(covered) / kTrials, 0.95, 0.01);  // spread 0.0016
 }
 
+TEST(PooledDof, OfBlocksThatCarryAlikeIsTheirNumber) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 12);
+  columns << Matrix6d::Identity(), -Matrix6d::Identity();
+  PooledDof pooled;
+  pooled.AddBlocks(columns, 11);
+  EXPECT_NEAR(pooled.Of(columns * columns.transpose()), 11.0, 1e-9);
+}
+
+// In one direction the sum of squares of m normal numbers scatters by m/(m-1) [sum c^4 - (sum c^2)^2 / m].
+TEST(PooledDof, OfBlocksThatCarryUnevenlyIsLess) {
+  const Vector6d along = (Vector6d() << 3, 0, -2, 1, 0, 5).finished();
+  const Eigen::RowVectorXd c = (Eigen::RowVectorXd(10) << 9, 1, -1, 1, -8, 1, 1, -1, 1, 1).finished();
+  PooledDof pooled;
+  pooled.AddBlocks(along * c, 9);
+  const double squares = c.squaredNorm(), fourths = c.cwiseAbs2().squaredNorm();
+  const double scatter = 10.0 / 9.0 * (fourths - squares * squares / 10.0);
+  EXPECT_NEAR(pooled.Of(along * along.transpose() * squares), 2 * squares * squares / scatter, 1e-9);
+  const Matrix6d M = Adjoint(Se3::Exp((Vector6d() << 0.5, -2, 1, 0.3, -1, 2).finished()));
+  PooledDof there;
+  there.AddBlocks(M * along * c, 9);
+  EXPECT_NEAR(there.Of(M * along * along.transpose() * M.transpose() * squares),
+              pooled.Of(along * along.transpose() * squares), 1e-9);
+}
+
+// Of 40 blocks a quarter carries most: what is estimated is as uncertain as of fewer.
+TEST(PooledDof, MakesTheRegionOfUnevenBlocksCover) {
+  constexpr int kTrials = 20000, kBlocks = 40;
+  std::mt19937 random(5);
+  int covered = 0, covered_as_if_alike = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, kBlocks);
+    double variance = 0;
+    for (int b = 0; b < kBlocks; ++b) {
+      const double sigma = b % 4 == 0 ? 1.0 : 0.2;
+      columns.col(b) = Draw(sigma * Matrix6d::Identity(), random);
+      variance += sigma * sigma;
+    }
+    const Matrix6d sum = columns * columns.transpose();
+    PooledDof pooled;
+    pooled.AddBlocks(columns, kBlocks);
+    const Vector6d error = Draw(std::sqrt(variance) * Matrix6d::Identity(), random);
+    const double square = error.dot(sum.ldlt().solve(error));
+    covered += square <= HotellingLimit(static_cast<int>(pooled.Of(sum)) + 1);
+    covered_as_if_alike += square <= HotellingLimit(kBlocks + 1);
+  }
+  EXPECT_GT(static_cast<double>(covered) / kTrials, 0.91);  // 0.9225: ten blocks do not tell their own spread well
+  EXPECT_LT(static_cast<double>(covered_as_if_alike) / kTrials, 0.80);
+}
+
 }  // namespace
 }  // namespace rigcal
