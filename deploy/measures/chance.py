@@ -1,5 +1,6 @@
 """What largest error over sigma to expect where every sigma is right: of so many estimates, each with a covariance from so many
-blocks. Beside a limit of 4 it tells how much of a row is chance."""
+blocks. Beside a limit of 4 it tells about how much of one row is chance: edges of a visit share captures and some leave
+directions open, so that they are fewer than they seem."""
 from .measure import info
 
 

@@ -26,12 +26,12 @@ constexpr double kOfTwoBlocks = 0.70710678118654752;
 // Adds up what the sources bring, a batch of columns at a time.
 class Accumulator {
  public:
-  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky)
+  Accumulator(const JackknifeWork& work, BlockCholesky<6>& cholesky, const std::vector<Matrix6d>& analytic)
       : work_(work),
         cholesky_(cholesky),
         C_e_(work.problem.constraints.size(), Matrix6d::Zero()),
         dof_sum_(C_e_.size(), 0.0),
-        pose_dof_(static_cast<std::size_t>(work.problem.free_count())) {
+        pose_dof_(analytic.begin(), analytic.end()) {
     joint_ = MatrixXd::Zero(6 * work.problem.free_count(), 6 * work.problem.free_count());
   }
 
@@ -129,8 +129,10 @@ class Accumulator {
     Eigen::Index at = 0;
     for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source) {
       const auto own = rows.middleCols(at, source->column_count);
-      if (source->of_blocks) pose_dof_[free_vertex].AddBlocks(own, source->dof);
-      if (source->dof > 0 && !source->of_blocks) pose_dof_[free_vertex].Add(own * own.transpose(), source->dof);
+      if (source->of_blocks)
+        pose_dof_[free_vertex].AddBlocks(own, source->dof);
+      else
+        pose_dof_[free_vertex].Add(own * own.transpose(), source->dof);
     }
   }
 
@@ -224,7 +226,7 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   const auto cholesky = MakeCholesky<6>(problem.pattern);
   if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return jackknife;
   const std::vector<Matrix6d> analytic = cholesky->InverseDiagonal();
-  Accumulator accumulator(work, *cholesky);
+  Accumulator accumulator(work, *cholesky, analytic);
   accumulator.Add(SourcesOf(work));
   jackknife.joint = accumulator.Joint();
   if (!jackknife.joint.allFinite()) return jackknife;

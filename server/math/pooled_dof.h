@@ -11,18 +11,23 @@ namespace rigcal {
 // for one part alone it is n. With nu, T^2 = e^T S^-1 e is Hotelling's. Parts that are known exactly are in S only.
 class PooledDof {
  public:
-  // `part` symmetric, dof > 0.
+  // `rough`: a covariance about as large as the sum, by which the numbers are scaled before they are multiplied; it
+  // does not change the answer. Not positive definite: none.
+  explicit PooledDof(const Matrix6d& rough = Matrix6d::Identity());
+  // `part` symmetric, dof > 0; else it counts as known.
   void Add(const Matrix6d& part, int dof);
-  // A part that is the sum of c c^T over `columns`, independent blocks of which some may carry more than others: the
-  // sum of all V_i is then what such terms themselves scatter by, if that is more. `dof`: of blocks that carry alike.
+  // A part that is the sum of c c^T over `columns`, independent blocks (zero: a block that says nothing here) of which
+  // some may carry more than others: what all such terms themselves scatter by takes the place of the sum of their V_i,
+  // if it is more.
   void AddBlocks(const Eigen::Matrix<double, 6, Eigen::Dynamic>& columns, int dof);
   // 0: nothing is estimated, or `sum` has no direction. Where `sum` is singular, over the directions that it has.
   [[nodiscard]] double Of(const Matrix6d& sum) const;
 
  private:
   using Products = Eigen::Matrix<double, 36, 36>;
-  Products wishart_ = Products::Zero();                          // sum of vec(S_i) vec(S_i)^T / n_i
-  Products terms_ = Products::Zero(), sums_ = Products::Zero();  // the same of the terms of blocks, and of their sums
+  Matrix6d scale_;                                                  // rough = scale^-1 scale^-T
+  Products others_ = Products::Zero(), blocks_ = Products::Zero();  // sums of vec(S_i) vec(S_i)^T / n_i
+  Products terms_ = Products::Zero(), sums_ = Products::Zero();     // of the blocks' terms, and of their sums
 };
 
 }  // namespace rigcal

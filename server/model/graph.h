@@ -39,7 +39,7 @@ struct SensorPose {
   Matrix6d covariance = Matrix6d::Zero();  // marginal, right tangent at the sensor; zero for the reference
   bool by_jackknife = false;       // covariance is the jackknife's through the graph; else it is analytic
   Matrix6d covariance_analytic = Matrix6d::Zero();  // H^-1: edges taken as independent; meaningful if by_jackknife
-  // Behind the covariance (Welch & Satterthwaite over sessions and given constants): of the T^2 region of the pose.
+  // Behind the covariance (PooledDof over sessions and given constants): of the T^2 region of the pose.
   // Meaningful if by_jackknife; 0: nothing in it is estimated from captures.
   double dof = 0.0;
   // If not known: the directions that its edges leave free, as far as they were worked out. Right tangent at the

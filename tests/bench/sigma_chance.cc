@@ -1,8 +1,9 @@
 // What chance does to errors in sigmas where every sigma is right: sigma_chance BLOCKS RANK ESTIMATES [REPEATS]
 // An estimate is the mean of so many vectors of a normal distribution with known covariance, along RANK directions; its
-// uncertainty is put together as every estimator's is, by a jackknife shrunk towards the (true) model. No sensor, no
-// solver, no approximation. Prints one JSON object: of the largest error over sigma among ESTIMATES, how often it is
-// beyond 4, its median and what 5 % exceed, in the principal directions of the information and along the axes told.
+// uncertainty is put together as those of estimators with a jackknife are, shrunk towards the model, which is the truth
+// here. No sensor, no solver, no approximation; every estimate independent of the others. Prints one JSON object: of
+// the largest error over sigma among ESTIMATES, how often it is beyond 4, its median and what 5 % exceed, in the
+// principal directions of the information and along the axes told.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -134,6 +134,29 @@ TEST(GraphJackknife, ThreeFramesByHand) {
   for (const std::size_t v : {1, 2}) EXPECT_GT(jackknife.dof[v], 7.01) << v;
 }
 
+// One session of 40 blocks, of which every fourth is so much larger.
+double DofOfUneven(double larger) {
+  constexpr int kMany = 40;
+  RandomRig rig = MakeRig(4, 6, 3, 1e-3, 1e-3);
+  std::mt19937 random(8);
+  BlocksByEdge blocks;
+  for (GraphEdge& edge : rig.graph.edges) {
+    edge.session = SessionId(std::string(64, 'a'));
+    for (int i = 0; i < kMany; ++i) {
+      const double size = 2e-4 * (i % 4 == 0 ? larger : 1.0);
+      blocks[edge.id].blocks.push_back({BlockName(i), RandomVector(random, size, size)});
+    }
+    blocks[edge.id].dof = kMany - 1;
+  }
+  const GraphJackknife jackknife = JackknifeGraph(rig.graph, Solve(rig.graph), blocks);
+  return jackknife.available ? *std::min_element(jackknife.dof.begin() + 1, jackknife.dof.end()) : 0.0;
+}
+
+TEST(GraphJackknife, BlocksThatCarryUnevenlyCountForFewer) {
+  EXPECT_GT(DofOfUneven(1.0), 34.0);
+  EXPECT_LT(DofOfUneven(5.0), 20.0);
+}
+
 TEST(GraphJackknife, DegreesOfFreedomAreThoseOfTheSessions) {
   RandomRig rig = MakeRig(6, 13, 3, 1e-3, 1e-3);
   const BlocksByEdge blocks = GiveBlocks(rig.graph, 13, 2e-4, 4);

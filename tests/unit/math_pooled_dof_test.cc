@@ -115,6 +115,40 @@ TEST(PooledDof, OfBlocksThatCarryUnevenlyIsLess) {
               pooled.Of(along * along.transpose() * squares), 1e-9);
 }
 
+// Captures in which this sensor saw nothing are blocks without a say; edges with fewer of them lower the number given.
+TEST(PooledDof, BlocksThatSayNothingDoNotCountTwice) {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 12), more(6, 40);
+  columns << Matrix6d::Identity(), -Matrix6d::Identity();
+  more.setZero();
+  more.leftCols(12) = columns;
+  PooledDof few, many;
+  few.AddBlocks(columns, 11);
+  many.AddBlocks(more, 11);
+  const Matrix6d sum = columns * columns.transpose();
+  EXPECT_NEAR(many.Of(sum), few.Of(sum), 1e-9);
+  PooledDof fewer;
+  fewer.AddBlocks(columns, 7);
+  EXPECT_NEAR(fewer.Of(sum), 7.0, 1e-9);
+}
+
+// Two directions that are known very differently well, turned against the axes.
+TEST(PooledDof, HoldsWhereErrorsGoTogether) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> columns(6, 40);
+  for (double& value : columns.reshaped()) value = normal(random);
+  PooledDof round;
+  round.AddBlocks(columns, 39);
+  const double expected = round.Of(columns * columns.transpose());
+  Matrix6d M = Matrix6d::Identity();
+  M(0, 0) = 1e-5;
+  M = M * Matrix6d(Adjoint(Se3::Exp((Vector6d() << 0.5, -2, 1, 0.3, -1, 2).finished())));
+  M = Matrix6d(Adjoint(Se3::Exp((Vector6d() << 1, 1, -1, 2, 0.7, 0.1).finished()))) * M;
+  PooledDof flat(1.7 * M * columns * columns.transpose() * M.transpose());
+  flat.AddBlocks(M * columns, 39);
+  EXPECT_NEAR(flat.Of(M * columns * columns.transpose() * M.transpose()), expected, 1e-3 * expected);
+}
+
 // Of 40 blocks a quarter carries most: what is estimated is as uncertain as of fewer.
 TEST(PooledDof, MakesTheRegionOfUnevenBlocksCover) {
   constexpr int kTrials = 20000, kBlocks = 40;
