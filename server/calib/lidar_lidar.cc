@@ -53,20 +53,20 @@ Se3 BackToNominal(const Se3& T, const Se3& nominal, const Directions& unknown) {
   return (T * Se3::Exp(unknown * (unknown.transpose() * off))).Normalized();
 }
 
-void Refit(const LidarLidarWork& work, const Se3& start, Solved& solved) {
-  solved.pose = FitFrom(work, start, 0, solved.unknown);
+void Refit(const LidarLidarWork& work, const Se3& start, std::size_t first_level, Solved& solved) {
+  solved.pose = FitFrom(work, start, first_level, solved.unknown);
   solved.pairs = AllPairs(work, solved.pose.T);
 }
 
 // What is unknown is found at a pose that may have slid along it: so once more, held at the nominal pose there, and
 // again with the directions as they are then.
-Solved SolveFrom(const LidarLidarWork& work, const Se3& start) {
+Solved SolveFrom(const LidarLidarWork& work, const Se3& start, std::size_t first_level) {
   Solved solved;
-  Refit(work, start, solved);
+  Refit(work, start, first_level, solved);
   for (int round = 0; round < kLockingsMax; ++round) {
     solved.unknown = Unknown(solved.pairs, solved.pose.T);
     if (solved.unknown.cols() == 0 || solved.unknown.cols() == 6) return solved;
-    Refit(work, BackToNominal(solved.pose.ndt, work.nominal, solved.unknown), solved);
+    Refit(work, BackToNominal(solved.pose.ndt, work.nominal, solved.unknown), first_level, solved);
   }
   return solved;
 }
@@ -221,6 +221,20 @@ const StartEnd& BestOf(const std::vector<StartEnd>& ends) {
                            [](const StartEnd& x, const StartEnd& y) { return x.score < y.score; });
 }
 
+struct Starts {
+  std::vector<StartEnd> ends;
+  std::size_t first_level = 0;
+};
+
+// Coarse maps of a room may lead all starts astray, even from the truth. Then the nominal pose ends better on the finer
+// ones alone, and these are asked from all starts.
+Starts StartsOf(const LidarLidarWork& work) {
+  Starts coarse{TryStarts(work, 0), 0};
+  const StartEnd finer = EndFrom(work, work.nominal, 1);
+  if (BestOf(coarse.ends).score > kOtherScoreRatio * finer.score) return coarse;
+  return {TryStarts(work, 1), 1};
+}
+
 // Coarse maps of rings on a floor may lead nearly all starts astray; then the finer ones are asked, if what they find
 // fits as well.
 void AskFinerMaps(const LidarLidarWork& work, const Solved& solved, std::vector<StartEnd>& ends) {
@@ -237,9 +251,9 @@ OrDiagnosis<LidarLidarEstimate> EstimateLidarLidar(const LidarLidarProblem& prob
   if (std::none_of(problem.captures.begin(), problem.captures.end(), IsUsable))
     return tl::unexpected(NoCommonClouds(problem));
   const LidarLidarWork work = WorkOf(problem);
-  std::vector<StartEnd> ends = TryStarts(work, 0);
+  auto [ends, first_level] = StartsOf(work);
   if (auto judged = JudgeStart(problem, work, BestOf(ends)); !judged) return tl::unexpected(judged.error());
-  const Solved solved = SolveFrom(work, BestOf(ends).T);
+  const Solved solved = SolveFrom(work, BestOf(ends).T, first_level);
   AskFinerMaps(work, solved, ends);
   const StartEnd& best = BestOf(ends);
   if (auto judged = Judge(problem, work, solved, ends, best); !judged) return tl::unexpected(judged.error());

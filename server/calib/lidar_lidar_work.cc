@@ -156,20 +156,24 @@ std::vector<std::size_t> StartCaptures(const LidarLidarWork& work) {
   return Every((work.clouds.size() + kStartCaptures - 1) / kStartCaptures, work.clouds.size());
 }
 
+StartEnd EndFrom(const LidarLidarWork& work, const Se3& start, std::size_t first_level) {
+  const std::vector<std::size_t> few = StartCaptures(work);
+  StartEnd end{start, 0, 0};
+  for (std::size_t level = first_level; level < kNdtLevels; ++level) {
+    const NdtFit fit = FitNdt(TermsOf(work, level, few), end.T, kStepCoarse);
+    end = {fit.T_a_b, -fit.score.cost / std::max(fit.score.points, 1.0), MetRatio(fit.score)};
+  }
+  return end;
+}
+
 std::vector<StartEnd> TryStarts(const LidarLidarWork& work, std::size_t first_level) {
   std::vector<Vector6d> offsets{Vector6d::Zero()};
   for (int axis = 0; axis < 6; ++axis)
     for (const double sign : {1.0, -1.0})
       offsets.push_back(sign * (axis < 3 ? kStartShiftVoxels * work.voxel_m : kStartTurn_rad) * Vector6d::Unit(axis));
-  const std::vector<std::size_t> few = StartCaptures(work);
   std::vector<StartEnd> ends(offsets.size());
-  ParallelFor(offsets.size(), [&](std::size_t i) {
-    ends[i].T = work.nominal * Se3::Exp(offsets[i]);
-    for (std::size_t level = first_level; level < kNdtLevels; ++level) {
-      const NdtFit fit = FitNdt(TermsOf(work, level, few), ends[i].T, kStepCoarse);
-      ends[i] = {fit.T_a_b, -fit.score.cost / std::max(fit.score.points, 1.0), MetRatio(fit.score)};
-    }
-  });
+  ParallelFor(offsets.size(),
+              [&](std::size_t i) { ends[i] = EndFrom(work, work.nominal * Se3::Exp(offsets[i]), first_level); });
   return ends;
 }
 

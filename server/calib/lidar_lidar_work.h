@@ -44,6 +44,8 @@ struct StartEnd {
   Se3 T;
   double score = 0, met_ratio = 0;  // as LidarLidarPose's
 };
+// On the captures of StartCaptures(); from a level of NDT on.
+[[nodiscard]] StartEnd EndFrom(const LidarLidarWork& work, const Se3& start, std::size_t first_level);
 // The nominal pose first, then it turned and shifted to all sides; from a level of NDT on.
 [[nodiscard]] std::vector<StartEnd> TryStarts(const LidarLidarWork& work, std::size_t first_level);
 // Which of `work.clouds` these few captures are.

@@ -5,3 +5,6 @@ rigcal_test(sim_test COMPUTES
 rigcal_test(sim_picture_test COMPUTES
   SOURCES unit/sim_picture_test.cc unit/sim_plate_test.cc unit/sim_sample.cc
   DEPS rigcal_sim rigcal_detect)
+rigcal_test(sim_lidar_pair_test COMPUTES
+  SOURCES unit/sim_lidar_pair_test.cc bench/feature_session.cc
+  DEPS rigcal_sim rigcal_calib rigcal_graph)
