@@ -19,6 +19,8 @@ Status CheckUncertainty(const Edge& edge) {
   if (!uncertainty.covariance.allFinite()) return Refuse(edge, "covariance is not finite");
   if (uncertainty.rank < 0 || uncertainty.rank > 6) return Refuse(edge, "rank is not between 0 and 6");
   if (uncertainty.dof < 0) return Refuse(edge, "dof is negative");
+  if (!(uncertainty.jackknife_ratio >= 0 && uncertainty.jackknife_ratio <= 1))
+    return Refuse(edge, "the share of the jackknife is not between 0 and 1");
   if (uncertainty.unobservable_basis.cols() != 6 - uncertainty.rank)
     return Refuse(edge, "rank and the number of unobservable directions do not add up to 6");
   if (!uncertainty.unobservable_basis.allFinite()) return Refuse(edge, "an unobservable direction is not finite");
@@ -49,7 +51,8 @@ void BindPose(Query& insert, const Se3& T_a_b) {
 void BindUncertainty(Query& insert, const Uncertainty& uncertainty) {
   const auto& basis = uncertainty.unobservable_basis;  // column-major: one direction after the other
   insert.Bind(BlobOf(uncertainty.Omega), uncertainty.rank, uncertainty.dof, NameOf(uncertainty.source),
-              BlobOf(uncertainty.covariance), BlobOf(basis.data(), static_cast<std::size_t>(basis.size())));
+              BlobOf(uncertainty.covariance), BlobOf(basis.data(), static_cast<std::size_t>(basis.size())),
+              uncertainty.jackknife_ratio);
 }
 
 // False if the edge is there already. What is not bound is NULL.
@@ -57,8 +60,8 @@ bool InsertEdge(Store& store, const Edge& edge, Stamp now) {
   Query insert(store,
                "INSERT INTO edge (edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, appended_ns, "
                "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
-               "information, rank, dof, source, covariance, unobservable_basis) "
-               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
+               "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio) "
+               "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
   const bool good = edge.state == EdgeState::kGood;
   insert.Bind(edge.id, edge.robot, NullIfEmpty(edge.session), edge.epoch, edge.frame_a, edge.frame_b, edge.method,
               std::string(good ? "good" : "failed"), now);

@@ -44,6 +44,7 @@ Uncertainty UncertaintyOf(const Query& query, int column) {
   const Eigen::Index directions = static_cast<Eigen::Index>(basis.size() / 6);
   uncertainty.unobservable_basis =
       Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>(basis.data(), 6, directions);
+  uncertainty.jackknife_ratio = query.Real(column + 6);  // NULL reads as 0
   return uncertainty;
 }
 
@@ -67,7 +68,7 @@ Selected LoadRows(Store& store, const Selection& selection) {
   Query query(store,
               "SELECT number, edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, "
               "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
-              "information, rank, dof, source, covariance, unobservable_basis FROM edge e WHERE " +
+              "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio FROM edge e WHERE " +
                   selection.where + " ORDER BY edge_id");
   query.Bind(selection.key);
   Selected selected;

@@ -16,16 +16,16 @@ Result<Vector6d> ShiftOf(const GivenConstant& constant) {
 }
 
 // With what the captures and the given constants add; `m` captures. Without blocks the model's stands for the captures.
-Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
+ShrunkCovariance CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
                       const std::vector<Contribution>& contributions, int m) {
-  Matrix6d C = C_model;
+  ShrunkCovariance shrunk{C_model, 0.0};
   if (!blocks.empty()) {
     std::vector<Vector6d> d;
     for (const BlockVector& block : blocks) d.push_back(block.d);
-    C = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
+    shrunk = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
   }
-  for (const Contribution& contribution : contributions) C += contribution.covariance;
-  return C;
+  for (const Contribution& contribution : contributions) shrunk.C += contribution.covariance;
+  return shrunk;
 }
 
 }  // namespace
@@ -60,11 +60,12 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
 Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
                                   std::vector<Contribution> contributions, std::size_t captures) {
   const int m = static_cast<int>(captures);
-  const Matrix6d C = CovarianceOf(C_model, blocks, contributions, m);
+  const auto [C, share] = CovarianceOf(C_model, blocks, contributions, m);
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
   RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, m - 1));
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
+  uncertainty.jackknife_ratio = share;
   return uncertainty;
 }
 
@@ -80,7 +81,7 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
   if (free.cols() == 6)
     return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
   const int m = static_cast<int>(captures);
-  const Matrix6d C = CovarianceOf(C_model, blocks, contributions, m);
+  const auto [C, share] = CovarianceOf(C_model, blocks, contributions, m);
   const Eigen::MatrixXd along = free.transpose() * C * free;
   const Eigen::LLT<Eigen::MatrixXd> llt(along);
   if (llt.info() != Eigen::Success || !along.allFinite())
@@ -91,6 +92,7 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
   Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, m - 1);
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
+  uncertainty.jackknife_ratio = share;
   return uncertainty;
 }
 

@@ -27,7 +27,12 @@ void WriteNoEstimate(JsonWriter& out) {
   WriteNoSigmas(out);
 }
 
+void WriteShare(JsonWriter& out, double share) {
+  share > 0.0 ? out.Number("jackknife_ratio", share) : out.Null("jackknife_ratio");
+}
+
 void WriteUncertaintyDetail(JsonWriter& out, const Uncertainty& uncertainty) {
+  WriteShare(out, uncertainty.jackknife_ratio);
   WriteMatrix(out, "information", uncertainty.Omega);
   WriteMatrix(out, "covariance", uncertainty.covariance);
   out.List("unobservable_basis", [&] {
@@ -89,6 +94,12 @@ EdgeState ReadState(const JsonField& field) {
   return state == "good" ? EdgeState::kGood : EdgeState::kFailed;
 }
 
+double ReadShare(const JsonField& field) {
+  const double share = field.Number();
+  if (!(share >= 0.0 && share <= 1.0)) field.Refuse("must be between 0 and 1");
+  return share;
+}
+
 Uncertainty ReadUncertainty(const JsonField& edge) {
   Uncertainty uncertainty;
   uncertainty.Omega = ReadMatrix(edge.At("information"));
@@ -96,6 +107,7 @@ Uncertainty ReadUncertainty(const JsonField& edge) {
   uncertainty.rank = static_cast<int>(edge.At("rank").Integer(0, 6));
   uncertainty.dof = static_cast<int>(edge.At("dof").Integer(0, INT_MAX));
   uncertainty.source = ReadSource(edge.At("source"));
+  if (const auto share = edge.Find("jackknife_ratio")) uncertainty.jackknife_ratio = ReadShare(*share);
   uncertainty.contributions = ReadContributions(edge.At("contributions"));
   const std::vector<JsonField> basis = edge.At("unobservable_basis").Items(6);
   uncertainty.unobservable_basis.resize(6, static_cast<Eigen::Index>(basis.size()));
@@ -145,7 +157,7 @@ void WriteEdgeDetail(JsonWriter& out, const Edge& edge) {
   if (edge.state == EdgeState::kGood) {
     WriteUncertaintyDetail(out, edge.uncertainty);
   } else {
-    for (const char* key : {"information", "covariance"}) out.Null(key);
+    for (const char* key : {"jackknife_ratio", "information", "covariance"}) out.Null(key);
     out.List("unobservable_basis", [] {});
   }
   WriteContributions(out, edge.uncertainty.contributions);

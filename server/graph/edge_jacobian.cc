@@ -30,13 +30,4 @@ Eigen::MatrixXd ResidualChange(const Constraint& constraint, const EdgeJacobian&
   return change;
 }
 
-Matrix6d SquareRoot(const Matrix6d& matrix) {
-  Vector6d scale;
-  for (int k = 0; k < 6; ++k) scale(k) = matrix(k, k) > 0.0 ? std::sqrt(matrix(k, k)) : 1.0;
-  const Vector6d inverse = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
-  const Vector6d roots = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return scale.asDiagonal() * eigen.eigenvectors() * roots.asDiagonal();
-}
-
 }  // namespace rigcal::graph

@@ -19,7 +19,4 @@ void AddToGradient(const Constraint& constraint, const EdgeJacobian& jacobian, c
 [[nodiscard]] Eigen::MatrixXd ResidualChange(const Constraint& constraint, const EdgeJacobian& jacobian,
                                              const Eigen::Ref<const Eigen::MatrixXd>& columns);
 
-// F with F F^T = matrix, for positive semi-definite matrices of mixed units.
-[[nodiscard]] Matrix6d SquareRoot(const Matrix6d& matrix);
-
 }  // namespace rigcal::graph

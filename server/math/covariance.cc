@@ -61,6 +61,15 @@ int CountZero(const Vector6d& eigenvalues, double relative_tolerance) {
 
 Matrix6d Symmetrized(const Matrix6d& matrix) { return 0.5 * matrix + 0.5 * matrix.transpose(); }
 
+Matrix6d SquareRoot(const Matrix6d& matrix) {
+  Vector6d scale;
+  for (int k = 0; k < 6; ++k) scale(k) = matrix(k, k) > 0.0 ? std::sqrt(matrix(k, k)) : 1.0;
+  const Vector6d inverse = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
+  const Vector6d roots = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  return scale.asDiagonal() * eigen.eigenvectors() * roots.asDiagonal();
+}
+
 Matrix6d InverseCovariance(const Se3& T_a_b, const Matrix6d& C_ab) {
   const Matrix6d A = Adjoint(T_a_b);
   return Symmetrized(A * C_ab * A.transpose());

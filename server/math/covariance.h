@@ -32,5 +32,7 @@ struct ObservableSubspace {
 // is forgiven.
 [[nodiscard]] bool IsPositiveSemidefinite(const Matrix6d& Omega);
 [[nodiscard]] Matrix6d Symmetrized(const Matrix6d& matrix);
+// F with F F^T = matrix, for positive semi-definite matrices of mixed units.
+[[nodiscard]] Matrix6d SquareRoot(const Matrix6d& matrix);
 
 }  // namespace rigcal

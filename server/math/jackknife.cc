@@ -1,7 +1,12 @@
 #include "server/math/jackknife.h"
 
+#include <Eigen/Eigenvalues>
+#include <boost/math/special_functions/gamma.hpp>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+
+#include "server/math/covariance.h"
 
 namespace rigcal {
 namespace {
@@ -11,6 +16,46 @@ void Require(bool ok, const char* what) {
   if (ok) return;
   std::fprintf(stderr, "rigcal: jackknife needs %s\n", what);
   std::abort();
+}
+
+constexpr double kModelWeightMin = 7.0;  // kappa, in blocks
+constexpr int kWeights = 64;             // of which kappa is averaged; 500 change the share by less than 0.001
+
+// Eigenvalues of C_model^-1 C_jack along what C_model spans; about 1 where the blocks scatter as the model says.
+Eigen::VectorXd RelativeEigenvalues(const Matrix6d& C_jack, const Matrix6d& C_model) {
+  const ObservableSubspace model = Observable(C_model);
+  const Matrix6d F = SquareRoot(model.covariance);  // F F^T = C_model^-1
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(F.transpose() * C_jack * F));
+  return eigen.eigenvalues().tail(model.rank).cwiseMax(0.0);
+}
+
+// Logarithm of the multivariate gamma function, but for a constant.
+double LogGamma(double half_dof, Eigen::Index p) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < p; ++i) sum += boost::math::lgamma(half_dof - 0.5 * static_cast<double>(i));
+  return sum;
+}
+
+// Of nu C_jack ~ Wishart(Sigma, nu) with Sigma integrated out, but for what does not depend on kappa.
+double LogLikelihood(const Eigen::VectorXd& eigenvalues, double nu, double kappa) {
+  const Eigen::Index p = eigenvalues.size();
+  const double dof = kappa + static_cast<double>(p) + 1.0;
+  return 0.5 * dof * static_cast<double>(p) * std::log(kappa) -
+         0.5 * (dof + nu) * (kappa + nu * eigenvalues.array()).log().sum() + LogGamma(0.5 * (dof + nu), p) -
+         LogGamma(0.5 * dof, p);
+}
+
+double PosteriorShare(const Eigen::VectorXd& eigenvalues, int m) {
+  const double nu = m - 1.0;
+  if (!(nu > kModelWeightMin) || eigenvalues.size() == 0 || !eigenvalues.allFinite()) return JackknifeShareMax(m);
+  Eigen::ArrayXd log_likelihood(kWeights), share(kWeights);
+  for (int i = 0; i < kWeights; ++i) {
+    const double kappa = kModelWeightMin * std::pow(nu / kModelWeightMin, (i + 0.5) / kWeights);
+    log_likelihood[i] = LogLikelihood(eigenvalues, nu, kappa);
+    share[i] = nu / (nu + kappa);
+  }
+  const Eigen::ArrayXd weight = (log_likelihood - log_likelihood.maxCoeff()).exp();
+  return (weight * share).sum() / weight.sum();
 }
 
 }  // namespace
@@ -25,14 +70,14 @@ Matrix6d JackknifeCovariance(const std::vector<Vector6d>& d) {
   return (m - 1) / m * scatter;
 }
 
-Matrix6d ShrinkTowardsModel(const Matrix6d& C_jack, const Matrix6d& C_model, int m) {
-  const double share = JackknifeShare(m);
-  return share * C_jack + (1.0 - share) * C_model;
+ShrunkCovariance ShrinkTowardsModel(const Matrix6d& C_jack, const Matrix6d& C_model, int m) {
+  const double share = PosteriorShare(RelativeEigenvalues(C_jack, C_model), m);
+  return {share * C_jack + (1.0 - share) * C_model, share};
 }
 
-double JackknifeShare(int m) {
+double JackknifeShareMax(int m) {
   Require(m >= 1, "at least one block");
-  return (m - 1.0) / (m + 6.0);
+  return (m - 1.0) / (m - 1.0 + kModelWeightMin);
 }
 
 }  // namespace rigcal

@@ -37,6 +37,8 @@ struct Uncertainty {
   Eigen::Matrix<double, 6, Eigen::Dynamic> unobservable_basis;  // 6 x (6 - rank) (derived from Omega)
   std::vector<BlockVector> blocks;
   std::vector<Contribution> contributions;
+  // What the blocks make of the covariance without contributions, the rest is the model's; 0: not told.
+  double jackknife_ratio = 0.0;
 };
 
 // Fills rank, covariance and unobservable_basis from Omega.

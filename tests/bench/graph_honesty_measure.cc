@@ -148,13 +148,14 @@ Session SimulateSession(int m, unsigned seed) {
         own.blocks.push_back({std::to_string(100 + i), d.back()});
       }
       own.dof = edge.dof = m - 1;
-      own.weight_share = JackknifeShare(m);
       Vector6d variance;
       variance << Eigen::Vector3d::Constant(kSigma_m * kSigma_m), Eigen::Vector3d::Constant(kSigma_rad * kSigma_rad);
       const Matrix6d C_camera = variance.asDiagonal();
       const Matrix6d C_model = (1.09 * C_camera + A * C_camera * A.transpose()) / m;
       edge.T_a_b = truth * Se3::Exp(mean);
-      edge.Omega = Symmetrized(ShrinkTowardsModel(JackknifeCovariance(d), C_model, m).inverse());
+      const ShrunkCovariance shrunk = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
+      own.weight_share = shrunk.jackknife_ratio;
+      edge.Omega = Symmetrized(shrunk.C.inverse());
     }
   return session;
 }

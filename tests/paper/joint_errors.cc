@@ -53,7 +53,7 @@ MatrixXd ErrorColumns(const std::vector<Edge>& edges) {
 MatrixXd IndependentColumns(const Graph& graph) {
   MatrixXd columns = MatrixXd::Zero(RowOf(graph.edges.size()), RowOf(graph.edges.size()));
   for (std::size_t k = 0; k < graph.edges.size(); ++k)
-    columns.block<6, 6>(RowOf(k), RowOf(k)) = graph::SquareRoot(Observable(graph.edges[k].Omega).covariance);
+    columns.block<6, 6>(RowOf(k), RowOf(k)) = SquareRoot(Observable(graph.edges[k].Omega).covariance);
   return columns;
 }
 

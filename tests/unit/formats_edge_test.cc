@@ -14,6 +14,7 @@ void ExpectSameUncertainty(const Uncertainty& a, const Uncertainty& b) {
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.covariance, b.covariance);
   EXPECT_EQ(a.unobservable_basis, b.unobservable_basis);
+  EXPECT_EQ(a.jackknife_ratio, b.jackknife_ratio);
   ASSERT_EQ(a.blocks.size(), b.blocks.size());
   for (std::size_t i = 0; i < a.blocks.size(); ++i) {
     EXPECT_EQ(a.blocks[i].block_id, b.blocks[i].block_id);

@@ -87,6 +87,7 @@ inline Edge SampleEdge() {
   edge.uncertainty.covariance = SampleCovariance();
   edge.uncertainty.blocks = {{"01", Vector6d::LinSpaced(6, 1e-5, 6e-5)}, {"02", Vector6d::LinSpaced(6, -1e-5, 4e-5)}};
   edge.uncertainty.contributions = {{"square_size_m", 0.25 * SampleCovariance()}};
+  edge.uncertainty.jackknife_ratio = 0.625;
   edge.method = "stereo";
   edge.session = SessionId(std::string(64, 'c'));
   edge.state = EdgeState::kGood;

@@ -52,9 +52,10 @@ Edge MeanOfCaptures(std::size_t number, std::size_t a, std::size_t b, const Se3&
     d.push_back(-(errors[static_cast<std::size_t>(i)] - mean) / (kCaptures - 1));
     blocks.push_back({"capture " + std::to_string(100 + i), d.back()});
   }
-  const Matrix6d C = ShrinkTowardsModel(JackknifeCovariance(d), ModelOf(), kCaptures);
+  const auto [C, share] = ShrinkTowardsModel(JackknifeCovariance(d), ModelOf(), kCaptures);
   edge.T_a_b = truth * Se3::Exp(mean);
   edge.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, kCaptures - 1).value();
+  edge.uncertainty.jackknife_ratio = share;
   edge.uncertainty.blocks = std::move(blocks);
   return edge;
 }
@@ -82,7 +83,8 @@ Edge WithoutCapture(const Edge& whole, std::size_t i) {
   d.erase(d.begin() + static_cast<std::ptrdiff_t>(i));
   const double scale = (kCaptures - 1.0) * (kCaptures - 1.0) / (kCaptures * (kCaptures - 2.0));
   const Matrix6d C_jack = scale * (kCaptures - 1.0) / (kCaptures - 2.0) * JackknifeCovariance(d);
-  const Matrix6d C = ShrinkTowardsModel(C_jack, ModelOf(), kCaptures);
+  const double share = whole.uncertainty.jackknife_ratio;
+  const Matrix6d C = share * C_jack + (1.0 - share) * ModelOf();
   edge.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, kCaptures - 1).value();
   return edge;
 }
@@ -132,9 +134,10 @@ TEST(GraphWeights, AreOfTheCapturesThatAnEdgeHas) {
   Edge& few = visit.edges[0];
   few.uncertainty.blocks.resize(9);
   few.uncertainty.blocks[4].d *= 30;
-  const Matrix6d C = ShrinkTowardsModel(JackknifeCovariance(ShiftsOf(few)), 1e-2 * ModelOf(), 9);
+  const auto [C, share] = ShrinkTowardsModel(JackknifeCovariance(ShiftsOf(few)), 1e-2 * ModelOf(), 9);
   std::vector<BlockVector> blocks = few.uncertainty.blocks;
   few.uncertainty = FromCovariance(C, UncertaintySource::kJackknife, 8).value();
+  few.uncertainty.jackknife_ratio = share;
   few.uncertainty.blocks = std::move(blocks);
   const auto weight_in = [](const std::vector<Edge>& edges) {
     const Graph graph = GraphOf(edges, Name(0));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "server/math/covariance.h"
 #include "server/math/jackknife.h"
 #include "server/math/statistics.h"
 
@@ -76,8 +77,80 @@ TEST(JackknifeDeathTest, OneBlockIsABrokenInvariant) {
 
 TEST(ShrinkTowardsModel, WeighsByBlocks) {
   const Matrix6d one = Matrix6d::Identity(), two = 2.0 * one;
-  EXPECT_LT((ShrinkTowardsModel(one, two, 8) - 1.5 * one).norm(), 1e-15);  // (7 * 1 + 7 * 2) / 14
-  EXPECT_LT((ShrinkTowardsModel(one, two, 1) - two).norm(), 1e-15);
+  EXPECT_LT((ShrinkTowardsModel(one, two, 8).C - 1.5 * one).norm(), 1e-15);  // (7 * 1 + 7 * 2) / 14
+  EXPECT_LT((ShrinkTowardsModel(one, two, 1).C - two).norm(), 1e-15);
+  EXPECT_DOUBLE_EQ(ShrinkTowardsModel(one, two, 8).jackknife_ratio, 0.5);
+  EXPECT_DOUBLE_EQ(JackknifeShareMax(40), 39.0 / 46.0);
+}
+
+TEST(ShrinkTowardsModel, TrustsAModelThatTheBlocksConfirm) {
+  const Matrix6d model = Matrix6d::Identity();
+  const auto share = [&](double ratio) { return ShrinkTowardsModel(ratio * model, model, 40).jackknife_ratio; };
+  EXPECT_LT(share(1.0), 0.6);  // not below 1/2
+  EXPECT_GT(share(1.0), 0.5);
+  for (const double off : {0.1, 10.0}) {
+    EXPECT_GT(share(off), JackknifeShareMax(40) - 0.02);
+    EXPECT_LE(share(off), JackknifeShareMax(40));
+  }
+  EXPECT_LT(share(1.0), share(1.5));
+  EXPECT_LT(share(1.5), share(3.0));
+}
+
+// Along five directions of which the sixth is nothing's, in any frame and any unit.
+TEST(ShrinkTowardsModel, IsTheSameInEveryFrameAndWhereADirectionIsUnknown) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  Eigen::Matrix<double, 5, 30> samples;
+  for (double& value : samples.reshaped()) value = normal(random);
+  Matrix6d C_jack = Matrix6d::Zero(), C_model = Matrix6d::Zero();
+  C_jack.topLeftCorner<5, 5>() = samples * samples.transpose() / 30;
+  C_model.topLeftCorner<5, 5>().setIdentity();
+  const double share = ShrinkTowardsModel(C_jack, C_model, 31).jackknife_ratio;
+  Vector6d units;
+  units << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5;
+  Vector6d turn;
+  turn << 0.5, -1, 2, 0.3, 0.2, -0.4;
+  const Matrix6d A = Matrix6d(units.asDiagonal()) * Adjoint(Se3::Exp(turn));
+  const auto moved = ShrinkTowardsModel(Symmetrized(A * C_jack * A.transpose()), Symmetrized(A * C_model * A.transpose()), 31);
+  EXPECT_NEAR(moved.jackknife_ratio, share, 1e-9);
+  const Matrix6d expected = A * (share * C_jack + (1 - share) * C_model) * A.transpose();
+  EXPECT_LT((moved.C - expected).norm(), 1e-9 * expected.norm());
+  C_jack(5, 5) = C_model(5, 5) = 1.0;
+  EXPECT_NE(ShrinkTowardsModel(C_jack, C_model, 31).jackknife_ratio, share);
+}
+
+Matrix6d WishartOf(const Matrix6d& L, int dof, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Matrix6d W = Matrix6d::Zero();
+  for (int i = 0; i < dof; ++i) {
+    Vector6d z;
+    for (double& value : z) value = normal(random);
+    const Vector6d x = L * z;
+    W += x * x.transpose();
+  }
+  return W;
+}
+
+// Where true covariances scatter around the model as assumed, errors are as large as told on average, also in the
+// directions that the estimate itself picks; a weight of 7 for every edge tells them too small.
+TEST(ShrinkTowardsModel, IsThePosteriorMean) {
+  constexpr int kDraws = 4000, kBlocks = 40;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> even;
+  const Matrix6d model = Matrix6d::Identity();
+  double ratio = 0, ratio_of_seven = 0;
+  for (int i = 0; i < kDraws; ++i) {
+    const int kappa = static_cast<int>(std::lround(7.0 * std::pow(39.0 / 7.0, even(random))));
+    const Matrix6d precision = WishartOf(model, kappa + 7, random) / kappa;
+    const Matrix6d Sigma = Symmetrized(precision.inverse());
+    const Matrix6d C_jack = WishartOf(SquareRoot(Sigma), kBlocks - 1, random) / (kBlocks - 1);
+    const Matrix6d C = ShrinkTowardsModel(C_jack, model, kBlocks).C;
+    const double seven = JackknifeShareMax(kBlocks);
+    ratio += (C.inverse() * Sigma).trace() / (6.0 * kDraws);
+    ratio_of_seven += ((seven * C_jack + (1 - seven) * model).inverse() * Sigma).trace() / (6.0 * kDraws);
+  }
+  EXPECT_NEAR(ratio, 1.0, 0.01);
+  EXPECT_GT(ratio_of_seven, 1.02);
 }
 
 }  // namespace

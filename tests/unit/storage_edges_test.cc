@@ -63,6 +63,7 @@ TEST_F(EdgesTest, BlocksAndContributionsComeBackInOrder) {
     EXPECT_EQ(loaded.blocks[i].block_id, edge.uncertainty.blocks[i].block_id);
     EXPECT_TRUE(Same(loaded.blocks[i].d, edge.uncertainty.blocks[i].d));
   }
+  EXPECT_EQ(loaded.jackknife_ratio, 0.1 + 0.2);
   ASSERT_EQ(loaded.contributions.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(loaded.contributions[i].name, edge.uncertainty.contributions[i].name);

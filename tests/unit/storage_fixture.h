@@ -106,6 +106,7 @@ inline Edge MakeEdge(int seed, const RobotId& robot = kRobot) {
   }
   Matrix6d covariance = root * root.transpose();
   edge.uncertainty.contributions = {{"board size", covariance * 1e-8}, {"intrinsics", covariance * 3e-8}};
+  edge.uncertainty.jackknife_ratio = 0.1 + 0.2;
   edge.method = "stereo";
   edge.epoch = 2;
   edge.state = EdgeState::kGood;
