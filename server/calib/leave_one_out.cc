@@ -17,7 +17,7 @@ Result<Vector6d> ShiftOf(const GivenConstant& constant) {
 
 // With what the captures and the given constants add; `m` captures. Without blocks the model's stands for the captures.
 ShrunkCovariance CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
-                      const std::vector<Contribution>& contributions, int m) {
+                              const std::vector<Contribution>& contributions, int m) {
   ShrunkCovariance shrunk{C_model, 0.0};
   if (!blocks.empty()) {
     std::vector<Vector6d> d;

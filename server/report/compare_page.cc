@@ -75,11 +75,18 @@ void FillAxes(Dictionary& row, const EdgeMove& move, int first_axis, double scal
   if (!free.empty()) ShowValue(*known, "PARTLY", "NAMES", free.size() == 1 ? free[0] : free[0] + " " + free[1]);
 }
 
+// Both, where they differ: then not all that changed is movement.
+std::string MethodsText(const EdgeMove& move) {
+  const std::string now = MethodText(move.now ? *move.now : *move.before);
+  const std::string before = MethodText(move.before ? *move.before : *move.now);
+  return before == now ? now : before + " \xE2\x86\x92 " + now;
+}
+
 void FillEdgeMove(Dictionary& row, const EdgeMove& move) {
   const Edge& edge = move.now ? *move.now : *move.before;
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
-  row.SetValue("METHOD", MethodText(edge));
+  row.SetValue("METHOD", MethodsText(move));
   if (!move.measured_again) {
     const char* why = !move.before ? "new" : !move.now ? "gone" : "not measured again";
     return ShowValue(row, "ALONE", "WHY", why);

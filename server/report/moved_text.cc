@@ -4,6 +4,7 @@
 #include <iterator>
 #include <set>
 
+#include "server/report/figure_words.h"
 #include "server/report/sigmas.h"
 #include "server/report/text.h"
 
@@ -38,6 +39,14 @@ SensorId CommonSensor(const std::vector<const EdgeMove*>& off) {
   return common.size() == 1 ? *common.begin() : SensorId();
 }
 
+// A pose that was polished, beside one that was not.
+std::string OtherwiseText(const EdgeMove& move) {
+  const std::string before = MethodText(*move.before), now = MethodText(*move.now);
+  return before == now
+             ? ""
+             : " It was found otherwise than before (" + before + " \xE2\x86\x92 " + now + "), which may be why.";
+}
+
 }  // namespace
 
 std::string WhatMeasured(const std::vector<EdgeMove>& moves) {
@@ -49,7 +58,7 @@ std::string WhatMeasured(const std::vector<EdgeMove>& moves) {
   const std::string text = "Measured anew, " + most.now->frame_a.str() + " \xE2\x86\x92 " + most.now->frame_b.str() +
                            " is off by " + Significant(most.d.head<3>().norm() * kMmPerMetre, 2) + " mm and " +
                            Significant(most.d.tail<3>().norm() * kDegPerRad, 2) + " deg (" +
-                           SigmasText(most.in_sigmas) + " \xCF\x83).";
+                           SigmasText(most.in_sigmas) + " \xCF\x83)." + OtherwiseText(most);
   const SensorId common = CommonSensor(off);
   if (off.size() < 2 || common.empty()) return text;
   return text + " All " + std::to_string(off.size()) + " pairs that are off have " + common.str() + " in common.";

@@ -158,6 +158,27 @@ TEST(ReportEdgeMoves, AFreeAxisIsNoMovement) {
   EXPECT_THAT(page, HasSubstr("<td>6.00</td><td class=\"sigma\" data-v=\"5.3\">5.3, free: z</td>"));
 }
 
+// A pose that was polished since is another answer to the same question: what changed is not all movement.
+TEST(ReportCompare, SaysWhereAPairWasFoundOtherwise) {
+  const auto found = [](char number, double x_m, double polished) {
+    formats::RevisionInput revision;
+    revision.reference = SensorId("a");
+    revision.edges = {SampleEdge("a", "b", SamplePose(x_m, 0, 0, 0))};
+    revision.edges[0].session = SessionId(std::string(64, number));
+    revision.edges[0].id = EdgeId(std::string(64, number));
+    revision.edges[0].method = "lidar_lidar";
+    revision.edges[0].figures = {{"polished_ratio", polished}};
+    return std::make_shared<const formats::RevisionInput>(std::move(revision));
+  };
+  const auto page = [&](double polished) {
+    return RenderCompare({RobotId("r"), {1, found('1', 0.0, 0.0)}, {2, found('2', 0.9, polished)}, {1, 2}}).value();
+  };
+  EXPECT_THAT(page(1.0), HasSubstr("lidar-lidar \xE2\x86\x92 lidar-lidar, polished by GICP"));
+  EXPECT_THAT(page(1.0),
+              HasSubstr("It was found otherwise than before (lidar-lidar \xE2\x86\x92 lidar-lidar, polished"));
+  EXPECT_THAT(page(0.0), AllOf(HasSubstr("Measured anew, a"), Not(HasSubstr("otherwise"))));
+}
+
 // One page stays of one size, however long the history: but for what is compared.
 TEST(ReportCompare, OffersTheNewestRevisionsAndTheChosen) {
   const auto empty = std::make_shared<const formats::RevisionInput>();
