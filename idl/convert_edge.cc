@@ -72,6 +72,7 @@ void PutNumbers(const Edge& edge, rigcal_wire_PairwiseResult& sample) {
   PutMatrix(edge.uncertainty.Omega, sample.information);
   sample.rank = edge.uncertainty.rank;
   sample.dof = edge.uncertainty.dof;
+  sample.jackknife_ratio = edge.uncertainty.jackknife_ratio;
 }
 
 Status PutParts(const Uncertainty& uncertainty, EdgeMemory& memory) {
@@ -136,6 +137,7 @@ Status TakeUncertainty(const rigcal_wire_PairwiseResult& sample, Uncertainty& un
   RIGCAL_ASSIGN(const UncertaintySource source, UncertaintySourceOf(sample.source));
   const Matrix6d Omega = MatrixOf(sample.information);
   uncertainty = FromInformation(Omega, source, sample.dof);
+  uncertainty.jackknife_ratio = sample.jackknife_ratio;
   uncertainty.Omega = Omega;  // as received, bit by bit: the edge's id is made of these bits
   if (uncertainty.rank != sample.rank)
     return Refused(sample,

@@ -55,7 +55,7 @@ Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block, dou
   return Vector6d((work.state.X.Inverse() * solution.state.X).Log());
 }
 
-// As the covariance of X: the jackknife's, shrunk towards the model's.
+// The jackknife's, shrunk towards the model's, which counts like seven blocks more.
 double OffsetSigma(const std::vector<double>& offsets_s, double model_sigma_s) {
   const auto m = static_cast<double>(offsets_s.size());
   if (m < 2) return model_sigma_s;

@@ -27,12 +27,12 @@ void WriteNoEstimate(JsonWriter& out) {
   WriteNoSigmas(out);
 }
 
-void WriteShare(JsonWriter& out, double share) {
-  share > 0.0 ? out.Number("jackknife_ratio", share) : out.Null("jackknife_ratio");
+void WriteRatio(JsonWriter& out, double ratio) {
+  ratio > 0.0 ? out.Number("jackknife_ratio", ratio) : out.Null("jackknife_ratio");
 }
 
 void WriteUncertaintyDetail(JsonWriter& out, const Uncertainty& uncertainty) {
-  WriteShare(out, uncertainty.jackknife_ratio);
+  WriteRatio(out, uncertainty.jackknife_ratio);
   WriteMatrix(out, "information", uncertainty.Omega);
   WriteMatrix(out, "covariance", uncertainty.covariance);
   out.List("unobservable_basis", [&] {
@@ -94,12 +94,6 @@ EdgeState ReadState(const JsonField& field) {
   return state == "good" ? EdgeState::kGood : EdgeState::kFailed;
 }
 
-double ReadShare(const JsonField& field) {
-  const double share = field.Number();
-  if (!(share >= 0.0 && share <= 1.0)) field.Refuse("must be between 0 and 1");
-  return share;
-}
-
 Uncertainty ReadUncertainty(const JsonField& edge) {
   Uncertainty uncertainty;
   uncertainty.Omega = ReadMatrix(edge.At("information"));
@@ -107,7 +101,7 @@ Uncertainty ReadUncertainty(const JsonField& edge) {
   uncertainty.rank = static_cast<int>(edge.At("rank").Integer(0, 6));
   uncertainty.dof = static_cast<int>(edge.At("dof").Integer(0, INT_MAX));
   uncertainty.source = ReadSource(edge.At("source"));
-  if (const auto share = edge.Find("jackknife_ratio")) uncertainty.jackknife_ratio = ReadShare(*share);
+  if (const auto ratio = edge.Find("jackknife_ratio")) uncertainty.jackknife_ratio = ReadRatio(*ratio);
   uncertainty.contributions = ReadContributions(edge.At("contributions"));
   const std::vector<JsonField> basis = edge.At("unobservable_basis").Items(6);
   uncertainty.unobservable_basis.resize(6, static_cast<Eigen::Index>(basis.size()));
@@ -240,6 +234,12 @@ UncertaintySource ReadSource(const JsonField& field) {
   if (source) return *source;
   field.Refuse(source.error().what);
   return UncertaintySource::kAssumed;
+}
+
+double ReadRatio(const JsonField& field) {
+  const double ratio = field.Number();
+  if (!(ratio >= 0.0 && ratio <= 1.0)) field.Refuse("must be between 0 and 1");
+  return ratio;
 }
 
 }  // namespace rigcal::formats

@@ -25,5 +25,6 @@ void WriteResidual(JsonWriter& out, const EdgeResidual* residual);
 [[nodiscard]] std::vector<BlockVector> ReadBlocks(const JsonField& field);
 [[nodiscard]] std::vector<Contribution> ReadContributions(const JsonField& field);
 [[nodiscard]] UncertaintySource ReadSource(const JsonField& field);
+[[nodiscard]] double ReadRatio(const JsonField& field);  // between 0 and 1
 
 }  // namespace rigcal::formats

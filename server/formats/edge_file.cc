@@ -78,6 +78,7 @@ Uncertainty ReadGivenUncertainty(const JsonField& edge) {
   Uncertainty uncertainty =
       information ? ReadInformation(*information, source, dof) : ReadCovariance(*covariance, source, dof);
   uncertainty.blocks = std::move(blocks);
+  if (const auto ratio = edge.Find("jackknife_ratio")) uncertainty.jackknife_ratio = ReadRatio(*ratio);
   if (const auto contributions = edge.Find("contributions"))
     uncertainty.contributions = ReadContributions(*contributions);
   return uncertainty;
@@ -91,7 +92,7 @@ std::string ReadMethod(const JsonField& field) {
 
 Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot) {
   field.AllowOnly({"frame_a", "frame_b", "T_a_b", "information", "covariance", "method", "dof", "source", "blocks",
-                   "contributions"});
+                   "contributions", "jackknife_ratio"});
   Edge edge;
   edge.robot = robot;
   edge.frame_a = ReadId<SensorId>(field.At("frame_a"));

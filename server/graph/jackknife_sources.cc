@@ -112,8 +112,8 @@ double ShareInOmega(const Uncertainty& uncertainty) {
   if (uncertainty.source != UncertaintySource::kJackknife || uncertainty.dof < 1) return 0.0;
   std::vector<Vector6d> d;
   for (const BlockVector& block : uncertainty.blocks) d.push_back(block.d);
-  const double told = uncertainty.jackknife_ratio;
-  const double share = told > 0.0 ? told : JackknifeShareMax(uncertainty.dof + 1);
+  const double told = uncertainty.jackknife_ratio, untold = JackknifeRatioMax(uncertainty.dof + 1);
+  const double share = told > 0.0 ? told : untold;
   const Matrix6d F = SquareRoot(uncertainty.Omega);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(F.transpose() * JackknifeCovariance(d) * F));
   return share * eigen.eigenvalues()(5) <= 1.0 + kShareRounding ? share : 0.0;

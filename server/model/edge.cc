@@ -1,6 +1,7 @@
 #include "server/model/edge.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -87,8 +88,8 @@ EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t o
 }
 
 // Fields: frame_a, frame_b, method, pose, Omega, source, dof; then the number of blocks and each one's id and vector;
-// then the number of contributions and each one's name, covariance and shifts. Edges that agree in all this are the same
-// measurement given twice: then only their count matters, not which is which.
+// then the number of contributions and each one's name, covariance and shifts; the jackknife's ratio if told. Edges
+// that agree in all this are the same measurement given twice: then only their count matters, not which is which.
 Digest ContentDigest(const Edge& edge) {
   const Uncertainty& uncertainty = edge.uncertainty;
   FieldHash hash("rigcal edge content 1");
@@ -101,6 +102,7 @@ Digest ContentDigest(const Edge& edge) {
     hash.Text(part.name).Matrix(part.covariance);
     for (const Vector6d& shift : part.shifts) hash.Vector(shift);
   }
+  if (uncertainty.jackknife_ratio > 0.0) hash.Number(std::bit_cast<std::uint64_t>(uncertainty.jackknife_ratio));
   return hash.Finish();
 }
 

@@ -117,6 +117,9 @@ Status Validate(const Uncertainty& uncertainty) {
         "Leave the rank away or correct it.");
   if (uncertainty.dof < 0)
     return Refuse("dof: " + std::to_string(uncertainty.dof) + " is negative", "Give 0 where the uncertainty is known.");
+  if (!(uncertainty.jackknife_ratio >= 0.0 && uncertainty.jackknife_ratio <= 1.0))
+    return Refuse("jackknife_ratio: it is not between 0 and 1",
+                  "Give what the blocks made of the covariance, or leave it away.");
   RIGCAL_TRY(CheckBlocks(uncertainty));
   return CheckContributions(uncertainty.contributions);
 }

@@ -23,21 +23,21 @@ struct BlockVector {
 struct Contribution {
   std::string name;
   Matrix6d covariance = Matrix6d::Zero();
-  // Per constant, what one sigma of it changes (right tangent at b); the covariance is the sum of their squares. Edges of
-  // one session with a contribution of one name err by them together. Empty: not known, taken as the edge's own.
+  // Per constant, what one sigma of it changes (right tangent at b); the covariance is the sum of their squares. Edges
+  // of one session with a contribution of one name err by them together. Empty: not known, taken as the edge's own.
   std::vector<Vector6d> shifts = {};
 };
 
 struct Uncertainty {
   Matrix6d Omega = Matrix6d::Zero();  // information, positive semi-definite, as received or estimated
   int rank = 0;                       // of Omega
-  int dof = 0;                        // degrees of freedom behind the estimate (m - 1 for a jackknife); 0: known exactly
+  int dof = 0;  // degrees of freedom behind the estimate (m - 1 for a jackknife); 0: known exactly
   UncertaintySource source = UncertaintySource::kAssumed;
-  Matrix6d covariance = Matrix6d::Zero();  // on the observable subspace (derived from Omega)
+  Matrix6d covariance = Matrix6d::Zero();                       // on the observable subspace (derived from Omega)
   Eigen::Matrix<double, 6, Eigen::Dynamic> unobservable_basis;  // 6 x (6 - rank) (derived from Omega)
   std::vector<BlockVector> blocks;
   std::vector<Contribution> contributions;
-  // What the blocks make of the covariance without contributions, the rest is the model's; 0: not told.
+  // What the blocks make of the covariance without contributions, the rest is a model's; 0: nothing, or not told.
   double jackknife_ratio = 0.0;
 };
 
@@ -45,11 +45,15 @@ struct Uncertainty {
 [[nodiscard]] Uncertainty FromInformation(const Matrix6d& Omega, UncertaintySource source, int dof);
 // Covariance must be positive definite.
 [[nodiscard]] Result<Uncertainty> FromCovariance(const Matrix6d& covariance, UncertaintySource source, int dof);
-// Finite, symmetric, positive semi-definite, with a finite inverse where it has rank; rank and block vectors consistent. The error names the field.
+// Finite, symmetric, positive semi-definite, with a finite inverse where it has rank; rank and block vectors
+// consistent. The error names the field.
 [[nodiscard]] Status Validate(const Uncertainty& uncertainty);
 
 // Standard deviations for people. NaN never: an unobservable axis has no number.
-struct AxisSigma { bool known = false; double value = 0.0; };  // m or rad
+struct AxisSigma {
+  bool known = false;
+  double value = 0.0;
+};  // m or rad
 [[nodiscard]] AxisSigma SigmaOf(const Uncertainty& uncertainty, int axis);
 
 }  // namespace rigcal

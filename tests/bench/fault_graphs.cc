@@ -39,7 +39,9 @@ void TakeBlocks(const std::vector<Vector6d>& errors, const Matrix6d& C_model, bo
   }
   own.dof = edge.dof = m - 1;
   const Matrix6d C_jack = JackknifeCovariance(d);
-  edge.Omega = Symmetrized((shrink ? ShrinkTowardsModel(C_jack, C_model, m).C : C_jack).inverse());
+  const auto [C, ratio] = shrink ? ShrinkTowardsModel(C_jack, C_model, m) : ShrunkCovariance{C_jack, 1.0};
+  own.weight_share = ratio;
+  edge.Omega = Symmetrized(C.inverse());
   edge.T_a_b = (edge.T_a_b * Se3::Exp(mean)).Normalized();
 }
 

@@ -83,6 +83,7 @@ void SetId(rigcal_wire_PairwiseResult& sample, const Parts& parts) {
   for (int i = 0; i < 36; ++i) edge.uncertainty.Omega(i / 6, i % 6) = sample.information[i];
   edge.uncertainty.source = UncertaintySourceOf(sample.source).value_or(UncertaintySource::kGiven);
   edge.uncertainty.dof = sample.dof;
+  edge.uncertainty.jackknife_ratio = sample.jackknife_ratio;
   for (const auto& block : parts.blocks)
     edge.uncertainty.blocks.push_back({block.block_id, Vector6d::Map(static_cast<const double*>(block.d))});
   for (const auto& part : parts.contributions) {
@@ -120,7 +121,7 @@ void Edges(fuzz::Input& input, const wire::SampleOrigin& origin) {
   patch.Text(sample.robot_id), patch.Text(sample.batch_id), patch.Text(sample.edge_id);
   patch.Text(sample.frame_a), patch.Text(sample.frame_b), patch.Text(sample.source), patch.Text(sample.method);
   patch.Number(sample.batch_idx), patch.Number(sample.batch_count), patch.Number(sample.occurrence_idx);
-  patch.Number(sample.rank), patch.Number(sample.dof);
+  patch.Number(sample.rank), patch.Number(sample.dof), patch.Number(sample.jackknife_ratio);
   patch.Numbers(sample.p_m), patch.Numbers(sample.q_xyzw), patch.Numbers(sample.information);
   patch.Items(sample.blocks, parts.blocks), patch.Items(sample.contributions, parts.contributions);
   for (auto& block : parts.blocks) block.block_id[sizeof block.block_id - 1] = '\0';

@@ -46,12 +46,17 @@ TEST(EdgeFile, CovarianceOnOneAxisIsInformationThere) {
 TEST(EdgeFile, TakesOptionalFields) {
   const std::string blocks = R"([{"block_id":"01","d":[1,2,3,4,5,6]},{"block_id":"02","d":[0,0,0,7,0,0]}])";
   const std::string more = R"(,"method":"icp","source":"jackknife","blocks":)" + blocks +
-                           R"(,"contributions":[{"name":"flatness","covariance":)" + kDiagonal + "}]";
+                           R"(,"jackknife_ratio":0.75,"contributions":[{"name":"flatness","covariance":)" + kDiagonal +
+                           "}]";
   const auto edges = ReadEdgeFile(FileText(EdgeText("a", "b", Informed(more))), kRobot);
   ASSERT_TRUE(edges) << Sentence(edges.error());
   EXPECT_EQ(edges->at(0).method, "icp");
   EXPECT_EQ(edges->at(0).uncertainty.source, UncertaintySource::kJackknife);
   EXPECT_EQ(edges->at(0).uncertainty.dof, 1);  // two blocks
+  EXPECT_EQ(edges->at(0).uncertainty.jackknife_ratio, 0.75);
+  const auto beyond = ReadEdgeFile(FileText(EdgeText("a", "b", Informed(R"(,"jackknife_ratio":1.1)"))), kRobot);
+  ASSERT_FALSE(beyond);
+  EXPECT_THAT(beyond.error().what, testing::HasSubstr("jackknife_ratio: must be between 0 and 1"));
   EXPECT_EQ(edges->at(0).uncertainty.blocks.at(1).d(3), 7.0);
   EXPECT_EQ(edges->at(0).uncertainty.contributions.at(0).covariance(4, 4), 5.0);
 }

@@ -112,6 +112,7 @@ TEST(EdgeConversion, KeepsEveryNumberBitByBit) {
   EXPECT_EQ(edge.uncertainty.covariance, sent.uncertainty.covariance);
   EXPECT_EQ(edge.uncertainty.rank, 6);
   EXPECT_EQ(edge.uncertainty.dof, 11);
+  EXPECT_EQ(edge.uncertainty.jackknife_ratio, 0.1 + 0.2);
   EXPECT_EQ(edge.uncertainty.source, UncertaintySource::kJackknife);
   EXPECT_EQ(edge.method, "given");
   EXPECT_EQ(edge.state, EdgeState::kGood);
@@ -186,6 +187,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Spoiled{"source", "source", [](auto& s) { std::strcpy(s.source, "guess"); }},
                     Spoiled{"frames", "left", [](auto& s) { std::strcpy(s.frame_b, "left"); }},
                     Spoiled{"method", "method", [](auto& s) { std::strcpy(s.method, "<b>"); }},
+                    Spoiled{"ratio", "jackknife_ratio", [](auto& s) { s.jackknife_ratio = kNaN; }},
+                    Spoiled{"ratio_beyond_one", "jackknife_ratio", [](auto& s) { s.jackknife_ratio = 1.5; }},
                     Spoiled{"blocks", "blocks", [](auto& s) { s.blocks._buffer[0].d[5] = kNaN; }},
                     Spoiled{"contribution", "contributions",
                             [](auto& s) { s.contributions._buffer[0].covariance[1] = kNaN; }}),

@@ -135,6 +135,7 @@ TEST(GoldenCdr, PairwiseResult) {
   sample.blocks = {1, 1, &block, false};
   sample.contributions = {1, 1, &part, false};
   sample.occurrence_idx = 1;
+  sample.jackknife_ratio = 0.5;
   ExpectGolden("PairwiseResult", sample);
 }
 

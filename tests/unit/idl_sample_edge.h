@@ -26,6 +26,7 @@ inline Edge SampleEdge(double shift_m = 0.0) {
   Matrix6d part = Matrix6d::Zero();
   part.diagonal() << 1, 2, 3, 4, 5, 6;
   edge.uncertainty.contributions.push_back({"board size", 1e-6 * part});
+  edge.uncertainty.jackknife_ratio = 0.1 + 0.2;
   edge.method = "given";
   edge.state = EdgeState::kGood;
   return edge;

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -9,6 +12,9 @@
 
 namespace rigcal {
 namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 // Printed tables (NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7).
 TEST(Quantiles, AgreeWithPrintedTables) {
@@ -80,20 +86,28 @@ TEST(ShrinkTowardsModel, WeighsByBlocks) {
   EXPECT_LT((ShrinkTowardsModel(one, two, 8).C - 1.5 * one).norm(), 1e-15);  // (7 * 1 + 7 * 2) / 14
   EXPECT_LT((ShrinkTowardsModel(one, two, 1).C - two).norm(), 1e-15);
   EXPECT_DOUBLE_EQ(ShrinkTowardsModel(one, two, 8).jackknife_ratio, 0.5);
-  EXPECT_DOUBLE_EQ(JackknifeShareMax(40), 39.0 / 46.0);
+  EXPECT_DOUBLE_EQ(JackknifeRatioMax(40), 39.0 / 46.0);
 }
 
 TEST(ShrinkTowardsModel, TrustsAModelThatTheBlocksConfirm) {
   const Matrix6d model = Matrix6d::Identity();
-  const auto share = [&](double ratio) { return ShrinkTowardsModel(ratio * model, model, 40).jackknife_ratio; };
-  EXPECT_LT(share(1.0), 0.6);  // not below 1/2
-  EXPECT_GT(share(1.0), 0.5);
-  for (const double off : {0.1, 10.0}) {
-    EXPECT_GT(share(off), JackknifeShareMax(40) - 0.02);
-    EXPECT_LE(share(off), JackknifeShareMax(40));
+  const auto ratio = [&](const Matrix6d& C_jack) { return ShrinkTowardsModel(C_jack, model, 40).jackknife_ratio; };
+  EXPECT_LT(ratio(model), 0.6);  // not below 1/2
+  EXPECT_GT(ratio(model), 0.5);
+  Matrix6d one_off = model;
+  one_off(2, 2) = 30.0;
+  for (const Matrix6d& contradicted : {Matrix6d(0.1 * model), one_off}) {
+    EXPECT_GT(ratio(contradicted), JackknifeRatioMax(40) - 0.02);
+    EXPECT_LE(ratio(contradicted), JackknifeRatioMax(40));
   }
-  EXPECT_LT(share(1.0), share(1.5));
-  EXPECT_LT(share(1.5), share(3.0));
+}
+
+// Only its size is off, and of that the blocks know enough; too wide a model is left as it is.
+TEST(ShrinkTowardsModel, WidensAModelThatIsTooSure) {
+  const Matrix6d one = Matrix6d::Identity();
+  EXPECT_LT((ShrinkTowardsModel(9.0 * one, one, 20).C - 9.0 * one).norm(), 1e-12);
+  const auto [C, ratio] = ShrinkTowardsModel(one, 9.0 * one, 20);
+  EXPECT_LT((C - (ratio + (1.0 - ratio) * 9.0) * one).norm(), 1e-12);
 }
 
 // Along five directions of which the sixth is nothing's, in any frame and any unit.
@@ -105,52 +119,73 @@ TEST(ShrinkTowardsModel, IsTheSameInEveryFrameAndWhereADirectionIsUnknown) {
   Matrix6d C_jack = Matrix6d::Zero(), C_model = Matrix6d::Zero();
   C_jack.topLeftCorner<5, 5>() = samples * samples.transpose() / 30;
   C_model.topLeftCorner<5, 5>().setIdentity();
-  const double share = ShrinkTowardsModel(C_jack, C_model, 31).jackknife_ratio;
+  const ShrunkCovariance here = ShrinkTowardsModel(C_jack, C_model, 31);
   Vector6d units;
   units << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5;
   Vector6d turn;
   turn << 0.5, -1, 2, 0.3, 0.2, -0.4;
   const Matrix6d A = Matrix6d(units.asDiagonal()) * Adjoint(Se3::Exp(turn));
-  const auto moved = ShrinkTowardsModel(Symmetrized(A * C_jack * A.transpose()), Symmetrized(A * C_model * A.transpose()), 31);
-  EXPECT_NEAR(moved.jackknife_ratio, share, 1e-9);
-  const Matrix6d expected = A * (share * C_jack + (1 - share) * C_model) * A.transpose();
+  const auto moved =
+      ShrinkTowardsModel(Symmetrized(A * C_jack * A.transpose()), Symmetrized(A * C_model * A.transpose()), 31);
+  EXPECT_NEAR(moved.jackknife_ratio, here.jackknife_ratio, 1e-9);
+  const Matrix6d expected = A * here.C * A.transpose();
   EXPECT_LT((moved.C - expected).norm(), 1e-9 * expected.norm());
-  C_jack(5, 5) = C_model(5, 5) = 1.0;
-  EXPECT_NE(ShrinkTowardsModel(C_jack, C_model, 31).jackknife_ratio, share);
 }
 
-Matrix6d WishartOf(const Matrix6d& L, int dof, std::mt19937& random) {
+MatrixXd WishartOf(const MatrixXd& L, int dof, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  Matrix6d W = Matrix6d::Zero();
+  MatrixXd W = MatrixXd::Zero(L.rows(), L.rows());
+  VectorXd z(L.rows());
   for (int i = 0; i < dof; ++i) {
-    Vector6d z;
     for (double& value : z) value = normal(random);
-    const Vector6d x = L * z;
+    const VectorXd x = L * z;
     W += x * x.transpose();
   }
   return W;
 }
 
-// Where true covariances scatter around the model as assumed, errors are as large as told on average, also in the
-// directions that the estimate itself picks; a weight of 7 for every edge tells them too small.
-TEST(ShrinkTowardsModel, IsThePosteriorMean) {
-  constexpr int kDraws = 4000, kBlocks = 40;
+// Mean of err^2 over variance that errors with covariance Sigma have, by thirds of how unlike the model C_jack is.
+// Sigma scatters around the model as assumed, but the model is told `size` times as large; along the first p
+// directions.
+struct Told {
+  std::array<double, 3> thirds{};
+  double by_seven = 0.0;
+};
+Told ToldOf(int p, double size) {
+  constexpr int kDraws = 3000, kBlocks = 40;
   std::mt19937 random(11);
   std::uniform_real_distribution<double> even;
-  const Matrix6d model = Matrix6d::Identity();
-  double ratio = 0, ratio_of_seven = 0;
+  Matrix6d C_model = Matrix6d::Zero();
+  C_model.topLeftCorner(p, p).diagonal().setConstant(size);
+  std::vector<std::pair<double, double>> drawn;
+  Told told;
   for (int i = 0; i < kDraws; ++i) {
     const int kappa = static_cast<int>(std::lround(7.0 * std::pow(39.0 / 7.0, even(random))));
-    const Matrix6d precision = WishartOf(model, kappa + 7, random) / kappa;
-    const Matrix6d Sigma = Symmetrized(precision.inverse());
-    const Matrix6d C_jack = WishartOf(SquareRoot(Sigma), kBlocks - 1, random) / (kBlocks - 1);
-    const Matrix6d C = ShrinkTowardsModel(C_jack, model, kBlocks).C;
-    const double seven = JackknifeShareMax(kBlocks);
-    ratio += (C.inverse() * Sigma).trace() / (6.0 * kDraws);
-    ratio_of_seven += ((seven * C_jack + (1 - seven) * model).inverse() * Sigma).trace() / (6.0 * kDraws);
+    const MatrixXd Sigma = (WishartOf(MatrixXd::Identity(p, p), kappa + p + 1, random) / kappa).inverse();
+    const MatrixXd jack = WishartOf(Sigma.llt().matrixL(), kBlocks - 1, random) / (kBlocks - 1);
+    Matrix6d C_jack = Matrix6d::Zero();
+    C_jack.topLeftCorner(p, p) = jack;
+    const MatrixXd C = ShrinkTowardsModel(C_jack, C_model, kBlocks).C.topLeftCorner(p, p);
+    const double unlike = jack.selfadjointView<Eigen::Lower>().eigenvalues().array().log().square().sum();
+    drawn.emplace_back(unlike, (C.inverse() * Sigma).trace() / p);
+    const double seven = JackknifeRatioMax(kBlocks);
+    const MatrixXd C_seven = seven * jack + (1.0 - seven) * C_model.topLeftCorner(p, p);
+    told.by_seven += (C_seven.inverse() * Sigma).trace() / (p * kDraws);
   }
-  EXPECT_NEAR(ratio, 1.0, 0.01);
-  EXPECT_GT(ratio_of_seven, 1.02);
+  std::sort(drawn.begin(), drawn.end());
+  for (std::size_t i = 0; i < kDraws; ++i) told.thirds[3 * i / kDraws] += drawn[i].second * 3 / kDraws;
+  return told;
+}
+
+// Errors are as large as told, in all directions and however the blocks scatter. A model that is right may be taken for
+// too sure by chance, which widens it by a little; of one that is too sure by 2 a weight of seven blocks leaves too
+// much.
+TEST(ShrinkTowardsModel, IsThePosteriorMean) {
+  const Told right = ToldOf(6, 1.0), too_sure = ToldOf(5, 0.25);
+  for (const double third : right.thirds) EXPECT_NEAR(third, 0.975, 0.025);
+  for (const double third : too_sure.thirds) EXPECT_NEAR(third, 1.0, 0.03);
+  EXPECT_GT(right.by_seven, 1.04);
+  EXPECT_GT(too_sure.by_seven, 1.2);
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ TEST(ContentDigest, EverythingThatIsMeasuredCounts) {
       [](Edge& e) { e.uncertainty.Omega(0, 1) = 0.5; },
       [](Edge& e) { e.uncertainty.Omega(1, 0) = 0.5; },
       [](Edge& e) { e.uncertainty.dof = 3; },
+      [](Edge& e) { e.uncertainty.jackknife_ratio = 0.5; },
       [](Edge& e) { e.uncertainty.source = UncertaintySource::kAssumed; },
       [](Edge& e) {
         e.uncertainty.blocks = {{"001", Vector6d::Zero()}};

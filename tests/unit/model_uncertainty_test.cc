@@ -85,6 +85,9 @@ TEST(ValidateUncertainty, NamesTheField) {
   bad = good;
   bad.dof = -1;
   EXPECT_TRUE(WhatContains(Validate(bad), "dof"));
+  bad = good;
+  bad.jackknife_ratio = kNaN;
+  EXPECT_TRUE(WhatContains(Validate(bad), "jackknife_ratio"));
 }
 
 TEST(ValidateUncertainty, LooksAtBlocksAndContributions) {

@@ -64,12 +64,15 @@ TEST(StoreOpen, MigratesAnEmptyFile) {
 
 TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
   const TempFolder folder;
-  MakeDatabase(folder.path(),
-               BytesOf(RIGCAL_SOURCE_DIR "/storage/schema/0001_first.sql") +
-                   "PRAGMA application_id = 1382499180; PRAGMA user_version = 1;"
-                   "INSERT INTO robot VALUES ('mapper-01', 1);"
-                   "INSERT INTO detected_view VALUES (printf('%064d', 7), 'checkerboard', 1, '', 'board', "
-                   "640, 480, zeroblob(32), NULL)");
+  MakeDatabase(
+      folder.path(),
+      BytesOf(RIGCAL_SOURCE_DIR "/storage/schema/0001_first.sql") +
+          "PRAGMA application_id = 1382499180; PRAGMA user_version = 1;"
+          "INSERT INTO robot VALUES ('mapper-01', 1);"
+          "INSERT INTO detected_view VALUES (printf('%064d', 7), 'checkerboard', 1, '', 'board', "
+          "640, 480, zeroblob(32), NULL);"
+          "INSERT INTO edge VALUES (1, printf('%064d', 8), 'mapper-01', NULL, 1, 'left', 'right', 'stereo', 'good', 5, "
+          "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288))");
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   EXPECT_EQ(store->SchemaVersion(), 4);
@@ -77,6 +80,10 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
   const auto view = LoadView(*store, Digest(std::string(63, '0') + "7"), "checkerboard");
   ASSERT_TRUE(view && *view);
   EXPECT_EQ((*view)->view.corner_idx, (std::vector<int>{0, 1}));
+  const auto edges = LoadEdges(*store, RobotId("mapper-01"), true);
+  ASSERT_TRUE(edges && edges->size() == 1);
+  EXPECT_EQ(edges->front().uncertainty.dof, 12);
+  EXPECT_EQ(edges->front().uncertainty.jackknife_ratio, 0.0);  // not told
 }
 
 TEST(StoreOpen, LeavesANewerStoreAsItIs) {
