@@ -151,7 +151,8 @@ Status CheckIdentity(const rigcal_wire_PairwiseResult& sample, const Edge& edge)
   if (sample.occurrence_idx < sample.batch_count &&
       PushedEdgeId(edge.robot, ContentDigest(edge), sample.occurrence_idx) == edge.id)
     return {};
-  return Refused(sample, "its id is not that of its content", "Push it again with `rigcal push-edges`");
+  return Refused(sample, "its id is not that of its content",
+                 "Push it again with the `rigcal push-edges` of this server's version");
 }
 
 }  // namespace

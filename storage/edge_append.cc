@@ -20,7 +20,7 @@ Status CheckUncertainty(const Edge& edge) {
   if (uncertainty.rank < 0 || uncertainty.rank > 6) return Refuse(edge, "rank is not between 0 and 6");
   if (uncertainty.dof < 0) return Refuse(edge, "dof is negative");
   if (!(uncertainty.jackknife_ratio >= 0 && uncertainty.jackknife_ratio <= 1))
-    return Refuse(edge, "the share of the jackknife is not between 0 and 1");
+    return Refuse(edge, "jackknife_ratio is not between 0 and 1");
   if (uncertainty.unobservable_basis.cols() != 6 - uncertainty.rank)
     return Refuse(edge, "rank and the number of unobservable directions do not add up to 6");
   if (!uncertainty.unobservable_basis.allFinite()) return Refuse(edge, "an unobservable direction is not finite");

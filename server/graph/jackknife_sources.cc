@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "server/math/covariance.h"
@@ -14,7 +15,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kShareRounding = 1e-6;
+constexpr double kShareRounding = 1e-6, kShareMax = 0.999;
 
 // The session's key; an edge that belongs to none stands for itself. '/' is in no id.
 std::string SessionKey(const GraphEdge& edge) {
@@ -108,15 +109,17 @@ ErrorSource OwnError(std::size_t constraint, const MatrixXd& de, int dof) {
 }
 
 // Of what the blocks show in the covariance that Omega stands for; 0 where it is less than they alone would make it.
+// Never all of it along any direction: one that a single block shows would have no weight without that block.
 double ShareInOmega(const Uncertainty& uncertainty) {
   if (uncertainty.source != UncertaintySource::kJackknife || uncertainty.dof < 1) return 0.0;
   std::vector<Vector6d> d;
   for (const BlockVector& block : uncertainty.blocks) d.push_back(block.d);
-  const double told = uncertainty.jackknife_ratio, untold = JackknifeRatioMax(uncertainty.dof + 1);
-  const double share = told > 0.0 ? told : untold;
+  const double most = JackknifeRatioMax(std::min(uncertainty.dof, std::numeric_limits<int>::max() - 1) + 1);
+  const double share = uncertainty.jackknife_ratio > 0.0 ? std::min(uncertainty.jackknife_ratio, most) : most;
   const Matrix6d F = SquareRoot(uncertainty.Omega);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(F.transpose() * JackknifeCovariance(d) * F));
-  return share * eigen.eigenvalues()(5) <= 1.0 + kShareRounding ? share : 0.0;
+  const double largest = share * eigen.eigenvalues()(5);
+  return largest <= 1.0 + kShareRounding ? share * std::min(1.0, kShareMax / largest) : 0.0;
 }
 
 // Block vectors that say something in every direction that the edge sees, each for a block of its own.

@@ -76,7 +76,8 @@ Matrix6d JackknifeCovariance(const std::vector<Vector6d>& d) {
 
 ShrunkCovariance ShrinkTowardsModel(const Matrix6d& C_jack, const Matrix6d& C_model, int m) {
   const Eigen::VectorXd eigenvalues = RelativeEigenvalues(C_jack, C_model);
-  const double f = m > kModelWeightMin + 1.0 && eigenvalues.size() > 0 ? std::max(1.0, eigenvalues.mean()) : 1.0;
+  const bool told = m > kModelWeightMin + 1.0 && eigenvalues.size() > 0 && ((m - 1.0) * eigenvalues).allFinite();
+  const double f = told ? std::max(1.0, eigenvalues.mean()) : 1.0;
   const double ratio = PosteriorRatio(eigenvalues / f, m);
   return {ratio * C_jack + (1.0 - ratio) * f * C_model, ratio};
 }

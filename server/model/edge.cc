@@ -1,7 +1,6 @@
 #include "server/model/edge.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -102,7 +101,7 @@ Digest ContentDigest(const Edge& edge) {
     hash.Text(part.name).Matrix(part.covariance);
     for (const Vector6d& shift : part.shifts) hash.Vector(shift);
   }
-  if (uncertainty.jackknife_ratio > 0.0) hash.Number(std::bit_cast<std::uint64_t>(uncertainty.jackknife_ratio));
+  if (uncertainty.jackknife_ratio > 0.0) hash.Real(uncertainty.jackknife_ratio);
   return hash.Finish();
 }
 

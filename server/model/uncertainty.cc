@@ -8,6 +8,8 @@
 namespace rigcal {
 namespace {
 
+constexpr int kDofMax = 1'000'000'000;  // one more is a number too
+
 Status Refuse(const std::string& what, const std::string& cure) { return Fail(ErrorCode::kInvalidInput, what, cure); }
 
 std::string RankText(int rank) { return std::to_string(rank) + " of 6"; }
@@ -34,6 +36,22 @@ Status CheckBlocks(const Uncertainty& uncertainty) {
   if (uncertainty.source == UncertaintySource::kJackknife && count < 2)
     return Refuse("blocks: a jackknife uncertainty has " + std::to_string(count) + " block vectors",
                   "Give at least two, or name another source.");
+  return {};
+}
+
+Status CheckNumbers(const Uncertainty& uncertainty) {
+  if (uncertainty.dof < 0)
+    return Refuse("dof: " + std::to_string(uncertainty.dof) + " is negative", "Give 0 where the uncertainty is known.");
+  if (uncertainty.dof > kDofMax)
+    return Refuse("dof: " + std::to_string(uncertainty.dof) + " is more than anyone has measured",
+                  "Give the number of captures less one, or 0 where the uncertainty is known.");
+  const double ratio = uncertainty.jackknife_ratio;
+  if (!(ratio >= 0.0 && ratio <= 1.0))
+    return Refuse("jackknife_ratio: it is not between 0 and 1",
+                  "Give what the blocks made of the covariance, or leave it away.");
+  if (ratio > 0.0 && uncertainty.source != UncertaintySource::kJackknife)
+    return Refuse("jackknife_ratio: the source is " + NameOf(uncertainty.source) + ", not jackknife",
+                  "Leave it away, or name the source.");
   return {};
 }
 
@@ -115,11 +133,7 @@ Status Validate(const Uncertainty& uncertainty) {
     return Refuse(
         "rank: " + std::to_string(uncertainty.rank) + " is given, the information matrix has rank " + RankText(rank),
         "Leave the rank away or correct it.");
-  if (uncertainty.dof < 0)
-    return Refuse("dof: " + std::to_string(uncertainty.dof) + " is negative", "Give 0 where the uncertainty is known.");
-  if (!(uncertainty.jackknife_ratio >= 0.0 && uncertainty.jackknife_ratio <= 1.0))
-    return Refuse("jackknife_ratio: it is not between 0 and 1",
-                  "Give what the blocks made of the covariance, or leave it away.");
+  RIGCAL_TRY(CheckNumbers(uncertainty));
   RIGCAL_TRY(CheckBlocks(uncertainty));
   return CheckContributions(uncertainty.contributions);
 }

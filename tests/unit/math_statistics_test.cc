@@ -100,6 +100,9 @@ TEST(ShrinkTowardsModel, TrustsAModelThatTheBlocksConfirm) {
     EXPECT_GT(ratio(contradicted), JackknifeRatioMax(40) - 0.02);
     EXPECT_LE(ratio(contradicted), JackknifeRatioMax(40));
   }
+  const double sigma_beside = std::sqrt(ShrinkTowardsModel(one_off, model, 40).C(0, 0));
+  EXPECT_GT(sigma_beside, 1.0);
+  EXPECT_LT(sigma_beside, 1.4);
 }
 
 // Only its size is off, and of that the blocks know enough; too wide a model is left as it is.

@@ -85,7 +85,11 @@ TEST(ValidateUncertainty, NamesTheField) {
   bad = good;
   bad.dof = -1;
   EXPECT_TRUE(WhatContains(Validate(bad), "dof"));
+  bad.dof = std::numeric_limits<int>::max();
+  EXPECT_TRUE(WhatContains(Validate(bad), "dof"));
   bad = good;
+  bad.jackknife_ratio = 0.5;
+  EXPECT_TRUE(WhatContains(Validate(bad), "the source is"));
   bad.jackknife_ratio = kNaN;
   EXPECT_TRUE(WhatContains(Validate(bad), "jackknife_ratio"));
 }

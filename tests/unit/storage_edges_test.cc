@@ -162,8 +162,7 @@ TEST_F(EdgesTest, WhatIsNotFiniteIsRefusedByName) {
               HasSubstr("board size"));
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.rank = 6; }), HasSubstr("rank"));
   EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.dof = -1; }), HasSubstr("dof"));
-  EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.jackknife_ratio = kNan; }),
-              HasSubstr("share of the jackknife"));
+  EXPECT_THAT(refused([](Edge& edge) { edge.uncertainty.jackknife_ratio = kNan; }), HasSubstr("jackknife_ratio"));
   EXPECT_THAT(refused([](Edge& edge) { edge.figures["rms_px"] = kNan; }), HasSubstr("figure rms_px"));
   EXPECT_THAT(refused([](Edge& edge) { edge.captures[1].rms = kNan; }), HasSubstr("capture c1"));
   EXPECT_THAT(refused([](Edge& edge) { edge.id = EdgeId("short"); }), HasSubstr("edge id"));
