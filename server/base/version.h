@@ -3,7 +3,7 @@
 #include <string_view>
 
 namespace rigcal {
-// "0.1.0", from the project() line of CMake.
+// "0.2.0", from the project() line of CMake.
 [[nodiscard]] std::string_view Version();
 constexpr int kWireProtocol = 1;
 }  // namespace rigcal
