@@ -56,12 +56,20 @@ def processors(count):
         os.sched_setaffinity(0, all_of_them)
 
 
+DEBIAN_PICTURES = pathlib.Path("/usr/share/doc/opencv-doc/examples/data")
+
+
 class Context:
     def __init__(self, full):
         self.full = full
         self.root = pathlib.Path(__file__).resolve().parent.parent.parent
         self.bin = self.root / "build" / "release" / "bin"
         self.data = self.root.parent / "shared" / "data"
+
+    def stereo_pairs(self):
+        """The folder of left01.jpg ... right14.jpg: of the recordings, or the same files of Debian's opencv-doc. May not be there."""
+        recorded = self.data / "stereo_opencv"
+        return recorded if recorded.is_dir() else DEBIAN_PICTURES
 
     def built(self):
         return all((self.bin / name).exists() for name in ("rigcald", "rigcal", "graph_bench", "stereo_measure"))

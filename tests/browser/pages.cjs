@@ -165,7 +165,7 @@ async function contents(browser) {
 
 // An edge at the pointer or the keyboard says its numbers, and shows itself without a frame around its box.
 async function graph(browser) {
-  const page = await open(browser, at(`/robots/${facts.pictures ? "stereo/revisions/1" : "broken/revisions/1"}/`));
+  const page = await open(browser, at("/robots/stereo/revisions/1/"));
   const edge = page.locator("svg.graph a").first();
   const look = () => edge.locator(".link").evaluate((link) => [getComputedStyle(link).stroke, getComputedStyle(link).strokeWidth]);
   const before = await look();

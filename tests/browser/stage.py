@@ -10,7 +10,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "e2e"))
 from flow import SKIPPED, Flow, check  # noqa: E402,F401
-from measures.sessions import picture_session  # noqa: E402
+from measures.sessions import noise_session, picture_session  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 HOSTILE = '<script>window.ran=1</script>"\'><img src=x onerror=window.ran=1> \u05e9\u05dc\u05d5\u05dd ' + "long " * 30
@@ -45,9 +45,12 @@ def push_edges(flow, robot, edges, exit_code=0):
 
 
 def push_session(flow):
-    """The real stereo pairs, or nothing where there are none; with every text that a person chooses being hostile."""
-    pictures = flow.context.data / "stereo_opencv"
-    if not pictures.exists():
+    """The real stereo pairs, with every text that a person chooses being hostile. Where there are none, files that are no
+    pictures: a pair that failed. Returns whether the pictures were there."""
+    pictures = flow.context.stereo_pairs()
+    if not (pictures / "left01.jpg").exists():
+        done = flow.server.rigcal("push", noise_session(flow.folder / "session", "stereo", 2000, 6, seed=4))
+        check(done.returncode not in (2, 3, 4), "pushed: %d %s" % (done.returncode, done.stderr))
         return False
     folder = picture_session(flow.folder / "session", "stereo", pictures)
     text = (folder / "session.yaml").read_text()

@@ -67,3 +67,11 @@ def skip_without(path):
     if not path.exists():
         print("SKIPPED: no " + path.name + " in ../shared/data")
         raise SystemExit(SKIPPED)
+
+
+def stereo_pairs(context):
+    folder = context.stereo_pairs()
+    if not (folder / "left01.jpg").exists():
+        print("SKIPPED: no stereo pairs: neither in %s (package opencv-doc) nor in ../shared/data" % folder)
+        raise SystemExit(SKIPPED)
+    return folder

@@ -2,15 +2,13 @@
 import json
 import subprocess
 
-from flow import Flow, check, skip_without
+from flow import Flow, check, stereo_pairs
 from measures.sessions import picture_session
 
 
 def main():
     with Flow() as quiet, Flow() as flow:
-        pictures = flow.context.data / "stereo_opencv"
-        skip_without(pictures)
-        session = picture_session(quiet.folder / "session", "stereo", pictures)
+        session = picture_session(quiet.folder / "session", "stereo", stereo_pairs(quiet.context))
         quiet.rigcal("push", session)
         wanted = json.loads(quiet.rigcal("show", "stereo", "--json").stdout)
 

@@ -8,11 +8,12 @@
 
 #include "server/calib/intrinsics.h"
 #include "server/detect/corners.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::calib {
 namespace {
 
-const std::filesystem::path kFolder = RIGCAL_SOURCE_DIR "/../shared/data/lidarcam_acfr_vlp16/images";
+constexpr const char* kPictures = "lidarcam_acfr_vlp16/images";
 
 Target Board() { return {TargetId("board"), 7, 5, 0.095, 0.0, ""}; }
 
@@ -44,7 +45,7 @@ CameraProblem AllPictures() {
   problem.camera.camera_model = CameraModel::kFisheyeKb4;
   problem.board = Board();
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(kFolder))
+  for (const auto& entry : std::filesystem::directory_iterator(Recording(kPictures)))
     if (entry.path().extension() == ".png") paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   for (const auto& path : paths) problem.views.emplace_back(CaptureId(path.stem().string()), ViewIn(path));
@@ -54,7 +55,7 @@ CameraProblem AllPictures() {
 class RealFisheye : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(kFolder)) GTEST_SKIP() << "the real fisheye pictures are not here: " << kFolder;
+    RIGCAL_SKIP_WITHOUT_RECORDING(kPictures);
     static const CameraProblem problem = AllPictures();
     problem_ = problem;
   }

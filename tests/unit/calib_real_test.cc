@@ -7,14 +7,13 @@
 
 #include "server/calib/stereo.h"
 #include "server/detect/board.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::calib {
 namespace {
 
-const std::filesystem::path kFolder = RIGCAL_SOURCE_DIR "/../shared/data/stereo_opencv";
-
-BoardView ViewIn(const std::string& name, const Target& board) {
-  std::ifstream file(kFolder / (name + ".jpg"), std::ios::binary);
+BoardView ViewIn(const std::filesystem::path& path, const Target& board) {
+  std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   return detect::Detect(std::as_bytes(std::span(bytes)), board).view;
 }
@@ -24,16 +23,17 @@ StereoProblem AllPairs() {
   problem.camera_a.id = SensorId("left");
   problem.camera_b.id = SensorId("right");
   problem.board = {TargetId("board"), 9, 6, 0.025, 0.0, ""};
+  const auto pictures = StereoPairs();
   for (const std::string name : {"01", "02", "03", "04", "05", "06", "07", "08", "09", "11", "12", "13", "14"})
-    problem.captures.push_back(
-        {CaptureId(name), ViewIn("left" + name, problem.board), ViewIn("right" + name, problem.board)});
+    problem.captures.push_back({CaptureId(name), ViewIn(pictures.at("left/" + name), problem.board),
+                                ViewIn(pictures.at("right/" + name), problem.board)});
   return problem;
 }
 
 class RealPairs : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(kFolder)) GTEST_SKIP() << "the real stereo pairs are not here: " << kFolder;
+    RIGCAL_SKIP_WITHOUT_STEREO_PAIRS();
     static const StereoProblem problem = AllPairs();
     problem_ = problem;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,12 +13,13 @@
 
 #include "server/detect/board.h"
 #include "server/formats/session_folder.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::detect {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kSource = RIGCAL_CALISCOPE, kSession = RIGCAL_CALISCOPE_SESSION;
+constexpr const char* kRecording = "multicam_caliscope/4_cam_recording";
 
 std::string BytesOf(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -30,7 +32,7 @@ using Views = std::map<std::pair<int, int>, Corners>;  // camera, capture
 // xy.csv: sync_index,cam_id,frame_index,frame_time,object_id,keypoint_id,img_loc_x,img_loc_y,...
 Views OtherProgram() {
   Views views;
-  std::ifstream file(kSource / "calibration/extrinsic/xy.csv");
+  std::ifstream file(Recording(kRecording) / "calibration/extrinsic/xy.csv");
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
@@ -87,10 +89,11 @@ struct CameraResult {
   std::vector<double> distances_px, flatness_px;
 };
 
-CameraResult Compare(const Sensor& camera, int number, const Target& target, const Views& theirs) {
+CameraResult Compare(const fs::path& folder, int number, const Target& target, const Sensor& camera,
+                     const Views& theirs) {
   CameraResult result;
   std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(kSession / camera.id.str())) paths.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(folder)) paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   for (const fs::path& path : paths) {
     const Corners ours = Found(path, target);
@@ -108,16 +111,35 @@ CameraResult Compare(const Sensor& camera, int number, const Target& target, con
   return result;
 }
 
-TEST(DetectCaliscope, FindsWhatAnotherProgramFound) {
-  if (!fs::exists(kSession / "session.yaml")) GTEST_SKIP() << "the recording was not extracted to " << kSession;
-  const auto header = formats::ReadSessionYaml(BytesOf(kSession / "session.yaml"), "session.yaml");
+// The session folder of the recording, for as long as a test runs.
+class DetectCaliscope : public testing::Test {
+ protected:
+  void SetUp() override {
+    RIGCAL_SKIP_WITHOUT_RECORDING(kRecording);
+    if (std::system("ffmpeg -version >/dev/null 2>&1") != 0)
+      GTEST_SKIP() << "no ffmpeg to take the pictures out of the videos; deploy/install brings it";
+    std::string pattern = (fs::temp_directory_path() / "rigcal-caliscope-XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    session_ = pattern;
+    const std::string extract = RIGCAL_PYTHON " " RIGCAL_SOURCE_DIR "/tests/data/extract_caliscope.py ";
+    const std::string command = extract + Recording(kRecording).string() + " " + pattern;
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  }
+  void TearDown() override {
+    if (!session_.empty()) fs::remove_all(session_);
+  }
+  fs::path session_;
+};
+
+TEST_F(DetectCaliscope, FindsWhatAnotherProgramFound) {
+  const auto header = formats::ReadSessionYaml(BytesOf(session_ / "session.yaml"), "session.yaml");
   ASSERT_TRUE(header) << header.error().what;
   ASSERT_EQ(header->sensors.size(), 4u);
   const Views theirs = OtherProgram();
   for (int number = 0; number < 4; ++number) {
     SCOPED_TRACE(number);
     const Sensor& camera = header->sensors[static_cast<std::size_t>(number)];
-    const CameraResult result = Compare(camera, number, header->targets.front(), theirs);
+    const CameraResult result = Compare(session_ / camera.id.str(), number, header->targets.front(), camera, theirs);
     std::cout << camera.id.str() << ": " << result.found << " of " << result.pictures << " pictures (the other program "
               << result.found_by_other << "), " << result.corners << " corners (" << result.corners_of_other
               << "), median distance " << Median(result.distances_px) << " px, flat to " << Median(result.flatness_px)

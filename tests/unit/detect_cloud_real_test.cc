@@ -7,11 +7,12 @@
 
 #include "server/detect/cloud_board.h"
 #include "tests/unit/ascii_pcd.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::detect {
 namespace {
 
-const std::filesystem::path kData = RIGCAL_SOURCE_DIR "/../shared/data";
+constexpr const char* kClouds = "lidarcam_acfr_vlp16/pcd";
 
 Target Board() {
   Target board{TargetId("board"), 7, 5, 0.095, 0.0, ""};
@@ -71,8 +72,8 @@ Pose Judge(const std::filesystem::path& folder, const std::string& name) {
 }
 
 TEST(DetectCloudReal, FindsThePlateInEveryPose) {
-  const auto folder = kData / "lidarcam_acfr_vlp16" / "pcd";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the real clouds are not here: " << folder;
+  RIGCAL_SKIP_WITHOUT_RECORDING(kClouds);
+  const auto folder = Recording(kClouds);
   int first = 0;
   for (int number = 1; number <= 39; number += 2) {
     const Pose pose = Judge(folder, "pose" + std::to_string(number));
@@ -87,8 +88,8 @@ TEST(DetectCloudReal, FindsThePlateInEveryPose) {
 
 // Every point of the patch is one of those that somebody else cut out; of those it lacks only the ones at the edges.
 TEST(DetectCloudReal, GivesThePointsOfThePlateAndNoOthers) {
-  const auto folder = kData / "lidarcam_acfr_vlp16" / "pcd";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the real clouds are not here: " << folder;
+  RIGCAL_SKIP_WITHOUT_RECORDING(kClouds);
+  const auto folder = Recording(kClouds);
   std::size_t given = 0, right = 0, all = 0;
   for (int number = 1; number <= 39; number += 2) {
     const std::string name = "pose" + std::to_string(number);

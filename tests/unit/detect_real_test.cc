@@ -5,11 +5,10 @@
 #include <iterator>
 
 #include "server/detect/board.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::detect {
 namespace {
-
-const std::filesystem::path kData = RIGCAL_SOURCE_DIR "/../shared/data";
 
 AnnotatedView DetectFile(const std::filesystem::path& path, const Target& board) {
   std::ifstream file(path, std::ios::binary);
@@ -24,13 +23,11 @@ void ExpectRightHanded(const BoardView& view, std::size_t cols) {
 }
 
 TEST(DetectReal, EveryPictureOfTheStereoPairs) {
-  const auto folder = kData / "stereo_opencv";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the real stereo pairs are not here: " << folder;
+  RIGCAL_SKIP_WITHOUT_STEREO_PAIRS();
   int found = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".jpg") continue;
-    const AnnotatedView result = DetectFile(entry.path(), {TargetId("board"), 9, 6, 0.025, 0, ""});
-    EXPECT_TRUE(result.view.found) << entry.path() << ": " << result.view.why_not;
+  for (const auto& [name, path] : StereoPairs()) {
+    const AnnotatedView result = DetectFile(path, {TargetId("board"), 9, 6, 0.025, 0, ""});
+    EXPECT_TRUE(result.view.found) << path << ": " << result.view.why_not;
     if (!result.view.found) continue;
     ++found;
     ExpectRightHanded(result.view, 9);
@@ -39,8 +36,8 @@ TEST(DetectReal, EveryPictureOfTheStereoPairs) {
 }
 
 TEST(DetectReal, EveryPictureOfTheRobotArm) {
-  const auto folder = kData / "handeye_visp_franka/data-eye-in-hand";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the robot arm's pictures are not here: " << folder;
+  RIGCAL_SKIP_WITHOUT_RECORDING("handeye_visp_franka");
+  const auto folder = Recording("handeye_visp_franka/data-eye-in-hand");
   for (int i = 1; i <= 8; ++i) {
     const auto path = folder / ("franka_image-" + std::to_string(i) + ".png");
     const AnnotatedView result = DetectFile(path, {TargetId("board"), 9, 6, 0.0236, 0, ""});

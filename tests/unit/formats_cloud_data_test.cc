@@ -4,12 +4,12 @@
 #include <fstream>
 
 #include "tests/unit/formats_cloud_samples.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::formats {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kData = fs::path(RIGCAL_SOURCE_DIR) / ".." / "shared" / "data";
 
 std::string BytesOf(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -18,8 +18,7 @@ std::string BytesOf(const fs::path& path) {
 
 std::vector<fs::path> CloudsIn(const std::string& folder) {
   std::vector<fs::path> paths;
-  if (!fs::exists(kData / folder)) return paths;
-  for (const auto& entry : fs::recursive_directory_iterator(kData / folder))
+  for (const auto& entry : fs::recursive_directory_iterator(Recording(folder)))
     if (entry.path().extension() == ".pcd" || entry.path().extension() == ".ply") paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -34,8 +33,8 @@ class RecordedClouds : public testing::TestWithParam<std::pair<const char*, std:
 
 TEST_P(RecordedClouds, HaveThePointsOfTheirHeaders) {
   const auto [folder, count] = GetParam();
+  RIGCAL_SKIP_WITHOUT_RECORDING(folder);
   const auto paths = CloudsIn(folder);
-  if (paths.empty()) GTEST_SKIP() << "the recording " << folder << " is not in shared/data beside the project";
   EXPECT_EQ(paths.size(), count);
   for (const fs::path& path : paths) {
     const std::string suffix = path.extension().string().substr(1), bytes = BytesOf(path);
@@ -55,9 +54,8 @@ INSTANTIATE_TEST_SUITE_P(Data, RecordedClouds,
                                          std::pair("lidarlidar_opencalib", 3)));
 
 TEST(RecordedCloud, FirstAndLastLineOfText) {
-  const fs::path path = kData / "lidarcam_acfr_vlp16/pcd/pose1_full.pcd";
-  if (!fs::exists(path)) GTEST_SKIP() << "the recording is not in shared/data beside the project";
-  const std::string bytes = BytesOf(path);
+  RIGCAL_SKIP_WITHOUT_RECORDING("lidarcam_acfr_vlp16");
+  const std::string bytes = BytesOf(Recording("lidarcam_acfr_vlp16/pcd/pose1_full.pcd"));
   const auto cloud = ReadText(bytes, "pcd");
   ASSERT_TRUE(cloud) << Sentence(cloud.error());
   EXPECT_EQ(cloud->points_m.size(), 23969u);

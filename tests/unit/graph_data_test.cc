@@ -35,7 +35,7 @@ class GraphData : public testing::TestWithParam<Known> {};
 
 TEST_P(GraphData, ReachesTheKnownOptimum) {
   const Known& known = GetParam();
-  if (!std::filesystem::exists(DataFolder() / known.file)) GTEST_SKIP() << known.file << " is not on this machine.";
+  RIGCAL_SKIP_WITHOUT_RECORDING(known.file);
   Result<formats::G2oFile> file = ReadData(known.file);
   ASSERT_TRUE(file.has_value()) << Sentence(file.error());
   const Graph graph = GraphOf(file->edges, SensorId());
@@ -56,7 +56,7 @@ TEST_P(GraphData, ReachesTheKnownOptimum) {
 // Kernels may look at where memory lies: it must not show. Memory is taken at odd sizes in between and kept.
 TEST(GraphBits, ALargeSolveGivesTheSameBytesWhereverItsMemoryLies) {
   for (const char* name : {"posegraph_sesync/sphere2500.g2o", "posegraph_sesync/parking-garage.g2o"}) {
-    if (!std::filesystem::exists(DataFolder() / name)) GTEST_SKIP() << name << " is not on this machine.";
+    RIGCAL_SKIP_WITHOUT_RECORDING(name);
     const Result<formats::G2oFile> file = ReadData(name);
     ASSERT_TRUE(file.has_value()) << Sentence(file.error());
     const Graph graph = GraphOf(file->edges, SensorId());
@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Public, GraphData,
 // Marginals of a large graph against columns of the inverse, solved for one at a time.
 TEST(GraphDataMarginals, OfSphereAgreeWithSolvedColumns) {
   const std::string name = "posegraph_sesync/sphere2500.g2o";
-  if (!std::filesystem::exists(DataFolder() / name)) GTEST_SKIP() << name << " is not on this machine.";
+  RIGCAL_SKIP_WITHOUT_RECORDING(name);
   const Result<formats::G2oFile> file = ReadData(name);
   ASSERT_TRUE(file.has_value());
   const Graph graph = GraphOf(file->edges, SensorId());

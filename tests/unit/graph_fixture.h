@@ -9,6 +9,7 @@
 
 #include "server/formats/g2o.h"
 #include "tests/unit/graph_random.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::graph {
 
@@ -31,12 +32,8 @@ inline bool SameBytes(const GraphSolution& a, const GraphSolution& b) {
 
 inline double Distance(const Se3& T, const Se3& U) { return (T.Inverse() * U).Log().norm(); }
 
-inline std::filesystem::path DataFolder() {
-  return std::filesystem::path(RIGCAL_SOURCE_DIR) / ".." / "shared" / "data";
-}
-
 inline Result<formats::G2oFile> ReadData(const std::string& name) {
-  const std::ifstream file(DataFolder() / name);
+  const std::ifstream file(Recording(name));
   std::ostringstream text;
   text << file.rdbuf();
   return formats::ReadG2o(text.str(), RobotId("robot"));

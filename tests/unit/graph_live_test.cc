@@ -346,7 +346,7 @@ TEST(GraphLive, FramesInOnePlaceAreNoMoreWorkThanOthers) {
 // A part of sphere2500 in file order: the whole chain first, then closure by closure.
 TEST(GraphLive, ASphereIsFollowedClosureByClosure) {
   constexpr const char* kFile = "posegraph_sesync/sphere2500.g2o";
-  if (!std::filesystem::exists(DataFolder() / kFile)) GTEST_SKIP() << kFile << " is not on this machine.";
+  RIGCAL_SKIP_WITHOUT_RECORDING(kFile);
   Result<formats::G2oFile> file = ReadData(kFile);
   ASSERT_TRUE(file.has_value()) << Sentence(file.error());
   std::erase_if(file->edges, [](const Edge& edge) {

@@ -17,6 +17,7 @@
 #include "storage/blobs.h"
 #include "storage/edges.h"
 #include "storage/sessions.h"
+#include "tests/unit/recordings.h"
 
 namespace rigcal::pipeline {
 
@@ -125,19 +126,13 @@ class PipelineTest : public testing::Test {
     if (!stored) ADD_FAILURE() << Sentence(stored.error());
   }
 
-  // The real picture pairs as session files; empty where the data is absent.
+  // The real picture pairs as session files; empty where they are absent.
   static std::map<std::string, std::string> RealPictures() {
-    const std::filesystem::path folder = std::filesystem::path(RIGCAL_SOURCE_DIR) / "../shared/data/stereo_opencv";
     std::map<std::string, std::string> files;
-    if (!std::filesystem::is_directory(folder)) return files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      const std::string stem = entry.path().stem().string();
-      for (const std::string side : {"left", "right"}) {
-        if (entry.path().extension() != ".jpg" || stem.rfind(side, 0) != 0) continue;
-        std::stringstream bytes;
-        bytes << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-        files[side + "/" + stem.substr(side.size()) + ".jpg"] = bytes.str();
-      }
+    for (const auto& [name, path] : StereoPairs()) {
+      std::stringstream bytes;
+      bytes << std::ifstream(path, std::ios::binary).rdbuf();
+      files[name + ".jpg"] = bytes.str();
     }
     return files;
   }

@@ -78,8 +78,8 @@ TEST_F(PipelineTest, APictureThatCannotBeReadGivesAFailedEdgeWithACure) {
 }
 
 TEST_F(PipelineTest, RealPairsGiveAnEdgeARevisionAndAReport) {
+  RIGCAL_SKIP_WITHOUT_STEREO_PAIRS();
   const auto files = RealPictures();
-  if (files.empty()) GTEST_SKIP() << "no ../shared/data/stereo_opencv beside the project";
   StoreSession("r", files);
   EXPECT_EQ(StepAll(), 3);  // job, revise, publish
   const auto edges = storage::LoadEdges(*store_, RobotId("r"), true);
@@ -100,8 +100,8 @@ TEST_F(PipelineTest, RealPairsGiveAnEdgeARevisionAndAReport) {
 }
 
 TEST_F(PipelineTest, OneFileForBothCamerasIsNoMeasurement) {
+  RIGCAL_SKIP_WITHOUT_STEREO_PAIRS();
   auto files = RealPictures();
-  if (files.empty()) GTEST_SKIP() << "no stereo_opencv in ../shared/data";
   files["right/01.jpg"] = files["left/01.jpg"];
   StoreSession("r", files);
   StepAll();
