@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <sstream>
@@ -12,7 +13,8 @@ namespace {
 
 constexpr std::size_t kEdgeFileBytesMax = 256u << 20;
 constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
-constexpr double kExactTolerance = 1e-12;       // nearer ones stay as they are, bit by bit
+constexpr std::size_t kPlacesShown = 3;
+constexpr double kExactTolerance = 1e-12;  // nearer ones stay as they are, bit by bit
 
 std::string NumberText(double value) {
   std::ostringstream text;
@@ -42,12 +44,10 @@ Matrix6d ReadSymmetric(const JsonField& field) {
   return Symmetrized(matrix);
 }
 
-Uncertainty ReadInformation(const JsonField& field, UncertaintySource source, int dof) {
+Uncertainty ReadInformation(const JsonField& field, UncertaintySource source, int dof, bool& indefinite) {
   const Matrix6d Omega = ReadSymmetric(field);
-  if (!IsPositiveSemidefinite(Omega)) {
-    field.Refuse("has a negative eigenvalue");
-    return {};
-  }
+  indefinite = !IsPositiveSemidefinite(Omega);
+  if (indefinite) return {};
   if (Omega.isZero(0.0)) field.Refuse("is zero: it says nothing");
   return FromInformation(Omega, source, dof);
 }
@@ -59,7 +59,7 @@ Uncertainty ReadCovariance(const JsonField& field, UncertaintySource source, int
   return {};
 }
 
-Uncertainty ReadGivenUncertainty(const JsonField& edge) {
+Uncertainty ReadGivenUncertainty(const JsonField& edge, bool& indefinite) {
   const auto information = edge.Find("information");
   const auto covariance = edge.Find("covariance");
   if (information.has_value() == covariance.has_value()) {
@@ -76,7 +76,7 @@ Uncertainty ReadGivenUncertainty(const JsonField& edge) {
                   : blocks.empty() ? 0
                                    : static_cast<int>(blocks.size()) - 1;
   Uncertainty uncertainty =
-      information ? ReadInformation(*information, source, dof) : ReadCovariance(*covariance, source, dof);
+      information ? ReadInformation(*information, source, dof, indefinite) : ReadCovariance(*covariance, source, dof);
   uncertainty.blocks = std::move(blocks);
   if (const auto ratio = edge.Find("jackknife_ratio")) uncertainty.jackknife_ratio = ReadRatio(*ratio);
   if (const auto contributions = edge.Find("contributions"))
@@ -90,7 +90,8 @@ std::string ReadMethod(const JsonField& field) {
   return method;
 }
 
-Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot) {
+// `indefinite`: its information matrix has a negative eigenvalue; the caller says so, of all edges at once.
+Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot, bool& indefinite) {
   field.AllowOnly({"frame_a", "frame_b", "T_a_b", "information", "covariance", "method", "dof", "source", "blocks",
                    "contributions", "jackknife_ratio"});
   Edge edge;
@@ -98,11 +99,24 @@ Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot) {
   edge.frame_a = ReadId<SensorId>(field.At("frame_a"));
   edge.frame_b = ReadId<SensorId>(field.At("frame_b"));
   edge.T_a_b = ReadMeasuredPose(field.At("T_a_b"));
-  edge.uncertainty = ReadGivenUncertainty(field);
+  edge.uncertainty = ReadGivenUncertainty(field, indefinite);
   const auto method = field.Find("method");
   edge.method = method ? ReadMethod(*method) : "given";
   edge.state = EdgeState::kGood;
   return edge;
+}
+
+// One is named by its field; of many, how many and the first three.
+void RefuseIndefinite(const JsonField& root, const std::vector<JsonField>& items,
+                      const std::vector<std::size_t>& indefinite) {
+  if (indefinite.empty()) return;
+  if (indefinite.size() == 1) return items[indefinite.front()].At("information").Refuse("has a negative eigenvalue");
+  std::string places;
+  for (std::size_t i = 0; i < std::min(kPlacesShown, indefinite.size()); ++i)
+    places += (i == 0 ? "" : ", ") + ("[" + std::to_string(indefinite[i])) + "]";
+  if (indefinite.size() > kPlacesShown) places += " and " + std::to_string(indefinite.size() - kPlacesShown) + " more";
+  root.At("edges").Refuse(std::to_string(indefinite.size()) + " of " + std::to_string(items.size()) +
+                          " information matrices have a negative eigenvalue: " + places);
 }
 
 }  // namespace
@@ -116,11 +130,18 @@ Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& rob
   const std::vector<JsonField> items = root.At("edges").Items(limits::kEdgesPerBatchMax);
   if (items.empty()) root.Refuse("\"edges\" is empty: there is nothing to push");
   std::vector<Edge> edges;
+  std::vector<std::size_t> indefinite;
   for (const JsonField& item : items) {
-    edges.push_back(ReadMeasuredEdge(item, robot));
+    bool has_negative = false;
+    edges.push_back(ReadMeasuredEdge(item, robot, has_negative));
     RIGCAL_TRY(document.status());
+    if (has_negative) {
+      indefinite.push_back(edges.size() - 1);
+      continue;
+    }
     if (const Status valid = Validate(edges.back()); !valid) item.Refuse(valid.error().what);
   }
+  RefuseIndefinite(root, items, indefinite);
   RIGCAL_TRY(document.status());
   AssignPushedIds(edges);
   return edges;

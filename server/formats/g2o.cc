@@ -14,6 +14,7 @@ namespace rigcal::formats {
 namespace {
 
 constexpr double kG2oUnitTolerance = 1e-3;
+constexpr std::size_t kPlacesShown = 3;
 
 Vector6d HalfAngles() {
   Vector6d D;
@@ -41,6 +42,7 @@ class Line {
     return Fail(ErrorCode::kInvalidInput, "line " + std::to_string(number_) + ": " + subject + what, std::move(cure));
   }
   void Name(std::string name) { name_ = std::move(name); }
+  [[nodiscard]] std::string Place() const { return "line " + std::to_string(number_) + " (" + name_ + ")"; }
 
   Result<SensorId> ReadVertex() {
     const std::string_view field = Next();
@@ -111,6 +113,7 @@ class Reader {
   }
 
   Result<G2oFile> Finish() {
+    RIGCAL_TRY(CheckDefinite());
     if (file_.edges.empty())
       return Fail(ErrorCode::kInvalidInput, "the file has no EDGE_SE3:QUAT line", "Give a .g2o file with 3D edges.");
     if (sensors_.size() > limits::kSensorsPerRobotMax)
@@ -134,27 +137,34 @@ class Reader {
     RIGCAL_TRY(line.ReadNumbers(numbers));
     RIGCAL_TRY(line.ExpectEnd());
     RIGCAL_ASSIGN(edge.T_a_b, PoseFrom(line, numbers.data()));
-    RIGCAL_TRY(SetInformation(line, SymmetricFrom(numbers.data() + 7), edge));
-    if (file_.edges.size() >= limits::kEdgesPerBatchMax)
+    const Matrix6d Omega_g2o = SymmetricFrom(numbers.data() + 7);
+    if (++edges_read_ > limits::kEdgesPerBatchMax)
       return line.Refuse("is beyond the limit of " + std::to_string(limits::kEdgesPerBatchMax) + " edges",
                          "Split the file.");
+    if (!Judge(Omega_g2o)) {
+      indefinite_.push_back(line);
+      return {};
+    }
+    RIGCAL_TRY(SetInformation(line, edge));
     sensors_.insert({edge.frame_a, edge.frame_b});
     file_.edges.push_back(std::move(edge));
     return {};
   }
 
-  // Files repeat one matrix over and over: what it says is worked out once.
-  Status SetInformation(const Line& line, const Matrix6d& Omega_g2o, Edge& edge) {
-    if (file_.edges.empty() || Omega_g2o != last_Omega_g2o_) {
-      const Matrix6d Omega = InformationFromG2o(Omega_g2o);
-      if (!IsPositiveSemidefinite(Omega))  // what the edge will be judged by; g2o's own scale may hide a small negative
-        return line.Refuse("the information matrix is indefinite",
-                           "An information matrix has no negative eigenvalue: correct it where it was made.");
-      const Status sane = CheckPlausible(Omega);
-      if (!sane) return line.Refuse(sane.error().what, sane.error().cure);
-      last_ = FromInformation(Omega, UncertaintySource::kGiven, 0);
-      last_Omega_g2o_ = Omega_g2o;
-    }
+  // Whether it is definite. Files repeat one matrix over and over: what it says is worked out once. Judged as the edge
+  // will be; g2o's own scale may hide a small negative.
+  bool Judge(const Matrix6d& Omega_g2o) {
+    if (edges_read_ > 1 && Omega_g2o == last_Omega_g2o_) return last_definite_;
+    last_Omega_g2o_ = Omega_g2o;
+    const Matrix6d Omega = InformationFromG2o(Omega_g2o);
+    last_definite_ = IsPositiveSemidefinite(Omega);
+    last_plausible_ = CheckPlausible(Omega);
+    if (last_definite_ && last_plausible_) last_ = FromInformation(Omega, UncertaintySource::kGiven, 0);
+    return last_definite_;
+  }
+
+  Status SetInformation(const Line& line, Edge& edge) {
+    if (!last_plausible_) return line.Refuse(last_plausible_.error().what, last_plausible_.error().cure);
     if (!last_.covariance.allFinite())
       return line.Refuse("the information matrix is too badly conditioned to invert",
                          "Check the units of its entries; they are for m and rad.");
@@ -162,6 +172,19 @@ class Reader {
       return line.Refuse("the information matrix is zero", "An edge without information says nothing: remove it.");
     edge.uncertainty = last_;
     return {};
+  }
+
+  // All of them at once: who mends the first should not meet the second.
+  [[nodiscard]] Status CheckDefinite() const {
+    if (indefinite_.empty()) return {};
+    const std::string cure = "An information matrix has no negative eigenvalue: correct it where it was made.";
+    if (indefinite_.size() == 1) return indefinite_.front().Refuse("the information matrix is indefinite", cure);
+    std::string what = std::to_string(indefinite_.size()) + " of " + std::to_string(edges_read_) +
+                       " edges have an indefinite information matrix: ";
+    const std::size_t shown = std::min(kPlacesShown, indefinite_.size());
+    for (std::size_t i = 0; i < shown; ++i) what += (i == 0 ? "" : ", ") + indefinite_[i].Place();
+    if (shown < indefinite_.size()) what += " and " + std::to_string(indefinite_.size() - shown) + " more";
+    return Fail(ErrorCode::kInvalidInput, what, cure);
   }
 
   Status ReadVertexPose(Line& line) {
@@ -187,7 +210,11 @@ class Reader {
   RobotId robot_;
   G2oFile file_;
   std::set<SensorId> sensors_;
+  std::size_t edges_read_ = 0;
+  std::vector<Line> indefinite_;
   Matrix6d last_Omega_g2o_ = Matrix6d::Zero();
+  bool last_definite_ = true;
+  Status last_plausible_;
   Uncertainty last_;
 };
 

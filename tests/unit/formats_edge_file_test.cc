@@ -105,6 +105,12 @@ std::string Second(const std::string& from, const std::string& to) {
   return FileText(EdgeText("a", "b", Informed()) + "," + edge);
 }
 
+// From sensor `a` to b.
+std::string Indefinite(const std::string& a) {
+  std::string edge = EdgeText(a, "b", Informed());
+  return edge.replace(edge.find("5,0]"), 1, "-5");
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Cases, RefusedEdgeFile,
     testing::Values(
@@ -122,6 +128,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{Second("[1,2,3]", "[1,2,\"3\"]"), "edges[1].T_a_b.p_m[2]: must be a number"},
         BadFile{Second("[0,2,0", "[0.5,2,0"), "edges[1].information: is not symmetric: [0][1] is 0, [1][0] is 0.5"},
         BadFile{Second("5,0]", "-5,0]"), "edges[1].information: has a negative eigenvalue"},
+        BadFile{FileText(Indefinite("a") + "," + EdgeText("a", "b", Informed()) + "," + Indefinite("c")),
+                "edges: 2 of 3 information matrices have a negative eigenvalue: [0], [2]"},
+        BadFile{FileText(Indefinite("a") + "," + Indefinite("c") + "," + Indefinite("d") + "," + Indefinite("e")),
+                "edges: 4 of 4 information matrices have a negative eigenvalue: [0], [1], [2] and 1 more"},
         BadFile{Second(",[0,0,0,0,0,6]", ""), "edges[1].information: must be 6 rows of 6 numbers"},
         BadFile{Second("[0,0,0,0,0,6]", "[0,0,0,0,0]"), "edges[1].information[5]: must be a list of 6 numbers"},
         BadFile{FileText(EdgeText("a", "b",

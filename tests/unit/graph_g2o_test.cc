@@ -98,6 +98,20 @@ TEST(G2o, RefusesByLineAndEdge) {
             "line 2: vertex 1: occurs twice");
 }
 
+TEST(G2o, CountsIndefiniteMatricesAndNamesTheFirstThree) {
+  const std::string bad = "1 0 0 0 0 0 1 0 0 0 0 -1 0 0 0 4 0 0 4 0 4", unit = "0 0 0 1", good = EdgeLine("0 1");
+  EXPECT_EQ(Refusal(good + EdgeLine("1 2", unit, bad) + good + EdgeLine("2 3", unit, bad)),
+            "2 of 4 edges have an indefinite information matrix: line 2 (edge 1 - 2), line 4 (edge 2 - 3)");
+  std::string many = good;
+  for (int k = 1; k <= 5021; ++k)
+    many += EdgeLine(std::to_string(k) + " " + std::to_string(k + 1), unit, k == 2 ? bad : "-" + bad);
+  EXPECT_EQ(Refusal(many),
+            "5021 of 5022 edges have an indefinite information matrix: line 2 (edge 1 - 2), line 3 (edge 2 - 3), "
+            "line 4 (edge 3 - 4) and 5018 more");
+  EXPECT_THAT(Refusal(EdgeLine("1 2", unit, bad) + "EDGE_SE2 0 1\n"), testing::StartsWith("line 2:"))
+      << "what cannot be read comes first";
+}
+
 // What one file says, after being read, written and read again.
 void ExpectRoundTrip(const G2oFile& file) {
   std::vector<SensorPose> poses;
