@@ -60,8 +60,7 @@ Diagnosis DistortionOpen(const SensorId& camera, CameraModel model, const std::s
   return {
       "distortion_not_observable",
       "The views of " + camera.str() + " do not tell the distortion " + name + " of the model " + NameOf(model) + ".",
-      std::string("Take captures with the board in all corners of the picture") +
-          (model == CameraModel::kPinholeRational ? ", or use the model pinhole_radtan." : ".")};
+      "Take captures with the board in all corners of the picture."};
 }
 
 std::optional<Diagnosis> WhyGivenDisagree(const Sensor& camera, const CameraIntrinsics& refined) {

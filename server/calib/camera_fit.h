@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "server/calib/intrinsics.h"
@@ -9,6 +10,7 @@
 
 namespace rigcal::calib {
 
+struct StereoCapture;
 struct StereoProblem;
 struct StereoEstimate;
 struct LidarCameraProblem;
@@ -23,6 +25,8 @@ struct HandEyeProblem;
 // Where the board was found, of a camera that was not solved.
 [[nodiscard]] CameraFit SeenBy(const CameraProblem& problem);
 
+// One camera of a pair (&StereoCapture::a or b) by itself.
+[[nodiscard]] CameraProblem CameraOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
 // Every camera of the pair. Without an estimate: what was seen.
 [[nodiscard]] std::vector<CameraFit> FitsOf(const StereoProblem& problem, const StereoEstimate* estimate);
 [[nodiscard]] std::vector<CameraFit> FitsOf(const LidarCameraProblem& problem, const CameraEstimate* camera);

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "server/calib/layout_diagnosis.h"
 #include "server/calib/seen_corners.h"
 #include "server/calib/selection.h"
 
@@ -86,15 +87,17 @@ Diagnosis Unreadable(const SensorId& camera, const std::vector<CaptureId>& captu
 }
 
 std::vector<Diagnosis> Missed(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera) {
-  std::vector<CaptureId> unreadable, without_board;
+  std::vector<CaptureId> unreadable, other_layout, without_board;
   for (const StereoCapture& capture : problem.captures) {
     const std::optional<BoardView>& view = capture.*camera;
     if (Sees(view, problem.board)) continue;
     const bool readable = !view || view->found || view->image_width_px > 0;
-    (readable ? without_board : unreadable).push_back(capture.capture);
+    const bool misdescribed = view && ShowsOtherLayout(*view);
+    (misdescribed ? other_layout : readable ? without_board : unreadable).push_back(capture.capture);
   }
   const SensorId& id = camera == &StereoCapture::a ? problem.camera_a.id : problem.camera_b.id;
   std::vector<Diagnosis> diagnoses;
+  if (!other_layout.empty()) diagnoses.push_back(OtherLayout(id, problem.board, other_layout));
   if (!unreadable.empty()) diagnoses.push_back(Unreadable(id, unreadable, ReasonOf(problem, id, unreadable)));
   if (!without_board.empty()) diagnoses.push_back(BoardNotFound(problem, id, without_board));
   return diagnoses;

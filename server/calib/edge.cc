@@ -5,6 +5,8 @@
 #include "server/calib/camera_fit.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/estimation.h"
+#include "server/calib/layout_diagnosis.h"
+#include "server/calib/lens_choice.h"
 #include "server/calib/selection.h"
 #include "server/calib/stereo.h"
 #include "server/math/jackknife.h"
@@ -13,6 +15,12 @@ namespace rigcal::calib {
 namespace {
 
 constexpr std::size_t kWorstShown = 3;
+constexpr double kSuspiciousRatio = 0.5;  // of the residual that is refused
+
+void AddMissed(const StereoProblem& problem, std::vector<Diagnosis>& diagnoses) {
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
+    for (Diagnosis& missed : Missed(problem, camera)) diagnoses.push_back(std::move(missed));
+}
 
 Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) {
   Edge edge;
@@ -21,6 +29,8 @@ Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) 
   edge.method = "stereo";
   edge.state = EdgeState::kFailed;
   edge.diagnoses = std::move(diagnoses);
+  AddMissed(problem, edge.diagnoses);
+  PutLayoutFirst(edge.diagnoses);
   const Selection selection = Select(problem);
   for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
     const auto why = selection.unused.find(idx);
@@ -32,12 +42,27 @@ Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) 
   return edge;
 }
 
-double HighRms_px(const StereoProblem& problem) {
+double HighestRms_px(const StereoProblem& problem) {
   int width_px = 0;
   for (const StereoCapture& capture : problem.captures)
     for (const auto& view : {capture.a, capture.b})
       if (view) width_px = std::max(width_px, view->image_width_px);
-  return std::max(1.0, kHighRmsRatio * width_px);
+  return HighRms_px(width_px);
+}
+
+Diagnosis LensAsCure(const StereoProblem& problem, Diagnosis diagnosis) {
+  return WithLensAsCure(std::move(diagnosis),
+                        {CameraOf(problem, &StereoCapture::a), CameraOf(problem, &StereoCapture::b)});
+}
+
+// Residuals that are not refused yet, where the lens is what they come from.
+void AddLensSuspicions(const StereoProblem& problem, const StereoEstimate& estimate, std::vector<Diagnosis>& notes) {
+  for (const auto& [camera, rms_px] :
+       {std::pair{&StereoCapture::a, estimate.rms_a_px}, {&StereoCapture::b, estimate.rms_b_px}}) {
+    if (!(rms_px > kSuspiciousRatio * HighestRms_px(problem))) continue;
+    const CameraProblem one = CameraOf(problem, camera);
+    if (const auto lens = FindBetterLens(one)) notes.push_back(LensSuspected(one, rms_px, *lens));
+  }
 }
 
 std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
@@ -53,8 +78,7 @@ std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
 // What a reader of a good edge should know.
 void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagnosis>& notes) {
   if (both < kCapturesEnough) notes.push_back(FewCaptures(problem, both));
-  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
-    for (Diagnosis& missed : Missed(problem, camera)) notes.push_back(std::move(missed));
+  AddMissed(problem, notes);
   std::vector<CaptureId> repeated;
   for (const std::size_t idx : Select(problem).repeated) repeated.push_back(problem.captures[idx].capture);
   if (!repeated.empty()) notes.push_back(IdenticalCaptures(problem, repeated));
@@ -119,6 +143,7 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   edge.diagnoses = std::move(notes);
   const std::size_t both = CountBoth(problem, estimate);
   AddNotes(problem, both, edge.diagnoses);
+  AddLensSuspicions(problem, estimate, edge.diagnoses);
   AddDisagreement(problem.camera_a, estimate.intrinsics_a, edge.diagnoses);
   AddDisagreement(problem.camera_b, estimate.intrinsics_b, edge.diagnoses);
   AddFigures(estimate, both, edge);
@@ -130,18 +155,20 @@ Edge Solved(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   if (auto diagnoses = Observability(problem); !diagnoses.empty()) return FailedEdge(problem, std::move(diagnoses));
   std::vector<Diagnosis> notes;
   const auto estimate = EstimateOrDiagnose(problem, nullptr, &notes);
-  if (!estimate) return FailedEdge(problem, {estimate.error()});
+  if (!estimate) return FailedEdge(problem, {LensAsCure(problem, estimate.error())});
   if (fits) *fits = FitsOf(problem, &*estimate);
-  const double limit_px = HighRms_px(problem);
+  const double limit_px = HighestRms_px(problem);
   if (!(estimate->rms_px <= limit_px)) {
-    notes.insert(notes.begin(), HighResidual(problem, estimate->rms_px, limit_px, WorstOf(*estimate)));
+    const Diagnosis high = HighResidual(problem, estimate->rms_px, limit_px, WorstOf(*estimate));
+    notes.insert(notes.begin(), LensAsCure(problem, high));
     Edge edge = FailedEdge(problem, std::move(notes));
     edge.captures = estimate->residuals;
     edge.figures["rms_px"] = estimate->rms_px;
     return edge;
   }
   auto uncertainty = Jackknife(problem, *estimate);
-  if (!uncertainty) return FailedEdge(problem, {IllConditioned(problem, uncertainty.error().what)});
+  if (!uncertainty)
+    return FailedEdge(problem, {LensAsCure(problem, IllConditioned(problem, uncertainty.error().what))});
   return GoodEdge(problem, *estimate, std::move(*uncertainty), std::move(notes));
 }
 

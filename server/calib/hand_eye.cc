@@ -20,6 +20,7 @@ constexpr double kCorrelationLeast_ratio = 0.3;
 constexpr int kOffsetRoundsMax = 6;
 constexpr double kOffsetSame_s = 1e-5;
 constexpr std::size_t kStreamBlocks = 20;  // stretches of time that are left out one at a time
+constexpr std::size_t kStreamSamplesMin = 2 * kStreamBlocks;
 
 SideNoise NoiseOf(const MotionSide& side, const std::vector<char>& used, double factor) {
   MotionProblem one;
@@ -140,7 +141,9 @@ OrDiagnosis<HandEyeResult> FromStreams(const HandEyeProblem& problem) {
   work.estimates_offset = true;
   for (int round = 0; round < kOffsetRoundsMax; ++round) {
     SetSamples(PosesInCommon(a, b, offset_s), work);
-    if (work.captures.size() < 2 * kStreamBlocks) return tl::unexpected(TooFewMotions(problem, work.captures.size()));
+    if (work.captures.size() < kStreamSamplesMin)
+      return tl::unexpected(
+          TooFewSamples(problem, work.captures.size(), kStreamSamplesMin, SecondsInCommon(a, b, offset_s)));
     if (auto fitted = FitMotion(problem, work); !fitted) return tl::unexpected(fitted.error());
     const double shift_s = work.state.shared_b[kStreamOffset];
     offset_s += shift_s;

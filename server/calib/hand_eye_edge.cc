@@ -5,6 +5,7 @@
 #include "server/calib/hand_eye.h"
 #include "server/calib/hand_eye_diagnoses.h"
 #include "server/calib/hand_eye_work.h"
+#include "server/calib/layout_diagnosis.h"
 
 namespace rigcal::calib {
 namespace {
@@ -37,6 +38,7 @@ Edge FailedEdge(const HandEyeProblem& problem, const Diagnosis& diagnosis) {
   edge.state = EdgeState::kFailed;
   edge.diagnoses = {diagnosis};
   for (Diagnosis& missed : MissedViews(problem)) edge.diagnoses.push_back(std::move(missed));
+  PutLayoutFirst(edge.diagnoses);
   for (const CaptureId& capture : AllCaptures(problem))
     edge.captures.push_back({capture, 0.0, false, "the pair was not solved"});
   return edge;

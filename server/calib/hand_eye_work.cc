@@ -91,6 +91,7 @@ OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem) {
   std::set<CaptureId> all;
   for (const auto* side : {&*a, &*b})
     for (const auto& [capture, candidates] : *side) all.insert(capture);
+  std::size_t repeated = 0;
   for (const CaptureId& capture : all) {
     const auto of_a = a->find(capture), of_b = b->find(capture);
     if (of_a == a->end() || of_b == b->end()) {
@@ -101,13 +102,15 @@ OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem) {
       return IsRepeat(problem.a, *a, other, capture) && IsRepeat(problem.b, *b, other, capture);
     });
     if (earlier != work.captures.end()) {
+      ++repeated;
       work.unused.emplace(capture, "shows the same as " + earlier->str());
       continue;
     }
     work.captures.push_back(capture);
     work.candidates.push_back({of_a->second, of_b->second});
   }
-  if (work.captures.size() < kHandEyeMin) return tl::unexpected(TooFewMotions(problem, work.captures.size()));
+  if (work.captures.size() < kHandEyeMin)
+    return tl::unexpected(TooFewMotions(problem, work.captures.size(), repeated));
   return work;
 }
 
@@ -272,7 +275,7 @@ bool Reconsider(HandEyeWork& work) {
 
 OrDiagnosis<void> StartFit(const HandEyeProblem& problem, HandEyeWork& work) {
   auto consensus = FindConsensus(work.candidates, problem.T_a_b_nominal);
-  if (!consensus) return tl::unexpected(TooFewMotions(problem, work.captures.size()));
+  if (!consensus) return tl::unexpected(MotionsContradict(problem, work.captures.size()));
   work.choices = consensus->choices;
   SetChosen(work.candidates, work);
   work.state = StateFrom(work.problem, consensus->X, consensus->Z);

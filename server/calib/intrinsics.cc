@@ -8,6 +8,7 @@
 #include "server/calib/camera_start.h"
 #include "server/calib/diagnoses.h"
 #include "server/calib/joint_covariance.h"
+#include "server/calib/lens_choice.h"
 #include "server/calib/observability.h"
 #include "server/calib/pose_choice.h"
 #include "server/calib/selection.h"
@@ -246,14 +247,12 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
     ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
   }
   estimate.rms_px = std::sqrt(2 * ssr_px2 / ResidualCount(work.joint));
-  const double limit_px = std::max(1.0, kHighRmsRatio * work.views.width_px);
+  const double limit_px = HighRms_px(work.views.width_px);
   if (!(estimate.rms_px <= limit_px)) return tl::unexpected(CameraHighResidual(problem, estimate.rms_px, limit_px));
   return estimate;
 }
 
-}  // namespace
-
-OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const CameraEstimate* start) {
+OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const CameraEstimate* start) {
   try {
     const auto work = start != nullptr ? FromStart(problem, *start) : FromScratch(problem);
     if (!work) return tl::unexpected(work.error());
@@ -262,6 +261,22 @@ OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const C
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};
     return tl::unexpected(CameraError(problem.camera.id, "internal", error));
   }
+}
+
+}  // namespace
+
+OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const CameraEstimate* start) {
+  auto estimate = Estimated(problem, start);
+  if (!estimate && start == nullptr) return tl::unexpected(WithLensAsCure(std::move(estimate.error()), {problem}));
+  return estimate;
+}
+
+OrDiagnosis<CameraEstimate> EstimateCameraAs(const CameraProblem& problem, CameraModel model) {
+  CameraProblem other = problem;
+  other.camera.intrinsics.reset();
+  other.camera.intrinsics_sigma.reset();
+  other.camera.camera_model = model;
+  return Estimated(other, nullptr);
 }
 
 OrDiagnosis<CameraEstimate> EstimateCameraBy(const CameraSolver& solver, const CameraProblem& problem) {

@@ -104,7 +104,7 @@ tl::unexpected<Error> NotConverged(const JointProblem& problem) {
   if (EstimatesRational(problem))
     return Fail(ErrorCode::kInvalidInput,
                 "the joint refinement did not converge: these views do not tell a pinhole_rational distortion",
-                "Take captures with the board in all corners of the picture, or use the model pinhole_radtan.");
+                "Take captures with the board in all corners of the picture.");
   return Fail(
       ErrorCode::kInvalidInput, "the joint refinement did not converge",
       "Check that all pictures show this board, that those of a capture belong together, and take more captures.");

@@ -3,6 +3,7 @@
 #include "server/calib/camera_diagnoses.h"
 #include "server/calib/camera_fit.h"
 #include "server/calib/diagnoses.h"
+#include "server/calib/layout_diagnosis.h"
 #include "server/calib/lidar_camera.h"
 #include "server/calib/lidar_camera_diagnoses.h"
 #include "server/calib/systematics.h"
@@ -19,8 +20,9 @@ bool NoPicture(const LidarCameraCapture& capture) {
 bool NoCloud(const LidarCameraCapture& capture) {
   return capture.cloud && !capture.cloud->found && capture.cloud->points == 0;
 }
+bool OtherLayoutInPicture(const LidarCameraCapture& capture) { return capture.view && ShowsOtherLayout(*capture.view); }
 bool NotInPicture(const LidarCameraCapture& capture) {
-  return !NoPicture(capture) && !(capture.view && capture.view->found);
+  return !NoPicture(capture) && !OtherLayoutInPicture(capture) && !(capture.view && capture.view->found);
 }
 bool NotInCloud(const LidarCameraCapture& capture) {
   return !NoCloud(capture) && !(capture.cloud && capture.cloud->found);
@@ -34,6 +36,8 @@ std::vector<CaptureId> Where(const LidarCameraProblem& problem, Missing missing)
 }
 
 void AddMissing(const LidarCameraProblem& problem, std::vector<Diagnosis>& diagnoses) {
+  if (const auto captures = Where(problem, OtherLayoutInPicture); !captures.empty())
+    diagnoses.push_back(OtherLayout(problem.camera.id, problem.board, captures));
   if (const auto captures = Where(problem, NoPicture); !captures.empty())
     diagnoses.push_back(PicturesUnreadable(problem, captures));
   if (const auto captures = Where(problem, NoCloud); !captures.empty())
@@ -58,6 +62,7 @@ Edge FailedEdge(const LidarCameraProblem& problem, std::vector<Diagnosis> diagno
   edge.state = EdgeState::kFailed;
   edge.diagnoses = std::move(diagnoses);
   AddMissing(problem, edge.diagnoses);
+  PutLayoutFirst(edge.diagnoses);
   for (const LidarCameraCapture& capture : problem.captures)
     edge.captures.push_back({capture.capture, 0.0, false, "the pair was not solved"});
   return edge;

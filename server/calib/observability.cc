@@ -60,8 +60,6 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
     diagnoses.push_back(NoCommonView(problem));
   else
     diagnoses.push_back(TooFewCaptures(problem, both));
-  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
-    for (Diagnosis& missed : Missed(problem, camera)) diagnoses.push_back(std::move(missed));
   if (selection.repeated.empty()) return diagnoses;
   std::vector<CaptureId> repeated;
   for (const std::size_t idx : selection.repeated) repeated.push_back(problem.captures[idx].capture);

@@ -6,14 +6,6 @@
 namespace rigcal::calib {
 namespace {
 
-CameraProblem CameraOf(const StereoProblem& problem, const Sensor& camera,
-                       std::optional<BoardView> StereoCapture::*view) {
-  CameraProblem one{camera, problem.board, {}};
-  for (const StereoCapture& capture : problem.captures)
-    if (capture.*view) one.views.emplace_back(capture.capture, *(capture.*view));
-  return one;
-}
-
 std::map<CaptureId, Se3> BoardsOfB(const StereoEstimate& estimate) {
   std::map<CaptureId, Se3> T_b_board;
   for (const auto& [capture, T_a_board] : estimate.T_a_board) T_b_board[capture] = estimate.T_a_b.Inverse() * T_a_board;
@@ -31,9 +23,15 @@ void AddSide(const HandEyeSide& side, const CameraEstimate* camera, std::vector<
 
 }  // namespace
 
+CameraProblem CameraOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera) {
+  CameraProblem one{camera == &StereoCapture::a ? problem.camera_a : problem.camera_b, problem.board, {}};
+  for (const StereoCapture& capture : problem.captures)
+    if (capture.*camera) one.views.emplace_back(capture.capture, *(capture.*camera));
+  return one;
+}
+
 std::vector<CameraFit> FitsOf(const StereoProblem& problem, const StereoEstimate* estimate) {
-  const CameraProblem a = CameraOf(problem, problem.camera_a, &StereoCapture::a);
-  const CameraProblem b = CameraOf(problem, problem.camera_b, &StereoCapture::b);
+  const CameraProblem a = CameraOf(problem, &StereoCapture::a), b = CameraOf(problem, &StereoCapture::b);
   if (estimate == nullptr) return {SeenBy(a), SeenBy(b)};
   return {FitOf(a, estimate->intrinsics_a, estimate->T_a_board),
           FitOf(b, estimate->intrinsics_b, BoardsOfB(*estimate), estimate->turn_b)};

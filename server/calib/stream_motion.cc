@@ -7,7 +7,6 @@ namespace rigcal::calib {
 namespace {
 
 constexpr double kNanoseconds = 1e-9;
-constexpr double kGapMax_s = 0.5;        // between rows: longer, and nothing is interpolated
 constexpr std::size_t kCellsMax = 4096;  // of a stream, in the first search
 constexpr double kCell_s = 0.02;
 constexpr double kOverlapLeast_ratio = 0.25;  // of the shorter stream
@@ -78,6 +77,20 @@ double FineCorrelation(const Turning& a, const Turning& b, double offset_s) {
 
 }  // namespace
 
+StreamSpan SpanOf(const PoseTable& stream) {
+  StreamSpan span;
+  if (stream.empty()) return span;
+  span.seconds = SecondsSince(stream, stream.size() - 1);
+  for (const TimedPose& row : stream)
+    span.turn_rad = std::max(span.turn_rad, stream.front().T_world_body.q.angularDistance(row.T_world_body.q));
+  return span;
+}
+
+double SecondsInCommon(const PoseTable& a, const PoseTable& b, double offset_s) {
+  const double until_s = std::min(SpanOf(a).seconds, SpanOf(b).seconds + offset_s);
+  return std::max(0.0, until_s - std::max(0.0, offset_s));
+}
+
 std::optional<ClockOffset> CorrelateClocks(const PoseTable& table_a, const PoseTable& table_b) {
   if (table_a.size() < 2 || table_b.size() < 2) return std::nullopt;
   const Turning a(table_a), b(table_b);
@@ -110,7 +123,7 @@ std::optional<StreamPose> PoseAt(const PoseTable& stream, double time_s) {
       [&](const TimedPose& row, double t) { return kNanoseconds * static_cast<double>(row.stamp.ns - origin_ns) < t; });
   const auto i = static_cast<std::size_t>(after - stream.begin());
   const double from_s = SecondsSince(stream, i - 1), gap_s = SecondsSince(stream, i) - from_s;
-  if (gap_s > kGapMax_s) return std::nullopt;
+  if (gap_s > kStreamGapMax_s) return std::nullopt;
   const Vector6d step = (stream[i - 1].T_world_body.Inverse() * stream[i].T_world_body).Log();
   return StreamPose{stream[i - 1].T_world_body * Se3::Exp((time_s - from_s) / gap_s * step), step / gap_s};
 }

@@ -14,9 +14,19 @@ struct ClockOffset {
   double correlation_ratio = 0.0;  // of the angular speeds at that offset: 1 is perfect
 };
 
+// From the first row to the last, and the farthest that it turned from its first pose. Nothing of an empty stream.
+struct StreamSpan {
+  double seconds = 0.0, turn_rad = 0.0;
+};
+[[nodiscard]] StreamSpan SpanOf(const PoseTable& stream);
+[[nodiscard]] double SecondsInCommon(const PoseTable& a, const PoseTable& b, double offset_s);
+
 // By correlation of the angular speeds over every offset at which the streams overlap by a fair part. Nothing where
 // they cannot overlap or do not turn.
 [[nodiscard]] std::optional<ClockOffset> CorrelateClocks(const PoseTable& a, const PoseTable& b);
+
+// Between rows: longer, and nothing is interpolated.
+constexpr double kStreamGapMax_s = 0.5;
 
 // Pose and velocity of a stream at a time since its first row, between two rows; nothing outside, or in a gap.
 struct StreamPose {

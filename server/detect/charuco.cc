@@ -9,6 +9,7 @@
 #include "server/detect/corner_refine.h"
 #include "server/detect/marker_layout.h"
 #include "server/detect/plane_map.h"
+#include "server/model/board_layout.h"
 
 namespace rigcal::detect {
 namespace {
@@ -164,8 +165,9 @@ std::string Squares(const Target& target) {
 std::string WhyNot(const Target& target, const Sight& sight, std::size_t corners) {
   const std::string board = "no charuco board of " + Squares(target) + " in the picture";
   if (sight.other_layout)
-    return target.legacy_layout ? board + "; it looks like the layout of OpenCV 4.6 and later: set legacy_layout: false"
-                                : board + "; it looks like the legacy layout: set legacy_layout: true";
+    return board + "; it looks like the " +
+           (target.legacy_layout ? "layout of OpenCV 4.6 and later: " : "legacy layout: ") + std::string(kSetsLayout) +
+           (target.legacy_layout ? "false" : "true");
   if (sight.seen == 0 && sight.strangers > 0)
     return board + "; the " + std::to_string(sight.strangers) + " markers in it have ids that this board does not have";
   if (sight.seen == 0)

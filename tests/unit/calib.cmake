@@ -12,7 +12,7 @@ rigcal_test(calib_statistics_test COMPUTES WHOLE
   SOURCES unit/calib_statistics_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_real_test COMPUTES
-  SOURCES unit/calib_real_test.cc unit/calib_fisheye_real_test.cc
+  SOURCES unit/calib_real_test.cc unit/calib_fisheye_real_test.cc unit/calib_wide_real_test.cc
   DEPS rigcal_calib rigcal_detect)
 rigcal_program(stereo_measure
   SOURCES bench/stereo_measure.cc

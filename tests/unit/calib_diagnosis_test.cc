@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include "server/calib/camera_fit.h"
+#include "server/calib/lens_choice.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {
@@ -77,6 +79,56 @@ TEST(Diagnosis, APictureThatCannotBeReadIsNotAHiddenBoard) {
   const Edge edge = EstimateEdge(problem);
   ExpectNote(edge, "picture_unreadable", "1 picture of front_left cannot be read and take no part: 008. The first of");
   ExpectNote(edge, "board_not_found", "front_left does not show the 9 x 6 target 'board' in 1 capture: 007");
+}
+
+BoardView LegacyView() {
+  BoardView view = NotFoundView();
+  view.why_not = "no charuco board in the picture; it looks like the legacy layout: set legacy_layout: true";
+  return view;
+}
+
+// Whatever else makes the edge fail: the description of the board comes first.
+TEST(Diagnosis, TheOtherLayoutIsSaidFirstWhereTheEdgeFails) {
+  StereoProblem few = Usual(6);
+  for (const std::size_t k : {0U, 2U, 3U, 5U}) few.captures[k].b = LegacyView();
+  auto flat = Photographed(VirtualPair(), FlatBoards(10, Eigen::Vector3d::Zero()), 0.2, 2);
+  flat.captures[4].b = LegacyView();
+  for (const auto& [problem, code, count] :
+       {std::tuple{few, "too_few_captures", "In 4 captures of front_right (000, 002, 003, 005)"},
+        {flat, "no_tilt", "In 1 capture of front_right (004)"}}) {
+    const Edge edge = EstimateEdge(problem);
+    ExpectFailed(edge, code, "front_left");
+    ExpectFailed(edge, "board_layout", count);
+    EXPECT_EQ(edge.diagnoses.front().code, "board_layout");
+    EXPECT_THAT(edge.diagnoses.front().cure, HasSubstr("Set legacy_layout: true for target 'board'"));
+    EXPECT_EQ(Find(edge, "board_not_found"), nullptr) << "nobody has to show the board better";
+  }
+}
+
+TEST(Diagnosis, TheOtherLayoutIsANoteOnAGoodEdge) {
+  StereoProblem problem = Usual(12);
+  problem.board.legacy_layout = true;
+  problem.captures[7].a = LegacyView();
+  ExpectNote(EstimateEdge(problem), "board_layout", "of OpenCV 4.6 and later");
+}
+
+// A wide lens under a model that cannot bend so far: more captures would not help.
+TEST(Diagnosis, AnotherLensModelIsTheCureWhereItFits) {
+  const StereoProblem problem = Photographed(PairOf(CameraModel::kFisheyeKb4), SpreadBoards(14), 0.02, 3);
+  CameraProblem camera = CameraOf(problem, &StereoCapture::a);
+  const Diagnosis high{"high_residual", "front_left does not fit.", "Take more captures."};
+  EXPECT_FALSE(FindBetterLens(camera)) << "its own model fits";
+  EXPECT_EQ(WithLensAsCure(high, {camera}).cure, high.cure);
+  camera.camera.camera_model = CameraModel::kPinholeRadtan;
+  const auto lens = FindBetterLens(camera);
+  ASSERT_TRUE(lens);
+  EXPECT_EQ(lens->model, CameraModel::kFisheyeKb4);
+  EXPECT_LT(lens->rms_px, 0.04);
+  EXPECT_THAT(WithLensAsCure(high, {camera}).cure, testing::StartsWith("Give front_left 'model: fisheye_kb4'"));
+  const Diagnosis few{"few_captures", "Only 6 captures.", "Take more captures."};
+  EXPECT_EQ(WithLensAsCure(few, {camera}).cure, few.cure) << "what no lens can cure";
+  camera.camera.intrinsics = PairOf(CameraModel::kFisheyeKb4).a;
+  EXPECT_FALSE(FindBetterLens(camera)) << "given intrinsics are not doubted here";
 }
 
 TEST(Diagnosis, NoCommonView) {

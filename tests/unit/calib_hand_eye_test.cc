@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "server/calib/hand_eye_diagnoses.h"
 #include "server/calib/hand_eye_work.h"
 #include "server/calib/motion_start.h"
 #include "server/calib/stream_motion.h"
@@ -270,6 +271,55 @@ TEST(HandEye, StreamsWithNothingInCommonAreADiagnosis) {
   EXPECT_EQ(edge.state, EdgeState::kFailed);
   problem.b.poses.resize(1);
   EXPECT_EQ(EstimateHandEyeEdge(problem).diagnoses.front().code, "no_common_time");
+}
+
+HandEyeProblem Cut(HandEyeProblem streams, std::size_t rows_a, std::size_t step_a, std::size_t rows_b) {
+  PoseTable a;
+  for (std::size_t i = 0; i < rows_a; ++i) a.push_back(streams.a.poses[i * step_a]);
+  streams.a.poses = std::move(a);
+  streams.b.poses.resize(rows_b);
+  return streams;
+}
+
+// The number that is needed is the one that was the limit.
+TEST(HandEye, StreamsWithFewPosesInCommonSayHowManyAreNeeded) {
+  const HandEyeProblem streams = Streamed(Driven(Drive::kFree, 1, 0.3, 7), {0.0005, 0.0005}, 40, 0, 7);
+  const Edge edge = EstimateHandEyeEdge(Cut(streams, 32, 10, 90));  // ten poses a second, for three seconds
+  ASSERT_EQ(edge.diagnoses.front().code, "too_few_poses") << edge.diagnoses.front().what;
+  EXPECT_THAT(edge.diagnoses.front().what,
+              testing::ContainsRegex("at only [1-3][0-9] places of their path.*; at least 40 are needed"));
+  EXPECT_THAT(edge.diagnoses.front().cure, HasSubstr("half a minute or more"));
+  const Diagnosis slow = TooFewSamples(streams, 28, 40, 56);
+  EXPECT_THAT(slow.what, HasSubstr("at only 28 places of their path, in the 56.0 s that both recorded"));
+  EXPECT_THAT(slow.cure, HasSubstr("Record ten or more poses a second"));
+  EXPECT_EQ(slow.cure.find("half a minute"), std::string::npos);
+}
+
+// A recording of 56 s is not told to be of half a minute.
+TEST(HandEye, StreamsThatDoNotAgreeAreToldWhatIsWrongWithThem) {
+  const HandEyeProblem streams = Streamed(Driven(Drive::kFree, 1, 0.3, 8), {0.0005, 0.0005}, 56, 0, 8);
+  const auto said = [](const HandEyeProblem& problem) {
+    const Edge edge = EstimateHandEyeEdge(problem);
+    EXPECT_EQ(edge.diagnoses.front().code, "no_common_time") << edge.diagnoses.front().what;
+    return edge.diagnoses.front();
+  };
+  HandEyeProblem still = streams;
+  for (TimedPose& row : still.b.poses) row.T_world_body = streams.b.poses.front().T_world_body;
+  EXPECT_THAT(said(still).what, HasSubstr("56.0 s and 53.7 s long, turned by up to "));
+  EXPECT_THAT(said(still).cure, testing::StartsWith("Turn the robot to and fro, by 20 degrees"));
+  EXPECT_THAT(said(Cut(streams, 100, 1, 100)).cure, HasSubstr("half a minute or more"));
+  const Diagnosis others = NoCommonTime(streams, 0.12);
+  EXPECT_THAT(others.what, HasSubstr("best correlation 0.12; "));
+  EXPECT_THAT(others.cure, testing::StartsWith("Check that both are of the same drive"));
+}
+
+TEST(HandEye, CapturesThatRepeatAreNotCalledMissing) {
+  const VirtualBody body = Driven(Drive::kStill, 28, 0, 3);
+  const Edge edge = EstimateHandEyeEdge(Tracked(body, {}, {}, 3));
+  ASSERT_EQ(edge.diagnoses.front().code, "too_few_captures");
+  EXPECT_THAT(edge.diagnoses.front().what,
+              HasSubstr("have a pose each in 28 captures, but 27 of them repeat the pose of another; at least 4 "
+                        "different ones are needed"));
 }
 
 TEST(HandEye, GivesTheSameBytesTwice) {
