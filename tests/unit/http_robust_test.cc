@@ -42,7 +42,9 @@ TEST_F(HttpFixture, HalfRequestsUpToOneBelowTheLimitDoNotStopIt) {
 // Each comes back as soon as it is put out.
 class HalfOpenClients {
  public:
-  HalfOpenClients(int port, int count) : keeps_([this, port, count] { Keep(port, count); }) { begun_.get_future().wait(); }
+  HalfOpenClients(int port, int count) : keeps_([this, port, count] { Keep(port, count); }) {
+    begun_.get_future().wait();
+  }
   ~HalfOpenClients() {
     stopping_ = true;
     keeps_.join();
