@@ -13,6 +13,9 @@ void PrintServer(const Document& document, std::ostream& out) {
   const std::string address = Plain(document["http_address"].Text());
   if (!address.empty()) out << ", reports at " << address << "/";
   out << '\n';
+  const Document problem = document["problem"];
+  if (!problem.IsNull())
+    out << "The server is not well: " << Plain(problem["what"].Text()) << ". " << Plain(problem["cure"].Text()) << '\n';
 }
 
 void PrintStatus(const Document& document, std::ostream& out) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "server/base/durable_file.h"
+#include "server/base/log.h"
 #include "server/base/version.h"
 #include "server/formats/limits_text.h"
 
@@ -55,6 +56,13 @@ Result<limits::Limits> LimitsOf(const Config& config) {
   }
   RIGCAL_TRY(formats::CheckTogether(limits));
   return limits;
+}
+
+Status EnforceLimits(const Config& config) {
+  RIGCAL_ASSIGN(const limits::Limits limits, LimitsOf(config));
+  limits::Enforce(limits);
+  if (const std::string changed = formats::ChangedLimits(limits); !changed.empty()) LogInfo("limits: " + changed);
+  return {};
 }
 
 Result<http::Options> HttpOptions(const Config& config) {

@@ -32,5 +32,7 @@ void AddOptions(CLI::App& app, Config& config);
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
 // kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given.
 [[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);
+// Puts them in force, before any thread is made; the log tells of those that are not the default.
+[[nodiscard]] Status EnforceLimits(const Config& config);
 
 }  // namespace rigcal

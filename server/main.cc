@@ -14,12 +14,12 @@
 #include "server/base/version.h"
 #include "server/config.h"
 #include "server/dds/service.h"
-#include "server/formats/limits_text.h"
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/runner.h"
 #include "server/pipeline/startup.h"
 #include "storage/folder_lock.h"
+#include "storage/room.h"
 
 namespace rigcal {
 namespace {
@@ -51,57 +51,56 @@ pipeline::Announcer AnnouncerTo(dds::Service& service) {
   return announcer;
 }
 
-// `address` is known once the server has its port; a request that is faster waits for it.
-http::Answer PagesOf(const std::filesystem::path& folder, pipeline::RevisionCache& revisions, Stamp started_at,
-                     const std::shared_future<std::string>& address) {
-  return [folder, &revisions, started_at, address](const std::string& path,
-                                                   const std::string& query) -> Result<http::Page> {
+using ContextOf = std::function<pipeline::AnswerContext(storage::Store&)>;
+
+http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& context_of) {
+  return [folder, context_of](const std::string& path, const std::string& query) -> Result<http::Page> {
     thread_local Result<storage::Store> store = storage::Store::Open(folder);
     if (!store) store = storage::Store::Open(folder);
     if (!store) return Fail(store.error());
-    RIGCAL_ASSIGN(auto page,
-                  pipeline::AnswerPage({*store, SystemClock(), revisions, started_at, address.get()}, path, query));
-    return http::Page{std::move(page.body), std::move(page.content_type), {}, page.immutable};
+    RIGCAL_ASSIGN(auto page, pipeline::AnswerPage(context_of(*store), path, query));
+    return http::Page{std::move(page.body), std::move(page.content_type), {}, page.immutable, page.status};
   };
-}
-
-// Before any thread is made.
-Status EnforceLimits(const Config& config) {
-  RIGCAL_ASSIGN(const limits::Limits limits, LimitsOf(config));
-  limits::Enforce(limits);
-  if (const std::string changed = formats::ChangedLimits(limits); !changed.empty()) LogInfo("limits: " + changed);
-  return {};
 }
 
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_TRY(storage::LockFolder(config.data));
+  storage::KeepReserve(config.data);
   RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(storage::Store query_store, storage::Store::Open(config.data));
   const Stamp started_at = SystemClock().Now();
   pipeline::RevisionCache revisions;
+  pipeline::ServerHealth health(config.data, SystemClock());
+  pipeline::UndrawnReports undrawn;
+  WakeRelay relay;
+  // The address is known once the server has its port; a request that is faster waits for it.
   std::promise<std::string> address_promise;
   const std::shared_future<std::string> address_future = address_promise.get_future().share();
-  RIGCAL_ASSIGN(const http::Server http,
-                http::Server::Start(http_options, PagesOf(config.data, revisions, started_at, address_future)));
+  const ContextOf context_of = [&](storage::Store& store) -> pipeline::AnswerContext {
+    return {store,    SystemClock(),        revisions, started_at, address_future.get(), &health,
+            &undrawn, [&] { relay.Wake(); }};
+  };
+  RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.data, context_of)));
   const std::string address = "http://" + http_options.host + ":" + std::to_string(http.port());
   address_promise.set_value(address);
 
-  WakeRelay relay;
   dds::Callbacks callbacks;
   callbacks.answer = [&](const std::string& verb, const std::string& json) {
-    return pipeline::Answer({query_store, SystemClock(), revisions, started_at, address}, verb, json);
+    return pipeline::Answer(context_of(query_store), verb, json);
   };
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
-                dds::Service::Start({config.participant, config.data, &SystemClock()}, callbacks));
+                dds::Service::Start({config.participant, config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));
   RIGCAL_TRY(pipeline::AnnounceStored(start_store, announcer));
-  RIGCAL_ASSIGN(pipeline::Runner runner,
-                pipeline::Runner::Start({config.data, &SystemClock(), config.threads}, announcer));
+  if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
+  RIGCAL_ASSIGN(
+      pipeline::Runner runner,
+      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn}, announcer));
   relay.Set(&runner);
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()

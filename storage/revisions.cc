@@ -8,6 +8,10 @@ namespace {
 
 std::string RevisionsSubject(const RobotId& robot) { return "revisions of robot " + robot.str(); }
 
+std::string PublicationSubject(const RevisionKey& key) {
+  return "publication of revision " + std::to_string(key.number) + " of robot " + key.robot.str();
+}
+
 const std::string kColumns =
     "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest ";
 
@@ -104,9 +108,17 @@ Result<bool> IsPublished(Store& store, const RevisionKey& key) {
   });
 }
 
+Status QueuePublication(Store& store, const RevisionKey& key) {
+  return store.connection().Append(PublicationSubject(key), [&]() -> Status {
+    Query(store, "INSERT INTO waiting_publication VALUES (?, ?) ON CONFLICT DO NOTHING")
+        .Bind(key.robot, key.number)
+        .Run();
+    return {};
+  });
+}
+
 Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
-  const std::string subject = "publication of revision " + std::to_string(key.number) + " of robot " + key.robot.str();
-  return store.connection().Append(subject, [&]() -> Status {
+  return store.connection().Append(PublicationSubject(key), [&]() -> Status {
     Query(store, "INSERT INTO publication VALUES (?, ?, ?) ON CONFLICT DO NOTHING")
         .Bind(key.robot, key.number, now)
         .Run();

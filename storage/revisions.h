@@ -25,6 +25,8 @@ struct RevisionKey {
   int number = 0;
 };
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
+// To be published, perhaps again.
+[[nodiscard]] Status QueuePublication(Store& store, const RevisionKey& key);
 [[nodiscard]] Result<bool> IsPublished(Store& store, const RevisionKey& key);
 [[nodiscard]] Status AppendPublication(Store& store, const RevisionKey& key, Stamp now);
 

@@ -5,6 +5,7 @@
 #include "storage/connection.h"
 #include "storage/folders.h"
 #include "storage/migrate.h"
+#include "storage/room.h"
 
 namespace rigcal::storage {
 namespace fs = std::filesystem;
@@ -38,6 +39,14 @@ Status Prepare(Connection& connection, const fs::path& folder) {
 
 Result<Store> Store::Open(const fs::path& folder) {
   RIGCAL_TRY(MakeFolders(folder));
+  auto opened = OpenOnce(folder);
+  while (!opened && SpendReserve(folder)) opened = OpenOnce(folder);
+  if (opened || opened.error().code != ErrorCode::kStorage) return opened;
+  RIGCAL_TRY(ProbeRoom(folder));  // says more than SQLite does of a full disk
+  return opened;
+}
+
+Result<Store> Store::OpenOnce(const fs::path& folder) {
   const FileDescriptor lock = LockOpening(folder);
   RIGCAL_ASSIGN(FileDescriptor mark, MarkOpen(folder));
   try {

@@ -21,6 +21,7 @@ class FileDescriptor {
   }
   ~FileDescriptor();
   [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] int Release() { return std::exchange(fd_, -1); }  // the caller owns it now
   // Closes now and reports: some file systems report a failed write only here.
   [[nodiscard]] bool Close();
 

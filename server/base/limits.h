@@ -37,6 +37,7 @@ constexpr std::size_t kLidarPairCapturesMax = 64;      // of two lidars, held in
 constexpr std::size_t kCloudCamerasMax = 64;           // that colour one cloud
 constexpr std::size_t kOpenSessionsMax = 256;          // being received at once
 constexpr std::size_t kHttpConnectionsMax = 64;
+constexpr std::size_t kHttpWaitingMax = 384;  // connections whose request has not come whole
 constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;
 
 }  // namespace rigcal::limits

@@ -1,6 +1,5 @@
 #include "server/dds/intake.h"
 
-#include "server/base/log.h"
 #include "server/dds/from_idl.h"
 
 namespace rigcal::dds {
@@ -9,15 +8,12 @@ namespace {
 constexpr std::chrono::milliseconds kIdle{1000};
 constexpr int kSmallAtOnce = 256;
 constexpr int kEdgesAtOnce = 32;  // each is decomposed and hashed: some 20 us
-constexpr int kBigAtOnce = 1;  // a chunk is copied while it is loaned from DDS: a millisecond
+constexpr int kBigAtOnce = 1;     // a chunk is copied while it is loaned from DDS: a millisecond
 
 }  // namespace
 
-Intake::Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox)
-    : readers_(std::move(readers)),
-      waitset_(std::move(waitset)),
-      outbox_(&outbox),
-      inbox_(&inbox) {}
+Intake::Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part)
+    : readers_(std::move(readers)), waitset_(std::move(waitset)), outbox_(&outbox), inbox_(&inbox), part_(&part) {}
 
 Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant) {
   const std::vector<std::string> robots = {wire::kAllRobotsPartition};
@@ -28,29 +24,32 @@ Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant
   return Readers{std::move(headers), std::move(manifests), std::move(edges), std::move(chunks)};
 }
 
-Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox) {
+Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox, Part& part) {
   RIGCAL_ASSIGN(Readers readers, OpenReaders(participant));
   RIGCAL_ASSIGN(wire::WaitSet waitset, wire::WaitSet::Open(participant));
-  for (const dds_entity_t reader : {readers.headers.get(), readers.manifests.get(),
-                                    readers.edges.get(), readers.chunks.get()})
+  for (const dds_entity_t reader :
+       {readers.headers.get(), readers.manifests.get(), readers.edges.get(), readers.chunks.get()})
     RIGCAL_TRY(waitset.Attach(reader));
-  return Intake(std::move(readers), std::move(waitset), outbox, inbox);
+  return Intake(std::move(readers), std::move(waitset), outbox, inbox, part);
 }
 
 template <typename T>
-bool Intake::TakeInto(wire::Reader<T>& reader, int max) {
-  const auto taken = reader.Take(max, [&](const T& sample, const wire::SampleOrigin& origin) {
+Result<bool> Intake::TakeInto(wire::Reader<T>& reader, int max) {
+  RIGCAL_ASSIGN(const int taken, reader.Take(max, [&](const T& sample, const wire::SampleOrigin& origin) {
     if (auto arrival = FromIdl(sample, origin)) static_cast<void>(inbox_->Offer(std::move(*arrival)));
-  });
-  if (!taken) LogError(taken.error());
-  return taken && *taken > 0;
+  }));
+  return taken > 0;
 }
 
-bool Intake::TakeAll() {
-  bool any = TakeInto(readers_.headers, kSmallAtOnce);
-  any |= TakeInto(readers_.manifests, kBigAtOnce);
-  any |= TakeInto(readers_.edges, kEdgesAtOnce);
-  any |= TakeInto(readers_.chunks, kBigAtOnce);
+// One topic that fails keeps none of the others from being taken; its error is the result.
+Result<bool> Intake::TakeAll() {
+  const Result<bool> taken[] = {TakeInto(readers_.headers, kSmallAtOnce), TakeInto(readers_.manifests, kBigAtOnce),
+                                TakeInto(readers_.edges, kEdgesAtOnce), TakeInto(readers_.chunks, kBigAtOnce)};
+  bool any = false;
+  for (const Result<bool>& one : taken) {
+    RIGCAL_TRY(one);
+    any |= *one;
+  }
   return any;
 }
 
@@ -65,17 +64,29 @@ void Intake::MeetRobots() {
   meet(readers_.edges.Matched());
 }
 
+// What came is taken also where waiting for it failed.
+Status Intake::Round() {
+  const auto woken = waitset_.Wait(kIdle);
+  if (!woken || *woken) MeetRobots();
+  bool any = true;
+  while (any && !retry_->Stopped()) {
+    RIGCAL_ASSIGN(any, TakeAll());
+    if (woken) part_->Turn();
+  }
+  return woken ? Status() : Fail(woken.error());
+}
+
 void Intake::Run() {
-  while (!*stopped_) {
-    const auto woken = waitset_.Wait(kIdle);
-    if (!woken) return LogError(woken.error());
-    if (*woken) MeetRobots();
-    while (!*stopped_ && TakeAll()) continue;
+  while (!retry_->Stopped()) {
+    const Status done = Round();
+    if (done) continue;
+    part_->Fail(done.error());
+    retry_->Pause();
   }
 }
 
 void Intake::Stop() {
-  *stopped_ = true;
+  retry_->Stop();
   waitset_.Wake();
 }
 

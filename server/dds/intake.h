@@ -2,18 +2,20 @@
 // the process. Checks samples (from_idl) and hands them to thread W.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
+#include "server/base/vitals.h"
 #include "server/dds/inbox.h"
 #include "server/dds/outbox.h"
+#include "server/dds/retry.h"
 
 namespace rigcal::dds {
 
 class Intake {
  public:
-  // Outbox and inbox outlive it.
-  [[nodiscard]] static Result<Intake> Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox);
+  // Outbox, inbox and part, which is told of every failure, outlive it.
+  [[nodiscard]] static Result<Intake> Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox,
+                                           Part& part);
   void Run();   // until Stop
   void Stop();  // any thread
 
@@ -24,19 +26,21 @@ class Intake {
     wire::Reader<rigcal_wire_PairwiseResult> edges;
     wire::Reader<rigcal_wire_Chunk> chunks;
   };
-  Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox);
+  Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part);
 
   [[nodiscard]] static Result<Readers> OpenReaders(const wire::Participant& participant);
-  [[nodiscard]] bool TakeAll();  // true if there was something
+  [[nodiscard]] Status Round();          // waits, then takes until there is nothing left
+  [[nodiscard]] Result<bool> TakeAll();  // true if there was something
   template <typename T>
-  [[nodiscard]] bool TakeInto(wire::Reader<T>& reader, int max);
+  [[nodiscard]] Result<bool> TakeInto(wire::Reader<T>& reader, int max);
   void MeetRobots();
 
   Readers readers_;
   wire::WaitSet waitset_;
   Outbox* outbox_;
   Inbox* inbox_;
-  std::unique_ptr<std::atomic<bool>> stopped_ = std::make_unique<std::atomic<bool>>(false);
+  Part* part_;
+  std::unique_ptr<Retry> retry_ = std::make_unique<Retry>();
 };
 
 }  // namespace rigcal::dds

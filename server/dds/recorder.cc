@@ -26,7 +26,7 @@ std::chrono::nanoseconds DurationOfPayloads(const std::vector<Arrival>& arrivals
 }  // namespace
 
 Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
-                   const LastQuestion& asked, std::uint64_t incarnation)
+                   const LastQuestion& asked, std::uint64_t incarnation, Part& part)
     : stores_(std::move(stores)),
       inbox_(inbox),
       outbox_(outbox),
@@ -34,7 +34,8 @@ Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks&
       incarnation_(incarnation),
       sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
       batches_(stores_.takes, outbox, callbacks, clock, incarnation),
-      last_commit_(std::chrono::steady_clock::now()) {}
+      last_commit_(std::chrono::steady_clock::now()),
+      part_(part) {}
 
 void Recorder::Answer(const Refusal& refusal) {
   LogWarn("robot " + refusal.partition.str() + ": refused: " + Sentence(refusal.error));
@@ -86,6 +87,7 @@ void Recorder::Run() {
   while (!inbox_.Stopped()) {
     const Time next = TakeRound();
     CommitDue();
+    part_.Turn();
     std::this_thread::sleep_until(next);
   }
   sessions_.Settle();

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "server/base/vitals.h"
 #include "server/dds/batch_recorder.h"
 #include "server/dds/inbox.h"
 #include "server/dds/last_question.h"
@@ -18,7 +19,7 @@ class Recorder {
   };
   // All outlive it. `incarnation` differs for every start of a server.
   Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
-           const LastQuestion& asked, std::uint64_t incarnation);
+           const LastQuestion& asked, std::uint64_t incarnation, Part& part);
   void Run();  // until the inbox is stopped
 
  private:
@@ -36,6 +37,7 @@ class Recorder {
   SessionRecorder sessions_;
   BatchRecorder batches_;
   Time last_commit_;
+  Part& part_;
 };
 
 }  // namespace rigcal::dds

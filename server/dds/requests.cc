@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <future>
-#include <thread>
 
 #include "server/base/limits.h"
 #include "server/base/log.h"
@@ -46,28 +45,29 @@ std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
 }  // namespace
 
 Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
-                   const Answer& answer, LastQuestion& asked)
+                   const Answer& answer, LastQuestion& asked, Part& part)
     : participant_(std::move(participant)),
       reader_(std::move(reader)),
       waitset_(std::move(waitset)),
       answer_(answer),
-      asked_(asked) {}
+      asked_(asked),
+      part_(part) {}
 
 Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Answer& answer,
-                                                 LastQuestion& asked) {
+                                                 LastQuestion& asked, Part& part) {
   RIGCAL_ASSIGN(auto participant, OpenApart(options));
   RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
                                  participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(reader.get()));
   std::unique_ptr<Requests> made(
-      new Requests(std::move(participant), std::move(reader), std::move(waitset), answer, asked));
+      new Requests(std::move(participant), std::move(reader), std::move(waitset), answer, asked, part));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   return made;
 }
 
 void Requests::Stop() {
-  stopped_ = true;
+  retry_.Stop();
   waitset_.Wake();
 }
 
@@ -131,23 +131,31 @@ std::chrono::milliseconds Requests::Patience() const {
   return any_busy ? kBusyAgain : kRequestIdle;
 }
 
+// What was asked is answered also where waiting for it failed.
+Status Requests::Round() {
+  const auto woken = waitset_.Wait(Patience());
+  RIGCAL_ASSIGN(auto questions, TakeQuestions());
+  for (Question& question : questions) {
+    if (retry_.Stopped()) return {};
+    asked_.Note();
+    Add(std::move(question));
+    asked_.Note();  // an answer may take longer than what is kept clear after a question
+    if (!pending_.empty()) SendPending();
+  }
+  if (!pending_.empty()) SendPending();
+  return woken ? Status() : Fail(woken.error());
+}
+
 void Requests::Run() {
   SetThreadRank(ThreadRank::kAnswers);
-  while (!stopped_) {
-    if (const auto woken = waitset_.Wait(Patience()); !woken) {
-      LogError(woken.error());
-      std::this_thread::sleep_for(kRequestIdle);
+  while (!retry_.Stopped()) {
+    const Status done = Round();
+    if (done) {
+      part_.Turn();
+      continue;
     }
-    auto questions = TakeQuestions();
-    if (!questions) LogError(questions.error());
-    for (Question& question : questions.value_or(std::vector<Question>{})) {
-      if (stopped_) return;
-      asked_.Note();
-      Add(std::move(question));
-      asked_.Note();  // an answer may take longer than what is kept clear after a question
-      if (!pending_.empty()) SendPending();
-    }
-    if (!pending_.empty()) SendPending();
+    part_.Fail(done.error());
+    retry_.Pause();
   }
 }
 

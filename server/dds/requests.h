@@ -1,9 +1,9 @@
-// Thread Q: takes requests and answers them, on a participant of its own: its sockets and the threads of DDS behind them
-// are not those that sessions come in by. A request may come before the server's reply writer has met the reader of the
-// client that asked; a volatile reply would be lost, so it waits here until they have met, bounded in number and time.
+// Thread Q: takes requests and answers them, on a participant of its own: its sockets and the threads of DDS behind
+// them are not those that sessions come in by. A request may come before the server's reply writer has met the reader
+// of the client that asked; a volatile reply would be lost, so it waits here until they have met, bounded in number and
+// time.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <functional>
 #include <list>
@@ -11,8 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "server/base/vitals.h"
 #include "server/dds/last_question.h"
 #include "server/dds/reply_writers.h"
+#include "server/dds/retry.h"
 
 namespace rigcal::dds {
 
@@ -25,9 +27,9 @@ struct Question {
 class Requests {
  public:
   using Answer = std::function<Result<std::string>(const std::string& verb, const std::string& json)>;
-  // Answerer and `asked`, in which every question is noted, outlive it.
+  // Answerer, `asked`, in which every question is noted, and `part`, which is told of every failure, outlive it.
   [[nodiscard]] static Result<std::unique_ptr<Requests>> Open(const wire::ParticipantOptions& options,
-                                                              const Answer& answer, LastQuestion& asked);
+                                                              const Answer& answer, LastQuestion& asked, Part& part);
   void Run();   // until Stop
   void Stop();  // any thread
 
@@ -42,13 +44,14 @@ class Requests {
   };
 
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
-           const Answer& answer, LastQuestion& asked);
+           const Answer& answer, LastQuestion& asked, Part& part);
 
   [[nodiscard]] std::string DocumentOf(const Question& question) const;
   void Add(Question question);
   // True if there is nothing left to do for it.
   [[nodiscard]] bool Send(Pending& pending);
   void SendPending();
+  [[nodiscard]] Status Round();  // waits, takes, answers
   [[nodiscard]] Result<std::vector<Question>> TakeQuestions();
   [[nodiscard]] std::chrono::milliseconds Patience() const;
 
@@ -59,7 +62,8 @@ class Requests {
   const Answer& answer_;
   LastQuestion& asked_;
   std::list<Pending> pending_;
-  std::atomic<bool> stopped_ = false;
+  Part& part_;
+  Retry retry_;
 };
 
 }  // namespace rigcal::dds

@@ -13,6 +13,8 @@ namespace rigcal::dds {
 namespace {
 
 constexpr std::size_t kInboxItemsMax = 200'000;
+constexpr std::chrono::seconds kTurnWithin{
+    30};  // each goes round once per second at least, unless the disk holds it up
 
 std::uint64_t NewIncarnation() {
   std::random_device random;
@@ -22,9 +24,7 @@ std::uint64_t NewIncarnation() {
 }  // namespace
 
 struct Service::Impl {
-  Impl(wire::Participant opened, Callbacks given)
-      : participant(std::move(opened)),
-        callbacks(std::move(given)) {}
+  Impl(wire::Participant opened, Callbacks given) : participant(std::move(opened)), callbacks(std::move(given)) {}
   ~Impl();
   [[nodiscard]] Status Open(const Options& options);
   void Start();
@@ -35,6 +35,7 @@ struct Service::Impl {
   Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
   Outbox outbox{participant};
   LastQuestion asked;
+  Vitals alone{SystemClock()};
   std::unique_ptr<Requests> requests;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Intake> intake;
@@ -45,12 +46,15 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
   RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
   for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
-  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks.answer, asked));
+  Vitals& vitals = options.vitals == nullptr ? alone : *options.vitals;
+  RIGCAL_ASSIGN(requests,
+                Requests::Open(options.participant, callbacks.answer, asked, vitals.Expect("questions", kTurnWithin)));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
-  recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox,
-                                        callbacks, clock, asked, NewIncarnation());
-  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox));
+  recorder =
+      std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox, callbacks,
+                                 clock, asked, NewIncarnation(), vitals.Expect("recorder", kTurnWithin));
+  RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, vitals.Expect("intake", kTurnWithin)));
   intake = std::make_unique<Intake>(std::move(opened));
   return {};
 }

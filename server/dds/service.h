@@ -11,6 +11,7 @@
 
 #include "idl/dds.h"
 #include "server/base/stamp.h"
+#include "server/base/vitals.h"
 #include "server/model/graph.h"
 
 namespace rigcal::dds {
@@ -19,6 +20,7 @@ struct Options {
   wire::ParticipantOptions participant;
   std::filesystem::path folder;  // of the store: the service opens its own connections
   const Clock* clock = nullptr;
+  Vitals* vitals = nullptr;  // told how D, W and Q are; none: nobody asks
 };
 
 struct Callbacks {

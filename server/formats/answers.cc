@@ -39,6 +39,20 @@ void WriteAddress(JsonWriter& out, const std::string& http_address) {
   out.Text("http_address", http_address);
 }
 
+void WriteProblem(JsonWriter& out, const std::optional<Error>& problem) {
+  if (!problem) return out.Null("problem");
+  out.Object("problem", [&] { WriteErrorMembers(out, *problem); });
+}
+
+void WritePart(JsonWriter& out, const PartState& part) {
+  out.Object([&] {
+    out.Text("name", part.name);
+    out.Integer("failures", part.failures);
+    WriteProblem(out, part.problem);
+    WriteStamp(out, "since", part.problem ? std::optional(part.since) : std::nullopt);
+  });
+}
+
 }  // namespace
 
 std::string WriteRobots(const std::vector<RobotAnswer>& robots, Stamp now) {
@@ -121,6 +135,7 @@ std::string WriteStatus(const StatusAnswer& answer, Stamp now) {
     out.Integer("uptime_ns", answer.uptime_ns);
     out.Integer("jobs_waiting", answer.jobs_waiting);
     WriteAddress(out, answer.http_address);
+    WriteProblem(out, answer.problem);
     WriteRobotRows(out, answer.robots, now);
   });
 }
@@ -156,9 +171,16 @@ std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_
   });
 }
 
+std::optional<Error> HealthAnswer::problem() const {
+  for (const PartState& part : parts)
+    if (part.problem) return part.problem;
+  return std::nullopt;
+}
+
 std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
   return WriteObject([&](JsonWriter& out) {
-    out.Text("state", answer.problem ? "failing" : "ok");
+    const std::optional<Error> problem = answer.problem();
+    out.Text("state", problem ? "failing" : "ok");
     out.Text("version", answer.version);
     out.Integer("protocol", answer.protocol);
     out.Integer("schema", answer.schema);
@@ -169,8 +191,10 @@ std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
     out.Object("limits", [&] {
       for (const limits::Setting& one : limits::Settings()) out.Integer(one.name, answer.limits.*one.value);
     });
-    if (!answer.problem) return out.Null("problem");
-    out.Object("problem", [&] { WriteErrorMembers(out, *answer.problem); });
+    out.List("parts", [&] {
+      for (const PartState& part : answer.parts) WritePart(out, part);
+    });
+    WriteProblem(out, problem);
   });
 }
 

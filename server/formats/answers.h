@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/base/limits_in_force.h"
+#include "server/base/vitals.h"
 #include "server/formats/documents.h"
 
 namespace rigcal::formats {
@@ -65,6 +66,7 @@ struct StatusAnswer {
   std::int64_t jobs_waiting = 0;
   std::vector<RobotAnswer> robots;  // all, or the one asked for
   std::string http_address;         // of the reports; empty: none
+  std::optional<Error> problem;     // why the server cannot store or answer
 };
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);
 
@@ -93,9 +95,10 @@ struct HealthAnswer {
   std::int64_t disk_free_bytes = 0;
   int schema = 0;                // version of the store
   int protocol = 0;              // kWireProtocol
-  std::optional<Error> problem;  // absent: "ok"
+  std::vector<PartState> parts;  // one with a problem: "failing"
   std::string http_address;      // of the reports; empty: none
   limits::Limits limits;         // in force
+  [[nodiscard]] std::optional<Error> problem() const;  // the first of the parts
 };
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);
 

@@ -83,14 +83,19 @@ std::string RobotOf(const mg_connection* connection) {
 
 }  // namespace
 
-int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers) {
-  const std::string body = as_json ? ErrorDocument(error) : ErrorPage(status, error, RobotOf(connection));
-  Headers all = {{"Content-Type", as_json ? "application/json; charset=utf-8" : "text/html; charset=utf-8"},
-                 {"Cache-Control", "no-store"}};
+int SendOnce(mg_connection* connection, int status, const std::string& body, const std::string& content_type,
+             const Headers& headers) {
+  Headers all = {{"Content-Type", content_type}, {"Cache-Control", "no-store"}};
   all.insert(all.end(), headers.begin(), headers.end());
   SendHead(connection, status, static_cast<std::int64_t>(body.size()), all);
   if (!IsHead(connection)) (void)SendBytes(connection, body);
   return status;
+}
+
+int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers) {
+  const std::string body = as_json ? ErrorDocument(error) : ErrorPage(status, error, RobotOf(connection));
+  return SendOnce(connection, status, body, as_json ? "application/json; charset=utf-8" : "text/html; charset=utf-8",
+                  headers);
 }
 
 }  // namespace rigcal::http

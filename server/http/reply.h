@@ -23,6 +23,9 @@ void SendHead(mg_connection* connection, int status, std::int64_t body_bytes, co
 // Head and body; 304 if the client has this very body.
 int SendBody(mg_connection* connection, const std::string& body, const std::string& content_type,
              bool immutable = false);
+// Kept by nobody.
+int SendOnce(mg_connection* connection, int status, const std::string& body, const std::string& content_type,
+             const Headers& headers = {});
 int SendRedirect(mg_connection* connection, int status, const std::string& location);
 // A small page, or below /api the document {"error": {code, cure, what}}. Returns the status.
 int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers = {});

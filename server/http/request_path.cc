@@ -86,6 +86,6 @@ std::string RobotAbove(const std::string& path) {
   return below ? segments[1] : "";
 }
 
-bool IsApi(const std::string& path) { return path == "/api" || path.rfind("/api/", 0) == 0; }
+bool IsApi(const std::string& path) { return path == "/api" || path.rfind("/api/", 0) == 0 || path == "/healthz"; }
 
 }  // namespace rigcal::http

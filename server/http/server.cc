@@ -11,6 +11,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/http/error_body.h"
+#include "server/http/header_gate.h"
 #include "server/http/reply.h"
 #include "server/http/request_path.h"
 #include "server/http/static_file.h"
@@ -22,6 +23,7 @@ namespace {
 struct Site {
   std::filesystem::path folder;
   Answer answer;
+  std::unique_ptr<HeaderGate> gate;
 };
 
 bool MayRead(const char* method) { return std::strcmp(method, "GET") == 0 || std::strcmp(method, "HEAD") == 0; }
@@ -45,21 +47,28 @@ std::string MissingText(const std::string& file) {
   return is_page ? "there is no report of " + report : "the report of " + report + " has no file " + file.substr(name);
 }
 
-int ServeFile(mg_connection* connection, const Site& site, const std::string& file) {
+// A browser comes back by itself to what will be there soon.
+int SendFailure(mg_connection* connection, const Error& error, bool as_json) {
+  const int status = StatusOf(error.code);
+  if (error.code != ErrorCode::kBusy) return SendError(connection, status, error, as_json);
+  return SendError(connection, status, error, as_json, {{"Retry-After", "2"}, {"Refresh", "2"}});
+}
+
+int ServeFile(mg_connection* connection, const Site& site, const std::string& path, const std::string& file) {
   const int status = SendFile(connection, site.folder, file);
   if (status != 404) return status;
-  return SendError(connection, 404,
-                   {ErrorCode::kNotFound, MissingText(file),
-                    "If it was made just now, its report is still being drawn: reload this page in a moment."},
-                   false);
+  const auto why = Ask(site, path, "");
+  const Error missing{ErrorCode::kNotFound, MissingText(file), "Start at the list of robots."};
+  return SendFailure(connection, why ? missing : why.error(), false);
 }
 
 int ServePath(mg_connection* connection, const Site& site, const std::string& path, const std::string& query) {
   if (const auto address = WithSlash(path)) return SendRedirect(connection, 301, *address);
-  if (const auto file = PublishedFile(path)) return ServeFile(connection, site, *file);
+  if (const auto file = PublishedFile(path)) return ServeFile(connection, site, path, *file);
   const auto page = Ask(site, path, query);
-  if (!page) return SendError(connection, StatusOf(page.error().code), page.error(), IsApi(path));
+  if (!page) return SendFailure(connection, page.error(), IsApi(path));
   if (!page->location.empty()) return SendRedirect(connection, 302, page->location);
+  if (page->status != 200) return SendOnce(connection, page->status, page->body, page->content_type);
   return SendBody(connection, page->body, page->content_type, page->immutable);
 }
 
@@ -112,6 +121,12 @@ int OnRequest(mg_connection* connection) {
   return Serve(connection, *static_cast<const Site*>(mg_get_user_data(mg_get_context(connection))));
 }
 
+// The thread that accepts is number 0.
+void* OnThread(const mg_context* context, int kind) {
+  if (kind == 0) static_cast<const Site*>(mg_get_user_data(context))->gate->GuardThisThread();
+  return nullptr;
+}
+
 // What civetweb refuses by itself (a malformed request) looks like everything else.
 int OnError(mg_connection* connection, int status, const char* message) {
   SendError(connection, status,
@@ -143,12 +158,17 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   const std::string address = options.host + ":" + std::to_string(options.port);
   const std::string threads = std::to_string(limits::InForce().http_connections);
   const std::string timeout = std::to_string(options.request_timeout_ms);
-  const std::array<const char*, 15> settings = {"listening_ports",
+  // Without keep-alive, so that no worker waits for a request: those that wait are at the gate.
+  const std::array<const char*, 19> settings = {"listening_ports",
                                                 address.c_str(),
                                                 "num_threads",
                                                 threads.c_str(),
                                                 "request_timeout_ms",
                                                 timeout.c_str(),
+                                                "enable_keep_alive",
+                                                "no",
+                                                "listen_backlog",
+                                                "1024",
                                                 "decode_url",
                                                 "no",
                                                 "enable_auth_domain_check",
@@ -162,6 +182,7 @@ Result<mg_context*> StartContext(const Options& options, const Site& site) {
   callbacks.begin_request = OnRequest;
   callbacks.http_error = OnError;
   callbacks.log_message = OnLog;
+  callbacks.init_thread = OnThread;
   std::array<char, 256> text{};
   unsigned code = 0;
   mg_error_data error{&code, text.data(), text.size()};
@@ -184,7 +205,8 @@ Result<Server> Server::Start(const Options& options, Answer answer) {
   RIGCAL_TRY(CheckOptions(options));
   auto impl = std::make_unique<Impl>();
   impl->host = options.host;
-  impl->site = {options.folder, std::move(answer)};
+  impl->site = {options.folder, std::move(answer),
+                std::make_unique<HeaderGate>(std::chrono::milliseconds(options.request_timeout_ms))};
   RIGCAL_ASSIGN(impl->context, StartContext(options, impl->site));
   mg_server_port bound{};
   if (mg_get_server_ports(impl->context, 1, &bound) < 1 || bound.port <= 0)

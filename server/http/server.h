@@ -24,9 +24,11 @@ struct Page {
   std::string content_type;
   std::string location = {};  // not empty: a temporary redirect to this path instead of the body
   bool immutable = false;     // named by its content: a browser may keep it for ever
+  int status = 200;           // another one: kept by nobody
 };
 // `path` is decoded and normalised ("/", "/robots/x/", "/api/v1/robots", "/metrics", "/healthz"), `query` the raw query
-// string. Called from server threads, several at once. Not asked for the files of a numbered revision.
+// string. Called from server threads, several at once. Of the files of a numbered revision it is asked only for
+// those that are missing: the error says why. kBusy: 503, and to be asked again after some seconds (Retry-After).
 using Answer = std::function<Result<Page>(const std::string& path, const std::string& query)>;
 
 class Server {

@@ -164,6 +164,7 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   answer.version = std::string(Version());
   answer.http_address = context.http_address;
   answer.uptime_ns = now.ns - context.started_at.ns;
+  answer.problem = LookAtHealth(context).problem();
   RIGCAL_ASSIGN(answer.robots, LoadRobotRows(context.store, robot, now));
   for (const auto& row : answer.robots) answer.jobs_waiting += row.jobs_waiting;
   return formats::WriteStatus(answer, now);
@@ -185,7 +186,8 @@ Result<int> ReportNumber(const AnswerContext& context, const RobotId& robot, con
 Result<std::string> FilesOfReport(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
   RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
-  return ReportFiles(context.store, robot, number);
+  auto files = ReportFiles(context.store, robot, number);
+  return files ? std::move(files) : Fail(WhyMissing(context, robot, number, "index.html"));
 }
 
 Result<std::string> FileOfReport(const AnswerContext& context, const Parameters& parameters) {
@@ -207,26 +209,7 @@ Result<std::string> Due(const AnswerContext& context, const Parameters& paramete
 }
 
 Result<std::string> Health(const AnswerContext& context, const Parameters&) {
-  const Stamp now = context.clock.Now();
-  formats::HealthAnswer answer;
-  answer.version = std::string(Version());
-  answer.http_address = context.http_address;
-  answer.uptime_ns = now.ns - context.started_at.ns;
-  answer.schema = context.store.SchemaVersion();
-  answer.protocol = kWireProtocol;
-  answer.limits = limits::InForce();
-  std::error_code error;
-  const auto space = std::filesystem::space(context.store.folder(), error);
-  if (error)
-    answer.problem =
-        Error{ErrorCode::kStorage, "the data folder cannot be read: " + error.message(), "Check the disk."};
-  else
-    answer.disk_free_bytes = static_cast<std::int64_t>(space.available);
-  constexpr std::int64_t kDiskLow_bytes = 1LL << 30;
-  if (!error && answer.disk_free_bytes < kDiskLow_bytes)
-    answer.problem = Error{ErrorCode::kStorage, "less than 1 GiB is free on the disk of the data folder",
-                           "Make room before the next session."};
-  return formats::WriteHealth(answer, now);
+  return formats::WriteHealth(LookAtHealth(context), context.clock.Now());
 }
 
 const std::map<std::string, Verb>& Verbs() {
@@ -250,6 +233,27 @@ const std::map<std::string, Verb>& Verbs() {
 }
 
 }  // namespace
+
+formats::HealthAnswer LookAtHealth(const AnswerContext& context) {
+  ServerHealth alone(context.store.folder(), context.clock);
+  ServerHealth::Found found = (context.health == nullptr ? alone : *context.health).Look(context.store);
+  formats::HealthAnswer answer;
+  answer.version = std::string(Version());
+  answer.http_address = context.http_address;
+  answer.uptime_ns = context.clock.Now().ns - context.started_at.ns;
+  answer.schema = context.store.SchemaVersion();
+  answer.protocol = kWireProtocol;
+  answer.limits = limits::InForce();
+  answer.disk_free_bytes = found.disk_free_bytes;
+  answer.parts = std::move(found.parts);
+  return answer;
+}
+
+Error WhyMissing(const AnswerContext& context, const RobotId& robot, int number, const std::string& file) {
+  static const UndrawnReports none;
+  const UndrawnReports& undrawn = context.undrawn == nullptr ? none : *context.undrawn;
+  return WhyMissing(context.store, undrawn, {robot, number}, file, context.work_arrived);
+}
 
 Result<std::string> Answer(const AnswerContext& context, const std::string& verb, const std::string& json) {
   const auto found = Verbs().find(verb);

@@ -2,9 +2,13 @@
 // Reads only; one Store per calling thread.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "server/base/stamp.h"
+#include "server/formats/answers.h"
+#include "server/pipeline/health.h"
+#include "server/pipeline/missing_report.h"
 #include "server/pipeline/revision_cache.h"
 #include "storage/store.h"
 
@@ -15,7 +19,10 @@ struct AnswerContext {
   const Clock& clock;
   RevisionCache& revisions;
   Stamp started_at;
-  std::string http_address;  // "http://127.0.0.1:8080", empty without HTTP
+  std::string http_address;                 // "http://127.0.0.1:8080", empty without HTTP
+  ServerHealth* health = nullptr;           // none: disk and database are looked at, there are no threads
+  const UndrawnReports* undrawn = nullptr;  // none: every report can be drawn
+  std::function<void()> work_arrived = {};  // a report is to be drawn
 };
 
 // `json`: an object with the verb's parameters. Unknown verb, missing or bad parameter: kInvalidInput; unknown robot,
@@ -23,12 +30,18 @@ struct AnswerContext {
 [[nodiscard]] Result<std::string> Answer(const AnswerContext& context, const std::string& verb,
                                          const std::string& json);
 
+[[nodiscard]] formats::HealthAnswer LookAtHealth(const AnswerContext& context);
+// As in missing_report.h.
+[[nodiscard]] Error WhyMissing(const AnswerContext& context, const RobotId& robot, int number, const std::string& file);
+
 struct PageText {
   std::string body, content_type;
   bool immutable = false;  // named by its content
+  int status = 200;        // of HTTP; 503: the server is not well
 };
-// "/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css", "/assets/<script>", "/healthz", "/metrics", "/api/v1/<verb>"
-// with the query string as parameters.
+// "/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css", "/assets/<script>",
+// "/healthz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered report, which
+// is asked for only where it is missing: the error that says why (missing_report.h).
 [[nodiscard]] Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path,
                                           const std::string& query);
 

@@ -79,14 +79,17 @@ Result<PageText> Metrics(const AnswerContext& context) {
   std::string text = "rigcal_uptime_seconds " + std::to_string((now.ns - context.started_at.ns) / 1'000'000'000) + "\n";
   text += "rigcal_jobs_waiting " + std::to_string(jobs) + "\nrigcal_edges " + std::to_string(edges) +
           "\nrigcal_sessions " + std::to_string(sessions) + "\n";
+  for (const PartState& part : LookAtHealth(context).parts)
+    text += "rigcal_part_failing{part=\"" + part.name + "\"} " + (part.problem ? "1" : "0") +
+            "\nrigcal_part_failures_total{part=\"" + part.name + "\"} " + std::to_string(part.failures) + "\n";
   for (const auto& [verdict, count] : verdicts)
     text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(count) + "\n";
   return PageText{text, "text/plain; version=0.0.4; charset=utf-8"};
 }
 
-Result<PageText> Healthz(const AnswerContext& context) {
-  RIGCAL_ASSIGN(std::string body, Answer(context, "health", "{}"));
-  return PageText{std::move(body), kJson};
+PageText Healthz(const AnswerContext& context) {
+  const formats::HealthAnswer health = LookAtHealth(context);
+  return {formats::WriteHealth(health, context.clock.Now()), kJson, false, health.problem() ? 503 : 200};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "server/pipeline/robot_pages.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <memory>
 #include <set>
@@ -182,6 +183,19 @@ Result<PageText> SessionPicture(const AnswerContext& context, const RobotId& rob
   return Fail(ErrorCode::kNotFound, "session " + name + " has no picture " + file, "Open the session's page.");
 }
 
+// What is there is served without asking here.
+Result<PageText> MissingFile(const AnswerContext& context, const RobotId& robot,
+                             const std::vector<std::string>& parts) {
+  int number = 0;
+  const std::string& text = parts[2];
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number < 1)
+    return Fail(ErrorCode::kNotFound, "there is no revision " + text, "Start at the list of robots.");
+  std::string file = parts[3];
+  for (std::size_t i = 4; i < parts.size(); ++i) file += "/" + parts[i];
+  return Fail(WhyMissing(context, robot, number, file.empty() ? "index.html" : file));
+}
+
 }  // namespace
 
 report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
@@ -208,6 +222,7 @@ Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string
   if (parts.size() == 2 && parts[1].empty()) return RobotPage(context, robot);
   if (parts.size() == 2 && parts[1] == "trend.js") return Trend(context, robot);
   if (parts.size() == 2 && parts[1] == "compare") return ComparePage(context, robot, query);
+  if (parts.size() >= 4 && parts[1] == "revisions") return MissingFile(context, robot, parts);
   if (parts.size() < 4 || parts[1] != "sessions") return NoPage(rest);
   if (parts.size() == 4 && parts[3].empty()) return SessionPage(context, robot, parts[2]);
   if (parts.size() == 5 && parts[3] == "evidence") return SessionPicture(context, robot, parts[2], parts[4]);

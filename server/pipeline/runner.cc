@@ -12,11 +12,13 @@ namespace rigcal::pipeline {
 namespace {
 // After a failure of the store (a full disk, say) the same step is tried again after this long.
 constexpr std::int64_t kRetry_ns = 2'000'000'000;
+constexpr std::chrono::hours kLongestStep{6};  // a large session on a small machine
 }  // namespace
 
 struct Runner::Impl {
   Options options;
   Announcer announcer;
+  Vitals alone{SystemClock()};
   LiveGraphs live;
   Claims claims;
   calib::CameraMemory cameras;
@@ -27,16 +29,19 @@ struct Runner::Impl {
   bool stopping = false;    // guarded by mutex
   std::vector<std::thread> threads;
 
-  void Loop(storage::Store& store) {
+  void Loop(storage::Store& store, Part& part) {
     SetThreadRank(ThreadRank::kWorks);
     std::uint64_t seen = 0;
     while (Seen(seen)) {
-      const auto result = Step({store, *options.clock, live, claims, announcer, cameras});
+      part.Turn();
+      const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn});
       if (!result) LogError(result.error());
-      if (result && result->worked)
+      if (result && result->worked) {
         Signal();  // its robot may be free for another thread now
-      else
-        Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
+        continue;
+      }
+      part.Rest();
+      Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
     }
   }
 
@@ -85,8 +90,11 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
     impl->stores.push_back(std::move(store));
   }
-  for (storage::Store& store : impl->stores)
-    impl->threads.emplace_back([&store, raw = impl.get()] { raw->Loop(store); });
+  Vitals& vitals = options.vitals == nullptr ? impl->alone : *options.vitals;
+  for (storage::Store& store : impl->stores) {
+    Part& part = vitals.Expect("calibration " + std::to_string(impl->threads.size() + 1), kLongestStep);
+    impl->threads.emplace_back([&store, &part, raw = impl.get()] { raw->Loop(store, part); });
+  }
   return Runner(std::move(impl));
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "server/base/vitals.h"
 #include "server/pipeline/step.h"
 
 namespace rigcal::pipeline {
@@ -14,6 +15,8 @@ class Runner {
     std::filesystem::path folder;  // of the store
     const Clock* clock = nullptr;
     int threads = 2;
+    Vitals* vitals = nullptr;           // told how the threads are; none: nobody asks
+    UndrawnReports* undrawn = nullptr;  // likewise
   };
   [[nodiscard]] static Result<Runner> Start(const Options& options, Announcer announcer);
   ~Runner();  // finishes the step at hand, then joins; unfinished work is found again at the next start

@@ -73,8 +73,10 @@ Result<bool> PublishNext(const StepContext& context) {
     const auto folder = Guarded([&] { return Publish(context.store, key, context.clock); });
     if (!folder) {
       problem = folder.error();
+      if (context.undrawn != nullptr) context.undrawn->Note(key, *problem);
       continue;
     }
+    if (context.undrawn != nullptr) context.undrawn->Forget(key);
     const std::string path = "/robots/" + key.robot.str() + "/revisions/" + std::to_string(key.number) + "/";
     context.announcer.event(key.robot, "published", std::to_string(key.number),
                             formats::WritePublishedEvent(key.robot, key.number, path));

@@ -13,6 +13,7 @@
 #include "server/calib/camera_memory.h"
 #include "server/model/graph.h"
 #include "server/pipeline/live_graphs.h"
+#include "server/pipeline/missing_report.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -49,6 +50,7 @@ struct StepContext {
   Claims& claims;
   const Announcer& announcer;
   calib::CameraMemory& cameras;
+  UndrawnReports* undrawn = nullptr;  // none: nobody asks why
 };
 
 struct StepResult {

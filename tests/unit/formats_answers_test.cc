@@ -135,6 +135,9 @@ TEST(Answers, Status) {
   EXPECT_EQ(status["uptime_ns"], 5);
   EXPECT_EQ(status["jobs_waiting"], 1);
   EXPECT_EQ(status["robots"][0]["sessions"], 2);
+  EXPECT_TRUE(status["problem"].is_null());
+  answer.problem = Error{ErrorCode::kStorage, "disk full", "Free some space."};
+  EXPECT_EQ(json::parse(WriteStatus(answer, kNow))["problem"]["what"], "disk full");
 }
 
 TEST(Answers, Health) {
@@ -152,10 +155,14 @@ TEST(Answers, Health) {
   EXPECT_EQ(good["limits"]["open_sessions"], 7);
   EXPECT_EQ(good["limits"].size(), limits::Settings().size());
   EXPECT_TRUE(good["problem"].is_null());
-  answer.problem = Error{ErrorCode::kStorage, "disk full", "Free some space."};
+  PartState disk{"disk", Error{ErrorCode::kStorage, "disk full", "Free some space."}, kNow, 3};
+  answer.parts = {{"intake", {}, {}, 1}, disk};
   const json bad = json::parse(WriteHealth(answer, kNow));
   EXPECT_EQ(bad["state"], "failing");
   EXPECT_EQ(bad["problem"]["code"], "storage");
+  EXPECT_EQ(bad["parts"][0], json::parse(R"({"failures":1,"name":"intake","problem":null,"since":null})"));
+  EXPECT_EQ(bad["parts"][1]["problem"]["what"], "disk full");
+  EXPECT_EQ(bad["parts"][1]["since"], "2026-02-01T12:00:00Z");
 }
 
 TEST(Answers, ErrorsComeBack) {

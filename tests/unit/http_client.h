@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -35,6 +36,12 @@ class Socket {
   Socket& operator=(const Socket&) = delete;
   [[nodiscard]] bool connected() const { return connected_; }
   void Send(const std::string& text) const { (void)!::send(descriptor_, text.data(), text.size(), MSG_NOSIGNAL); }
+  // By the other side, after what it may have sent.
+  [[nodiscard]] bool ClosesWithin(int ms) const {
+    pollfd waits{descriptor_, POLLIN, 0};
+    char bytes[256];
+    return ::poll(&waits, 1, ms) > 0 && ::recv(descriptor_, bytes, sizeof bytes, MSG_DONTWAIT) <= 0;
+  }
   [[nodiscard]] std::string ReadAll() const {
     std::string all;
     std::array<char, 65536> buffer{};

@@ -1,9 +1,12 @@
 // Slow, rude and many clients.
+#include <atomic>
 #include <chrono>
 #include <future>
 #include <list>
+#include <thread>
 
 #include "server/base/limits.h"
+#include "server/http/header_gate.h"
 #include "tests/unit/http_client.h"
 
 namespace rigcal::http {
@@ -34,6 +37,90 @@ TEST_F(HttpFixture, HalfRequestsUpToOneBelowTheLimitDoNotStopIt) {
   for (std::size_t i = 0; i + 1 < limits::kHttpConnectionsMax; ++i)
     slow.emplace_back(port).Send("GET / HTTP/1.1\r\nHos");
   ExpectAnsweredAtOnce(port);
+}
+
+// Each comes back as soon as it is put out.
+class HalfOpenClients {
+ public:
+  HalfOpenClients(int port, int count) : keeps_([this, port, count] { Keep(port, count); }) {
+    begun_.get_future().wait();
+  }
+  ~HalfOpenClients() {
+    stopping_ = true;
+    keeps_.join();
+  }
+  HalfOpenClients(const HalfOpenClients&) = delete;
+  HalfOpenClients& operator=(const HalfOpenClients&) = delete;
+
+ private:
+  void Keep(int port, int count) {
+    std::list<Socket> held;
+    for (int i = 0; i < count; ++i) Open(port, i, held);
+    begun_.set_value();
+    for (int i = 0; !stopping_; ++i) {
+      held.front().Send("a");
+      const bool is_closed = held.front().ClosesWithin(1);
+      held.splice(held.end(), held, held.begin());
+      if (!is_closed) continue;
+      held.pop_back();
+      Open(port, i, held);
+    }
+  }
+  static void Open(int port, int idx, std::list<Socket>& held) {
+    if (idx % 2 == 0)
+      held.emplace_back(port).Send("GET / HTTP/1.1\r\nHos");
+    else
+      held.emplace_back(port);
+  }
+
+  std::atomic<bool> stopping_{false};
+  std::promise<void> begun_;
+  std::thread keeps_;
+};
+
+// 200 wait at once; of 500 the oldest are put out.
+TEST_F(HttpFixture, HalfOpenConnectionsDoNotStopIt) {
+  options_.request_timeout_ms = 500;  // so that all of them leave and come back several times
+  const int port = Start();
+  for (const int count : {200, 500}) {
+    const HalfOpenClients clients(port, count);
+    for (int i = 0; i < 30; ++i) {
+      SCOPED_TRACE(std::to_string(count) + " half open, request " + std::to_string(i));
+      ExpectAnsweredAtOnce(port);
+    }
+  }
+}
+
+TEST_F(HttpFixture, RequestInPiecesIsAnswered) {
+  const int port = Start();
+  const Socket slow(port);
+  for (const char* piece : {"GET /x HT", "TP/1.1\r\n", "Host: a\r", "\n\r", "\n"}) {
+    slow.Send(piece);
+    ExpectAnsweredAtOnce(port);
+  }
+  EXPECT_EQ(Parsed(slow.ReadAll()).body, "path /x query ");
+}
+
+TEST_F(HttpFixture, TricklingDoesNotPutOffTheEnd) {
+  options_.request_timeout_ms = 300;
+  const int port = Start();
+  const Socket slow(port);
+  slow.Send("GET / HTTP/1.1\r\nX: ");
+  EXPECT_LT(SecondsOf([&] {
+              while (!slow.ClosesWithin(10)) slow.Send("a");
+            }),
+            10.0);
+}
+
+TEST(Head, IsWholeAtItsEndOrWhereItIsRefused) {
+  EXPECT_EQ(JudgeHead(""), Head::kPartial);
+  EXPECT_EQ(JudgeHead("GET / HTTP/1.1\r\nHost: a\r\n"), Head::kPartial);
+  EXPECT_EQ(JudgeHead("GET / HTTP/1.1\r\nHost: a\r\n\r\n"), Head::kWhole);
+  EXPECT_EQ(JudgeHead("GET / HTTP/1.1\n\n"), Head::kWhole);
+  EXPECT_EQ(JudgeHead("POST / HTTP/1.1\r\n\r\nbody"), Head::kWhole);
+  EXPECT_EQ(JudgeHead("\x16\x03\x01"), Head::kWhole);  // TLS: refused at once
+  EXPECT_EQ(JudgeHead(std::string(kHeadBytesMax - 1, 'a')), Head::kPartial);
+  EXPECT_EQ(JudgeHead(std::string(kHeadBytesMax, 'a')), Head::kWhole);
 }
 
 TEST_F(HttpFixture, ClientsThatDoNotReadDoNotStopIt) {

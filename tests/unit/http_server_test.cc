@@ -77,6 +77,34 @@ TEST_F(HttpFixture, ErrorsAreMappedAndShapedByPath) {
   EXPECT_EQ(Get(port, "/api/v1/x").status, 503);
 }
 
+TEST_F(HttpFixture, AnswerMayHaveAnotherStatus) {
+  const Reply reply = Get(Start([](const std::string&, const std::string&) -> Result<Page> {
+                            return Page{"{\"state\":\"failing\"}", "application/json", {}, false, 503};
+                          }),
+                          "/healthz");
+  EXPECT_EQ(reply.status, 503);
+  EXPECT_EQ(reply.body, "{\"state\":\"failing\"}");
+  EXPECT_EQ(reply.headers.at("cache-control"), "no-store");
+}
+
+TEST_F(HttpFixture, MissingFileSaysWhatTheAnswerSays) {
+  Error why{ErrorCode::kBusy, "it is being drawn again", "Wait."};
+  const int port = Start([&](const std::string& path, const std::string&) -> Result<Page> {
+    EXPECT_EQ(path, "/robots/mapper-01/revisions/8/");
+    return Fail(why);
+  });
+  const Reply busy = Get(port, "/robots/mapper-01/revisions/8/");
+  EXPECT_EQ(busy.status, 503);
+  EXPECT_EQ(busy.headers.at("retry-after"), "2");
+  EXPECT_THAT(busy.body, HasSubstr("It is being drawn again."));
+  why = {ErrorCode::kNotFound, "it could not be drawn: a blob is gone", "Restore it."};
+  const Reply gone = Get(port, "/robots/mapper-01/revisions/8/");
+  EXPECT_EQ(gone.status, 404);
+  EXPECT_EQ(gone.headers.count("retry-after"), 0U);
+  EXPECT_THAT(gone.body, HasSubstr("It could not be drawn: a blob is gone."));
+  EXPECT_EQ(Get(port, "/robots/mapper-01/revisions/7/").body, "<p>seven</p>");
+}
+
 TEST_F(HttpFixture, ExceptionOfTheAnswerIsAnError) {
   const int port =
       Start([](const std::string&, const std::string&) -> Result<Page> { throw std::runtime_error("boom"); });

@@ -1,0 +1,167 @@
+#include "server/http/header_gate.h"
+
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "server/base/limits.h"
+
+namespace {
+thread_local rigcal::http::HeaderGate* gate_of_this_thread = nullptr;
+}
+
+// Found by libcivetweb before the C library's own, as a symbol of the executable; the same wherever there is no gate.
+extern "C" int accept(int listener, sockaddr* address, socklen_t* size) {
+  if (gate_of_this_thread != nullptr) return gate_of_this_thread->Accept(listener, address, size);
+  return accept4(listener, address, size, 0);
+}
+
+namespace rigcal::http {
+namespace {
+
+constexpr int kKnockAgainMs = 1000;  // where one was lost
+
+bool IsMalformed(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x80 && c != '\r' && c != '\n' && std::isprint(byte) == 0;
+}
+
+// What has come so far, left where it is. Nothing if the client has gone.
+enum class Seen { kPartial, kWhole, kGone };
+Seen LookAt(int connection, bool client_is_done) {
+  std::array<char, kHeadBytesMax> bytes;
+  const ssize_t got = recv(connection, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Seen::kPartial;
+  if (got <= 0) return Seen::kGone;
+  if (JudgeHead({bytes.data(), static_cast<std::size_t>(got)}) == Head::kWhole) return Seen::kWhole;
+  return client_is_done ? Seen::kGone : Seen::kPartial;
+}
+
+void Ring(const FileDescriptor& wake) { static_cast<void>(eventfd_write(wake.get(), 1)); }
+
+}  // namespace
+
+Head JudgeHead(std::string_view bytes) {
+  const bool ends = bytes.find("\r\n\r\n") != std::string_view::npos || bytes.find("\n\n") != std::string_view::npos;
+  const bool refused = bytes.size() >= kHeadBytesMax || std::any_of(bytes.begin(), bytes.end(), IsMalformed);
+  return ends || refused ? Head::kWhole : Head::kPartial;
+}
+
+HeaderGate::HeaderGate(std::chrono::milliseconds head_within)
+    : head_within_(head_within), poll_(epoll_create1(EPOLL_CLOEXEC)), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.fd = wake_.get();
+  epoll_ctl(poll_.get(), EPOLL_CTL_ADD, wake_.get(), &event);
+  thread_ = std::thread([this] { Run(); });
+}
+
+HeaderGate::~HeaderGate() {
+  stopping_ = true;
+  Ring(wake_);
+  thread_.join();
+}
+
+void HeaderGate::GuardThisThread() { gate_of_this_thread = this; }
+
+void HeaderGate::Leave(Queue::iterator one) {
+  by_descriptor_.erase(one->connection.get());
+  waiting_.erase(one);  // closed, and so forgotten by epoll
+}
+
+// Epoll tells of what has come already as well.
+void HeaderGate::TakeIn(FileDescriptor connection) {
+  if (waiting_.size() >= limits::kHttpWaitingMax) Leave(waiting_.begin());
+  const int descriptor = connection.get();
+  if (waiting_.empty()) Ring(wake_);  // there is a deadline now
+  waiting_.push_back({std::move(connection), std::chrono::steady_clock::now() + head_within_});
+  by_descriptor_[descriptor] = std::prev(waiting_.end());
+  epoll_event event{};
+  event.events = EPOLLIN | EPOLLRDHUP | EPOLLET;
+  event.data.fd = descriptor;
+  if (epoll_ctl(poll_.get(), EPOLL_CTL_ADD, descriptor, &event) != 0) Leave(std::prev(waiting_.end()));
+}
+
+FileDescriptor HeaderGate::Next() {
+  if (ready_.empty()) return FileDescriptor(-1);
+  FileDescriptor next = std::move(ready_.front());
+  ready_.pop_front();
+  return next;
+}
+
+int HeaderGate::Accept(int listener, sockaddr* address, socklen_t* size) {
+  FileDescriptor came(accept4(listener, nullptr, nullptr, SOCK_CLOEXEC));
+  const bool too_many_open = came.get() < 0 && (errno == EMFILE || errno == ENFILE);
+  const std::lock_guard lock(mutex_);
+  if (listens_at_size_ == 0) {
+    listens_at_size_ = sizeof listens_at_;
+    getsockname(listener, reinterpret_cast<sockaddr*>(&listens_at_), &listens_at_size_);
+  }
+  if (too_many_open && !waiting_.empty()) Leave(waiting_.begin());
+  if (came.get() >= 0 && ready_.empty() && LookAt(came.get(), false) == Seen::kWhole) ready_.push_back(std::move(came));
+  if (came.get() >= 0) TakeIn(std::move(came));
+  FileDescriptor next = Next();
+  if (next.get() < 0) {
+    errno = EAGAIN;
+    return -1;
+  }
+  getpeername(next.get(), address, size);
+  return next.Release();
+}
+
+// The thread that accepts sleeps until somebody comes: so somebody comes, and goes at once. Where the queue of those
+// who come is full it needs no knock.
+void HeaderGate::Knock() const {
+  const FileDescriptor knock(socket(listens_at_.ss_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  static_cast<void>(connect(knock.get(), reinterpret_cast<const sockaddr*>(&listens_at_), listens_at_size_));
+}
+
+void HeaderGate::Look(int connection, bool client_is_done) {
+  const auto found = by_descriptor_.find(connection);
+  if (found == by_descriptor_.end()) return;  // it left meanwhile
+  const auto one = found->second;
+  const Seen seen = LookAt(connection, client_is_done);
+  if (seen == Seen::kPartial) return;
+  if (seen == Seen::kWhole) {
+    epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection, nullptr);
+    ready_.push_back(std::move(one->connection));
+    by_descriptor_.erase(found);
+    waiting_.erase(one);
+    return Knock();
+  }
+  Leave(one);
+}
+
+void HeaderGate::LeaveTheLate() {
+  const Time now = std::chrono::steady_clock::now();
+  while (!waiting_.empty() && waiting_.front().leaves_at <= now) Leave(waiting_.begin());
+}
+
+int HeaderGate::PatienceMs() {
+  const std::lock_guard lock(mutex_);
+  LeaveTheLate();
+  if (!ready_.empty()) return kKnockAgainMs;
+  if (waiting_.empty()) return -1;
+  const auto left = waiting_.front().leaves_at - std::chrono::steady_clock::now();
+  return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count()) + 1;
+}
+
+void HeaderGate::Run() {
+  std::array<epoll_event, 64> events{};
+  while (!stopping_) {
+    const int count = epoll_wait(poll_.get(), events.data(), static_cast<int>(events.size()), PatienceMs());
+    const std::lock_guard lock(mutex_);
+    if (count == 0 && !ready_.empty()) Knock();
+    for (int i = 0; i < count; ++i) {
+      const epoll_event& event = events[static_cast<std::size_t>(i)];
+      eventfd_t rings = 0;
+      if (event.data.fd == wake_.get()) eventfd_read(wake_.get(), &rings);
+      Look(event.data.fd, (event.events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) != 0);
+    }
+  }
+}
+
+}  // namespace rigcal::http

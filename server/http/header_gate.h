@@ -1,0 +1,68 @@
+// Holds a connection until the head of its request is whole: a client that says nothing, or a byte now and then, takes
+// a descriptor and no worker of civetweb, which reads a head with a thread per connection and has no other way.
+#pragma once
+
+#include <sys/socket.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <list>
+#include <mutex>
+#include <string_view>
+#include <thread>
+#include <unordered_map>
+
+#include "server/base/file_descriptor.h"
+
+namespace rigcal::http {
+
+// What civetweb would do with these first bytes of a request: read on, or answer (also where it refuses them).
+enum class Head { kPartial, kWhole };
+constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it refuses
+[[nodiscard]] Head JudgeHead(std::string_view bytes);
+
+// At most limits::kHttpWaitingMax connections wait; one more makes the oldest go. Any thread.
+class HeaderGate {
+ public:
+  explicit HeaderGate(std::chrono::milliseconds head_within);  // of a whole head, however it trickles
+  ~HeaderGate();
+  HeaderGate(const HeaderGate&) = delete;
+  HeaderGate& operator=(const HeaderGate&) = delete;
+
+  // From now on accept() on the calling thread gives what passed the gate. The gate outlives the thread.
+  void GuardThisThread();
+  // A connection whose head is whole, unread; -1 with EAGAIN if there is none yet. Takes one that came to `listener`.
+  [[nodiscard]] int Accept(int listener, sockaddr* address, socklen_t* size);
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Waiting {
+    FileDescriptor connection;
+    Time leaves_at;
+  };
+  using Queue = std::list<Waiting>;  // the oldest first
+
+  void Run();
+  [[nodiscard]] int PatienceMs();
+  void Look(int connection, bool client_is_done);
+  void LeaveTheLate();
+  void TakeIn(FileDescriptor connection);
+  void Leave(Queue::iterator one);
+  [[nodiscard]] FileDescriptor Next();
+  void Knock() const;
+
+  const std::chrono::milliseconds head_within_;
+  FileDescriptor poll_, wake_;
+  std::mutex mutex_;
+  Queue waiting_;
+  std::unordered_map<int, Queue::iterator> by_descriptor_;
+  std::deque<FileDescriptor> ready_;
+  sockaddr_storage listens_at_{};
+  socklen_t listens_at_size_ = 0;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace rigcal::http

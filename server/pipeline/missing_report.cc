@@ -1,0 +1,90 @@
+#include "server/pipeline/missing_report.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+
+#include "server/base/log.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr const char* kSoon = "Wait a few seconds and reload this page.";
+
+std::string ReportOf(const storage::RevisionKey& key) {
+  return "the report of revision " + std::to_string(key.number) + " of " + key.robot.str();
+}
+
+bool IsThere(const storage::Store& store, const storage::RevisionKey& key) {
+  std::error_code error;
+  return std::filesystem::exists(store.ReportFolder() / key.robot.str() / std::to_string(key.number) / "index.html",
+                                 error);
+}
+
+Result<bool> IsQueued(storage::Store& store, const storage::RevisionKey& key) {
+  RIGCAL_ASSIGN(const auto queued, storage::LoadUnpublished(store));
+  return std::any_of(queued.begin(), queued.end(),
+                     [&](const auto& one) { return one.robot == key.robot && one.number == key.number; });
+}
+
+// True if it was not to be drawn before.
+Result<bool> Queue(storage::Store& store, const storage::RevisionKey& key) {
+  RIGCAL_ASSIGN(const bool is_queued, IsQueued(store, key));
+  if (is_queued) return false;
+  RIGCAL_TRY(storage::QueuePublication(store, key));
+  LogWarn(ReportOf(key) + " is gone from " + store.ReportFolder().string() + ": it is drawn again");
+  return true;
+}
+
+Error Being(const storage::RevisionKey& key, const char* drawn) {
+  return {ErrorCode::kBusy, ReportOf(key) + " is being " + drawn, kSoon};
+}
+
+}  // namespace
+
+void UndrawnReports::Note(const storage::RevisionKey& key, const Error& error) {
+  const std::lock_guard lock(mutex_);
+  why_.insert_or_assign({key.robot, key.number}, error);
+}
+
+void UndrawnReports::Forget(const storage::RevisionKey& key) {
+  const std::lock_guard lock(mutex_);
+  why_.erase({key.robot, key.number});
+}
+
+std::optional<Error> UndrawnReports::Find(const storage::RevisionKey& key) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = why_.find({key.robot, key.number});
+  return found == why_.end() ? std::nullopt : std::optional(found->second);
+}
+
+Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const storage::RevisionKey& key,
+                 const std::string& file, const std::function<void()>& drawn_soon) {
+  const auto revision = storage::LoadRevisionSummary(store, key.robot, key.number);
+  if (!revision) return revision.error();
+  if (!*revision)
+    return {ErrorCode::kNotFound, key.robot.str() + " has no revision " + std::to_string(key.number),
+            "See the robot's own page for those that it has."};
+  if (IsThere(store, key))
+    return {ErrorCode::kNotFound, ReportOf(key) + " has no file " + file, "Start at the report's first page."};
+  if (const auto why = undrawn.Find(key))
+    return {ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + why->what, why->cure};
+  const auto is_new = Queue(store, key);
+  if (!is_new) return is_new.error();
+  if (*is_new && drawn_soon) drawn_soon();
+  const auto published = storage::IsPublished(store, key);
+  return published && *published ? Being(key, "drawn again, as its folder was gone") : Being(key, "drawn");
+}
+
+Status DrawMissingReports(storage::Store& store) {
+  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
+  for (const storage::RobotRow& row : robots) {
+    RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, row.robot, 0));
+    if (!newest || IsThere(store, {row.robot, newest->number})) continue;
+    RIGCAL_TRY(Queue(store, {row.robot, newest->number}));
+  }
+  return {};
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,36 @@
+// A published report whose folder is gone (removed, or not in a backup that was restored) is drawn again from what is
+// stored, with the same bytes.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "storage/revisions.h"
+
+namespace rigcal::pipeline {
+
+// Why reports could not be drawn when it was last tried. Any thread.
+class UndrawnReports {
+ public:
+  void Note(const storage::RevisionKey& key, const Error& error);
+  void Forget(const storage::RevisionKey& key);
+  [[nodiscard]] std::optional<Error> Find(const storage::RevisionKey& key) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::pair<RobotId, int>, Error> why_;
+};
+
+// `file` of that report is not there: why, and what will be. Has the report drawn again if all of it is gone; then
+// `drawn_soon` is called. kBusy: it is being drawn; kNotFound: there is no such thing, or drawing it failed.
+[[nodiscard]] Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const storage::RevisionKey& key,
+                               const std::string& file, const std::function<void()>& drawn_soon);
+
+// At start-up: the newest reports that are gone will be drawn again.
+[[nodiscard]] Status DrawMissingReports(storage::Store& store);
+
+}  // namespace rigcal::pipeline
