@@ -81,6 +81,9 @@ Status CheckServer(const Context& context, Findings& findings) {
   }
   findings.has_server = true;
   CheckAnswers(answers, findings.checks);
+  RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", "{}", context.timeout));
+  for (const Document& batch : status["open_batches"].Items())
+    findings.checks.push_back({"edges", CheckLevel::kWarn, OpenBatchText(batch), kCompleteBatch});
   if (connection.MatchedServers() > 1)
     findings.checks.push_back({"servers", CheckLevel::kWarn,
                                std::to_string(connection.MatchedServers()) + " servers answer",
