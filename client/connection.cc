@@ -52,10 +52,11 @@ Error UnreachableError(const std::string& where, milliseconds waited) {
 }
 
 Connection::Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies,
-                       wire::WaitSet waitset, std::string where)
+                       wire::WaitSet waitset, OneServer one_server, std::string where)
     : requests_(std::move(requests)),
       replies_(std::move(replies)),
       waitset_(std::move(waitset)),
+      one_server_(std::move(one_server)),
       where_(std::move(where)) {}
 
 Result<Connection> Connection::Open(const wire::Participant& participant, const wire::ParticipantOptions& options) {
@@ -65,7 +66,9 @@ Result<Connection> Connection::Open(const wire::Participant& participant, const 
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(replies.get()));
   RIGCAL_TRY(waitset.Attach(requests.get()));
-  return Connection(std::move(requests), std::move(replies), std::move(waitset), WhereText(options));
+  RIGCAL_ASSIGN(auto one_server, OneServer::Open(participant, WhereText(options)));
+  return Connection(std::move(requests), std::move(replies), std::move(waitset), std::move(one_server),
+                    WhereText(options));
 }
 
 tl::unexpected<Error> Connection::Unreachable(milliseconds timeout) const {
@@ -78,7 +81,7 @@ Status Connection::WaitForServer(milliseconds timeout) {
     if (Left(deadline).count() == 0) return Unreachable(timeout);
     RIGCAL_TRY(waitset_.Wait(Left(deadline)));
   }
-  return {};
+  return one_server_.Check();
 }
 
 Status Connection::Send(const std::string& verb, const std::string& json) {
@@ -116,6 +119,7 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
     RIGCAL_TRY(waitset_.Wait(std::min(Left(ask_at), Left(deadline))));
     RIGCAL_ASSIGN(auto whole, TakeReply());
     if (whole) {
+      RIGCAL_TRY(one_server_.Check());
       if (auto error = formats::ReadError(*whole)) return Fail(std::move(*error));
       return std::move(*whole);
     }

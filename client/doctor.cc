@@ -84,10 +84,6 @@ Status CheckServer(const Context& context, Findings& findings) {
   RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", "{}", context.timeout));
   for (const Document& batch : status["open_batches"].Items())
     findings.checks.push_back({"edges", CheckLevel::kWarn, OpenBatchText(batch), kCompleteBatch});
-  if (connection.MatchedServers() > 1)
-    findings.checks.push_back({"servers", CheckLevel::kWarn,
-                               std::to_string(connection.MatchedServers()) + " servers answer",
-                               "Stop all but one, or keep them apart by --domain or --tag"});
   return {};
 }
 
@@ -98,7 +94,8 @@ Findings Look(const Context& context) {
   findings.checks.push_back(JudgeDisk("disk here", FreeHere()));
   if (const Status seen = CheckServer(context, findings); !seen) {
     const bool is_absent = seen.error().code == ErrorCode::kUnreachable;
-    findings.checks.push_back({is_absent ? "discovery" : "server", CheckLevel::kFail, Plain(seen.error().what),
+    const bool are_several = seen.error().code == ErrorCode::kAmbiguous;
+    findings.checks.push_back({is_absent ? "discovery" : are_several ? "servers" : "server", CheckLevel::kFail, Plain(seen.error().what),
                                is_absent
                                    ? "Start `rigcald --data DIR` with the same domain and tag; let UDP ports 7400-7700 "
                                      "through firewalls; between machines the network must pass multicast"

@@ -3,7 +3,8 @@
 namespace rigcal::client {
 
 ExitCode ExitCodeOf(const Error& error) {
-  return error.code == ErrorCode::kUnreachable ? ExitCode::kUnreachable : ExitCode::kRefused;
+  const bool is_unreachable = error.code == ErrorCode::kUnreachable || error.code == ErrorCode::kAmbiguous;
+  return is_unreachable ? ExitCode::kUnreachable : ExitCode::kRefused;
 }
 
 ExitCode Report(const Error& error, std::ostream& err) {
