@@ -45,7 +45,7 @@ struct ParticipantOptions {
   std::string tag;  // Discovery/Tag: isolates tests; empty: RIGCAL_DDS_TAG
   // Sockets and threads of DDS that no other participant of the process has, unless that is apart too.
   bool apart = false;
-  std::string user_data;  // what discovery tells all others of it (presence.h); empty: nothing
+  std::string user_data = {};  // what discovery tells all others of it (presence.h); empty: nothing
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
 };

@@ -13,7 +13,6 @@
 #include "server/base/thread_rank.h"
 #include "server/base/version.h"
 #include "server/config.h"
-#include "server/dds/only_server.h"
 #include "server/dds/service.h"
 #include "server/formats/limits_text.h"
 #include "server/http/server.h"
@@ -75,24 +74,14 @@ Status EnforceLimits(const Config& config) {
   return {};
 }
 
-Result<dds::OnlyServer> OpenOnlyServer(const Config& config) {
-  SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
-  auto only = dds::OnlyServer::Open(config.participant, config.data, config.standby);
-  SetThreadRank(ThreadRank::kServes);
-  return only;
-}
-
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
-  RIGCAL_ASSIGN(dds::OnlyServer only, OpenOnlyServer(config));
-  if (config.standby) {
-    RIGCAL_ASSIGN(const bool took_over, StandBy(only, http_options, signals));
-    if (!took_over) return {};
-  }
+  RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
+  if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
   RIGCAL_ASSIGN(storage::Store query_store, storage::Store::Open(config.data));
-  if (!config.standby) RIGCAL_TRY(only.Settle());
+  if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
   pipeline::RevisionCache revisions;
   std::promise<std::string> address_promise;
@@ -108,9 +97,9 @@ Status Serve(const Config& config, const sigset_t& signals) {
     return pipeline::Answer({query_store, SystemClock(), revisions, started_at, address}, verb, json);
   };
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
-  SetThreadRank(ThreadRank::kTakes);
+  SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
-                dds::Service::Start({only.Named(config.participant), config.data, &SystemClock()}, callbacks));
+                dds::Service::Start({only->Named(config.participant), config.data, &SystemClock()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));
@@ -121,7 +110,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
             << std::endl;
-  const Status ended = ServeUntil(signals, only, config.data.string());
+  const Status ended = ServeUntil(signals, *only, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
   relay.Set(nullptr);

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "server/base/log.h"
+#include "server/base/thread_rank.h"
 #include "server/base/version.h"
 
 namespace rigcal {
@@ -41,8 +42,7 @@ Result<bool> TakeOver(dds::OnlyServer& only) {
   return settled.has_value();
 }
 
-}  // namespace
-
+// True: this one serves now. False: a signal came.
 Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const sigset_t& signals) {
   RIGCAL_ASSIGN(const bool is_first, TakeOver(only));
   if (is_first) return true;
@@ -68,6 +68,20 @@ Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const 
   }
   LogInfo("the other server is gone: this one takes over");
   return true;
+}
+
+}  // namespace
+
+Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const http::Options& options,
+                                                  const sigset_t& signals) {
+  SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
+  auto only = dds::OnlyServer::Open(config.participant, config.data, config.standby);
+  SetThreadRank(ThreadRank::kServes);
+  if (!only) return Fail(only.error());
+  if (!config.standby) return std::move(*only);
+  RIGCAL_ASSIGN(const bool serves, StandBy(*only, options, signals));
+  if (!serves) return std::nullopt;
+  return std::move(*only);
 }
 
 Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const std::string& data) {
