@@ -81,7 +81,7 @@ Status Connection::WaitForServer(milliseconds timeout) {
     if (Left(deadline).count() == 0) return Unreachable(timeout);
     RIGCAL_TRY(waitset_.Wait(Left(deadline)));
   }
-  return one_server_.Check();
+  return {};
 }
 
 Status Connection::Send(const std::string& verb, const std::string& json) {
@@ -109,6 +109,7 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
   const auto deadline = Clock::now() + timeout;
   asked_.clear();
   RIGCAL_TRY(WaitForServer(timeout));
+  RIGCAL_TRY(CheckOneServer());
   std::size_t attempt = 0;
   auto ask_at = Clock::now();
   while (true) {
@@ -119,7 +120,7 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
     RIGCAL_TRY(waitset_.Wait(std::min(Left(ask_at), Left(deadline))));
     RIGCAL_ASSIGN(auto whole, TakeReply());
     if (whole) {
-      RIGCAL_TRY(one_server_.Check());
+      RIGCAL_TRY(CheckOneServer());
       if (auto error = formats::ReadError(*whole)) return Fail(std::move(*error));
       return std::move(*whole);
     }

@@ -18,14 +18,16 @@ class Connection {
   // Does not wait for a server: Ask does.
   [[nodiscard]] static Result<Connection> Open(const wire::Participant& participant,
                                                const wire::ParticipantOptions& options);
-  // The /api/v1 document of (verb, json), verbatim. kUnreachable if nobody answers in time, kAmbiguous if two servers
-  // are there; the error that the document carries, if it is one.
+  // The /api/v1 document of (verb, json), verbatim. kUnreachable if nobody answers in time, or if two servers are
+  // there; the error that the document carries, if it is one.
   [[nodiscard]] Result<std::string> Ask(const std::string& verb, const std::string& json,
                                         std::chrono::milliseconds timeout);
   [[nodiscard]] Result<Document> AskDocument(const std::string& verb, const std::string& json,
                                              std::chrono::milliseconds timeout);
   // Until both directions are matched with a server; kUnreachable after the timeout.
   [[nodiscard]] Status WaitForServer(std::chrono::milliseconds timeout);
+  // kUnreachable if two servers are there.
+  [[nodiscard]] Status CheckOneServer() { return one_server_.Check(); }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -74,6 +74,10 @@ Status CheckServer(const Context& context, Findings& findings) {
       std::max(kDiscoverWithin, context.timeout_is_given ? context.timeout : kDiscoverWithin)));
   const double found_ms = static_cast<double>(SteadyNow_ns() - start_ns) * 1e-6;
   findings.checks.push_back({"discovery", CheckLevel::kOk, "found a rigcald after " + Fixed(found_ms, 0) + " ms", ""});
+  if (const Status one = connection.CheckOneServer(); !one) {
+    findings.checks.push_back({"servers", CheckLevel::kFail, one.error().what, one.error().cure});
+    return {};
+  }
   std::vector<Health> answers;
   for (int i = 0; i < kRoundTrips; ++i) {
     RIGCAL_ASSIGN(Health health, AskHealth(connection, context.timeout));
@@ -94,8 +98,7 @@ Findings Look(const Context& context) {
   findings.checks.push_back(JudgeDisk("disk here", FreeHere()));
   if (const Status seen = CheckServer(context, findings); !seen) {
     const bool is_absent = seen.error().code == ErrorCode::kUnreachable;
-    const bool are_several = seen.error().code == ErrorCode::kAmbiguous;
-    findings.checks.push_back({is_absent ? "discovery" : are_several ? "servers" : "server", CheckLevel::kFail, Plain(seen.error().what),
+    findings.checks.push_back({is_absent ? "discovery" : "server", CheckLevel::kFail, Plain(seen.error().what),
                                is_absent
                                    ? "Start `rigcald --data DIR` with the same domain and tag; let UDP ports 7400-7700 "
                                      "through firewalls; between machines the network must pass multicast"

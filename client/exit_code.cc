@@ -3,8 +3,7 @@
 namespace rigcal::client {
 
 ExitCode ExitCodeOf(const Error& error) {
-  const bool is_unreachable = error.code == ErrorCode::kUnreachable || error.code == ErrorCode::kAmbiguous;
-  return is_unreachable ? ExitCode::kUnreachable : ExitCode::kRefused;
+  return error.code == ErrorCode::kUnreachable ? ExitCode::kUnreachable : ExitCode::kRefused;
 }
 
 ExitCode Report(const Error& error, std::ostream& err) {

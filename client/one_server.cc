@@ -30,7 +30,7 @@ Status ServersSeen::Judge(const std::vector<wire::ServerName>& listed, Time now)
   for (const auto& [place, one] : seen_)
     if (one.since - opened_at_ <= kNewcomerFor || now - one.since >= kBothStay) believed.push_back(&one);
   if (believed.size() < 2) return {};
-  return Fail(ErrorCode::kAmbiguous,
+  return Fail(ErrorCode::kUnreachable,
               "two servers are on " + where_ + ": " + Plain(wire::TextOf(believed[0]->name)) + ", and " +
                   Plain(wire::TextOf(believed[1]->name)),
               "Stop one of them, or keep them apart by --tag or --domain; then repeat the command");

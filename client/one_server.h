@@ -17,7 +17,7 @@ class ServersSeen {
  public:
   using Time = std::chrono::steady_clock::time_point;
   ServersSeen(std::string where, Time opened_at) : where_(std::move(where)), opened_at_(opened_at) {}
-  // kAmbiguous names two that serve. A server that was restarted on its data folder is the same.
+  // kUnreachable names two that serve. A server that was restarted on its data folder is the same.
   [[nodiscard]] Status Judge(const std::vector<wire::ServerName>& listed, Time now);
 
  private:

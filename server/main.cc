@@ -144,5 +144,5 @@ int main(int argc, char** argv) {
   const rigcal::Status served = rigcal::Serve(config, signals);
   if (served) return 0;
   rigcal::LogError(served.error());
-  return served.error().code == rigcal::ErrorCode::kAmbiguous ? 4 : 1;
+  return served.error().code == rigcal::ErrorCode::kConflict ? 4 : 1;  // 4: another server is in the way
 }

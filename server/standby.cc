@@ -38,7 +38,7 @@ bool Pause(const sigset_t& signals) { return sigtimedwait(&signals, nullptr, &kL
 Result<bool> TakeOver(dds::OnlyServer& only) {
   RIGCAL_TRY(only.Claim());
   const Status settled = only.Settle();
-  if (!settled && settled.error().code != ErrorCode::kAmbiguous) return Fail(settled.error());
+  if (!settled && settled.error().code != ErrorCode::kConflict) return Fail(settled.error());
   return settled.has_value();
 }
 

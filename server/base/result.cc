@@ -11,13 +11,12 @@ struct CodeName {
   ErrorCode code;
   std::string_view name;
 };
-constexpr std::array<CodeName, 9> kCodeNames = {{
+constexpr std::array<CodeName, 8> kCodeNames = {{
     {ErrorCode::kInvalidInput, "invalid_input"},
     {ErrorCode::kNotFound, "not_found"},
     {ErrorCode::kConflict, "conflict"},
     {ErrorCode::kBusy, "busy"},
     {ErrorCode::kUnreachable, "unreachable"},
-    {ErrorCode::kAmbiguous, "ambiguous"},
     {ErrorCode::kUnsupported, "unsupported"},
     {ErrorCode::kStorage, "storage"},
     {ErrorCode::kInternal, "internal"},

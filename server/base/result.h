@@ -14,7 +14,6 @@ enum class ErrorCode {
   kConflict,       // it contradicts what is stored
   kBusy,           // a named limit is reached; the same call may succeed later
   kUnreachable,    // the other side does not answer
-  kAmbiguous,      // several answer where one is meant
   kUnsupported,    // newer or other than this version understands
   kStorage,        // disk or database failed
   kInternal,       // our own fault

@@ -45,7 +45,7 @@ std::optional<wire::ServerName> GoesBefore(const wire::ServerName& self, const s
 }
 
 Error SecondServerError(const wire::ServerName& first) {
-  return {ErrorCode::kAmbiguous, "another server is on this DDS domain and tag: " + wire::TextOf(first),
+  return {ErrorCode::kConflict, "another server is on this DDS domain and tag: " + wire::TextOf(first),
           "Stop that one, keep this one apart by --tag or --domain, or let it wait with --standby"};
 }
 

@@ -28,7 +28,7 @@ class OnlyServer {
   [[nodiscard]] Result<std::optional<wire::ServerName>> Before();
   // Claims the place from now on.
   [[nodiscard]] Status Claim();
-  // To be called after a claim: waits until all who are there must have been heard of, then serves. kAmbiguous if
+  // To be called after a claim: waits until all who are there must have been heard of, then serves. kConflict if
   // another goes before: then it waits again.
   [[nodiscard]] Status Settle();
   // `options` for the other participants of this server, so that they are known to be its own.

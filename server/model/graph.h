@@ -89,7 +89,7 @@ struct Revision {
   Verdict verdict;
   std::string document;
   Digest digest;           // of document
-  std::int64_t edge_watermark = 0;  // the store's number of the edge that it contains and that began to count last
+  std::int64_t edge_watermark = 0;  // the store's row number of the newest edge that it contains
 };
 
 }  // namespace rigcal

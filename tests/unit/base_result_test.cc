@@ -33,7 +33,7 @@ TEST(Sentence, JoinsWhatAndCureInOneLine) {
 TEST(ErrorCode, NamesAreStableAndRoundTrip) {
   EXPECT_EQ(NameOf(ErrorCode::kInvalidInput), "invalid_input");
   for (ErrorCode code : {ErrorCode::kInvalidInput, ErrorCode::kNotFound, ErrorCode::kConflict, ErrorCode::kBusy,
-                         ErrorCode::kUnreachable, ErrorCode::kAmbiguous, ErrorCode::kUnsupported, ErrorCode::kStorage, ErrorCode::kInternal})
+                         ErrorCode::kUnreachable, ErrorCode::kUnsupported, ErrorCode::kStorage, ErrorCode::kInternal})
     EXPECT_EQ(ErrorCodeOf(NameOf(code)), code);
   EXPECT_EQ(ErrorCodeOf("of a newer version"), ErrorCode::kInternal);
 }

@@ -67,7 +67,7 @@ TEST(OneServer, AQuestionToTwoServersIsNotAnswered) {
   }
   const auto answer = connection.Ask("status", "{}", milliseconds(10'000));
   ASSERT_FALSE(answer);
-  EXPECT_EQ(answer.error().code, ErrorCode::kAmbiguous);
+  EXPECT_EQ(answer.error().code, ErrorCode::kUnreachable);
   EXPECT_THAT(answer.error().what, testing::HasSubstr("an older rigcald"));
 }
 

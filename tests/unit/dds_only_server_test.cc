@@ -67,7 +67,7 @@ TEST_F(OnlyServerTest, ASecondOneIsToldWhoAndWhere) {
   OnlyServer second = Open("/srv/two");
   const Status settled = second.Settle();
   ASSERT_FALSE(settled);
-  EXPECT_EQ(settled.error().code, ErrorCode::kAmbiguous);
+  EXPECT_EQ(settled.error().code, ErrorCode::kConflict);
   EXPECT_THAT(settled.error().what, testing::HasSubstr("(process " + std::to_string(getpid()) + ", data in /srv/one)"));
   EXPECT_THAT(settled.error().cure, testing::HasSubstr("--standby"));
   EXPECT_FALSE(Must(first.Before()));
