@@ -134,6 +134,7 @@ Result<Awaited> ResultWatch::Await(AwaitPlace place, const AwaitHooks& hooks) {
     if (state.ask_now || now_ns - asked_ns >= std::chrono::nanoseconds(kAskEvery).count()) {
       asked_ns = now_ns;
       const Status asked = AskAll(state);
+      RIGCAL_TRY(connection_.CheckOneServer());
       if (asked) answered_ns = SteadyNow_ns();
       if (!asked && asked.error().code != ErrorCode::kUnreachable) return Fail(asked.error());
       if (!asked && SteadyNow_ns() - answered_ns >= state.place.give_up_ns)

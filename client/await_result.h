@@ -36,7 +36,7 @@ class ResultWatch {
  public:
   [[nodiscard]] static Result<ResultWatch> Open(const wire::Participant& participant,
                                                 const wire::ParticipantOptions& dds, const RobotId& robot);
-  // kUnreachable if no server answered for give_up_ns.
+  // kUnreachable if no server answered for give_up_ns, or if two are there.
   [[nodiscard]] Result<Awaited> Await(AwaitPlace place, const AwaitHooks& hooks);
 
  private:

@@ -52,10 +52,11 @@ Error UnreachableError(const std::string& where, milliseconds waited) {
 }
 
 Connection::Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies,
-                       wire::WaitSet waitset, std::string where)
+                       wire::WaitSet waitset, OneServer one_server, std::string where)
     : requests_(std::move(requests)),
       replies_(std::move(replies)),
       waitset_(std::move(waitset)),
+      one_server_(std::move(one_server)),
       where_(std::move(where)) {}
 
 Result<Connection> Connection::Open(const wire::Participant& participant, const wire::ParticipantOptions& options) {
@@ -65,7 +66,9 @@ Result<Connection> Connection::Open(const wire::Participant& participant, const 
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(replies.get()));
   RIGCAL_TRY(waitset.Attach(requests.get()));
-  return Connection(std::move(requests), std::move(replies), std::move(waitset), WhereText(options));
+  RIGCAL_ASSIGN(auto one_server, OneServer::Open(participant, WhereText(options)));
+  return Connection(std::move(requests), std::move(replies), std::move(waitset), std::move(one_server),
+                    WhereText(options));
 }
 
 tl::unexpected<Error> Connection::Unreachable(milliseconds timeout) const {
@@ -106,6 +109,7 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
   const auto deadline = Clock::now() + timeout;
   asked_.clear();
   RIGCAL_TRY(WaitForServer(timeout));
+  RIGCAL_TRY(CheckOneServer());
   std::size_t attempt = 0;
   auto ask_at = Clock::now();
   while (true) {
@@ -116,6 +120,7 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
     RIGCAL_TRY(waitset_.Wait(std::min(Left(ask_at), Left(deadline))));
     RIGCAL_ASSIGN(auto whole, TakeReply());
     if (whole) {
+      RIGCAL_TRY(CheckOneServer());
       if (auto error = formats::ReadError(*whole)) return Fail(std::move(*error));
       return std::move(*whole);
     }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client/document.h"
+#include "client/one_server.h"
 #include "client/reply_parts.h"
 #include "idl/dds.h"
 
@@ -17,20 +18,21 @@ class Connection {
   // Does not wait for a server: Ask does.
   [[nodiscard]] static Result<Connection> Open(const wire::Participant& participant,
                                                const wire::ParticipantOptions& options);
-  // The /api/v1 document of (verb, json), verbatim. kUnreachable if nobody answers in time; the error that the document
-  // carries, if it is one.
+  // The /api/v1 document of (verb, json), verbatim. kUnreachable if nobody answers in time, or if two servers are
+  // there; the error that the document carries, if it is one.
   [[nodiscard]] Result<std::string> Ask(const std::string& verb, const std::string& json,
                                         std::chrono::milliseconds timeout);
   [[nodiscard]] Result<Document> AskDocument(const std::string& verb, const std::string& json,
                                              std::chrono::milliseconds timeout);
   // Until both directions are matched with a server; kUnreachable after the timeout.
   [[nodiscard]] Status WaitForServer(std::chrono::milliseconds timeout);
-  [[nodiscard]] int MatchedServers() const { return requests_.MatchedReaders(); }
+  // kUnreachable if two servers are there.
+  [[nodiscard]] Status CheckOneServer() { return one_server_.Check(); }
 
  private:
   using Clock = std::chrono::steady_clock;
   Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies, wire::WaitSet waitset,
-             std::string where);
+             OneServer one_server, std::string where);
   [[nodiscard]] tl::unexpected<Error> Unreachable(std::chrono::milliseconds timeout) const;
   [[nodiscard]] Status Send(const std::string& verb, const std::string& json);
   [[nodiscard]] Result<std::optional<std::string>> TakeReply();
@@ -38,6 +40,7 @@ class Connection {
   wire::Writer<rigcal_wire_Request> requests_;
   wire::Reader<rigcal_wire_Reply> replies_;
   wire::WaitSet waitset_;
+  OneServer one_server_;
   std::string where_;                        // "DDS domain 0, tag 'x'"
   std::map<std::string, ReplyParts> asked_;  // by id, of the running Ask
 };

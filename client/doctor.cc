@@ -74,6 +74,10 @@ Status CheckServer(const Context& context, Findings& findings) {
       std::max(kDiscoverWithin, context.timeout_is_given ? context.timeout : kDiscoverWithin)));
   const double found_ms = static_cast<double>(SteadyNow_ns() - start_ns) * 1e-6;
   findings.checks.push_back({"discovery", CheckLevel::kOk, "found a rigcald after " + Fixed(found_ms, 0) + " ms", ""});
+  if (const Status one = connection.CheckOneServer(); !one) {
+    findings.checks.push_back({"servers", CheckLevel::kFail, one.error().what, one.error().cure});
+    return {};
+  }
   std::vector<Health> answers;
   for (int i = 0; i < kRoundTrips; ++i) {
     RIGCAL_ASSIGN(Health health, AskHealth(connection, context.timeout));
@@ -81,10 +85,9 @@ Status CheckServer(const Context& context, Findings& findings) {
   }
   findings.has_server = true;
   CheckAnswers(answers, findings.checks);
-  if (connection.MatchedServers() > 1)
-    findings.checks.push_back({"servers", CheckLevel::kWarn,
-                               std::to_string(connection.MatchedServers()) + " servers answer",
-                               "Stop all but one, or keep them apart by --domain or --tag"});
+  RIGCAL_ASSIGN(const Document status, connection.AskDocument("status", "{}", context.timeout));
+  for (const Document& batch : status["open_batches"].Items())
+    findings.checks.push_back({"edges", CheckLevel::kWarn, OpenBatchText(batch), kCompleteBatch});
   return {};
 }
 

@@ -18,8 +18,14 @@ void PrintServer(const Document& document, std::ostream& out) {
     out << "The server is not well: " << Plain(problem["what"].Text()) << ". " << Plain(problem["cure"].Text()) << '\n';
 }
 
+void PrintOpenBatches(const Document& document, std::ostream& out) {
+  for (const Document& batch : document["open_batches"].Items())
+    out << "! " << OpenBatchText(batch) << "\n  -> " << kCompleteBatch << '\n';
+}
+
 void PrintStatus(const Document& document, std::ostream& out) {
   PrintServer(document, out);
+  PrintOpenBatches(document, out);
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
   Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});

@@ -23,10 +23,11 @@ milliseconds WaitFor(std::int64_t until_ns, std::int64_t now_ns) {
 // One transfer while it runs.
 class Transfer {
  public:
-  Transfer(wire::Reader<rigcal_wire_Receipt> receipts, wire::WaitSet waitset, const TransferPlace& place,
-           PushEngine& engine, Outlet& outlet, const TransferHooks& hooks)
+  Transfer(wire::Reader<rigcal_wire_Receipt> receipts, wire::WaitSet waitset, OneServer one_server,
+           const TransferPlace& place, PushEngine& engine, Outlet& outlet, const TransferHooks& hooks)
       : receipts_(std::move(receipts)),
         waitset_(std::move(waitset)),
+        one_server_(std::move(one_server)),
         place_(place),
         engine_(engine),
         outlet_(outlet),
@@ -37,9 +38,10 @@ class Transfer {
     for (const dds_entity_t writer : outlet_.Writers()) RIGCAL_TRY(waitset_.Attach(writer));
     while (true) {
       RIGCAL_TRY(TakeReceipts());
+      RIGCAL_TRY(one_server_.CheckOften());
       const std::int64_t now_ns = SteadyNow_ns();
       const PushAction action = engine_.Next(now_ns);
-      if (action.kind == PushAction::Kind::kClosed) return {};
+      if (action.kind == PushAction::Kind::kClosed) return one_server_.Check();
       if (action.kind == PushAction::Kind::kRefused) return Fail(*engine_.error());
       if (action.kind == PushAction::Kind::kGaveUp) return GiveUp(now_ns);
       RIGCAL_TRY(Do(action, now_ns));
@@ -70,7 +72,7 @@ class Transfer {
   Status Do(const PushAction& action, std::int64_t now_ns) {
     switch (action.kind) {
       case PushAction::Kind::kSendHeader:
-        if (outlet_.HasServer()) return SayIfBusy(outlet_.SendHeader(engine_));
+        if (outlet_.HasServer()) return AskServer();
         engine_.NotAsked();
         return waitset_.Wait(kTick).map([](bool) {});
       case PushAction::Kind::kSendManifest:
@@ -83,6 +85,12 @@ class Transfer {
       default:
         return waitset_.Wait(WaitFor(action.until_ns, now_ns)).map([](bool) {});
     }
+  }
+
+  // What two servers would both take is not sent.
+  Status AskServer() {
+    RIGCAL_TRY(one_server_.Check());
+    return SayIfBusy(outlet_.SendHeader(engine_));
   }
 
   // The engine asks again by itself what DDS did not take.
@@ -109,6 +117,7 @@ class Transfer {
 
   wire::Reader<rigcal_wire_Receipt> receipts_;
   wire::WaitSet waitset_;
+  OneServer one_server_;
   const TransferPlace& place_;
   PushEngine& engine_;
   Outlet& outlet_;
@@ -129,7 +138,8 @@ Status RunTransfer(const wire::Participant& participant, const TransferPlace& pl
   RIGCAL_ASSIGN(auto receipts,
                 wire::Reader<rigcal_wire_Receipt>::Open(participant, {wire::RobotPartition(place.robot)}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
-  return Transfer(std::move(receipts), std::move(waitset), place, engine, outlet, hooks).Run();
+  RIGCAL_ASSIGN(auto one_server, OneServer::Open(participant, place.where));
+  return Transfer(std::move(receipts), std::move(waitset), std::move(one_server), place, engine, outlet, hooks).Run();
 }
 
 }  // namespace rigcal::client

@@ -41,7 +41,8 @@ struct TransferPlace {
 
 [[nodiscard]] std::int64_t SteadyNow_ns();
 
-// Until the subject is closed. Errors: refused (the server's sentence), kUnreachable after the plan's give_up_ns.
+// Until the subject is closed. Errors: refused (the server's sentence), kUnreachable after the plan's give_up_ns or
+// if two servers are there.
 [[nodiscard]] Status RunTransfer(const wire::Participant& participant, const TransferPlace& place, PushEngine& engine,
                                  Outlet& outlet, const TransferHooks& hooks);
 

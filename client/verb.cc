@@ -57,6 +57,13 @@ std::string CountOf(const Document& number) {
   return count ? std::to_string(*count) : "-";
 }
 
+std::string OpenBatchText(const Document& batch) {
+  const std::string edges = CountOf(batch["edges"]);
+  return "robot " + Plain(batch["robot"].Text("?")) + ": a batch of " + edges + " edges is incomplete: " +
+         CountOf(batch["held"]) + " of " + edges + " came, the last " + AgeOf(batch["age_ns"]) +
+         " ago; none of them counts";
+}
+
 std::string ReportAddress(const Document& status, const std::string& robot, std::int64_t revision) {
   const std::string address = Plain(status["http_address"].Text());
   if (address.empty()) return "";

@@ -49,6 +49,10 @@ void PrintVerdict(const Document& verdict, std::ostream& out);
 [[nodiscard]] std::string AgeOf(const Document& age_ns);
 // Text of a number, or "-".
 [[nodiscard]] std::string CountOf(const Document& number);
+// "robot r: a batch of 59 edges is incomplete: 1 of 59 came, the last 2 min ago; none of them counts", of a row of
+// `open_batches`, and what to do.
+[[nodiscard]] std::string OpenBatchText(const Document& batch);
+inline constexpr const char* kCompleteBatch = "Push the same edges again: that completes it, nothing is stored twice";
 // "<address>/robots/<robot>/revisions/<n>/", or empty where the server has no HTTP. `status`: its document.
 [[nodiscard]] std::string ReportAddress(const Document& status, const std::string& robot, std::int64_t revision);
 // The row of a robot in a document with "robots".

@@ -94,6 +94,7 @@ Status WatchLoop(const Context& context, const WatchOptions& options) {
   RIGCAL_ASSIGN(auto events, wire::Reader<rigcal_wire_Event>::Open(participant, {partition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(events.get()));
+  RIGCAL_ASSIGN(auto one_server, OneServer::Open(participant, WhereText(context.dds)));
   const auto start = SteadyClock::now();
   const auto is_over = [&] { return context.timeout_is_given && SteadyClock::now() - start >= context.timeout; };
   bool hinted = false;
@@ -102,6 +103,7 @@ Status WatchLoop(const Context& context, const WatchOptions& options) {
   const auto is_enough = [&] { return options.count > 0 && seen >= options.count; };
   while (!interrupted && !is_over() && !is_enough()) {
     RIGCAL_TRY(waitset.Wait(kTick));
+    RIGCAL_TRY(one_server.CheckOften());
     if (!hinted && seen == 0 && events.MatchedWriters() == 0 && SteadyClock::now() - start > kHintAfter) {
       context.err << "Nothing is announced yet on " << WhereText(context.dds) << "; waiting (Ctrl-C ends). "
                   << "`rigcal doctor` tells whether a server is there." << std::endl;

@@ -45,6 +45,7 @@ struct ParticipantOptions {
   std::string tag;  // Discovery/Tag: isolates tests; empty: RIGCAL_DDS_TAG
   // Sockets and threads of DDS that no other participant of the process has, unless that is apart too.
   bool apart = false;
+  std::string user_data = {};  // what discovery tells all others of it (presence.h); empty: nothing
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
 };
@@ -57,6 +58,8 @@ class Participant {
  public:
   [[nodiscard]] static Result<Participant> Open(const ParticipantOptions& options);
   [[nodiscard]] dds_entity_t get() const { return entity_.get(); }
+  // Replaces its user data, and tells all others.
+  [[nodiscard]] Status Tell(const std::string& user_data) const;
   // Created at the first call, then shared by all readers and writers of the type.
   [[nodiscard]] Result<dds_entity_t> Topic(const TopicInfo& info) const;
 

@@ -118,6 +118,17 @@ Result<std::shared_ptr<Domain>> SharedDomain(const DomainNumbers& numbers, const
   return shared;
 }
 
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+Qos QosWith(const std::string& user_data) {
+  Qos qos(dds_create_qos());
+  if (!user_data.empty()) dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
+  return qos;
+}
+
 }  // namespace
 
 std::string RobotPartition(const RobotId& robot) { return "robot/" + robot.str(); }
@@ -143,11 +154,19 @@ Result<Participant> Participant::Open(const ParticipantOptions& options) {
   RIGCAL_ASSIGN(const std::string tag, DiscoveryTag(options));
   const int here = options.apart && !RuledFromOutside() ? number + kApart : number;
   RIGCAL_ASSIGN(std::shared_ptr<Domain> domain, SharedDomain({number, here}, tag));
-  Entity entity(dds_create_participant(static_cast<dds_domainid_t>(here), nullptr, nullptr));
+  const Qos qos = QosWith(options.user_data);
+  Entity entity(dds_create_participant(static_cast<dds_domainid_t>(here), qos.get(), nullptr));
   if (entity.get() < 0)
     return Fail(ErrorCode::kUnreachable, std::string("DDS participant: ") + dds_strretcode(-entity.get()),
                 "At most 120 DDS participants of one domain run on a machine (a server has two): stop some, or set RIGCAL_DOMAIN");
   return Participant(std::move(domain), std::move(entity));
+}
+
+Status Participant::Tell(const std::string& user_data) const {
+  const dds_return_t code = dds_set_qos(entity_.get(), QosWith(user_data).get());
+  if (code == DDS_RETCODE_OK) return {};
+  return Fail(ErrorCode::kInternal, std::string("DDS participant: ") + dds_strretcode(-code),
+              "Too little memory, or a fault in Rigcal: report it with the log");
 }
 
 Result<dds_entity_t> Participant::Topic(const TopicInfo& info) const {

@@ -30,6 +30,8 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_option("--domain", config.participant.domain, "DDS domain")->capture_default_str()->check(CLI::Range(0, 230));
   app.add_option("--tag", config.participant.tag, "DDS discovery tag: only peers with the same tag meet");
+  app.add_flag("--standby", config.standby,
+               "While another rigcald serves on the domain and tag, wait, and take over when it is gone");
   app.add_option("--threads", config.threads, "Threads that calibrate")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
@@ -41,8 +43,9 @@ void AddOptions(CLI::App& app, Config& config) {
       ->type_name("NAME=VALUE");
   app.add_flag("--verbose", config.verbose, "Log every event");
   app.footer(
+      "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420\n  rigcald --domain 7 --http "
-      "127.0.0.1:0\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB");
+      "127.0.0.1:0\n  rigcald --data /srv/rigcal-2 --standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB");
 }
 
 Result<limits::Limits> LimitsOf(const Config& config) {

@@ -21,6 +21,7 @@ struct Config {
   wire::ParticipantOptions participant;
   int threads = 2;
   bool verbose = false;
+  bool standby = false;  // waits while another server is there, instead of ending
   std::filesystem::path limits_file;  // empty: none
   std::vector<std::string> limits;    // NAME=VALUE; they win over the file
 };

@@ -18,6 +18,7 @@
 #include "server/pipeline/answer.h"
 #include "server/pipeline/runner.h"
 #include "server/pipeline/startup.h"
+#include "server/standby.h"
 #include "storage/folder_lock.h"
 #include "storage/room.h"
 
@@ -65,10 +66,13 @@ http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& conte
 
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
+  RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
+  RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
+  if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
-  RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(storage::Store query_store, storage::Store::Open(config.data));
+  if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
   pipeline::RevisionCache revisions;
   pipeline::ServerHealth health(config.data, SystemClock());
@@ -92,7 +96,8 @@ Status Serve(const Config& config, const sigset_t& signals) {
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
-                dds::Service::Start({config.participant, config.data, &SystemClock(), &health.vitals()}, callbacks));
+                dds::Service::Start(
+                    {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));
@@ -105,12 +110,11 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
             << std::endl;
-  int signal = 0;
-  sigwait(&signals, &signal);
+  const Status ended = ServeUntil(signals, *only, config.data.string());
   LogInfo("stopping");
   LeaveSoon();
   relay.Set(nullptr);
-  return {};
+  return ended;
 }
 
 }  // namespace
@@ -140,5 +144,5 @@ int main(int argc, char** argv) {
   const rigcal::Status served = rigcal::Serve(config, signals);
   if (served) return 0;
   rigcal::LogError(served.error());
-  return 1;
+  return served.error().code == rigcal::ErrorCode::kConflict ? 4 : 1;  // 4: another server is in the way
 }

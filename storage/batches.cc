@@ -1,3 +1,4 @@
+#include "storage/edge_row.h"
 #include "storage/edges.h"
 #include "storage/query.h"
 #include "storage/sessions.h"
@@ -10,23 +11,12 @@ struct BatchRow {
   std::int64_t item_count = 0;
 };
 
-struct EdgeRow {
-  std::int64_t number = 0;
-  Stamp appended_at;
-};
-
 std::string Subject(const BatchId& batch) { return "batch " + batch.str(); }
 
 std::optional<BatchRow> FindBatch(Store& store, const BatchId& batch) {
   Query query(store, "SELECT number, item_count FROM batch WHERE batch_id = ?");
   if (!query.Bind(batch).Step()) return std::nullopt;
   return BatchRow{query.Int(0), query.Int(1)};
-}
-
-Result<EdgeRow> FindEdge(Store& store, const EdgeId& edge) {
-  Query query(store, "SELECT number, appended_ns FROM edge WHERE edge_id = ?");
-  if (query.Bind(edge).Step()) return EdgeRow{query.Int(0), query.Time(1)};
-  return Fail(ErrorCode::kNotFound, "edge " + edge.str() + " is not stored", "Append it before its item of a batch.");
 }
 
 Result<BatchRow> FindPlace(Store& store, const BatchId& batch, std::int64_t item_idx) {
@@ -62,24 +52,38 @@ Status CheckCount(const BatchId& batch, const BatchRow& row, std::int64_t count)
       "Give each set of edges its own batch id.");
 }
 
-Status CheckSame(Store& store, const BatchId& batch, std::int64_t batch_number, std::int64_t item_idx,
-                 std::int64_t edge_number) {
-  Query query(store, "SELECT edge_number FROM batch_item WHERE batch_number = ? AND idx = ?");
-  if (query.Bind(batch_number, item_idx).Step() && query.Int(0) == edge_number) return {};
+// Is the item there already? kConflict if it is another edge.
+Result<bool> HasItem(Store& store, const BatchId& batch, std::int64_t batch_number, std::int64_t item_idx,
+                     const EdgeId& edge) {
+  Query query(store, "SELECT e.edge_id FROM batch_item i JOIN edge e ON e.number = i.edge_number "
+                     "WHERE i.batch_number = ? AND i.idx = ?");
+  if (!query.Bind(batch_number, item_idx).Step()) return false;
+  if (query.IdAt<EdgeId>(0) == edge) return true;
   return Fail(ErrorCode::kConflict, Subject(batch) + " holds another edge as item " + std::to_string(item_idx),
               "Give each set of edges its own batch id.");
 }
 
-void CountDown(Store& store, std::int64_t batch_number, Stamp appended_at) {
+// True if that was the last one that was missing.
+bool CountDown(Store& store, std::int64_t batch_number, Stamp now) {
   // The last item first: a row that is to go need not be changed.
   const bool last =
       Query(store, "DELETE FROM waiting_batch WHERE batch_number = ? AND missing_count = 1").Bind(batch_number).Run() >
       0;
-  if (last) return;
+  if (last) return true;
   Query(store,
         "UPDATE waiting_batch SET missing_count = missing_count - 1, newest_ns = max(newest_ns, ?) "
         "WHERE batch_number = ?")
-      .Bind(appended_at, batch_number)
+      .Bind(now, batch_number)
+      .Run();
+  return false;
+}
+
+// From now on all its edges count; some may do so already, by another batch.
+void CountEdges(Store& store, std::int64_t batch_number) {
+  Query(store,
+        "INSERT INTO counted_edge (edge_number, robot_id) SELECT e.number, e.robot_id FROM batch_item i CROSS JOIN "
+        "edge e ON e.number = i.edge_number WHERE i.batch_number = ? ORDER BY i.idx ON CONFLICT DO NOTHING")
+      .Bind(batch_number)
       .Run();
 }
 
@@ -100,14 +104,14 @@ Status AppendBatch(Store& store, const RobotId& robot, const BatchId& batch, std
   });
 }
 
-Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const EdgeId& edge) {
+Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const Edge& edge, Stamp now) {
   return store.connection().Append(Subject(batch), [&]() -> Status {
     RIGCAL_ASSIGN(const BatchRow place, FindPlace(store, batch, item_idx));
-    RIGCAL_ASSIGN(const EdgeRow row, FindEdge(store, edge));
-    Query insert(store, "INSERT INTO batch_item VALUES (?, ?, ?) ON CONFLICT DO NOTHING");
-    if (insert.Bind(place.number, item_idx, row.number).Run() == 0)
-      return CheckSame(store, batch, place.number, item_idx, row.number);
-    CountDown(store, place.number, row.appended_at);
+    RIGCAL_ASSIGN(const bool is_there, HasItem(store, batch, place.number, item_idx, edge.id));
+    if (is_there) return {};
+    RIGCAL_ASSIGN(const std::int64_t edge_number, AppendEdgeRow(store, edge, now));
+    Query(store, "INSERT INTO batch_item VALUES (?, ?, ?)").Bind(place.number, item_idx, edge_number).Run();
+    if (CountDown(store, place.number, now)) CountEdges(store, place.number);
     return {};
   });
 }
@@ -125,11 +129,18 @@ Result<std::optional<std::vector<bool>>> LoadBatchHeld(Store& store, const Batch
   });
 }
 
-Result<std::optional<Stamp>> LoadOpenBatch(Store& store, const RobotId& robot) {
-  return Load<std::optional<Stamp>>(store, "batches of robot " + robot.str(), [&]() -> Result<std::optional<Stamp>> {
-    Query query(store, "SELECT newest_ns FROM waiting_batch WHERE robot_id = ? ORDER BY newest_ns DESC LIMIT 1");
-    if (!query.Bind(robot).Step()) return std::nullopt;
-    return query.Time(0);
+Result<std::vector<OpenBatch>> LoadOpenBatches(Store& store, const RobotId& robot) {
+  return Load<std::vector<OpenBatch>>(store, "incomplete batches", [&]() -> Result<std::vector<OpenBatch>> {
+    Query query(store,
+                "SELECT b.batch_id, b.robot_id, b.item_count, b.item_count - w.missing_count, b.appended_ns, "
+                "w.newest_ns FROM waiting_batch w CROSS JOIN batch b ON b.number = w.batch_number "
+                "WHERE ? IN (w.robot_id, '') ORDER BY b.number");
+    query.Bind(robot);
+    std::vector<OpenBatch> batches;
+    while (query.Step())
+      batches.push_back({query.IdAt<BatchId>(0), query.IdAt<RobotId>(1), query.Int(2), query.Int(3), query.Time(4),
+                         query.Time(5)});
+    return batches;
   });
 }
 

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "storage/edge_row.h"
 #include "storage/edges.h"
 #include "storage/query.h"
 #include "storage/sessions.h"
@@ -70,6 +71,11 @@ bool InsertEdge(Store& store, const Edge& edge, Stamp now) {
   return insert.Run() > 0;
 }
 
+std::int64_t NumberOf(Store& store, const EdgeId& id) {
+  Query query(store, "SELECT number FROM edge WHERE edge_id = ?");
+  return query.Bind(id).Step() ? query.Int(0) : 0;
+}
+
 Blob BlobOfShifts(const std::vector<Vector6d>& shifts) {
   std::vector<double> values;
   for (const Vector6d& shift : shifts) values.insert(values.end(), shift.data(), shift.data() + 6);
@@ -120,15 +126,23 @@ void InsertCaptures(Store& store, std::int64_t edge_number, const Edge& edge) {
 
 }  // namespace
 
+Result<std::int64_t> AppendEdgeRow(Store& store, const Edge& edge, Stamp now) {
+  RIGCAL_TRY(Check(edge));
+  RIGCAL_TRY(AppendRobot(store, edge.robot, now));
+  if (!InsertEdge(store, edge, now)) return NumberOf(store, edge.id);
+  const std::int64_t edge_number = store.database().getLastInsertRowid();
+  if (edge.state == EdgeState::kGood) InsertBlocks(store, edge_number, edge.uncertainty);
+  InsertWords(store, edge_number, edge);
+  InsertCaptures(store, edge_number, edge);
+  return edge_number;
+}
+
 Status AppendEdge(Store& store, const Edge& edge, Stamp now) {
   return store.connection().Append(Subject(edge), [&]() -> Status {
-    RIGCAL_TRY(Check(edge));
-    RIGCAL_TRY(AppendRobot(store, edge.robot, now));
-    if (!InsertEdge(store, edge, now)) return {};
-    const std::int64_t edge_number = store.database().getLastInsertRowid();
-    if (edge.state == EdgeState::kGood) InsertBlocks(store, edge_number, edge.uncertainty);
-    InsertWords(store, edge_number, edge);
-    InsertCaptures(store, edge_number, edge);
+    RIGCAL_ASSIGN(const std::int64_t edge_number, AppendEdgeRow(store, edge, now));
+    Query(store, "INSERT INTO counted_edge (edge_number, robot_id) VALUES (?, ?) ON CONFLICT DO NOTHING")
+        .Bind(edge_number, edge.robot)
+        .Run();
     return {};
   });
 }

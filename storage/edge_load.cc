@@ -8,7 +8,7 @@
 namespace rigcal::storage {
 namespace {
 
-// Which edges: `where` has one parameter, `key`.
+// Which of the edges that count: `where` has one parameter, `key`.
 struct Selection {
   std::string where;
   std::string key;
@@ -69,7 +69,8 @@ Selected LoadRows(Store& store, const Selection& selection) {
               "SELECT number, edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, "
               "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
               "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio FROM edge e WHERE " +
-                  selection.where + " ORDER BY edge_id");
+                  selection.where +
+                  " AND EXISTS (SELECT 1 FROM counted_edge c WHERE c.edge_number = e.number) ORDER BY edge_id");
   query.Bind(selection.key);
   Selected selected;
   while (query.Step()) {
@@ -169,8 +170,9 @@ Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot
   return Load<std::optional<Stamp>>(store, "edges of robot " + robot.str(), [&]() -> Result<std::optional<Stamp>> {
     Query query(
         store,
-        "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM edge LEFT JOIN session USING (session_id) "
-        "WHERE edge.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
+        "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM counted_edge c JOIN edge ON "
+        "edge.number = c.edge_number LEFT JOIN session USING (session_id) "
+        "WHERE c.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
     if (!query.Bind(robot).Step()) return std::nullopt;
     return Stamp{query.Int(0)};
   });
@@ -178,7 +180,7 @@ Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot
 
 Result<std::int64_t> LoadEdgeWatermark(Store& store, const RobotId& robot) {
   return Load<std::int64_t>(store, "edges of robot " + robot.str(), [&]() -> Result<std::int64_t> {
-    Query query(store, "SELECT coalesce(max(number), 0) FROM edge WHERE robot_id = ?");
+    Query query(store, "SELECT coalesce(max(number), 0) FROM counted_edge WHERE robot_id = ?");
     return query.Bind(robot).Step() ? query.Int(0) : 0;
   });
 }

@@ -9,6 +9,9 @@
 
 namespace rigcal::storage {
 
+// An edge counts from when it is appended, one of a batch from when the whole batch is there: all Load... give edges
+// that count, and no others.
+//
 // Appends edge, uncertainty, block vectors, diagnoses, figures, captures, evidence. A no-op if the id exists. Its robot
 // becomes known; its session, if it names one, must be stored. Refuses what is not finite. Of a failed edge pose and
 // uncertainty are not kept. All numbers come back bit for bit, but SQLite gives -0.0 in pose and blocks back as 0.0.
@@ -21,19 +24,26 @@ namespace rigcal::storage {
 // When the robot was last calibrated: the newest capture among the sessions of its good edges; for an edge that was
 // pushed, the moment it was stored. nullopt without a good edge.
 [[nodiscard]] Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot);
-// Row number of the newest edge of the robot; 0 if none. It only grows.
+// Number of the robot's edge that began to count last; 0 if none. It grows whenever one begins to count.
 [[nodiscard]] Result<std::int64_t> LoadEdgeWatermark(Store& store, const RobotId& robot);
 
-// A batch of finished edges: item i was edge id. Both are no-ops for what exists; kConflict if it exists otherwise
-// (another count, another edge). Append the edge first. Call AppendBatch in every Write that appends items: `now` is
-// their stamp.
+// A batch of finished edges: item i is that edge. Both are no-ops for what exists; kConflict if it exists otherwise
+// (another count, another edge). Call AppendBatch in every Write that appends items. With the last item that was
+// missing all edges of the batch begin to count, in that transaction.
 [[nodiscard]] Status AppendBatch(Store& store, const RobotId& robot, const BatchId& batch, std::int64_t count,
                                  Stamp now);
-[[nodiscard]] Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const EdgeId& edge);
+[[nodiscard]] Status AppendBatchItem(Store& store, const BatchId& batch, std::int64_t item_idx, const Edge& edge,
+                                     Stamp now);
 // held[i]: item i is durable; nullopt if the batch is unknown.
 [[nodiscard]] Result<std::optional<std::vector<bool>>> LoadBatchHeld(Store& store, const BatchId& batch);
-// Stamp of the newest item of an incomplete batch of the robot (of the batch, if it has none); nullopt if all batches
-// are complete.
-[[nodiscard]] Result<std::optional<Stamp>> LoadOpenBatch(Store& store, const RobotId& robot);
+// Batches of which items are missing, of one robot, or of all if `robot` is empty; the oldest first. Their edges do not
+// count.
+struct OpenBatch {
+  BatchId id;
+  RobotId robot;
+  std::int64_t items = 0, held = 0;
+  Stamp opened_at, newest_at;  // `newest_at`: when an item was last pushed
+};
+[[nodiscard]] Result<std::vector<OpenBatch>> LoadOpenBatches(Store& store, const RobotId& robot);
 
 }  // namespace rigcal::storage

@@ -36,7 +36,8 @@ Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const R
   return Load<Facts>(store, "results of the sessions of robot " + robot.str(), [&]() -> Result<Facts> {
     Facts facts;
     Query query(store,
-                "SELECT session_id, sum(state = 'good'), sum(state = 'failed') FROM edge WHERE robot_id = ? AND "
+                "SELECT session_id, sum(state = 'good'), sum(state = 'failed') FROM counted_edge c JOIN edge e "
+                "ON e.number = c.edge_number WHERE c.robot_id = ? AND "
                 "session_id IS NOT NULL GROUP BY session_id");
     query.Bind(robot);
     while (query.Step()) facts[query.IdAt<SessionId>(0)] = {query.Int(1), query.Int(2)};

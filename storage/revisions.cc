@@ -83,7 +83,7 @@ Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
     Query query(store,
                 "SELECT robot_id FROM robot r "
-                "WHERE (SELECT max(number) FROM edge e WHERE e.robot_id = r.robot_id) > "
+                "WHERE (SELECT max(number) FROM counted_edge c WHERE c.robot_id = r.robot_id) > "
                 "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
                 "ORDER BY v.number DESC LIMIT 1), 0) ORDER BY robot_id");
     std::vector<RobotId> robots;

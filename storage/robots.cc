@@ -16,7 +16,7 @@ Result<std::vector<RobotRow>> LoadRobots(Store& store) {
     Query query(store,
                 "SELECT robot_id, first_seen_ns, "
                 "(SELECT count(*) FROM session s WHERE s.robot_id = r.robot_id), "
-                "(SELECT count(*) FROM edge e WHERE e.robot_id = r.robot_id) FROM robot r ORDER BY robot_id");
+                "(SELECT count(*) FROM counted_edge c WHERE c.robot_id = r.robot_id) FROM robot r ORDER BY robot_id");
     std::vector<RobotRow> rows;
     while (query.Step()) rows.push_back({query.IdAt<RobotId>(0), query.Time(1), query.Int(2), query.Int(3)});
     return rows;

@@ -15,9 +15,9 @@ class Server:
     def environment(self):
         return {**os.environ, "RIGCAL_DDS_TAG": self.tag, "RIGCAL_DDS_LOCAL": "1"}
 
-    def start(self):
+    def start(self, *arguments):
         self.log = open(str(self.data) + ".log", "a")
-        self.process = subprocess.Popen([str(self.context.bin / "rigcald"), "--data", str(self.data), "--http", "127.0.0.1:0"],
+        self.process = subprocess.Popen([str(self.context.bin / "rigcald"), "--data", str(self.data), "--http", "127.0.0.1:0", *arguments],
                                         stdout=subprocess.PIPE, stderr=self.log, text=True, env=self.environment())
         return self
 

@@ -61,10 +61,8 @@ Status BatchRecorder::Record(const std::vector<BatchId>& ids) {
       const RobotId& robot = items.front().edge.robot;
       RIGCAL_TRY(storage::AppendRobot(store_, robot, now));
       RIGCAL_TRY(storage::AppendBatch(store_, robot, id, items.front().count, now));
-      for (const wire::BatchItem& item : items) {
-        RIGCAL_TRY(storage::AppendEdge(store_, item.edge, now));
-        RIGCAL_TRY(storage::AppendBatchItem(store_, id, item.idx, item.edge.id));
-      }
+      for (const wire::BatchItem& item : items)
+        RIGCAL_TRY(storage::AppendBatchItem(store_, id, item.idx, item.edge, now));
     }
     return {};
   });
@@ -77,7 +75,7 @@ void BatchRecorder::Announce(const BatchId& id) {
     batch.held[item.idx] = true;
     ++batch.held_count;
   }
-  if (!pending_[id].empty()) callbacks_.work_arrived(batch.robot);
+  if (!pending_[id].empty() && batch.held_count == batch.held.size()) callbacks_.work_arrived(batch.robot);
   SendReceipt(id, batch);
 }
 

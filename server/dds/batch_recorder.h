@@ -1,4 +1,5 @@
-// Batches of finished edges: each drain becomes one transaction, then receipts. Thread W only.
+// Batches of finished edges: each drain becomes one transaction, then receipts. Edges of a batch count once all of it
+// is stored (storage/edges.h). Thread W only.
 #pragma once
 
 #include <map>

@@ -34,6 +34,16 @@ void WriteRobotRows(JsonWriter& out, const std::vector<RobotAnswer>& robots, Sta
   });
 }
 
+void WriteOpenBatch(JsonWriter& out, const OpenBatchAnswer& batch, Stamp now) {
+  out.Text("batch", batch.batch.str());
+  out.Text("robot", batch.robot.str());
+  out.Integer("edges", batch.items);
+  out.Integer("held", batch.held);
+  WriteStamp(out, "opened_at", batch.opened_at);
+  WriteStamp(out, "newest_at", batch.newest_at);
+  WriteAge(out, batch.newest_at, now);
+}
+
 void WriteAddress(JsonWriter& out, const std::string& http_address) {
   if (http_address.empty()) return out.Null("http_address");
   out.Text("http_address", http_address);
@@ -136,6 +146,9 @@ std::string WriteStatus(const StatusAnswer& answer, Stamp now) {
     out.Integer("jobs_waiting", answer.jobs_waiting);
     WriteAddress(out, answer.http_address);
     WriteProblem(out, answer.problem);
+    out.List("open_batches", [&] {
+      for (const OpenBatchAnswer& batch : answer.open_batches) out.Object([&] { WriteOpenBatch(out, batch, now); });
+    });
     WriteRobotRows(out, answer.robots, now);
   });
 }

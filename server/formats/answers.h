@@ -60,11 +60,18 @@ struct LookupAnswer {
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
 
 // verb status
+struct OpenBatchAnswer {
+  BatchId batch;
+  RobotId robot;
+  std::int64_t items = 0, held = 0;  // edges that it has, and those that came
+  Stamp opened_at, newest_at;
+};
 struct StatusAnswer {
   std::string version;
   std::int64_t uptime_ns = 0;
   std::int64_t jobs_waiting = 0;
   std::vector<RobotAnswer> robots;  // all, or the one asked for
+  std::vector<OpenBatchAnswer> open_batches;  // of these robots: no edge of them counts
   std::string http_address;         // of the reports; empty: none
   std::optional<Error> problem;     // why the server cannot store or answer
 };

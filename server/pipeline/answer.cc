@@ -167,6 +167,9 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   answer.problem = LookAtHealth(context).problem();
   RIGCAL_ASSIGN(answer.robots, LoadRobotRows(context.store, robot, now));
   for (const auto& row : answer.robots) answer.jobs_waiting += row.jobs_waiting;
+  RIGCAL_ASSIGN(const auto batches, storage::LoadOpenBatches(context.store, robot));
+  for (const auto& one : batches)
+    answer.open_batches.push_back({one.id, one.robot, one.items, one.held, one.opened_at, one.newest_at});
   return formats::WriteStatus(answer, now);
 }
 

@@ -15,8 +15,19 @@ Result<bool> HasWholeSession(storage::Store& store, const RobotId& robot) {
   return std::any_of(sessions.begin(), sessions.end(), [](const auto& session) { return session.closed; });
 }
 
+// Of a robot that has nothing but a batch that is not whole.
+Result<std::optional<Error>> IncompleteBatch(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto batches, storage::LoadOpenBatches(store, robot));
+  if (batches.empty()) return std::nullopt;
+  const storage::OpenBatch& batch = batches.front();
+  return Error{ErrorCode::kNotFound,
+               "a batch of " + std::to_string(batch.items) + " edges is incomplete: " + std::to_string(batch.held) +
+                   " of " + std::to_string(batch.items) + " since " + ToIso(batch.newest_at),
+               "Push the same edges again: that completes it, and nothing is stored twice."};
+}
+
 // Of a robot without a revision. `whole`: a session of it came whole.
-Verdict FirstVerdict(const formats::RobotAnswer& row, bool whole) {
+Verdict FirstVerdict(const formats::RobotAnswer& row, bool whole, const std::optional<Error>& incomplete) {
   const char* wait = "Wait: the result appears by itself.";
   if (row.jobs_waiting > 0) return {VerdictLevel::kUnknown, "The first session is being calibrated.", wait};
   if (row.edges > 0) return {VerdictLevel::kUnknown, "The first result is being worked out.", wait};
@@ -26,6 +37,8 @@ Verdict FirstVerdict(const formats::RobotAnswer& row, bool whole) {
   if (row.sessions > 0)
     return {VerdictLevel::kUnknown, "The first session is arriving, or its push broke off.",
             "Wait a moment; if nothing changes, push it again: what is here already is not sent twice."};
+  if (incomplete)
+    return {VerdictLevel::kUnknown, "There is no revision yet: " + incomplete->what + ".", incomplete->cure};
   return {VerdictLevel::kUnknown, "There is no revision yet.", "Push a capture session or finished edges."};
 }
 
@@ -38,7 +51,8 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
     RIGCAL_ASSIGN(const bool whole, HasWholeSession(store, robot.robot));
-    row.verdict = FirstVerdict(row, whole);
+    RIGCAL_ASSIGN(const auto incomplete, IncompleteBatch(store, robot.robot));
+    row.verdict = FirstVerdict(row, whole, incomplete);
     return row;
   }
   row.revision = revision->number;
@@ -114,7 +128,10 @@ Result<Revision> RequiredRevision(Load load, storage::Store& store, const RobotI
   if (number != 0)
     return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision " + std::to_string(number),
                 "Leave the number out to get the newest.");
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision yet",
+  const std::string what = "robot '" + robot.str() + "' has no revision yet";
+  RIGCAL_ASSIGN(const auto incomplete, IncompleteBatch(store, robot));
+  if (incomplete) return Fail(incomplete->code, what + ": " + incomplete->what, incomplete->cure);
+  return Fail(ErrorCode::kNotFound, what,
               "Push a capture session or finished edges; `rigcal robots` lists the robots that are known.");
 }
 

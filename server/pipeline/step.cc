@@ -15,9 +15,6 @@
 namespace rigcal::pipeline {
 namespace {
 
-// The rest of a batch of edges whose sender went silent is waited for this long before the robot is revised without it.
-constexpr std::int64_t kBatchQuiet_ns = 5'000'000'000;
-
 class Claim {
  public:
   Claim(Claims& claims, const RobotId& robot) : claims_(claims), robot_(robot), taken_(claims.Take(robot)) {}
@@ -86,19 +83,6 @@ Result<bool> PublishNext(const StepContext& context) {
   return false;
 }
 
-// Is the burst over: no job of the robot waiting, no batch half arrived? Otherwise when to look again, if ever.
-struct Burst {
-  bool over = false;
-  std::optional<Stamp> wake_at;
-};
-Result<Burst> BurstOf(const StepContext& context, const RobotId& robot) {
-  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
-  if (jobs > 0) return Burst{};
-  RIGCAL_ASSIGN(const auto newest, storage::LoadOpenBatch(context.store, robot));
-  if (!newest || context.clock.Now().ns - newest->ns >= kBatchQuiet_ns) return Burst{true, std::nullopt};
-  return Burst{false, Stamp{newest->ns + kBatchQuiet_ns}};
-}
-
 Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock));
   context.announcer.event(robot, "revision", std::to_string(revision.number), formats::WriteRevisionEvent(revision));
@@ -108,14 +92,14 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
-// The live state of one robot, and its revision if its burst is over.
-Result<Burst> WorkOn(const StepContext& context, const RobotId& robot) {
+// The live state of one robot, and its revision if its burst is over: no job of it is waiting. True if it was revised.
+Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
   RIGCAL_TRY(UpdateLive(context, robot));
-  RIGCAL_ASSIGN(const Burst burst, BurstOf(context, robot));
-  if (!burst.over) return burst;
+  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
+  if (jobs > 0) return false;
   RIGCAL_TRY(ReviseAndTell(context, robot));
   SettleLive(context, robot);
-  return burst;
+  return true;
 }
 
 // A robot whose work failed rests, so that it holds up no other; then it is tried again.
@@ -137,9 +121,9 @@ Result<StepResult> ReviseNext(const StepContext& context) {
   for (const RobotId& robot : unsolved) {
     const Claim claim(context.claims, robot);
     if (!claim.taken()) continue;
-    const Result<Burst> burst = Guarded([&] { return WorkOn(context, robot); });
-    WakeBy(burst ? burst->wake_at : LetRest(context, robot, burst.error()), result);
-    result.worked = burst && burst->over;
+    const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
+    if (!revised) WakeBy(LetRest(context, robot, revised.error()), result);
+    result.worked = revised && *revised;
     if (result.worked) return result;
   }
   return result;

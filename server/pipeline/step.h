@@ -55,7 +55,7 @@ struct StepContext {
 
 struct StepResult {
   bool worked = false;           // false: there was nothing to do
-  std::optional<Stamp> wake_at;  // nothing now, but look again then (a batch whose sender went silent)
+  std::optional<Stamp> wake_at;  // nothing now, but look again then (a robot that rests)
 };
 
 // In this order: publish a revision; revise a robot whose burst is over; run one edge job.

@@ -3,6 +3,9 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "storage/migrate.h"
 #include "tests/fault/fault_disk.h"
 #include "tests/unit/storage_fixture.h"
 
@@ -46,16 +49,22 @@ Extent SessionExtent(Store& store) {
   return ExtentOf(row.has_value(), held && row->closed && CountJobs(store, id).value().waiting == 1);
 }
 
-Status PushEdges(Store& store) {
+Status PushItems(Store& store, int first, int end) {
   const BatchId batch(DigestOf("batch").str());
   return store.Write([&]() -> Status {
     RIGCAL_TRY(AppendBatch(store, kRobot, batch, kEdges, {1}));
-    for (int i = 0; i < kEdges; ++i) {
-      RIGCAL_TRY(AppendEdge(store, MakeEdge(i), {1}));
-      RIGCAL_TRY(AppendBatchItem(store, batch, i, MakeEdge(i).id));
-    }
+    for (int i = first; i < end; ++i) RIGCAL_TRY(AppendBatchItem(store, batch, i, MakeEdge(i), {1}));
     return {};
   });
+}
+
+Status PushEdges(Store& store) { return PushItems(store, 0, kEdges); }
+
+// The first item alone, as a client asks what the server holds, then the rest in two transactions.
+Status PushEdgesInParts(Store& store) {
+  RIGCAL_TRY(PushItems(store, 0, 1));
+  RIGCAL_TRY(PushItems(store, 1, kEdges / 2));
+  return PushItems(store, kEdges / 2, kEdges);
 }
 
 Extent EdgesExtent(Store& store) {
@@ -63,8 +72,17 @@ Extent EdgesExtent(Store& store) {
   const auto held = LoadBatchHeld(store, BatchId(DigestOf("batch").str())).value();
   bool whole = edges.size() == kEdges && held == std::vector<bool>(kEdges, true);
   for (const Edge& edge : edges) whole = whole && edge.uncertainty.blocks.size() == 3 && edge.evidence.size() == 1;
-  whole = whole && !LoadOpenBatch(store, kRobot).value();
+  whole = whole && LoadOpenBatches(store, kRobot).value().empty();
   return ExtentOf(!edges.empty() || held.has_value(), whole);
+}
+
+// Parts may be stored, but none of them counts before all do.
+Extent CountedEdgesExtent(Store& store) {
+  const auto unsolved = LoadUnsolvedRobots(store).value();
+  const bool asks = std::find(unsolved.begin(), unsolved.end(), kRobot) != unsolved.end();
+  const bool any = !LoadEdges(store, kRobot, true).value().empty() || LoadEdgeWatermark(store, kRobot).value() > 0;
+  if (any != asks) return Extent::kHalf;
+  return any ? EdgesExtent(store) : Extent::kNone;
 }
 
 // With the checkpoint that moves it from the log to the database file.
@@ -142,6 +160,7 @@ TEST_P(DiskFault, LeavesAllOrNothing) {
 constexpr Fault kFaults[] = {Fault::kOnce, Fault::kFromThere, Fault::kPowerLoss};
 constexpr Act kActs[] = {{"Session", PushSession, SessionExtent},
                          {"Edges", PushEdges, EdgesExtent},
+                         {"EdgesInParts", PushEdgesInParts, CountedEdgesExtent},
                          {"Revision", CommitRevision, RevisionExtent}};
 
 std::string NameOfCase(const testing::TestParamInfo<std::tuple<Fault, Act>>& info) {
@@ -169,7 +188,7 @@ TEST_P(MakingFault, LeavesAStoreThatOpens) {
     disk.Repair();
     Result<Store> store = Store::Open(folder.path());
     ASSERT_TRUE(store) << WordsOf(store);
-    EXPECT_EQ(store->SchemaVersion(), 4);
+    EXPECT_EQ(store->SchemaVersion(), NewestSchemaVersion());
     EXPECT_TRUE(PushEdges(*store));
     EXPECT_EQ(EdgesExtent(*store), Extent::kWhole);
   }

@@ -138,6 +138,15 @@ TEST(Answers, Status) {
   EXPECT_TRUE(status["problem"].is_null());
   answer.problem = Error{ErrorCode::kStorage, "disk full", "Free some space."};
   EXPECT_EQ(json::parse(WriteStatus(answer, kNow))["problem"]["what"], "disk full");
+  EXPECT_TRUE(status["open_batches"].empty());
+  answer.open_batches = {{BatchId("b7"), kRobot, 59, 1, kDayBefore, kDayBefore}};
+  const json batch = json::parse(WriteStatus(answer, kNow))["open_batches"][0];
+  EXPECT_EQ(batch["batch"], "b7");
+  EXPECT_EQ(batch["robot"], kRobot.str());
+  EXPECT_EQ(batch["edges"], 59);
+  EXPECT_EQ(batch["held"], 1);
+  EXPECT_EQ(batch["opened_at"], "2026-01-31T12:00:00Z");
+  EXPECT_EQ(batch["age_ns"], kNow.ns - kDayBefore.ns);
 }
 
 TEST(Answers, Health) {

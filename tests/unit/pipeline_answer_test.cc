@@ -27,6 +27,23 @@ TEST_F(AnswerTest, EveryVerbAnswersForARobotWithARevision) {
   }
 }
 
+TEST_F(AnswerTest, ABatchThatIsNotWholeIsNamedWhereTheResultIsMissed) {
+  const std::vector<Edge> edges = Triangle("r");
+  ASSERT_TRUE(store_->Write([&]() -> Status {
+    RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), BatchIdOf(RobotId("r"), edges), 3, clock_.now));
+    return storage::AppendBatchItem(*store_, BatchIdOf(RobotId("r"), edges), 0, edges[0], clock_.now);
+  }));
+  EXPECT_EQ(StepAll(), 0);
+  const auto shown = Ask("show", R"({"robot":"r"})");
+  ASSERT_FALSE(shown);
+  EXPECT_EQ(Sentence(shown.error()),
+            "robot 'r' has no revision yet: a batch of 3 edges is incomplete: 1 of 3 since 2027-01-15T08:00:00Z. Push "
+            "the same edges again: that completes it, and nothing is stored twice.");
+  const std::string status = Ask("status", "{}").value();
+  EXPECT_NE(status.find(R"("edges":3,"held":1)"), std::string::npos) << status;
+  EXPECT_NE(status.find("There is no revision yet: a batch of 3 edges is incomplete"), std::string::npos) << status;
+}
+
 TEST_F(AnswerTest, LookupComposesThroughTheReference) {
   StoreEdges(Triangle("r"));
   StepAll();

@@ -39,23 +39,36 @@ TEST_F(PipelineTest, PushedEdgesBecomeOneRevisionWhatTheOrder) {
   EXPECT_EQ(revisions_[0].document, revisions_[1].document);
 }
 
-TEST_F(PipelineTest, AnOpenBatchIsWaitedForButNotForEver) {
+TEST_F(PipelineTest, ABatchCountsWholeOrNotAtAll) {
   const std::vector<Edge> edges = Triangle("r");
   const BatchId batch = BatchIdOf(RobotId("r"), edges);
-  StoreEdges({edges[0]});
-  ASSERT_TRUE(store_->Write([&]() -> Status {
-    RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), batch, 3, clock_.now));
-    return storage::AppendBatchItem(*store_, batch, 0, edges[0].id);
-  }));
+  const auto store = [&](std::int64_t idx) {
+    ASSERT_TRUE(store_->Write([&]() -> Status {
+      RIGCAL_TRY(storage::AppendBatch(*store_, RobotId("r"), batch, 3, clock_.now));
+      return storage::AppendBatchItem(*store_, batch, idx, edges[static_cast<std::size_t>(idx)], clock_.now);
+    }));
+  };
+  store(2);
+  store(0);
+  clock_.now.ns += 3'600'000'000'000;
   const auto waiting = StepOnce();
   ASSERT_TRUE(waiting) << Sentence(waiting.error());
   EXPECT_FALSE(waiting->worked);
-  ASSERT_TRUE(waiting->wake_at);
-  EXPECT_EQ(Count("graph_update"), 1);  // the live state does not wait
-  EXPECT_TRUE(revisions_.empty());
-  clock_.now = *waiting->wake_at;
+  EXPECT_FALSE(waiting->wake_at);
+  EXPECT_TRUE(events_.empty());
+
+  std::vector<Edge> other = {GivenEdge("r", "a", "d", 3.0)};
+  AssignPushedIds(other);
+  StoreEdges(other);  // is not held up
   EXPECT_EQ(StepAll(), 2);
-  EXPECT_EQ(revisions_.size(), 1u);
+  ASSERT_EQ(revisions_.size(), 1u);
+  EXPECT_EQ(poses_.size(), 2u);
+
+  store(1);
+  EXPECT_EQ(StepAll(), 2);
+  ASSERT_EQ(revisions_.size(), 2u);
+  EXPECT_EQ(poses_.size(), 4u);
+  EXPECT_EQ(Count("graph_update"), 2);
 }
 
 TEST_F(PipelineTest, APictureThatCannotBeReadGivesAFailedEdgeWithACure) {

@@ -28,7 +28,7 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendEdge(store_, edge, {1}));
       RIGCAL_TRY(FinishJob(store_, job.number, {2}));
       RIGCAL_TRY(AppendBatch(store_, kRobot, batch, 2, {3}));
-      RIGCAL_TRY(AppendBatchItem(store_, batch, 0, edge.id));
+      RIGCAL_TRY(AppendBatchItem(store_, batch, 0, edge, {3}));
       RIGCAL_TRY(AppendView(store_, DigestOf("image"), "chessboard 1", {}));
       RIGCAL_TRY(AppendCloud(store_, DigestOf("cloud"), "plate 1", {{true, "", {}, 7, {PlanePatch{}}}, {}}));
       RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "storage/connection.h"
+#include "storage/migrate.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -35,7 +36,7 @@ TEST(StoreOpen, MakesAnEmptyStoreThatOpensAgain) {
   for (int round = 0; round < 2; ++round) {
     Result<Store> store = Store::Open(deep);
     ASSERT_TRUE(store) << WordsOf(store);
-    EXPECT_EQ(store->SchemaVersion(), 4);
+    EXPECT_EQ(store->SchemaVersion(), NewestSchemaVersion());
     EXPECT_EQ(store->folder(), deep);
     EXPECT_TRUE(fs::is_directory(store->BlobFolder() / "a7"));
     EXPECT_TRUE(fs::is_directory(store->IntakeFolder()));
@@ -58,7 +59,7 @@ TEST(StoreOpen, MigratesAnEmptyFile) {
   std::ofstream(folder.path() / "rigcal.db").close();
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  EXPECT_EQ(store->SchemaVersion(), 4);
+  EXPECT_EQ(store->SchemaVersion(), NewestSchemaVersion());
   EXPECT_EQ(CountRobots(*store), 0);
 }
 
@@ -75,7 +76,7 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
           "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288))");
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  EXPECT_EQ(store->SchemaVersion(), 4);
+  EXPECT_EQ(store->SchemaVersion(), NewestSchemaVersion());
   EXPECT_EQ(CountRobots(*store), 1);
   const auto view = LoadView(*store, Digest(std::string(63, '0') + "7"), "checkerboard");
   ASSERT_TRUE(view && *view);
@@ -86,16 +87,47 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
   EXPECT_EQ(edges->front().uncertainty.jackknife_ratio, 0.0);  // not told
 }
 
+std::string SqlOfEdge(int number, const std::string& robot) {
+  const std::string digits = std::to_string(number);
+  return "INSERT INTO edge (number, edge_id, robot_id, epoch, frame_a, frame_b, method, state, appended_ns) VALUES (" +
+         digits + ", printf('%064d', " + digits + "), '" + robot + "', 1, 'left', 'right', 'stereo', 'failed', 5);";
+}
+
+// Three of four items of a batch came: 1 and 2 were published before that was known to be wrong, 4 was not. 3 is of no
+// batch, 5 came in a complete batch as well.
+TEST(StoreOpen, MigratesABatchThatIsNotWhole) {
+  const TempFolder folder;
+  std::string sql;
+  for (const char* file : {"0001_first", "0002_features", "0003_worst_edge", "0004_jackknife_ratio"})
+    sql += BytesOf(std::string(RIGCAL_SOURCE_DIR "/storage/schema/") + file + ".sql");
+  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 4; INSERT INTO robot VALUES ('a', 1), ('b', 1);";
+  for (const int number : {1, 2, 3, 4, 5}) sql += SqlOfEdge(number, "a");
+  sql += SqlOfEdge(6, "b") +
+         "INSERT INTO batch VALUES (1, 'half', 'a', 5, 1), (2, 'whole', 'a', 1, 1), (3, 'lone', 'b', 2, 1);"
+         "INSERT INTO waiting_batch VALUES (1, 'a', 1, 1), (3, 'b', 1, 1);"
+         "INSERT INTO batch_item VALUES (1, 0, 1), (1, 1, 2), (1, 2, 4), (1, 3, 5), (2, 0, 5), (3, 0, 6);"
+         "INSERT INTO revision VALUES ('a', 1, 1, 2, 'pass', '', '', '', '{}')";
+  MakeDatabase(folder.path(), sql);
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  std::vector<std::string> counted;
+  for (const Edge& edge : LoadEdges(*store, RobotId("a"), true).value()) counted.push_back(edge.id.str().substr(63));
+  EXPECT_THAT(counted, testing::ElementsAre("1", "2", "3", "5"));
+  EXPECT_TRUE(LoadEdges(*store, RobotId("b"), true).value().empty());
+  EXPECT_EQ(LoadUnsolvedRobots(*store).value(), std::vector<RobotId>{RobotId("a")});  // 3 and 5 are in no revision
+}
+
 TEST(StoreOpen, LeavesANewerStoreAsItIs) {
   const TempFolder folder;
   { ASSERT_TRUE(Store::Open(folder.path())); }
-  MakeDatabase(folder.path(), "PRAGMA journal_mode = DELETE; PRAGMA user_version = 7; CREATE TABLE future (x)");
+  MakeDatabase(folder.path(), "PRAGMA journal_mode = DELETE; PRAGMA user_version = 99; CREATE TABLE future (x)");
   const std::string before = BytesOf(folder.path() / "rigcal.db");
   const Result<Store> store = Store::Open(folder.path());
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(Sentence(store.error()), "the store at " + folder.path().string() +
-                                         " has schema version 7, this rigcald understands up to 4. "
+                                         " has schema version 99, this rigcald understands up to " +
+                                         std::to_string(NewestSchemaVersion()) + ". "
                                          "Install the rigcald that wrote it, or a newer one.");
   EXPECT_EQ(BytesOf(folder.path() / "rigcal.db"), before);
 }

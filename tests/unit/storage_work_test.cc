@@ -1,6 +1,8 @@
 // What is still to be done: jobs, batches, robots to solve, revisions to publish.
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -20,8 +22,7 @@ class WorkTest : public StoreTest {
   void AppendItem(std::int64_t item_idx, int seed, Stamp now) {
     ASSERT_TRUE(store_.Write([&]() -> Status {
       RIGCAL_TRY(AppendBatch(store_, kRobot, batch_, 3, now));
-      RIGCAL_TRY(AppendEdge(store_, MakeEdge(seed), now));
-      return AppendBatchItem(store_, batch_, item_idx, MakeEdge(seed).id);
+      return AppendBatchItem(store_, batch_, item_idx, MakeEdge(seed), now);
     }));
   }
 };
@@ -56,50 +57,99 @@ TEST_F(WorkTest, AFinishedJobIsNotFoundAgain) {
 }
 
 TEST_F(WorkTest, ABatchIsOpenUntilItsLastItem) {
+  const auto open = [&] { return LoadOpenBatches(store_, kRobot).value(); };
   EXPECT_EQ(LoadBatchHeld(store_, batch_).value(), std::nullopt);
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), std::nullopt);
+  EXPECT_THAT(open(), IsEmpty());
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 3, {5}));
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), Stamp{5});
+  ASSERT_EQ(open().size(), 1u);
+  EXPECT_EQ(open()[0].newest_at, Stamp{5});
   AppendItem(2, 2, {20});
   EXPECT_THAT(LoadBatchHeld(store_, batch_).value().value(), ElementsAre(false, false, true));
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), Stamp{20});
-  EXPECT_EQ(LoadOpenBatch(store_, kOther).value(), std::nullopt);
+  EXPECT_EQ(open()[0].id, batch_);
+  EXPECT_EQ(open()[0].robot, kRobot);
+  EXPECT_EQ(open()[0].items, 3);
+  EXPECT_EQ(open()[0].held, 1);
+  EXPECT_EQ(open()[0].opened_at, Stamp{5});
+  EXPECT_EQ(open()[0].newest_at, Stamp{20});
+  EXPECT_THAT(LoadOpenBatches(store_, kOther).value(), IsEmpty());
   AppendItem(0, 0, {30});
   AppendItem(0, 0, {31});  // the same again
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), Stamp{31});
+  EXPECT_EQ(open()[0].held, 2);
+  EXPECT_EQ(open()[0].newest_at, Stamp{31});
   AppendItem(1, 1, {40});
   EXPECT_THAT(LoadBatchHeld(store_, batch_).value().value(), ElementsAre(true, true, true));
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), std::nullopt);
+  EXPECT_THAT(open(), IsEmpty());
   AppendItem(1, 1, {50});
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), std::nullopt);
+  EXPECT_THAT(open(), IsEmpty());
 }
 
-TEST_F(WorkTest, TheNewestOfSeveralOpenBatchesCounts) {
+TEST_F(WorkTest, OpenBatchesAreListedTheOldestFirst) {
   const BatchId other(DigestOf("another batch").str());
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 3, {50}));
-  ASSERT_TRUE(AppendBatch(store_, kRobot, other, 2, {20}));
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), Stamp{50});
+  ASSERT_TRUE(AppendBatch(store_, kOther, other, 2, {20}));
+  ASSERT_EQ(LoadOpenBatches(store_, RobotId()).value().size(), 2u);
+  EXPECT_EQ(LoadOpenBatches(store_, RobotId()).value()[0].id, batch_);
+  EXPECT_EQ(LoadOpenBatches(store_, kOther).value().front().id, other);
   for (int i = 0; i < 3; ++i) AppendItem(i, i, {60});
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), Stamp{20});
+  EXPECT_EQ(LoadOpenBatches(store_, RobotId()).value().front().id, other);
 }
 
 TEST_F(WorkTest, AnEmptyBatchIsComplete) {
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 0, {1}));
-  EXPECT_EQ(LoadOpenBatch(store_, kRobot).value(), std::nullopt);
+  EXPECT_THAT(LoadOpenBatches(store_, kRobot).value(), IsEmpty());
   EXPECT_THAT(LoadBatchHeld(store_, batch_).value().value(), IsEmpty());
 }
 
+TEST_F(WorkTest, NoEdgeOfABatchCountsBeforeAllAreThere) {
+  const auto counted = [&] { return LoadEdges(store_, kRobot, false).value().size(); };
+  AppendItem(0, 0, {1});
+  AppendItem(2, 2, {2});
+  EXPECT_EQ(counted(), 0u);
+  EXPECT_FALSE(LoadEdge(store_, MakeEdge(0).id).value());
+  EXPECT_EQ(LoadEdgeWatermark(store_, kRobot).value(), 0);
+  EXPECT_EQ(LoadCalibratedAt(store_, kRobot).value(), std::nullopt);
+  EXPECT_EQ(LoadRobots(store_).value().front().edges, 0);
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), IsEmpty());
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(7), {3}));  // another's edge counts at once, and theirs do not with it
+  EXPECT_EQ(counted(), 1u);
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, kRobot).value())));
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), IsEmpty());
+  AppendItem(1, 1, {4});
+  EXPECT_EQ(counted(), 4u);
+  EXPECT_EQ(LoadRobots(store_).value().front().edges, 4);
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kRobot));
+}
+
+// The batch is completed by an edge that counted before: the others are new to the graph all the same.
+TEST_F(WorkTest, ABatchCompletedByAKnownEdgeAsksForARevision) {
+  AppendItem(0, 0, {1});
+  AppendItem(1, 1, {1});
+  const BatchId other(DigestOf("another batch").str());
+  ASSERT_TRUE(AppendBatch(store_, kRobot, other, 1, {2}));
+  ASSERT_TRUE(AppendBatchItem(store_, other, 0, MakeEdge(2), {2}));
+  const std::int64_t before = LoadEdgeWatermark(store_, kRobot).value();
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(before)));
+  EXPECT_EQ(LoadEdges(store_, kRobot, false).value().size(), 1u);
+  AppendItem(2, 2, {3});
+  EXPECT_EQ(LoadEdges(store_, kRobot, false).value().size(), 3u);
+  EXPECT_GT(LoadEdgeWatermark(store_, kRobot).value(), before);
+  EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kRobot));
+}
+
 TEST_F(WorkTest, WhatDoesNotFitABatchIsRefused) {
-  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
-  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {1}));
-  EXPECT_EQ(AppendBatchItem(store_, batch_, 0, MakeEdge(1).id).error().code, ErrorCode::kNotFound);
+  const auto append = [&](std::int64_t idx, const Edge& edge) {
+    return AppendBatchItem(store_, batch_, idx, edge, {1});
+  };
+  EXPECT_EQ(append(0, MakeEdge(1)).error().code, ErrorCode::kNotFound);
   ASSERT_TRUE(AppendBatch(store_, kRobot, batch_, 3, {1}));
   EXPECT_EQ(AppendBatch(store_, kRobot, batch_, 4, {1}).error().code, ErrorCode::kConflict);
-  EXPECT_EQ(AppendBatchItem(store_, batch_, 3, MakeEdge(1).id).error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(AppendBatchItem(store_, batch_, -1, MakeEdge(1).id).error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(AppendBatchItem(store_, batch_, 0, MakeEdge(9).id).error().code, ErrorCode::kNotFound);
-  ASSERT_TRUE(AppendBatchItem(store_, batch_, 0, MakeEdge(1).id));
-  const Status other = AppendBatchItem(store_, batch_, 0, MakeEdge(2).id);
+  EXPECT_EQ(append(3, MakeEdge(1)).error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(append(-1, MakeEdge(1)).error().code, ErrorCode::kInvalidInput);
+  Edge bad = MakeEdge(9);
+  bad.T_a_b.p_m.x() = std::nan("");
+  EXPECT_EQ(append(0, bad).error().code, ErrorCode::kInvalidInput);
+  ASSERT_TRUE(append(0, MakeEdge(1)));
+  const Status other = append(0, MakeEdge(2));
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().code, ErrorCode::kConflict);
   EXPECT_THAT(other.error().what, HasSubstr("another edge as item 0"));

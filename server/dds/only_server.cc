@@ -1,0 +1,105 @@
+#include "server/dds/only_server.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <random>
+#include <thread>
+#include <tuple>
+
+namespace rigcal::dds {
+namespace {
+
+// Discovery answers a newcomer at once: in a few milliseconds here, and in a round trip from elsewhere. Who is heard of
+// later is dealt with while both serve (Before).
+constexpr std::chrono::milliseconds kHeardWithin{250};
+
+std::string HostName() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "this host";
+}
+
+std::string NewServerId() {
+  std::random_device random;
+  std::array<char, 17> hex{};
+  std::snprintf(hex.data(), hex.size(), "%08x%08x", random(), random());
+  return hex.data();
+}
+
+// Smaller goes first. An older rigcald tells no time: it was there before.
+auto RankOf(const wire::ServerName& name) {
+  return std::tuple(name.state != wire::ServerState::kServes, name.since.ns, name.id);
+}
+
+}  // namespace
+
+std::optional<wire::ServerName> GoesBefore(const wire::ServerName& self, const std::vector<wire::ServerName>& others) {
+  const wire::ServerName* first = nullptr;
+  for (const wire::ServerName& other : others) {
+    if (other.id == self.id || other.state == wire::ServerState::kWaits) continue;
+    const bool is_before = self.state == wire::ServerState::kWaits || RankOf(other) < RankOf(self);
+    if (is_before && (first == nullptr || RankOf(other) < RankOf(*first))) first = &other;
+  }
+  if (first == nullptr) return std::nullopt;
+  return *first;
+}
+
+Error SecondServerError(const wire::ServerName& first) {
+  return {ErrorCode::kConflict, "another server is on this DDS domain and tag: " + wire::TextOf(first),
+          "Stop that one, keep this one apart by --tag or --domain, or let it wait with --standby"};
+}
+
+OnlyServer::OnlyServer(wire::Participant participant, wire::ServerList list, wire::ServerName self)
+    : participant_(std::move(participant)),
+      list_(std::move(list)),
+      self_(std::move(self)),
+      claimed_at_(std::chrono::steady_clock::now()) {}
+
+Result<OnlyServer> OnlyServer::Open(const wire::ParticipantOptions& options, const std::filesystem::path& data,
+                                    bool waits) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::absolute(data, error);
+  wire::ServerName self;
+  self.id = NewServerId();
+  self.state = waits ? wire::ServerState::kWaits : wire::ServerState::kClaims;
+  self.since = SystemClock().Now();
+  self.host = HostName();
+  self.pid = ::getpid();
+  self.folder = (error ? data : folder).lexically_normal().string();
+  wire::ParticipantOptions told = options;
+  told.user_data = wire::WriteServerName(self);
+  RIGCAL_ASSIGN(auto participant, wire::Participant::Open(told));
+  RIGCAL_ASSIGN(auto list, wire::ServerList::Open(participant));
+  return OnlyServer(std::move(participant), std::move(list), std::move(self));
+}
+
+Result<std::optional<wire::ServerName>> OnlyServer::Before() {
+  RIGCAL_ASSIGN(const auto others, list_.Load());
+  return GoesBefore(self_, others);
+}
+
+Status OnlyServer::Tell(wire::ServerState state) {
+  self_.state = state;
+  return participant_.Tell(wire::WriteServerName(self_));
+}
+
+Status OnlyServer::Claim() {
+  self_.since = SystemClock().Now();
+  claimed_at_ = std::chrono::steady_clock::now();
+  return Tell(wire::ServerState::kClaims);
+}
+
+Status OnlyServer::Settle() {
+  std::this_thread::sleep_until(claimed_at_ + kHeardWithin);
+  RIGCAL_ASSIGN(const auto first, Before());
+  if (!first) return Tell(wire::ServerState::kServes);
+  RIGCAL_TRY(Tell(wire::ServerState::kWaits));
+  return Fail(SecondServerError(*first));
+}
+
+wire::ParticipantOptions OnlyServer::Named(wire::ParticipantOptions options) const {
+  options.user_data = wire::WriteServerName(self_);
+  return options;
+}
+
+}  // namespace rigcal::dds

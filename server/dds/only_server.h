@@ -1,0 +1,47 @@
+// One rigcald per domain and tag: two would both store what is sent, and each answer from its own store.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "idl/presence.h"
+
+namespace rigcal::dds {
+
+// The one of `others` that goes before `self`, if any. Who serves goes before who claims, then the earlier claim, then
+// the smaller id: of any two that know each other exactly one goes first. Who waits goes before nobody.
+[[nodiscard]] std::optional<wire::ServerName> GoesBefore(const wire::ServerName& self,
+                                                         const std::vector<wire::ServerName>& others);
+// Why this one does not serve; names the first and the cures.
+[[nodiscard]] Error SecondServerError(const wire::ServerName& first);
+
+// This server's place among those of its domain and tag. One thread.
+class OnlyServer {
+ public:
+  // Claims the place, or, with `waits`, only looks. Its participant is the first that the process opens.
+  [[nodiscard]] static Result<OnlyServer> Open(const wire::ParticipantOptions& options,
+                                               const std::filesystem::path& data, bool waits);
+  // Who goes before it now.
+  [[nodiscard]] Result<std::optional<wire::ServerName>> Before();
+  // Claims the place from now on.
+  [[nodiscard]] Status Claim();
+  // To be called after a claim: waits until all who are there must have been heard of, then serves. kConflict if
+  // another goes before: then it waits again.
+  [[nodiscard]] Status Settle();
+  // `options` for the other participants of this server, so that they are known to be its own.
+  [[nodiscard]] wire::ParticipantOptions Named(wire::ParticipantOptions options) const;
+
+ private:
+  OnlyServer(wire::Participant participant, wire::ServerList list, wire::ServerName self);
+  [[nodiscard]] Status Tell(wire::ServerState state);
+
+  wire::Participant participant_;
+  wire::ServerList list_;
+  wire::ServerName self_;
+  std::chrono::steady_clock::time_point claimed_at_;
+};
+
+}  // namespace rigcal::dds

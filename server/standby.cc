@@ -1,0 +1,98 @@
+#include "server/standby.h"
+
+#include <ctime>
+#include <iostream>
+#include <mutex>
+
+#include "server/base/log.h"
+#include "server/base/thread_rank.h"
+#include "server/base/version.h"
+
+namespace rigcal {
+namespace {
+
+constexpr timespec kLookEvery{0, 200'000'000};
+
+// For whom this one waits, as HTTP tells it.
+class Waiting {
+ public:
+  void Set(const wire::ServerName& first) {
+    const std::lock_guard lock(mutex_);
+    text_ = wire::TextOf(first);
+  }
+  [[nodiscard]] Error Told() const {
+    const std::lock_guard lock(mutex_);
+    return {ErrorCode::kBusy, "this rigcald is on standby for " + text_,
+            "Ask that one; this one takes over when it is gone"};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string text_;
+};
+
+// True: a signal came.
+bool Pause(const sigset_t& signals) { return sigtimedwait(&signals, nullptr, &kLookEvery) > 0; }
+
+// True if nobody else did meanwhile.
+Result<bool> TakeOver(dds::OnlyServer& only) {
+  RIGCAL_TRY(only.Claim());
+  const Status settled = only.Settle();
+  if (!settled && settled.error().code != ErrorCode::kConflict) return Fail(settled.error());
+  return settled.has_value();
+}
+
+// True: this one serves now. False: a signal came.
+Result<bool> StandBy(dds::OnlyServer& only, const http::Options& options, const sigset_t& signals) {
+  RIGCAL_ASSIGN(const bool is_first, TakeOver(only));
+  if (is_first) return true;
+  Waiting waiting;
+  http::Options nothing = options;
+  nothing.folder.clear();
+  RIGCAL_ASSIGN(const http::Server http,
+                http::Server::Start(nothing, [&](const std::string&, const std::string&) -> Result<http::Page> {
+                  return Fail(waiting.Told());
+                }));
+  for (bool said = false;;) {
+    RIGCAL_ASSIGN(const auto first, only.Before());
+    if (first) waiting.Set(*first);
+    if (first && !said)
+      std::cout << "rigcald " << Version() << " is on standby for " << wire::TextOf(*first) << ": http://"
+                << options.host << ":" << http.port() << "/healthz" << std::endl;
+    said = said || first;
+    if (!first) {
+      RIGCAL_ASSIGN(const bool took, TakeOver(only));
+      if (took) break;
+    }
+    if (Pause(signals)) return false;
+  }
+  LogInfo("the other server is gone: this one takes over");
+  return true;
+}
+
+}  // namespace
+
+Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const http::Options& options,
+                                                  const sigset_t& signals) {
+  SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
+  auto only = dds::OnlyServer::Open(config.participant, config.data, config.standby);
+  SetThreadRank(ThreadRank::kServes);
+  if (!only) return Fail(only.error());
+  if (!config.standby) return std::move(*only);
+  RIGCAL_ASSIGN(const bool serves, StandBy(*only, options, signals));
+  if (!serves) return std::nullopt;
+  return std::move(*only);
+}
+
+Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const std::string& data) {
+  while (!Pause(signals)) {
+    RIGCAL_ASSIGN(const auto first, only.Before());
+    if (!first) continue;
+    Error error = dds::SecondServerError(*first);
+    error.cure += ". This one came later and ends; what it took in meanwhile is in " + data;
+    return Fail(std::move(error));
+  }
+  return {};
+}
+
+}  // namespace rigcal
