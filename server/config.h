@@ -30,7 +30,8 @@ struct Config {
 void AddOptions(CLI::App& app, Config& config);
 // kInvalidInput if --http is not HOST:PORT.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
-// kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given.
+// kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given; of
+// decoded_bytes half of the memory that the process may have, if that is less.
 [[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);
 
 }  // namespace rigcal
