@@ -21,7 +21,7 @@ std::string LimitNames() {
 // Half of what the process may have: intake, graphs, answers and the system's cache live in the rest.
 std::int64_t DecodedBytesOfThisMachine() {
   constexpr std::int64_t kLeast = 64 << 20;
-  return std::clamp(MemoryOfProcess() / 2, kLeast, limits::kDecodedBytesMax);
+  return std::clamp(MemoryOfProcess() / 2, kLeast, limits::kDecodedBytes);
 }
 
 }  // namespace

@@ -48,7 +48,9 @@ void EndOne(Store& store, const std::string& work, AttemptEnd end, const std::st
   if (end == AttemptEnd::kDone || counted == 0)
     Query(store, "DELETE FROM waiting_attempt WHERE work = ?").Bind(work).Run();
   else
-    Query(store, "UPDATE waiting_attempt SET attempts = ?, open_number = NULL WHERE work = ?").Bind(counted, work).Run();
+    Query(store, "UPDATE waiting_attempt SET attempts = ?, open_number = NULL WHERE work = ?")
+        .Bind(counted, work)
+        .Run();
 }
 
 void BeginOne(Store& store, const std::string& work, Stamp now) {

@@ -1,6 +1,5 @@
-#include "server/calib/lidar_lidar.h"
-
 #include "server/base/out_of_memory.h"
+#include "server/calib/lidar_lidar.h"
 #include "server/calib/lidar_lidar_diagnoses.h"
 
 namespace rigcal::calib {

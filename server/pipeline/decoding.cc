@@ -21,6 +21,8 @@ constexpr std::int64_t kCornersPixelBytes = 12, kMarkersPixelBytes = 36, kColour
 // A point: as decoded; while a plate is searched (44 measured); in maps of three levels (31); in colour and in files.
 constexpr std::int64_t kPointBytes = 12, kValueBytes = 16, kSearchedPointBytes = 90, kRegisteredPointBytes = 80;
 constexpr std::int64_t kColouredPointBytes = 200, kSeenPointBytes = 24;
+// Of an encoded byte, while the file is read.
+constexpr std::int64_t kReadBytes = 2;
 // A header that a JPEG's metadata puts further back is taken for the largest picture.
 constexpr std::size_t kFirstBytes = limits::kCloudHeaderBytesMax, kHeaderBytesMax = 16u << 20;
 
@@ -52,7 +54,7 @@ formats::CloudSize CloudSizeOf(const std::filesystem::path& blobs, const Payload
 }
 
 std::int64_t BytesToRead(const Payload& cloud, const formats::CloudSize& size) {
-  return cloud.size_bytes + static_cast<std::int64_t>(size.points) * kPointBytes +
+  return kReadBytes * cloud.size_bytes + static_cast<std::int64_t>(size.points) * kPointBytes +
          static_cast<std::int64_t>(size.values) * kValueBytes;
 }
 
@@ -67,7 +69,7 @@ Needed ToSearchPicture(const std::filesystem::path& blobs, const Payload& pictur
   const std::string text = size ? std::to_string(size->width_px) + " x " + std::to_string(size->height_px) + " pixels"
                                 : "a size that its first 16 MiB do not tell";
   const bool corners = target.kind == TargetKind::kCheckerboard;
-  return {picture.size_bytes + (corners ? kCornersPixelBytes : kMarkersPixelBytes) * PixelsOf(size),
+  return {kReadBytes * picture.size_bytes + (corners ? kCornersPixelBytes : kMarkersPixelBytes) * PixelsOf(size),
           "file " + Quoted(picture.path) + " of " + text};
 }
 
@@ -87,7 +89,8 @@ Needed ToRegister(const std::filesystem::path& blobs, const std::vector<const Pa
     points += size.points;
   }
   const auto at_once = std::min<std::size_t>(clouds.size(), std::max(1u, std::thread::hardware_concurrency()));
-  return {held + static_cast<std::int64_t>(at_once) * read, std::to_string(clouds.size()) + " clouds of " + PointsText(points)};
+  return {held + static_cast<std::int64_t>(at_once) * read,
+          std::to_string(clouds.size()) + " clouds of " + PointsText(points)};
 }
 
 Needed ToColour(const std::filesystem::path& blobs, const Payload& cloud, const std::vector<const Payload*>& pictures) {
@@ -95,7 +98,8 @@ Needed ToColour(const std::filesystem::path& blobs, const Payload& cloud, const 
   const auto shown = static_cast<std::int64_t>(std::min(size.points, limits::kColouredPointsMax));
   std::int64_t largest = 0;
   for (const Payload* picture : pictures)
-    largest = std::max(largest, picture->size_bytes + kColouredPixelBytes * PixelsOf(SizeOf(blobs, *picture)));
+    largest =
+        std::max(largest, kReadBytes * picture->size_bytes + kColouredPixelBytes * PixelsOf(SizeOf(blobs, *picture)));
   const std::int64_t seen = kSeenPointBytes * static_cast<std::int64_t>(pictures.size());
   return {BytesToRead(cloud, size) + shown * (kColouredPointBytes + seen) + largest,
           "file " + Quoted(cloud.path) + " of " + PointsText(size.points) + " and " + std::to_string(pictures.size()) +

@@ -71,7 +71,7 @@ void LeaveUnknown(const Error& error, const Target& target, Found<Stored>& found
 
 template <typename Stored>
 Status DetectLoaded(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
-                   Found<Stored>& found) {
+                    Found<Stored>& found) {
   const auto bytes =
       storage::LoadBlob(blobs, found.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
   if (!bytes) {  // a damaged disk

@@ -73,8 +73,7 @@ Result<std::filesystem::path> PublishOnce(const StepContext& context, const stor
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
   }
   return Attempted(context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
-                   before % kAttemptsMax,
-                   [&] { return Publish(context.store, key, context.clock, why_no_clouds); });
+                   before % kAttemptsMax, [&] { return Publish(context.store, key, context.clock, why_no_clouds); });
 }
 
 // A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
@@ -213,8 +212,8 @@ Result<StepResult> RunNextJob(const StepContext& context) {
   result.worked = true;
   const Claim claim(context.claims, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
-  const Claim alone(context.claims, job->attempts > 0 ? kBegunBefore : job->robot);
-  if (job->attempts > 0 && !alone.taken()) return StepResult{};
+  std::optional<Claim> alone;
+  if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
   const Status ran = Guarded([&] { return RunJob(context, *job); });
   if (!ran) WakeBy(LetRest(context, job->robot, ran.error()), result);
   return result;

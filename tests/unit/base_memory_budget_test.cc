@@ -1,5 +1,3 @@
-#include "server/base/memory_budget.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -13,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/base/memory_budget.h"
 #include "server/base/out_of_memory.h"
 #include "server/base/parallel_for.h"
 
@@ -78,8 +77,8 @@ TEST(MemoryBudget, ALargeShareIsServedInTurn) {
   EXPECT_TRUE(served);
 }
 
-// Otherwise a thread that waits for a loop within its work takes up other work of the loop around it, and waits there for
-// the share that it holds itself.
+// Otherwise a thread that waits for a loop within its work takes up other work of the loop around it, and waits there
+// for the share that it holds itself.
 TEST(RunApart, ALoopWithinWorkTakesUpNoOtherWork) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 8);  // it takes three, here or not
   static thread_local bool at_work = false;

@@ -144,8 +144,7 @@ TEST_F(AttemptsPipelineTest, WhatAnEarlierVersionSaidIsMadeAgain) {
   storage::StoredView wrong;
   wrong.view.why_not = "the search for the board failed: std::bad_alloc";
   wrong.view.image_width_px = wrong.view.image_height_px = 100;
-  ASSERT_TRUE(
-      storage::AppendView(*store_, Sha256Of(black), "checkerboard-4/opencv-" CV_VERSION "/9x6/board", wrong));
+  ASSERT_TRUE(storage::AppendView(*store_, Sha256Of(black), "checkerboard-4/opencv-" CV_VERSION "/9x6/board", wrong));
   StorePictures("r", black);
   StepAll();
   ASSERT_EQ(EdgesOf("r").size(), 1u);
