@@ -1,10 +1,12 @@
 #include "server/config.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 
 #include "server/base/durable_file.h"
 #include "server/base/log.h"
+#include "server/base/memory_budget.h"
 #include "server/base/version.h"
 #include "server/formats/limits_text.h"
 
@@ -15,6 +17,12 @@ std::string LimitNames() {
   std::string names;
   for (const limits::Setting& one : limits::Settings()) names += (names.empty() ? "" : ", ") + std::string(one.name);
   return names;
+}
+
+// Half of what the process may have: intake, graphs, answers and the system's cache live in the rest.
+std::int64_t DecodedBytesOfThisMachine() {
+  constexpr std::int64_t kLeast = 64 << 20;
+  return std::clamp(MemoryOfProcess() / 2, kLeast, limits::kDecodedBytes);
 }
 
 }  // namespace
@@ -50,9 +58,10 @@ void AddOptions(CLI::App& app, Config& config) {
 
 Result<limits::Limits> LimitsOf(const Config& config) {
   limits::Limits limits;
+  limits.decoded_bytes = DecodedBytesOfThisMachine();
   if (!config.limits_file.empty()) {
     RIGCAL_ASSIGN(const std::string text, ReadFile(config.limits_file, limits::kSessionYamlBytesMax));
-    RIGCAL_ASSIGN(limits, formats::ReadLimits(text, config.limits_file.string()));
+    RIGCAL_ASSIGN(limits, formats::ReadLimits(text, config.limits_file.string(), limits));
   }
   for (const std::string& one : config.limits) {
     RIGCAL_ASSIGN(limits, formats::WithLimit(limits, one));

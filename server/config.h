@@ -31,7 +31,8 @@ struct Config {
 void AddOptions(CLI::App& app, Config& config);
 // kInvalidInput if --http is not HOST:PORT.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
-// kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given.
+// kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given; of
+// decoded_bytes half of the memory that the process may have, if that is less.
 [[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);
 // Puts them in force, before any thread is made; the log tells of those that are not the default.
 [[nodiscard]] Status EnforceLimits(const Config& config);

@@ -11,26 +11,38 @@ std::string JobSubject(std::int64_t number) { return "job " + std::to_string(num
 
 JobRow JobRowOf(const Query& query) {
   return {query.Int(0), query.IdAt<RobotId>(1), query.IdAt<SessionId>(2),
-          SensorPair{query.IdAt<SensorId>(3), query.IdAt<SensorId>(4)}};
+          SensorPair{query.IdAt<SensorId>(3), query.IdAt<SensorId>(4)}, static_cast<int>(query.Int(5))};
 }
 
 bool Exists(Store& store, std::int64_t number) {
   return Query(store, "SELECT 1 FROM job WHERE number = ?").Bind(number).Step();
 }
 
+constexpr const char* kNeverBegun =
+    "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b, 0 FROM waiting_job w "
+    "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
+    "WHERE NOT EXISTS (SELECT 1 FROM waiting_attempt t WHERE t.work = 'job ' || w.job_number) ORDER BY w.job_number";
+constexpr const char* kBegunBefore =
+    "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b, t.attempts FROM waiting_attempt t "
+    "CROSS JOIN waiting_job w ON w.job_number = CAST(substr(t.work, 5) AS INTEGER) "
+    "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
+    "WHERE substr(t.work, 1, 4) = 'job ' ORDER BY t.attempts, w.job_number";
+
+std::optional<JobRow> FirstOf(Store& store, const char* sql, const std::vector<RobotId>& busy_robots) {
+  Query query(store, sql);
+  while (query.Step()) {
+    JobRow row = JobRowOf(query);
+    if (std::find(busy_robots.begin(), busy_robots.end(), row.robot) == busy_robots.end()) return row;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots) {
   return Load<std::optional<JobRow>>(store, "next job", [&]() -> Result<std::optional<JobRow>> {
-    Query query(store,
-                "SELECT j.number, w.robot_id, s.session_id, j.sensor_a, j.sensor_b FROM waiting_job w "
-                "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
-                "ORDER BY w.job_number");
-    while (query.Step()) {
-      JobRow row = JobRowOf(query);
-      if (std::find(busy_robots.begin(), busy_robots.end(), row.robot) == busy_robots.end()) return row;
-    }
-    return std::nullopt;
+    if (auto job = FirstOf(store, kNeverBegun, busy_robots)) return job;
+    return FirstOf(store, kBegunBefore, busy_robots);
   });
 }
 

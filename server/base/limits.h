@@ -26,6 +26,7 @@ constexpr std::size_t kSessionYamlBytesMax = 1 << 20;
 constexpr std::size_t kRequestBytesMax = 64 << 10;
 constexpr std::size_t kReplyPartBytes = 512 << 10;  // longer replies travel in parts
 constexpr std::int64_t kImagePixelsMax = 200'000'000;
+constexpr std::int64_t kDecodedBytes = 8LL << 30;    // of pictures and clouds that are searched or drawn
 constexpr std::size_t kCloudPointsMax = 5'000'000;   // of one capture
 constexpr std::size_t kCloudFieldsMax = 512;         // values of one point, x y z included
 constexpr std::size_t kCloudValuesMax = 50'000'000;  // points times values of one point

@@ -18,6 +18,7 @@ constexpr std::array kSettings = {
     Setting{"intake_bytes", &Limits::intake_bytes, 4 * kChunk, 4096 * kMiB},
     Setting{"open_sessions", &Limits::open_sessions, 1, 4096},
     Setting{"image_pixels", &Limits::image_pixels, 1, 1'000'000'000},
+    Setting{"decoded_bytes", &Limits::decoded_bytes, 16 * kMiB, 1024 * 1024 * kMiB},
     Setting{"http_connections", &Limits::http_connections, 2, 1024},
 };
 

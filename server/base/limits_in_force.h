@@ -19,6 +19,7 @@ struct Limits {
   std::int64_t intake_bytes = kIntakeBytesMax;
   std::int64_t open_sessions = kOpenSessionsMax;
   std::int64_t image_pixels = kImagePixelsMax;
+  std::int64_t decoded_bytes = kDecodedBytes;
   std::int64_t http_connections = kHttpConnectionsMax;
 
   friend bool operator==(const Limits&, const Limits&) = default;

@@ -12,4 +12,6 @@ void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body
   arena.execute(loop);
 }
 
+void RunApart(const std::function<void()>& work) { tbb::this_task_arena::isolate(work); }
+
 }  // namespace rigcal

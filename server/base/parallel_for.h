@@ -10,4 +10,8 @@ namespace rigcal {
 // 0. Exceptions of a body propagate.
 void ParallelFor(std::size_t count, const std::function<void(std::size_t)>& body, int threads_max = 0);
 
+// Runs `work`; while a loop within it (a library's too) waits for its parts, the thread takes up no other part of a
+// loop around it. For work that holds what the other parts wait for.
+void RunApart(const std::function<void()>& work);
+
 }  // namespace rigcal

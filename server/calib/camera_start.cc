@@ -100,7 +100,8 @@ IntrinsicsVector RoughIntrinsics(const CameraViews& views) {
         cv::initCameraMatrix2D(cv_views.object, cv_views.image, {views.width_px, views.height_px}, 1.0);
     const double focal_px = matrix.at<double>(0, 0);
     if (Plausible(focal_px, views)) rough.head<2>().setConstant(focal_px);
-  } catch (const cv::Exception&) {
+  } catch (const cv::Exception& exception) {
+    if (exception.code == cv::Error::StsNoMem) throw;
     // The fallback stands.
   }
   return rough;

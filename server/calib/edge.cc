@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/base/out_of_memory.h"
 #include "server/calib/camera_diagnoses.h"
 #include "server/calib/camera_fit.h"
 #include "server/calib/diagnoses.h"
@@ -178,6 +179,7 @@ Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   try {
     return Solved(problem, fits);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem,
                       {FromError(problem, "internal",
                                  {ErrorCode::kInternal, exception.what(), "Report this with the session's id."})});

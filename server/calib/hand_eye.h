@@ -57,8 +57,8 @@ struct HandEyeResult {
 
 // Pure; deterministic. A diagnosis says why there is no answer.
 [[nodiscard]] tl::expected<HandEyeResult, Diagnosis> EstimateHandEye(const HandEyeProblem& problem);
-// The finished edge; a failed one carries the diagnoses. Never throws. `fits`, if not null, becomes what it says of the
-// cameras (camera_fit.h).
+// The finished edge; a failed one carries the diagnoses. Throws where there is no memory, else
+// never. `fits`, if not null, becomes what it says of the cameras (camera_fit.h).
 [[nodiscard]] Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits = nullptr);
 
 }  // namespace rigcal::calib

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <set>
 
+#include "server/base/out_of_memory.h"
 #include "server/calib/camera_fit.h"
 #include "server/calib/hand_eye.h"
 #include "server/calib/hand_eye_diagnoses.h"
@@ -114,6 +115,7 @@ Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* 
   try {
     return Solved(problem, fits);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem, MotionNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
                                                            "Report this with the session's id."}));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "server/base/out_of_memory.h"
 #include "server/calib/camera_diagnoses.h"
 #include "server/calib/camera_start.h"
 #include "server/calib/diagnoses.h"
@@ -258,6 +259,7 @@ OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const Camera
     if (!work) return tl::unexpected(work.error());
     return Finished(problem, *work);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};
     return tl::unexpected(CameraError(problem.camera.id, "internal", error));
   }

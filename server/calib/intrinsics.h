@@ -47,7 +47,7 @@ using CameraSolver = std::function<tl::expected<CameraEstimate, Diagnosis>(const
 // Pure and deterministic. Given intrinsics without sigmas stay as given: poses only, one view is enough. With sigmas
 // all views refine them within those, and one view is enough too. Estimated ones need 3 views with tilted boards. With
 // `start`, from its intrinsics and poses: the captures it has, with their alternatives kept as they are, unrefined
-// (leave-one-out). Never throws.
+// (leave-one-out). Throws where there is no memory, else never.
 [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCamera(const CameraProblem& problem,
                                                                      const CameraEstimate* start = nullptr);
 [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCameraBy(const CameraSolver& solver,

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/base/out_of_memory.h"
 #include "server/calib/camera_diagnoses.h"
 #include "server/calib/camera_fit.h"
 #include "server/calib/diagnoses.h"
@@ -173,6 +174,7 @@ Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<Came
   try {
     return Solved(problem, fits);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(
         problem,
         {NotSolvable(problem, {ErrorCode::kInternal, exception.what(), "Report this with the session's id."})});

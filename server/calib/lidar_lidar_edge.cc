@@ -1,3 +1,4 @@
+#include "server/base/out_of_memory.h"
 #include "server/calib/lidar_lidar.h"
 #include "server/calib/lidar_lidar_diagnoses.h"
 
@@ -76,6 +77,7 @@ Edge EstimateLidarLidarEdge(const LidarLidarProblem& problem) {
   try {
     return Solved(problem);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem, LidarLidarError(problem, {ErrorCode::kInternal, exception.what(),
                                                          "Report this with the session's id."}));
   }

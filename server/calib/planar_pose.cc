@@ -80,7 +80,8 @@ std::vector<Se3> PlanarPoses(CameraModel model, const IntrinsicsVector& intrinsi
     for (std::size_t i = 0; i < rvecs.size(); ++i)
       if (const Se3 T_centred_board = PoseFrom(rvecs[i], tvecs[i]); Usable(T_centred_board, *view))
         poses.push_back((T_cam_centred * T_centred_board).Normalized());
-  } catch (const cv::Exception&) {
+  } catch (const cv::Exception& exception) {
+    if (exception.code == cv::Error::StsNoMem) throw;
     poses.clear();
   }
   return poses;

@@ -61,7 +61,8 @@ struct TrackerLidarResult {
 
 // Pure; deterministic. A diagnosis says why there is no answer.
 [[nodiscard]] tl::expected<TrackerLidarResult, Diagnosis> EstimateTrackerLidar(const TrackerLidarProblem& problem);
-// The finished edge (method "tracker_lidar"); a failed one carries the diagnoses. Never throws.
+// The finished edge (method "tracker_lidar"); a failed one carries the diagnoses. Throws where there is no memory,
+// else never.
 [[nodiscard]] Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem);
 
 }  // namespace rigcal::calib

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/base/out_of_memory.h"
 #include "server/calib/lidar_camera_diagnoses.h"
 #include "server/calib/tracker_lidar.h"
 #include "server/calib/tracker_lidar_diagnoses.h"
@@ -93,6 +94,7 @@ Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem) {
   try {
     return Solved(problem);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem, TrackerLidarNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
                                                                  "Report this with the session's id."}));
   }

@@ -1,10 +1,12 @@
 #include "server/detect/board.h"
 
 #include <locale>
+#include <new>
 #include <numeric>
 #include <opencv2/core/version.hpp>
 #include <sstream>
 
+#include "server/base/out_of_memory.h"
 #include "server/base/text.h"
 #include "server/detect/annotate.h"
 #include "server/detect/charuco.h"
@@ -17,6 +19,10 @@
 
 namespace rigcal::detect {
 namespace {
+
+// Raised whenever the same picture could give other corners, or another reason why there are none: the code of the
+// search, and what it wrongly said. (Its OpenCV is named beside it.)
+constexpr int kCheckerboardVersion = 5, kMarkersVersion = 4;
 
 constexpr int kInnerMin = 3, kInnerMax = 256;  // what the search supports, and a bound on its work
 
@@ -96,8 +102,8 @@ AnnotatedView NotFound(const Target& board, std::string why_not, const ImageSize
 }  // namespace
 
 std::string DetectorKey(const Target& target) {
-  const std::string search =
-      target.kind == TargetKind::kCheckerboard ? "-4/opencv-" CV_VERSION "/" : "-3/opencv-" CV_VERSION "/";
+  const int version = target.kind == TargetKind::kCheckerboard ? kCheckerboardVersion : kMarkersVersion;
+  const std::string search = "-" + std::to_string(version) + "/opencv-" CV_VERSION "/";
   const std::string geometry = std::to_string(target.cols) + "x" + std::to_string(target.rows) + "/";
   if (target.kind == TargetKind::kCheckerboard) return "checkerboard" + search + geometry + target.id.str();
   std::ostringstream markers;  // only ratios show in the picture
@@ -119,8 +125,8 @@ AnnotatedView Detect(std::span<const std::byte> encoded, const Target& board) {
   try {
     return DetectIn(*image, board);
   } catch (const std::exception& exception) {
-    return NotFound(board, std::string("the search for the board failed: ") + exception.what(),
-                    {image->width_px, image->height_px});
+    if (IsOutOfMemory(exception)) throw std::bad_alloc();
+    return NotFound(board, std::string("the search for the board failed: ") + exception.what(), {});
   }
 }
 

@@ -4,13 +4,17 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <new>
 
+#include "server/base/out_of_memory.h"
 #include "server/detect/cloud_picture.h"
 #include "server/detect/plate_fit.h"
 
 namespace rigcal::detect {
 namespace {
 
+// Raised whenever the same cloud could give other patches, or another reason why there are none.
+constexpr int kPlateVersion = 2;
 constexpr double kPlateMin_m = 0.05, kPlateMax_m = 12.0;
 constexpr std::size_t kRaysMin = 12, kPatchPointsMin = 12;
 constexpr double kScoreMin = 0.12;
@@ -98,8 +102,8 @@ void Search(const Cloud& cloud, const PlateSize& size, AnnotatedCloud& result) {
 std::string CloudDetectorKey(const Target& target) {
   const PlateSize size = PlateSizeOf(target);
   char text[128];
-  std::snprintf(text, sizeof text, "plate-1/%.6gx%.6g-%.6gx%.6g/", size.min_m.x(), size.min_m.y(), size.max_m.x(),
-                size.max_m.y());
+  std::snprintf(text, sizeof text, "plate-%d/%.6gx%.6g-%.6gx%.6g/", kPlateVersion, size.min_m.x(), size.min_m.y(),
+                size.max_m.x(), size.max_m.y());
   return text + target.id.str();
 }
 
@@ -113,7 +117,9 @@ AnnotatedCloud DetectPlate(const Cloud& cloud, const Target& target) {
   try {
     Search(cloud, size, result);
   } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw std::bad_alloc();
     result.view.found = false;
+    result.view.points = 0;
     result.view.candidates.clear();
     result.view.why_not = std::string("the search for the plate failed: ") + exception.what();
   }

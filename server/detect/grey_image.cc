@@ -1,9 +1,12 @@
 #include "server/detect/grey_image.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <new>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "server/base/out_of_memory.h"
 #include "server/detect/image_header.h"
 
 namespace rigcal::detect {
@@ -57,7 +60,11 @@ cv::Mat Decoded(std::span<const std::byte> encoded, cv::ImreadModes colour) {
   // imdecode only reads, yet its wrapper for memory takes a mutable pointer.
   auto* bytes = const_cast<std::byte*>(encoded.data());
   const cv::Mat buffer(1, static_cast<int>(encoded.size()), CV_8U, bytes);
-  return cv::imdecode(buffer, colour | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+  errno = 0;
+  cv::Mat decoded = cv::imdecode(buffer, colour | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+  // OpenCV keeps to itself what its decoders threw; malloc leaves word.
+  if (decoded.empty() && errno == ENOMEM) throw std::bad_alloc();
+  return decoded;
 }
 
 Result<GreyImage> AsGrey(const cv::Mat& decoded, const ImageSize& claimed) {
@@ -93,7 +100,8 @@ Result<Image> Decode(std::span<const std::byte> encoded, cv::ImreadModes colour,
     return Fail(ErrorCode::kInvalidInput, "the picture is cut off", "save or copy the picture again");
   try {
     return as_image(Decoded(encoded, colour), claimed);
-  } catch (const std::exception&) {  // cv::Exception and bad_alloc: both mean that this picture gives no pixels
+  } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw std::bad_alloc();
     return Undecodable();
   }
 }

@@ -25,7 +25,7 @@ struct GreyImage {
 
 // The pixel grid as stored: an orientation tag is ignored, because intrinsics belong to the sensor's grid. 16 bit is
 // stretched between its 0.1 % and 99.9 % quantiles. A size that the bytes cannot hold is refused before anything is
-// allocated. Fails in words; throws nothing.
+// allocated. Fails in words. Throws std::bad_alloc where there is no memory: that is no fault of the picture.
 [[nodiscard]] Result<GreyImage> DecodeGrey(std::span<const std::byte> encoded);
 // The same in colour; a grey picture has three equal colours.
 [[nodiscard]] Result<Picture> DecodeColour(std::span<const std::byte> encoded);

@@ -1,10 +1,12 @@
 #include "server/formats/cloud.h"
 
-#include <new>
+#include <algorithm>
 
+#include "server/base/limits.h"
 #include "server/base/text.h"
 #include "server/formats/cloud_decoders.h"
 #include "server/formats/cloud_table.h"
+#include "server/formats/pcd_header.h"
 
 namespace rigcal::formats {
 namespace {
@@ -18,14 +20,29 @@ Result<Cloud> Decode(std::string_view bytes, std::string_view suffix, const std:
                      "Save the cloud as .pcd, .ply or .bin.");
 }
 
+CloudSize Bounded(std::size_t points, std::size_t values_per_point) {
+  points = std::min(points, limits::kCloudPointsMax);
+  return {points, std::min(points * std::min(values_per_point, limits::kCloudFieldsMax), limits::kCloudValuesMax)};
+}
+
 }  // namespace
 
 Result<Cloud> ReadCloud(std::span<const std::byte> bytes, std::string_view suffix, const std::string& name) {
-  try {
-    return Decode({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, suffix, name);
-  } catch (const std::bad_alloc&) {
-    return RefuseCloud(name, "the cloud does not fit into memory", "Thin the cloud out.");
+  return Decode({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, suffix, name);
+}
+
+CloudSize ClaimedSize(std::span<const std::byte> start, std::string_view suffix, std::size_t file_bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
+  if (suffix == "bin") return Bounded(file_bytes / 16, 4);
+  if (suffix == "ply") {
+    const auto size = PlySize(text);
+    return size ? Bounded(size->first, size->second) : CloudSize{};
   }
+  const auto header = ReadPcdHeader(text, "");
+  if (suffix != "pcd" || !header) return {};
+  std::size_t values = 0;
+  for (const PcdField& field : header->fields) values += field.count;
+  return Bounded(header->points, values);
 }
 
 }  // namespace rigcal::formats

@@ -22,7 +22,15 @@ namespace rigcal::formats {
 // PLY: the element "vertex". Elements before it are skipped, those after it ignored; a list in or before it is refused.
 //
 // What a header claims is held against the bytes that are there and against limits.h before anything is allocated.
+// Throws std::bad_alloc: that is no fault of the file.
 [[nodiscard]] Result<Cloud> ReadCloud(std::span<const std::byte> bytes, std::string_view suffix,
                                       const std::string& name);
+
+// What a file of `file_bytes` claims to hold, at most what limits.h admits. `start`: its first kCloudHeaderBytesMax
+// bytes, or all of it. Nothing is held in a file that ReadCloud refuses by its header.
+struct CloudSize {
+  std::size_t points = 0, values = 0;  // values: of all points, x y z included
+};
+[[nodiscard]] CloudSize ClaimedSize(std::span<const std::byte> start, std::string_view suffix, std::size_t file_bytes);
 
 }  // namespace rigcal::formats

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "server/base/result.h"
 #include "server/model/cloud.h"
@@ -13,6 +15,8 @@ namespace rigcal::formats {
 
 [[nodiscard]] Result<Cloud> ReadPcd(std::string_view bytes, const std::string& name);
 [[nodiscard]] Result<Cloud> ReadPly(std::string_view bytes, const std::string& name);
+// Points, and values of each, as the header claims; nothing if it cannot be read.
+[[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> PlySize(std::string_view bytes);
 [[nodiscard]] Result<Cloud> ReadKitti(std::string_view bytes, const std::string& name);
 
 }  // namespace rigcal::formats

@@ -185,6 +185,15 @@ Result<CloudTable> TableOf(const std::string& file, const Element& vertex) {
 
 }  // namespace
 
+std::optional<std::pair<std::size_t, std::size_t>> PlySize(std::string_view bytes) {
+  const std::string unnamed;
+  const auto header = HeaderReader(unnamed).Read(bytes);
+  if (!header) return std::nullopt;
+  for (const Element& element : header->elements)
+    if (element.name == "vertex") return std::pair(element.count, element.properties.size());
+  return std::nullopt;
+}
+
 Result<Cloud> ReadPly(std::string_view bytes, const std::string& name) {
   RIGCAL_ASSIGN(const PlyHeader header, HeaderReader(name).Read(bytes));
   Rest rest{bytes.substr(header.body_offset_bytes), header.body_line};

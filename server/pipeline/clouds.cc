@@ -6,6 +6,7 @@
 
 #include "server/base/durable_file.h"
 #include "server/base/limits.h"
+#include "server/base/out_of_memory.h"
 #include "server/base/parallel_for.h"
 #include "server/cloud/blend.h"
 #include "server/cloud/overlay.h"
@@ -15,6 +16,7 @@
 #include "server/formats/cloud.h"
 #include "server/formats/payload_path.h"
 #include "server/pipeline/cloud_choice.h"
+#include "server/pipeline/decoding.h"
 #include "storage/blobs.h"
 
 namespace rigcal::pipeline {
@@ -152,7 +154,18 @@ void NoteLimits(Work& work, const CloudChoice& choice, const cloud::Beams& beams
                                  std::to_string(choice.cameras_left_out) + " more do not.");
 }
 
+Result<MemoryBudget::Share> MemoryFor(const Work& work, const CloudChoice& choice) {
+  std::vector<const Payload*> pictures;
+  for (const PlacedCamera& camera : choice.cameras) pictures.push_back(camera.picture);
+  return TakeMemory(ToColour(work.store.BlobFolder(), *choice.cloud, pictures));
+}
+
 Status WriteLidar(Work& work, const CloudChoice& choice) {
+  const auto share = MemoryFor(work, choice);
+  if (!share) {
+    Note(work, *choice.cloud, share.error());
+    return {};
+  }
   const Result<Cloud> read = CloudOf(work.store, *choice.cloud);
   if (!read) {
     Note(work, *choice.cloud, read.error());
@@ -171,11 +184,12 @@ Status WriteLidar(Work& work, const CloudChoice& choice) {
   return {};
 }
 
-// Libraries' exceptions (no memory, say) cost the cloud, not the report.
+// Libraries' exceptions cost the cloud, not the report; without memory it is made again.
 Status WriteOrNote(Work& work, const CloudChoice& choice) {
   try {
     return WriteLidar(work, choice);
   } catch (const std::exception& problem) {
+    if (IsOutOfMemory(problem)) throw;
     work.section.notes.push_back("The cloud of " + choice.lidar.str() + " could not be coloured: " + problem.what());
     return {};
   }

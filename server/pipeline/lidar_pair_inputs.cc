@@ -69,7 +69,21 @@ void Thin(std::map<CaptureId, LidarLidarCapture>& captures, std::vector<CloudFil
   std::erase_if(files, [](const CloudFile& file) { return !file.capture->why_not.empty(); });
 }
 
+std::vector<CloudFile> UsedFiles(const Manifest& manifest, const SensorPair& ids,
+                                 std::map<CaptureId, LidarLidarCapture>& captures) {
+  std::vector<CloudFile> files = FilesOf(manifest, ids, captures);
+  Thin(captures, files);
+  return files;
+}
+
 }  // namespace
+
+Needed ToRegister(const storage::Store& store, const Manifest& manifest, const SensorPair& ids) {
+  std::map<CaptureId, LidarLidarCapture> captures;
+  std::vector<const Payload*> clouds;
+  for (const CloudFile& file : UsedFiles(manifest, ids, captures)) clouds.push_back(file.payload);
+  return ToRegister(store.BlobFolder(), clouds);
+}
 
 Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store, const Manifest& manifest,
                                                             const SensorPair& ids) {
@@ -78,8 +92,7 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
     return Fail(ErrorCode::kInternal, "the session has no sensor '" + (a ? ids.b : ids.a).str() + "'",
                 "Push the session again under its own manifest.");
   std::map<CaptureId, LidarLidarCapture> captures;
-  std::vector<CloudFile> files = FilesOf(manifest, ids, captures);
-  Thin(captures, files);
+  std::vector<CloudFile> files = UsedFiles(manifest, ids, captures);
   const std::filesystem::path blobs = store.BlobFolder();
   ParallelFor(files.size(), [&](std::size_t i) { Read(blobs, files[i]); });
   for (const CloudFile& file : files)

@@ -8,6 +8,7 @@
 #include "server/calib/lidar_lidar.h"
 #include "server/calib/stereo.h"
 #include "server/calib/tracker_lidar.h"
+#include "server/pipeline/decoding.h"
 #include "server/pipeline/sightings.h"
 
 namespace rigcal::pipeline {
@@ -36,6 +37,8 @@ struct PairInputs {
 [[nodiscard]] Result<PairInputs<calib::TrackerLidarProblem>> LoadTrackerLidar(storage::Store& store,
                                                                               const Manifest& manifest,
                                                                               const SensorPair& pair);
+// What it takes of memory to register the clouds that LoadLidarLidar loads.
+[[nodiscard]] Needed ToRegister(const storage::Store& store, const Manifest& manifest, const SensorPair& pair);
 // How a pair of lidars came to fit, in its first used captures: stored, and added to the edge as evidence. Nothing for
 // an edge without a pose.
 [[nodiscard]] Status AddOverlays(storage::Store& store, const calib::LidarLidarProblem& problem, Edge& edge);

@@ -10,6 +10,7 @@
 #include "server/pipeline/report_input.h"
 #include "server/report/assets.h"
 #include "server/report/render.h"
+#include "storage/attempts.h"
 #include "storage/blobs.h"
 
 namespace rigcal::pipeline {
@@ -91,7 +92,8 @@ Status MoveInPlace(const fs::path& temporary, const fs::path& folder) {
 
 }  // namespace
 
-Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key, const Clock& clock) {
+Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key, const Clock& clock,
+                         const std::string& why_no_clouds) {
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevision(store, key.robot, key.number));
   if (!revision)
     return Fail(ErrorCode::kNotFound, "robot " + key.robot.str() + " has no revision " + std::to_string(key.number),
@@ -104,12 +106,19 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   fs::remove_all(temporary, error);
   RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));
-  RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary));
+  if (why_no_clouds.empty()) {
+    RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary));
+  } else {
+    input.clouds.notes = {why_no_clouds};
+  }
   RIGCAL_TRY(LinkAssets(store.ReportFolder(), temporary / "assets"));
   RIGCAL_ASSIGN(const auto files, report::RenderRevision(input, revision->document));
   RIGCAL_TRY(WriteFiles(files, temporary));
   RIGCAL_TRY(MoveInPlace(temporary, folder));
-  RIGCAL_TRY(store.Write([&] { return storage::AppendPublication(store, key, clock.Now()); }));
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfReport(key), storage::AttemptEnd::kDone, "", clock.Now()));
+    return storage::AppendPublication(store, key, clock.Now());
+  }));
   return folder;
 }
 

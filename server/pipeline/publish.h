@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "server/base/stamp.h"
 #include "storage/revisions.h"
@@ -9,8 +10,8 @@
 namespace rigcal::pipeline {
 
 // Renders into a temporary folder, fsyncs, renames it to ReportFolder()/<robot>/<number>, marks it published. Doing it
-// twice is harmless. Returns the folder.
+// twice is harmless. Returns the folder. `why_no_clouds`, if not empty, stands in the place of the coloured clouds.
 [[nodiscard]] Result<std::filesystem::path> Publish(storage::Store& store, const storage::RevisionKey& key,
-                                                    const Clock& clock);
+                                                    const Clock& clock, const std::string& why_no_clouds = {});
 
 }  // namespace rigcal::pipeline

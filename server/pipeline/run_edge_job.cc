@@ -1,6 +1,9 @@
 #include "server/pipeline/run_edge_job.h"
 
+#include "server/base/log.h"
+#include "server/pipeline/attempt.h"
 #include "server/pipeline/camera_fits.h"
+#include "server/pipeline/decoding.h"
 #include "server/pipeline/pair_inputs.h"
 #include "server/pipeline/same_pictures.h"
 #include "storage/edges.h"
@@ -18,12 +21,12 @@ Edge FailedEdge(const SensorPair& pair, const std::string& method, const Error& 
   return edge;
 }
 
-// A method from its loader and its estimator. What cannot be loaded is a failed edge, unless the store failed.
+// A method from its loader and its estimator. What cannot be loaded is a failed edge, unless it is our fault.
 template <typename Inputs, typename Estimate>
 Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, const std::string& method, Result<Inputs> inputs,
                       const Estimate& estimate) {
   if (!inputs) {
-    if (inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
+    if (IsOurFault(inputs.error())) return Fail(inputs.error());
     return FailedEdge(pair, method, inputs.error());
   }
   std::vector<CameraFit> fits;
@@ -44,8 +47,10 @@ Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const S
 
 // The pictures show the answer, so they are made after it.
 Result<Edge> LidarLidarEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
+  const auto share = TakeMemory(ToRegister(store, manifest, pair));
+  if (!share) return FailedEdge(pair, "lidar_lidar", share.error());
   const auto inputs = LoadLidarLidar(store, manifest, pair);
-  if (!inputs && inputs.error().code == ErrorCode::kStorage) return Fail(inputs.error());
+  if (!inputs && IsOurFault(inputs.error())) return Fail(inputs.error());
   if (!inputs) return FailedEdge(pair, "lidar_lidar", inputs.error());
   Edge edge = calib::EstimateLidarLidarEdge(inputs->problem);
   RIGCAL_TRY(AddOverlays(store, inputs->problem, edge));
@@ -61,14 +66,18 @@ Result<Inputs> Remembering(calib::CameraMemory& cameras, Result<Inputs> inputs) 
   return inputs;
 }
 
+std::string MethodOf(const Manifest& manifest, const SensorPair& pair) {
+  const Sensor *a = SensorOf(manifest.header, pair.a), *b = SensorOf(manifest.header, pair.b);
+  return a && b ? std::string(MethodFor(manifest.header, *a, *b)) : "stereo";
+}
+
 Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, job.session));
   if (!manifest)
     return FailedEdge(
         job.pair, "stereo",
         {ErrorCode::kNotFound, "session " + job.session.str() + " is not in the store", "Push the session again."});
-  const Sensor *a = SensorOf(manifest->header, job.pair.a), *b = SensorOf(manifest->header, job.pair.b);
-  const std::string method(a && b ? MethodFor(manifest->header, *a, *b) : "stereo");
+  const std::string method = MethodOf(*manifest, job.pair);
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
     return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadLidarCamera(store, *manifest, job.pair)),
@@ -88,30 +97,47 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, cal
        "Update the server and push the session again."});
 }
 
-// What a library throws (no memory for a cloud, say) costs this pair, not the server.
-Result<Edge> EstimateOrFail(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
-  try {
-    return EstimatePair(store, job, cameras);
-  } catch (const std::exception& exception) {
-    return FailedEdge(job.pair, "none",
-                      {ErrorCode::kInternal, std::string("the estimate broke off: ") + exception.what(),
-                       "Push the session again with fewer captures, and report this with the session's id."});
-  }
+std::string Said(const storage::JobRow& job) {
+  return job.pair.a.str() + " and " + job.pair.b.str() + " of robot " + job.robot.str() + ", session " +
+         job.session.str();
+}
+
+// A pair that the server could not calibrate in so many attempts.
+Result<Edge> GivenUp(storage::Store& store, const storage::JobRow& job) {
+  RIGCAL_ASSIGN(const storage::Attempts attempts, storage::LoadAttempts(store, storage::WorkOfJob(job.number)));
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, job.session));
+  const Error why = {ErrorCode::kInternal, WhyGivenUp(attempts, "calibrated " + Said(job)),
+                     "Push the session with fewer or smaller pictures and clouds, or give the server more memory; if "
+                     "that does not help, report it with the session's id and the server's log."};
+  LogError(why);
+  return FailedEdge(job.pair, manifest ? MethodOf(*manifest, job.pair) : "none", why);
+}
+
+Result<Edge> Committed(storage::Store& store, const storage::JobRow& job, const Clock& clock, Edge edge) {
+  edge.robot = job.robot;
+  edge.session = job.session;
+  edge.id = EstimatedEdgeId(job.robot, job.session, edge.method, edge.frame_a, edge.frame_b);
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_TRY(storage::AppendEdge(store, edge, clock.Now()));
+    RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfJob(job.number), storage::AttemptEnd::kDone, "", clock.Now()));
+    return storage::FinishJob(store, job.number, clock.Now());
+  }));
+  return edge;
 }
 
 }  // namespace
 
 Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const Clock& clock,
                         calib::CameraMemory& cameras) {
-  RIGCAL_ASSIGN(Edge edge, EstimateOrFail(store, job, cameras));
-  edge.robot = job.robot;
-  edge.session = job.session;
-  edge.id = EstimatedEdgeId(job.robot, job.session, edge.method, edge.frame_a, edge.frame_b);
-  RIGCAL_TRY(store.Write([&]() -> Status {
-    RIGCAL_TRY(storage::AppendEdge(store, edge, clock.Now()));
-    return storage::FinishJob(store, job.number, clock.Now());
-  }));
-  return edge;
+  if (job.attempts >= kAttemptsMax) {
+    RIGCAL_ASSIGN(Edge failed, GivenUp(store, job));
+    return Committed(store, job, clock, std::move(failed));
+  }
+  const auto body = [&]() -> Result<Edge> {
+    RIGCAL_ASSIGN(Edge edge, EstimatePair(store, job, cameras));
+    return Committed(store, job, clock, std::move(edge));
+  };
+  return Attempted(store, clock, storage::WorkOfJob(job.number), Said(job), job.attempts, body);
 }
 
 }  // namespace rigcal::pipeline

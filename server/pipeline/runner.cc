@@ -7,12 +7,19 @@
 
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
+#include "storage/attempts.h"
 
 namespace rigcal::pipeline {
 namespace {
 // After a failure of the store (a full disk, say) the same step is tried again after this long.
 constexpr std::int64_t kRetry_ns = 2'000'000'000;
 constexpr std::chrono::hours kLongestStep{6};  // a large session on a small machine
+
+Status NoteCutOffWork(storage::Store& store, const Clock& clock) {
+  RIGCAL_ASSIGN(const auto works, storage::EndOpenAttempts(store, storage::AttemptEnd::kCutOff, clock.Now()));
+  for (const std::string& work : works) LogWarn("the server was stopped in the middle of " + work);
+  return {};
+}
 }  // namespace
 
 struct Runner::Impl {
@@ -23,6 +30,7 @@ struct Runner::Impl {
   Claims claims;
   calib::CameraMemory cameras;
   std::vector<storage::Store> stores;
+  std::optional<storage::Store> own_store;
   std::mutex mutex;
   std::condition_variable changed;
   std::uint64_t wakes = 0;  // guarded by mutex
@@ -59,6 +67,13 @@ struct Runner::Impl {
     changed.wait_for(lock, std::chrono::nanoseconds(wake_at->ns - options.clock->Now().ns), ready);
   }
 
+  // What is cut off from here on is the doing of whoever stops the server.
+  void GiveBackWork() {
+    if (!own_store || threads.empty()) return;
+    const auto given_back = storage::EndOpenAttempts(*own_store, storage::AttemptEnd::kGivenBack, options.clock->Now());
+    if (!given_back) LogError(given_back.error());
+  }
+
   void Signal() {
     {
       const std::lock_guard lock(mutex);
@@ -73,6 +88,7 @@ struct Runner::Impl {
       stopping = true;
     }
     changed.notify_all();
+    GiveBackWork();
     for (std::thread& thread : threads) thread.join();
   }
 };
@@ -86,6 +102,8 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->announcer = std::move(announcer);
+  RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.folder));
+  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock));
   for (int i = 0; i < options.threads; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
     impl->stores.push_back(std::move(store));

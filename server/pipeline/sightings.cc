@@ -9,6 +9,7 @@
 #include "server/detect/cloud_board.h"
 #include "server/formats/cloud.h"
 #include "server/formats/payload_path.h"
+#include "server/pipeline/decoding.h"
 #include "storage/blobs.h"
 
 namespace rigcal::pipeline {
@@ -28,6 +29,7 @@ struct Search {
   std::string key;
   Result<std::optional<Stored>> (*load)(storage::Store&, const Digest&, const std::string&);
   Status (*append)(storage::Store&, const Digest&, const std::string&, const Stored&);
+  Needed (*needed)(const std::filesystem::path&, const Payload&, const Target&);
   // The view, and its picture encoded.
   std::pair<Stored, std::string> (*detect)(const std::string& bytes, const Payload&, const Target&);
 };
@@ -59,14 +61,21 @@ Result<std::vector<Found<Stored>>> LoadKnown(storage::Store& store, const Manife
 bool IsReadable(const storage::StoredView& stored) { return stored.view.image_width_px > 0; }
 bool IsReadable(const storage::StoredCloud& stored) { return stored.view.points > 0; }
 
+// What was not found out costs this capture, not the robot, and is not stored: it is looked at again next time.
 template <typename Stored>
-Status DetectFresh(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
-                   Found<Stored>& found) {
+void LeaveUnknown(const Error& error, const Target& target, Found<Stored>& found) {
+  found.fresh = false;
+  found.stored.view.target = target.id;
+  found.stored.view.why_not = Sentence(error);
+}
+
+template <typename Stored>
+Status DetectLoaded(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+                    Found<Stored>& found) {
   const auto bytes =
       storage::LoadBlob(blobs, found.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
-  if (!bytes) {  // a damaged disk costs this capture, not the robot: and it is looked for again next time
-    found.fresh = false;
-    found.stored.view.why_not = Sentence(bytes.error());
+  if (!bytes) {  // a damaged disk
+    LeaveUnknown(bytes.error(), target, found);
     return {};
   }
   auto [stored, picture] = search.detect(*bytes, *found.payload, target);
@@ -77,6 +86,19 @@ Status DetectFresh(const std::filesystem::path& blobs, const Target& target, con
   // Stored at once, so that memory does not grow with the number of captures.
   RIGCAL_ASSIGN(found.stored.picture, storage::AppendBlob(blobs, picture));
   return {};
+}
+
+template <typename Stored>
+Status DetectFresh(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
+                   Found<Stored>& found) {
+  const auto share = TakeMemory(search.needed(blobs, *found.payload, target));
+  if (!share) {
+    LeaveUnknown(share.error(), target, found);
+    return {};
+  }
+  Status status;
+  RunApart([&] { status = DetectLoaded(blobs, target, search, found); });
+  return status;
 }
 
 template <typename Stored>
@@ -126,14 +148,14 @@ Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const 
                                                    const SensorId& camera, const Target& target) {
   return SearchAll<storage::StoredView>(
       store, manifest, camera, target,
-      {detect::DetectorKey(target), storage::LoadView, storage::AppendView, DetectPicture});
+      {detect::DetectorKey(target), storage::LoadView, storage::AppendView, ToSearchPicture, DetectPicture});
 }
 
 Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const Manifest& manifest,
                                                   const SensorId& lidar, const Target& target) {
   return SearchAll<storage::StoredCloud>(
       store, manifest, lidar, target,
-      {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud, DetectCloud});
+      {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud, ToSearchCloud, DetectCloud});
 }
 
 const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {

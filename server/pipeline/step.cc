@@ -4,6 +4,7 @@
 
 #include "server/base/log.h"
 #include "server/formats/answers.h"
+#include "server/pipeline/attempt.h"
 #include "server/pipeline/publish.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
@@ -31,16 +32,9 @@ class Claim {
   bool taken_;
 };
 
-// What a library throws costs this step, not the server.
-template <typename Work>
-auto Guarded(const Work& work) -> decltype(work()) {
-  try {
-    return work();
-  } catch (const std::exception& exception) {
-    return Fail(ErrorCode::kInternal, std::string("the work broke off: ") + exception.what(),
-                "Report this with the log of the server.");
-  }
-}
+// No robot's name: of work that was begun before and not finished one piece is done at a time, so that what kills the
+// process is not held against its neighbours for ever.
+const RobotId kBegunBefore;
 
 Status UpdateLive(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const RobotGraph loaded, LoadRobotGraph(context.store, robot));
@@ -59,15 +53,39 @@ void SettleLive(const StepContext& context, const RobotId& robot) {
   if (live.solver != nullptr && !live.solver->settled()) live.solver->Settle();
 }
 
+int CountOf(const std::map<std::string, int>& attempts, const std::string& work) {
+  const auto found = attempts.find(work);
+  return found == attempts.end() ? 0 : found->second;
+}
+
+// What decodes is left out once it has failed so often; then so often again without it, and no more.
+constexpr int kPublishAttemptsMax = 2 * kAttemptsMax;
+
+Result<std::filesystem::path> PublishOnce(const StepContext& context, const storage::RevisionKey& key, int before) {
+  const std::string work = storage::WorkOfReport(key);
+  const std::string said = "revision " + std::to_string(key.number) + " of robot " + key.robot.str();
+  std::string why_no_clouds;
+  if (before >= kAttemptsMax) {
+    RIGCAL_ASSIGN(const storage::Attempts attempts, storage::LoadAttempts(context.store, work));
+    why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
+  }
+  return Attempted(context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
+                   before % kAttemptsMax, [&] { return Publish(context.store, key, context.clock, why_no_clouds); });
+}
+
 // A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
-// worked.
-Result<bool> PublishNext(const StepContext& context) {
+// worked. Those that were begun before come when there is nothing else to do.
+Result<bool> PublishNext(const StepContext& context, bool begun_before) {
   RIGCAL_ASSIGN(const auto unpublished, storage::LoadUnpublished(context.store));
+  if (unpublished.empty()) return false;
+  RIGCAL_ASSIGN(const auto attempts, storage::LoadAttemptCounts(context.store));
   std::optional<Error> problem;
   for (const storage::RevisionKey& key : unpublished) {
+    const int before = CountOf(attempts, storage::WorkOfReport(key));
+    if ((before > 0) != begun_before || before >= kPublishAttemptsMax) continue;
     const Claim claim(context.claims, key.robot);
     if (!claim.taken()) continue;
-    const auto folder = Guarded([&] { return Publish(context.store, key, context.clock); });
+    const auto folder = PublishOnce(context, key, before);
     if (!folder) {
       problem = folder.error();
       if (context.undrawn != nullptr) context.undrawn->Note(key, *problem);
@@ -83,6 +101,11 @@ Result<bool> PublishNext(const StepContext& context) {
   return false;
 }
 
+Result<bool> PublishBegunBefore(const StepContext& context) {
+  const Claim alone(context.claims, kBegunBefore);
+  return alone.taken() ? PublishNext(context, true) : Result<bool>(false);
+}
+
 Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock));
   context.announcer.event(robot, "revision", std::to_string(revision.number), formats::WriteRevisionEvent(revision));
@@ -92,14 +115,37 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
-// The live state of one robot, and its revision if its burst is over: no job of it is waiting. True if it was revised.
-Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
+Status SolveBurst(const StepContext& context, const RobotId& robot, bool over) {
   RIGCAL_TRY(UpdateLive(context, robot));
-  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
-  if (jobs > 0) return false;
+  if (!over) return {};
   RIGCAL_TRY(ReviseAndTell(context, robot));
   SettleLive(context, robot);
-  return true;
+  return {};
+}
+
+// A graph that ended the process so often is left as it is until the robot has another edge.
+Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool over) {
+  RIGCAL_ASSIGN(const std::int64_t watermark, storage::LoadEdgeWatermark(context.store, robot));
+  const std::string work = storage::WorkOfRevision(robot, watermark);
+  RIGCAL_ASSIGN(const auto attempts, storage::LoadAttemptCounts(context.store));
+  const int before = CountOf(attempts, work);
+  if (before >= kAttemptsMax) return false;
+  const auto body = [&]() -> Status {
+    RIGCAL_TRY(SolveBurst(context, robot, over));
+    return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
+  };
+  RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));
+  return over;
+}
+
+// The live state of one robot, and its revision if its burst is over: no job of it is waiting. True if it was revised. The
+// live state of a graph that this process has solved before is told at once, and not counted.
+Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
+  const bool known = context.live.Of(robot).solver != nullptr;
+  if (known) RIGCAL_TRY(UpdateLive(context, robot));
+  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
+  if (known && jobs > 0) return false;
+  return SolveCounted(context, robot, jobs == 0);
 }
 
 // A robot whose work failed rests, so that it holds up no other; then it is tried again.
@@ -152,7 +198,10 @@ Result<StepResult> RunNextJob(const StepContext& context) {
   result.worked = true;
   const Claim claim(context.claims, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
-  if (const Status ran = RunJob(context, *job); !ran) WakeBy(LetRest(context, job->robot, ran.error()), result);
+  std::optional<Claim> alone;
+  if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
+  const Status ran = Guarded([&] { return RunJob(context, *job); });
+  if (!ran) WakeBy(LetRest(context, job->robot, ran.error()), result);
   return result;
 }
 
@@ -195,12 +244,14 @@ void Claims::EndRests(Stamp now) {
 
 Result<StepResult> Step(const StepContext& context) {
   context.claims.EndRests(context.clock.Now());
-  const Result<bool> published = PublishNext(context);
+  const Result<bool> published = PublishNext(context, false);
   if (published && *published) return StepResult{true, std::nullopt};
   RIGCAL_ASSIGN(StepResult revised, ReviseNext(context));
   if (revised.worked) return revised;
   RIGCAL_ASSIGN(StepResult ran, RunNextJob(context));
   if (ran.worked) return ran;
+  RIGCAL_ASSIGN(const bool again, PublishBegunBefore(context));
+  if (again) return StepResult{true, std::nullopt};
   if (!published) return Fail(published.error());
   WakeBy(context.claims.NextRestEnd(), revised);
   return revised;

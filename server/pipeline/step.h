@@ -58,7 +58,9 @@ struct StepResult {
   std::optional<Stamp> wake_at;  // nothing now, but look again then (a robot that rests)
 };
 
-// In this order: publish a revision; revise a robot whose burst is over; run one edge job.
+// In this order: publish a revision; revise a robot whose burst is over; run one edge job. What was begun before and
+// not finished, by death of the process or a fault of ours, comes after its like, is begun kAttemptsMax times, and then
+// passed over: a job as a failed edge, a report without its clouds.
 [[nodiscard]] Result<StepResult> Step(const StepContext& context);
 
 }  // namespace rigcal::pipeline

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "server/detect/image_header.h"
+#include "server/pipeline/decoding.h"
 #include "server/pipeline/sightings.h"
 #include "storage/blobs.h"
 
@@ -14,7 +15,9 @@ namespace {
 constexpr std::size_t kLookedAtMax = 48;
 constexpr std::size_t kPictureBytesMax = 64u << 20;
 
-std::string WhyNot(storage::Store& store, const Payload& payload) {
+std::string WhyNot(storage::Store& store, const Manifest& manifest, const Payload& payload) {
+  for (const Target& target : manifest.header.targets)
+    if (const auto large = TooLarge(ToSearchPicture(store.BlobFolder(), payload, target))) return large->what;
   const auto bytes = storage::LoadBlob(store.BlobFolder(), payload.digest, kPictureBytesMax);
   if (!bytes) return bytes.error().what;
   const auto encoded = std::as_bytes(std::span(*bytes));
@@ -36,7 +39,7 @@ Unreadable FindUnreadable(storage::Store& store, const Manifest& manifest, const
     if (!sensor || sensor->kind != SensorKind::kCamera || shown.contains(place)) continue;
     unreadable.all_looked_at = looked_at++ < kLookedAtMax;
     if (!unreadable.all_looked_at) break;
-    if (std::string why = WhyNot(store, payload); !why.empty()) unreadable.why[place] = std::move(why);
+    if (std::string why = WhyNot(store, manifest, payload); !why.empty()) unreadable.why[place] = std::move(why);
   }
   return unreadable;
 }

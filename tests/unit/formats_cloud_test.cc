@@ -1,5 +1,8 @@
 #include <limits>
+#include <span>
+#include <tuple>
 
+#include "server/base/limits.h"
 #include "tests/unit/formats_cloud_samples.h"
 
 namespace rigcal::formats {
@@ -220,6 +223,28 @@ TEST(Ply, OtherElementsAreStepped) {
   ExpectTwo(PlyHeaderOf("binary_little_endian", elements) + std::string(18, 'c') + kTwoBytes + "whatever follows",
             "ply");
   ExpectTwo(PlyHeaderOf("ascii", elements) + "7 8\n9 10\n" + kTwoText + "3 0 1 1\n", "ply");
+}
+
+CloudSize ClaimOf(const std::string& bytes, std::string_view suffix, std::size_t start_bytes) {
+  return ClaimedSize(std::as_bytes(std::span(bytes.data(), start_bytes)), suffix, bytes.size());
+}
+
+TEST(ClaimedSize, ComesFromTheHeaderAlone) {
+  const std::string pcd = XyzPcd(1234), ply = PlyHeaderOf("ascii", "element face 3\nproperty int a\n" + XyzElement(99));
+  for (const auto& [bytes, suffix, points] : {std::tuple(pcd, "pcd", 1234u), {ply, "ply", 99u}}) {
+    EXPECT_EQ(ClaimOf(bytes, suffix, bytes.size()).points, points);
+    EXPECT_EQ(ClaimOf(bytes, suffix, bytes.size()).values, 3 * points);
+    EXPECT_EQ(ClaimOf(bytes, suffix, 20).points, 0u);  // the header is cut off
+  }
+  EXPECT_EQ(ClaimOf(std::string(160, 'x'), "bin", 0).points, 10u);
+  EXPECT_EQ(ClaimOf(std::string(160, 'x'), "bin", 0).values, 40u);
+  EXPECT_EQ(ClaimOf(pcd, "txt", pcd.size()).points, 0u);
+}
+
+TEST(ClaimedSize, IsAtMostWhatIsAdmitted) {
+  const std::string pcd = XyzPcd(2'000'000'000);
+  EXPECT_EQ(ClaimOf(pcd, "pcd", pcd.size()).points, limits::kCloudPointsMax);
+  EXPECT_LE(ClaimOf(pcd, "pcd", pcd.size()).values, limits::kCloudValuesMax);
 }
 
 }  // namespace

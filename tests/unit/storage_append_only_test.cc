@@ -1,6 +1,7 @@
 // No statement changes or removes what is stored, in any table but the queues.
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "storage/attempts.h"
 #include "storage/fleet_facts.h"
 #include "tests/unit/storage_fixture.h"
 
@@ -26,6 +27,8 @@ class AppendOnlyTest : public StoreTest {
     const BatchId batch(DigestOf("batch").str());
     ASSERT_TRUE(store_.Write([&]() -> Status {
       RIGCAL_TRY(AppendEdge(store_, edge, {1}));
+      RIGCAL_TRY(BeginAttempt(store_, WorkOfJob(job.number), {1}));
+      RIGCAL_TRY(EndAttempt(store_, WorkOfJob(job.number), AttemptEnd::kDone, "", {2}));
       RIGCAL_TRY(FinishJob(store_, job.number, {2}));
       RIGCAL_TRY(AppendBatch(store_, kRobot, batch, 2, {3}));
       RIGCAL_TRY(AppendBatchItem(store_, batch, 0, edge, {3}));

@@ -1,0 +1,50 @@
+#include "server/pipeline/attempt.h"
+
+#include "server/base/log.h"
+#include "server/base/out_of_memory.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+std::string Times(int count) { return count == 1 ? "once" : std::to_string(count) + " times"; }
+
+}  // namespace
+
+bool IsOurFault(const Error& error) {
+  return error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy || error.code == ErrorCode::kInternal;
+}
+
+Error BrokenOff(const std::exception& exception) {
+  if (IsOutOfMemory(exception))
+    return {ErrorCode::kInternal, std::string("the server had no memory left (") + exception.what() + ")",
+            "Give the server more memory, or push fewer and smaller pictures and clouds."};
+  return {ErrorCode::kInternal, std::string("the work broke off: ") + exception.what(),
+          "Report this with the log of the server."};
+}
+
+Status BeginAttempt(storage::Store& store, const Clock& clock, const std::string& work, const std::string& said,
+                    int before) {
+  RIGCAL_TRY(storage::BeginAttempt(store, work, clock.Now()));
+  LogInfo(work + ": " + said + ", attempt " + std::to_string(before + 1) + " of " + std::to_string(kAttemptsMax));
+  return {};
+}
+
+void EndAttempt(storage::Store& store, const Clock& clock, const std::string& work, const Error& error) {
+  const bool outside = error.code == ErrorCode::kStorage || error.code == ErrorCode::kBusy;
+  const auto end = outside ? storage::AttemptEnd::kGivenBack : storage::AttemptEnd::kFailed;
+  const Status ended = storage::EndAttempt(store, work, end, outside ? "" : error.what, clock.Now());
+  if (!ended) LogError(ended.error());
+}
+
+std::string WhyGivenUp(const storage::Attempts& attempts, const std::string& doing) {
+  std::string why;
+  if (attempts.cut_off > 0)
+    why = "the server was stopped " + Times(attempts.cut_off) + " while it " + doing +
+          ": the system kills what takes too much memory";
+  if (attempts.failed > 0)
+    why += (why.empty() ? "" : "; ") + std::string("it failed ") + Times(attempts.failed) + " when it " + doing + ": " +
+           attempts.newest_why;
+  return why;
+}
+
+}  // namespace rigcal::pipeline
