@@ -17,6 +17,7 @@
 #include "server/formats/limits_text.h"
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/orders.h"
 #include "server/pipeline/runner.h"
 #include "server/pipeline/startup.h"
 #include "storage/folder_lock.h"
@@ -91,6 +92,10 @@ Status Serve(const Config& config, const sigset_t& signals) {
   dds::Callbacks callbacks;
   callbacks.answer = [&](const std::string& verb, const std::string& json) {
     return pipeline::Answer({query_store, SystemClock(), revisions, started_at, address}, verb, json);
+  };
+  callbacks.is_order = pipeline::IsOrder;
+  callbacks.carry_out = [](storage::Store& store, const std::string& verb, const std::string& json) {
+    return pipeline::CarryOut(store, SystemClock(), verb, json);
   };
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own

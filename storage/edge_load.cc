@@ -170,7 +170,8 @@ Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot
     Query query(
         store,
         "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM edge LEFT JOIN session USING (session_id) "
-        "WHERE edge.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
+        "WHERE edge.robot_id = ? AND edge.state = 'good' "
+        "AND NOT EXISTS (SELECT 1 FROM standing WHERE edge_number = edge.number) HAVING count(*) > 0");
     if (!query.Bind(robot).Step()) return std::nullopt;
     return Stamp{query.Int(0)};
   });

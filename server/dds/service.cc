@@ -45,7 +45,7 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
   RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
   for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
-  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks.answer, asked));
+  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
   recorder = std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox,
