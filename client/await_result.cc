@@ -82,6 +82,8 @@ Status ResultWatch::AskSession(State& state) {
   RIGCAL_ASSIGN(const Document document,
                 connection_.AskDocument("session", JsonObject({{"id", state.place.session.str()}}), kAnswerWithin));
   const Document session = document["session"];
+  state.result.session = session;
+  state.place.standing = std::max(state.place.standing, session["standing"]["number"].Integer().value_or(0));
   state.waiting = session["jobs_waiting"].Integer().value_or(0);
   state.total = session["jobs_total"].Integer().value_or(0);
   for (const Document& edge : document["edges"].Items()) NoteEdge(edge, state);
@@ -101,7 +103,9 @@ Status ResultWatch::AskRevision(State& state) {
   RIGCAL_ASSIGN(state.result.show, Document::Parse(state.result.show_text, "the server's answer to 'show'"));
   state.looked_at_revision = newest;
   state.looked_for = state.place.edges.size();
-  state.result.has_revision = state.finished = HoldsAll(state.result.show["document"], state.place.edges);
+  state.result.has_revision = state.finished =
+      HoldsAll(state.result.show["document"], state.place.edges) &&
+      state.result.show["standing"].Integer().value_or(0) >= state.place.standing;
   return {};
 }
 
@@ -109,7 +113,7 @@ Status ResultWatch::AskAll(State& state) {
   state.ask_now = false;
   RIGCAL_TRY(AskSession(state));
   if (!state.jobs_done) return {};
-  if (state.place.edges.empty()) {
+  if (!state.place.session.empty() && state.place.edges.empty()) {
     state.finished = true;
     return {};
   }

@@ -18,8 +18,9 @@ struct AwaitHooks {
 
 struct AwaitPlace {
   RobotId robot;
-  SessionId session;            // empty: of a batch of finished edges
+  SessionId session;            // empty: of a batch of finished edges, or of an order
   std::set<std::string> edges;  // that the revision must hold; a session's are added as they come
+  std::int64_t standing = 0;    // that the revision must count (docs/api.md); a session's own is added as it is known
   std::string where;
   std::int64_t give_up_ns = 60'000'000'000;
 };
@@ -29,6 +30,7 @@ struct Awaited {
   Document show;              // docs/api.md, show: a revision that holds all the edges
   std::string show_text;      // the same, verbatim
   Document status;
+  Document session;  // its row, where a session was waited for
 };
 
 // Open before the push begins: no event is missed.

@@ -45,9 +45,10 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
   context.timeout = std::chrono::milliseconds(std::llround(options.timeout_s * 1e3));
 }
 
-constexpr AddVerb kVerbs[] = {AddPush, AddPushEdges, AddRobots, AddSessions, AddEdges,
-                              AddShow, AddLookup,    AddStatus, AddWatch,    AddReport,
-                              AddDue,  AddCompare,   AddExport, AddDoctor,   AddSimulateElsewhere};
+constexpr AddVerb kVerbs[] = {
+    AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
+    AddShow,   AddLookup,    AddStatus,           AddWatch,  AddReport, AddDue,      AddCompare,
+    AddExport, AddDoctor,    AddSimulateElsewhere};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

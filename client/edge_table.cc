@@ -17,12 +17,19 @@ std::string MethodOf(const Document& edge) {
   return edge["method"].Text("-") + (edge["figures"]["polished_ratio"].Number().value_or(0.0) > 0.0 ? "+gicp" : "");
 }
 
-void AddRow(const Document& edge, Table& table) {
+void AddRow(const Document& edge, EdgeIds ids, Table& table) {
   const Document e = edge["residual"]["e"];
-  table.Add({edge["frame_a"].Text("?"), edge["frame_b"].Text("?"), MethodOf(edge),
-             Triple(edge["T_a_b"]["p_m"], kMmPerM, 2), RpyText(edge["T_a_b"], 3), Triple(edge["sigma_m"], kMmPerM, 3),
-             Triple(edge["sigma_rad"], kDegPerRad, 4), Scaled(LengthOf(e, 0), kMmPerM, 3),
-             Scaled(LengthOf(e, 3), kDegPerRad, 4)});
+  std::vector<std::string> cells = {edge["frame_a"].Text("?"),
+                                    edge["frame_b"].Text("?"),
+                                    MethodOf(edge),
+                                    Triple(edge["T_a_b"]["p_m"], kMmPerM, 2),
+                                    RpyText(edge["T_a_b"], 3),
+                                    Triple(edge["sigma_m"], kMmPerM, 3),
+                                    Triple(edge["sigma_rad"], kDegPerRad, 4),
+                                    Scaled(LengthOf(e, 0), kMmPerM, 3),
+                                    Scaled(LengthOf(e, 3), kDegPerRad, 4)};
+  if (ids == EdgeIds::kShown) cells.insert(cells.begin(), edge["id"].Text("?").substr(0, 12));
+  table.Add(std::move(cells));
 }
 
 std::string PartsText(const Document& error) {
@@ -81,18 +88,20 @@ void PrintDiagnoses(const Document& diagnoses, std::ostream& out) {
   for (const Document& item : diagnoses.Items()) out << "  " << Plain(SentenceOf(item)) << '\n';
 }
 
-void PrintEdges(const std::vector<Document>& edges, std::ostream& out) {
-  Table table({{"A"},
-               {"B"},
-               {"METHOD"},
-               {"p mm", Align::kRight},
-               {"rpy deg", Align::kRight},
-               {"sigma mm", Align::kRight},
-               {"sigma deg", Align::kRight},
-               {"|e| mm", Align::kRight},
-               {"|e| deg", Align::kRight}});
+void PrintEdges(const std::vector<Document>& edges, std::ostream& out, EdgeIds ids) {
+  std::vector<Column> columns = {{"A"},
+                                 {"B"},
+                                 {"METHOD"},
+                                 {"p mm", Align::kRight},
+                                 {"rpy deg", Align::kRight},
+                                 {"sigma mm", Align::kRight},
+                                 {"sigma deg", Align::kRight},
+                                 {"|e| mm", Align::kRight},
+                                 {"|e| deg", Align::kRight}};
+  if (ids == EdgeIds::kShown) columns.insert(columns.begin(), {"EDGE"});
+  Table table(std::move(columns));
   for (const Document& edge : edges)
-    if (edge["state"].Text() != "failed") AddRow(edge, table);
+    if (edge["state"].Text() != "failed") AddRow(edge, ids, table);
   if (!table.empty()) table.Print(out);
   for (const Document& edge : edges) {
     if (edge["state"].Text() != "failed" || IsPast(edge)) continue;

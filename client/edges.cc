@@ -11,7 +11,7 @@ namespace {
 void PrintAnswer(const Document& document, std::ostream& out) {
   const auto edges = document["edges"].Items();
   if (edges.empty()) out << "This robot has no edges yet. Send a session with `rigcal push DIR`.\n";
-  PrintEdges(edges, out);
+  PrintEdges(edges, out, EdgeIds::kShown);
 }
 
 }  // namespace
@@ -21,6 +21,7 @@ void AddEdges(CLI::App& app, Context& context) {
   auto robot = std::make_shared<std::string>();
   verb->add_option("ROBOT", *robot, "The robot's id")->required();
   verb->footer(
+      "EDGE: the first digits of its id, for `rigcal retire`. --json has the whole ids.\n"
       "p, rpy: pose of B in A. sigma: one standard deviation per axis of B. |e|: how far the edge is from the graph.\n"
       "A failed edge is listed with its reason and what to do. lidar_lidar+gicp: polished, as the session asked for.\n"
       "Examples:\n"

@@ -9,6 +9,7 @@
 #include "client/progress.h"
 #include "client/push_result.h"
 #include "client/session_outlet.h"
+#include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/thread_rank.h"
@@ -131,7 +132,7 @@ Result<Awaited> Await(const Context& context, const PushOptions& options, const 
                            (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
                          },
                          [&](const std::string& line) { context.err << line << std::endl; }};
-  return watch.Await({session.robot, session.id, {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)},
+  return watch.Await({session.robot, session.id, {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)},
                      hooks);
 }
 
@@ -151,6 +152,7 @@ Status RunPush(Context& context, const PushOptions& options) {
     context.out << ResultJson(summary, &awaited) << std::endl;
   else
     PrintResult(awaited, context.out);
+  SayStanding(awaited.session, context.err);
   if (awaited.has_revision) context.exit_code = Judge(awaited.show["document"]["verdict"]);
   return {};
 }

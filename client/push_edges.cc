@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "client/edge_outlet.h"
 #include "client/progress.h"
@@ -12,6 +13,7 @@
 #include "server/base/thread_rank.h"
 #include "server/formats/documents.h"
 #include "server/formats/g2o.h"
+#include "server/model/past.h"
 
 namespace rigcal::client {
 namespace {
@@ -70,9 +72,23 @@ Result<PushSummary> Send(const Context& context, const PushEdgesOptions& options
 
 Result<Awaited> Await(const Context& context, const PushEdgesOptions& options, const EdgesToPush& batch,
                       ResultWatch& watch) {
-  AwaitPlace place{batch.robot, SessionId(), {}, WhereText(context.dds), std::llround(options.give_up_s * 1e9)};
+  AwaitPlace place{batch.robot, SessionId(), {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)};
   for (const Edge& edge : batch.edges) place.edges.insert(edge.id.str());
   return watch.Await(std::move(place), {{}, [&](const std::string& line) { context.err << line << std::endl; }});
+}
+
+// What was retired stays so when it is pushed again.
+void SayRetired(const EdgesToPush& batch, const Document& revision, std::ostream& err) {
+  std::set<std::string> pushed;
+  for (const Edge& edge : batch.edges) pushed.insert(edge.id.str());
+  for (const Document& edge : revision["edges"].Items()) {
+    const Document why = edge["diagnoses"][0];
+    if (why["code"].Text() != kRetiredCode || !pushed.contains(edge["id"].Text())) continue;
+    err << Plain("Edge " + edge["id"].Text().substr(0, 16) + ", " + edge["frame_a"].Text("?") + " - " +
+                 edge["frame_b"].Text("?") + ", stays retired when it is pushed again: " +
+                 Sentence({ErrorCode::kInvalidInput, why["what"].Text(), why["cure"].Text()}))
+        << std::endl;
+  }
 }
 
 Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
@@ -94,6 +110,7 @@ Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
     context.out << ResultJson(summary, &awaited) << std::endl;
   else
     PrintResult(awaited, context.out);
+  SayRetired(batch, awaited.show["document"], context.err);
   if (awaited.has_revision) context.exit_code = Judge(awaited.show["document"]["verdict"]);
   return {};
 }

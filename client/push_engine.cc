@@ -75,11 +75,14 @@ bool PushEngine::IsStale(const wire::Receipt& receipt) const {
   return incarnation_ == receipt.incarnation && receipt.sequence_number <= sequence_number_;
 }
 
-// The newest receipt comes to those who join late: a refusal may be that of an earlier try, whose cause is mended. The
-// answer to our own question is believed.
+// The newest receipt comes to those who join late: a refusal may be that of an earlier try, whose cause is mended, and
+// `closed`, of a session, that of an earlier push, after which another one superseded it. The answer to our own
+// question is believed.
 bool PushEngine::IsDoubtful(const wire::Receipt& receipt) {
-  if (receipt.state != wire::ReceiptState::kRefused || answered_ || doubted_refusal_) return false;
-  return doubted_refusal_ = true;
+  const bool is_closed = receipt.state == wire::ReceiptState::kClosed && !plan_.fixed_window_bytes;
+  if ((receipt.state != wire::ReceiptState::kRefused && !is_closed) || answered_ || doubted_) return false;
+  if (is_closed) header_ns_.reset();  // asked at once
+  return doubted_ = true;
 }
 
 void PushEngine::OnReceipt(const wire::Receipt& receipt, std::int64_t now_ns) {

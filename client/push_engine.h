@@ -112,7 +112,7 @@ class PushEngine {
   std::unordered_map<std::size_t, std::int64_t> given_again_ns_;
 
   wire::ReceiptState state_ = wire::ReceiptState::kNeedManifest;
-  bool answered_ = false, has_sent_ = false, doubted_refusal_ = false;
+  bool answered_ = false, has_sent_ = false, doubted_ = false;
   std::optional<std::uint64_t> incarnation_;
   std::set<std::uint64_t> gone_;  // incarnations before this one
   std::uint64_t sequence_number_ = 0;

@@ -54,6 +54,7 @@ std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {
                                Field::Raw("report", "null"),
                                {"robot", summary.robot},
                                {"server_restarts", std::int64_t{summary.restarts}},
+                               Field::Raw("session", awaited == nullptr ? "null" : awaited->session.Dump()),
                                Field::Raw("show", has_revision ? awaited->show_text : "null"),
                                {"state", "closed"},
                                {"total", total},

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -20,12 +21,15 @@ void PrintSessions(const Document& document, std::ostream& out) {
                {"OPERATOR"}});
   for (const Document& row : document["sessions"].Items()) {
     const auto done = row["jobs_total"].Integer().value_or(0) - row["jobs_waiting"].Integer().value_or(0);
-    table.Add({row["session"].Text("?").substr(0, 16), row["robot"].Text("?"), row["state"].Text("?"),
-               row["captured_at"].Text("-"), CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
+    table.Add({row["session"].Text("?").substr(0, 16), row["robot"].Text("?"),
+               IsSuperseded(row) ? "superseded" : row["state"].Text("?"), row["captured_at"].Text("-"),
+               CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
                ByteText(row["bytes"].Number().value_or(0.0)), std::to_string(done) + "/" + CountOf(row["jobs_total"]),
                row["operator"].Text()});
   }
   table.Print(out);
+  for (const Document& row : document["sessions"].Items())
+    if (IsSuperseded(row)) out << StandingText(row) << '\n';
 }
 
 }  // namespace
@@ -36,6 +40,7 @@ void AddSessions(CLI::App& app, Context& context) {
   verb->add_option("ROBOT", *robot, "Only this robot's");
   verb->footer(
       "FILES: on the server's disk / in all. JOBS: sensor pairs done / in all. --json has the whole session ids.\n"
+      "A superseded session does not count: another one of the same pictures was pushed, or restored, after it.\n"
       "Examples:\n"
       "  rigcal sessions\n"
       "  rigcal sessions mapper-01\n");

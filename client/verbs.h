@@ -13,6 +13,8 @@ using AddVerb = void (*)(CLI::App& app, Context& context);
 
 void AddPush(CLI::App& app, Context& context);
 void AddPushEdges(CLI::App& app, Context& context);
+void AddRestore(CLI::App& app, Context& context);
+void AddRetire(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);
 void AddEdges(CLI::App& app, Context& context);

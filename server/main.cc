@@ -16,6 +16,7 @@
 #include "server/dds/service.h"
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/orders.h"
 #include "server/pipeline/runner.h"
 #include "server/pipeline/startup.h"
 #include "server/standby.h"
@@ -92,6 +93,10 @@ Status Serve(const Config& config, const sigset_t& signals) {
   dds::Callbacks callbacks;
   callbacks.answer = [&](const std::string& verb, const std::string& json) {
     return pipeline::Answer(context_of(query_store), verb, json);
+  };
+  callbacks.is_order = pipeline::IsOrder;
+  callbacks.carry_out = [](storage::Store& store, const std::string& verb, const std::string& json) {
+    return pipeline::CarryOut(store, SystemClock(), verb, json);
   };
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own

@@ -172,7 +172,8 @@ Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot
         store,
         "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM counted_edge c JOIN edge ON "
         "edge.number = c.edge_number LEFT JOIN session USING (session_id) "
-        "WHERE c.robot_id = ? AND edge.state = 'good' HAVING count(*) > 0");
+        "WHERE c.robot_id = ? AND edge.state = 'good' "
+        "AND NOT EXISTS (SELECT 1 FROM standing WHERE standing.edge_number = edge.number) HAVING count(*) > 0");
     if (!query.Bind(robot).Step()) return std::nullopt;
     return Stamp{query.Int(0)};
   });

@@ -22,7 +22,7 @@ namespace rigcal::storage {
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
 // When the robot was last calibrated: the newest capture among the sessions of its good edges; for an edge that was
-// pushed, the moment it was stored. nullopt without a good edge.
+// pushed, the moment it was stored. nullopt without a good edge. Retired edges do not count.
 [[nodiscard]] Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot);
 // Number of the robot's edge that began to count last; 0 if none. It grows whenever one begins to count.
 [[nodiscard]] Result<std::int64_t> LoadEdgeWatermark(Store& store, const RobotId& robot);

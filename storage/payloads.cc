@@ -31,8 +31,8 @@ void InsertHeld(Store& store, std::int64_t session_number, std::uint32_t idx, St
   Query insert(store, "INSERT INTO payload_held VALUES (?, ?, ?) ON CONFLICT DO NOTHING");
   if (insert.Bind(session_number, idx, now).Run() == 0) return;
   Query(store,
-        "INSERT INTO digest_held SELECT digest, ? FROM payload WHERE session_number = ? AND idx = ? "
-        "ON CONFLICT DO NOTHING")
+        "INSERT INTO robot_digest_held SELECT robot_id, digest, ? FROM payload "
+        "JOIN session ON session.number = session_number WHERE session_number = ? AND idx = ? ON CONFLICT DO NOTHING")
       .Bind(now, session_number, idx)
       .Run();
 }
@@ -59,9 +59,9 @@ Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint
   });
 }
 
-Result<bool> IsHeld(Store& store, const Digest& digest) {
+Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest) {
   return Load<bool>(store, "payload " + digest.str(), [&]() -> Result<bool> {
-    return Query(store, "SELECT 1 FROM digest_held WHERE digest = ?").Bind(digest).Step();
+    return Query(store, "SELECT 1 FROM robot_digest_held WHERE robot_id = ? AND digest = ?").Bind(robot, digest).Step();
   });
 }
 

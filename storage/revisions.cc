@@ -13,7 +13,9 @@ std::string PublicationSubject(const RevisionKey& key) {
 }
 
 const std::string kColumns =
-    "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest ";
+    "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
+    "(SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = revision.robot_id AND "
+    "s.revision_number = revision.number) ";
 
 Revision RevisionOf(const Query& query) {
   Revision revision;
@@ -23,6 +25,7 @@ Revision RevisionOf(const Query& query) {
   revision.edge_watermark = query.Int(3);
   revision.verdict = {VerdictLevelOf(query.Text(4)), query.Text(5), query.Text(6)};
   revision.digest = query.IdAt<Digest>(7);
+  revision.standing_watermark = query.Int(8);  // NULL reads as 0
   return revision;
 }
 
@@ -36,6 +39,9 @@ void Insert(Store& store, const Revision& revision, int number) {
   insert.Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
               revision.verdict.why, revision.verdict.what_to_do, revision.digest);
   insert.BindNoCopy(revision.document).Run();
+  Query(store, "INSERT INTO revision_standing VALUES (?, ?, ?)")
+      .Bind(revision.robot, number, revision.standing_watermark)
+      .Run();
   Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
 }
 
@@ -55,7 +61,7 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
     Query query(store, "SELECT " + kColumns + ", document FROM revision WHERE robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionOf(query);
-    revision.document = query.Text(8);
+    revision.document = query.Text(9);
     return revision;
   });
 }
@@ -78,14 +84,18 @@ Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) 
   });
 }
 
-// Two index look-ups per robot, whatever the number of edges and revisions.
+// Four index look-ups per robot, whatever the number of edges and revisions.
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
     Query query(store,
                 "SELECT robot_id FROM robot r "
                 "WHERE (SELECT max(number) FROM counted_edge c WHERE c.robot_id = r.robot_id) > "
                 "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
-                "ORDER BY v.number DESC LIMIT 1), 0) ORDER BY robot_id");
+                "ORDER BY v.number DESC LIMIT 1), 0) "
+                "OR (EXISTS (SELECT 1 FROM counted_edge e WHERE e.robot_id = r.robot_id) AND "
+                "(SELECT max(number) FROM standing t WHERE t.robot_id = r.robot_id) > "
+                "coalesce((SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = r.robot_id "
+                "ORDER BY s.revision_number DESC LIMIT 1), 0)) ORDER BY robot_id");
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
     return robots;
@@ -102,7 +112,7 @@ Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
 }
 
 Result<bool> IsPublished(Store& store, const RevisionKey& key) {
-  return Load<bool>(store, Subject(key.robot), [&]() -> Result<bool> {
+  return Load<bool>(store, RevisionsSubject(key.robot), [&]() -> Result<bool> {
     Query query(store, "SELECT 1 FROM publication WHERE robot_id = ? AND revision_number = ?");
     return query.Bind(key.robot, key.number).Step();
   });

@@ -17,7 +17,8 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number);
 // Without documents; newest first.
 [[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot);
-// Robots whose newest edge is not in their newest revision (or who have edges and no revision).
+// Robots with edges whose newest edge or newest standing (standing.h) is not in their newest revision, or that have
+// none.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);
 
 struct RevisionKey {

@@ -4,6 +4,7 @@
 
 #include "server/formats/documents.h"
 #include "storage/query.h"
+#include "storage/standing.h"
 
 namespace rigcal::storage {
 namespace {
@@ -84,7 +85,7 @@ Status Close(Store& store, const SessionRow& row, const std::vector<SensorPair>&
   Query(store, "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ?").Bind(now, row.id).Run();
   const std::int64_t session_number = store.database().getLastInsertRowid();
   for (const SensorPair& pair : Distinct(pairs)) QueueJob(store, session_number, row.robot, pair, now);
-  return {};
+  return AppendPushed(store, row.robot, row.id, now);
 }
 
 }  // namespace
@@ -134,24 +135,6 @@ Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorP
   });
 }
 
-Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot) {
-  return Load<std::vector<SessionId>>(store, Subject(robot), [&]() -> Result<std::vector<SessionId>> {
-    Query query(store,
-                "SELECT DISTINCT old.session_id FROM session old "
-                "JOIN session_closed ON session_closed.session_number = old.number "
-                "JOIN payload ON payload.session_number = old.number "
-                "JOIN payload again ON again.digest = payload.digest AND again.session_number > old.number "
-                "JOIN session_closed again_closed ON again_closed.session_number = again.session_number "
-                "JOIN session later ON later.number = again.session_number AND later.robot_id = old.robot_id "
-                "WHERE old.robot_id = ? GROUP BY old.number, later.number "
-                "HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count");
-    query.Bind(robot);
-    std::vector<SessionId> sessions;
-    while (query.Step()) sessions.push_back(query.IdAt<SessionId>(0));
-    return sessions;
-  });
-}
-
 namespace {
 
 // Few manifests have the word; only those are parsed.
@@ -175,9 +158,8 @@ Result<std::vector<Remount>> LoadNamedRemounts(Store& store, const RobotId& robo
 Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(std::vector<Remount> remounts, LoadNamedRemounts(store, robot));
   if (remounts.empty()) return remounts;
-  RIGCAL_ASSIGN(const std::vector<SessionId> superseded, LoadSuperseded(store, robot));
-  const std::set<SessionId> old(superseded.begin(), superseded.end());
-  std::erase_if(remounts, [&](const Remount& remount) { return old.contains(remount.session); });
+  RIGCAL_ASSIGN(const auto superseded, LoadSuperseded(store, robot));
+  std::erase_if(remounts, [&](const Remount& remount) { return superseded.contains(remount.session); });
   return remounts;
 }
 

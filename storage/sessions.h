@@ -28,25 +28,21 @@ struct SessionRow {
 // All of one robot, or of all robots if `robot` is empty; newest captured_at first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
 
-// Closed sessions that a later closed session of the robot repeats: it holds half or more of the same payloads, pushed
-// again with a corrected session.yaml, say. The same pictures are no second measurement, and the correction is what
-// counts.
-[[nodiscard]] Result<std::vector<SessionId>> LoadSuperseded(Store& store, const RobotId& robot);
-
 // held[i]: payload i of the manifest is durable. kNotFound if the session is unknown.
 [[nodiscard]] Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id);
 // Marks payloads as durable; a no-op for those already marked. Refuses the whole list if one index is not in the
 // manifest.
 [[nodiscard]] Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint32_t>& payload_idx,
                                 Stamp now);
-// Digests that are held by any session: what need not be sent again.
-[[nodiscard]] Result<bool> IsHeld(Store& store, const Digest& digest);
-// Closes the session (immutable from now on) and queues one job per pair, in this order. A no-op if closed; kConflict
-// while a payload is not held.
+// Digests that sessions of this robot hold: what it need not send again. What another robot sent does not count: its
+// digests can be read by anybody, its bytes cannot.
+[[nodiscard]] Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest);
+// Closes the session (immutable and current from now on) and queues one job per pair, in this order. A no-op if closed;
+// kConflict while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
-// Sensors that closed sessions of the robot name as remounted, the earliest captured first; sessions that a later one
-// repeats do not count.
+// Sensors that closed sessions of the robot name as remounted, the earliest captured first; superseded sessions do not
+// count.
 struct Remount {
   SensorId sensor;
   SessionId session;

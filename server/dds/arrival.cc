@@ -15,6 +15,7 @@ std::size_t ContentBytes(const wire::BatchItem& item) {
 
 std::size_t ContentBytes(const ChunkBytes& chunk) { return chunk.bytes.size(); }
 std::size_t ContentBytes(const ManifestText& text) { return text.bytes.size(); }
+std::size_t ContentBytes(const Order& order) { return order.json.size(); }
 template <typename T>
 std::size_t ContentBytes(const T&) {
   return 0;

@@ -1,7 +1,8 @@
-// What arrived over DDS, checked, on its way from thread D to thread W.
+// What arrived over DDS, checked, on its way from threads D and Q to thread W.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <variant>
 
@@ -46,7 +47,13 @@ struct Refusal {
   Error error;
 };
 
-using Arrival = std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal>;
+// What a person asks to be changed. `answer` takes the document once the change is on disk, or the error.
+struct Order {
+  std::string verb, json;
+  std::function<void(Result<std::string>)> answer;
+};
+
+using Arrival = std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal, Order>;
 
 // Memory it holds while it waits.
 [[nodiscard]] std::int64_t BytesOf(const Arrival& arrival);

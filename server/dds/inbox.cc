@@ -20,7 +20,10 @@ bool Inbox::Offer(Arrival arrival) {
   const bool fits = Fits(arrival, bytes);
   if (fits) {
     all_bytes_ += bytes;
-    queue_.push_back(std::move(arrival));
+    if (std::holds_alternative<Order>(arrival))
+      queue_.push_front(std::move(arrival));  // somebody waits for it
+    else
+      queue_.push_back(std::move(arrival));
   } else if (auto* chunk = std::get_if<ChunkBytes>(&arrival); chunk != nullptr && queue_.size() < limits_.items) {
     queue_.emplace_back(DiscardedChunk{chunk->robot, chunk->session, chunk->payload_idx, chunk->offset_bytes});
     all_bytes_ += BytesOf(queue_.back());

@@ -1,4 +1,4 @@
-// The queue between thread D, which never waits, and thread W. Bounded in bytes: per session and in all.
+// The queue between threads D and Q, which never wait, and thread W. Bounded in bytes: per session and in all.
 #pragma once
 
 #include <chrono>
@@ -24,8 +24,8 @@ class Inbox {
   // Never waits. A chunk beyond the limits becomes a DiscardedChunk; anything else beyond them is dropped, as clients
   // repeat what is not answered. False if the arrival was discarded or dropped.
   bool Offer(Arrival arrival);
-  // About `bytes_max` bytes of arrivals in order, or fewer; waits for the first or for Wake. What it gave counts
-  // against the limits until Release.
+  // About `bytes_max` bytes of arrivals in order, orders first, or fewer; waits for the first or for Wake. What it gave
+  // counts against the limits until Release.
   [[nodiscard]] std::vector<Arrival> Take(std::int64_t bytes_max, std::chrono::milliseconds timeout);
   void Release();
   [[nodiscard]] bool Empty() const;

@@ -5,6 +5,7 @@
 #include "server/base/limits.h"
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
+#include "server/dds/server_side.h"
 
 namespace rigcal::dds {
 namespace {
@@ -30,6 +31,7 @@ Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks&
     : stores_(std::move(stores)),
       inbox_(inbox),
       outbox_(outbox),
+      callbacks_(callbacks),
       asked_(asked),
       incarnation_(incarnation),
       sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
@@ -48,6 +50,17 @@ void Recorder::Answer(const Refusal& refusal) {
   outbox_.Send(refusal.partition, std::move(receipt));
 }
 
+// The answer is given when the change is durable, and work is announced before: who has the answer may count on it.
+void Recorder::CarryOut(const Order& order) {
+  auto done = callbacks_.carry_out(stores_.takes, order.verb, order.json);
+  if (!done) {
+    LogWarn("order '" + order.verb + "' refused: " + Sentence(done.error()));
+    return order.answer(Fail(ToldToClient(done.error())));
+  }
+  callbacks_.work_arrived(done->robot);
+  order.answer(std::move(done->document));
+}
+
 void Recorder::Take(Arrival arrival) {
   if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(std::move(*chunk));
   if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(std::move(*item));
@@ -55,6 +68,7 @@ void Recorder::Take(Arrival arrival) {
   if (const auto* text = std::get_if<ManifestText>(&arrival)) return sessions_.Take(*text);
   if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return sessions_.Take(*discarded);
   if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
+  if (const auto* order = std::get_if<Order>(&arrival)) return CarryOut(*order);
 }
 
 // While somebody asks, one robot's flood leaves processors and disk to the answers: the next round begins no earlier

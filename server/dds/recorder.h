@@ -26,12 +26,14 @@ class Recorder {
   using Time = std::chrono::steady_clock::time_point;
   void Take(Arrival arrival);
   void Answer(const Refusal& refusal);
+  void CarryOut(const Order& order);
   [[nodiscard]] Time TakeRound();
   void CommitDue();
 
   Stores stores_;
   Inbox& inbox_;
   Outbox& outbox_;
+  const Callbacks& callbacks_;
   const LastQuestion& asked_;
   std::uint64_t incarnation_;
   SessionRecorder sessions_;

@@ -15,6 +15,7 @@ namespace {
 constexpr int kTakenAtOnce = 16;  // the others stay with DDS, which bounds them
 constexpr std::size_t kPendingMax = 256;
 constexpr std::chrono::seconds kPendingFor{5};
+constexpr std::chrono::seconds kOrderedFor{60};  // the disk may be busy
 constexpr std::chrono::milliseconds kBusyAgain{20};
 constexpr std::chrono::milliseconds kRequestIdle{1000};
 
@@ -35,6 +36,10 @@ Result<wire::Participant> OpenApart(wire::ParticipantOptions options) {
   return std::async(std::launch::async, open).get();
 }
 
+std::string DocumentOfAnswer(Result<std::string> answer) {
+  return answer ? std::move(*answer) : formats::WriteError(answer.error());
+}
+
 // The first partition of a writer in which questions may be asked; nothing if there is none.
 std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
   for (const std::string& partition : origin.partitions)
@@ -45,23 +50,24 @@ std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
 }  // namespace
 
 Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
-                   const Answer& answer, LastQuestion& asked, Part& part)
+                   const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part)
     : participant_(std::move(participant)),
       reader_(std::move(reader)),
       waitset_(std::move(waitset)),
-      answer_(answer),
+      callbacks_(callbacks),
+      inbox_(inbox),
       asked_(asked),
       part_(part) {}
 
-Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Answer& answer,
-                                                 LastQuestion& asked, Part& part) {
+Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Callbacks& callbacks,
+                                                 Inbox& inbox, LastQuestion& asked, Part& part) {
   RIGCAL_ASSIGN(auto participant, OpenApart(options));
   RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
                                  participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(reader.get()));
   std::unique_ptr<Requests> made(
-      new Requests(std::move(participant), std::move(reader), std::move(waitset), answer, asked, part));
+      new Requests(std::move(participant), std::move(reader), std::move(waitset), callbacks, inbox, asked, part));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
   return made;
 }
@@ -76,12 +82,32 @@ std::string Requests::DocumentOf(const Question& question) const {
     return formats::WriteError({ErrorCode::kInvalidInput,
                                 "a request of " + std::to_string(question.json.size()) + " bytes",
                                 "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"});
-  Result<std::string> answer = answer_(question.verb, question.json);
-  return answer ? std::move(*answer) : formats::WriteError(answer.error());
+  if (callbacks_.is_order(question.verb))
+    return formats::WriteError({ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
+                                "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."});
+  return DocumentOfAnswer(callbacks_.answer(question.verb, question.json));
+}
+
+// Thread W answers from its own thread; this one is woken to send it.
+std::future<std::string> Requests::GiveOrder(const Question& question) {
+  auto document = std::make_shared<std::promise<std::string>>();
+  auto future = document->get_future();
+  const auto answer = [this, document](Result<std::string> done) {
+    document->set_value(DocumentOfAnswer(std::move(done)));
+    waitset_.Wake();
+  };
+  if (!inbox_.Offer(Order{question.verb, question.json, answer}))
+    document->set_value(formats::WriteError(
+        {ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment."}));
+  return future;
 }
 
 bool Requests::Send(Pending& pending) {
   pending.busy = false;
+  if (pending.ordered.valid()) {
+    if (pending.ordered.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    pending.parts = Split(pending.ordered.get());
+  }
   while (pending.next_idx < pending.parts.size()) {
     rigcal_wire_Reply part{};
     if (!wire::CopyText(pending.question.id, part.id, sizeof part.id, "request id")) return true;
@@ -102,9 +128,14 @@ bool Requests::Send(Pending& pending) {
 
 void Requests::Add(Question question) {
   Pending pending;
-  pending.parts = Split(DocumentOf(question));
+  const bool is_order = question.json.size() <= limits::kRequestBytesMax && callbacks_.is_order(question.verb) &&
+                        question.partition == wire::kOperatorPartition;
+  if (is_order)
+    pending.ordered = GiveOrder(question);
+  else
+    pending.parts = Split(DocumentOf(question));
   pending.question = std::move(question);
-  pending.expires = std::chrono::steady_clock::now() + kPendingFor;
+  pending.expires = std::chrono::steady_clock::now() + (is_order ? kOrderedFor : kPendingFor);
   if (Send(pending)) return;
   if (pending_.size() >= kPendingMax) pending_.pop_front();
   pending_.push_back(std::move(pending));

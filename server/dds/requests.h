@@ -1,20 +1,22 @@
-// Thread Q: takes requests and answers them, on a participant of its own: its sockets and the threads of DDS behind
-// them are not those that sessions come in by. A request may come before the server's reply writer has met the reader
-// of the client that asked; a volatile reply would be lost, so it waits here until they have met, bounded in number and
-// time.
+// Thread Q: takes requests and answers them, or hands an order to thread W and passes its answer on. It has a participant
+// of its own: its sockets and the threads of DDS behind them are not those that sessions come in by. A request may come
+// before the server's reply writer has met the reader of the client that asked; a volatile reply would be lost, so it
+// waits here until they have met, bounded in number and time.
 #pragma once
 
 #include <chrono>
-#include <functional>
+#include <future>
 #include <list>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "server/base/vitals.h"
+#include "server/dds/inbox.h"
 #include "server/dds/last_question.h"
 #include "server/dds/reply_writers.h"
 #include "server/dds/retry.h"
+#include "server/dds/service.h"
 
 namespace rigcal::dds {
 
@@ -26,10 +28,11 @@ struct Question {
 
 class Requests {
  public:
-  using Answer = std::function<Result<std::string>(const std::string& verb, const std::string& json)>;
-  // Answerer, `asked`, in which every question is noted, and `part`, which is told of every failure, outlive it.
+  // Callbacks, inbox (of thread W, for orders), `asked`, in which every question is noted, and `part`, which is told of
+  // every failure, outlive it.
   [[nodiscard]] static Result<std::unique_ptr<Requests>> Open(const wire::ParticipantOptions& options,
-                                                              const Answer& answer, LastQuestion& asked, Part& part);
+                                                              const Callbacks& callbacks, Inbox& inbox,
+                                                              LastQuestion& asked, Part& part);
   void Run();   // until Stop
   void Stop();  // any thread
 
@@ -37,6 +40,7 @@ class Requests {
   using Time = std::chrono::steady_clock::time_point;
   struct Pending {
     Question question;
+    std::future<std::string> ordered;  // of an order: its document, once it is carried out
     std::vector<std::string> parts;
     std::size_t next_idx = 0;
     Time expires;
@@ -44,9 +48,10 @@ class Requests {
   };
 
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
-           const Answer& answer, LastQuestion& asked, Part& part);
+           const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part);
 
   [[nodiscard]] std::string DocumentOf(const Question& question) const;
+  [[nodiscard]] std::future<std::string> GiveOrder(const Question& question);
   void Add(Question question);
   // True if there is nothing left to do for it.
   [[nodiscard]] bool Send(Pending& pending);
@@ -59,7 +64,8 @@ class Requests {
   wire::Reader<rigcal_wire_Request> reader_;
   wire::WaitSet waitset_;
   ReplyWriters writers_{participant_, waitset_};
-  const Answer& answer_;
+  const Callbacks& callbacks_;
+  Inbox& inbox_;
   LastQuestion& asked_;
   std::list<Pending> pending_;
   Part& part_;

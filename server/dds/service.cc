@@ -47,8 +47,8 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
   for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
   Vitals& vitals = options.vitals == nullptr ? alone : *options.vitals;
-  RIGCAL_ASSIGN(requests,
-                Requests::Open(options.participant, callbacks.answer, asked, vitals.Expect("questions", kTurnWithin)));
+  RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
+                                         vitals.Expect("questions", kTurnWithin)));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
   recorder =

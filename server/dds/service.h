@@ -1,6 +1,6 @@
 // The whole DDS edge of rigcald: readers, recorder, requests, writers. Owns its threads:
 //   D takes everything at once (a reader that stops taking stalls every topic of the process) and never waits;
-//   W records: files, one transaction per batch, then receipts;   Q answers requests.
+//   W records: files, one transaction per batch, then receipts; carries out orders;   Q answers requests.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,8 @@
 #include "server/base/stamp.h"
 #include "server/base/vitals.h"
 #include "server/model/graph.h"
+#include "server/model/order.h"
+#include "storage/store.h"
 
 namespace rigcal::dds {
 
@@ -26,6 +28,11 @@ struct Options {
 struct Callbacks {
   // Answers one request with the /api/v1 document of (verb, json). Called from thread Q.
   std::function<Result<std::string>(const std::string& verb, const std::string& json)> answer;
+  // Verbs that change something. They are asked in the partition of people only, and carried out by thread W alone, on
+  // its own connection to the store; what `carry_out` returns is durable.
+  std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };
+  std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json)> carry_out =
+      {};
   // Something durable arrived that may mean work (session closed, edges stored). Called from thread W; must not block.
   std::function<void(const RobotId&)> work_arrived;
 };

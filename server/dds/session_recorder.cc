@@ -9,6 +9,7 @@
 #include "server/model/admission.h"
 #include "storage/blobs.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 
 namespace rigcal::dds {
 namespace fs = std::filesystem;
@@ -110,20 +111,36 @@ void SessionRecorder::Take(const OpenSession& open) {
                             std::to_string(kWireProtocol),
                         "Update rigcald, or push with an older rigcal"});
   const auto state = Open(open.robot, open.session);
-  if (!state) return SendRefusal(open.robot, open.session, state.error());
+  if (state && *state == wire::ReceiptState::kClosed)
+    if (const Status again = PushAgain(open.robot, open.session); !again)
+      return SendRefusal(open.robot, open.session, again.error());
+  Tell(open.robot, open.session, state);
+}
+
+// The newest push counts: a closed session that was superseded is current again.
+Status SessionRecorder::PushAgain(const RobotId& robot, const SessionId& session) {
+  RIGCAL_ASSIGN(const bool changed, storage::MakeCurrent(store_, session, storage::MadeCurrent::kPushedAgain,
+                                                         {clock_.Now(), "robot " + robot.str(), ""}));
+  if (changed) callbacks_.work_arrived(robot);
+  return {};
+}
+
+// Where the session stands, for its client; of one that is received with the next report.
+void SessionRecorder::Tell(const RobotId& robot, const SessionId& session, const Result<wire::ReceiptState>& state) {
+  if (!state) return SendRefusal(robot, session, state.error());
   if (*state == wire::ReceiptState::kReceiving) {
-    dirty_.insert(open.session);
+    dirty_.insert(session);
   } else {
-    SendState(open.robot, open.session, *state);
+    SendState(robot, session, *state);
   }
 }
 
-// Payloads whose content is in the blob store already need not travel. True if nothing is missing then.
+// Payloads that this robot sent before, in another session, need not travel. True if nothing is missing then.
 Result<bool> SessionRecorder::StoreHeldElsewhere(const SessionId& session, const Manifest& manifest) {
   std::vector<std::uint32_t> held;
   for (std::uint32_t i = 0; i < manifest.payloads.size(); ++i) {
     const Digest& digest = manifest.payloads[i].digest;
-    RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store_, digest));
+    RIGCAL_ASSIGN(const bool is_held, storage::IsHeld(store_, manifest.header.robot, digest));
     if (is_held && storage::HasBlob(store_.BlobFolder(), digest)) held.push_back(i);
   }
   const Stamp now = clock_.Now();
@@ -161,19 +178,14 @@ void SessionRecorder::Take(const ManifestText& text) {
     const Status stored = StoreManifest(text);
     state = stored ? Open(text.robot, text.session) : Result<wire::ReceiptState>(Fail(stored.error()));
   }
-  if (!state) return SendRefusal(text.robot, text.session, state.error());
-  if (*state == wire::ReceiptState::kReceiving) {
-    dirty_.insert(text.session);
-  } else {
-    SendState(text.robot, text.session, *state);
-  }
+  Tell(text.robot, text.session, state);
 }
 
 // The open session of that robot; else the client is told where it stands.
 SessionIntake* SessionRecorder::Prepare(const RobotId& robot, const SessionId& session) {
   SessionIntake* intake = Find(session);
   if (intake == nullptr || intake->robot() != robot) {
-    Take(OpenSession{robot, session, 0});
+    Tell(robot, session, Open(robot, session));
     intake = Find(session);
   }
   if (intake == nullptr || intake->robot() != robot) return nullptr;

@@ -52,6 +52,8 @@ class SessionRecorder {
   };
 
   [[nodiscard]] Result<wire::ReceiptState> Open(const RobotId& robot, const SessionId& session);
+  [[nodiscard]] Status PushAgain(const RobotId& robot, const SessionId& session);
+  void Tell(const RobotId& robot, const SessionId& session, const Result<wire::ReceiptState>& state);
   [[nodiscard]] Status StoreManifest(const ManifestText& text);
   [[nodiscard]] Result<bool> StoreHeldElsewhere(const SessionId& session, const Manifest& manifest);
   [[nodiscard]] Result<SessionIntake*> AddIntake(const RobotId& robot, const SessionId& session,

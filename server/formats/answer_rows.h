@@ -7,6 +7,7 @@
 namespace rigcal::formats {
 
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session);
+void WriteStanding(JsonWriter& out, const std::string& name, const std::optional<Standing>& standing);
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
 // Without its document.
 void WriteRevisionMembers(JsonWriter& out, const Revision& revision);

@@ -87,6 +87,21 @@ std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
   });
 }
 
+std::string WriteRestored(const SessionAnswer& session, bool has_edges) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Object("session", [&] { WriteSessionMembers(out, session); });
+    out.Flag("revision_follows", has_edges);
+  });
+}
+
+std::string WriteRetired(const Edge& edge, const Standing& retired) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("robot", edge.robot.str());
+    out.Object("edge", [&] { WriteEdgeRowMembers(out, edge, nullptr); });
+    WriteStanding(out, "standing", retired);
+  });
+}
+
 std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
                        const std::vector<EdgeResidual>& residuals) {
   return WriteObject([&](JsonWriter& out) {
@@ -104,6 +119,7 @@ std::string WriteShow(const Revision& revision, bool is_published, Stamp now) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     out.Flag("published", is_published);
+    out.Integer("standing", revision.standing_watermark);
     out.Null("document");
   });
   // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds free text.

@@ -11,6 +11,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/standing.h"
 
 namespace rigcal::formats {
 
@@ -34,10 +35,18 @@ struct SessionAnswer {
   std::optional<Stamp> captured_at, opened_at, closed_at;
   std::string operator_name;
   std::int64_t jobs_waiting = 0, jobs_total = 0;
+  std::optional<Standing> standing = {};          // absent: not closed
+  std::optional<Superseding> superseded_by = {};  // absent: current, or not closed
+  std::vector<SessionId> supersedes = {};
 };
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions);
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
                                        const std::vector<Edge>& edges);
+
+// verb restore: the session as it stands; `has_edges`: its robot, so that a revision follows.
+[[nodiscard]] std::string WriteRestored(const SessionAnswer& session, bool has_edges);
+// verb retire: the edge as it is shown from now on.
+[[nodiscard]] std::string WriteRetired(const Edge& edge, const Standing& retired);
 
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,

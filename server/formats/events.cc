@@ -4,6 +4,30 @@
 #include "server/formats/json_values.h"
 
 namespace rigcal::formats {
+namespace {
+
+void WriteSuperseding(JsonWriter& out, const std::optional<Superseding>& superseding) {
+  if (!superseding) return out.Null("superseded_by");
+  out.Object("superseded_by", [&] {
+    out.Text("session", superseding->by.str());
+    WriteStamp(out, "captured_at", superseding->captured_at);
+    out.Text("operator", superseding->operator_name);
+    WriteStanding(out, "standing", superseding->standing);
+  });
+}
+
+}  // namespace
+
+void WriteStanding(JsonWriter& out, const std::string& name, const std::optional<Standing>& standing) {
+  if (!standing) return out.Null(name);
+  out.Object(name, [&] {
+    out.Integer("number", standing->number);
+    out.Text("how", standing->how);
+    WriteStamp(out, "at", standing->word.at);
+    out.Text("who", standing->word.who);
+    out.Text("reason", standing->word.reason);
+  });
+}
 
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
   out.Text("session", session.session.str());
@@ -18,6 +42,11 @@ void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
   out.Text("operator", session.operator_name);
   out.Integer("jobs_waiting", session.jobs_waiting);
   out.Integer("jobs_total", session.jobs_total);
+  WriteStanding(out, "standing", session.standing);
+  WriteSuperseding(out, session.superseded_by);
+  out.List("supersedes", [&] {
+    for (const SessionId& one : session.supersedes) out.Text(one.str());
+  });
 }
 
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual) {

@@ -81,7 +81,8 @@ struct GraphSolution {
   Cycles cycles;                       // likewise
 };
 
-// A numbered, stored, solved state. `document` is canonical JSON: same edges, same bytes; it holds neither number nor time.
+// A numbered, stored, solved state. `document` is canonical JSON: same edges that count, same bytes; it does not hold its
+// number, nor when it was made.
 struct Revision {
   RobotId robot;
   int number = 0;
@@ -89,7 +90,8 @@ struct Revision {
   Verdict verdict;
   std::string document;
   Digest digest;           // of document
-  std::int64_t edge_watermark = 0;  // the store's row number of the newest edge that it contains
+  std::int64_t edge_watermark = 0;      // the store's row number of the newest edge that it contains
+  std::int64_t standing_watermark = 0;  // likewise, of the robot's newest standing that it counts
 };
 
 }  // namespace rigcal

@@ -5,7 +5,7 @@
 namespace rigcal {
 
 bool MeansPast(std::string_view diagnosis_code) {
-  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode;
+  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode || diagnosis_code == kRetiredCode;
 }
 
 bool IsPast(const Edge& edge) {

@@ -56,7 +56,8 @@ Result<std::string> Robots(const AnswerContext& context, const Parameters&) {
 Result<std::string> Sessions(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
   if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(const auto rows, LoadSessionRows(context.store, robot));
+  RIGCAL_ASSIGN(auto rows, LoadSessionRows(context.store, robot));
+  RIGCAL_TRY(AddStanding(context.store, robot, rows));
   return formats::WriteSessions(rows);
 }
 

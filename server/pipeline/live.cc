@@ -25,6 +25,7 @@ Status TakeOpenSessions(storage::Store& store, formats::LiveAnswer& answer) {
   RIGCAL_ASSIGN(auto rows, LoadSessionRows(store, answer.robot));
   for (formats::SessionAnswer& row : rows)
     if (!row.closed || row.jobs_waiting > 0) answer.open_sessions.push_back(std::move(row));
+  if (!answer.open_sessions.empty()) RIGCAL_TRY(AddStanding(store, answer.robot, answer.open_sessions));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, answer.robot, 0));
   answer.revision = newest ? newest->number : 0;
   return {};

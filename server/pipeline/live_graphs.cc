@@ -34,6 +34,7 @@ void StartAnew(const RobotGraph& loaded, LiveGraph& live) {
 
 void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live) {
   live.watermark = loaded.watermark;
+  live.standing_watermark = loaded.standing_watermark;
   const graph::LiveSolver* solver = live.solver.get();
   const std::vector<EdgeId> held = solver == nullptr ? std::vector<EdgeId>() : SortedIds(solver->graph().edges);
   const std::vector<EdgeId> wanted = SortedIds(loaded.graph.edges);

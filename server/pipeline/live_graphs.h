@@ -13,7 +13,7 @@
 namespace rigcal::pipeline {
 
 struct LiveGraph {
-  std::int64_t watermark = -1;  // of the store: what it knows; -1: nothing yet
+  std::int64_t watermark = -1, standing_watermark = -1;  // of the store: what it knows; -1: nothing yet
   std::unique_ptr<graph::LiveSolver> solver;
 };
 

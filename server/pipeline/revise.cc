@@ -13,13 +13,13 @@
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
-#include "server/model/past.h"
-#include "server/pipeline/remounts.h"
+#include "server/pipeline/current_edges.h"
 #include "server/report/edge_order.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -35,46 +35,11 @@ Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
   return manifest ? manifest->header.reference : SensorId();
 }
 
-// The edge stays visible, with its reason, but takes no part.
-void Supersede(Edge& edge) {
-  edge.state = EdgeState::kFailed;
-  edge.diagnoses = {{std::string(kSupersededCode),
-                     "session " + edge.session.str().substr(0, 16) + " was pushed again in a corrected form",
-                     "Nothing: the edge of the later session counts."}};
-}
-
-void MakePast(const storage::Remount& remount, Edge& edge) {
-  edge.state = EdgeState::kFailed;
-  edge.diagnoses = {{std::string(kRemountedCode),
-                     "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
-                         remount.session.str().substr(0, 16),
-                     "Where no later session measured this pair, measure it anew; where one did, that one counts."}};
-}
-
 Result<std::map<SessionId, Stamp>> CapturedAt(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessions(store, robot));
   std::map<SessionId, Stamp> captured_at;
   for (const storage::SessionRow& row : rows) captured_at.emplace(row.id, row.captured_at);
   return captured_at;
-}
-
-Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
-  for (Edge& edge : edges)
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
-        MakePast(*remount, edge);
-  return {};
-}
-
-Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, blocks));
-  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
-  const std::set<SessionId> old(superseded.begin(), superseded.end());
-  for (Edge& edge : edges)
-    if (old.contains(edge.session)) Supersede(edge);
-  RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
-  return edges;
 }
 
 void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector<SensorId>& listed, Graph& graph) {
@@ -115,6 +80,7 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, b
   std::vector<SensorId> listed;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
+    RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
     RIGCAL_ASSIGN(loaded.edges, LoadCurrentEdges(store, robot, blocks));
     RIGCAL_ASSIGN(listed, storage::LoadListedSensors(store, robot));
     RIGCAL_ASSIGN(const SensorId reference, LoadReference(store, robot));
@@ -144,6 +110,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.document = formats::WriteRevisionDocument(input);
   revision.digest = Sha256Of(revision.document);
   revision.edge_watermark = loaded.watermark;
+  revision.standing_watermark = loaded.standing_watermark;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
     if (worst) return storage::AppendWorstEdge(store, {robot, revision.number}, *worst);

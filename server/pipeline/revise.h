@@ -8,18 +8,19 @@
 namespace rigcal::pipeline {
 
 // The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list.
-// Edges of a session that a later one repeats (storage::LoadSuperseded), and those of a sensor that was remounted
-// since, are failed there with that reason (IsPast) and take no part. The reference is the one that the earliest
+// What was retired, superseded or remounted since is failed there with that reason (current_edges.h) and takes no part.
+// The reference is the one that the earliest
 // captured session names (ties: smaller session id); without a session, GraphOf's own rule.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id
   Graph graph;
-  std::int64_t watermark = 0;
+  std::int64_t watermark = 0, standing_watermark = 0;
 };
 // Block vectors only on demand.
 [[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks = false);
 
-// Solves, judges and commits. The same edges give the same document, byte for byte, whatever the order of arrival.
+// Solves, judges and commits. The same edges that count give the same document, byte for byte, whatever the order of
+// arrival.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock);
 
 }  // namespace rigcal::pipeline

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
@@ -38,15 +37,13 @@ report::SessionRow SessionRowOf(const formats::SessionAnswer& answer) {
   row.files_held = answer.payloads_held;
   row.pairs = answer.jobs_total;
   row.pairs_waiting = answer.jobs_waiting;
+  row.superseded_by = answer.superseded_by;
   return row;
 }
 
 Status AddResults(const AnswerContext& context, const RobotId& robot, std::vector<report::SessionRow>& rows) {
   RIGCAL_ASSIGN(const auto facts, storage::LoadSessionFacts(context.store, robot));
-  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(context.store, robot));
-  const std::set<SessionId> old(superseded.begin(), superseded.end());
   for (report::SessionRow& row : rows) {
-    row.superseded = old.contains(row.id);
     const auto found = facts.find(row.id);
     if (found != facts.end()) row.good = found->second.good, row.failed = found->second.failed;
   }
@@ -86,7 +83,8 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
   input.row = FleetRowOf(rows.front());
   RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot));
-  RIGCAL_ASSIGN(const auto sessions, LoadSessionRows(context.store, robot));
+  RIGCAL_ASSIGN(auto sessions, LoadSessionRows(context.store, robot));
+  RIGCAL_TRY(AddStanding(context.store, robot, sessions));
   for (const auto& session : sessions) input.sessions.push_back(SessionRowOf(session));
   RIGCAL_TRY(AddResults(context, robot, input.sessions));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.revisions.size()));

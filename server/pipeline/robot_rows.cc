@@ -6,6 +6,7 @@
 #include "storage/jobs.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -107,12 +108,26 @@ Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& stor
   return rows;
 }
 
+Status AddStanding(storage::Store& store, const RobotId& robot, std::vector<formats::SessionAnswer>& rows) {
+  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
+  for (formats::SessionAnswer& row : rows) {
+    RIGCAL_ASSIGN(row.standing, storage::LoadStanding(store, row.session));
+    if (const auto found = superseded.find(row.session); found != superseded.end()) row.superseded_by = found->second;
+    for (const auto& [old, superseding] : superseded)
+      if (superseding.by == row.session) row.supersedes.push_back(old);
+  }
+  return {};
+}
+
 Result<formats::SessionAnswer> LoadSessionRow(storage::Store& store, const SessionId& id) {
   RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
   if (!session)
     return Fail(ErrorCode::kNotFound, "session " + id.str() + " is not known",
                 "`rigcal sessions` lists those that are.");
-  return RowOf(store, *session);
+  RIGCAL_ASSIGN(auto row, RowOf(store, *session));
+  std::vector<formats::SessionAnswer> rows = {std::move(row)};
+  RIGCAL_TRY(AddStanding(store, session->robot, rows));
+  return std::move(rows.front());
 }
 
 namespace {

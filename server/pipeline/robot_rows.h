@@ -15,7 +15,12 @@ constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'000;
 // One row per robot, sorted by id; only `robot` if it is not empty (kNotFound if there is none).
 [[nodiscard]] Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot,
                                                                       Stamp now);
+// Without their standing.
 [[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot);
+// Which of the robot's sessions are current, and by which the others are superseded; of all robots if it is empty.
+[[nodiscard]] Status AddStanding(storage::Store& store, const RobotId& robot,
+                                 std::vector<formats::SessionAnswer>& rows);
+// With its standing.
 [[nodiscard]] Result<formats::SessionAnswer> LoadSessionRow(storage::Store& store, const SessionId& id);
 // The newest revision, or `number`; kNotFound names the robot.
 [[nodiscard]] Result<Revision> LoadRevisionOf(storage::Store& store, const RobotId& robot, std::int64_t number);

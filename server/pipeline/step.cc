@@ -39,7 +39,7 @@ const RobotId kBegunBefore;
 Status UpdateLive(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const RobotGraph loaded, LoadRobotGraph(context.store, robot));
   LiveGraph& live = context.live.Of(robot);
-  if (live.watermark >= loaded.watermark) return {};
+  if (live.watermark >= loaded.watermark && live.standing_watermark >= loaded.standing_watermark) return {};
   TakeNewEdges(loaded, live);
   context.announcer.event(
       robot, "graph_update", robot.str(),

@@ -57,9 +57,22 @@ void FillOpenOnes(Dictionary& page, const std::vector<SessionRow>& sessions) {
   if (open > kOpenSessionsMax) ShowValue(page, "MORE_OPEN", "COUNT", Count(open - kOpenSessionsMax, "older session", "older sessions"));
 }
 
+// By which, since when and by whom; and how it is taken back.
+void FillSuperseded(Dictionary& row, const SessionRow& session) {
+  const Superseding& by = *session.superseded_by;
+  Dictionary* part = row.AddSectionDictionary("SUPERSEDED");
+  part->SetValue("BY", by.by.str());
+  part->SetValue("SHORT", ShortDigest(by.by.str()));
+  part->SetValue("TIME", TimeText(by.captured_at));
+  if (!by.operator_name.empty()) ShowValue(*part, "PEOPLE", "NAME", by.operator_name);
+  part->SetValue("SINCE", TimeText(by.standing.word.at));
+  part->SetValue("HOW", HowText(by.standing));
+  part->SetValue("OLD", session.id.str().substr(0, 16));
+}
+
 // Of a session that came whole; the others stand above the list, with their progress.
 void FillResult(Dictionary& row, const SessionRow& session) {
-  if (session.superseded) return ShowValue(row, "SUPERSEDED", "WORD", "superseded");
+  if (session.superseded_by) return FillSuperseded(row, session);
   if (!session.closed || session.pairs_waiting > 0)
     return ShowValue(row, "WORKING", "WORD", session.closed ? "being calibrated" : "arriving");
   if (session.pairs == 0) return ShowValue(row, "WORKING", "WORD", "no pair of sensors to calibrate");

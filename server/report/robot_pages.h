@@ -3,10 +3,12 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "server/model/standing.h"
 #include "server/report/render.h"
 
 namespace rigcal::report {
@@ -19,7 +21,7 @@ struct SessionRow {
   bool closed = false;
   std::int64_t files = 0, files_held = 0, pairs = 0, pairs_waiting = 0;
   std::int64_t good = 0, failed = 0;  // of the pairs that are done
-  bool superseded = false;            // pushed again later, in a corrected form
+  std::optional<Superseding> superseded_by = {};
 };
 struct RobotInput {
   FleetRow row;

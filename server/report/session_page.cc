@@ -79,6 +79,16 @@ struct Outcome {
   std::string level, sentence, cure;
 };
 
+Outcome SupersededOutcome(const SessionRow& row) {
+  const Superseding& by = *row.superseded_by;
+  const std::string people = by.operator_name.empty() ? "" : ", by " + by.operator_name;
+  return {"under-way",
+          "This session does not count: session " + ShortDigest(by.by.str()) + " of the same pictures (captured " +
+              TimeText(by.captured_at) + people + "), " + HowText(by.standing) + " on " +
+              TimeText(by.standing.word.at) + ", supersedes it.",
+          "Nothing, if that is the right one; else `rigcal restore " + row.id.str().substr(0, 16) + "` takes it back."};
+}
+
 Outcome OutcomeOf(const SessionInput& input) {
   const SessionRow& row = input.row;
   const std::string pairs = Count(static_cast<std::size_t>(row.pairs), "pair", "pairs");
@@ -92,9 +102,7 @@ Outcome OutcomeOf(const SessionInput& input) {
             "This session is being calibrated: " + std::to_string(row.pairs - row.pairs_waiting) + " of " + pairs +
                 " are done.",
             ""};
-  if (row.superseded)
-    return {"under-way", "This session no longer counts: it was pushed again later in a corrected form.",
-            "Open the newer session of the same capture time on the robot's page."};
+  if (row.superseded_by) return SupersededOutcome(row);
   if (row.pairs == 0)
     return {"warn", "This session has no pair of sensors that could be calibrated.",
             "Name at least two sensors in session.yaml that see one target, or that move together."};

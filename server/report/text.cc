@@ -134,6 +134,13 @@ std::string VerdictWord(VerdictLevel level) {
   return "Unknown";
 }
 
+std::string HowText(const Standing& standing) {
+  if (standing.how == "pushed") return "pushed";
+  if (standing.how == "pushed_again") return "pushed again";
+  const std::string reason = standing.word.reason.empty() ? "" : " (" + standing.word.reason + ")";
+  return standing.how + " by " + standing.word.who + reason;
+}
+
 std::string ShortDigest(const std::string& digest) { return digest.substr(0, 12); }
 
 }  // namespace rigcal::report

@@ -7,6 +7,7 @@
 
 #include "server/base/stamp.h"
 #include "server/model/diagnosis.h"
+#include "server/model/standing.h"
 
 namespace rigcal::report {
 
@@ -43,6 +44,8 @@ struct FigureUnit {
 [[nodiscard]] std::string Count(std::size_t count, const std::string& one, const std::string& many);  // "1 edge"
 [[nodiscard]] std::string TimeText(Stamp stamp);  // "2026-01-31 12:00:00 UTC"
 [[nodiscard]] std::string VerdictWord(VerdictLevel level);
+// "pushed again", "restored by Ada (the squares were wrong)"
+[[nodiscard]] std::string HowText(const Standing& standing);
 [[nodiscard]] std::string ShortDigest(const std::string& digest);  // 12 digits
 
 }  // namespace rigcal::report

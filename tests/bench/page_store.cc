@@ -17,6 +17,7 @@
 #include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 #include "tests/unit/graph_random.h"
 
 namespace rigcal {
@@ -139,6 +140,7 @@ Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int 
   revision.document = formats::WriteRevisionDocument(input);
   revision.digest = Sha256Of(revision.document);
   RIGCAL_ASSIGN(revision.edge_watermark, storage::LoadEdgeWatermark(store, robot));
+  RIGCAL_ASSIGN(revision.standing_watermark, storage::LoadStandingWatermark(store, robot));
   RIGCAL_ASSIGN(const int added, storage::AppendRevision(store, revision));
   const Edge& worst = input.edges.front();
   RIGCAL_TRY(storage::AppendWorstEdge(store, {robot, added}, {worst.frame_a, worst.frame_b, 0.001 * number}));

@@ -1,6 +1,9 @@
 // Speaks the wire contract wrongly on purpose, against the rigcald of the environment: one attack per run. Prints what
 // came back in two lines, "<state>: <what>" and the cure. Exit code 0 if anything came back.
+#include <algorithm>
 #include <cstdio>
+#include <iostream>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -167,6 +170,23 @@ void BadManifest(const std::function<void(std::string&)>& spoil, bool same_id = 
   SayRefusal(client, session.id.str());
 }
 
+// The manifest on standard input, in the name of the robot that it names, and not one picture.
+void ForeignManifest() {
+  Session session;
+  session.manifest = std::string(std::istreambuf_iterator<char>(std::cin), {});
+  session.robot = Must(formats::ReadManifest(session.manifest)).header.robot;
+  session.id = SessionId(Sha256Of(std::string_view(session.manifest)).str());
+  Client client = ClientOf(session.robot.str());
+  client.SendHeader(session);
+  client.AwaitState(session.id.str(), ReceiptState::kNeedManifest);
+  client.SendManifest(session);
+  const Receipt answer = client.Await(
+      session.id.str(), [](const Receipt& receipt) { return receipt.state != ReceiptState::kNeedManifest; });
+  const auto held = std::count(answer.held.begin(), answer.held.end(), true);
+  Say(answer.state == ReceiptState::kClosed ? "closed" : "open", std::to_string(held) + " payloads held",
+      session.id.str());
+}
+
 void Replace(std::string& text, const std::string& old, const std::string& put) {
   const std::size_t at = text.find(old);
   if (at == std::string::npos) throw std::runtime_error("the manifest has no " + old);
@@ -223,6 +243,7 @@ const std::map<std::string, std::function<void()>>& Attacks() {
       {"manifest-hash", [] { BadManifest([](auto& text) { Replace(text, "rig", "gir"); }, true); }},
       {"manifest-garbage", [] { BadManifest([](auto& text) { text = std::string("\xff\x00{{{[", 6); }); }},
       {"manifest-future", [] { BadManifest([](auto& text) { Replace(text, "2023-11-14", "2190-01-01"); }); }},
+      {"foreign-manifest", ForeignManifest},
       {"future-protocol", FutureProtocol},
       {"request-malformed", [] { Ask("show", "{{{"); }},
       {"request-10MB", [] { Ask("show", R"({"robot":")" + std::string(10'000'000, 'x') + "\"}"); }},

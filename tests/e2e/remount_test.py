@@ -1,30 +1,15 @@
 """Three cameras before one board, one of them moved by 8 mm between two visits: two poses, until the second visit says that it
 was remounted; the same in whatever order the visits come, and with a server that was killed in between."""
 import json
-import re
 
 from flow import Flow, check
+from front_rig import front_rig
 
 MOVED, OTHERS = "front_right", ("front_left", "front_top")
-THIRD = ("  front_top:\n    {type: camera, sees: front, T_body_sensor: {p_m: [0.302, 0.004, 0.151], rpy_deg: [0.2, 1.3, -0.4]},\n"
-         "     lens: {fx_px: 1449.1, fy_px: 1449.7, cx_px: 1221.3, cy_px: 1021.2, distortion: [-0.081, 0.072, 0.0001, 0.0002, -0.01]},\n"
-         "     intrinsics_sigma: [0.1, 0.1, 0.1, 0.1, 0.0002, 0.0003, 0.00001, 0.00001, 0]}\n")
-
-
-def rig_of(flow, name, moved_m):
-    """The MARS Mapper's cameras to the front and one more; the second of them moved to the side."""
-    rig = flow.rigcal("simulate", "--print-rig", "mars-mapper").stdout
-    head, sensors = rig.split("\nsensors:\n")
-    front = re.findall(r"(?m)^  front_\w+:\n(?:    .*\n|     .*\n)+", sensors)
-    check(len(front) == 2 and "front_right" in front[1], "the rig has two cameras to the front: %r" % front)
-    front[1] = front[1].replace("[0.301, -0.101,", "[0.301, %.3f," % (-0.101 - moved_m))
-    path = flow.folder / (name + ".yaml")
-    path.write_text(head.replace("robot: mars-mapper", "robot: moved") + "\nsensors:\n" + "".join(front) + THIRD)
-    return path
 
 
 def simulate(flow, name, seed, captured_at, moved_m):
-    flow.rigcal("simulate", rig_of(flow, name, moved_m), "--out", flow.folder / name, "--seed", seed, "--captures", 20, "--scale", 0.3,
+    flow.rigcal("simulate", front_rig(flow, "moved", name, moved_m), "--out", flow.folder / name, "--seed", seed, "--captures", 20, "--scale", 0.3,
                 "--captured-at", captured_at)
     return flow.folder / name
 

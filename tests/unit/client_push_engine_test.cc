@@ -162,6 +162,22 @@ TEST(PushEngine, ARefusalOfAnEarlierTryIsAskedAgain) {
   EXPECT_EQ(engine.Next(kSecond_ns + 2).kind, Kind::kRefused);
 }
 
+// It is that of an earlier push: another session may have superseded this one since, so the server is to hear of it.
+TEST(PushEngine, AnEndOfAnEarlierPushIsAskedAgain) {
+  for (const bool is_asked : {false, true}) {
+    PushEngine engine(Plan({10}), 0);
+    if (is_asked) {
+      EXPECT_EQ(engine.Next(0).kind, Kind::kSendHeader);
+    }
+    engine.OnReceipt(ReceiptOf(State::kClosed, 5, {true}), 1);
+    EXPECT_EQ(engine.Next(2).kind, Kind::kSendHeader);
+    EXPECT_EQ(engine.Next(3).kind, Kind::kWait);
+    engine.OnReceipt(ReceiptOf(State::kClosed, 6, {true}), 4);
+    EXPECT_EQ(engine.Next(5).kind, Kind::kClosed);
+    EXPECT_EQ(engine.HeldAtFirst(), 10);
+  }
+}
+
 TEST(PushEngine, AsksAgainAfterSilenceAndGivesUp) {
   PushPlan plan = Plan({10});
   plan.give_up_ns = 10 * kSecond_ns;

@@ -107,6 +107,18 @@ inline Session MakeSession(const std::string& robot, const std::vector<std::size
   return session;
 }
 
+// The same payloads in the name of a robot; `note` makes it another session.
+inline Session OfRobot(const Session& session, const std::string& robot, const std::string& note) {
+  Manifest manifest = Must(formats::ReadManifest(session.manifest));
+  manifest.header.robot = RobotId(robot);
+  manifest.header.conditions["note"] = note;
+  Session other = session;
+  other.robot = manifest.header.robot;
+  other.manifest = formats::WriteManifest(manifest);
+  other.id = SessionId(Sha256Of(std::string_view(other.manifest)).str());
+  return other;
+}
+
 // What a robot's computer does: writes in one robot's partition, reads its receipts.
 class Client {
  public:
@@ -225,6 +237,10 @@ class ServiceTest : public testing::Test {
   void StartServer() {
     Callbacks callbacks;
     callbacks.answer = [this](const std::string& verb, const std::string& json) { return answer_(verb, json); };
+    callbacks.is_order = [](const std::string& verb) { return verb == "restore"; };
+    callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json) {
+      return carry_out_(verb, json);
+    };
     callbacks.work_arrived = [this](const RobotId& robot) {
       const std::lock_guard lock(mutex_);
       work_.push_back(robot);
@@ -242,6 +258,10 @@ class ServiceTest : public testing::Test {
   Options options_;
   std::function<Result<std::string>(const std::string&, const std::string&)> answer_ =
       [](const std::string& verb, const std::string& json) -> Result<std::string> { return verb + json; };
+  std::function<Result<OrderDone>(const std::string&, const std::string&)> carry_out_ =
+      [](const std::string& verb, const std::string& json) -> Result<OrderDone> {
+    return OrderDone{RobotId("mapper-01"), "done " + verb + json};
+  };
   std::mutex mutex_;
   std::vector<RobotId> work_;
   std::optional<Service> server_;

@@ -110,6 +110,29 @@ TEST_F(RequestTest, AnOverlongRequestIsRefusedNotAnswered) {
   EXPECT_EQ(error->code, ErrorCode::kInvalidInput);
 }
 
+// Orders go to the one thread that writes, and are answered with what came of them; questions go on meanwhile.
+TEST_F(RequestTest, AnOrderOfAPersonIsCarriedOut) {
+  Asker person(options_.participant, "operator");
+  EXPECT_EQ(person.Ask("restore", "{\"session\": \"x\"}"), "done restore{\"session\": \"x\"}");
+  EXPECT_THAT(Work(), testing::ElementsAre(RobotId("mapper-01")));
+  EXPECT_EQ(person.Ask("status", "{}"), "status{}");
+  carry_out_ = [](const std::string&, const std::string&) -> Result<OrderDone> {
+    return Fail(ErrorCode::kNotFound, "no session begins with \"x\"", "List them");
+  };
+  const auto error = formats::ReadError(person.Ask("restore", "{}"));
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code, ErrorCode::kNotFound);
+  EXPECT_EQ(Work().size(), 1u);
+}
+
+TEST_F(RequestTest, AnOrderOfARobotIsRefused) {
+  Asker robot(options_.participant, "robot/mapper-01");
+  const auto error = formats::ReadError(robot.Ask("restore", "{}"));
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->code, ErrorCode::kInvalidInput);
+  EXPECT_TRUE(Work().empty());
+}
+
 TEST_F(RequestTest, RoundTripWithinOneProcess) {
   Asker person(options_.participant, "operator");
   std::vector<double> times_ms;

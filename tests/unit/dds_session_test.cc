@@ -7,6 +7,7 @@
 #include "storage/blobs.h"
 #include "storage/jobs.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 #include "tests/unit/dds_fixture.h"
 
 namespace rigcal::dds {
@@ -28,6 +29,15 @@ class SessionTest : public ServiceTest {
     EXPECT_EQ(row->robot, session.robot);
     for (const std::string& bytes : session.payloads)
       EXPECT_EQ(Must(storage::LoadBlob(store.BlobFolder(), Sha256Of(std::string_view(bytes)), 1 << 24)), bytes);
+  }
+  // The one session of the robot that no other supersedes.
+  SessionId CurrentOf(const RobotId& robot) {
+    storage::Store store = Must(storage::Store::Open(folder_.path()));
+    const auto superseded = Must(storage::LoadSuperseded(store, robot));
+    auto rows = Must(storage::LoadSessions(store, robot));
+    std::erase_if(rows, [&](const auto& row) { return superseded.contains(row.id); });
+    EXPECT_EQ(rows.size(), 1u);
+    return rows.empty() ? SessionId() : rows.front().id;
   }
   static bool Holds(const Receipt& receipt, std::size_t count) {
     std::size_t held = 0;
@@ -194,6 +204,52 @@ TEST_F(SessionTest, WhatTheServerHoldsDoesNotTravelAgain) {
   client.SendPayload(second, 1);
   client.AwaitState(second.id.str(), ReceiptState::kClosed);
   ExpectStored(second);
+}
+
+// Who knows the digests of another robot's pictures, which anybody may read, has not got the pictures.
+TEST_F(SessionTest, WhatAnotherRobotSentMustTravelAgain) {
+  const Session first = MakeSession("mapper-01", {1'000, 2'000}, 20);
+  MakeClient("mapper-01").Push(first);
+  const Session foreign = OfRobot(first, "mapper-02", "foreign");
+  Client other = MakeClient("mapper-02");
+  other.SendHeader(foreign);
+  other.AwaitState(foreign.id.str(), ReceiptState::kNeedManifest);
+  other.SendManifest(foreign);
+  EXPECT_THAT(other.AwaitState(foreign.id.str(), ReceiptState::kReceiving).held, ElementsAre(false, false));
+  other.SendPayload(foreign, 0);
+  other.SendPayload(foreign, 1);
+  other.AwaitState(foreign.id.str(), ReceiptState::kClosed);
+  ExpectStored(foreign);
+}
+
+TEST_F(SessionTest, TheNewestPushOfTheSamePicturesIsCurrent) {
+  const Session right = MakeSession("mapper-01", {1'000, 2'000}, 20);
+  const Session wrong = OfRobot(right, "mapper-01", "wrong");
+  Client client = MakeClient("mapper-01");
+  client.Push(right);
+  client.SendHeader(wrong);
+  client.AwaitState(wrong.id.str(), ReceiptState::kNeedManifest);
+  client.SendManifest(wrong);
+  client.AwaitState(wrong.id.str(), ReceiptState::kClosed);  // a corrected session.yaml needs no bytes
+  EXPECT_EQ(CurrentOf(right.robot), wrong.id);
+  EXPECT_EQ(Work().size(), 2u);
+
+  client.SendPayload(right, 0);  // strays of the first push are no push
+  const std::uint64_t told = client.AwaitState(right.id.str(), ReceiptState::kClosed).sequence_number;
+  EXPECT_EQ(CurrentOf(right.robot), wrong.id);
+
+  const auto push_again = [&](std::uint64_t after) {
+    client.SendHeader(right);
+    return client.Await(right.id.str(), [&](const Receipt& receipt) { return receipt.sequence_number > after; })
+        .sequence_number;
+  };
+  const std::uint64_t again = push_again(told);
+  EXPECT_EQ(CurrentOf(right.robot), right.id);
+  EXPECT_EQ(Work().size(), 3u);
+  push_again(again);  // current already: nothing to do
+  EXPECT_EQ(Work().size(), 3u);
+  StopServer();
+  EXPECT_EQ(CurrentOf(right.robot), right.id);
 }
 
 TEST_F(SessionTest, OneContentInTwoPlacesTravelsOnce) {

@@ -39,7 +39,24 @@ TEST(Answers, Sessions) {
             "{\"sessions\":[{\"bytes\":1234567,\"captured_at\":\"2026-01-31T12:00:00Z\",\"closed_at\":null,"
             "\"jobs_total\":2,\"jobs_waiting\":1,\"opened_at\":\"2026-02-01T12:00:00Z\",\"operator\":\"Ada\","
             "\"payloads\":18,\"payloads_held\":17,\"robot\":\"mapper-01\",\"session\":\"" +
-                std::string(64, 'c') + "\",\"state\":\"receiving\"}]}");
+                std::string(64, 'c') +
+                "\",\"standing\":null,\"state\":\"receiving\",\"superseded_by\":null,\"supersedes\":[]}]}");
+}
+
+TEST(Answers, ASupersededSessionSaysByWhich) {
+  SessionAnswer session = SampleSession();
+  session.standing = Standing{3, "pushed", {kNow, "robot mapper-01", ""}};
+  session.superseded_by =
+      Superseding{SessionId(std::string(64, 'd')), kDayBefore, "Eve", {4, "restored", {kNow, "Ada", "wrong squares"}}};
+  session.supersedes = {SessionId(std::string(64, 'e'))};
+  const json row = json::parse(WriteSessions({session}))["sessions"][0];
+  EXPECT_EQ(row["standing"]["number"], 3);
+  EXPECT_EQ(row["superseded_by"],
+            json::parse("{\"session\":\"" + std::string(64, 'd') +
+                        "\",\"captured_at\":\"2026-01-31T12:00:00Z\",\"operator\":\"Eve\","
+                        "\"standing\":{\"number\":4,\"how\":\"restored\",\"at\":"
+                        "\"2026-02-01T12:00:00Z\",\"who\":\"Ada\",\"reason\":\"wrong squares\"}}"));
+  EXPECT_EQ(row["supersedes"], json::parse("[\"" + std::string(64, 'e') + "\"]"));
 }
 
 TEST(Answers, SessionHoldsManifestAndEdges) {

@@ -168,6 +168,13 @@ SessionInput SessionOfThree() {
   return input;
 }
 
+Superseding BySession(const std::string& name) {
+  return {SessionId(Sha256Of(name).str()),
+          Stamp{kDay_ns},
+          "Eve",
+          {7, "restored", {Stamp{2 * kDay_ns}, "Ada", "wrong squares"}}};
+}
+
 TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
   SessionInput input = SessionOfThree();
   EXPECT_THAT(RenderSession(input).value(), AllOf(HasSubstr("1 of 2 pairs of sensors were calibrated, 1 failed. "
@@ -177,8 +184,13 @@ TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
   EXPECT_THAT(RenderSession(input).value(), HasSubstr("1 failed. At least 1 picture of rear cannot be read."));
   input.row.good = 0, input.row.failed = 2;
   EXPECT_THAT(RenderSession(input).value(), HasSubstr("None of 2 pairs of sensors could be calibrated."));
-  input.row.superseded = true;
-  EXPECT_THAT(RenderSession(input).value(), HasSubstr("it was pushed again later in a corrected form"));
+  input.row.superseded_by = BySession("b");
+  EXPECT_THAT(RenderSession(input).value(),
+              HasSubstr("This session does not count: session " + Sha256Of("b").str().substr(0, 12) +
+                        " of the same pictures (captured 1970-01-02 00:00:00 UTC, by Eve), restored by Ada (wrong "
+                        "squares) on 1970-01-03 00:00:00 UTC, supersedes it."));
+  EXPECT_THAT(RenderSession(input).value(),
+              HasSubstr("rigcal restore " + input.row.id.str().substr(0, 16) + "` takes it back."));
   input.row.pairs_waiting = 1;
   const std::string working = RenderSession(input).value();
   EXPECT_THAT(working, HasSubstr("is being calibrated: 1 of 2 pairs are done."));
@@ -206,11 +218,16 @@ TEST(ReportSession, EachPictureIsUsedOrSaysWhyNot) {
 TEST(ReportRobot, SessionsSayWhatTheyGave) {
   RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
   input.sessions = {{SessionId(Sha256Of("a").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 11, 3},
-                    {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, true},
+                    {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, BySession("a")},
                     {SessionId(Sha256Of("c").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 5, 9, 0}};
   const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
   EXPECT_THAT(page, HasSubstr("11 of 14 pairs good <span class=\"badge fail\">3 failed</span>"));
   EXPECT_THAT(page, HasSubstr("<span class=\"badge unknown\">superseded</span>"));
+  const std::string a = Sha256Of("a").str(), b = Sha256Of("b").str();
+  EXPECT_THAT(page, HasSubstr("by <a href=\"sessions/" + a + "/\"><code>" + a.substr(0, 12) +
+                              "</code></a> (captured 1970-01-02 00:00:00 UTC, by <bdi>Eve</bdi>), restored by Ada "
+                              "(wrong squares) on 1970-01-03 00:00:00 UTC."));
+  EXPECT_THAT(page, HasSubstr("<code>rigcal restore " + b.substr(0, 16) + "</code>"));
   EXPECT_THAT(page, HasSubstr("is being calibrated: 9 of 14 pairs"));
 }
 

@@ -3,6 +3,7 @@
 
 #include "storage/attempts.h"
 #include "storage/fleet_facts.h"
+#include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -34,6 +35,7 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendBatchItem(store_, batch, 0, edge, {3}));
       RIGCAL_TRY(AppendView(store_, DigestOf("image"), "chessboard 1", {}));
       RIGCAL_TRY(AppendCloud(store_, DigestOf("cloud"), "plate 1", {{true, "", {}, 7, {PlanePatch{}}}, {}}));
+      RIGCAL_TRY(RetireEdge(store_, edge.id, {{4}, "Ada", "typed wrong"}));
       RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));

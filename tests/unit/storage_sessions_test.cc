@@ -80,13 +80,14 @@ TEST_F(SessionsTest, APositionBeyondTheManifestIsRefusedWhole) {
   EXPECT_THAT(LoadHeld(store_, id).value(), ElementsAre(false, false));
 }
 
-TEST_F(SessionsTest, ADigestIsHeldWhoeverSentIt) {
+TEST_F(SessionsTest, ADigestIsHeldForTheRobotThatSentIt) {
   const Manifest manifest = MakeManifest(2);
   const SessionId first = AppendOpenSession(store_, 2);
-  EXPECT_FALSE(IsHeld(store_, manifest.payloads[1].digest).value());
+  EXPECT_FALSE(IsHeld(store_, kRobot, manifest.payloads[1].digest).value());
   ASSERT_TRUE(AppendHeld(store_, first, {1}, {1}));
-  EXPECT_TRUE(IsHeld(store_, manifest.payloads[1].digest).value());
-  EXPECT_FALSE(IsHeld(store_, manifest.payloads[0].digest).value());
+  EXPECT_TRUE(IsHeld(store_, kRobot, manifest.payloads[1].digest).value());
+  EXPECT_FALSE(IsHeld(store_, kRobot, manifest.payloads[0].digest).value());
+  EXPECT_FALSE(IsHeld(store_, RobotId("mapper-02"), manifest.payloads[1].digest).value());
   // The same picture in another session: its own receipt is still to be given.
   const SessionId second = AppendOpenSession(store_, 3);
   EXPECT_THAT(LoadHeld(store_, second).value(), ElementsAre(false, false, false));

@@ -38,7 +38,7 @@
 <thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Result</th><th scope="col" class="num">Files</th></tr></thead>
 <tbody>
 {{#SESSION}}
-<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#SUPERSEDED}}<span class="badge unknown">{{WORD}}</span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code>rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
 {{/SESSION}}
 </tbody>
 </table>

@@ -1,0 +1,31 @@
+// A verb that changes something: asks for it, says what came of it, waits for the revision that counts it.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "client/verb.h"
+
+namespace CLI {
+class App;
+}
+
+namespace rigcal::client {
+
+struct OrderOptions {
+  std::string id, robot, who, reason;
+  double give_up_s = 60.0;
+  bool no_wait = false;
+};
+// --by, --robot, --no-wait, --timeout-total.
+void AddOrderOptions(CLI::App& verb, OrderOptions& options);
+
+struct OrderToGive {
+  std::string verb;
+  std::string subject;  // the parameter that has the id
+  std::function<void(const Document& done, std::ostream&)> print;
+};
+// Sets the exit code by the verdict of that revision.
+[[nodiscard]] Status GiveOrder(Context& context, const OrderToGive& order, const OrderOptions& options);
+
+}  // namespace rigcal::client

@@ -1,0 +1,15 @@
+// What came of an order: a change that a person asked for.
+#pragma once
+
+#include <string>
+
+#include "server/base/ids.h"
+
+namespace rigcal {
+
+struct OrderDone {
+  RobotId robot;  // to be revised
+  std::string document;
+};
+
+}  // namespace rigcal

@@ -1,0 +1,62 @@
+#include "server/pipeline/current_edges.h"
+
+#include "server/model/past.h"
+#include "server/pipeline/remounts.h"
+#include "storage/edges.h"
+#include "storage/standing.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+// The edge stays visible, with its reason, but takes no part.
+void MakePast(std::string_view code, std::string what, std::string cure, Edge& edge) {
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = {{std::string(code), std::move(what), std::move(cure)}};
+}
+
+void Supersede(const Superseding& superseding, Edge& edge) {
+  const std::string old = edge.session.str().substr(0, 16), by = superseding.by.str().substr(0, 16);
+  const std::string people = superseding.operator_name.empty() ? "" : ", by " + superseding.operator_name;
+  MakePast(kSupersededCode,
+           "session " + old + " is superseded by session " + by + " of the same pictures (captured " +
+               ToIso(superseding.captured_at) + people + ")",
+           "Nothing, if session " + by + " is the right one; else `rigcal restore " + old + "` takes it back.", edge);
+}
+
+void MakePast(const storage::Remount& remount, Edge& edge) {
+  MakePast(kRemountedCode,
+           "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
+               remount.session.str().substr(0, 16),
+           "Where no later session measured this pair, measure it anew; where one did, that one counts.", edge);
+}
+
+Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
+  for (Edge& edge : edges)
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
+        MakePast(*remount, edge);
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, blocks));
+  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
+  RIGCAL_ASSIGN(const auto retired, storage::LoadRetired(store, robot));
+  for (Edge& edge : edges) {
+    if (const auto found = superseded.find(edge.session); found != superseded.end()) Supersede(found->second, edge);
+    if (const auto found = retired.find(edge.id); found != retired.end()) Retire(found->second.word, edge);
+  }
+  RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
+  return edges;
+}
+
+void Retire(const Word& word, Edge& edge) {
+  const std::string reason = word.reason.empty() ? "" : ": " + word.reason;
+  MakePast(kRetiredCode, "retired by " + word.who + " on " + ToIso(word.at).substr(0, 10) + reason,
+           "Nothing: it takes no part for good. Push the right value: as another edge it counts.", edge);
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,218 @@
+#include "storage/standing.h"
+
+#include "server/base/text.h"
+#include "storage/query.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::storage {
+namespace {
+
+std::string StandingSubject(const std::string& thing) { return "standing of " + thing; }
+
+Status CheckWord(const Word& word) {
+  constexpr std::size_t kWordBytesMax = 500;
+  for (const std::string* text : {&word.who, &word.reason})
+    if (text->size() > kWordBytesMax || !IsPrintableUtf8(*text))
+      return Fail(ErrorCode::kInvalidInput, Quoted(*text) + " is not one line of readable text",
+                  "Use at most " + std::to_string(kWordBytesMax) + " bytes of UTF-8 without control characters.");
+  return {};
+}
+
+Standing StandingOf(const Query& query, int column) {
+  return {query.Int(column),
+          query.Text(column + 1),
+          {query.Time(column + 2), query.Text(column + 3), query.Text(column + 4)}};
+}
+
+struct CurrentRow {
+  SessionId id;
+  Stamp captured_at;
+  std::string operator_name;
+  Standing standing;
+};
+
+// The newest standing of each closed session, by the session's row number.
+std::map<std::int64_t, CurrentRow> LoadCurrent(Store& store, const RobotId& robot) {
+  Query query(
+      store,
+      "SELECT s.number, s.session_id, s.captured_ns, s.operator_name, t.number, t.how, t.at_ns, t.who, t.reason "
+      "FROM session s JOIN standing t ON t.number = "
+      "(SELECT max(number) FROM standing x WHERE x.session_number = s.number)" +
+          std::string(robot.empty() ? "" : " WHERE s.robot_id = ?"));
+  if (!robot.empty()) query.Bind(robot);
+  std::map<std::int64_t, CurrentRow> rows;
+  while (query.Step())
+    rows[query.Int(0)] = {query.IdAt<SessionId>(1), query.Time(2), query.Text(3), StandingOf(query, 4)};
+  return rows;
+}
+
+struct Repeat {
+  std::int64_t earlier = 0, later = 0;  // row numbers of sessions
+};
+
+std::vector<Repeat> LoadRepeats(Store& store, const RobotId& robot) {
+  Query query(store,
+              "SELECT old.number, later.number FROM session old JOIN payload ON payload.session_number = old.number "
+              "JOIN payload again ON again.digest = payload.digest AND again.session_number > old.number "
+              "JOIN session later ON later.number = again.session_number AND later.robot_id = old.robot_id " +
+                  std::string(robot.empty() ? "" : "WHERE old.robot_id = ? ") +
+                  "GROUP BY old.number, later.number HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count");
+  if (!robot.empty()) query.Bind(robot);
+  std::vector<Repeat> repeats;
+  while (query.Step()) repeats.push_back({query.Int(0), query.Int(1)});
+  return repeats;
+}
+
+void InsertCurrent(Store& store, const SessionId& id, const std::string& how, const Word& word) {
+  Query(store,
+        "INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) "
+        "SELECT robot_id, ?, ?, number, ?, ? FROM session WHERE session_id = ?")
+      .Bind(word.at, how, word.who, word.reason, id)
+      .Run();
+}
+
+// False if the edge is retired already.
+bool InsertRetired(Store& store, const EdgeId& id, const Word& word) {
+  return Query(store,
+               "INSERT INTO standing (robot_id, at_ns, how, edge_number, who, reason) "
+               "SELECT robot_id, ?, 'retired', number, ?, ? FROM edge WHERE edge_id = ? ON CONFLICT DO NOTHING")
+             .Bind(word.at, word.who, word.reason, id)
+             .Run() > 0;
+}
+
+std::string Because(const Word& word) { return word.reason.empty() ? "" : ": " + word.reason; }
+
+Result<RobotId> RobotOfEdge(Store& store, const EdgeId& id) {
+  Query query(store, "SELECT robot_id FROM edge WHERE edge_id = ?");
+  if (query.Bind(id).Step()) return query.IdAt<RobotId>(0);
+  return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known", "`rigcal edges ROBOT` lists those that are.");
+}
+
+Result<SessionRow> RequiredClosed(Store& store, const SessionId& id) {
+  RIGCAL_ASSIGN(const std::optional<SessionRow> row, LoadSession(store, id));
+  if (!row) return Fail(ErrorCode::kNotFound, "session " + id.str() + " is not known", "Push the session folder.");
+  if (row->closed) return *row;
+  return Fail(ErrorCode::kConflict, "session " + id.str() + " did not come whole",
+              "Push its folder again: what is here already is not sent twice.");
+}
+
+Status CheckPrefix(const std::string& kind, const std::string& prefix) {
+  constexpr std::size_t kPrefixMin = 8, kDigestDigits = 64;
+  if (prefix.size() >= kPrefixMin && prefix.size() <= kDigestDigits &&
+      prefix.find_first_not_of("0123456789abcdef") == std::string::npos)
+    return {};
+  return Fail(ErrorCode::kInvalidInput, Quoted(prefix) + " is no id of " + kind,
+              "Give the id, or at least its first 8 digits (0-9, a-f).");
+}
+
+// 'g' comes after every hex digit.
+template <typename AnId>
+Result<std::vector<AnId>> FindIds(Store& store, const std::string& kind, const std::string& table,
+                                  const std::string& prefix, const RobotId& robot) {
+  RIGCAL_TRY(CheckPrefix(kind, prefix));
+  return Load<std::vector<AnId>>(store, kind + " " + prefix, [&]() -> Result<std::vector<AnId>> {
+    const std::string column = table + "_id";
+    Query query(store, "SELECT " + column + " FROM " + table + " WHERE " + column + " >= ? AND " + column +
+                           " < ? AND (robot_id = ? OR ?) ORDER BY " + column);
+    query.Bind(prefix, prefix + "g", robot, robot.empty());
+    std::vector<AnId> ids;
+    while (query.Step()) ids.push_back(query.IdAt<AnId>(0));
+    return ids;
+  });
+}
+
+}  // namespace
+
+Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now) {
+  return store.connection().Append(StandingSubject("session " + id.str()), [&]() -> Status {
+    InsertCurrent(store, id, "pushed", {now, "robot " + robot.str(), ""});
+    return {};
+  });
+}
+
+Result<std::map<SessionId, Superseding>> LoadSuperseded(Store& store, const RobotId& robot) {
+  std::map<SessionId, Superseding> superseded;
+  RIGCAL_TRY(store.connection().Load("sessions of robot " + robot.str(), [&] {
+    return store.Read([&]() -> Status {
+      const auto current = LoadCurrent(store, robot);
+      for (const Repeat& repeat : LoadRepeats(store, robot)) {
+        const auto earlier = current.find(repeat.earlier), later = current.find(repeat.later);
+        if (earlier == current.end() || later == current.end()) continue;
+        const bool later_holds = later->second.standing.number > earlier->second.standing.number;
+        const CurrentRow &old = (later_holds ? earlier : later)->second, &by = (later_holds ? later : earlier)->second;
+        Superseding& known = superseded[old.id];
+        if (by.standing.number > known.standing.number) known = {by.id, by.captured_at, by.operator_name, by.standing};
+      }
+      return {};
+    });
+  }));
+  return superseded;
+}
+
+Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, const Word& word) {
+  RIGCAL_TRY(CheckWord(word));
+  return Append<bool>(store, StandingSubject("session " + id.str()), [&]() -> Result<bool> {
+    RIGCAL_ASSIGN(const SessionRow row, RequiredClosed(store, id));
+    RIGCAL_ASSIGN(const auto superseded, LoadSuperseded(store, row.robot));
+    const auto found = superseded.find(id);
+    if (found == superseded.end()) return false;
+    const bool restored = how == MadeCurrent::kRestored;
+    InsertCurrent(store, id, restored ? "restored" : "pushed_again", word);
+    RIGCAL_TRY(AppendAudit(store, word.at, word.who,
+                           (restored ? "restored session " : "pushed again session ") + id.str() + " of robot " +
+                               row.robot.str() + ", superseded by session " + found->second.by.str() + Because(word)));
+    return true;
+  });
+}
+
+Result<std::optional<Standing>> LoadStanding(Store& store, const SessionId& id) {
+  const std::string subject = StandingSubject("session " + id.str());
+  return Load<std::optional<Standing>>(store, subject, [&]() -> Result<std::optional<Standing>> {
+    Query query(store,
+                "SELECT t.number, t.how, t.at_ns, t.who, t.reason FROM session s "
+                "JOIN standing t ON t.session_number = s.number WHERE s.session_id = ? ORDER BY t.number DESC LIMIT 1");
+    if (!query.Bind(id).Step()) return std::nullopt;
+    return StandingOf(query, 0);
+  });
+}
+
+Status RetireEdge(Store& store, const EdgeId& id, const Word& word) {
+  RIGCAL_TRY(CheckWord(word));
+  return store.connection().Append(StandingSubject("edge " + id.str()), [&]() -> Status {
+    RIGCAL_ASSIGN(const RobotId robot, RobotOfEdge(store, id));
+    if (!InsertRetired(store, id, word)) return {};
+    return AppendAudit(store, word.at, word.who,
+                       "retired edge " + id.str() + " of robot " + robot.str() + Because(word));
+  });
+}
+
+Result<std::map<EdgeId, Standing>> LoadRetired(Store& store, const RobotId& robot) {
+  using Retired = std::map<EdgeId, Standing>;
+  return Load<Retired>(store, "retired edges of robot " + robot.str(), [&]() -> Result<Retired> {
+    Query query(store,
+                "SELECT e.edge_id, t.number, t.how, t.at_ns, t.who, t.reason FROM standing t "
+                "JOIN edge e ON e.number = t.edge_number WHERE t.robot_id = ?");
+    query.Bind(robot);
+    Retired retired;
+    while (query.Step()) retired[query.IdAt<EdgeId>(0)] = StandingOf(query, 1);
+    return retired;
+  });
+}
+
+Result<std::int64_t> LoadStandingWatermark(Store& store, const RobotId& robot) {
+  return Load<std::int64_t>(store, StandingSubject("robot " + robot.str()), [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT coalesce(max(number), 0) FROM standing WHERE robot_id = ?");
+    return query.Bind(robot).Step() ? query.Int(0) : 0;
+  });
+}
+
+Result<std::vector<SessionId>> FindSessions(Store& store, const std::string& prefix, const RobotId& robot) {
+  return FindIds<SessionId>(store, "a session", "session", prefix, robot);
+}
+
+Result<std::vector<EdgeId>> FindEdges(Store& store, const std::string& prefix, const RobotId& robot) {
+  return FindIds<EdgeId>(store, "an edge", "edge", prefix, robot);
+}
+
+}  // namespace rigcal::storage

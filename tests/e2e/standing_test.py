@@ -1,0 +1,137 @@
+"""What counts, and how it is taken back. A stranger reads the manifest of a session over HTTP and sends it with squares 1.1 times
+as large: in the name of another robot it must bring the pictures, in the name of the same robot it supersedes the session. The
+owner pushes the right folder again, or restores it, and it counts. An edge with a typing error is retired, for good."""
+import json
+import os
+import subprocess
+
+from flow import Flow, check
+from front_rig import front_rig
+
+ROBOT = "owner"
+
+
+def send_manifest(flow, manifest):
+    """Without a picture; (state, payloads held, session id)."""
+    text = json.dumps(manifest, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    done = subprocess.run([str(flow.context.bin / "hostile_client"), "foreign-manifest"], input=text, capture_output=True, text=True,
+                          env=dict(os.environ, **flow.server.environment()), timeout=120)
+    check(done.returncode == 0, "the manifest was answered: %s%s" % (done.stdout, done.stderr))
+    state, session = done.stdout.splitlines()
+    return state, session
+
+
+def base_mm(flow):
+    T = json.loads(flow.rigcal("lookup", ROBOT, "front_left", "front_right", "--json").stdout)["T_a_b"]
+    return 1e3 * sum(value * value for value in T["p_m"]) ** 0.5
+
+
+def shown(flow):
+    return json.loads(flow.rigcal("show", ROBOT, "--json").stdout)
+
+
+def superseded(flow):
+    rows = json.loads(flow.rigcal("sessions", ROBOT, "--json").stdout)["sessions"]
+    return {row["session"]: row["superseded_by"]["session"] for row in rows if row["superseded_by"]}
+
+
+def supersede(flow, session):
+    """The right session, pushed; then the wrong one over it."""
+    right = json.loads(flow.rigcal("push", session, "--json").stdout)["id"]
+    true_mm = base_mm(flow)
+    manifest = json.loads(flow.get("/api/v1/session?id=" + right))["manifest"]
+    for target in manifest["targets"]:
+        target["square_m"] *= 1.1
+    state, stranger = send_manifest(flow, dict(manifest, robot="stranger"))
+    check(state == "open: 0 payloads held", "another robot has to send the pictures: %r" % state)
+    check(not json.loads(flow.get("/api/v1/session?id=" + stranger))["edges"], "and nothing came of it")
+    number = shown(flow)["revision"]
+    state, wrong = send_manifest(flow, manifest)
+    check(state.startswith("closed: "), "the robot itself need not: %r" % state)
+    flow.rigcal("restore", wrong)  # current already: only waited for
+    check(shown(flow)["revision"] > number, "it became a revision, and passes")
+    check(base_mm(flow) > true_mm + 5, "the calibration is wrong now: %.1f mm, right: %.1f mm" % (base_mm(flow), true_mm))
+    check(superseded(flow) == {right: wrong}, "the wrong one counts: %r" % superseded(flow))
+    return right, wrong, true_mm
+
+
+def check_right(flow, right, wrong, true_mm, how):
+    check(superseded(flow) == {wrong: right}, "%s: the right one counts: %r" % (how, superseded(flow)))
+    check(abs(base_mm(flow) - true_mm) < 1e-6, "%s: the calibration is right again: %.6f and %.6f mm" % (how, base_mm(flow), true_mm))
+
+
+def check_shown(flow, old, by):
+    """Everywhere: which does not count, because of which, and how it is taken back."""
+    command = "rigcal restore " + old[:16]
+    listed = flow.rigcal("sessions", ROBOT).stdout
+    check("superseded" in listed and by[:16] in listed and command in listed, "the list says so: " + listed)
+    for page in ("/robots/%s/" % ROBOT, "/robots/%s/sessions/%s/" % (ROBOT, old)):
+        text = flow.get(page)
+        check(by[:12] in text and command in text, "%s says so" % page)
+
+
+def check_sessions(flow, session):
+    right, wrong, true_mm = supersede(flow, session)
+    check_shown(flow, right, wrong)
+    again = flow.rigcal("push", session)
+    said = "Session %s is current again, pushed again on " % right[:16]
+    check(said in again.stderr and wrong[:16] in again.stderr, "the push says so: " + again.stderr)
+    check_right(flow, right, wrong, true_mm, "pushed again")
+    number = shown(flow)["revision"]
+    flow.rigcal("push", session)
+    check(shown(flow)["revision"] == number, "a third push changes nothing")
+
+    restored = flow.rigcal("restore", wrong[:8], "--reason", "to try", "--by", "Ada").stdout
+    check("restored by Ada on " in restored and "(to try)" in restored, "restore says so: " + restored)
+    check(superseded(flow) == {right: wrong} and base_mm(flow) > true_mm + 5, "the wrong one was restored")
+    check_shown(flow, right, wrong)
+    flow.rigcal("restore", right, "--no-wait")
+    flow.kill_and_restart()
+    flow.rigcal("restore", right)  # said before: only waited for
+    check_right(flow, right, wrong, true_mm, "restored")
+    number = shown(flow)["revision"]
+    flow.rigcal("restore", right, "--robot", ROBOT)
+    check(shown(flow)["revision"] == number, "restored twice is restored once")
+    for arguments in (("restore", "01234567"), ("restore", right, "--robot", "nobody"), ("restore", "abc"),
+                      ("retire", "01234567", "--reason", "x")):
+        check(flow.rigcal(*arguments, exit_code=4).stderr.startswith("rigcal: "), "one sentence for %r" % (arguments,))
+
+
+def edge(a, b, x_m):
+    information = [[1e6 if i == j else 0.0 for j in range(6)] for i in range(6)]
+    return {"frame_a": a, "frame_b": b, "T_a_b": {"p_m": [x_m, 0, 0], "q_xyzw": [0, 0, 0, 1]}, "information": information}
+
+
+def check_edges(flow):
+    files = {"good": [edge("a", "b", 1.0), edge("b", "c", 1.0), edge("a", "c", 2.0)], "typo": [edge("a", "c", 12.0)]}
+    for name, edges in files.items():
+        (flow.folder / (name + ".json")).write_text(json.dumps({"format": 1, "edges": edges}))
+    flow.rigcal("push-edges", flow.folder / "good.json", "--robot", "typed")
+    flow.rigcal("push-edges", flow.folder / "typo.json", "--robot", "typed", exit_code=1)
+    rows = json.loads(flow.rigcal("edges", "typed", "--json").stdout)["edges"]
+    wrong = [row["id"] for row in rows if row["T_a_b"]["p_m"][0] == 12.0][0]
+    check(wrong[:12] in flow.rigcal("edges", "typed").stdout, "the ids are listed")
+    text = flow.rigcal("retire", wrong[:12], "--reason", "typed 12 for 2", "--by", "Ada").stdout
+    check("retired by Ada on " in text and "typed 12 for 2" in text, "retire says so: " + text)
+    verdict = json.loads(flow.rigcal("show", "typed", "--json").stdout)["document"]["verdict"]
+    check(verdict["level"] == "pass", "the robot is good again: %r" % verdict)
+    again = flow.rigcal("push-edges", flow.folder / "typo.json", "--robot", "typed")
+    check("stays retired" in again.stderr and "typed 12 for 2" in again.stderr, "pushed again it stays so: " + again.stderr)
+    flow.rigcal("retire", wrong, "--reason", "again")
+    flow.kill_and_restart()
+    document = json.loads(flow.rigcal("show", "typed", "--json").stdout)["document"]
+    past = [row["id"] for row in document["edges"] if row["state"] == "failed"]
+    check(past == [wrong] and document["verdict"]["level"] == "pass", "after a restart too: %r" % past)
+
+
+def main():
+    with Flow() as flow:
+        rig = front_rig(flow, ROBOT, "rig")
+        session = flow.folder / "session"
+        flow.rigcal("simulate", rig, "--out", session, "--seed", 1, "--captures", 20, "--scale", 0.3, "--captured-at", "2026-01-31")
+        check_sessions(flow, session)
+        check_edges(flow)
+    print("standing: good")
+
+
+main()
