@@ -9,7 +9,9 @@ namespace {
 std::string RevisionsSubject(const RobotId& robot) { return "revisions of robot " + robot.str(); }
 
 const std::string kColumns =
-    "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest ";
+    "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
+    "(SELECT calibrated_ns FROM revision_calibrated c "
+    "WHERE c.robot_id = revision.robot_id AND c.revision_number = revision.number) ";
 
 Revision RevisionOf(const Query& query) {
   Revision revision;
@@ -19,6 +21,7 @@ Revision RevisionOf(const Query& query) {
   revision.edge_watermark = query.Int(3);
   revision.verdict = {VerdictLevelOf(query.Text(4)), query.Text(5), query.Text(6)};
   revision.digest = query.IdAt<Digest>(7);
+  if (!query.IsNull(8)) revision.calibrated_at = query.Time(8);
   return revision;
 }
 
@@ -32,6 +35,10 @@ void Insert(Store& store, const Revision& revision, int number) {
   insert.Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
               revision.verdict.why, revision.verdict.what_to_do, revision.digest);
   insert.BindNoCopy(revision.document).Run();
+  if (revision.calibrated_at)
+    Query(store, "INSERT INTO revision_calibrated VALUES (?, ?, ?)")
+        .Bind(revision.robot, number, *revision.calibrated_at)
+        .Run();
   Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
 }
 
@@ -51,7 +58,7 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
     Query query(store, "SELECT " + kColumns + ", document FROM revision WHERE robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionOf(query);
-    revision.document = query.Text(8);
+    revision.document = query.Text(9);
     return revision;
   });
 }
@@ -59,6 +66,16 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
 Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
     Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number = ?");
+    if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
+    return RevisionOf(query);
+  });
+}
+
+Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number) {
+  return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
+    Query query(store, "SELECT " + kColumns +
+                           "FROM revision WHERE robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') "
+                           "ORDER BY number DESC LIMIT 1");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     return RevisionOf(query);
   });
@@ -74,14 +91,26 @@ Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) 
   });
 }
 
+namespace {
+
 // Two index look-ups per robot, whatever the number of edges and revisions.
+const std::string kUnsolved =
+    "SELECT robot_id FROM robot r "
+    "WHERE (SELECT max(number) FROM edge e WHERE e.robot_id = r.robot_id) > "
+    "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
+    "ORDER BY v.number DESC LIMIT 1), 0) ";
+
+}  // namespace
+
+Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
+  return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
+    return Query(store, kUnsolved + "AND robot_id = ?").Bind(robot).Step();
+  });
+}
+
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
-    Query query(store,
-                "SELECT robot_id FROM robot r "
-                "WHERE (SELECT max(number) FROM edge e WHERE e.robot_id = r.robot_id) > "
-                "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
-                "ORDER BY v.number DESC LIMIT 1), 0) ORDER BY robot_id");
+    Query query(store, kUnsolved + "ORDER BY robot_id");
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
     return robots;

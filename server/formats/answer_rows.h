@@ -8,6 +8,8 @@ namespace rigcal::formats {
 
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session);
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
+// `usable`
+void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);
 // Without its document.
 void WriteRevisionMembers(JsonWriter& out, const Revision& revision);
 

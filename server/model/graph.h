@@ -90,6 +90,7 @@ struct Revision {
   std::string document;
   Digest digest;           // of document
   std::int64_t edge_watermark = 0;  // the store's row number of the newest edge that it contains
+  std::optional<Stamp> calibrated_at = {};  // newest capture of its good edges (of pushed ones: stored); absent: none
 };
 
 }  // namespace rigcal

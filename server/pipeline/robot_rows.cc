@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/pipeline/standing.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
@@ -37,14 +38,18 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
+    row.standing.calculating = row.jobs_waiting > 0 || row.edges > 0;
     RIGCAL_ASSIGN(const bool whole, HasWholeSession(store, robot.robot));
     row.verdict = FirstVerdict(row, whole);
     return row;
   }
   row.revision = revision->number;
   row.verdict = revision->verdict;
-  RIGCAL_ASSIGN(row.calibrated_at, storage::LoadCalibratedAt(store, robot.robot));
-  row.overdue = !row.calibrated_at || now.ns - row.calibrated_at->ns > kDefaultMaxAge_ns;
+  RIGCAL_ASSIGN(row.standing, LoadStanding(store, *revision, now));
+  // What arrived since is told once it is in a revision: one page shows the numbers of one revision.
+  if (row.standing.calculating) {
+    RIGCAL_ASSIGN(row.edges, storage::CountEdges(store, robot.robot, revision->edge_watermark));
+  }
   return row;
 }
 

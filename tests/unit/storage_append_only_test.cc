@@ -32,7 +32,9 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendView(store_, DigestOf("image"), "chessboard 1", {}));
       RIGCAL_TRY(AppendCloud(store_, DigestOf("cloud"), "plate 1", {{true, "", {}, 7, {PlanePatch{}}}, {}}));
       RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));
-      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      Revision revision = MakeRevision(1);
+      revision.calibrated_at = Stamp{4};
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, revision));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));

@@ -35,7 +35,7 @@ TEST(StoreOpen, MakesAnEmptyStoreThatOpensAgain) {
   for (int round = 0; round < 2; ++round) {
     Result<Store> store = Store::Open(deep);
     ASSERT_TRUE(store) << WordsOf(store);
-    EXPECT_EQ(store->SchemaVersion(), 4);
+    EXPECT_EQ(store->SchemaVersion(), 5);
     EXPECT_EQ(store->folder(), deep);
     EXPECT_TRUE(fs::is_directory(store->BlobFolder() / "a7"));
     EXPECT_TRUE(fs::is_directory(store->IntakeFolder()));
@@ -58,7 +58,7 @@ TEST(StoreOpen, MigratesAnEmptyFile) {
   std::ofstream(folder.path() / "rigcal.db").close();
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  EXPECT_EQ(store->SchemaVersion(), 4);
+  EXPECT_EQ(store->SchemaVersion(), 5);
   EXPECT_EQ(CountRobots(*store), 0);
 }
 
@@ -72,10 +72,11 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
           "INSERT INTO detected_view VALUES (printf('%064d', 7), 'checkerboard', 1, '', 'board', "
           "640, 480, zeroblob(32), NULL);"
           "INSERT INTO edge VALUES (1, printf('%064d', 8), 'mapper-01', NULL, 1, 'left', 'right', 'stereo', 'good', 5, "
-          "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288))");
+          "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288));"
+          "INSERT INTO revision VALUES ('mapper-01', 1, 6, 1, 'pass', '', '', printf('%064d', 9), '{}')");
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  EXPECT_EQ(store->SchemaVersion(), 4);
+  EXPECT_EQ(store->SchemaVersion(), 5);
   EXPECT_EQ(CountRobots(*store), 1);
   const auto view = LoadView(*store, Digest(std::string(63, '0') + "7"), "checkerboard");
   ASSERT_TRUE(view && *view);
@@ -84,6 +85,9 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
   ASSERT_TRUE(edges && edges->size() == 1);
   EXPECT_EQ(edges->front().uncertainty.dof, 12);
   EXPECT_EQ(edges->front().uncertainty.jackknife_ratio, 0.0);  // not told
+  const auto revision = LoadRevision(*store, RobotId("mapper-01"), 1);
+  ASSERT_TRUE(revision && *revision);
+  EXPECT_EQ((*revision)->calibrated_at, Stamp{5});
 }
 
 TEST(StoreOpen, LeavesANewerStoreAsItIs) {
@@ -95,7 +99,7 @@ TEST(StoreOpen, LeavesANewerStoreAsItIs) {
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(Sentence(store.error()), "the store at " + folder.path().string() +
-                                         " has schema version 7, this rigcald understands up to 4. "
+                                         " has schema version 7, this rigcald understands up to 5. "
                                          "Install the rigcald that wrote it, or a newer one.");
   EXPECT_EQ(BytesOf(folder.path() / "rigcal.db"), before);
 }
