@@ -3,7 +3,7 @@
 #include "client/table.h"
 #include "server/base/stamp.h"
 #include "server/formats/answers.h"
-#include "server/model/standing.h"
+#include "server/model/validity.h"
 
 namespace rigcal::client {
 
@@ -31,10 +31,10 @@ ExitCode Answer(const Context& context, const Question& question) {
   return question.judge ? question.judge(*document) : ExitCode::kGood;
 }
 
-ExitCode Judge(const Document& verdict, const Document& standing) {
+ExitCode Judge(const Document& verdict, const Document& validity) {
   switch (VerdictLevelOf(verdict["level"].Text())) {
     case VerdictLevel::kPass:
-      return standing["overdue"].Flag() ? ExitCode::kVerdictWarn : ExitCode::kGood;
+      return validity["overdue"].Flag() ? ExitCode::kVerdictWarn : ExitCode::kGood;
     case VerdictLevel::kWarn:
       return ExitCode::kVerdictWarn;
     case VerdictLevel::kFail:
@@ -55,20 +55,20 @@ std::optional<Stamp> StampOf(const Document& text) {
 }  // namespace
 
 // What an older server's documents lack is not told.
-std::string StandingText(const Document& verdict, const Document& standing) {
+std::string ValidityText(const Document& verdict, const Document& validity) {
   const VerdictLevel level = VerdictLevelOf(verdict["level"].Text());
   if (level == VerdictLevel::kFail || level == VerdictLevel::kUnknown) {
-    if (!standing.Has("usable")) return "";
-    const Document usable = standing["usable"];
+    if (!validity.Has("usable")) return "";
+    const Document usable = validity["usable"];
     const auto created_at = StampOf(usable["created_at"]);
     if (!created_at) return KeepText(std::nullopt);
     return KeepText(UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
   }
-  const auto valid_until = StampOf(standing["valid_until"]);
-  return valid_until && !standing["overdue"].Flag() ? ValidText(*valid_until) : "";
+  const auto valid_until = StampOf(validity["valid_until"]);
+  return valid_until && !validity["overdue"].Flag() ? ValidText(*valid_until) : "";
 }
 
-std::string OverdueBefore(const Document& standing) { return standing["overdue"].Flag() ? "overdue, " : ""; }
+std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }
 
 std::string VerdictText(const Document& verdict) {
   std::string text = verdict["level"].Text("unknown");
@@ -81,11 +81,11 @@ std::string VerdictText(const Document& verdict) {
   return text;
 }
 
-void PrintVerdict(const Document& verdict, const Document& standing, std::ostream& out) {
-  if (standing["overdue"].Flag()) out << OverdueText(StampOf(standing["valid_until"])) << '\n';
+void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out) {
+  if (validity["overdue"].Flag()) out << OverdueText(StampOf(validity["valid_until"])) << '\n';
   out << "verdict  " << VerdictText(verdict) << '\n';
-  if (const std::string text = StandingText(verdict, standing); !text.empty()) out << "         " << text << '\n';
-  if (standing["calculating"].Flag()) out << "         " << kCalculatingText << '\n';
+  if (const std::string text = ValidityText(verdict, validity); !text.empty()) out << "         " << text << '\n';
+  if (validity["calculating"].Flag()) out << "         " << kCalculatingText << '\n';
 }
 
 std::string DayOf(const Document& time) {

@@ -14,12 +14,12 @@ void WriteAge(JsonWriter& out, const std::optional<Stamp>& since, Stamp now) {
   since ? out.Integer("age_ns", now.ns - since->ns) : out.Null("age_ns");
 }
 
-void WriteStanding(JsonWriter& out, const Standing& standing) {
-  WriteStamp(out, "calibrated_at", standing.calibrated_at);
-  WriteStamp(out, "valid_until", ValidUntil(standing.calibrated_at));
-  out.Flag("overdue", standing.overdue);
-  WriteUsable(out, standing.usable);
-  out.Flag("calculating", standing.calculating);
+void WriteValidity(JsonWriter& out, const Validity& validity) {
+  WriteStamp(out, "calibrated_at", validity.calibrated_at);
+  WriteStamp(out, "valid_until", ValidUntil(validity.calibrated_at));
+  out.Flag("overdue", validity.overdue);
+  WriteUsable(out, validity.usable);
+  out.Flag("calculating", validity.calculating);
 }
 
 void WriteRobotRow(JsonWriter& out, const RobotAnswer& robot, Stamp now) {
@@ -27,8 +27,8 @@ void WriteRobotRow(JsonWriter& out, const RobotAnswer& robot, Stamp now) {
     out.Text("robot", robot.robot.str());
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
-    WriteStanding(out, robot.standing);
-    WriteAge(out, robot.standing.calibrated_at, now);
+    WriteValidity(out, robot.validity);
+    WriteAge(out, robot.validity.calibrated_at, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
     out.Integer("jobs_waiting", robot.jobs_waiting);
@@ -82,11 +82,11 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, const Standing& standing, Stamp now) {
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
-    WriteStanding(out, standing);
+    WriteValidity(out, validity);
     out.Flag("published", is_published);
     out.Null("document");
   });
@@ -119,7 +119,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteMatrix(out, "covariance", answer.covariance);
     WriteSigmas(out, answer.covariance);
     WriteVerdict(out, "verdict", answer.verdict);
-    WriteStanding(out, answer.standing);
+    WriteValidity(out, answer.validity);
   });
 }
 

@@ -7,7 +7,7 @@
 #include "server/fleet/assess.h"
 #include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
-#include "server/pipeline/standing.h"
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"

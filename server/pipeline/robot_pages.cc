@@ -195,7 +195,7 @@ report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
   fleet.robot = row.robot;
   fleet.revision = row.revision;
   fleet.verdict = row.verdict;
-  fleet.standing = row.standing;
+  fleet.validity = row.validity;
   fleet.sessions = row.sessions;
   fleet.edges = row.edges;
   fleet.pairs_waiting = row.jobs_waiting;

@@ -1,7 +1,7 @@
 #include "server/pipeline/startup.h"
 
 #include "server/formats/documents.h"
-#include "server/pipeline/standing.h"
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"

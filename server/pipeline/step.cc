@@ -8,7 +8,7 @@
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/run_edge_job.h"
-#include "server/pipeline/standing.h"
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"

@@ -29,7 +29,7 @@ std::vector<std::string> WordsOf(const std::string& search) {
 // One of the choices of the page.
 bool IsLike(const FleetRow& row, Stamp now, const std::string& choice) {
   if (choice.empty()) return true;
-  if (choice == "overdue") return row.standing.overdue;
+  if (choice == "overdue") return row.validity.overdue;
   if (choice == "off") return row.worst && row.worst->in_sigmas >= kOff_sigmas;
   if (choice == "quiet") return !row.last_session_at || now.ns - row.last_session_at->ns > kQuiet_ns;
   return NameOf(row.verdict.level) == choice;
@@ -46,7 +46,7 @@ bool HasWords(const FleetRow& row, const std::vector<std::string>& words) {
 
 // What is overdue may be relied on no more than a warning allows: it goes before those.
 int UrgencyOf(const FleetRow& row) {
-  const int overdue = row.standing.overdue ? 0 : 1;
+  const int overdue = row.validity.overdue ? 0 : 1;
   switch (row.verdict.level) {
     case VerdictLevel::kFail:
       return overdue;
@@ -91,7 +91,7 @@ bool IsBefore(const std::string& a, const std::string& b) {
 // A number to sort by, the smallest first; equal ones by name.
 std::int64_t KeyOf(const FleetRow& row, const std::string& sort) {
   if (sort == "robot") return 0;
-  if (sort == "calibrated") return row.standing.calibrated_at.value_or(Stamp{}).ns;
+  if (sort == "calibrated") return row.validity.calibrated_at.value_or(Stamp{}).ns;
   if (sort == "session") return row.last_session_at ? row.last_session_at->ns : 0;
   // A thousandth of sigma tells edges apart; beyond 1e12 sigma all are alike.
   if (sort == "worst") return row.worst ? -std::llround(std::min(row.worst->in_sigmas, 1e12) * 1e3) : 1;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
-#include "server/model/standing.h"
+#include "server/model/validity.h"
 #include "server/report/camera_choice.h"
 #include "server/report/cloud_section.h"
 
@@ -67,7 +67,7 @@ struct FleetRow {
   RobotId robot;
   int revision = 0;  // 0: none yet
   Verdict verdict;
-  Standing standing;  // of that revision
+  Validity validity;  // of that revision
   std::int64_t sessions = 0, edges = 0;
   std::optional<Stamp> last_session_at = {};  // captured; absent: no session
   std::optional<WorstFit> worst = {};         // of the newest revision; absent: nothing checks an edge

@@ -118,15 +118,15 @@ void FillCompare(Dictionary& page, const std::vector<Revision>& revisions) {
 Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   Dictionary page("robot");
   const FleetRow& row = input.row;
-  FillHead(page, row.robot.str() + ": " + (row.standing.overdue ? "Overdue, " : "") + VerdictWord(row.verdict.level),
+  FillHead(page, row.robot.str() + ": " + (row.validity.overdue ? "Overdue, " : "") + VerdictWord(row.verdict.level),
            "../../");
   page.SetValue("ROBOT", row.robot.str());
   page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
-                                         : "Calibrated " + AgeOf(*row.standing.calibrated_at, now)) +
+                                         : "Calibrated " + AgeOf(*row.validity.calibrated_at, now)) +
                                ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
                                Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
-  FillBanner(page, row.verdict, row.standing, row.revision > 0);
-  if (row.standing.calculating && row.revision > 0) {
+  FillBanner(page, row.verdict, row.validity, row.revision > 0);
+  if (row.validity.calculating && row.revision > 0) {
     Dictionary* newer = page.AddSectionDictionary("NEWER");
     newer->SetValue("TEXT", kCalculatingText);
     newer->SetValue("NUMBER", std::to_string(row.revision));

@@ -23,16 +23,16 @@ std::string EdgeRow(const std::string& id) {
 // Every document that tells a verdict of robot r1.
 FakeServer::AnswerTo Telling(const Case& told, const std::string& edge_id = "e1") {
   const std::string verdict = std::string(R"("verdict":{"level":")") + told.level + R"(","why":"so it is"})";
-  const std::string standing =
+  const std::string validity =
       std::string(R"("calibrated_at":"2026-11-22T08:00:00Z","valid_until":"2027-02-20T08:00:00Z","overdue":)") +
       (told.overdue ? "true" : "false") +
       R"(,"calculating":false,"usable":{"revision":4,"created_at":"2026-03-12T08:00:00Z"})";
   return [=](const std::string& verb, const std::string&) -> Result<std::string> {
     if (verb == "session") return R"({"session":{"jobs_waiting":0,"jobs_total":1},"edges":[)" + EdgeRow(edge_id) + "]}";
     if (verb == "status" || verb == "robots")
-      return R"({"robots":[{"robot":"r1","revision":5,)" + verdict + "," + standing + "}]}";
-    if (verb == "lookup") return R"({"robot":"r1","revision":5,)" + verdict + "," + standing + "}";
-    return R"({"robot":"r1","revision":5,"published":true,"age_ns":60000000000,)" + standing + R"(,"document":{)" +
+      return R"({"robots":[{"robot":"r1","revision":5,)" + verdict + "," + validity + "}]}";
+    if (verb == "lookup") return R"({"robot":"r1","revision":5,)" + verdict + "," + validity + "}";
+    return R"({"robot":"r1","revision":5,"published":true,"age_ns":60000000000,)" + validity + R"(,"document":{)" +
            verdict + R"(,"edges":[)" + EdgeRow(edge_id) + "]}}";
   };
 }
@@ -99,7 +99,7 @@ TEST(ExitCode, OfAComparisonWhoseSigmasAreNotKnownIsUnknown) {
   EXPECT_EQ(Rigcal({"compare", "r1", "--with", "1", "--sigmas-max", "3"}).code, 6);
 }
 
-TEST(Standing, OverdueIsSaidFirst) {
+TEST(Validity, OverdueIsSaidFirst) {
   FakeServer server("r1", Telling({"pass", true, 5}));
   const std::string overdue = "Overdue since 20 Feb 2027. Calibrate the robot again before it is relied on.";
   const std::string shown = Rigcal({"show", "r1"}).out;
@@ -111,7 +111,7 @@ TEST(Standing, OverdueIsSaidFirst) {
   EXPECT_NE(Rigcal({"lookup", "r1", "a", "b"}).out.find(overdue + "\nverdict"), std::string::npos);
 }
 
-TEST(Standing, UntilWhenAPassIsValidAndWhatToKeepWhereThereIsNone) {
+TEST(Validity, UntilWhenAPassIsValidAndWhatToKeepWhereThereIsNone) {
   {
     FakeServer server("r1", Telling({"pass", false, 0}));
     EXPECT_NE(Rigcal({"show", "r1"}).out.find("Valid until 20 Feb 2027."), std::string::npos);
@@ -122,7 +122,7 @@ TEST(Standing, UntilWhenAPassIsValidAndWhatToKeepWhereThereIsNone) {
   EXPECT_EQ(shown.find("Valid until"), std::string::npos) << shown;
 }
 
-TEST(Standing, NothingToFallBackToAndANewerOneOnItsWay) {
+TEST(Validity, NothingToFallBackToAndANewerOneOnItsWay) {
   FakeServer server(
       "r1", Always(R"({"revision":1,"usable":null,"calculating":true,"document":{"verdict":{"level":"fail"}}})"));
   const std::string shown = Rigcal({"show", "r1"}).out;

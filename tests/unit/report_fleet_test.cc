@@ -32,7 +32,7 @@ TEST(ReportFleet, EmptyFleetTellsHowToPush) {
 
 TEST(ReportFleet, WorstFirstWithAgeAndLinks) {
   FleetRow late = RowOf("late", VerdictLevel::kPass, 4);
-  late.standing.overdue = true;
+  late.validity.overdue = true;
   const std::string page =
       RenderFleet({RowOf("good", VerdictLevel::kPass, 1), late, RowOf("bad", VerdictLevel::kFail, 2)},
                   Stamp{103 * kDay_ns})

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/model/graph.h"
-#include "server/model/standing.h"
+#include "server/model/validity.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -12,6 +12,6 @@ namespace rigcal::pipeline {
 [[nodiscard]] Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Revision& revision);
 // Whether jobs of the robot wait, or edges that its newest revision does not hold.
 [[nodiscard]] Result<bool> IsCalculating(storage::Store& store, const RobotId& robot);
-[[nodiscard]] Result<Standing> LoadStanding(storage::Store& store, const Revision& revision, Stamp now);
+[[nodiscard]] Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, Stamp now);
 
 }  // namespace rigcal::pipeline

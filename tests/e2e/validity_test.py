@@ -103,7 +103,7 @@ def main():
         failed_keeps_the_last_good(flow)
         warn_and_unknown(flow)
         overdue_comes_first(flow)
-    print("standing: good")
+    print("validity: good")
 
 
 main()

@@ -1,4 +1,4 @@
-#include "server/model/standing.h"
+#include "server/model/validity.h"
 
 #include <array>
 #include <chrono>

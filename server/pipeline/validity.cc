@@ -1,4 +1,4 @@
-#include "server/pipeline/standing.h"
+#include "server/pipeline/validity.h"
 
 #include <algorithm>
 #include <set>
@@ -39,13 +39,13 @@ Result<bool> IsCalculating(storage::Store& store, const RobotId& robot) {
   return storage::IsUnsolved(store, robot);
 }
 
-Result<Standing> LoadStanding(storage::Store& store, const Revision& revision, Stamp now) {
-  Standing standing;
-  standing.calibrated_at = revision.calibrated_at;
-  standing.overdue = IsOverdue(standing.calibrated_at, kDefaultMaxAge_ns, now);
-  RIGCAL_ASSIGN(standing.usable, LoadUsable(store, revision));
-  RIGCAL_ASSIGN(standing.calculating, IsCalculating(store, revision.robot));
-  return standing;
+Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, Stamp now) {
+  Validity validity;
+  validity.calibrated_at = revision.calibrated_at;
+  validity.overdue = IsOverdue(validity.calibrated_at, kDefaultMaxAge_ns, now);
+  RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision));
+  RIGCAL_ASSIGN(validity.calculating, IsCalculating(store, revision.robot));
+  return validity;
 }
 
 }  // namespace rigcal::pipeline

@@ -19,7 +19,7 @@ struct UsableRevision {
   friend bool operator==(const UsableRevision&, const UsableRevision&) = default;
 };
 
-struct Standing {
+struct Validity {
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured; absent: it counts nothing
   bool overdue = false;                  // now
   std::optional<UsableRevision> usable;  // the newest; absent: there is none to fall back to

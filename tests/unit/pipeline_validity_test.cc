@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/pipeline/answer.h"
-#include "server/pipeline/standing.h"
+#include "server/pipeline/validity.h"
 #include "server/pipeline/startup.h"
 #include "storage/revisions.h"
 #include "tests/unit/pipeline_fixture.h"
@@ -15,7 +15,7 @@ using nlohmann::json;
 constexpr std::int64_t kDay_ns = 24LL * 3600 * 1'000'000'000;
 constexpr const char* kOfRobot = R"({"robot":"r"})";
 
-class StandingTest : public PipelineTest {
+class ValidityTest : public PipelineTest {
  protected:
   RevisionCache revisions_cache_;
   AnswerContext Context() { return {*store_, clock_, revisions_cache_, clock_.now, ""}; }
@@ -61,7 +61,7 @@ class StandingTest : public PipelineTest {
   }
 };
 
-TEST_F(StandingTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
+TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   PushGood();
   ASSERT_TRUE(IsUsable(revisions_.back().verdict)) << revisions_.back().verdict.why;
   EXPECT_EQ(told_, std::vector<int>{1});
@@ -82,7 +82,7 @@ TEST_F(StandingTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   EXPECT_EQ(Report(1).find("Keep using"), std::string::npos);
 }
 
-TEST_F(StandingTest, AServerThatStartsTellsTheUsableOneAndTheNewestVerdict) {
+TEST_F(ValidityTest, AServerThatStartsTellsTheUsableOneAndTheNewestVerdict) {
   PushGood();
   PushContradiction();
   told_.clear(), revisions_.clear();
@@ -93,7 +93,7 @@ TEST_F(StandingTest, AServerThatStartsTellsTheUsableOneAndTheNewestVerdict) {
   EXPECT_EQ(revisions_[0].verdict.level, VerdictLevel::kFail);
 }
 
-TEST_F(StandingTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
+TEST_F(ValidityTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
   StoreEdges(Closing("r", 3.0));
   StepAll();
   ASSERT_FALSE(IsUsable(revisions_.back().verdict));
@@ -107,7 +107,7 @@ TEST_F(StandingTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
 }
 
 // Its poses are those of a rig that is no more.
-TEST_F(StandingTest, WhatWasSolvedBeforeARemountIsNoFallback) {
+TEST_F(ValidityTest, WhatWasSolvedBeforeARemountIsNoFallback) {
   PushGood();
   clock_.now.ns += kDay_ns;
   StoreSession("r", {{"left/01.png", "no picture"}, {"right/01.png", "nor this"}}, {SensorId("right")});
@@ -117,7 +117,7 @@ TEST_F(StandingTest, WhatWasSolvedBeforeARemountIsNoFallback) {
   EXPECT_EQ(withdrawn_, (std::vector<std::string>{"a", "b", "c", "left", "right"}));
 }
 
-TEST_F(StandingTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
+TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   PushGood();
   const Stamp until{clock_.now.ns + kDefaultMaxAge_ns};
   const std::string report = Report(1);
@@ -142,7 +142,7 @@ TEST_F(StandingTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
 }
 
 // What a session that is still being calibrated gave is in no revision yet: nobody tells it.
-TEST_F(StandingTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
+TEST_F(ValidityTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
   PushGood();
   const Stamp first = clock_.now;
   EXPECT_EQ(Row()["calculating"], false);
@@ -171,7 +171,7 @@ TEST_F(StandingTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
 }
 
 // A session of a wrong date that was pushed again in a corrected form does not keep the robot from being due.
-TEST_F(StandingTest, WhatNoLongerCountsDoesNotDateTheCalibration) {
+TEST_F(ValidityTest, WhatNoLongerCountsDoesNotDateTheCalibration) {
   const auto give = [&](const SessionId& session) {
     Edge edge = GivenEdge("r", "left", "right", 0.1);
     edge.session = session;

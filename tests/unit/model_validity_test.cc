@@ -1,19 +1,19 @@
 #include <gtest/gtest.h>
 
-#include "server/model/standing.h"
+#include "server/model/validity.h"
 
 namespace rigcal {
 namespace {
 
 Stamp At(const char* iso) { return ParseIso(iso).value(); }
 
-TEST(Standing, ADayIsThatOfUtc) {
+TEST(Validity, ADayIsThatOfUtc) {
   EXPECT_EQ(DayText(Stamp{0}), "1 Jan 1970");
   EXPECT_EQ(DayText(At("2027-02-20T23:59:59Z")), "20 Feb 2027");
   EXPECT_EQ(DayText(At("2026-12-31T23:30:00-01:00")), "1 Jan 2027");
 }
 
-TEST(Standing, ValidForNinetyDaysAndOverdueAfterThem) {
+TEST(Validity, ValidForNinetyDaysAndOverdueAfterThem) {
   const Stamp measured = At("2026-11-22T08:00:00Z"), until = At("2027-02-20T08:00:00Z");
   EXPECT_EQ(ValidUntil(measured), until);
   EXPECT_FALSE(IsOverdue(measured, kDefaultMaxAge_ns, until));
@@ -22,7 +22,7 @@ TEST(Standing, ValidForNinetyDaysAndOverdueAfterThem) {
   EXPECT_EQ(ValidUntil(std::nullopt), std::nullopt);
 }
 
-TEST(Standing, OnlyPassAndWarnAreUsable) {
+TEST(Validity, OnlyPassAndWarnAreUsable) {
   for (const auto& [level, usable] : {std::pair{VerdictLevel::kPass, true}, std::pair{VerdictLevel::kWarn, true},
                                       std::pair{VerdictLevel::kFail, false}, std::pair{VerdictLevel::kUnknown, false}})
     EXPECT_EQ(IsUsable({level, "", ""}), usable) << NameOf(level);
