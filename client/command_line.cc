@@ -11,7 +11,8 @@ namespace rigcal::client {
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused.\n"
+    "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn or calibration\n"
+    "overdue, 6 verdict unknown. A verdict is told by push, push-edges, show, lookup and `status ROBOT`.\n"
     "Examples:\n"
     "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
     "  rigcal lookup mapper-01 front_left lidar  the pose of the lidar in the front left camera\n"

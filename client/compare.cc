@@ -118,6 +118,15 @@ std::string Json(const Comparison& comparison) {
   });
 }
 
+// Where a sigma is not known, an axis may be off by any number of them.
+ExitCode JudgeSigmas(const Comparison& comparison, double sigmas_max) {
+  if (WorstSigmas(comparison) > sigmas_max) return ExitCode::kVerdictFail;
+  const bool all_judged =
+      std::all_of(comparison.differences.begin(), comparison.differences.end(),
+                  [](const PoseDifference& difference) { return difference.WorstSigmas().has_value(); });
+  return all_judged ? ExitCode::kGood : ExitCode::kVerdictUnknown;
+}
+
 ExitCode RunCompare(const Context& context, const CompareOptions& options) {
   const auto comparison = Compared(context, options);
   if (!comparison) return Report(comparison.error(), context);
@@ -125,8 +134,7 @@ ExitCode RunCompare(const Context& context, const CompareOptions& options) {
     context.out << Json(*comparison) << std::endl;
   else
     PrintCompare(*comparison, context.out);
-  const bool beyond = options.sigmas_max > 0 && WorstSigmas(*comparison) > options.sigmas_max;
-  return beyond ? ExitCode::kVerdictFail : ExitCode::kGood;
+  return options.sigmas_max > 0 ? JudgeSigmas(*comparison, options.sigmas_max) : ExitCode::kGood;
 }
 
 }  // namespace
@@ -145,7 +153,8 @@ void AddCompare(CLI::App& app, Context& context) {
   with->add_option("--poses", options->poses_file, "A YAML file with sensors: {NAME: {T_ref_sensor: {p_m, q_xyzw}}}")
       ->type_name("FILE");
   with->require_option(1);
-  verb->add_option("--sigmas-max", options->sigmas_max, "Exit with 1 if any axis is off by more of its sigmas")
+  verb->add_option("--sigmas-max", options->sigmas_max,
+                   "Exit with 1 if any axis is off by more of its sigmas, 6 if a sigma is not known")
       ->type_name("K")
       ->check(CLI::PositiveNumber);
   verb->footer(

@@ -42,6 +42,10 @@ Document Document::operator[](std::size_t idx) const {
 
 bool Document::IsNull() const { return !node_->value || node_->value->is_null(); }
 
+bool Document::Has(std::string_view key) const {
+  return node_->value && node_->value->is_object() && node_->value->contains(std::string(key));
+}
+
 std::size_t Document::size() const { return node_->value && node_->value->is_structured() ? node_->value->size() : 0; }
 
 std::vector<Document> Document::Items() const {

@@ -22,6 +22,7 @@ class Document {
   [[nodiscard]] Document operator[](std::string_view key) const;  // member of an object, or null
   [[nodiscard]] Document operator[](std::size_t idx) const;       // element of an array, or null
   [[nodiscard]] bool IsNull() const;
+  [[nodiscard]] bool Has(std::string_view key) const;   // of an object: the member is there, be it null
   [[nodiscard]] std::size_t size() const;               // of an array or object; else 0
   [[nodiscard]] std::vector<Document> Items() const;    // elements of an array; else none
   [[nodiscard]] std::vector<std::string> Keys() const;  // of an object; else none

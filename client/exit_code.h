@@ -9,10 +9,12 @@ namespace rigcal::client {
 
 enum class ExitCode {
   kGood = 0,
-  kVerdictFail = 1,  // the answer came and says "fail" (a robot's verdict, an overdue robot, a failed check)
+  kVerdictFail = 1,  // the answer came and says "fail" (a robot's verdict, a robot that is due, a failed check)
   kUsage = 2,
   kUnreachable = 3,
-  kRefused = 4,  // the input, or the thing asked for, was refused
+  kRefused = 4,         // the input, or the thing asked for, was refused
+  kVerdictWarn = 5,     // the answer came and says "warn", or "pass" of a calibration that is overdue
+  kVerdictUnknown = 6,  // the answer came, and nothing is known: there is no result, or no verdict
 };
 
 [[nodiscard]] ExitCode ExitCodeOf(const Error& error);

@@ -26,7 +26,7 @@ void PrintLookup(const Document& document, std::ostream& out) {
   out << "sigma deg  " << Triple(document["sigma_rad"], kDegPerRad, 5) << "  (about x y z of " << b << ")\n";
   out << "covariance (x y z rx ry rz of " << b << "; m, rad; T * Exp(xi))\n";
   PrintMatrix(document["covariance"], " ", out);
-  PrintVerdict(document["verdict"], out);
+  PrintVerdict(document["verdict"], document, out);
 }
 
 struct LookupOptions {
@@ -36,7 +36,7 @@ struct LookupOptions {
 ExitCode RunLookup(const Context& context, const LookupOptions& options) {
   const std::string parameters = JsonObject({{"robot", options.robot}, {"a", options.a}, {"b", options.b}});
   return Answer(context, {"lookup", parameters, PrintLookup,
-                          [](const Document& document) { return Judge(document["verdict"]); }});
+                          [](const Document& document) { return Judge(document["verdict"], document); }});
 }
 
 }  // namespace
@@ -47,11 +47,10 @@ void AddLookup(CLI::App& app, Context& context) {
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("A", options->a, "Sensor in whose frame the pose is given")->required();
   verb->add_option("B", options->b, "Sensor whose pose it is")->required();
-  verb->footer(
-      "p_A = T_A_B * p_B. Exit code 1 if the robot's verdict is fail.\n"
-      "Examples:\n"
-      "  rigcal lookup mapper-01 front_left lidar\n"
-      "  rigcal lookup mapper-01 front_left lidar --json\n");
+  verb->footer("p_A = T_A_B * p_B. " + std::string(kVerdictCodes) +
+               "Examples:\n"
+               "  rigcal lookup mapper-01 front_left lidar\n"
+               "  rigcal lookup mapper-01 front_left lidar --json\n");
   verb->callback([&context, options] { context.exit_code = RunLookup(context, *options); });
 }
 

@@ -153,7 +153,7 @@ Status RunPush(Context& context, const PushOptions& options) {
   else
     PrintResult(awaited, context.out);
   SayStanding(awaited.session, context.err);
-  if (awaited.has_revision) context.exit_code = Judge(awaited.show["document"]["verdict"]);
+  context.exit_code = JudgeResult(awaited);
   return {};
 }
 
@@ -175,13 +175,14 @@ void AddPush(CLI::App& app, Context& context) {
                    "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
-  verb->footer(
-      "Break it off and run it again at any time: what is on the server's disk is not sent again.\n"
-      "Examples:\n"
-      "  rigcal push visit-2026-01-31/\n"
-      "  rigcal push visit-2026-01-31/ --no-wait\n"
-      "  rigcal push visit-2026-01-31/ --remounted lidar   the lidar was moved since the visit before\n"
-      "  rigcal push visit-2026-01-31/ --json > result.json\n");
+  verb->footer("Break it off and run it again at any time: what is on the server's disk is not sent again.\n" +
+               std::string(kVerdictCodes) +
+               "With --no-wait 0, once all is safe; without a result, as of a session without a pair of sensors, 6.\n"
+               "Examples:\n"
+               "  rigcal push visit-2026-01-31/\n"
+               "  rigcal push visit-2026-01-31/ --no-wait\n"
+               "  rigcal push visit-2026-01-31/ --remounted lidar   the lidar was moved since the visit before\n"
+               "  rigcal push visit-2026-01-31/ --json > result.json\n");
   verb->callback([&context, options] {
     if (const Status done = RunPush(context, *options); !done) context.exit_code = Report(done.error(), context);
   });

@@ -111,7 +111,7 @@ Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
   else
     PrintResult(awaited, context.out);
   SayRetired(batch, awaited.show["document"], context.err);
-  if (awaited.has_revision) context.exit_code = Judge(awaited.show["document"]["verdict"]);
+  context.exit_code = JudgeResult(awaited);
   return {};
 }
 
@@ -130,11 +130,11 @@ void AddPushEdges(CLI::App& app, Context& context) {
                    "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
       ->type_name("S");
-  verb->footer(
-      "Pushing the same edges again changes nothing.\n"
-      "Examples:\n"
-      "  rigcal push-edges results.json --robot mapper-01\n"
-      "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n");
+  verb->footer("Pushing the same edges again changes nothing.\n" + std::string(kVerdictCodes) +
+               "With --no-wait 0, once all is safe.\n"
+               "Examples:\n"
+               "  rigcal push-edges results.json --robot mapper-01\n"
+               "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n");
   verb->callback([&context, options] {
     if (const Status done = RunPushEdges(context, *options); !done) context.exit_code = Report(done.error(), context);
   });

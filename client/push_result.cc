@@ -31,7 +31,7 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   const Document revision = awaited.show["document"];
   const std::string robot = Plain(awaited.show["robot"].Text("?"));
   out << "\n" << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
-  PrintVerdict(revision["verdict"], out);
+  PrintVerdict(revision["verdict"], awaited.show, out);
   PrintGlobalError(revision, out);
   const auto edges = revision["edges"].Items();
   const auto past = static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), IsPast));
@@ -42,6 +42,10 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
         << "; `rigcal edges " << robot << "` lists them\n";
   const std::string address = AddressOf(awaited);
   out << "report  " << (address.empty() ? "`rigcal report " + robot + "` tells where it is" : address) << '\n';
+}
+
+ExitCode JudgeResult(const Awaited& awaited) {
+  return awaited.has_revision ? Judge(awaited.show["document"]["verdict"], awaited.show) : ExitCode::kVerdictUnknown;
 }
 
 std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {

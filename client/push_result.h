@@ -5,6 +5,7 @@
 #include <string>
 
 #include "client/await_result.h"
+#include "client/exit_code.h"
 #include "client/push_engine.h"
 
 namespace rigcal::client {
@@ -22,6 +23,8 @@ struct PushSummary {
 
 // Verdict, edges with sigma, E_global before and after, the report's address.
 void PrintResult(const Awaited& awaited, std::ostream& out);
+// Of a push that gave no revision: kVerdictUnknown.
+[[nodiscard]] ExitCode JudgeResult(const Awaited& awaited);
 // The verb's own JSON document; `awaited` may be null.
 [[nodiscard]] std::string ResultJson(const PushSummary& summary, const Awaited* awaited);
 

@@ -15,12 +15,11 @@ void PrintRobots(const Document& document, std::ostream& out) {
                {"AGE", Align::kRight},
                {"SESSIONS", Align::kRight},
                {"EDGES", Align::kRight},
-               {"JOBS", Align::kRight},
-               {""}});
+               {"JOBS", Align::kRight}});
   for (const Document& row : document["robots"].Items())
-    table.Add({row["robot"].Text("?"), row["verdict"]["level"].Text("unknown"), CountOf(row["revision"]),
-               AgeOf(row["age_ns"]), CountOf(row["sessions"]), CountOf(row["edges"]), CountOf(row["jobs_waiting"]),
-               row["overdue"].Flag() ? "overdue" : ""});
+    table.Add({row["robot"].Text("?"), OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
+               CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["sessions"]), CountOf(row["edges"]),
+               CountOf(row["jobs_waiting"])});
   table.Print(out);
 }
 
@@ -29,6 +28,7 @@ void PrintRobots(const Document& document, std::ostream& out) {
 void AddRobots(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("robots", "List the robots with their verdict and the age of their calibration");
   verb->footer(
+      "Exit code 0, whatever the verdicts: `rigcal show ROBOT` ends with that of one robot.\n"
       "Examples:\n"
       "  rigcal robots\n"
       "  rigcal robots --json\n");

@@ -29,9 +29,9 @@ void PrintPoses(const Document& revision, std::ostream& out) {
 
 void PrintShow(const Document& document, std::ostream& out) {
   const Document revision = document["document"];
-  out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", "
-      << AgeOf(document["age_ns"]) << " old\n";
-  PrintVerdict(revision["verdict"], out);
+  out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
+      << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
+  PrintVerdict(revision["verdict"], document, out);
   PrintGlobalError(revision, out);
   PrintDiagnoses(revision["diagnoses"], out);
   PrintPoses(revision, out);
@@ -50,7 +50,7 @@ ExitCode RunShow(const Context& context, const ShowOptions& options) {
   std::vector<Field> parameters = {{"robot", options.robot}};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
   return Answer(context, {"show", JsonObject(parameters), PrintShow,
-                          [](const Document& document) { return Judge(document["document"]["verdict"]); }});
+                          [](const Document& document) { return Judge(document["document"]["verdict"], document); }});
 }
 
 }  // namespace
@@ -62,12 +62,11 @@ void AddShow(CLI::App& app, Context& context) {
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  verb->footer(
-      "Exit code 1 if the verdict is fail.\n"
-      "Examples:\n"
-      "  rigcal show mapper-01\n"
-      "  rigcal show mapper-01 --revision 3\n"
-      "  rigcal show mapper-01 --json > mapper-01.json\n");
+  verb->footer(std::string(kVerdictCodes) +
+               "Examples:\n"
+               "  rigcal show mapper-01\n"
+               "  rigcal show mapper-01 --revision 3\n"
+               "  rigcal show mapper-01 --json > mapper-01.json\n");
   verb->callback([&context, options] { context.exit_code = RunShow(context, *options); });
 }
 

@@ -31,7 +31,7 @@ void PrintStatus(const Document& document, std::ostream& out) {
   Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
   for (const Document& row : document["robots"].Items())
     table.Add({row["robot"].Text("?"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
-               VerdictText(row["verdict"])});
+               OverdueBefore(row) + VerdictText(row["verdict"])});
   table.Print(out);
 }
 
@@ -41,14 +41,20 @@ void AddStatus(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("status", "Show what the server is doing, and each robot's verdict in words");
   auto robot = std::make_shared<std::string>();
   verb->add_option("ROBOT", *robot, "Only this robot");
-  verb->footer(
-      "Examples:\n"
-      "  rigcal status\n"
-      "  rigcal status mapper-01\n"
-      "  rigcal status --timeout 1 && echo a server is there\n");
+  verb->footer("Of one robot: " + std::string(kVerdictCodes) +
+               "Of all robots 0, whatever their verdicts.\n"
+               "Examples:\n"
+               "  rigcal status\n"
+               "  rigcal status mapper-01\n"
+               "  rigcal status --timeout 1 && echo a server is there\n");
   verb->callback([&context, robot] {
     const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
-    context.exit_code = Answer(context, {"status", parameters, PrintStatus, {}});
+    const auto judge = [](const Document& document) {
+      const Document row = document["robots"][std::size_t{0}];
+      return Judge(row["verdict"], row);
+    };
+    context.exit_code = robot->empty() ? Answer(context, {"status", parameters, PrintStatus, {}})
+                                       : Answer(context, {"status", parameters, PrintStatus, judge});
   });
 }
 

@@ -3,6 +3,7 @@
 #include "client/table.h"
 #include "server/base/stamp.h"
 #include "server/formats/answers.h"
+#include "server/model/validity.h"
 
 namespace rigcal::client {
 
@@ -30,9 +31,44 @@ ExitCode Answer(const Context& context, const Question& question) {
   return question.judge ? question.judge(*document) : ExitCode::kGood;
 }
 
-ExitCode Judge(const Document& verdict) {
-  return verdict["level"].Text() == "fail" ? ExitCode::kVerdictFail : ExitCode::kGood;
+ExitCode Judge(const Document& verdict, const Document& validity) {
+  switch (VerdictLevelOf(verdict["level"].Text())) {
+    case VerdictLevel::kPass:
+      return validity["overdue"].Flag() ? ExitCode::kVerdictWarn : ExitCode::kGood;
+    case VerdictLevel::kWarn:
+      return ExitCode::kVerdictWarn;
+    case VerdictLevel::kFail:
+      return ExitCode::kVerdictFail;
+    case VerdictLevel::kUnknown:
+      break;
+  }
+  return ExitCode::kVerdictUnknown;
 }
+
+namespace {
+
+std::optional<Stamp> StampOf(const Document& text) {
+  const auto stamp = ParseIso(text.Text());
+  return stamp ? std::optional(*stamp) : std::nullopt;
+}
+
+}  // namespace
+
+// What an older server's documents lack is not told.
+std::string ValidityText(const Document& verdict, const Document& validity) {
+  const VerdictLevel level = VerdictLevelOf(verdict["level"].Text());
+  if (level == VerdictLevel::kFail || level == VerdictLevel::kUnknown) {
+    if (!validity.Has("usable")) return "";
+    const Document usable = validity["usable"];
+    const auto created_at = StampOf(usable["created_at"]);
+    if (!created_at) return KeepText(std::nullopt);
+    return KeepText(UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
+  }
+  const auto valid_until = StampOf(validity["valid_until"]);
+  return valid_until && !validity["overdue"].Flag() ? ValidText(*valid_until) : "";
+}
+
+std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }
 
 std::string VerdictText(const Document& verdict) {
   std::string text = verdict["level"].Text("unknown");
@@ -45,7 +81,17 @@ std::string VerdictText(const Document& verdict) {
   return text;
 }
 
-void PrintVerdict(const Document& verdict, std::ostream& out) { out << "verdict  " << VerdictText(verdict) << '\n'; }
+void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out) {
+  if (validity["overdue"].Flag()) out << OverdueText(StampOf(validity["valid_until"])) << '\n';
+  out << "verdict  " << VerdictText(verdict) << '\n';
+  if (const std::string text = ValidityText(verdict, validity); !text.empty()) out << "         " << text << '\n';
+  if (validity["calculating"].Flag()) out << "         " << kCalculatingText << '\n';
+}
+
+std::string DayOf(const Document& time) {
+  const auto stamp = StampOf(time);
+  return stamp ? DayText(*stamp) : "-";
+}
 
 std::string AgeOf(const Document& age_ns) {
   const auto age = age_ns.Integer();

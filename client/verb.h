@@ -40,11 +40,20 @@ ExitCode Answer(const Context& context, const Question& question);
 [[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb,
                                           const std::string& parameters);
 
-// kVerdictFail if `verdict` (a verdict of docs/api.md) is "fail".
-[[nodiscard]] ExitCode Judge(const Document& verdict);
-// "pass" or "fail: why. What to do."
-void PrintVerdict(const Document& verdict, std::ostream& out);
+// Of one robot: a verdict of docs/api.md, and the document that has `overdue` beside it.
+[[nodiscard]] ExitCode Judge(const Document& verdict, const Document& validity);
+// For the help of each verb that ends with Judge.
+inline constexpr const char* kVerdictCodes = "Exit code: 0 pass, 1 fail, 5 warn or overdue, 6 unknown.\n";
+// "pass" or "fail: why. What to do."; before it that the calibration is overdue, after it until when it is valid, or
+// what to use instead, and that a newer one is on its way. `validity`: the members of docs/api.md that `show` has.
+void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out);
+// "Valid until 20 Feb 2027.", "Keep using revision 4 of 12 Mar 2026 meanwhile.", ...; or empty.
+[[nodiscard]] std::string ValidityText(const Document& verdict, const Document& validity);
+// "overdue, " where it is so, for what is told of a robot in one line.
+[[nodiscard]] std::string OverdueBefore(const Document& validity);
 [[nodiscard]] std::string VerdictText(const Document& verdict);
+// "31 Jan 2026" of a time of docs/api.md, or "-".
+[[nodiscard]] std::string DayOf(const Document& time);
 // "12 days", or "-".
 [[nodiscard]] std::string AgeOf(const Document& age_ns);
 // Text of a number, or "-".

@@ -35,6 +35,11 @@ std::string DoneText(const Document& data) {
   return std::to_string(all - waiting) + " of " + std::to_string(all) + " pairs done";
 }
 
+std::string VerdictAndKeep(const Document& data) {
+  const std::string keep = ValidityText(data["verdict"], data);
+  return VerdictText(data["verdict"]) + (keep.empty() ? "" : " " + keep);
+}
+
 std::string TextOf(const std::string& kind, const Document& data) {
   if (kind == "edge") {
     const Document edge = data["edge"].IsNull() ? data : data["edge"];
@@ -46,7 +51,7 @@ std::string TextOf(const std::string& kind, const Document& data) {
   if (kind == "graph_update")
     return CountOf(data["sensors_known"]) + " of " + CountOf(data["sensors"]) + " sensors known, " +
            CountOf(data["edges"]) + " edges (provisional)";
-  if (kind == "revision") return "revision " + CountOf(data["revision"]) + ", " + VerdictText(data["verdict"]);
+  if (kind == "revision") return "revision " + CountOf(data["revision"]) + ", " + VerdictAndKeep(data);
   if (kind == "published") return "report of revision " + CountOf(data["revision"]) + " at " + data["path"].Text("?");
   return data.Dump();
 }

@@ -46,9 +46,16 @@ pipeline::Announcer AnnouncerTo(dds::Service& service) {
                                const std::string& json) {
     service.Announce({robot, kind, subject, SystemClock().Now(), json});
   };
+  announcer.status = [&service](const Revision& revision, std::int64_t edges) {
+    service.PublishStatus(revision.robot, revision.number, revision.verdict, edges, 0, revision.created_at);
+  };
   announcer.calibration = [&service](const Revision& revision, const SensorId& reference,
-                                     const std::vector<SensorPose>& poses, std::int64_t edges) {
-    service.Publish(revision.robot, revision.number, reference, poses, revision.verdict, edges, 0, revision.created_at);
+                                     const std::vector<SensorPose>& poses) {
+    service.PublishCalibration(revision.robot, revision.number, reference, poses, revision.verdict,
+                               revision.created_at);
+  };
+  announcer.withdraw = [&service](const RobotId& robot, const std::vector<SensorPose>& poses) {
+    service.WithdrawCalibration(robot, poses);
   };
   return announcer;
 }

@@ -166,16 +166,23 @@ Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session) {
   return LoadSelection(store, "edges of session " + session.str(), {"e.session_id = ?", session.str()});
 }
 
-Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot) {
-  return Load<std::optional<Stamp>>(store, "edges of robot " + robot.str(), [&]() -> Result<std::optional<Stamp>> {
-    Query query(
-        store,
-        "SELECT max(coalesce(session.captured_ns, edge.appended_ns)) FROM counted_edge c JOIN edge ON "
-        "edge.number = c.edge_number LEFT JOIN session USING (session_id) "
-        "WHERE c.robot_id = ? AND edge.state = 'good' "
-        "AND NOT EXISTS (SELECT 1 FROM standing WHERE standing.edge_number = edge.number) HAVING count(*) > 0");
-    if (!query.Bind(robot).Step()) return std::nullopt;
-    return Stamp{query.Int(0)};
+Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const RobotId& robot) {
+  using Stamps = std::map<EdgeId, Stamp>;
+  return Load<Stamps>(store, "edges of robot " + robot.str(), [&]() -> Result<Stamps> {
+    Query query(store,
+                "SELECT edge.edge_id, coalesce(session.captured_ns, edge.appended_ns) FROM edge "
+                "LEFT JOIN session USING (session_id) WHERE edge.robot_id = ?");
+    query.Bind(robot);
+    Stamps stamps;
+    while (query.Step()) stamps.emplace(query.IdAt<EdgeId>(0), query.Time(1));
+    return stamps;
+  });
+}
+
+Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark) {
+  return Load<std::int64_t>(store, "edges of robot " + robot.str(), [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT count(*) FROM counted_edge WHERE robot_id = ? AND number <= ?");
+    return query.Bind(robot, watermark).Step() ? query.Int(0) : 0;
   });
 }
 

@@ -1,6 +1,7 @@
 // Edges with their whole uncertainty, append-only, and the batches in which finished edges were pushed.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,9 +22,10 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
-// When the robot was last calibrated: the newest capture among the sessions of its good edges; for an edge that was
-// pushed, the moment it was stored. nullopt without a good edge. Retired edges do not count.
-[[nodiscard]] Result<std::optional<Stamp>> LoadCalibratedAt(Store& store, const RobotId& robot);
+// When each edge of the robot was measured: its session was captured or, of one that was pushed, it was stored.
+[[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const RobotId& robot);
+// How many edges of the robot began to count up to `watermark`.
+[[nodiscard]] Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark);
 // Number of the robot's edge that began to count last; 0 if none. It grows whenever one begins to count.
 [[nodiscard]] Result<std::int64_t> LoadEdgeWatermark(Store& store, const RobotId& robot);
 

@@ -15,7 +15,9 @@ std::string PublicationSubject(const RevisionKey& key) {
 const std::string kColumns =
     "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
     "(SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = revision.robot_id AND "
-    "s.revision_number = revision.number) ";
+    "s.revision_number = revision.number), "
+    "(SELECT calibrated_ns FROM revision_calibrated c "
+    "WHERE c.robot_id = revision.robot_id AND c.revision_number = revision.number) ";
 
 Revision RevisionOf(const Query& query) {
   Revision revision;
@@ -26,6 +28,7 @@ Revision RevisionOf(const Query& query) {
   revision.verdict = {VerdictLevelOf(query.Text(4)), query.Text(5), query.Text(6)};
   revision.digest = query.IdAt<Digest>(7);
   revision.standing_watermark = query.Int(8);  // NULL reads as 0
+  if (!query.IsNull(9)) revision.calibrated_at = query.Time(9);
   return revision;
 }
 
@@ -42,6 +45,10 @@ void Insert(Store& store, const Revision& revision, int number) {
   Query(store, "INSERT INTO revision_standing VALUES (?, ?, ?)")
       .Bind(revision.robot, number, revision.standing_watermark)
       .Run();
+  if (revision.calibrated_at)
+    Query(store, "INSERT INTO revision_calibrated VALUES (?, ?, ?)")
+        .Bind(revision.robot, number, *revision.calibrated_at)
+        .Run();
   Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
 }
 
@@ -74,6 +81,16 @@ Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId&
   });
 }
 
+Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number) {
+  return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
+    Query query(store, "SELECT " + kColumns +
+                           "FROM revision WHERE robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') "
+                           "ORDER BY number DESC LIMIT 1");
+    if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
+    return RevisionOf(query);
+  });
+}
+
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) {
   return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
     Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? ORDER BY number DESC");
@@ -84,18 +101,30 @@ Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) 
   });
 }
 
+namespace {
+
 // Four index look-ups per robot, whatever the number of edges and revisions.
+const std::string kUnsolved =
+    "SELECT robot_id FROM robot r "
+    "WHERE ((SELECT max(number) FROM counted_edge c WHERE c.robot_id = r.robot_id) > "
+    "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
+    "ORDER BY v.number DESC LIMIT 1), 0) "
+    "OR (EXISTS (SELECT 1 FROM counted_edge e WHERE e.robot_id = r.robot_id) AND "
+    "(SELECT max(number) FROM standing t WHERE t.robot_id = r.robot_id) > "
+    "coalesce((SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = r.robot_id "
+    "ORDER BY s.revision_number DESC LIMIT 1), 0))) ";
+
+}  // namespace
+
+Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
+  return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
+    return Query(store, kUnsolved + "AND robot_id = ?").Bind(robot).Step();
+  });
+}
+
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
-    Query query(store,
-                "SELECT robot_id FROM robot r "
-                "WHERE (SELECT max(number) FROM counted_edge c WHERE c.robot_id = r.robot_id) > "
-                "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
-                "ORDER BY v.number DESC LIMIT 1), 0) "
-                "OR (EXISTS (SELECT 1 FROM counted_edge e WHERE e.robot_id = r.robot_id) AND "
-                "(SELECT max(number) FROM standing t WHERE t.robot_id = r.robot_id) > "
-                "coalesce((SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = r.robot_id "
-                "ORDER BY s.revision_number DESC LIMIT 1), 0)) ORDER BY robot_id");
+    Query query(store, kUnsolved + "ORDER BY robot_id");
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
     return robots;

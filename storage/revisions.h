@@ -9,17 +9,21 @@
 
 namespace rigcal::storage {
 
-// Appends with the next number of the robot (1, 2, ...) and returns it. Call inside Write.
+// Appends with the next number of the robot (1, 2, ...) and returns it. Call inside Write. `calibrated_at` is part of
+// it.
 [[nodiscard]] Result<int> AppendRevision(Store& store, const Revision& revision);
 // number 0: the newest.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number);
 // The same without the document, which may be many megabytes.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number);
+// The newest up to `number` (0: of all) whose verdict is pass or warn; without the document.
+[[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number);
 // Without documents; newest first.
 [[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot);
 // Robots with edges whose newest edge or newest standing (standing.h) is not in their newest revision, or that have
 // none.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);
+[[nodiscard]] Result<bool> IsUnsolved(Store& store, const RobotId& robot);
 
 struct RevisionKey {
   RobotId robot;

@@ -1,3 +1,5 @@
+import { tellOverdue } from "./overdue.js";
+
 // Keeps a page up to date: asks a small document now and then, and takes the page's fresh parts anew when it changed. On the
 // fleet's page it also searches while one types.
 const PERIOD_MS = 3000;
@@ -40,6 +42,7 @@ async function poll() {
     const reply = await fetch(live.dataset.live, { cache: "no-cache" });
     if (!reply.ok) return;
     const text = await reply.text();
+    tellOverdue(Date.parse(reply.headers.get("date")));
     if (seen !== null && text !== seen && !(await refresh(location.href))) return;
     seen = text;
   } catch {

@@ -4,11 +4,14 @@ import { addFilter } from "./tables/filter.js";
 import { addContents, addOpenAll, openTarget } from "./tables/contents.js";
 import { closeWaysOut } from "./tables/on_disk.js";
 import { tellOfNewer } from "./tables/newest.js";
+import { watchOverdue } from "./overdue.js";
 
 for (const table of document.querySelectorAll("table[data-sortable]")) makeSortable(table);
 for (const table of document.querySelectorAll("table[data-filter]")) addFilter(table);
-if (location.protocol === "file:") closeWaysOut();
-else tellOfNewer();
+if (location.protocol === "file:") {
+  closeWaysOut();
+  watchOverdue(0);
+} else tellOfNewer();
 addOpenAll(document.getElementById("details"));
 // After all scripts: which parts there are is known then.
 document.addEventListener("DOMContentLoaded", () => {

@@ -5,16 +5,16 @@ import time
 
 from . import acfr_session, road_session
 from .measure import at_least, at_most, equal, info, skip
-from .server import Server
+from .server import ANSWERED, Server
 
 
 def publish(context, folder, robot, session, edges=None):
     """Pushes to a real server; the newest report folder and the seconds from push to the files."""
     with Server(context, folder / "store") as server:
         start = time.monotonic()
-        if edges and server.rigcal("push-edges", edges, "--robot", robot).returncode not in (0, 1):
+        if edges and server.rigcal("push-edges", edges, "--robot", robot).returncode not in ANSWERED:
             raise RuntimeError("push-edges failed")
-        if server.rigcal("push", session).returncode not in (0, 1):
+        if server.rigcal("push", session).returncode not in ANSWERED:
             raise RuntimeError("push failed")
         reports = folder / "store" / "reports" / robot
         revisions = sorted((int(path.name) for path in reports.iterdir() if path.name.isdigit()))

@@ -9,7 +9,7 @@ import subprocess
 import threading
 
 from .measure import at_most, info
-from .server import Server
+from .server import ANSWERED, Server
 from .sessions import noise_session
 
 ROUNDS = 5
@@ -40,7 +40,7 @@ class Flood:
             self.process = subprocess.Popen(self.server.client(*self.prepare(self.pushed)), stdout=subprocess.DEVNULL,
                                             stderr=subprocess.PIPE, text=True, env=self.server.environment())
             said = self.process.communicate()[1]
-            if not self.stopped.is_set() and self.process.returncode not in (0, 1):
+            if not self.stopped.is_set() and self.process.returncode not in ANSWERED:
                 self.problem = said[-300:]
                 return
             self.pushed += 1
@@ -88,7 +88,7 @@ def one_round(context, folder, make):
     """The times of questions in quiet and while another floods the server; how often that one pushed."""
     with Server(context, folder / "store") as server:
         done = server.rigcal("push-edges", edge_file(folder / "quiet.json", 60, 0.0), "--robot", "quiet")
-        if done.returncode not in (0, 1):
+        if done.returncode not in ANSWERED:
             raise RuntimeError("push-edges: " + done.stderr[-300:])
         prepare, times = make(folder), {"quiet": query(context, server)}
         with Flood(server, prepare) as flood:

@@ -9,7 +9,7 @@ import sys
 import tomllib
 
 from .measure import at_most, equal, info, skip
-from .server import Server
+from .server import ANSWERED, Server
 
 
 def rotated(q_xyzw):
@@ -54,7 +54,7 @@ def run(context):
         subprocess.run([sys.executable, str(context.root / "tests" / "data" / "extract_caliscope.py"), str(source), str(session)],
                        check=True, stdout=subprocess.DEVNULL)
         with Server(context, pathlib.Path(temporary) / "store") as server:
-            if server.rigcal("push", session).returncode not in (0, 1):
+            if server.rigcal("push", session).returncode not in ANSWERED:
                 raise RuntimeError("push failed")
             document = json.loads(server.rigcal("show", "caliscope-rig", "--json").stdout)["document"]
     edges = [edge for edge in document["edges"] if edge["state"] == "good"]

@@ -6,7 +6,7 @@ import re
 import time
 
 from .measure import at_least, at_most, equal
-from .server import Server
+from .server import ANSWERED, Server
 
 LIDARS = ("lidar_vertical", "lidar_horizontal")
 
@@ -36,7 +36,7 @@ def one_visit(context, folder, seed):
         took_s = time.monotonic() - began
         edges = json.loads(server.rigcal("edges", "mars-mapper", "--json").stdout)["edges"]
         compared = json.loads(server.rigcal("compare", "mars-mapper", "--poses", session / "truth.yaml", "--json").stdout)
-    if pushed.returncode not in (0, 1):
+    if pushed.returncode not in ANSWERED:
         raise RuntimeError("rigcal push: exit %d: %s" % (pushed.returncode, pushed.stderr.strip()[-300:]))
     return compared, bounds_of(session / "truth.yaml"), sum(edge["state"] == "good" for edge in edges), took_s
 

@@ -6,6 +6,10 @@ import subprocess
 import uuid
 
 
+# How a verb ends that told a robot's verdict: pass, fail, warn, unknown (`rigcal --help`).
+ANSWERED = (0, 1, 5, 6)
+
+
 class Server:
     def __init__(self, context, data, tag=None):
         self.context, self.data = context, pathlib.Path(data)

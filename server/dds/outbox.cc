@@ -124,6 +124,18 @@ void Outbox::SendCalibration(const RobotId& robot, int revision, const SensorId&
   LogFailure(writers->calibrations.Write(sample));
 }
 
+void Outbox::WithdrawCalibration(const RobotId& robot, const SensorId& sensor) {
+  const auto writers = WritersOf(robot);
+  if (writers == nullptr) return;
+  rigcal_wire_Calibration key{};
+  const auto fill = [&]() -> Status {
+    RIGCAL_TRY(Put(robot.str(), key.robot_id, "robot_id"));
+    return Put(sensor.str(), key.sensor_id, "sensor_id");
+  };
+  if (const Status filled = fill(); !filled) return LogError(filled.error());
+  LogFailure(writers->calibrations.Forget(key));
+}
+
 void Outbox::SendStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
                         std::int64_t jobs_waiting, Stamp at) {
   const auto writers = WritersOf(robot);

@@ -26,6 +26,7 @@ class Outbox {
   void Send(const Announcement& announcement);
   void SendCalibration(const RobotId& robot, int revision, const SensorId& reference, const SensorPose& pose,
                        const Verdict& verdict, Stamp at);
+  void WithdrawCalibration(const RobotId& robot, const SensorId& sensor);
   void SendStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
                   std::int64_t jobs_waiting, Stamp at);
 

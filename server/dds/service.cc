@@ -88,10 +88,17 @@ Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
 
 void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }
 
-void Service::Publish(const RobotId& robot, int revision, const SensorId& reference,
-                      const std::vector<SensorPose>& poses, const Verdict& verdict, std::int64_t edges,
-                      std::int64_t jobs_waiting, Stamp at) {
+void Service::PublishCalibration(const RobotId& robot, int revision, const SensorId& reference,
+                                 const std::vector<SensorPose>& poses, const Verdict& verdict, Stamp at) {
   for (const SensorPose& pose : poses) impl_->outbox.SendCalibration(robot, revision, reference, pose, verdict, at);
+}
+
+void Service::WithdrawCalibration(const RobotId& robot, const std::vector<SensorPose>& poses) {
+  for (const SensorPose& pose : poses) impl_->outbox.WithdrawCalibration(robot, pose.sensor);
+}
+
+void Service::PublishStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
+                            std::int64_t jobs_waiting, Stamp at) {
   impl_->outbox.SendStatus(robot, revision, verdict, edges, jobs_waiting, at);
 }
 

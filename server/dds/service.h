@@ -54,9 +54,14 @@ class Service {
   Service& operator=(Service&&) noexcept;
 
   void Announce(const Announcement& announcement);
-  // The newest numbered revision's poses and the robot's one-line status.
-  void Publish(const RobotId& robot, int revision, const SensorId& reference, const std::vector<SensorPose>& poses,
-               const Verdict& verdict, std::int64_t edges, std::int64_t jobs_waiting, Stamp at);
+  // The poses of a numbered revision, for the robot to use; late joiners get them until others follow.
+  void PublishCalibration(const RobotId& robot, int revision, const SensorId& reference,
+                          const std::vector<SensorPose>& poses, const Verdict& verdict, Stamp at);
+  // Of these sensors there is nothing to use: each instance is disposed of, and late joiners get none.
+  void WithdrawCalibration(const RobotId& robot, const std::vector<SensorPose>& poses);
+  // The robot's one line, of its newest revision.
+  void PublishStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
+                     std::int64_t jobs_waiting, Stamp at);
 
  private:
   struct Impl;

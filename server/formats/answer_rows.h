@@ -9,6 +9,8 @@ namespace rigcal::formats {
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session);
 void WriteStanding(JsonWriter& out, const std::string& name, const std::optional<Standing>& standing);
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
+// `usable`
+void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);
 // Without its document.
 void WriteRevisionMembers(JsonWriter& out, const Revision& revision);
 

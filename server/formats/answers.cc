@@ -14,17 +14,24 @@ void WriteAge(JsonWriter& out, const std::optional<Stamp>& since, Stamp now) {
   since ? out.Integer("age_ns", now.ns - since->ns) : out.Null("age_ns");
 }
 
+void WriteValidity(JsonWriter& out, const Validity& validity) {
+  WriteStamp(out, "calibrated_at", validity.calibrated_at);
+  WriteStamp(out, "valid_until", ValidUntil(validity.calibrated_at));
+  out.Flag("overdue", validity.overdue);
+  WriteUsable(out, validity.usable);
+  out.Flag("calculating", validity.calculating);
+}
+
 void WriteRobotRow(JsonWriter& out, const RobotAnswer& robot, Stamp now) {
   out.Object([&] {
     out.Text("robot", robot.robot.str());
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
-    WriteStamp(out, "calibrated_at", robot.calibrated_at);
-    WriteAge(out, robot.calibrated_at, now);
+    WriteValidity(out, robot.validity);
+    WriteAge(out, robot.validity.calibrated_at, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
     out.Integer("jobs_waiting", robot.jobs_waiting);
-    out.Flag("overdue", robot.overdue);
   });
 }
 
@@ -114,10 +121,11 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, Stamp now) {
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
+    WriteValidity(out, validity);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     out.Null("document");
@@ -151,6 +159,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteMatrix(out, "covariance", answer.covariance);
     WriteSigmas(out, answer.covariance);
     WriteVerdict(out, "verdict", answer.verdict);
+    WriteValidity(out, answer.validity);
   });
 }
 
@@ -188,7 +197,7 @@ std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_
     out.Text("robot", robot.robot.str());
     WriteStamp(out, "calibrated_at", robot.calibrated_at);
     WriteAge(out, robot.calibrated_at, now);
-    out.Flag("overdue", !robot.calibrated_at || now.ns - robot.calibrated_at->ns > max_age_ns);
+    out.Flag("overdue", IsOverdue(robot.calibrated_at, max_age_ns, now));
     WriteVerdict(out, "verdict", robot.verdict);
   };
   return WriteObject([&](JsonWriter& out) {

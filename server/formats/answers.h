@@ -12,6 +12,7 @@
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
 #include "server/model/standing.h"
+#include "server/model/validity.h"
 
 namespace rigcal::formats {
 
@@ -20,9 +21,10 @@ struct RobotAnswer {
   RobotId robot;
   int revision = 0;  // 0: none yet, written as null
   Verdict verdict;
-  std::optional<Stamp> calibrated_at;  // newest capture of a good edge; absent: never
-  std::int64_t sessions = 0, edges = 0, jobs_waiting = 0;
-  bool overdue = false;
+  Validity validity;  // of that revision
+  std::int64_t sessions = 0;
+  std::int64_t edges = 0;  // of the revision; of a robot without one: all that arrived
+  std::int64_t jobs_waiting = 0;
 };
 [[nodiscard]] std::string WriteRobots(const std::vector<RobotAnswer>& robots, Stamp now);
 
@@ -53,7 +55,7 @@ struct SessionAnswer {
                                      const std::vector<EdgeResidual>& residuals);
 
 // verb show: number, time and digest around the revision's document, which is put in byte for byte.
-[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, Stamp now);
+[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now);
 // verb revisions: without documents.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now);
 
@@ -65,6 +67,7 @@ struct LookupAnswer {
   Se3 T_a_b;
   Matrix6d covariance = Matrix6d::Zero();  // right tangent at b
   Verdict verdict;                         // of the revision
+  Validity validity;
 };
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
 
@@ -127,7 +130,8 @@ struct HealthAnswer {
 [[nodiscard]] std::string WriteSessionEvent(const SessionAnswer& session);
 [[nodiscard]] std::string WriteEdgeEvent(const Edge& edge, std::int64_t jobs_waiting, std::int64_t jobs_total);
 [[nodiscard]] std::string WriteGraphEvent(const RobotId& robot, std::int64_t edges, const GraphSolution& solution);
-[[nodiscard]] std::string WriteRevisionEvent(const Revision& revision);
+// `usable`: Validity::usable.
+[[nodiscard]] std::string WriteRevisionEvent(const Revision& revision, const std::optional<UsableRevision>& usable);
 [[nodiscard]] std::string WritePublishedEvent(const RobotId& robot, int revision, const std::string& path);
 
 }  // namespace rigcal::formats

@@ -61,6 +61,14 @@ void WriteRevisionMembers(JsonWriter& out, const Revision& revision) {
   out.Text("digest", revision.digest.str());
 }
 
+void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable) {
+  if (!usable) return out.Null("usable");
+  out.Object("usable", [&] {
+    out.Integer("revision", usable->number);
+    out.Text("created_at", ToIso(usable->created_at));
+  });
+}
+
 std::string WriteSessionEvent(const SessionAnswer& session) {
   return WriteObject([&](JsonWriter& out) { WriteSessionMembers(out, session); });
 }
@@ -88,9 +96,10 @@ std::string WriteGraphEvent(const RobotId& robot, std::int64_t edges, const Grap
   });
 }
 
-std::string WriteRevisionEvent(const Revision& revision) {
+std::string WriteRevisionEvent(const Revision& revision, const std::optional<UsableRevision>& usable) {
   return WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
+    WriteUsable(out, usable);
     WriteVerdict(out, "verdict", revision.verdict);
   });
 }

@@ -92,6 +92,7 @@ struct Revision {
   Digest digest;           // of document
   std::int64_t edge_watermark = 0;      // the store's row number of the newest edge that it contains
   std::int64_t standing_watermark = 0;  // likewise, of the robot's newest standing that it counts
+  std::optional<Stamp> calibrated_at = {};  // newest capture of its good edges (of pushed ones: stored); absent: none
 };
 
 }  // namespace rigcal

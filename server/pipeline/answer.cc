@@ -14,6 +14,7 @@
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
@@ -103,7 +104,9 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
   RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, number));
   RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(context.store, {robot, revision.number}));
-  return formats::WriteShow(revision, is_published, context.clock.Now());
+  const Stamp now = context.clock.Now();
+  RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
+  return formats::WriteShow(revision, is_published, validity, now);
 }
 
 Result<std::string> Revisions(const AnswerContext& context, const Parameters& parameters) {
@@ -155,6 +158,7 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   answer.T_a_b = relative.T_A_B;
   answer.covariance = relative.covariance;
   answer.verdict = revision.summary.verdict;
+  RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision.summary, context.clock.Now()));
   return formats::WriteLookup(answer);
 }
 
@@ -208,7 +212,7 @@ Result<std::string> Due(const AnswerContext& context, const Parameters& paramete
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
   std::vector<formats::DueAnswer> due;
-  for (const auto& row : rows) due.push_back({row.robot, row.calibrated_at, row.verdict});
+  for (const auto& row : rows) due.push_back({row.robot, row.validity.calibrated_at, row.verdict});
   return formats::WriteDue(due, max_age_ns, now);
 }
 

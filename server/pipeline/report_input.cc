@@ -7,6 +7,7 @@
 #include "server/fleet/assess.h"
 #include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -111,6 +112,8 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   input.created_at = revision.created_at;
   input.digest = revision.digest;
   input.software_version = std::string(Version());
+  input.calibrated_at = revision.calibrated_at;
+  RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision));
   RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_TRY(TakeBlocks(store, input));

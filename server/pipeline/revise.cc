@@ -64,6 +64,16 @@ GraphSolution SolveHonestly(const RobotGraph& loaded) {
   return solution;
 }
 
+// When the newest of the edges that count was measured.
+Result<std::optional<Stamp>> CalibratedAt(storage::Store& store, const formats::RevisionInput& revision) {
+  RIGCAL_ASSIGN(const auto measured_at, storage::LoadMeasuredAt(store, revision.robot));
+  std::optional<Stamp> newest;
+  for (const Edge& edge : revision.edges)
+    if (const auto found = measured_at.find(edge.id); edge.state == EdgeState::kGood && found != measured_at.end())
+      newest = std::max(newest.value_or(found->second), found->second);
+  return newest;
+}
+
 // The worst fit of those that other edges check; failed ones have no fit.
 std::optional<storage::WorstEdge> WorstEdgeOf(const formats::RevisionInput& revision) {
   if (revision.solution.dof <= 0) return std::nullopt;
@@ -93,6 +103,7 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, b
 }
 
 Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock) {
+  const Stamp now = clock.Now();  // what is stored after it may be missing from the revision
   RIGCAL_ASSIGN(RobotGraph loaded, LoadRobotGraph(store, robot, true));
   formats::RevisionInput input;
   input.robot = robot;
@@ -105,7 +116,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   const auto worst = WorstEdgeOf(input);
   Revision revision;
   revision.robot = robot;
-  revision.created_at = clock.Now();
+  revision.created_at = now;
+  RIGCAL_ASSIGN(revision.calibrated_at, CalibratedAt(store, input));
   revision.verdict = input.verdict;
   revision.document = formats::WriteRevisionDocument(input);
   revision.digest = Sha256Of(revision.document);

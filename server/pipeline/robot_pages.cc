@@ -57,15 +57,6 @@ Result<std::map<SessionId, Stamp>> CapturedAt(const AnswerContext& context, cons
   return captured_at;
 }
 
-// When the newest session of its edges was captured.
-Stamp NewestCapture(const formats::RevisionInput& revision, const std::map<SessionId, Stamp>& captured_at) {
-  Stamp newest;
-  for (const Edge& edge : revision.edges)
-    if (const auto found = captured_at.find(edge.session); found != captured_at.end())
-      newest = std::max(newest, found->second);
-  return newest;
-}
-
 // Of the newest revision; none if there are more than charts would show.
 Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const RobotId& robot, std::size_t revisions) {
   std::vector<SensorId> sensors;
@@ -75,6 +66,31 @@ Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const R
     if (pose.known && pose.sensor != newest.document->reference) sensors.push_back(pose.sensor);
   if (sensors.size() > kTrendSensorsMax) sensors.clear();
   return sensors;
+}
+
+// What the newest revision says of good edges that it does not count.
+Result<std::vector<Edge>> PastEdges(const AnswerContext& context, const RobotId& robot) {
+  std::vector<Edge> past;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
+  if (!newest) return past;
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
+  for (const Edge& edge : revision.document->edges)
+    if (IsPast(edge)) past.push_back(edge);
+  return past;
+}
+
+// The list of sessions counts as good what the newest revision does, as the session's own page.
+Status MovePast(const AnswerContext& context, const RobotId& robot, std::vector<report::SessionRow>& rows) {
+  RIGCAL_ASSIGN(const auto past, PastEdges(context, robot));
+  std::map<SessionId, std::int64_t> counts;
+  for (const Edge& edge : past) ++counts[edge.session];
+  for (report::SessionRow& row : rows) {
+    const auto found = counts.find(row.id);
+    if (found == counts.end() || row.superseded) continue;
+    row.past = std::min(found->second, row.good);
+    row.good -= row.past;
+  }
+  return {};
 }
 
 Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
@@ -87,6 +103,7 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
   RIGCAL_TRY(AddStanding(context.store, robot, sessions));
   for (const auto& session : sessions) input.sessions.push_back(SessionRowOf(session));
   RIGCAL_TRY(AddResults(context, robot, input.sessions));
+  RIGCAL_TRY(MovePast(context, robot, input.sessions));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.revisions.size()));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
   return PageText{std::move(body), kHtmlType};
@@ -95,15 +112,14 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
 // The newest revisions, as many as stay within bounds.
 Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
-  RIGCAL_ASSIGN(const auto captured_at, CapturedAt(context, robot));
   std::vector<report::SolvedRevision> solved;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < std::min(revisions.size(), kTrendRevisionsMax) && bytes < kTrendBytesMax; ++i) {
     RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(context.store, robot, revisions[i].number));
     RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(whole.document));
     bytes += whole.document.size();
-    const Stamp newest = NewestCapture(document, captured_at);
-    solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document)), newest});
+    solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document)),
+                      whole.calibrated_at.value_or(Stamp{})});
   }
   std::reverse(solved.begin(), solved.end());
   return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
@@ -135,17 +151,6 @@ Result<formats::SessionAnswer> SessionOf(const AnswerContext& context, const Rob
   return Fail(ErrorCode::kNotFound, "session " + name + " is of another robot", "See /robots/" + row.robot.str() + "/");
 }
 
-// What the newest revision says of good edges that it does not count.
-Result<std::map<EdgeId, Diagnosis>> PastEdges(const AnswerContext& context, const RobotId& robot) {
-  std::map<EdgeId, Diagnosis> past;
-  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
-  if (!newest) return past;
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
-  for (const Edge& edge : revision.document->edges)
-    if (IsPast(edge)) past.emplace(edge.id, edge.diagnoses.front());
-  return past;
-}
-
 Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot, const std::string& name) {
   RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
   report::SessionInput input;
@@ -156,7 +161,8 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
-  RIGCAL_ASSIGN(input.past, PastEdges(context, robot));
+  RIGCAL_ASSIGN(const auto past, PastEdges(context, robot));
+  for (const Edge& edge : past) input.past.emplace(edge.id, edge.diagnoses.front());
   if (input.row.closed && input.row.pairs_waiting == 0) {
     Unreadable unreadable = FindUnreadable(context.store, input.manifest, input.edges);
     input.unreadable = std::move(unreadable.why);
@@ -201,10 +207,9 @@ report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
   fleet.robot = row.robot;
   fleet.revision = row.revision;
   fleet.verdict = row.verdict;
-  fleet.calibrated_at = row.calibrated_at.value_or(Stamp{});
+  fleet.validity = row.validity;
   fleet.sessions = row.sessions;
   fleet.edges = row.edges;
-  fleet.overdue = row.overdue;
   fleet.pairs_waiting = row.jobs_waiting;
   return fleet;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
@@ -51,6 +52,7 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
+    row.validity.calculating = row.jobs_waiting > 0 || row.edges > 0;
     RIGCAL_ASSIGN(const bool whole, HasWholeSession(store, robot.robot));
     RIGCAL_ASSIGN(const auto incomplete, IncompleteBatch(store, robot.robot));
     row.verdict = FirstVerdict(row, whole, incomplete);
@@ -58,8 +60,11 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   }
   row.revision = revision->number;
   row.verdict = revision->verdict;
-  RIGCAL_ASSIGN(row.calibrated_at, storage::LoadCalibratedAt(store, robot.robot));
-  row.overdue = !row.calibrated_at || now.ns - row.calibrated_at->ns > kDefaultMaxAge_ns;
+  RIGCAL_ASSIGN(row.validity, LoadValidity(store, *revision, now));
+  // What arrived since is told once it is in a revision: one page shows the numbers of one revision.
+  if (row.validity.calculating) {
+    RIGCAL_ASSIGN(row.edges, storage::CountEdges(store, robot.robot, revision->edge_watermark));
+  }
   return row;
 }
 

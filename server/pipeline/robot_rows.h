@@ -9,10 +9,8 @@
 
 namespace rigcal::pipeline {
 
-// A calibration older than this is overdue on the fleet page (`rigcal due` takes its own limit).
-constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'000;
-
-// One row per robot, sorted by id; only `robot` if it is not empty (kNotFound if there is none).
+// One row per robot, of its newest revision, sorted by id; only `robot` if it is not empty (kNotFound if there is
+// none).
 [[nodiscard]] Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot,
                                                                       Stamp now);
 // Without their standing.

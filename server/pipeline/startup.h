@@ -1,4 +1,5 @@
-// What a server that starts tells those who listen: the newest calibration of every robot in the store.
+// What a server that starts tells those who listen: of every robot in the store its newest
+// verdict, and the calibration that it is to use.
 #pragma once
 
 #include "server/pipeline/step.h"

@@ -9,6 +9,7 @@
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/run_edge_job.h"
+#include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
@@ -108,10 +109,13 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
 
 Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock));
-  context.announcer.event(robot, "revision", std::to_string(revision.number), formats::WriteRevisionEvent(revision));
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
+  context.announcer.event(robot, "revision", std::to_string(revision.number),
+                          formats::WriteRevisionEvent(revision, usable));
   RIGCAL_ASSIGN(const auto document, formats::ReadRevisionDocument(revision.document));
-  context.announcer.calibration(revision, document.reference, document.solution.poses,
-                                static_cast<std::int64_t>(document.edges.size()));
+  context.announcer.status(revision, static_cast<std::int64_t>(document.edges.size()));
+  if (IsUsable(revision.verdict)) context.announcer.calibration(revision, document.reference, document.solution.poses);
+  if (!usable) context.announcer.withdraw(robot, document.solution.poses);
   return {};
 }
 

@@ -39,8 +39,12 @@ class Claims {
 struct Announcer {
   std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)>
       event;
-  std::function<void(const Revision&, const SensorId& reference, const std::vector<SensorPose>&, std::int64_t edges)>
-      calibration;
+  // Of each new revision, whatever its verdict.
+  std::function<void(const Revision&, std::int64_t edges)> status;
+  // Of a revision whose verdict is pass or warn: what robots use from now on.
+  std::function<void(const Revision&, const SensorId& reference, const std::vector<SensorPose>&)> calibration;
+  // What was told of these sensors is to be used no more, and there is nothing in its place.
+  std::function<void(const RobotId&, const std::vector<SensorPose>&)> withdraw;
 };
 
 struct StepContext {

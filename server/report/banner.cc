@@ -27,13 +27,34 @@ void FillBadge(Dictionary& row, VerdictLevel level) {
   row.SetValue("WORD", VerdictWord(level));
 }
 
-void FillBanner(Dictionary& page, const Verdict& verdict) {
+void FillOverdue(Dictionary& row, const Validity& validity) {
+  const auto valid_until = ValidUntil(validity.calibrated_at);
+  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", OverdueText(valid_until));
+  if (!valid_until) return;
+  Dictionary* later = row.AddSectionDictionary("LATER");
+  later->SetValue("UNTIL", ToIso(*valid_until));
+  later->SetValue("TEXT", OverdueText(valid_until));
+}
+
+namespace {
+
+void FillValidity(Dictionary& banner, const Verdict& verdict, const Validity& validity) {
+  FillOverdue(banner, validity);
+  const auto valid_until = ValidUntil(validity.calibrated_at);
+  if (!IsUsable(verdict)) return ShowValue(banner, "KEEP", "TEXT", KeepText(validity.usable));
+  if (valid_until && !validity.overdue) ShowValue(banner, "VALID", "TEXT", ValidText(*valid_until));
+}
+
+}  // namespace
+
+void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision) {
   Dictionary* banner = page.AddIncludeDictionary("BANNER");
   banner->SetFilename("banner.tpl");
   FillBadge(*banner, verdict.level);
   banner->SetValue("ICON", IconOf(verdict.level));
   banner->SetValue("WHY", verdict.why.empty() ? "There is no verdict yet." : verdict.why);
   if (!verdict.what_to_do.empty()) ShowValue(*banner, "DO", "WHAT_TO_DO", verdict.what_to_do);
+  if (has_revision) FillValidity(*banner, verdict, validity);
 }
 
 }  // namespace rigcal::report

@@ -1,12 +1,17 @@
 // The coloured verdict at the head of a page.
 #pragma once
 
-#include "server/model/diagnosis.h"
+#include "server/model/validity.h"
 #include "server/report/page.h"
 
 namespace rigcal::report {
 
-void FillBanner(Dictionary& page, const Verdict& verdict);
+// With until when it is valid, that it is overdue, and what to use where it failed. A page that is made once knows no
+// now: it carries the words for later, and a script shows them when their time has come (web-static/overdue.js).
+// `has_revision`: false for a robot of which there is nothing yet.
+void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision = true);
+// OVERDUE, or LATER with UNTIL: the words "overdue" of a row.
+void FillOverdue(Dictionary& row, const Validity& validity);
 // LEVEL (class) and WORD of a small verdict badge.
 void FillBadge(Dictionary& row, VerdictLevel level);
 

@@ -18,7 +18,7 @@ std::string AgeOf(Stamp then, Stamp now) {
 }
 
 // A revision may hold failed edges only.
-bool IsNever(const FleetRow& robot) { return robot.revision == 0 || robot.calibrated_at.ns == 0; }
+bool IsNever(const FleetRow& robot) { return robot.revision == 0 || !robot.validity.calibrated_at; }
 
 namespace {
 
@@ -28,7 +28,7 @@ void FillSummary(Dictionary& page, const std::vector<FleetRow>& rows) {
   std::map<VerdictLevel, std::size_t> levels;
   for (const FleetRow& row : rows) {
     ++levels[row.verdict.level];
-    overdue += row.overdue ? 1 : 0;
+    overdue += row.validity.overdue ? 1 : 0;
   }
   page.SetValue("SUMMARY", Count(rows.size(), "robot", "robots"));
   const auto add = [&](const std::string& value, std::size_t count) {
@@ -37,10 +37,10 @@ void FillSummary(Dictionary& page, const std::vector<FleetRow>& rows) {
     part->SetValue("VALUE", value);
     part->SetValue("TEXT", std::to_string(count) + " " + value);
   };
+  add("overdue", overdue);
   for (const VerdictLevel level :
        {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass})
     add(NameOf(level), levels[level]);
-  add("overdue", overdue);
 }
 
 void FillWorst(Dictionary& row, const std::optional<WorstFit>& worst) {
@@ -54,19 +54,20 @@ void FillWorst(Dictionary& row, const std::optional<WorstFit>& worst) {
 
 void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
+  FillOverdue(row, robot.validity);
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
   if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())
     ShowValue(row, "DO", "WHAT_TO_DO", robot.verdict.what_to_do);
+  if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.validity.usable));
   if (robot.pairs_waiting > 0)
     ShowValue(row, "WORKING", "TEXT",
               Count(static_cast<std::size_t>(robot.pairs_waiting), "pair", "pairs") + " being calibrated");
-  row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(robot.calibrated_at, now));
+  row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(*robot.validity.calibrated_at, now));
   row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
   FillWorst(row, robot.worst);
   row.SetValue("SESSIONS", std::to_string(robot.sessions));
   row.SetValue("EDGES", std::to_string(robot.edges));
-  if (robot.overdue) row.ShowSection("OVERDUE");
   if (robot.revision == 0) return row.ShowSection("NO_REVISION");
   Dictionary* revision = row.AddSectionDictionary("REVISION");
   revision->SetValue("NUMBER", std::to_string(robot.revision));

@@ -29,7 +29,7 @@ std::vector<std::string> WordsOf(const std::string& search) {
 // One of the choices of the page.
 bool IsLike(const FleetRow& row, Stamp now, const std::string& choice) {
   if (choice.empty()) return true;
-  if (choice == "overdue") return row.overdue;
+  if (choice == "overdue") return row.validity.overdue;
   if (choice == "off") return row.worst && row.worst->in_sigmas >= kOff_sigmas;
   if (choice == "quiet") return !row.last_session_at || now.ns - row.last_session_at->ns > kQuiet_ns;
   return NameOf(row.verdict.level) == choice;
@@ -44,18 +44,20 @@ bool HasWords(const FleetRow& row, const std::vector<std::string>& words) {
                      [&](const std::string& word) { return text.find(word) != std::string::npos; });
 }
 
-int Urgency(VerdictLevel level) {
-  switch (level) {
+// What is overdue may be relied on no more than a warning allows: it goes before those.
+int UrgencyOf(const FleetRow& row) {
+  const int overdue = row.validity.overdue ? 0 : 1;
+  switch (row.verdict.level) {
     case VerdictLevel::kFail:
-      return 0;
+      return overdue;
     case VerdictLevel::kUnknown:
-      return 1;
+      return 2 + overdue;
     case VerdictLevel::kWarn:
-      return 2;
+      return overdue == 0 ? 4 : 6;
     case VerdictLevel::kPass:
       break;
   }
-  return 3;
+  return overdue == 0 ? 5 : 7;
 }
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
@@ -89,14 +91,14 @@ bool IsBefore(const std::string& a, const std::string& b) {
 // A number to sort by, the smallest first; equal ones by name.
 std::int64_t KeyOf(const FleetRow& row, const std::string& sort) {
   if (sort == "robot") return 0;
-  if (sort == "calibrated") return row.calibrated_at.ns;
+  if (sort == "calibrated") return row.validity.calibrated_at.value_or(Stamp{}).ns;
   if (sort == "session") return row.last_session_at ? row.last_session_at->ns : 0;
   // A thousandth of sigma tells edges apart; beyond 1e12 sigma all are alike.
   if (sort == "worst") return row.worst ? -std::llround(std::min(row.worst->in_sigmas, 1e12) * 1e3) : 1;
   if (sort == "revision") return -row.revision;
   if (sort == "sessions") return -row.sessions;
   if (sort == "edges") return -row.edges;
-  return 2 * Urgency(row.verdict.level) + (row.overdue ? 0 : 1);
+  return UrgencyOf(row);
 }
 
 }  // namespace

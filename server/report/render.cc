@@ -65,7 +65,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   const auto edges = InOrder(input.revision);
   Dictionary page("revision");
   FillTitle(page, input);
-  FillBanner(page, input.revision.verdict);
+  FillBanner(page, input.revision.verdict, {input.calibrated_at, false, input.usable, false});
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges);
   FillChanges(page, input);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/model/validity.h"
 #include "server/report/camera_choice.h"
 #include "server/report/cloud_section.h"
 
@@ -48,6 +49,8 @@ struct ReportInput {
   std::map<EdgeId, std::vector<BlockVector>> blocks;
   std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
+  std::optional<Stamp> calibrated_at;    // when what the revision counts was measured
+  std::optional<UsableRevision> usable;  // what to use where this one is not to be used
 };
 
 // File name (relative, '/'-separated) -> contents: index.html, revision.json (= document), edges.csv, style.css, and
@@ -64,9 +67,8 @@ struct FleetRow {
   RobotId robot;
   int revision = 0;  // 0: none yet
   Verdict verdict;
-  Stamp calibrated_at;  // newest capture behind a good edge; 0: never
+  Validity validity;  // of that revision
   std::int64_t sessions = 0, edges = 0;
-  bool overdue = false;
   std::optional<Stamp> last_session_at = {};  // captured; absent: no session
   std::optional<WorstFit> worst = {};         // of the newest revision; absent: nothing checks an edge
   std::int64_t pairs_waiting = 0;             // to be calibrated

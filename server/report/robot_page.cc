@@ -78,6 +78,7 @@ void FillResult(Dictionary& row, const SessionRow& session) {
   if (session.pairs == 0) return ShowValue(row, "WORKING", "WORD", "no pair of sensors to calibrate");
   row.SetValue("GOOD", std::to_string(session.good) + " of " +
                            Count(static_cast<std::size_t>(session.pairs), "pair", "pairs") + " good");
+  if (session.past > 0) ShowValue(row, "PAST", "COUNT", std::to_string(session.past));
   if (session.failed > 0) ShowValue(row, "FAILED", "COUNT", std::to_string(session.failed));
 }
 
@@ -130,14 +131,19 @@ void FillCompare(Dictionary& page, const std::vector<Revision>& revisions) {
 Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   Dictionary page("robot");
   const FleetRow& row = input.row;
-  FillHead(page, row.robot.str() + ": " + VerdictWord(row.verdict.level), "../../");
+  FillHead(page, row.robot.str() + ": " + (row.validity.overdue ? "Overdue, " : "") + VerdictWord(row.verdict.level),
+           "../../");
   page.SetValue("ROBOT", row.robot.str());
-  page.SetValue("SUMMARY",
-                (IsNever(row) ? std::string("Not calibrated yet") : "Calibrated " + AgeOf(row.calibrated_at, now)) +
-                    ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
-                    Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
-  if (row.overdue) page.ShowSection("OVERDUE");
-  FillBanner(page, row.verdict);
+  page.SetValue("SUMMARY", (IsNever(row) ? std::string("Not calibrated yet")
+                                         : "Calibrated " + AgeOf(*row.validity.calibrated_at, now)) +
+                               ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
+                               Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
+  FillBanner(page, row.verdict, row.validity, row.revision > 0);
+  if (row.validity.calculating && row.revision > 0) {
+    Dictionary* newer = page.AddSectionDictionary("NEWER");
+    newer->SetValue("TEXT", kCalculatingText);
+    newer->SetValue("NUMBER", std::to_string(row.revision));
+  }
   FillNewest(page, input.revisions);
   FillSessions(page, input.sessions, now);
   FillRevisions(page, input.revisions, now);

@@ -21,6 +21,7 @@ struct SessionRow {
   bool closed = false;
   std::int64_t files = 0, files_held = 0, pairs = 0, pairs_waiting = 0;
   std::int64_t good = 0, failed = 0;  // of the pairs that are done
+  std::int64_t past = 0;              // good where they were measured, but the newest revision counts them no more
   std::optional<Superseding> superseded_by = {};
 };
 struct RobotInput {
@@ -36,7 +37,7 @@ struct RobotInput {
 struct SolvedRevision {
   int number = 0;
   std::shared_ptr<const formats::RevisionInput> revision;
-  Stamp captured_at = {};  // of its newest session; 0: not known
+  Stamp calibrated_at = {};  // 0: it counts nothing
 };
 [[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
 

@@ -13,7 +13,7 @@ using formats::JsonWriter;
 
 struct Row {
   int revision = 0;
-  Stamp captured_at;
+  Stamp calibrated_at;
   std::optional<SensorMove> step;  // since the row before
   Vector6d d = Vector6d::Zero(), sigma = Vector6d::Zero();
 };
@@ -33,7 +33,7 @@ void Take(Trend& trend, const SolvedRevision& solved, const SensorPose& pose) {
   std::optional<SensorMove> step;
   if (trend.last) step = MoveOf(*trend.last, pose);
   trend.last = pose;
-  trend.rows.push_back({solved.number, solved.captured_at, std::move(step),
+  trend.rows.push_back({solved.number, solved.calibrated_at, std::move(step),
                         (trend.T_ref_first->Inverse() * pose.T_ref_sensor).Log(),
                         pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt()});
 }
@@ -56,7 +56,7 @@ void WriteTrend(JsonWriter& out, const SensorId& sensor, const Trend& trend) {
     for (const Row& row : trend.rows)
       out.Object([&] {
         out.Integer("revision", row.revision);
-        if (row.captured_at.ns > 0) out.Text("date", ToIso(row.captured_at).substr(0, 10));
+        if (row.calibrated_at.ns > 0) out.Text("date", ToIso(row.calibrated_at).substr(0, 10));
         if (row.step) WriteStep(out, *row.step);
         WriteVector(out, "d", row.d);
         WriteVector(out, "sigma", row.sigma);

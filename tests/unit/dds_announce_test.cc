@@ -56,7 +56,9 @@ TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
   right.T_ref_sensor.p_m = {1, 2, 3};
   right.T_ref_sensor.q = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5);
   right.covariance(4, 2) = 7;
-  server_->Publish(robot, 3, SensorId("left"), {left, right}, {VerdictLevel::kWarn, "why", "do"}, 5, 6, Stamp{42});
+  const Verdict verdict{VerdictLevel::kWarn, "why", "do"};
+  server_->PublishCalibration(robot, 3, SensorId("left"), {left, right}, verdict, Stamp{42});
+  server_->PublishStatus(robot, 3, verdict, 5, 6, Stamp{42});
   std::map<std::string, rigcal_wire_Calibration> heard;
   Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01")
       .Take(2, [&](const rigcal_wire_Calibration& sample) { heard[sample.sensor_id] = sample; });
@@ -80,6 +82,22 @@ TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
         EXPECT_EQ(status.jobs_waiting, 6u);
         EXPECT_EQ(status.stamp_ns, 42);
       });
+}
+
+// What was withdrawn is gone for those who listen, and for those who come later; the others' stay.
+TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
+  const RobotId robot("mapper-01");
+  SensorPose left, right;
+  left.sensor = SensorId("left");
+  right.sensor = SensorId("right");
+  const Verdict verdict{VerdictLevel::kPass, "why", "do"};
+  server_->PublishCalibration(robot, 3, SensorId("left"), {left, right}, verdict, Stamp{42});
+  server_->WithdrawCalibration(robot, {left, right});
+  server_->PublishCalibration(robot, 4, SensorId("left"), {right}, verdict, Stamp{43});
+  std::map<std::string, std::uint32_t> heard;
+  Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01")
+      .Take(1, [&](const rigcal_wire_Calibration& sample) { heard[sample.sensor_id] = sample.revision; });
+  EXPECT_EQ(heard, (std::map<std::string, std::uint32_t>{{"right", 4}}));
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ constexpr Stamp kDayBefore{1769860800000000000};  // 2026-01-31T12:00:00Z
 const RobotId kRobot("mapper-01");
 const Verdict kPass{VerdictLevel::kPass, "All is well.", "Nothing."};
 
-RobotAnswer SampleRobot() { return {kRobot, 3, kPass, kDayBefore, 2, 7, 1, false}; }
+const UsableRevision kUsable{3, kDayBefore};
+
+RobotAnswer SampleRobot() { return {kRobot, 3, kPass, {kDayBefore, false, kUsable, true}, 2, 7, 1}; }
 
 SessionAnswer SampleSession() {
   return {SessionId(std::string(64, 'c')), kRobot, false, 18, 17, 1234567, kDayBefore, kNow, std::nullopt, "Ada", 1, 2};
@@ -22,15 +24,19 @@ SessionAnswer SampleSession() {
 
 TEST(Answers, Robots) {
   EXPECT_EQ(WriteRobots({SampleRobot()}, kNow),
-            "{\"robots\":[{\"age_ns\":86400000000000,\"calibrated_at\":\"2026-01-31T12:00:00Z\",\"edges\":7,"
-            "\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\",\"sessions\":2,"
-            "\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\",\"why\":\"All is well.\"}}]}");
+            "{\"robots\":[{\"age_ns\":86400000000000,\"calculating\":true,\"calibrated_at\":\"2026-01-31T12:00:00Z\","
+            "\"edges\":7,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\",\"sessions\":2,"
+            "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
+            "\"valid_until\":\"2026-05-01T12:00:00Z\",\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\","
+            "\"why\":\"All is well.\"}}]}");
   EXPECT_EQ(WriteRobots({}, kNow), "{\"robots\":[]}");
 }
 
 TEST(Answers, ARobotWithoutRevisionHasNoAge) {
-  const json row = json::parse(WriteRobots({RobotAnswer{kRobot, 0, {}, {}, 0, 0, 0, true}}, kNow))["robots"][0];
-  for (const char* key : {"revision", "calibrated_at", "age_ns"}) EXPECT_TRUE(row.at(key).is_null()) << key;
+  const json row = json::parse(
+      WriteRobots({RobotAnswer{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];
+  for (const char* key : {"revision", "calibrated_at", "age_ns", "valid_until", "usable"})
+    EXPECT_TRUE(row.at(key).is_null()) << key;
   EXPECT_EQ(row["verdict"]["level"], "unknown");
 }
 
@@ -95,12 +101,16 @@ Revision SampleRevisionRow() {
 
 TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   const Revision revision = SampleRevisionRow();
-  const std::string text = WriteShow(revision, true, kNow);
+  const std::string text = WriteShow(revision, true, {kDayBefore, true, kUsable, false}, kNow);
   EXPECT_NE(text.find(revision.document), std::string::npos);
   const json document = json::parse(text);
   EXPECT_EQ(document["age_ns"], 86400000000000);
   EXPECT_EQ(document["revision"], 3);
   EXPECT_EQ(document["published"], true);
+  EXPECT_EQ(document["overdue"], true);
+  EXPECT_EQ(document["valid_until"], "2026-05-01T12:00:00Z");
+  EXPECT_EQ(document["usable"]["revision"], 3);
+  EXPECT_EQ(document["calculating"], false);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));
   EXPECT_EQ(document["document"]["reference"], "left");
 }
@@ -214,7 +224,10 @@ TEST(Events, HaveTheDocumentedMembers) {
   EXPECT_EQ(graph["sensors"], 3);
   EXPECT_EQ(graph["sensors_known"], 2);
   EXPECT_EQ(graph["e_global"]["after"]["total"], 0.03);
-  EXPECT_EQ(json::parse(WriteRevisionEvent(SampleRevisionRow()))["verdict"]["level"], "pass");
+  const json revision = json::parse(WriteRevisionEvent(SampleRevisionRow(), kUsable));
+  EXPECT_EQ(revision["verdict"]["level"], "pass");
+  EXPECT_EQ(revision["usable"]["revision"], 3);
+  EXPECT_TRUE(json::parse(WriteRevisionEvent(SampleRevisionRow(), std::nullopt))["usable"].is_null());
   EXPECT_EQ(json::parse(WriteSessionEvent(SampleSession()))["payloads_held"], 17);
   EXPECT_EQ(WritePublishedEvent(kRobot, 3, "/robots/mapper-01/revisions/3/"),
             "{\"path\":\"/robots/mapper-01/revisions/3/\",\"revision\":3,\"robot\":\"mapper-01\"}");

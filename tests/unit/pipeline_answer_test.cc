@@ -73,6 +73,11 @@ TEST_F(AnswerTest, EdgesThatNoLongerCountArePastWithTheirReason) {
   EXPECT_NE(page->body.find(">past</span> <span class=\"why\" dir=\"auto\">sensor right was remounted"),
             std::string::npos)
       << page->body;
+  const auto robot_page =
+      AnswerPage({*store_, clock_, revisions_cache_, clock_.now, "http://127.0.0.1:1"}, "/robots/r/", "");
+  ASSERT_TRUE(robot_page) << Sentence(robot_page.error());
+  EXPECT_NE(robot_page->body.find("1 pair good <span class=\"badge unknown\">1 past</span>"), std::string::npos)
+      << robot_page->body;
 }
 
 // Block vectors that scatter twice as far as the edges' own information says.

@@ -39,10 +39,15 @@ class PipelineTest : public testing::Test {
     announcer_.event = [this](const RobotId&, const std::string& kind, const std::string&, const std::string& json) {
       events_.push_back({kind, json});
     };
-    announcer_.calibration = [this](const Revision& revision, const SensorId&, const std::vector<SensorPose>& poses,
-                                    std::int64_t) {
+    announcer_.status = [this](const Revision& revision, std::int64_t) {
       revisions_.push_back(revision);
-      poses_ = poses;
+      if (const auto document = formats::ReadRevisionDocument(revision.document)) poses_ = document->solution.poses;
+    };
+    announcer_.calibration = [this](const Revision& revision, const SensorId&, const std::vector<SensorPose>&) {
+      told_.push_back(revision.number);
+    };
+    announcer_.withdraw = [this](const RobotId&, const std::vector<SensorPose>& poses) {
+      for (const SensorPose& pose : poses) withdrawn_.push_back(pose.sensor.str());
     };
   }
   void TearDown() override {
@@ -146,7 +151,9 @@ class PipelineTest : public testing::Test {
   Announcer announcer_;
   std::vector<std::pair<std::string, std::string>> events_;
   std::vector<Revision> revisions_;
-  std::vector<SensorPose> poses_;
+  std::vector<SensorPose> poses_;       // of the newest of them
+  std::vector<int> told_;               // revisions whose poses went out for robots to use
+  std::vector<std::string> withdrawn_;  // sensors of which there is nothing to use
 };
 
 // A finished edge between two sensors with T_a_b = a shift along x and equal, independent errors.

@@ -260,7 +260,7 @@ TEST(ReportData, HoldsPosesSigmasAndBlocks) {
 }
 
 FleetRow Robot(const std::string& name, VerdictLevel level, std::int64_t edges) {
-  return {RobotId(name), 1, {level, "why of " + name, ""}, Stamp{1}, 0, edges, false};
+  return {RobotId(name), 1, {level, "why of " + name, ""}, {Stamp{1}, false, std::nullopt, false}, 0, edges};
 }
 
 std::vector<std::string> Names(const FleetSlice& slice) {

@@ -16,7 +16,12 @@ using ::testing::Not;
 constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
 
 FleetRow RowOf(const std::string& robot, VerdictLevel level, int revision) {
-  return {RobotId(robot), revision, {level, "because of " + robot, ""}, Stamp{100 * kDay_ns}, 2, 5, false};
+  return {RobotId(robot),
+          revision,
+          {level, "because of " + robot, ""},
+          {Stamp{100 * kDay_ns}, false, std::nullopt, false},
+          2,
+          5};
 }
 
 TEST(ReportFleet, EmptyFleetTellsHowToPush) {
@@ -27,7 +32,7 @@ TEST(ReportFleet, EmptyFleetTellsHowToPush) {
 
 TEST(ReportFleet, WorstFirstWithAgeAndLinks) {
   FleetRow late = RowOf("late", VerdictLevel::kPass, 4);
-  late.overdue = true;
+  late.validity.overdue = true;
   const std::string page =
       RenderFleet({RowOf("good", VerdictLevel::kPass, 1), late, RowOf("bad", VerdictLevel::kFail, 2)},
                   Stamp{103 * kDay_ns})
@@ -37,9 +42,8 @@ TEST(ReportFleet, WorstFirstWithAgeAndLinks) {
   EXPECT_THAT(page, HasSubstr("href=\"robots/late/revisions/4/\""));
   EXPECT_THAT(page, HasSubstr("href=\"robots/bad/\""));
   EXPECT_THAT(page, HasSubstr(AgeText(3 * kDay_ns) + " ago"));
-  EXPECT_THAT(page,
-              HasSubstr("3 robots &middot; <a href=\"?verdict=fail\">1 fail</a> &middot; "
-                        "<a href=\"?verdict=pass\">2 pass</a> &middot; <a href=\"?verdict=overdue\">1 overdue</a>"));
+  EXPECT_THAT(page, HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "
+                              "<a href=\"?verdict=fail\">1 fail</a> &middot; <a href=\"?verdict=pass\">2 pass</a>"));
 }
 
 TEST(ReportFleet, SaysWhatToDoAndWhatIsUnderWay) {

@@ -92,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& field) { return field.param.name; });
 
 TEST(HostileTextElsewhere, FleetAndRobotPage) {
-  const FleetRow row{RobotId(kHostile), 3, {VerdictLevel::kFail, kHostile, kHostile}, Stamp{1}, 1, 1, true};
+  const FleetRow row{
+      RobotId(kHostile), 3, {VerdictLevel::kFail, kHostile, kHostile}, {Stamp{1}, true, std::nullopt, false}, 1, 1};
   Revision revision;
   revision.number = 3;
   revision.verdict = row.verdict;

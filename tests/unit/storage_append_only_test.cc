@@ -37,7 +37,9 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendCloud(store_, DigestOf("cloud"), "plate 1", {{true, "", {}, 7, {PlanePatch{}}}, {}}));
       RIGCAL_TRY(RetireEdge(store_, edge.id, {{4}, "Ada", "typed wrong"}));
       RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));
-      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      Revision revision = MakeRevision(1);
+      revision.calibrated_at = Stamp{4};
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, revision));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));

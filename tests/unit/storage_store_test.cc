@@ -73,7 +73,8 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
           "INSERT INTO detected_view VALUES (printf('%064d', 7), 'checkerboard', 1, '', 'board', "
           "640, 480, zeroblob(32), NULL);"
           "INSERT INTO edge VALUES (1, printf('%064d', 8), 'mapper-01', NULL, 1, 'left', 'right', 'stereo', 'good', 5, "
-          "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288))");
+          "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288));"
+          "INSERT INTO revision VALUES ('mapper-01', 1, 6, 1, 'pass', '', '', printf('%064d', 9), '{}')");
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   EXPECT_EQ(store->SchemaVersion(), NewestSchemaVersion());
@@ -85,6 +86,9 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
   ASSERT_TRUE(edges && edges->size() == 1);
   EXPECT_EQ(edges->front().uncertainty.dof, 12);
   EXPECT_EQ(edges->front().uncertainty.jackknife_ratio, 0.0);  // not told
+  const auto revision = LoadRevision(*store, RobotId("mapper-01"), 1);
+  ASSERT_TRUE(revision && *revision);
+  EXPECT_EQ((*revision)->calibrated_at, Stamp{5});
 }
 
 std::string SqlOfEdge(int number, const std::string& robot) {

@@ -164,6 +164,8 @@ TEST_F(WorkTest, ARobotIsUnsolvedWhileItsNewestEdgeIsInNoRevision) {
   EXPECT_THAT(unsolved(), ElementsAre(kRobot, kOther));
   ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, kRobot).value())));
   EXPECT_THAT(unsolved(), ElementsAre(kOther));
+  EXPECT_TRUE(IsUnsolved(store_, kOther).value());
+  EXPECT_FALSE(IsUnsolved(store_, kRobot).value());
   ASSERT_TRUE(AppendEdge(store_, MakeFailedEdge(1), {1}));
   EXPECT_THAT(unsolved(), ElementsAre(kRobot, kOther));
 }
@@ -191,6 +193,27 @@ TEST_F(WorkTest, RevisionsAreNumberedPerRobot) {
   EXPECT_EQ(list[0].number, 2);
   EXPECT_EQ(list[1].number, 1);
   EXPECT_TRUE(list[0].document.empty());
+}
+
+TEST_F(WorkTest, TheUsableRevisionIsTheNewestThatPassesOrWarns) {
+  using L = VerdictLevel;
+  for (const L level : {L::kFail, L::kPass, L::kWarn, L::kUnknown, L::kFail}) {
+    Revision revision = MakeRevision(1);
+    revision.verdict.level = level;
+    revision.calibrated_at = Stamp{1000 + static_cast<int>(level)};
+    ASSERT_TRUE(AppendRevision(store_, revision));
+  }
+  const auto usable = [&](int number) {
+    const auto revision = LoadUsableRevision(store_, kRobot, number).value();
+    return revision ? revision->number : 0;
+  };
+  EXPECT_EQ(usable(0), 3);
+  EXPECT_EQ(usable(5), 3);
+  EXPECT_EQ(usable(2), 2);
+  EXPECT_EQ(usable(1), 0);
+  EXPECT_EQ(LoadUsableRevision(store_, kRobot, 0).value()->calibrated_at, Stamp{1000 + static_cast<int>(L::kWarn)});
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(1, kOther)));
+  EXPECT_EQ(LoadRevision(store_, kOther, 1).value()->calibrated_at, std::nullopt) << "it counts nothing";
 }
 
 TEST_F(WorkTest, ALargeDocumentComesBack) {

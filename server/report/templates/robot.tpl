@@ -6,9 +6,10 @@
 <div id="live" data-fresh data-live="../../api/v1/live?robot={{ROBOT}}">
 <header>
 <h1>{{ROBOT}}</h1>
-<p class="meta">{{SUMMARY}}{{#OVERDUE}} <span class="badge fail">overdue</span>{{/OVERDUE}}</p>
+<p class="meta">{{SUMMARY}}</p>
 </header>
 {{>BANNER}}
+{{#NEWER}}<p class="working" role="status">{{TEXT}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
 {{#NEWEST}}<p class="ways"><a class="button" href="revisions/{{NUMBER}}/">Report of revision {{NUMBER}}</a>{{#SINCE}} <a class="button" href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">What moved since revision {{BEFORE}}</a>{{/SINCE}}</p>{{/NEWEST}}
 {{#OPEN}}
 <p class="working"><a href="sessions/{{ID}}/">Session {{SHORT}}</a> {{STATE}}: {{DONE}} of {{ALL}} {{UNIT}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress of session {{SHORT}}"></progress></p>
@@ -38,7 +39,7 @@
 <thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Result</th><th scope="col" class="num">Files</th></tr></thead>
 <tbody>
 {{#SESSION}}
-<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code>rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#PAST}} <span class="badge unknown">{{COUNT}} past</span>{{/PAST}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code>rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
 {{/SESSION}}
 </tbody>
 </table>

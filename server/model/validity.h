@@ -1,0 +1,43 @@
+// Whether a robot may rely on its calibration: how old it is, which revision may be used, what is on its way.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/base/stamp.h"
+#include "server/model/diagnosis.h"
+
+namespace rigcal {
+
+// A calibration older than this is overdue (`rigcal due` takes a limit of its own).
+inline constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'000;
+
+// A revision whose verdict is pass or warn.
+struct UsableRevision {
+  int number = 0;
+  Stamp created_at;
+  friend bool operator==(const UsableRevision&, const UsableRevision&) = default;
+};
+
+struct Validity {
+  std::optional<Stamp> calibrated_at;    // when what the revision counts was measured; absent: it counts nothing
+  bool overdue = false;                  // now
+  std::optional<UsableRevision> usable;  // the newest; absent: there is none to fall back to
+  bool calculating = false;              // something arrived that the newest revision does not hold
+};
+
+[[nodiscard]] bool IsUsable(const Verdict& verdict);
+// The moment from which a calibration of that date is overdue.
+[[nodiscard]] std::optional<Stamp> ValidUntil(const std::optional<Stamp>& calibrated_at);
+// What was never calibrated is overdue.
+[[nodiscard]] bool IsOverdue(const std::optional<Stamp>& calibrated_at, std::int64_t max_age_ns, Stamp now);
+
+// For people: "31 Jan 2026", in UTC; and sentences.
+[[nodiscard]] std::string DayText(Stamp stamp);
+[[nodiscard]] std::string ValidText(Stamp valid_until);
+[[nodiscard]] std::string OverdueText(const std::optional<Stamp>& valid_until);
+// Of a revision that is neither pass nor warn.
+[[nodiscard]] std::string KeepText(const std::optional<UsableRevision>& usable);
+inline constexpr const char* kCalculatingText = "A newer revision is being calculated.";
+
+}  // namespace rigcal

@@ -1,0 +1,109 @@
+"""May the robot drive? How each verb ends, which revision is kept where the newest failed, and that what is overdue says so first;
+the same after the server was killed."""
+import json
+import re
+
+from edge_case import edge
+from flow import Flow, check
+from measures.sessions import noise_session
+
+PASS, FAIL, WARN, UNKNOWN = 0, 1, 5, 6  # exit codes
+TRIANGLE = [edge("a", "b", 1.0), edge("b", "c", 1.0), edge("a", "c", 2.0)]
+CONTRADICTION = [edge("a", "c", 3.0)]
+LONG_AGO = "2020-01-01T12:00:00Z"
+OVERDUE = "Overdue since 31 Mar 2020. Calibrate the robot again before it is relied on."
+
+
+def push(flow, robot, edges, exit_code):
+    path = flow.folder / "edges.json"
+    path.write_text(json.dumps({"format": 1, "edges": edges}))
+    return flow.rigcal("push-edges", path, "--robot", robot, exit_code=exit_code).stdout
+
+
+def check_codes(flow, robot, code):
+    """Every verb that tells the verdict of one robot ends alike."""
+    for words in (("show", robot), ("status", robot), ("lookup", robot, "a", "c"), ("show", robot, "--json")):
+        flow.rigcal(*words, exit_code=code)
+    flow.rigcal("robots")
+    flow.rigcal("status")
+
+
+def wait_published(flow):
+    for _ in range(100):
+        if json.loads(flow.get("/api/v1/live"))["unfinished"] == 0:
+            return
+    check(False, "everything is published")
+
+
+def failed_keeps_the_last_good(flow):
+    push(flow, "rig", TRIANGLE, PASS)
+    check_codes(flow, "rig", PASS)
+    check(re.search(r"Valid until \d+ \w+ 20\d\d\.", flow.rigcal("show", "rig").stdout), "until when it is valid")
+    said = push(flow, "rig", CONTRADICTION, FAIL)
+    keep = re.search(r"Keep using revision 1 of \d+ \w+ 20\d\d meanwhile\.", said)
+    check(keep, "push says what to keep: " + said)
+    flow.kill_and_restart()
+    check_codes(flow, "rig", FAIL)
+    wait_published(flow)
+    for told in (flow.rigcal("show", "rig", exit_code=FAIL).stdout, flow.get("/robots/rig/"), flow.get("/robots/rig/revisions/2/"), flow.get("/")):
+        check(keep.group() in told, "all say what to keep: " + told)
+    for verb in ("show?robot=rig", "status?robot=rig"):
+        document = json.loads(flow.get("/api/v1/" + verb))
+        usable = (document if "usable" in document else document["robots"][0])["usable"]
+        check(usable["revision"] == 1, "%s: %r" % (verb, usable))
+    check("There is no earlier calibration to fall back to." in push(flow, "new", TRIANGLE[:2] + CONTRADICTION, FAIL), "nothing to keep")
+
+
+def warn_and_unknown(flow):
+    push(flow, "open", TRIANGLE[:2], WARN)
+    check_codes(flow, "open", WARN)
+    session = noise_session(flow.folder / "noise", "noise", 100_000, 4, seed=1)
+    flow.rigcal("push", session, exit_code=UNKNOWN)
+    flow.rigcal("show", "noise", exit_code=UNKNOWN)
+    one = noise_session(flow.folder / "one", "one", 100_000, 4, seed=2)
+    text = (one / "session.yaml").read_text().replace("sees: board}\n  right: {type: camera, sees: board}", "sees: board}")
+    (one / "session.yaml").write_text(text)
+    for picture in (one / "right").iterdir():
+        picture.unlink()
+    (one / "right").rmdir()
+    check("there is no result" in flow.rigcal("push", one, exit_code=UNKNOWN).stdout, "one camera alone")
+    flow.rigcal("push", one, "--no-wait", exit_code=PASS)
+
+
+def two_cameras(flow):
+    """Of the virtual robot, the cameras to the front: few captures, small pictures."""
+    head, sensors = flow.rigcal("simulate", "--print-rig", "mars-mapper").stdout.split("\nsensors:\n")
+    front = "".join(re.findall(r"(?m)^  front_\w+:\n(?:    .*\n|     .*\n)+", sensors))
+    rig = flow.folder / "front.yaml"
+    rig.write_text(head.replace("robot: mars-mapper", "robot: old") + "\nsensors:\n" + front)
+    flow.rigcal("simulate", rig, "--out", flow.folder / "old", "--seed", 1, "--captures", 12, "--scale", 0.3, "--captured-at", LONG_AGO)
+    return flow.folder / "old"
+
+
+def overdue_comes_first(flow):
+    said = flow.rigcal("push", two_cameras(flow), exit_code=WARN).stdout
+    check(said.index(OVERDUE) < said.index("verdict  "), "push: " + said)
+    shown = flow.rigcal("show", "old", exit_code=WARN).stdout
+    check(shown.splitlines()[0].startswith("old, revision 1, calibrated 1 Jan 2020, solved"), "when it was measured: " + shown)
+    check(shown.splitlines()[1] == OVERDUE and "Valid until" not in shown, "show: " + shown)
+    check("overdue, warn" in flow.rigcal("robots").stdout, "robots")
+    for path in ("/api/v1/robots", "/api/v1/status?robot=old"):
+        row = [one for one in json.loads(flow.get(path))["robots"] if one["robot"] == "old"][0]
+        check(row["overdue"] and row["valid_until"] == "2020-03-31T12:00:00Z", "%s: %r" % (path, row))
+    page, fleet = flow.get("/robots/old/"), flow.get("/?q=old")
+    check(page.index(OVERDUE) < page.index('class="word"'), "the page says so first")
+    check(fleet.index(">overdue</span>", fleet.index('href="robots/old/"')) < fleet.index('class="badge warn"', fleet.index('href="robots/old/"')), "so does the row")
+    wait_published(flow)
+    check("Valid until 31 Mar 2020." in flow.get("/robots/old/revisions/1/"), "a report that is made once says until when")
+    flow.rigcal("due", exit_code=1)
+
+
+def main():
+    with Flow() as flow:
+        failed_keeps_the_last_good(flow)
+        warn_and_unknown(flow)
+        overdue_comes_first(flow)
+    print("validity: good")
+
+
+main()

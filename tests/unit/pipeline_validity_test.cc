@@ -1,0 +1,192 @@
+// Which revision a robot may use, until when, and that every answer and page tells the numbers of one revision.
+#include <nlohmann/json.hpp>
+
+#include "server/pipeline/answer.h"
+#include "server/pipeline/validity.h"
+#include "server/pipeline/startup.h"
+#include "storage/revisions.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kDay_ns = 24LL * 3600 * 1'000'000'000;
+constexpr const char* kOfRobot = R"({"robot":"r"})";
+
+class ValidityTest : public PipelineTest {
+ protected:
+  RevisionCache revisions_cache_;
+  AnswerContext Context() { return {*store_, clock_, revisions_cache_, clock_.now, ""}; }
+  json Ask(const std::string& verb) {
+    const auto answer = Answer(Context(), verb, kOfRobot);
+    EXPECT_TRUE(answer) << verb << ": " << Sentence(answer.error());
+    return json::parse(answer.value_or("{}"));
+  }
+  json Row() { return Ask("status")["robots"][0]; }
+  std::string Page(const std::string& path) {
+    const auto page = AnswerPage(Context(), path, "");
+    EXPECT_TRUE(page) << path << ": " << Sentence(page.error());
+    return page.value_or(PageText{}).body;
+  }
+  std::string Report(int revision) const {
+    std::stringstream page;
+    page << std::ifstream(store_->ReportFolder() / "r" / std::to_string(revision) / "index.html").rdbuf();
+    return page.str();
+  }
+  json Event(const std::string& kind) const {
+    for (auto event = events_.rbegin(); event != events_.rend(); ++event)
+      if (event->first == kind) return json::parse(event->second);
+    return nullptr;
+  }
+
+  // Three sensors in a loop that closes: usable.
+  void PushGood() {
+    StoreEdges(Closing("r", 2.0));
+    StepAll();
+  }
+  // One more edge that contradicts them: fails.
+  void PushContradiction() {
+    std::vector<Edge> edges = {GivenEdge("r", "a", "c", 3.0)};
+    AssignPushedIds(edges);
+    StoreEdges(edges);
+    StepAll();
+  }
+  static std::vector<Edge> Closing(const std::string& robot, double ac_m) {
+    std::vector<Edge> edges = {GivenEdge(robot, "a", "b", 1.0), GivenEdge(robot, "b", "c", 1.0),
+                               GivenEdge(robot, "a", "c", ac_m)};
+    AssignPushedIds(edges);
+    return edges;
+  }
+};
+
+TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
+  PushGood();
+  ASSERT_TRUE(IsUsable(revisions_.back().verdict)) << revisions_.back().verdict.why;
+  EXPECT_EQ(told_, std::vector<int>{1});
+  EXPECT_EQ(Event("revision")["usable"]["revision"], 1);
+  clock_.now.ns += kDay_ns;
+  PushContradiction();
+  ASSERT_EQ(revisions_.size(), 2U);
+  ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kFail);
+  EXPECT_EQ(told_, std::vector<int>{1}) << "a failed revision is no calibration";
+  EXPECT_TRUE(withdrawn_.empty()) << "what was told before stays";
+  const json usable = {{"revision", 1}, {"created_at", ToIso(revisions_[0].created_at)}};
+  EXPECT_EQ(Event("revision")["usable"], usable);
+  EXPECT_EQ(Ask("show")["usable"], usable);
+  EXPECT_EQ(Row()["usable"], usable);
+  const std::string keep = "Keep using revision 1 of " + DayText(revisions_[0].created_at) + " meanwhile.";
+  for (const std::string& page : {Page("/"), Page("/robots/r/"), Report(2)})
+    EXPECT_NE(page.find(keep), std::string::npos) << page;
+  EXPECT_EQ(Report(1).find("Keep using"), std::string::npos);
+}
+
+TEST_F(ValidityTest, AServerThatStartsTellsTheUsableOneAndTheNewestVerdict) {
+  PushGood();
+  PushContradiction();
+  told_.clear(), revisions_.clear();
+  ASSERT_TRUE(AnnounceStored(*store_, announcer_));
+  EXPECT_EQ(told_, std::vector<int>{1});
+  ASSERT_EQ(revisions_.size(), 1U);
+  EXPECT_EQ(revisions_[0].number, 2);
+  EXPECT_EQ(revisions_[0].verdict.level, VerdictLevel::kFail);
+}
+
+TEST_F(ValidityTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
+  StoreEdges(Closing("r", 3.0));
+  StepAll();
+  ASSERT_FALSE(IsUsable(revisions_.back().verdict));
+  EXPECT_TRUE(told_.empty());
+  EXPECT_TRUE(Ask("show")["usable"].is_null());
+  const std::string none = "There is no earlier calibration to fall back to.";
+  EXPECT_NE(Page("/robots/r/").find(none), std::string::npos);
+  EXPECT_NE(Report(1).find(none), std::string::npos);
+  ASSERT_TRUE(AnnounceStored(*store_, announcer_));
+  EXPECT_TRUE(told_.empty());
+}
+
+// Its poses are those of a rig that is no more.
+TEST_F(ValidityTest, WhatWasSolvedBeforeARemountIsNoFallback) {
+  PushGood();
+  clock_.now.ns += kDay_ns;
+  StoreSession("r", {{"left/01.png", "no picture"}, {"right/01.png", "nor this"}}, {SensorId("right")});
+  StepAll();
+  ASSERT_FALSE(IsUsable(revisions_.back().verdict)) << revisions_.back().verdict.why;
+  EXPECT_TRUE(Ask("show")["usable"].is_null());
+  EXPECT_EQ(withdrawn_, (std::vector<std::string>{"a", "b", "c", "left", "right"}));
+}
+
+TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
+  PushGood();
+  const Stamp until{clock_.now.ns + kDefaultMaxAge_ns};
+  const std::string report = Report(1);
+  EXPECT_NE(report.find("Valid until " + DayText(until) + "."), std::string::npos) << "for readers without a script";
+  EXPECT_NE(
+      report.find("<template data-from=\"" + ToIso(until) + "\"><p class=\"late\">Overdue since " + DayText(until)),
+      std::string::npos);
+  clock_.now = until;
+  EXPECT_EQ(Row()["overdue"], false);
+  EXPECT_NE(Page("/robots/r/").find("Valid until " + DayText(until)), std::string::npos);
+  clock_.now.ns += 1;
+  EXPECT_EQ(Row()["overdue"], true);
+  EXPECT_EQ(Ask("show")["overdue"], true);
+  EXPECT_EQ(Ask("show")["valid_until"], ToIso(until));
+  EXPECT_EQ(json::parse(*Answer(Context(), "lookup", R"({"robot":"r","a":"a","b":"b"})"))["overdue"], true);
+  const std::string page = Page("/robots/r/"), fleet = Page("/");
+  EXPECT_LT(page.find("Overdue since " + DayText(until)), page.find("class=\"word\""));
+  EXPECT_NE(page.find("<section class=\"banner " + NameOf(revisions_[0].verdict.level) + " overdue\""),
+            std::string::npos);
+  EXPECT_EQ(page.find("Valid until"), std::string::npos);
+  EXPECT_LT(fleet.find("<span class=\"badge fail\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
+}
+
+// What a session that is still being calibrated gave is in no revision yet: nobody tells it.
+TEST_F(ValidityTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
+  PushGood();
+  const Stamp first = clock_.now;
+  EXPECT_EQ(Row()["calculating"], false);
+  EXPECT_EQ(Page("/robots/r/").find("is being calculated"), std::string::npos);
+  clock_.now.ns += 40 * kDay_ns;
+  std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001)};
+  AssignPushedIds(more);
+  StoreEdges(more);
+  const json row = Row(), show = Ask("show");
+  EXPECT_EQ(row["edges"], show["document"]["edges"].size());
+  for (const json& document : {row, show}) {
+    EXPECT_EQ(document["revision"], 1);
+    EXPECT_EQ(document["calibrated_at"], ToIso(first));
+    EXPECT_EQ(document["calculating"], true);
+  }
+  EXPECT_EQ(Ask("due")["robots"][0]["calibrated_at"], ToIso(first));
+  const std::string page = Page("/robots/r/");
+  EXPECT_NE(page.find("Calibrated 40 days ago, 0 sessions, 3 edges"), std::string::npos) << page;
+  EXPECT_NE(page.find("A newer revision is being calculated. This page still tells revision 1."), std::string::npos);
+  StepAll();
+  EXPECT_EQ(Row()["calculating"], false);
+  EXPECT_EQ(Row()["edges"], 4);
+  EXPECT_EQ(Row()["calibrated_at"], ToIso(clock_.now));
+  // The history ends with the date that the page tells.
+  EXPECT_NE(Page("/robots/r/trend.js").find("\"date\":\"" + ToIso(clock_.now).substr(0, 10) + "\""), std::string::npos);
+}
+
+// A session of a wrong date that was pushed again in a corrected form does not keep the robot from being due.
+TEST_F(ValidityTest, WhatNoLongerCountsDoesNotDateTheCalibration) {
+  const auto give = [&](const SessionId& session) {
+    Edge edge = GivenEdge("r", "left", "right", 0.1);
+    edge.session = session;
+    edge.id = EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b);
+    StoreEdges({edge});
+  };
+  const std::map<std::string, std::string> files = {{"left/01.png", "1"}, {"right/01.png", "2"}};
+  const Stamp right = clock_.now;
+  clock_.now.ns += 300 * kDay_ns;  // a year mistyped
+  give(StoreSession("r", files));
+  clock_.now = right;
+  give(StoreSession("r", files));
+  StepAll();
+  EXPECT_EQ(Ask("show")["calibrated_at"], ToIso(right));
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
