@@ -68,7 +68,7 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
     Query query(store, "SELECT " + kColumns + ", document FROM revision WHERE robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionOf(query);
-    revision.document = query.Text(9);
+    revision.document = query.Text(10);
     return revision;
   });
 }

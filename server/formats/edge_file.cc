@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <sstream>
@@ -6,6 +5,7 @@
 #include "server/base/limits.h"
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
+#include "server/formats/first_three.h"
 #include "server/formats/json_values.h"
 
 namespace rigcal::formats {
@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::size_t kEdgeFileBytesMax = 256u << 20;
 constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
-constexpr std::size_t kPlacesShown = 3;
-constexpr double kExactTolerance = 1e-12;  // nearer ones stay as they are, bit by bit
+constexpr double kExactTolerance = 1e-12;       // nearer ones stay as they are, bit by bit
 
 std::string NumberText(double value) {
   std::ostringstream text;
@@ -111,12 +110,10 @@ void RefuseIndefinite(const JsonField& root, const std::vector<JsonField>& items
                       const std::vector<std::size_t>& indefinite) {
   if (indefinite.empty()) return;
   if (indefinite.size() == 1) return items[indefinite.front()].At("information").Refuse("has a negative eigenvalue");
-  std::string places;
-  for (std::size_t i = 0; i < std::min(kPlacesShown, indefinite.size()); ++i)
-    places += (i == 0 ? "" : ", ") + ("[" + std::to_string(indefinite[i])) + "]";
-  if (indefinite.size() > kPlacesShown) places += " and " + std::to_string(indefinite.size() - kPlacesShown) + " more";
-  root.At("edges").Refuse(std::to_string(indefinite.size()) + " of " + std::to_string(items.size()) +
-                          " information matrices have a negative eigenvalue: " + places);
+  root.At("edges").Refuse(
+      std::to_string(indefinite.size()) + " of " + std::to_string(items.size()) +
+      " information matrices have a negative eigenvalue: " +
+      FirstThree(indefinite.size(), [&](std::size_t i) { return "[" + std::to_string(indefinite[i]) + "]"; }));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
+#include "server/formats/first_three.h"
 #include "server/math/covariance.h"
 #include "server/model/plausible.h"
 
@@ -14,7 +15,6 @@ namespace rigcal::formats {
 namespace {
 
 constexpr double kG2oUnitTolerance = 1e-3;
-constexpr std::size_t kPlacesShown = 3;
 
 Vector6d HalfAngles() {
   Vector6d D;
@@ -179,12 +179,11 @@ class Reader {
     if (indefinite_.empty()) return {};
     const std::string cure = "An information matrix has no negative eigenvalue: correct it where it was made.";
     if (indefinite_.size() == 1) return indefinite_.front().Refuse("the information matrix is indefinite", cure);
-    std::string what = std::to_string(indefinite_.size()) + " of " + std::to_string(edges_read_) +
-                       " edges have an indefinite information matrix: ";
-    const std::size_t shown = std::min(kPlacesShown, indefinite_.size());
-    for (std::size_t i = 0; i < shown; ++i) what += (i == 0 ? "" : ", ") + indefinite_[i].Place();
-    if (shown < indefinite_.size()) what += " and " + std::to_string(indefinite_.size() - shown) + " more";
-    return Fail(ErrorCode::kInvalidInput, what, cure);
+    return Fail(ErrorCode::kInvalidInput,
+                std::to_string(indefinite_.size()) + " of " + std::to_string(edges_read_) +
+                    " edges have an indefinite information matrix: " +
+                    FirstThree(indefinite_.size(), [&](std::size_t i) { return indefinite_[i].Place(); }),
+                cure);
   }
 
   Status ReadVertexPose(Line& line) {

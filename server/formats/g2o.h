@@ -17,7 +17,8 @@ struct G2oFile {
   SensorId fixed;                          // the first FIX line's vertex; empty: none
 };
 // Indefinite, non-finite or asymmetric information and non-unit quaternions (beyond 1e-3; nearer ones are normalised)
-// are refused; the error names line and edge; of many that are indefinite it says how many, and the first three. The same pair may be measured several times.
+// are refused; the error names line and edge; of many that are indefinite it says how many, and the first three. The
+// same pair may be measured several times.
 [[nodiscard]] Result<G2oFile> ReadG2o(std::string_view text, const RobotId& robot);
 // The good edges in their order, poses of known sensors as vertices, the reference as FIX. Every number is read back as
 // it was, bit by bit. Names that are all whole numbers stay; else vertices count the sensors, and comments name them.

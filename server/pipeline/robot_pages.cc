@@ -86,7 +86,7 @@ Status MovePast(const AnswerContext& context, const RobotId& robot, std::vector<
   for (const Edge& edge : past) ++counts[edge.session];
   for (report::SessionRow& row : rows) {
     const auto found = counts.find(row.id);
-    if (found == counts.end() || row.superseded) continue;
+    if (found == counts.end() || row.superseded_by) continue;
     row.past = std::min(found->second, row.good);
     row.good -= row.past;
   }

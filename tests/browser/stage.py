@@ -4,13 +4,16 @@ import os
 import pathlib
 import shutil
 import subprocess
-import time
 import sys
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "e2e"))
+<<<<<<< ours
 from flow import SKIPPED, Flow, check  # noqa: E402,F401
 from measures.sessions import noise_session, picture_session  # noqa: E402
+=======
+from flow import SKIPPED, Flow, check, wait_published  # noqa: E402,F401
+from measures.sessions import picture_session  # noqa: E402
+>>>>>>> theirs
 
 HERE = pathlib.Path(__file__).resolve().parent
 HOSTILE = '<script>window.ran=1</script>"\'><img src=x onerror=window.ran=1> \u05e9\u05dc\u05d5\u05dd ' + "long " * 30
@@ -70,15 +73,6 @@ def put_experiment(flow):
     (folder / "index.html").write_text(
         '<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Noise</title><link rel="icon" href="data:,">'
         '<link rel="stylesheet" href="style.css"></head><body><main><h1>Noise</h1></main></body></html>')
-
-
-def wait_published(flow):
-    """Asks, as the pages do, until nothing is left to be solved or published."""
-    until = time.monotonic() + 120
-    while time.monotonic() < until:
-        if json.loads(flow.get("/api/v1/live"))["unfinished"] == 0:
-            return
-    check(False, "everything is published")
 
 
 def rover_edges(flow):

@@ -1,8 +1,10 @@
 """Where the binaries are, a server in a temporary folder, and checks with words."""
+import json
 import os
 import pathlib
 import sys
 import tempfile
+import time
 import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -65,6 +67,15 @@ class Flow:
 def check(condition, what):
     if not condition:
         raise SystemExit("FAILED: " + what)
+
+
+def wait_published(flow):
+    """Asks, as the pages do, until nothing is left to be solved or published."""
+    until = time.monotonic() + 120
+    while time.monotonic() < until:
+        if json.loads(flow.get("/api/v1/live"))["unfinished"] == 0:
+            return
+    check(False, "everything is published")
 
 
 def skip_without(path):

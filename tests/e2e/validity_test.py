@@ -4,7 +4,7 @@ import json
 import re
 
 from edge_case import edge
-from flow import Flow, check
+from flow import Flow, check, wait_published
 from measures.sessions import noise_session
 
 PASS, FAIL, WARN, UNKNOWN = 0, 1, 5, 6  # exit codes
@@ -26,13 +26,6 @@ def check_codes(flow, robot, code):
         flow.rigcal(*words, exit_code=code)
     flow.rigcal("robots")
     flow.rigcal("status")
-
-
-def wait_published(flow):
-    for _ in range(100):
-        if json.loads(flow.get("/api/v1/live"))["unfinished"] == 0:
-            return
-    check(False, "everything is published")
 
 
 def failed_keeps_the_last_good(flow):

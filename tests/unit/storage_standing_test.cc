@@ -145,9 +145,6 @@ TEST_F(StandingTest, AnEdgeIsRetiredOnceAndTheFirstWordHolds) {
   EXPECT_EQ(retired.at(id).word.reason, "typed 1.2 for 0.12");
   EXPECT_THAT(LoadRetired(store_, RobotId("mapper-02")).value(), IsEmpty());
   EXPECT_THAT(Audit(), ElementsAre(HasSubstr("Ada retired edge " + id.str())));
-  EXPECT_TRUE(LoadCalibratedAt(store_, kRobot).value().has_value());
-  ASSERT_TRUE(RetireEdge(store_, MakeEdge(2).id, {{8}, "Ada", "too"}));
-  EXPECT_FALSE(LoadCalibratedAt(store_, kRobot).value().has_value());
 }
 
 TEST_F(StandingTest, ARobotWithEdgesIsUnsolvedUntilARevisionCountsTheNewestWord) {

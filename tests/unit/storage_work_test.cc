@@ -107,7 +107,6 @@ TEST_F(WorkTest, NoEdgeOfABatchCountsBeforeAllAreThere) {
   EXPECT_EQ(counted(), 0u);
   EXPECT_FALSE(LoadEdge(store_, MakeEdge(0).id).value());
   EXPECT_EQ(LoadEdgeWatermark(store_, kRobot).value(), 0);
-  EXPECT_EQ(LoadCalibratedAt(store_, kRobot).value(), std::nullopt);
   EXPECT_EQ(LoadRobots(store_).value().front().edges, 0);
   EXPECT_THAT(LoadUnsolvedRobots(store_).value(), IsEmpty());
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(7), {3}));  // another's edge counts at once, and theirs do not with it
