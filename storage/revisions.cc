@@ -104,6 +104,17 @@ Result<bool> IsPublished(Store& store, const RevisionKey& key) {
   });
 }
 
+Status PublishAgain(Store& store, const RobotId& robot) {
+  return store.connection().Append(RevisionsSubject(robot), [&]() -> Status {
+    Query(store,
+          "INSERT INTO waiting_publication SELECT robot_id, max(number) FROM revision WHERE robot_id = ? "
+          "GROUP BY robot_id ON CONFLICT DO NOTHING")
+        .Bind(robot)
+        .Run();
+    return {};
+  });
+}
+
 Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
   const std::string subject = "publication of revision " + std::to_string(key.number) + " of robot " + key.robot.str();
   return store.connection().Append(subject, [&]() -> Status {

@@ -156,6 +156,23 @@ std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_
   });
 }
 
+namespace {
+
+void WriteLostFiles(JsonWriter& out, const HealthAnswer& answer) {
+  out.Integer("count", answer.lost_files);
+  out.List("first", [&] {
+    for (const LostFileAnswer& file : answer.first_lost_files)
+      out.Object([&] {
+        out.Text("path", file.path);
+        out.Text("robot", file.robot.str());
+        out.Text("session", file.session.str());
+        out.Text("state", file.missing ? "missing" : "damaged");
+      });
+  });
+}
+
+}  // namespace
+
 std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("state", answer.problem ? "failing" : "ok");
@@ -169,6 +186,7 @@ std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
     out.Object("limits", [&] {
       for (const limits::Setting& one : limits::Settings()) out.Integer(one.name, answer.limits.*one.value);
     });
+    out.Object("lost_files", [&] { WriteLostFiles(out, answer); });
     if (!answer.problem) return out.Null("problem");
     out.Object("problem", [&] { WriteErrorMembers(out, *answer.problem); });
   });

@@ -2,17 +2,20 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "server/base/result.h"
 #include "server/model/cloud.h"
+#include "server/model/cloud_layout.h"
 
 namespace rigcal::formats {
 
 [[nodiscard]] Result<Cloud> ReadPcd(std::string_view bytes, const std::string& name);
 [[nodiscard]] Result<Cloud> ReadPly(std::string_view bytes, const std::string& name);
-[[nodiscard]] Result<Cloud> ReadKitti(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<Cloud> ReadBin(std::string_view bytes, const std::optional<CloudLayout>& layout,
+                                    const std::string& name);
 
 }  // namespace rigcal::formats

@@ -16,6 +16,7 @@
 #include "server/pipeline/robot_rows.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
+#include "storage/lost_blobs.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -206,6 +207,15 @@ Result<std::string> Due(const AnswerContext& context, const Parameters& paramete
   return formats::WriteDue(due, max_age_ns, now);
 }
 
+Status TakeLostFiles(storage::Store& store, formats::HealthAnswer& answer) {
+  constexpr std::size_t kNamedMax = 20;
+  RIGCAL_ASSIGN(const storage::LostPayloads lost, storage::LoadLost(store, kNamedMax));
+  answer.lost_files = lost.count;
+  for (const storage::LostPayload& one : lost.first)
+    answer.first_lost_files.push_back({one.robot, one.session, one.path, one.state == storage::BlobState::kMissing});
+  return {};
+}
+
 Result<std::string> Health(const AnswerContext& context, const Parameters&) {
   const Stamp now = context.clock.Now();
   formats::HealthAnswer answer;
@@ -215,6 +225,7 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
   answer.schema = context.store.SchemaVersion();
   answer.protocol = kWireProtocol;
   answer.limits = limits::InForce();
+  RIGCAL_TRY(TakeLostFiles(context.store, answer));
   std::error_code error;
   const auto space = std::filesystem::space(context.store.folder(), error);
   if (error)

@@ -12,8 +12,9 @@ namespace rigcal::pipeline {
 // Writes cloud/<lidar>/{front,top,oblique}.png, cloud.ply, points.bin and overlay/<camera>.jpg, <camera>_picture.jpg
 // below `folder`, for every lidar that ChooseClouds finds. One picture is in memory at a time. A camera that several
 // lidars meet is shown with the one that has the most points in its picture. What cannot be read is a note of the
-// section; only a disk that cannot be written fails. The same store and revision give the same bytes.
+// section, and what the disk has not kept is asked for again from `now` on; only a disk that cannot be written fails.
+// The same store and revision give the same bytes.
 [[nodiscard]] Result<report::CloudSection> WriteClouds(storage::Store& store, const formats::RevisionInput& revision,
-                                                       const std::filesystem::path& folder);
+                                                       const std::filesystem::path& folder, Stamp now);
 
 }  // namespace rigcal::pipeline

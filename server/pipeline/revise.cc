@@ -43,6 +43,17 @@ void Supersede(Edge& edge) {
                      "Nothing: the edge of the later session counts."}};
 }
 
+void SupersedeWhatWasRunAgain(std::vector<Edge>& edges) {
+  std::set<EdgeId> ids;
+  for (const Edge& edge : edges) ids.insert(edge.id);
+  for (Edge& edge : edges)
+    if (FailedForLostFile(edge) && ids.contains(RepeatedEdgeId(edge.id)))
+      edge.diagnoses = {{std::string(kSupersededCode),
+                         "files of session " + edge.session.str().substr(0, 16) +
+                             " that the server's disk had not kept were sent again",
+                         "Nothing: the edge that was made from them then counts."}};
+}
+
 void MakePast(const storage::Remount& remount, Edge& edge) {
   edge.state = EdgeState::kFailed;
   edge.diagnoses = {{std::string(kRemountedCode),
@@ -73,6 +84,7 @@ Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId&
   const std::set<SessionId> old(superseded.begin(), superseded.end());
   for (Edge& edge : edges)
     if (old.contains(edge.session)) Supersede(edge);
+  SupersedeWhatWasRunAgain(edges);
   RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
   return edges;
 }

@@ -16,7 +16,8 @@ constexpr std::size_t kPictureBytesMax = 64u << 20;
 
 std::string WhyNot(storage::Store& store, const Payload& payload) {
   const auto bytes = storage::LoadBlob(store.BlobFolder(), payload.digest, kPictureBytesMax);
-  if (!bytes) return bytes.error().what;
+  if (!bytes && bytes.error().code == ErrorCode::kInvalidInput) return bytes.error().what;
+  if (!bytes) return "the server's disk has not kept it: push the session again";
   const auto encoded = std::as_bytes(std::span(*bytes));
   if (const auto size = detect::ReadImageSize(encoded); !size) return size.error().what;
   return detect::IsCutOff(encoded) ? "the picture is cut off" : "";

@@ -169,7 +169,7 @@ TEST_P(MakingFault, LeavesAStoreThatOpens) {
     disk.Repair();
     Result<Store> store = Store::Open(folder.path());
     ASSERT_TRUE(store) << WordsOf(store);
-    EXPECT_EQ(store->SchemaVersion(), 4);
+    EXPECT_EQ(store->SchemaVersion(), 6);
     EXPECT_TRUE(PushEdges(*store));
     EXPECT_EQ(EdgesExtent(*store), Extent::kWhole);
   }

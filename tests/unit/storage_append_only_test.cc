@@ -2,6 +2,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "storage/fleet_facts.h"
+#include "storage/lost_blobs.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -34,6 +35,7 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendAudit(store_, {5}, "Ada", "pushed"));
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
+      RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }

@@ -35,7 +35,7 @@ TEST(StoreOpen, MakesAnEmptyStoreThatOpensAgain) {
   for (int round = 0; round < 2; ++round) {
     Result<Store> store = Store::Open(deep);
     ASSERT_TRUE(store) << WordsOf(store);
-    EXPECT_EQ(store->SchemaVersion(), 4);
+    EXPECT_EQ(store->SchemaVersion(), 6);
     EXPECT_EQ(store->folder(), deep);
     EXPECT_TRUE(fs::is_directory(store->BlobFolder() / "a7"));
     EXPECT_TRUE(fs::is_directory(store->IntakeFolder()));
@@ -58,7 +58,7 @@ TEST(StoreOpen, MigratesAnEmptyFile) {
   std::ofstream(folder.path() / "rigcal.db").close();
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  EXPECT_EQ(store->SchemaVersion(), 4);
+  EXPECT_EQ(store->SchemaVersion(), 6);
   EXPECT_EQ(CountRobots(*store), 0);
 }
 
@@ -75,7 +75,7 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
           "1, 0, 0, 0, 0, 0, 1, zeroblob(288), 0, 12, 'jackknife', zeroblob(288), zeroblob(288))");
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
-  EXPECT_EQ(store->SchemaVersion(), 4);
+  EXPECT_EQ(store->SchemaVersion(), 6);
   EXPECT_EQ(CountRobots(*store), 1);
   const auto view = LoadView(*store, Digest(std::string(63, '0') + "7"), "checkerboard");
   ASSERT_TRUE(view && *view);
@@ -89,13 +89,13 @@ TEST(StoreOpen, MigratesTheFirstVersionWithWhatItHolds) {
 TEST(StoreOpen, LeavesANewerStoreAsItIs) {
   const TempFolder folder;
   { ASSERT_TRUE(Store::Open(folder.path())); }
-  MakeDatabase(folder.path(), "PRAGMA journal_mode = DELETE; PRAGMA user_version = 7; CREATE TABLE future (x)");
+  MakeDatabase(folder.path(), "PRAGMA journal_mode = DELETE; PRAGMA user_version = 99; CREATE TABLE future (x)");
   const std::string before = BytesOf(folder.path() / "rigcal.db");
   const Result<Store> store = Store::Open(folder.path());
   ASSERT_FALSE(store);
   EXPECT_EQ(store.error().code, ErrorCode::kUnsupported);
   EXPECT_EQ(Sentence(store.error()), "the store at " + folder.path().string() +
-                                         " has schema version 7, this rigcald understands up to 4. "
+                                         " has schema version 99, this rigcald understands up to 6. "
                                          "Install the rigcald that wrote it, or a newer one.");
   EXPECT_EQ(BytesOf(folder.path() / "rigcal.db"), before);
 }
