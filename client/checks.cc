@@ -110,6 +110,15 @@ Check JudgeRoundTrip(std::int64_t median_ns) {
   return {"round trip", CheckLevel::kWarn, text, "Look at the server's load, and at the network between"};
 }
 
+Check JudgeLostFiles(std::int64_t count, const std::vector<std::string>& names) {
+  if (count == 0) return {"stored files", CheckLevel::kOk, "none is known to be damaged or missing", ""};
+  std::string text = std::to_string(count) + (count == 1 ? " is" : " are") + " not as pushed:";
+  for (const std::string& name : names) text += (&name == &names.front() ? " " : ", ") + name;
+  if (static_cast<std::size_t>(count) > names.size()) text += ", ...";
+  return {"stored files", CheckLevel::kFail, text,
+          "Push their sessions again: only these files are sent. Check the server's disk"};
+}
+
 Check JudgeDisk(const std::string& where, std::optional<std::int64_t> free_bytes) {
   if (!free_bytes) return {where, CheckLevel::kWarn, "free space is not known", "Look at it by hand with `df -h`"};
   const auto bytes = static_cast<double>(*free_bytes);

@@ -34,6 +34,8 @@ struct NetworkInterface {
 // `offset_ns`: server minus here; `round_trip_ns` bounds its error.
 [[nodiscard]] Check JudgeClock(std::int64_t offset_ns, std::int64_t round_trip_ns);
 [[nodiscard]] Check JudgeRoundTrip(std::int64_t median_ns);
+// `names`: the first of them, "mapper-01 left/01.png (damaged)".
+[[nodiscard]] Check JudgeLostFiles(std::int64_t count, const std::vector<std::string>& names);
 // `where`: "server's disk", "disk here".
 [[nodiscard]] Check JudgeDisk(const std::string& where, std::optional<std::int64_t> free_bytes);
 

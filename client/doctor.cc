@@ -60,6 +60,12 @@ void CheckAnswers(const std::vector<Health>& answers, std::vector<Check>& checks
                                  document["protocol"].Integer()));
   if (fastest.has_time) checks.push_back(JudgeClock(fastest.offset_ns, fastest.round_trip_ns));
   checks.push_back(JudgeDisk("disk of server", document["disk_free_bytes"].Integer()));
+  const Document lost = document["lost_files"];
+  std::vector<std::string> names;
+  for (const Document& file : lost["first"].Items())
+    names.push_back(Plain(file["robot"].Text() + " " + file["path"].Text() + " (" + file["state"].Text() +
+                          ", session " + file["session"].Text().substr(0, 16) + ")"));
+  if (!lost.IsNull()) checks.push_back(JudgeLostFiles(lost["count"].Integer().value_or(0), names));
   const Document problem = document["problem"];
   if (!problem.IsNull())
     checks.push_back({"server", CheckLevel::kFail, Plain(problem["what"].Text()), Plain(problem["cure"].Text())});

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "server/base/durable_file.h"
+#include "server/base/file_descriptor.h"
 
 namespace rigcal::storage {
 namespace fs = std::filesystem;
@@ -32,6 +33,14 @@ Result<fs::path> MakeShard(const fs::path& blob_folder, const Digest& digest) {
   if (code) return Fail(ErrorCode::kStorage, "cannot make the folder " + shard.string() + ": " + code.message(), kCure);
   if (made) RIGCAL_TRY(SyncFolder(blob_folder));
   return shard;
+}
+
+// The name itself, or with a number: nothing that was set aside before is overwritten.
+fs::path FreeName(const std::string& name) {
+  std::error_code ignored;
+  fs::path free = name;
+  for (int i = 2; fs::exists(free, ignored); ++i) free = name + "." + std::to_string(i);
+  return free;
 }
 
 }  // namespace
@@ -73,7 +82,36 @@ Status AdoptBlobs(const fs::path& blob_folder, const std::vector<FinishedFile>& 
 
 Result<std::string> LoadBlob(const fs::path& blob_folder, const Digest& digest, std::size_t bytes_max) {
   RIGCAL_TRY(CheckDigest("sha256", digest.str()));
-  return ReadFile(BlobPath(blob_folder, digest), bytes_max);
+  const fs::path path = BlobPath(blob_folder, digest);
+  RIGCAL_ASSIGN(std::string bytes, ReadFile(path, bytes_max));
+  if (Sha256Of(bytes) == digest) return bytes;
+  return Fail(ErrorCode::kConflict, path.string() + ": its bytes are not those that it was stored with",
+              "Push the session again that it belongs to, and check the disk.");
+}
+
+Result<BlobState> LookAtBlob(const fs::path& blob_folder, const Digest& digest) {
+  RIGCAL_TRY(CheckDigest("sha256", digest.str()));
+  const fs::path path = BlobPath(blob_folder, digest);
+  const Result<FileDescriptor> file = OpenToRead(path);
+  if (!file && file.error().code == ErrorCode::kNotFound) return BlobState::kMissing;
+  if (!file) return Fail(file.error());
+  const Result<Digest> found = Sha256OfFile(path);  // what can be opened but not be read is damaged as well
+  return found && *found == digest ? BlobState::kGood : BlobState::kDamaged;
+}
+
+Result<BlobState> SetDamagedAside(const fs::path& blob_folder, const Digest& digest) {
+  RIGCAL_ASSIGN(const BlobState state, LookAtBlob(blob_folder, digest));
+  if (state != BlobState::kDamaged) return state;
+  const fs::path path = BlobPath(blob_folder, digest);
+  const fs::path aside = FreeName(path.string() + ".damaged");
+  std::error_code code;
+  fs::rename(path, aside, code);
+  if (code == std::errc::no_such_file_or_directory) return BlobState::kMissing;  // another thread was faster
+  if (code)
+    return Fail(ErrorCode::kStorage,
+                "cannot move the damaged " + path.string() + " to " + aside.string() + ": " + code.message(), kCure);
+  RIGCAL_TRY(SyncFolder(path.parent_path()));
+  return state;
 }
 
 }  // namespace rigcal::storage

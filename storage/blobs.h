@@ -22,8 +22,16 @@ struct FinishedFile {
   Digest digest;
 };
 [[nodiscard]] Status AdoptBlobs(const std::filesystem::path& blob_folder, const std::vector<FinishedFile>& files);
-// The whole blob; refuses more than bytes_max.
+// The whole blob, held against its name; refuses more than bytes_max. kNotFound: there is none; kConflict: its bytes
+// are not those that it was stored with.
 [[nodiscard]] Result<std::string> LoadBlob(const std::filesystem::path& blob_folder, const Digest& digest,
                                            std::size_t bytes_max);
+
+// What the disk has kept of a blob. Of a disk that cannot be asked (permissions, say) an error.
+enum class BlobState { kGood, kDamaged, kMissing };
+[[nodiscard]] Result<BlobState> LookAtBlob(const std::filesystem::path& blob_folder, const Digest& digest);
+// The same, and moves a damaged one aside, to a name ending in ".damaged" that is not taken: from then on it is
+// missing.
+[[nodiscard]] Result<BlobState> SetDamagedAside(const std::filesystem::path& blob_folder, const Digest& digest);
 
 }  // namespace rigcal::storage

@@ -101,7 +101,7 @@ Status AppendView(Store& store, const Digest& image, const std::string& detector
 Result<std::optional<StoredCloud>> LoadCloud(Store& store, const Digest& cloud, const std::string& detector) {
   return Load<std::optional<StoredCloud>>(store, Subject(cloud), [&]() -> Result<std::optional<StoredCloud>> {
     Query query(store,
-                "SELECT why_not, target_id, points, picture_digest FROM detected_cloud "
+                "SELECT why_not, target_id, points, picture_digest, note FROM detected_cloud "
                 "WHERE cloud_digest = ? AND detector = ?");
     if (!query.Bind(cloud, detector).Step()) return std::nullopt;
     StoredCloud stored;
@@ -109,6 +109,7 @@ Result<std::optional<StoredCloud>> LoadCloud(Store& store, const Digest& cloud, 
     stored.view.target = query.IdAt<TargetId>(1);
     stored.view.points = static_cast<std::size_t>(query.Int(2));
     if (!query.IsNull(3)) stored.picture = query.IdAt<Digest>(3);
+    stored.view.note = query.Text(4);
     Query patches(store,
                   "SELECT summary, points_m FROM detected_patch WHERE cloud_digest = ? AND detector = ? "
                   "ORDER BY patch_idx");
@@ -122,9 +123,10 @@ Result<std::optional<StoredCloud>> LoadCloud(Store& store, const Digest& cloud, 
 Status AppendCloud(Store& store, const Digest& cloud, const std::string& detector, const StoredCloud& stored) {
   return store.connection().Append(Subject(cloud), [&]() -> Status {
     const CloudView& view = stored.view;
-    const int added = Query(store, "INSERT INTO detected_cloud VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING")
-                          .Bind(cloud, detector, view.why_not, view.target, view.points, NullIfEmpty(stored.picture))
-                          .Run();
+    const int added =
+        Query(store, "INSERT INTO detected_cloud VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING")
+            .Bind(cloud, detector, view.why_not, view.target, view.points, NullIfEmpty(stored.picture), view.note)
+            .Run();
     if (added == 0) return {};
     for (std::size_t i = 0; i < view.candidates.size(); ++i)
       Query(store, "INSERT INTO detected_patch VALUES (?, ?, ?, ?, ?)")

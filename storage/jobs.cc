@@ -62,6 +62,19 @@ Result<JobCount> CountJobs(Store& store, const SessionId& session) {
   });
 }
 
+Status QueueAgain(Store& store, const EdgeId& edge) {
+  return store.connection().Append("the job of edge " + edge.str(), [&]() -> Status {
+    Query(
+        store,
+        "INSERT INTO waiting_job SELECT j.number, e.robot_id FROM edge e JOIN session s ON s.session_id = e.session_id "
+        "JOIN job j ON j.session_number = s.number AND j.sensor_a = e.frame_a AND j.sensor_b = e.frame_b "
+        "WHERE e.edge_id = ? ON CONFLICT DO NOTHING")
+        .Bind(edge)
+        .Run();
+    return {};
+  });
+}
+
 Status FinishJob(Store& store, std::int64_t number, Stamp now) {
   return store.connection().Append(JobSubject(number), [&]() -> Status {
     if (!Exists(store, number))

@@ -26,6 +26,8 @@ struct JobCount {
   std::int64_t waiting = 0, total = 0;
 };
 [[nodiscard]] Result<JobCount> CountJobs(Store& store, const SessionId& session);
+// The job that made this edge, once more: its evidence is made again. A no-op for an edge that was pushed.
+[[nodiscard]] Status QueueAgain(Store& store, const EdgeId& edge);
 [[nodiscard]] Status FinishJob(Store& store, std::int64_t number, Stamp now);  // call inside Write with the edge
 
 }  // namespace rigcal::storage

@@ -1,3 +1,4 @@
+#include "storage/lost_blobs.h"
 #include "storage/query.h"
 #include "storage/sessions.h"
 
@@ -27,14 +28,23 @@ Status CheckIndices(const SessionId& id, const PayloadList& list, const std::vec
   return {};
 }
 
-void InsertHeld(Store& store, std::int64_t session_number, std::uint32_t idx, Stamp now) {
+void TakeOutLost(Store& store, std::int64_t session_number, std::vector<bool>& held) {
+  Query query(
+      store, "SELECT p.idx FROM waiting_blob w CROSS JOIN payload p ON p.digest = w.digest WHERE p.session_number = ?");
+  query.Bind(session_number);
+  while (query.Step()) held.at(static_cast<std::size_t>(query.Int(0))) = false;
+}
+
+Status InsertHeld(Store& store, std::int64_t session_number, std::uint32_t idx, Stamp now) {
+  RIGCAL_TRY(EndLoss(store, session_number, idx));
   Query insert(store, "INSERT INTO payload_held VALUES (?, ?, ?) ON CONFLICT DO NOTHING");
-  if (insert.Bind(session_number, idx, now).Run() == 0) return;
+  if (insert.Bind(session_number, idx, now).Run() == 0) return {};
   Query(store,
         "INSERT INTO robot_digest_held SELECT robot_id, digest, ? FROM payload "
         "JOIN session ON session.number = session_number WHERE session_number = ? AND idx = ? ON CONFLICT DO NOTHING")
       .Bind(now, session_number, idx)
       .Run();
+  return {};
 }
 
 }  // namespace
@@ -46,6 +56,7 @@ Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id) {
     Query query(store, "SELECT idx FROM payload_held WHERE session_number = ?");
     query.Bind(list.session_number);
     while (query.Step()) held.at(static_cast<std::size_t>(query.Int(0))) = true;
+    TakeOutLost(store, list.session_number, held);
     return held;
   });
 }
@@ -54,7 +65,7 @@ Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint
   return store.connection().Append(PayloadsSubject(id), [&]() -> Status {
     RIGCAL_ASSIGN(const PayloadList list, FindList(store, id));
     RIGCAL_TRY(CheckIndices(id, list, payload_idx));
-    for (const std::uint32_t idx : payload_idx) InsertHeld(store, list.session_number, idx, now);
+    for (const std::uint32_t idx : payload_idx) RIGCAL_TRY(InsertHeld(store, list.session_number, idx, now));
     return {};
   });
 }

@@ -156,6 +156,17 @@ Status QueuePublication(Store& store, const RevisionKey& key) {
   });
 }
 
+Status PublishAgain(Store& store, const RobotId& robot) {
+  return store.connection().Append(RevisionsSubject(robot), [&]() -> Status {
+    Query(store,
+          "INSERT INTO waiting_publication SELECT robot_id, max(number) FROM revision WHERE robot_id = ? "
+          "GROUP BY robot_id ON CONFLICT DO NOTHING")
+        .Bind(robot)
+        .Run();
+    return {};
+  });
+}
+
 Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
   return store.connection().Append(PublicationSubject(key), [&]() -> Status {
     Query(store, "INSERT INTO publication VALUES (?, ?, ?) ON CONFLICT DO NOTHING")

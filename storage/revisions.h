@@ -33,6 +33,8 @@ struct RevisionKey {
 // To be published, perhaps again.
 [[nodiscard]] Status QueuePublication(Store& store, const RevisionKey& key);
 [[nodiscard]] Result<bool> IsPublished(Store& store, const RevisionKey& key);
+// The robot's newest revision, once more: what it shows was not all there. A no-op without a revision.
+[[nodiscard]] Status PublishAgain(Store& store, const RobotId& robot);
 [[nodiscard]] Status AppendPublication(Store& store, const RevisionKey& key, Stamp now);
 
 // Append-only audit trail: who did what.

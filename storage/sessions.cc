@@ -12,11 +12,14 @@ namespace {
 std::string Subject(const RobotId& robot) { return "sessions of robot " + robot.str(); }
 std::string Subject(const SessionId& id) { return "session " + id.str(); }
 
-// A closed session holds all its payloads: then they need not be counted.
+// A closed session was given all its payloads: then they need not be counted, but for those that were lost since.
 const std::string kSelectRow =
     "SELECT s.robot_id, s.session_id, s.payload_count, s.size_bytes, s.captured_ns, s.opened_ns, s.operator_name, "
     "c.closed_ns, CASE WHEN c.closed_ns IS NOT NULL THEN s.payload_count "
-    "ELSE (SELECT count(*) FROM payload_held h WHERE h.session_number = s.number) END "
+    "ELSE (SELECT count(*) FROM payload_held h WHERE h.session_number = s.number) END - "
+    "(SELECT count(*) FROM waiting_blob w CROSS JOIN payload p ON p.digest = w.digest "
+    "CROSS JOIN payload_held h ON h.session_number = p.session_number AND h.idx = p.idx "
+    "WHERE p.session_number = s.number) "
     "FROM session s LEFT JOIN session_closed c ON c.session_number = s.number ";
 
 SessionRow SessionRowOf(const Query& query) {

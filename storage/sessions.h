@@ -14,7 +14,7 @@ struct SessionRow {
   RobotId robot;
   SessionId id;
   bool closed = false;
-  std::int64_t payloads = 0, payloads_held = 0;
+  std::int64_t payloads = 0, payloads_held = 0;  // a closed one holds all but those that were lost since
   std::int64_t bytes = 0;
   Stamp captured_at, opened_at, closed_at;
   std::string operator_name;
@@ -28,7 +28,7 @@ struct SessionRow {
 // All of one robot, or of all robots if `robot` is empty; newest captured_at first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
 
-// held[i]: payload i of the manifest is durable. kNotFound if the session is unknown.
+// held[i]: payload i of the manifest is durable, and was not lost since. kNotFound if the session is unknown.
 [[nodiscard]] Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id);
 // Marks payloads as durable; a no-op for those already marked. Refuses the whole list if one index is not in the
 // manifest.

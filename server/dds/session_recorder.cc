@@ -54,7 +54,8 @@ Result<wire::ReceiptState> SessionRecorder::Open(const RobotId& robot, const Ses
   if (row->robot != robot)
     return Fail(ErrorCode::kConflict, "session " + session.str() + " belongs to robot " + row->robot.str(),
                 "Name that robot in session.yaml, or push it as the robot that recorded it");
-  if (row->closed) return wire::ReceiptState::kClosed;
+  const bool is_whole = row->payloads_held >= row->payloads;  // a closed one may have lost some since
+  if (row->closed && is_whole) return wire::ReceiptState::kClosed;
   if (known != nullptr) return wire::ReceiptState::kReceiving;
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store_, session));
   if (!manifest)

@@ -215,6 +215,23 @@ std::optional<Error> HealthAnswer::problem() const {
   return std::nullopt;
 }
 
+namespace {
+
+void WriteLostFiles(JsonWriter& out, const HealthAnswer& answer) {
+  out.Integer("count", answer.lost_files);
+  out.List("first", [&] {
+    for (const LostFileAnswer& file : answer.first_lost_files)
+      out.Object([&] {
+        out.Text("path", file.path);
+        out.Text("robot", file.robot.str());
+        out.Text("session", file.session.str());
+        out.Text("state", file.missing ? "missing" : "damaged");
+      });
+  });
+}
+
+}  // namespace
+
 std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
   return WriteObject([&](JsonWriter& out) {
     const std::optional<Error> problem = answer.problem();
@@ -232,6 +249,7 @@ std::string WriteHealth(const HealthAnswer& answer, Stamp now) {
     out.List("parts", [&] {
       for (const PartState& part : answer.parts) WritePart(out, part);
     });
+    out.Object("lost_files", [&] { WriteLostFiles(out, answer); });
     WriteProblem(out, problem);
   });
 }

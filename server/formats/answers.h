@@ -107,6 +107,14 @@ struct DueAnswer {
 };
 [[nodiscard]] std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_ns, Stamp now);
 
+// A payload that the server's disk has not kept, and that was not sent again yet.
+struct LostFileAnswer {
+  RobotId robot;
+  SessionId session;
+  std::string path;
+  bool missing = false;  // else damaged
+};
+
 // verb health
 struct HealthAnswer {
   std::string version;
@@ -117,6 +125,8 @@ struct HealthAnswer {
   std::vector<PartState> parts;  // one with a problem: "failing"
   std::string http_address;      // of the reports; empty: none
   limits::Limits limits;         // in force
+  std::int64_t lost_files = 0;
+  std::vector<LostFileAnswer> first_lost_files;
   [[nodiscard]] std::optional<Error> problem() const;  // the first of the parts
 };
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);

@@ -10,6 +10,7 @@
 
 #include "server/base/result.h"
 #include "server/model/cloud.h"
+#include "server/model/cloud_layout.h"
 
 namespace rigcal::formats {
 
@@ -17,6 +18,7 @@ namespace rigcal::formats {
 [[nodiscard]] Result<Cloud> ReadPly(std::string_view bytes, const std::string& name);
 // Points, and values of each, as the header claims; nothing if it cannot be read.
 [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> PlySize(std::string_view bytes);
-[[nodiscard]] Result<Cloud> ReadKitti(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<Cloud> ReadBin(std::string_view bytes, const std::optional<CloudLayout>& layout,
+                                    const std::string& name);
 
 }  // namespace rigcal::formats

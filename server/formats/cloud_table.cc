@@ -13,7 +13,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr double kCoordinateMax_m = 1e5;
+constexpr double kCoordinateMax_m = 1e3;
 constexpr const char* kCutCure = "The file is cut off or its header is wrong: copy or record it again.";
 constexpr const char* kMoreCure = "The header's number of points is wrong: save the cloud again.";
 
@@ -78,6 +78,7 @@ class Collector {
     const double x = row[xyz_[0]], y = row[xyz_[1]], z = row[xyz_[2]];
     if (!IsCoordinate(x) || !IsCoordinate(y) || !IsCoordinate(z)) {
       ++cloud_.dropped;
+      cloud_.beyond_1km += std::isfinite(x) && std::isfinite(y) && std::isfinite(z) ? 1 : 0;
       return;
     }
     cloud_.points_m.emplace_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
@@ -86,6 +87,11 @@ class Collector {
   }
 
   Result<Cloud> Finish() {
+    if (cloud_.points_m.empty() && cloud_.beyond_1km > 0)
+      return RefuseCloud(table_.file,
+                         "of its points " + std::to_string(cloud_.beyond_1km) +
+                             " lie beyond 1 km, and none within: the unit is not metres, or the layout another",
+                         "Save the cloud in metres; of a .bin, check fields and point_type in session.yaml.");
     if (cloud_.points_m.empty())
       return RefuseCloud(table_.file, "holds no point with finite coordinates",
                          "Record the capture again with something in the lidar's view.");

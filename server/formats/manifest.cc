@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "server/base/limits.h"
 #include "server/formats/documents.h"
 #include "server/formats/json_values.h"
@@ -8,6 +10,7 @@ namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kConditionsMax = 256, kSkipPairsMax = 65'536;
+constexpr int kFormatWithLayouts = 2;
 
 JsonKind ManifestKind() {
   return {"manifest", "Push the session again with a client of the server's version.",
@@ -33,9 +36,23 @@ void WriteIntrinsics(JsonWriter& out, const Sensor& sensor) {
   });
 }
 
+void WriteLayout(JsonWriter& out, const CloudLayout& layout) {
+  out.List("fields", [&] {
+    for (const std::string& field : layout.fields) out.Text(field);
+  });
+  out.Text("point_type", NameOf(layout.type));
+}
+
+// A server that knows no layouts would take such clouds for KITTI's: it is to refuse the session.
+int FormatOf(const SessionHeader& header) {
+  const auto has_layout = [](const Sensor& sensor) { return sensor.layout.has_value(); };
+  return std::any_of(header.sensors.begin(), header.sensors.end(), has_layout) ? kFormatWithLayouts : header.format;
+}
+
 void WriteSensor(JsonWriter& out, const Sensor& sensor) {
   out.Object([&] {
     sensor.T_ref_nominal ? WritePose(out, "T_ref_nominal", *sensor.T_ref_nominal) : out.Null("T_ref_nominal");
+    if (sensor.layout) WriteLayout(out, *sensor.layout);
     out.Text("id", sensor.id.str());
     WriteIntrinsics(out, sensor);
     // Only where it says more than the intrinsics and the default: what could be written before keeps its bytes.
@@ -79,7 +96,7 @@ void WriteHeader(JsonWriter& out, const SessionHeader& header) {
   out.Object("conditions", [&] {
     for (const auto& [name, value] : header.conditions) out.Text(name, value);
   });
-  out.Integer("format", header.format);
+  out.Integer("format", FormatOf(header));
   if (header.lidar_polish != LidarPolish::kNone) out.Text("lidar_polish", NameOf(header.lidar_polish));
   out.Text("operator", header.operator_name);
   out.Text("reference", header.reference.str());
@@ -137,6 +154,16 @@ SensorKind ReadKind(const JsonField& field) {
   return SensorKind::kCamera;
 }
 
+CloudLayout ReadLayout(const JsonField& fields, const JsonField& type) {
+  constexpr std::size_t kFieldsMax = 64;  // more are refused by Validate, by name
+  CloudLayout layout;
+  for (const JsonField& name : fields.Items(kFieldsMax)) layout.fields.push_back(name.Text());
+  const Result<PointType> known = PointTypeOf(type.Text());
+  if (known) layout.type = *known;
+  if (!known) type.Refuse(known.error().what);
+  return layout;
+}
+
 Sensor ReadSensor(const JsonField& field) {
   Sensor sensor;
   sensor.id = ReadId<SensorId>(field.At("id"));
@@ -145,6 +172,7 @@ Sensor ReadSensor(const JsonField& field) {
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
   if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
+  if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.At("point_type"));
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T, kUnitTolerance);
   return sensor;
 }
@@ -197,7 +225,7 @@ LidarPolish ReadLidarPolish(const JsonField& field) {
 
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
-  header.format = static_cast<int>(root.At("format").Integer(1, 1));
+  static_cast<void>(root.At("format").Integer(1, kFormatWithLayouts));
   header.robot = ReadId<RobotId>(root.At("robot"));
   header.rig_model = root.At("rig_model").Text();
   header.captured_at = ReadStamp(root.At("captured_at"));

@@ -10,6 +10,7 @@
 #include "server/base/parallel_for.h"
 #include "server/base/sha256.h"
 #include "server/base/text.h"
+#include "server/formats/bin_layout.h"
 #include "server/formats/folder_listing.h"
 #include "server/formats/nearest.h"
 #include "server/formats/payload_kind.h"
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSessionYaml = "session.yaml";
-constexpr const char* kTableSuffix = "csv";
+constexpr const char *kTableSuffix = "csv", *kBinSuffix = "bin";
 constexpr const char* kTruthYaml = "truth.yaml";  // of a simulated session: not for those who calibrate it
 constexpr const char* kIgnoredHint = "Move it out of the folder, or begin its name with a '.': such files are ignored.";
 
@@ -130,6 +131,21 @@ Status CheckPoseTables(const fs::path& folder, const Manifest& manifest) {
   return {};
 }
 
+// Nothing in a .bin says what it holds, and a technician can say it.
+Status CheckBins(const fs::path& folder, const Manifest& manifest) {
+  std::vector<Status> outcomes(manifest.payloads.size());
+  ParallelFor(manifest.payloads.size(), [&](std::size_t i) {
+    const Payload& payload = manifest.payloads[i];
+    if (SuffixOf(payload.path) != kBinSuffix) return;
+    const auto bytes = ReadFile(folder / payload.path, static_cast<std::size_t>(limits::kPayloadBytesMax));
+    const auto sensor = std::find_if(manifest.header.sensors.begin(), manifest.header.sensors.end(),
+                                     [&](const Sensor& s) { return s.id == payload.sensor; });
+    outcomes[i] = bytes ? CheckBinLayout(*bytes, sensor->layout, payload.path) : Status(Fail(bytes.error()));
+  });
+  for (const Status& outcome : outcomes) RIGCAL_TRY(outcome);
+  return {};
+}
+
 Status HashPayloads(const fs::path& folder, const Progress& progress, std::vector<Payload>& payloads) {
   std::int64_t bytes_in_all = 0, bytes_hashed = 0;
   for (const Payload& payload : payloads) bytes_in_all += payload.size_bytes;
@@ -164,6 +180,7 @@ Result<Manifest> ReadSessionFolder(const fs::path& folder, const Progress& progr
   RIGCAL_TRY(HashPayloads(folder, progress, manifest.payloads));
   RIGCAL_TRY(Validate(manifest));
   RIGCAL_TRY(CheckPoseTables(folder, manifest));
+  RIGCAL_TRY(CheckBins(folder, manifest));
   return manifest;
 }
 

@@ -14,7 +14,8 @@ namespace rigcal::formats {
 
 // Reads session.yaml, lists the payloads, hashes them (in parallel). Refuses symbolic links out of the folder, files of
 // unknown sensors, unknown suffixes, empty files, two files for the same capture and sensor, no payloads at all, a table
-// of poses that cannot be read or that names a capture which no other sensor has.
+// of poses that cannot be read or that names a capture which no other sensor has, a .bin
+// whose layout is neither given nor certain.
 // `progress` (bytes hashed, bytes in all) may be empty.
 [[nodiscard]] Result<Manifest> ReadSessionFolder(const std::filesystem::path& folder,
                                                  const std::function<void(std::int64_t, std::int64_t)>& progress);

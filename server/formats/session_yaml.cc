@@ -76,8 +76,20 @@ void ReadIntrinsics(const YamlField& field, Sensor& sensor) {
   }
 }
 
+CloudLayout ReadLayout(const YamlField& fields, const std::optional<YamlField>& type) {
+  CloudLayout layout;
+  for (const YamlField& name : fields.Items()) layout.fields.push_back(name.Text());
+  if (!type) return layout;
+  if (const Result<PointType> known = PointTypeOf(type->Text()))
+    layout.type = *known;
+  else
+    type->Refuse(known.error().what, known.error().cure);
+  return layout;
+}
+
 Sensor ReadSensor(const YamlField& field) {
-  field.AllowOnly({"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "T_ref_nominal"});
+  field.AllowOnly(
+      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "fields", "point_type", "T_ref_nominal"});
   Sensor sensor;
   sensor.id = SensorId(field.Key());
   const YamlField type = field.At("type");
@@ -91,6 +103,9 @@ Sensor ReadSensor(const YamlField& field) {
   if (model && sensor.kind != SensorKind::kCamera) model->Refuse("is for cameras only", "Leave it away.");
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
+  if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.Find("point_type"));
+  if (const auto point_type = field.Find("point_type"); point_type && !sensor.layout)
+    point_type->Refuse("is given without fields", "Name what a point holds, such as fields: [x, y, z, intensity].");
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T);
   if (const Status valid = Validate(sensor); !valid) field.Refuse(valid.error());
   return sensor;

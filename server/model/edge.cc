@@ -79,6 +79,13 @@ EdgeId EstimatedEdgeId(const RobotId& robot, const SessionId& session, const std
   return EdgeId(hash.Finish().str());
 }
 
+// Fields: the earlier edge's id.
+EdgeId RepeatedEdgeId(const EdgeId& earlier) {
+  FieldHash hash("rigcal repeated edge 1");
+  hash.Text(earlier.str());
+  return EdgeId(hash.Finish().str());
+}
+
 // Fields: robot, content digest (64 hexadecimal digits), occurrence index.
 EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t occurrence_idx) {
   FieldHash hash("rigcal pushed edge 1");

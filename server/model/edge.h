@@ -60,6 +60,8 @@ struct Edge {
 // counts equal edges of a batch, so that the order of a file does not matter.
 [[nodiscard]] EdgeId EstimatedEdgeId(const RobotId& robot, const SessionId& session, const std::string& method,
                                      const SensorId& frame_a, const SensorId& frame_b);
+// Of what is estimated again from the same session, the first time having failed as the edge `earlier`.
+[[nodiscard]] EdgeId RepeatedEdgeId(const EdgeId& earlier);
 [[nodiscard]] EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t occurrence_idx);
 // Digest of frames, pose, information and method, bit by bit.
 [[nodiscard]] Digest ContentDigest(const Edge& edge);

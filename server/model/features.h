@@ -45,6 +45,7 @@ struct CloudView {
   TargetId target;
   std::size_t points = 0;  // of the cloud
   std::vector<PlanePatch> candidates;
+  std::string note = {};  // what is odd about its points, in words
 };
 
 // The same with the picture of it (the cloud as a range image, candidates outlined), encoded, for reports.

@@ -12,6 +12,10 @@ bool IsPast(const Edge& edge) {
   return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && MeansPast(edge.diagnoses.front().code);
 }
 
+bool FailedForLostFile(const Edge& edge) {
+  return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && edge.diagnoses.front().code == kFileLostCode;
+}
+
 void AddRemounted(SensorId sensor, SessionHeader& header) {
   const auto place = std::lower_bound(header.remounted.begin(), header.remounted.end(), sensor);
   if (place == header.remounted.end() || *place != sensor) header.remounted.insert(place, std::move(sensor));

@@ -9,12 +9,17 @@
 namespace rigcal {
 
 // Codes of what takes an edge out of a revision: somebody retired it; its session was superseded by another of the same
-// pictures; or, of a good one, one of its sensors was remounted since. Such an edge is failed in the revision, with
-// this as its only diagnosis; the store keeps it as it was measured.
+// pictures, or its pair run again; or, of a good one, one of its sensors was remounted since. Such an edge is failed in
+// the revision, with this as its only diagnosis; the store keeps it as it was measured.
 inline constexpr std::string_view kRetiredCode = "retired", kSupersededCode = "superseded",
                                   kRemountedCode = "remounted";
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);
+
+// Code of the only diagnosis of an edge that failed because the server's disk has not kept a file of its session. When
+// that was sent again, the pair is run again: its edge then has the id RepeatedEdgeId (edge.h) of this one.
+inline constexpr std::string_view kFileLostCode = "file_lost";
+[[nodiscard]] bool FailedForLostFile(const Edge& edge);
 
 // Once, where it belongs among those that are named: in which order they are does not make another session.
 void AddRemounted(SensorId sensor, SessionHeader& header);

@@ -17,6 +17,8 @@ Status CheckKind(const Sensor& sensor) {
   const bool looks = sensor.kind == SensorKind::kCamera || sensor.kind == SensorKind::kLidar;
   if (sensor.kind != SensorKind::kCamera && (sensor.intrinsics || sensor.intrinsics_sigma))
     return Refuse(sensor, kind + " has no intrinsics", "Leave 'intrinsics' away.");
+  if (sensor.kind != SensorKind::kLidar && sensor.layout)
+    return Refuse(sensor, kind + " has no clouds", "Leave 'fields' and 'point_type' away.");
   if (!looks && sensor.sees) return Refuse(sensor, kind + " sees no target", "Leave 'sees' away.");
   return {};
 }
@@ -73,6 +75,12 @@ Status CheckRangeBias(const Sensor& sensor) {
                 "Give the standard deviation in metres, 0 to 1; the data sheet's range accuracy is a good value.");
 }
 
+Status CheckLayout(const Sensor& sensor) {
+  if (!sensor.layout) return {};
+  const Status valid = Validate(*sensor.layout);
+  return valid ? Status{} : Refuse(sensor, valid.error().what, valid.error().cure);
+}
+
 Status CheckNominalPose(const Sensor& sensor) {
   constexpr double kUnitTolerance = 1e-6;
   if (!sensor.T_ref_nominal) return {};
@@ -93,6 +101,7 @@ Status Validate(const Sensor& sensor) {
   RIGCAL_TRY(CheckIntrinsics(sensor));
   RIGCAL_TRY(CheckIntrinsicsSigma(sensor));
   RIGCAL_TRY(CheckRangeBias(sensor));
+  RIGCAL_TRY(CheckLayout(sensor));
   return CheckNominalPose(sensor);
 }
 

@@ -11,6 +11,7 @@
 #include "server/base/stamp.h"
 #include "server/math/se3.h"
 #include "server/model/camera.h"
+#include "server/model/cloud_layout.h"
 #include "server/model/target.h"
 
 namespace rigcal {
@@ -32,9 +33,10 @@ struct Sensor {
   std::optional<CameraIntrinsics> intrinsics;           // of camera_model, given; absent: estimated from the captures
   std::optional<std::vector<double>> intrinsics_sigma;  // fx fy cx cy and the distortion's, in its order, if known
   std::optional<double>
-      range_bias_sigma_m;            // of a lidar: how far all its ranges may be off together; absent: not known
-  std::optional<TargetId> sees;      // the one target this sensor looks at; absent: any
-  std::optional<Se3> T_ref_nominal;  // CAD pose of the sensor in the reference sensor
+      range_bias_sigma_m;             // of a lidar: how far all its ranges may be off together; absent: not known
+  std::optional<TargetId> sees;       // the one target this sensor looks at; absent: any
+  std::optional<Se3> T_ref_nominal;   // CAD pose of the sensor in the reference sensor
+  std::optional<CloudLayout> layout;  // of a lidar: of its .bin files; absent: KITTI's, where a file leaves no doubt
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
 

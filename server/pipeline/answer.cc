@@ -17,6 +17,7 @@
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
+#include "storage/lost_blobs.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -216,8 +217,20 @@ Result<std::string> Due(const AnswerContext& context, const Parameters& paramete
   return formats::WriteDue(due, max_age_ns, now);
 }
 
+Status TakeLostFiles(storage::Store& store, formats::HealthAnswer& answer) {
+  constexpr std::size_t kNamedMax = 20;
+  RIGCAL_ASSIGN(const storage::LostPayloads lost, storage::LoadLost(store, kNamedMax));
+  answer.lost_files = lost.count;
+  for (const storage::LostPayload& one : lost.first)
+    answer.first_lost_files.push_back({one.robot, one.session, one.path, one.state == storage::BlobState::kMissing});
+  return {};
+}
+
 Result<std::string> Health(const AnswerContext& context, const Parameters&) {
-  return formats::WriteHealth(LookAtHealth(context), context.clock.Now());
+  formats::HealthAnswer answer = LookAtHealth(context);
+  // A database that cannot be read is told as a part that fails.
+  if (const Status taken = TakeLostFiles(context.store, answer); !taken && !answer.problem()) return Fail(taken.error());
+  return formats::WriteHealth(answer, context.clock.Now());
 }
 
 const std::map<std::string, Verb>& Verbs() {

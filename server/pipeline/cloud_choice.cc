@@ -135,6 +135,7 @@ std::vector<CloudChoice> ChoicesIn(const Manifest& manifest, const SessionId& se
     if (sensor.kind != SensorKind::kLidar || pose == poses.end()) continue;
     const std::vector<ReadyCamera> cameras = PairedWith(sensor.id, all, manifest.header);
     CloudChoice choice = ChoiceOf(sensor.id, pose->second, payloads, cameras);
+    choice.layout = sensor.layout;
     if (!choice.cameras.empty()) choices.push_back(std::move(choice));
   }
   return choices;

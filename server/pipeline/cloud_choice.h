@@ -23,6 +23,7 @@ struct CloudChoice {
   SensorId lidar;
   Se3 T_ref_lidar;
   const Payload* cloud = nullptr;
+  std::optional<CloudLayout> layout;  // of it, where the session says so
   std::vector<PlacedCamera> cameras;
   std::size_t cameras_left_out = 0;  // beyond kCloudCamerasMax
 };

@@ -14,10 +14,11 @@
 #include "server/cloud/render.h"
 #include "server/detect/grey_image.h"
 #include "server/formats/cloud.h"
+#include "server/formats/cloud_oddities.h"
 #include "server/formats/payload_path.h"
 #include "server/pipeline/cloud_choice.h"
 #include "server/pipeline/decoding.h"
-#include "storage/blobs.h"
+#include "server/pipeline/lost_payloads.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -27,21 +28,18 @@ namespace fs = std::filesystem;
 struct Work {
   storage::Store& store;
   const fs::path& folder;
+  Stamp now;
   report::CloudSection section;
   std::map<SensorId, report::CameraOverlay> overlays;
 };
 
-Result<std::string> BytesOf(storage::Store& store, const Payload& payload) {
-  return storage::LoadBlob(store.BlobFolder(), payload.digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
-}
-
-Result<Cloud> CloudOf(storage::Store& store, const Payload& payload) {
-  RIGCAL_ASSIGN(const std::string bytes, BytesOf(store, payload));
-  return formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(payload.path), payload.path);
+Result<Cloud> CloudOf(storage::Store& store, const Payload& payload, const std::optional<CloudLayout>& layout) {
+  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(store.BlobFolder(), payload));
+  return formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(payload.path), payload.path, layout);
 }
 
 Result<Picture> PictureOf(storage::Store& store, const Payload& payload) {
-  RIGCAL_ASSIGN(const std::string bytes, BytesOf(store, payload));
+  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(store.BlobFolder(), payload));
   return detect::DecodeColour(std::as_bytes(std::span(bytes)));
 }
 
@@ -54,8 +52,17 @@ Status WriteBelow(const fs::path& folder, const std::string& name, const std::st
   return WriteDurably(folder / name, bytes);
 }
 
-void Note(Work& work, const Payload& payload, const Error& error) {
-  work.section.notes.push_back(payload.path + " is not shown: " + Sentence(error));
+// What the disk has not kept is asked for again, and the report made anew when it is there.
+Status Note(Work& work, const Payload& payload, const Error& error) {
+  std::vector<LostFile> lost;
+  if (error.code == ErrorCode::kStorage) {
+    RIGCAL_ASSIGN(lost, FindLost(work.store, {&payload}));
+  }
+  RIGCAL_TRY(AppendLost(work.store, lost, std::nullopt, work.now));
+  work.section.notes.push_back(
+      payload.path + " is not shown: " +
+      (lost.empty() ? Sentence(error) : "the server's disk has not kept it. Push the session again."));
+  return {};
 }
 
 // Replaces the overlay of the camera if this lidar has more points in its picture.
@@ -84,7 +91,7 @@ Result<std::vector<cloud::CameraView>> SeeAll(Work& work, const CloudChoice& cho
   std::vector<cloud::CameraView> views;
   for (const PlacedCamera& camera : choice.cameras) {
     const Result<Picture> picture = PictureOf(work.store, *camera.picture);
-    if (!picture) Note(work, *camera.picture, picture.error());
+    if (!picture) RIGCAL_TRY(Note(work, *camera.picture, picture.error()));
     views.push_back(cloud::See(beams, camera.camera, picture ? *picture : Picture{}));
     if (!picture) continue;
     ++used;
@@ -162,16 +169,12 @@ Result<MemoryBudget::Share> MemoryFor(const Work& work, const CloudChoice& choic
 
 Status WriteLidar(Work& work, const CloudChoice& choice) {
   const auto share = MemoryFor(work, choice);
-  if (!share) {
-    Note(work, *choice.cloud, share.error());
-    return {};
-  }
-  const Result<Cloud> read = CloudOf(work.store, *choice.cloud);
-  if (!read) {
-    Note(work, *choice.cloud, read.error());
-    return {};
-  }
+  if (!share) return Note(work, *choice.cloud, share.error());
+  const Result<Cloud> read = CloudOf(work.store, *choice.cloud, choice.layout);
+  if (!read) return Note(work, *choice.cloud, read.error());
   cloud::Beams beams = cloud::BeamsOf(*read);
+  if (const std::string odd = formats::OdditiesOf(*read); !odd.empty())
+    work.section.notes.push_back(choice.cloud->path + ": " + odd + ".");
   NoteLimits(work, choice, beams);
   report::ColouredLidar shown = NamesOf(choice);
   RIGCAL_ASSIGN(const auto views, SeeAll(work, choice, beams, shown.cameras));
@@ -198,9 +201,9 @@ Status WriteOrNote(Work& work, const CloudChoice& choice) {
 }  // namespace
 
 Result<report::CloudSection> WriteClouds(storage::Store& store, const formats::RevisionInput& revision,
-                                         const fs::path& folder) {
+                                         const fs::path& folder, Stamp now) {
   RIGCAL_ASSIGN(const CloudChoices choices, ChooseClouds(store, revision));
-  Work work{store, folder, {}, {}};
+  Work work{store, folder, now, {}, {}};
   for (const CloudChoice& choice : choices.lidars) RIGCAL_TRY(WriteOrNote(work, choice));
   for (const auto& [camera, overlay] : work.overlays)
     if (!overlay.camera.empty()) work.section.overlays.push_back(overlay);

@@ -1,5 +1,7 @@
 #include "server/pipeline/current_edges.h"
 
+#include <set>
+
 #include "server/model/past.h"
 #include "server/pipeline/remounts.h"
 #include "storage/edges.h"
@@ -21,6 +23,17 @@ void Supersede(const Superseding& superseding, Edge& edge) {
            "session " + old + " is superseded by session " + by + " of the same pictures (captured " +
                ToIso(superseding.captured_at) + people + ")",
            "Nothing, if session " + by + " is the right one; else `rigcal restore " + old + "` takes it back.", edge);
+}
+
+void SupersedeWhatWasRunAgain(std::vector<Edge>& edges) {
+  std::set<EdgeId> ids;
+  for (const Edge& edge : edges) ids.insert(edge.id);
+  for (Edge& edge : edges)
+    if (FailedForLostFile(edge) && ids.contains(RepeatedEdgeId(edge.id)))
+      MakePast(kSupersededCode,
+               "files of session " + edge.session.str().substr(0, 16) +
+                   " that the server's disk had not kept were sent again",
+               "Nothing: the edge that was made from them then counts.", edge);
 }
 
 void MakePast(const storage::Remount& remount, Edge& edge) {
@@ -49,6 +62,7 @@ Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId&
     if (const auto found = superseded.find(edge.session); found != superseded.end()) Supersede(found->second, edge);
     if (const auto found = retired.find(edge.id); found != retired.end()) Retire(found->second.word, edge);
   }
+  SupersedeWhatWasRunAgain(edges);
   RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
   return edges;
 }

@@ -6,7 +6,10 @@
 #include "server/base/parallel_for.h"
 #include "server/detect/overlaid_clouds.h"
 #include "server/formats/cloud.h"
+#include "server/formats/cloud_oddities.h"
 #include "server/formats/payload_path.h"
+#include "server/pipeline/lost_payloads.h"
+#include "server/pipeline/odd_clouds.h"
 #include "server/pipeline/pair_inputs.h"
 #include "storage/blobs.h"
 
@@ -21,22 +24,21 @@ struct CloudFile {
   const Payload* payload = nullptr;
   LidarLidarCapture* capture = nullptr;
   std::vector<Eigen::Vector3f> LidarLidarCapture::*points_m = nullptr;
-  std::string why_not;
+  std::optional<CloudLayout> layout;
+  std::string why_not, note;
 };
 
-// A cloud that is lost or cannot be read costs its capture, not the pair.
-void Read(const std::filesystem::path& blobs, CloudFile& file) {
-  const auto bytes = storage::LoadBlob(blobs, file.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
-  if (!bytes) {
-    file.why_not = Sentence(bytes.error());
-    return;
-  }
-  auto cloud =
-      formats::ReadCloud(std::as_bytes(std::span(*bytes)), formats::SuffixOf(file.payload->path), file.payload->path);
+// A cloud that cannot be decoded costs its capture, not the pair.
+Status Read(const std::filesystem::path& blobs, CloudFile& file) {
+  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(blobs, *file.payload));
+  auto cloud = formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(file.payload->path),
+                                  file.payload->path, file.layout);
+  if (cloud) file.note = formats::OdditiesOf(*cloud);
   if (cloud)
     file.capture->*file.points_m = std::move(cloud->points_m);
   else
     file.why_not = Sentence(cloud.error());
+  return {};
 }
 
 std::vector<CloudFile> FilesOf(const Manifest& manifest, const SensorPair& ids,
@@ -47,7 +49,12 @@ std::vector<CloudFile> FilesOf(const Manifest& manifest, const SensorPair& ids,
     const bool is_a = payload.sensor == ids.a;
     LidarLidarCapture& capture = captures[payload.capture];
     capture.capture = payload.capture;
-    files.push_back({&payload, &capture, is_a ? &LidarLidarCapture::a_m : &LidarLidarCapture::b_m, {}});
+    files.push_back({&payload,
+                     &capture,
+                     is_a ? &LidarLidarCapture::a_m : &LidarLidarCapture::b_m,
+                     LayoutOf(manifest.header, payload.sensor),
+                     {},
+                     {}});
   }
   return files;
 }
@@ -76,6 +83,12 @@ std::vector<CloudFile> UsedFiles(const Manifest& manifest, const SensorPair& ids
   return files;
 }
 
+std::vector<Diagnosis> NotesOf(const std::vector<CloudFile>& files) {
+  OddClouds odd;
+  for (const CloudFile& file : files) odd.Add(file.payload->sensor, file.payload->capture, file.note);
+  return odd.Notes();
+}
+
 }  // namespace
 
 Needed ToRegister(const storage::Store& store, const Manifest& manifest, const SensorPair& ids) {
@@ -94,10 +107,13 @@ Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& stor
   std::map<CaptureId, LidarLidarCapture> captures;
   std::vector<CloudFile> files = UsedFiles(manifest, ids, captures);
   const std::filesystem::path blobs = store.BlobFolder();
-  ParallelFor(files.size(), [&](std::size_t i) { Read(blobs, files[i]); });
+  std::vector<Status> read(files.size());
+  ParallelFor(files.size(), [&](std::size_t i) { read[i] = Read(blobs, files[i]); });
+  for (const Status& one : read) RIGCAL_TRY(one);
   for (const CloudFile& file : files)
     if (file.capture->why_not.empty()) file.capture->why_not = file.why_not;
   PairInputs<calib::LidarLidarProblem> inputs;
+  inputs.notes = NotesOf(files);
   inputs.problem.lidar_a = *a;
   inputs.problem.lidar_b = *b;
   inputs.problem.T_a_b_nominal = NominalPose(manifest.header, *a, *b);

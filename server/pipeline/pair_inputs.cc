@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/pipeline/odd_clouds.h"
+
 namespace rigcal::pipeline {
 namespace {
 
@@ -27,9 +29,17 @@ std::string Words(const storage::StoredView& seen) {
 }
 
 std::string Words(const storage::StoredCloud& seen) {
-  if (!seen.view.found) return seen.view.why_not;
+  const std::string note = seen.view.note.empty() ? "" : "; " + seen.view.note;
+  if (!seen.view.found) return seen.view.why_not + note;
   const std::size_t count = seen.view.candidates.size();
-  return std::to_string(count) + (count == 1 ? " patch that may be the board" : " patches that may be the board");
+  return std::to_string(count) + (count == 1 ? " patch that may be the board" : " patches that may be the board") +
+         note;
+}
+
+std::vector<Diagnosis> NotesOf(const SensorId& lidar, const Sightings<storage::StoredCloud>& clouds) {
+  OddClouds odd;
+  for (const auto& [capture, seen] : clouds) odd.Add(lidar, capture, seen.view.note);
+  return odd.Notes();
 }
 
 // Evidence of both sensors by capture; `order` puts sensor a before sensor b.
@@ -95,8 +105,8 @@ Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const
     AddEvidence(ids.a, a, 0, evidence);
     AddEvidence(ids.b, b, 1, evidence);
     using Capture = calib::StereoCapture;
-    return PairInputs<calib::StereoProblem>{{*pair.a, *pair.b, target, Joined<Capture>(a, &Capture::a, b, &Capture::b)},
-                                            ListOf(std::move(evidence))};
+    return PairInputs<calib::StereoProblem>{
+        {*pair.a, *pair.b, target, Joined<Capture>(a, &Capture::a, b, &Capture::b)}, ListOf(std::move(evidence)), {}};
   });
 }
 
@@ -117,7 +127,8 @@ Result<PairInputs<calib::LidarCameraProblem>> LoadLidarCamera(storage::Store& st
             camera,      lidar, target, Joined<Capture>(views, &Capture::view, clouds, &Capture::cloud),
             camera_is_a, 0.0,   {}};
         problem.T_cam_lidar_nominal = NominalPose(manifest.header, camera, lidar);
-        return PairInputs<calib::LidarCameraProblem>{std::move(problem), ListOf(std::move(evidence))};
+        return PairInputs<calib::LidarCameraProblem>{std::move(problem), ListOf(std::move(evidence)),
+                                                     NotesOf(lidar.id, clouds)};
       });
 }
 

@@ -5,7 +5,7 @@
 
 #include "server/base/limits.h"
 #include "server/formats/poses.h"
-#include "storage/blobs.h"
+#include "server/pipeline/lost_payloads.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -25,12 +25,10 @@ Result<PoseTable> LoadPoses(storage::Store& store, const Manifest& manifest, con
   if (payload == manifest.payloads.end())
     return Fail(ErrorCode::kNotFound, "sensor " + sensor.id.str() + " has no poses.csv",
                 "Put its poses into " + sensor.id.str() + "/poses.csv and push the session again.");
-  const auto text = storage::LoadBlob(store.BlobFolder(), payload->digest, limits::kPoseTableBytesMax);
-  // A damaged disk costs this sensor, not the robot.
-  if (!text) return Fail(ErrorCode::kInvalidInput, text.error().what, text.error().cure);
+  RIGCAL_ASSIGN(const std::string text, LoadPayload(store.BlobFolder(), *payload, limits::kPoseTableBytesMax));
   if (sensor.kind == SensorKind::kTracker)
-    return formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), *text, payload->path);
-  return formats::ReadPoses(*text, sensor.kind, payload->path);
+    return formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), text, payload->path);
+  return formats::ReadPoses(text, sensor.kind, payload->path);
 }
 
 }  // namespace rigcal::pipeline

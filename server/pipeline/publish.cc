@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/base/durable_file.h"
+#include "server/base/parallel_for.h"
 #include "server/formats/camera_fit.h"
 #include "server/pipeline/clouds.h"
 #include "server/pipeline/report_input.h"
@@ -12,6 +13,7 @@
 #include "server/report/render.h"
 #include "storage/attempts.h"
 #include "storage/blobs.h"
+#include "storage/jobs.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -46,6 +48,23 @@ Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges,
                           folder / (item.digest.str() + "." + item.suffix)));
       present.push_back(item.digest);
     }
+  return {};
+}
+
+// Evidence that the disk has not kept is made again, and the report with it. What could not be made again the last time
+// is not tried for ever.
+Status RemakeLostEvidence(storage::Store& store, const std::vector<Edge>& edges, bool is_published) {
+  std::vector<std::pair<EdgeId, Digest>> wanted;
+  for (const Edge& edge : edges)
+    for (const Evidence& item : edge.evidence) wanted.emplace_back(edge.id, item.digest);
+  std::vector<Result<storage::BlobState>> states(wanted.size(), storage::BlobState::kGood);
+  ParallelFor(wanted.size(),
+              [&](std::size_t i) { states[i] = storage::SetDamagedAside(store.BlobFolder(), wanted[i].second); });
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    RIGCAL_ASSIGN(const storage::BlobState state, states[i]);
+    if (state == storage::BlobState::kDamaged || (state == storage::BlobState::kMissing && !is_published))
+      RIGCAL_TRY(storage::QueueAgain(store, wanted[i].first));
+  }
   return {};
 }
 
@@ -99,6 +118,8 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
     return Fail(ErrorCode::kNotFound, "robot " + key.robot.str() + " has no revision " + std::to_string(key.number),
                 "See its revisions with: rigcal show " + key.robot.str());
   RIGCAL_ASSIGN(report::ReportInput input, LoadReportInput(store, *revision));
+  RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(store, key));
+  RIGCAL_TRY(RemakeLostEvidence(store, input.revision.edges, is_published));
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
   const fs::path temporary = robot_folder / (".new-" + std::to_string(key.number));
@@ -107,7 +128,7 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
   RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));
   if (why_no_clouds.empty()) {
-    RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary));
+    RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary, clock.Now()));
   } else {
     input.clouds.notes = {why_no_clouds};
   }

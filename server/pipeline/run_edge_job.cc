@@ -1,12 +1,15 @@
 #include "server/pipeline/run_edge_job.h"
 
 #include "server/base/log.h"
+#include "server/model/past.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/decoding.h"
+#include "server/pipeline/lost_payloads.h"
 #include "server/pipeline/pair_inputs.h"
 #include "server/pipeline/same_pictures.h"
 #include "storage/edges.h"
+#include "storage/revisions.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
@@ -21,6 +24,11 @@ Edge FailedEdge(const SensorPair& pair, const std::string& method, const Error& 
   return edge;
 }
 
+// After the reason why it failed, if it did.
+void AddNotes(const std::vector<Diagnosis>& notes, Edge& edge) {
+  edge.diagnoses.insert(edge.diagnoses.end(), notes.begin(), notes.end());
+}
+
 // A method from its loader and its estimator. What cannot be loaded is a failed edge, unless it is our fault.
 template <typename Inputs, typename Estimate>
 Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, const std::string& method, Result<Inputs> inputs,
@@ -32,6 +40,7 @@ Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, const std::
   std::vector<CameraFit> fits;
   Edge edge = estimate(inputs->problem, &fits);
   edge.evidence = std::move(inputs->evidence);
+  AddNotes(inputs->notes, edge);
   RIGCAL_TRY(AppendFits(store, fits, edge));
   return edge;
 }
@@ -53,6 +62,7 @@ Result<Edge> LidarLidarEdge(storage::Store& store, const Manifest& manifest, con
   if (!inputs && IsOurFault(inputs.error())) return Fail(inputs.error());
   if (!inputs) return FailedEdge(pair, "lidar_lidar", inputs.error());
   Edge edge = calib::EstimateLidarLidarEdge(inputs->problem);
+  AddNotes(inputs->notes, edge);
   RIGCAL_TRY(AddOverlays(store, inputs->problem, edge));
   return edge;
 }
@@ -66,9 +76,9 @@ Result<Inputs> Remembering(calib::CameraMemory& cameras, Result<Inputs> inputs) 
   return inputs;
 }
 
-std::string MethodOf(const Manifest& manifest, const SensorPair& pair) {
-  const Sensor *a = SensorOf(manifest.header, pair.a), *b = SensorOf(manifest.header, pair.b);
-  return a && b ? std::string(MethodFor(manifest.header, *a, *b)) : "stereo";
+std::string MethodOf(const SessionHeader& header, const SensorPair& pair) {
+  const Sensor *a = SensorOf(header, pair.a), *b = SensorOf(header, pair.b);
+  return std::string(a && b ? MethodFor(header, *a, *b) : "stereo");
 }
 
 Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
@@ -77,7 +87,7 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, cal
     return FailedEdge(
         job.pair, "stereo",
         {ErrorCode::kNotFound, "session " + job.session.str() + " is not in the store", "Push the session again."});
-  const std::string method = MethodOf(*manifest, job.pair);
+  const std::string method = MethodOf(manifest->header, job.pair);
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
     return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadLidarCamera(store, *manifest, job.pair)),
@@ -110,19 +120,70 @@ Result<Edge> GivenUp(storage::Store& store, const storage::JobRow& job) {
                      "Push the session with fewer or smaller pictures and clouds, or give the server more memory; if "
                      "that does not help, report it with the session's id and the server's log."};
   LogError(why);
-  return FailedEdge(job.pair, manifest ? MethodOf(*manifest, job.pair) : "none", why);
+  return FailedEdge(job.pair, manifest ? MethodOf(manifest->header, job.pair) : "none", why);
 }
 
-Result<Edge> Committed(storage::Store& store, const storage::JobRow& job, const Clock& clock, Edge edge) {
+// An edge, and what it could not be made from.
+struct Outcome {
+  Edge edge;
+  std::optional<Manifest> manifest;  // that `lost` points into
+  std::vector<LostFile> lost;
+};
+
+// The store failed. Where files of the pair are lost that is why, and the edge says so; else it is tried again.
+Result<Outcome> FailedFor(const Error& error, storage::Store& store, const storage::JobRow& job) {
+  Outcome outcome;
+  RIGCAL_ASSIGN(outcome.manifest, storage::LoadManifest(store, job.session));
+  if (!outcome.manifest) return Fail(error);
+  std::vector<const Payload*> of_pair;
+  for (const Payload& payload : outcome.manifest->payloads)
+    if (payload.sensor == job.pair.a || payload.sensor == job.pair.b) of_pair.push_back(&payload);
+  RIGCAL_ASSIGN(outcome.lost, FindLost(store, of_pair));
+  if (outcome.lost.empty()) return Fail(error);
+  outcome.edge.frame_a = job.pair.a;
+  outcome.edge.frame_b = job.pair.b;
+  outcome.edge.method = MethodOf(outcome.manifest->header, job.pair);
+  outcome.edge.diagnoses = {TellLost(job.robot, outcome.lost)};
+  LogError({ErrorCode::kStorage, outcome.edge.diagnoses[0].what, outcome.edge.diagnoses[0].cure});
+  return outcome;
+}
+
+Result<Outcome> Try(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
+  auto edge = EstimatePair(store, job, cameras);
+  if (edge) return Outcome{std::move(*edge), std::nullopt, {}};
+  if (edge.error().code != ErrorCode::kStorage) return Fail(edge.error());
+  return FailedFor(edge.error(), store, job);
+}
+
+// What failed for want of a file stays in the store as it was. `is_known`: only its evidence had to be made again.
+struct Place {
+  EdgeId id;
+  bool is_known = false;
+};
+Result<Place> PlaceOf(storage::Store& store, const Edge& edge) {
+  Place place{EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b)};
+  while (true) {
+    RIGCAL_ASSIGN(const auto earlier, storage::LoadEdge(store, place.id));
+    place.is_known = earlier && !FailedForLostFile(*earlier);
+    if (!earlier || place.is_known) return place;
+    place.id = RepeatedEdgeId(place.id);
+  }
+}
+
+Result<Edge> Committed(storage::Store& store, const storage::JobRow& job, const Clock& clock, Outcome outcome) {
+  Edge& edge = outcome.edge;
   edge.robot = job.robot;
   edge.session = job.session;
-  edge.id = EstimatedEdgeId(job.robot, job.session, edge.method, edge.frame_a, edge.frame_b);
+  RIGCAL_ASSIGN(const Place place, PlaceOf(store, edge));
+  edge.id = place.id;
   RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_TRY(AppendLost(store, outcome.lost, job.number, clock.Now()));
     RIGCAL_TRY(storage::AppendEdge(store, edge, clock.Now()));
+    if (place.is_known) RIGCAL_TRY(storage::PublishAgain(store, job.robot));
     RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfJob(job.number), storage::AttemptEnd::kDone, "", clock.Now()));
     return storage::FinishJob(store, job.number, clock.Now());
   }));
-  return edge;
+  return std::move(edge);
 }
 
 }  // namespace
@@ -131,11 +192,11 @@ Result<Edge> RunEdgeJob(storage::Store& store, const storage::JobRow& job, const
                         calib::CameraMemory& cameras) {
   if (job.attempts >= kAttemptsMax) {
     RIGCAL_ASSIGN(Edge failed, GivenUp(store, job));
-    return Committed(store, job, clock, std::move(failed));
+    return Committed(store, job, clock, {std::move(failed), std::nullopt, {}});
   }
   const auto body = [&]() -> Result<Edge> {
-    RIGCAL_ASSIGN(Edge edge, EstimatePair(store, job, cameras));
-    return Committed(store, job, clock, std::move(edge));
+    RIGCAL_ASSIGN(Outcome outcome, Try(store, job, cameras));
+    return Committed(store, job, clock, std::move(outcome));
   };
   return Attempted(store, clock, storage::WorkOfJob(job.number), Said(job), job.attempts, body);
 }

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <span>
 
-#include "server/base/limits.h"
 #include "server/base/parallel_for.h"
 #include "server/detect/board.h"
 #include "server/detect/cloud_board.h"
 #include "server/formats/cloud.h"
+#include "server/formats/cloud_oddities.h"
 #include "server/formats/payload_path.h"
 #include "server/pipeline/decoding.h"
+#include "server/pipeline/lost_payloads.h"
 #include "storage/blobs.h"
 
 namespace rigcal::pipeline {
@@ -31,14 +32,18 @@ struct Search {
   Status (*append)(storage::Store&, const Digest&, const std::string&, const Stored&);
   Needed (*needed)(const std::filesystem::path&, const Payload&, const Target&);
   // The view, and its picture encoded.
-  std::pair<Stored, std::string> (*detect)(const std::string& bytes, const Payload&, const Target&);
+  std::pair<Stored, std::string> (*detect)(const std::string& bytes, const Payload&, const Target&,
+                                           const std::optional<CloudLayout>&);
+  std::optional<CloudLayout> layout;  // of the sensor's .bin files, where it is given
 };
 
-// A cloud is what its suffix says: the same bytes under another suffix are another cloud.
+// A cloud is what its suffix and its layout say: the same bytes under others are another cloud.
 template <typename Stored>
 std::string KeyOf(const Search<Stored>& search, const Payload& payload) {
   if constexpr (std::is_same_v<Stored, storage::StoredView>) return search.key;
-  return search.key + "/" + std::string(formats::SuffixOf(payload.path));
+  const std::string suffix(formats::SuffixOf(payload.path));
+  if (suffix != "bin") return search.key + "/" + suffix;
+  return search.key + "/bin of " + (search.layout ? TextOf(*search.layout) : "certainly " + TextOf(KittiLayout()));
 }
 
 // Detection is the costly part, so it is read from the cache where it can be.
@@ -51,7 +56,8 @@ Result<std::vector<Found<Stored>>> LoadKnown(storage::Store& store, const Manife
     RIGCAL_ASSIGN(auto cached, search.load(store, payload.digest, KeyOf(search, payload)));
     Found<Stored> found;
     found.payload = &payload;
-    found.fresh = !cached.has_value();
+    // A picture of it that is gone is made again.
+    found.fresh = !cached || (!cached->picture.empty() && !storage::HasBlob(store.BlobFolder(), cached->picture));
     if (cached) found.stored = std::move(*cached);
     all.push_back(std::move(found));
   }
@@ -72,13 +78,8 @@ void LeaveUnknown(const Error& error, const Target& target, Found<Stored>& found
 template <typename Stored>
 Status DetectLoaded(const std::filesystem::path& blobs, const Target& target, const Search<Stored>& search,
                     Found<Stored>& found) {
-  const auto bytes =
-      storage::LoadBlob(blobs, found.payload->digest, static_cast<std::size_t>(limits::kPayloadBytesMax));
-  if (!bytes) {  // a damaged disk
-    LeaveUnknown(bytes.error(), target, found);
-    return {};
-  }
-  auto [stored, picture] = search.detect(*bytes, *found.payload, target);
+  RIGCAL_ASSIGN(const std::string bytes, LoadPayload(blobs, *found.payload));
+  auto [stored, picture] = search.detect(bytes, *found.payload, target, search.layout);
   found.stored = std::move(stored);
   // Whatever could not be read may be readable under another name, limit or amount of memory: it is looked at again.
   found.fresh = IsReadable(found.stored);
@@ -122,14 +123,16 @@ Result<Sightings<Stored>> SearchAll(storage::Store& store, const Manifest& manif
 }
 
 std::pair<storage::StoredView, std::string> DetectPicture(const std::string& bytes, const Payload&,
-                                                          const Target& target) {
+                                                          const Target& target, const std::optional<CloudLayout>&) {
   AnnotatedView found = detect::Detect(std::as_bytes(std::span(bytes)), target);
   return {{std::move(found.view), {}}, std::move(found.picture)};
 }
 
 std::pair<storage::StoredCloud, std::string> DetectCloud(const std::string& bytes, const Payload& payload,
-                                                         const Target& target) {
-  const auto cloud = formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(payload.path), payload.path);
+                                                         const Target& target,
+                                                         const std::optional<CloudLayout>& layout) {
+  const auto cloud =
+      formats::ReadCloud(std::as_bytes(std::span(bytes)), formats::SuffixOf(payload.path), payload.path, layout);
   if (!cloud) {
     storage::StoredCloud unreadable;
     unreadable.view.target = target.id;
@@ -137,6 +140,7 @@ std::pair<storage::StoredCloud, std::string> DetectCloud(const std::string& byte
     return {std::move(unreadable), {}};
   }
   AnnotatedCloud found = detect::DetectPlate(*cloud, target);
+  found.view.note = formats::OdditiesOf(*cloud);
   return {{std::move(found.view), {}}, std::move(found.picture)};
 }
 
@@ -148,14 +152,14 @@ Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const 
                                                    const SensorId& camera, const Target& target) {
   return SearchAll<storage::StoredView>(
       store, manifest, camera, target,
-      {detect::DetectorKey(target), storage::LoadView, storage::AppendView, ToSearchPicture, DetectPicture});
+      {detect::DetectorKey(target), storage::LoadView, storage::AppendView, ToSearchPicture, DetectPicture, {}});
 }
 
 Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const Manifest& manifest,
                                                   const SensorId& lidar, const Target& target) {
-  return SearchAll<storage::StoredCloud>(
-      store, manifest, lidar, target,
-      {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud, ToSearchCloud, DetectCloud});
+  return SearchAll<storage::StoredCloud>(store, manifest, lidar, target,
+                                         {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud,
+                                          ToSearchCloud, DetectCloud, LayoutOf(manifest.header, lidar)});
 }
 
 const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {
@@ -169,6 +173,11 @@ std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sens
   for (const Target& target : header.targets)
     if (MaySee(a, target) && MaySee(b, target)) targets.push_back(&target);
   return targets;
+}
+
+std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar) {
+  const Sensor* sensor = SensorOf(header, lidar);
+  return sensor == nullptr ? std::nullopt : sensor->layout;
 }
 
 std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "server/detect/cloud_board.h"
+#include "server/pipeline/odd_clouds.h"
 #include "server/pipeline/pair_inputs.h"
 #include "server/pipeline/pose_inputs.h"
 
@@ -22,17 +23,19 @@ std::vector<const Target*> OfDifferentPlates(const SessionHeader& header, const 
 }
 
 std::string Words(const CloudView& view) {
-  if (!view.found) return view.why_not;
+  const std::string note = view.note.empty() ? "" : "; " + view.note;
+  if (!view.found) return view.why_not + note;
   const std::size_t count = view.candidates.size();
-  return std::to_string(count) + (count == 1 ? " patch that may be a board" : " patches that may be a board");
+  return std::to_string(count) + (count == 1 ? " patch that may be a board" : " patches that may be a board") + note;
 }
 
 Status AddClouds(storage::Store& store, const Manifest& manifest, const SensorId& lidar, const Target& target,
-                 std::map<CaptureId, TrackerLidarCapture>& captures, std::vector<Evidence>& evidence) {
+                 std::map<CaptureId, TrackerLidarCapture>& captures, std::vector<Evidence>& evidence, OddClouds& odd) {
   RIGCAL_ASSIGN(auto clouds, SeeClouds(store, manifest, lidar, target));
   for (auto& [capture, seen] : clouds) {
     if (!seen.picture.empty())
       evidence.push_back({EvidenceTitle(lidar, capture, Words(seen.view)), lidar, capture, seen.picture, "jpg"});
+    odd.Add(lidar, capture, seen.view.note);
     captures[capture].clouds.push_back(std::move(seen.view));
   }
   return {};
@@ -54,10 +57,12 @@ Result<PairInputs<TrackerLidarProblem>> LoadTrackerLidar(storage::Store& store, 
   problem.T_body_lidar_nominal = NominalPose(manifest.header, problem.tracker, problem.lidar);
   RIGCAL_ASSIGN(const PoseTable poses, LoadPoses(store, manifest, problem.tracker));
   std::map<CaptureId, TrackerLidarCapture> captures;
+  OddClouds odd;
   for (const Target* target : OfDifferentPlates(manifest.header, problem.lidar)) {
     problem.boards.push_back(*target);
-    RIGCAL_TRY(AddClouds(store, manifest, problem.lidar.id, *target, captures, inputs.evidence));
+    RIGCAL_TRY(AddClouds(store, manifest, problem.lidar.id, *target, captures, inputs.evidence, odd));
   }
+  inputs.notes = odd.Notes();
   for (const TimedPose& pose : poses) captures[pose.capture].T_world_body = pose.T_world_body;
   for (auto& [id, capture] : captures) {
     capture.capture = id;

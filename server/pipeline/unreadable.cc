@@ -19,7 +19,8 @@ std::string WhyNot(storage::Store& store, const Manifest& manifest, const Payloa
   for (const Target& target : manifest.header.targets)
     if (const auto large = TooLarge(ToSearchPicture(store.BlobFolder(), payload, target))) return large->what;
   const auto bytes = storage::LoadBlob(store.BlobFolder(), payload.digest, kPictureBytesMax);
-  if (!bytes) return bytes.error().what;
+  if (!bytes && bytes.error().code == ErrorCode::kInvalidInput) return bytes.error().what;
+  if (!bytes) return "the server's disk has not kept it: push the session again";
   const auto encoded = std::as_bytes(std::span(*bytes));
   if (const auto size = detect::ReadImageSize(encoded); !size) return size.error().what;
   return detect::IsCutOff(encoded) ? "the picture is cut off" : "";

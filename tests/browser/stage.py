@@ -7,13 +7,8 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "e2e"))
-<<<<<<< ours
-from flow import SKIPPED, Flow, check  # noqa: E402,F401
-from measures.sessions import noise_session, picture_session  # noqa: E402
-=======
 from flow import SKIPPED, Flow, check, wait_published  # noqa: E402,F401
-from measures.sessions import picture_session  # noqa: E402
->>>>>>> theirs
+from measures.sessions import noise_session, picture_session  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
 HOSTILE = '<script>window.ran=1</script>"\'><img src=x onerror=window.ran=1> \u05e9\u05dc\u05d5\u05dd ' + "long " * 30

@@ -161,7 +161,9 @@ UNREADABLE = r'1 cloud of lidar cannot be read and take no part: 01\. The first 
 CLOUDS = [
     cloud_case("truncated PCD", UNREADABLE + r'lidar/01\.pcd": its header announces 200 points of 12 bytes, but 2300 bytes follow', "pcd", pcd(FULL_WALL, data="binary")[:-100]),
     cloud_case("truncated PLY", UNREADABLE + r'lidar/01\.ply": its header announces 200 points of 12 bytes, but 2300 bytes follow', "ply", ply(FULL_WALL)[:-100]),
-    cloud_case("truncated .bin", UNREADABLE + r'lidar/01\.bin": has 1593 bytes, which is no multiple of 16', "bin", struct.pack("<400f", *range(400))[:-7]),
+    file_case("truncated .bin", r'file "lidar/01\.bin": has 1593 bytes, which is no multiple of 16', "lidar/01.bin", struct.pack("<400f", *range(400))[:-7]),
+    file_case(".bin of 5 floats a point", r'file "lidar/01\.bin": it is not certain to hold KITTI\'s 4 floats a point \(x y z intensity\): its numbers repeat every 5', "lidar/01.bin",
+              b"".join(struct.pack("<5f", 5, y * 0.01 - 2, z * 0.1, 0.3, z) for y in range(400) for z in range(16))),
     cloud_case("PCD of 8e9 points", UNREADABLE + r'lidar/01\.pcd": its header announces 8000000000 points', "pcd", pcd(FULL_WALL, data="binary", width=8_000_000_000, count=8_000_000_000)),
     cloud_case("PCD whose POINTS is not WIDTH x HEIGHT", UNREADABLE + r'lidar/01\.pcd": POINTS 150 is not WIDTH times HEIGHT, 200', "pcd", pcd(FULL_WALL, count=150)),
     cloud_case("PCD without x", UNREADABLE + r'lidar/01\.pcd": field "x" is missing', "pcd", pcd(FULL_WALL, fields="a y z")),

@@ -21,12 +21,15 @@ void Check(const Cloud& cloud) {
 
 }  // namespace
 
-// The first byte chooses the format.
+// The first byte chooses the format, and of a .bin whether its layout is given.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array kSuffixes = {"pcd", "ply", "bin"};
   fuzz::Input input(data, size);
-  const char* suffix = kSuffixes[input.Number<std::uint8_t>() % kSuffixes.size()];
-  const auto cloud = formats::ReadCloud(std::as_bytes(std::span(input.rest())), suffix, "top/01");
+  const auto choice = input.Number<std::uint8_t>();
+  const char* suffix = kSuffixes[choice % kSuffixes.size()];
+  std::optional<CloudLayout> layout;
+  if (choice < 128) layout = KittiLayout();
+  const auto cloud = formats::ReadCloud(std::as_bytes(std::span(input.rest())), suffix, "top/01", layout);
   if (fuzz::RequireGoodError(cloud)) Check(*cloud);
   return 0;
 }

@@ -57,6 +57,14 @@ TEST(Checks, DiskAndRoundTrip) {
   ExpectLevel(JudgeRoundTrip(200 * kMs_ns), CheckLevel::kWarn);
 }
 
+TEST(Checks, LostFiles) {
+  ExpectLevel(JudgeLostFiles(0, {}), CheckLevel::kOk);
+  const Check check = JudgeLostFiles(3, {"mapper-01 left/01.png (damaged)", "mapper-01 left/02.png (missing)"});
+  ExpectLevel(check, CheckLevel::kFail);
+  EXPECT_NE(check.text.find("3 are not as pushed: mapper-01 left/01.png (damaged), mapper-01 left/02.png (missing), ..."),
+            std::string::npos);
+}
+
 TEST(Checks, ThisMachineHasAnInterface) {
   for (const NetworkInterface& one : ListInterfaces()) {
     EXPECT_FALSE(one.name.empty());

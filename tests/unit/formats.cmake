@@ -9,6 +9,7 @@ rigcal_test(formats_session_yaml_test SOURCES unit/formats_session_yaml_test.cc 
 rigcal_test(formats_session_folder_test SOURCES unit/formats_session_folder_test.cc DEPS rigcal_formats)
 rigcal_test(formats_poses_test SOURCES unit/formats_poses_test.cc DEPS rigcal_formats)
 rigcal_test(formats_cloud_test SOURCES unit/formats_cloud_test.cc DEPS rigcal_formats)
+rigcal_test(formats_bin_layout_test SOURCES unit/formats_bin_layout_test.cc unit/formats_cloud_oddities_test.cc DEPS rigcal_formats)
 rigcal_test(formats_cloud_refusals_test SOURCES unit/formats_cloud_refusals_test.cc DEPS rigcal_formats)
 rigcal_test(formats_cloud_data_test SOURCES unit/formats_cloud_data_test.cc DEPS rigcal_formats)
 # PCL writes what our decoders read. Nothing else uses it here.

@@ -191,14 +191,20 @@ TEST(Answers, Health) {
   EXPECT_EQ(good["limits"]["open_sessions"], 7);
   EXPECT_EQ(good["limits"].size(), limits::Settings().size());
   EXPECT_TRUE(good["problem"].is_null());
+  EXPECT_EQ(good["lost_files"]["count"], 0);
   PartState disk{"disk", Error{ErrorCode::kStorage, "disk full", "Free some space."}, kNow, 3};
   answer.parts = {{"intake", {}, {}, 1}, disk};
+  answer.lost_files = 2;
+  answer.first_lost_files = {{RobotId("r"), SessionId("s"), "left/01.png", true}};
   const json bad = json::parse(WriteHealth(answer, kNow));
   EXPECT_EQ(bad["state"], "failing");
   EXPECT_EQ(bad["problem"]["code"], "storage");
   EXPECT_EQ(bad["parts"][0], json::parse(R"({"failures":1,"name":"intake","problem":null,"since":null})"));
   EXPECT_EQ(bad["parts"][1]["problem"]["what"], "disk full");
   EXPECT_EQ(bad["parts"][1]["since"], "2026-02-01T12:00:00Z");
+  EXPECT_EQ(bad["lost_files"]["count"], 2);
+  EXPECT_EQ(bad["lost_files"]["first"][0]["path"], "left/01.png");
+  EXPECT_EQ(bad["lost_files"]["first"][0]["state"], "missing");
 }
 
 TEST(Answers, ErrorsComeBack) {

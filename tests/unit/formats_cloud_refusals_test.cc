@@ -205,8 +205,8 @@ TEST_P(BadCloud, IsRefusedInOneSentenceWithACure) {
 
 INSTANTIATE_TEST_SUITE_P(Table, BadCloud, testing::ValuesIn(AllBadCases()));
 
-TEST(BadClouds, KittiCureNamesTheLayout) {
-  EXPECT_NE(ReadText("x", "bin").error().cure.find("4 floats per point"), std::string::npos);
+TEST(BadClouds, TheCureOfABinNamesWhatToGive) {
+  EXPECT_NE(ReadText("x", "bin").error().cure.find("fields and point_type of sensor 'top'"), std::string::npos);
 }
 
 // Every beginning of a good file is refused or read, never more.

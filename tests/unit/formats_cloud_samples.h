@@ -29,8 +29,9 @@ std::string Floats(T... values) {
   return (Little(static_cast<float>(values)) + ...);
 }
 
+// A .bin holds x y z intensity.
 inline Result<Cloud> ReadText(const std::string& bytes, std::string_view suffix) {
-  return ReadCloud(std::as_bytes(std::span(bytes)), suffix, "top/01." + std::string(suffix));
+  return ReadCloud(std::as_bytes(std::span(bytes)), suffix, "top/01." + std::string(suffix), KittiLayout());
 }
 
 // "DATA ..." and what follows are up to the caller.

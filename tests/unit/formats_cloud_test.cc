@@ -148,11 +148,12 @@ TEST(Pcd, FieldsOfSeveralValuesAndPadding) {
 
 TEST(Cloud, BeamsWithoutAReturnAreCounted) {
   const std::string bytes = Floats(1, 2, 3, 10) + Floats(kNan, 0, 0, 20) + Floats(0, kInf, 0, 30) +
-                            Floats(0, 0, -kInf, 40) + Floats(100001, 0, 0, 50) + Floats(0, -1e30, 0, 60) +
-                            Floats(0, 0, 100000, 70);
+                            Floats(0, 0, -kInf, 40) + Floats(1001, 0, 0, 50) + Floats(0, -1e30, 0, 60) +
+                            Floats(0, 0, 1000, 70);
   const Cloud cloud = Good(bytes, "bin");
-  EXPECT_EQ(cloud.points_m, (Points{{1, 2, 3}, {0, 0, 100000}}));
+  EXPECT_EQ(cloud.points_m, (Points{{1, 2, 3}, {0, 0, 1000}}));
   EXPECT_EQ(cloud.dropped, 5u);
+  EXPECT_EQ(cloud.beyond_1km, 2u);
   ASSERT_EQ(cloud.fields.size(), 1u);
   EXPECT_EQ(cloud.fields[0].name, "intensity");
   EXPECT_EQ(cloud.fields[0].values, (std::vector<double>{10, 70}));

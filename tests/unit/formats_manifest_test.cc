@@ -78,6 +78,29 @@ TEST(ManifestDocument, HoldsThePolishOfLidarsWhereOneIsAskedFor) {
   EXPECT_EQ(ReadManifest(polished).error().what, "manifest: lidar_polish: polish \"icp\" is not known");
 }
 
+// A server from before reads format 1 only: it would take the clouds for KITTI's.
+TEST(ManifestDocument, FieldsOfABinMakeItFormat2) {
+  Manifest manifest = SampleManifest();
+  Sensor lidar;
+  lidar.id = SensorId("top");
+  lidar.kind = SensorKind::kLidar;
+  manifest.header.sensors.push_back(lidar);
+  const std::string plain = WriteManifest(manifest);
+  EXPECT_NE(plain.find("\"format\":1,"), std::string::npos);
+  EXPECT_EQ(plain.find("\"fields\""), std::string::npos);
+  manifest.header.sensors.back().layout = CloudLayout{{"x", "y", "z", "intensity", "ring"}, PointType::kFloat64};
+  std::string text = WriteManifest(manifest);
+  EXPECT_NE(text.find("\"format\":2,"), std::string::npos);
+  EXPECT_NE(text.find("{\"T_ref_nominal\":null,\"fields\":[\"x\",\"y\",\"z\",\"intensity\",\"ring\"],\"id\":\"top\""),
+            std::string::npos);
+  const Result<Manifest> read = ReadManifest(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->header.sensors.back().layout, manifest.header.sensors.back().layout);
+  EXPECT_EQ(WriteManifest(*read), text);
+  text.replace(text.find("\"ring\""), 6, "\"x\"");
+  EXPECT_NE(ReadManifest(text).error().what.find("sensor top: fields: \"x\" occurs twice"), std::string::npos);
+}
+
 struct BadManifest {
   std::string from, to, what;
 };

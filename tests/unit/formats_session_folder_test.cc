@@ -84,6 +84,26 @@ TEST_F(SessionFolder, ReportsProgressUpToTheEnd) {
   EXPECT_EQ(all, last);
 }
 
+TEST_F(SessionFolder, ABinThatCouldBeAnythingAsksForItsFields) {
+  std::string yaml = samples::FileText((folder_ / "session.yaml").string());
+  yaml.insert(yaml.find("sensors:\n") + 9, "  top: {type: lidar}\n");
+  Write("session.yaml", yaml);
+  std::string points;
+  for (int i = 0; i < 2000; ++i)
+    for (const float value : {5.0f + 0.01f * static_cast<float>(i % 100), 0.01f * static_cast<float>(i), 1.0f, 0.3f,
+                              static_cast<float>(i % 32)})
+      points.append(reinterpret_cast<const char*>(&value), sizeof value);
+  Write("top/01.bin", points);
+  ExpectRefused("file \"top/01.bin\": it is not certain to hold KITTI's 4 floats a point");
+  EXPECT_THAT(Read().error().cure, testing::HasSubstr("under sensor 'top' what a point holds, such as fields: [x, y"));
+  yaml.replace(yaml.find("{type: lidar}"), 13, "{type: lidar, fields: [x, y, z, intensity, ring]}");
+  Write("session.yaml", yaml);
+  const auto manifest = Read();
+  ASSERT_TRUE(manifest) << Sentence(manifest.error());
+  Write("top/01.bin", points.substr(4));
+  ExpectRefused("file \"top/01.bin\": has 39996 bytes, which is no multiple of 20");
+}
+
 TEST_F(SessionFolder, IgnoresDotFiles) {
   Write(".DS_Store", "x");
   Write("left/.hidden.txt", "x");

@@ -121,17 +121,20 @@ TEST_F(LidarPipelineTest, WithoutNominalPosesTheEdgeSaysWhatToGive) {
   EXPECT_NE(edge.diagnoses[0].cure.find("T_ref_nominal"), std::string::npos);
 }
 
-TEST_F(LidarPipelineTest, ALostCloudCostsItsCaptureOnly) {
+TEST_F(LidarPipelineTest, ALostCloudCostsThePairUntilItIsSentAgain) {
   calib::LidarLidarProblem problem = calib::RecordedIn(calib::VirtualRoom(), 2, 47);
-  StoreRoom(problem, true);
-  std::filesystem::remove(storage::BlobPath(store_->BlobFolder(), Sha256Of(Kitti(problem.captures[0].b_m))));
+  const SessionId session = StoreRoom(problem, true);
+  const std::string lost = Kitti(problem.captures[0].b_m);
+  std::filesystem::remove(storage::BlobPath(store_->BlobFolder(), Sha256Of(lost)));
   StepAll();
-  const Edge edge = OnlyEdge();
-  ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses[0].what;
-  ASSERT_EQ(edge.captures.size(), 2u);
-  EXPECT_FALSE(edge.captures[0].used);
-  EXPECT_FALSE(edge.captures[0].note.empty());
-  EXPECT_TRUE(edge.captures[1].used);
+  EXPECT_EQ(OnlyEdge().diagnoses.at(0).code, "file_lost");
+  EXPECT_EQ(OnlyEdge().method, "lidar_lidar");
+  ASSERT_TRUE(storage::AppendBlob(store_->BlobFolder(), lost));
+  ASSERT_TRUE(storage::AppendHeld(*store_, session, {2}, clock_.now));
+  StepAll();
+  const auto edges = storage::LoadEdges(*store_, RobotId("r"), false).value();
+  ASSERT_EQ(edges.size(), 2u);
+  EXPECT_EQ(std::count_if(edges.begin(), edges.end(), [](const Edge& e) { return e.state == EdgeState::kGood; }), 1);
 }
 
 }  // namespace

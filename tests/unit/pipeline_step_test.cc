@@ -278,7 +278,7 @@ TEST_F(PipelineTest, ASensorInNoPairIsUnknownNotAbsent) {
   EXPECT_FALSE(side->known);
 }
 
-TEST_F(PipelineTest, ALostBlobCostsOnePictureNotTheRobot) {
+TEST_F(PipelineTest, ALostBlobCostsThePairNotTheRobot) {
   StoreSession("r", {{"left/01.png", "one"}, {"right/01.png", "two"}});
   std::filesystem::remove(storage::BlobPath(store_->BlobFolder(), Sha256Of(std::string("one"))));
   StepAll();
@@ -287,6 +287,7 @@ TEST_F(PipelineTest, ALostBlobCostsOnePictureNotTheRobot) {
   ASSERT_TRUE(edges);
   ASSERT_EQ(edges->size(), 1u);
   EXPECT_EQ(edges->front().state, EdgeState::kFailed);
+  EXPECT_EQ(edges->front().diagnoses.front().code, "file_lost");
   EXPECT_EQ(revisions_.size(), 1u);
 }
 

@@ -4,6 +4,7 @@
 #include "storage/attempts.h"
 #include "storage/fleet_facts.h"
 #include "storage/standing.h"
+#include "storage/lost_blobs.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -41,6 +42,7 @@ class AppendOnlyTest : public StoreTest {
       revision.calibrated_at = Stamp{4};
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, revision));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
+      RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }
