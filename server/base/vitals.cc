@@ -41,7 +41,8 @@ void Part::Fail(Error error) {
   ++failures_;
   ++failures_in_row_;
   if (!problem_) since_ = clock_.Now();
-  if (!problem_ || problem_->what != error.what) LogError(error);
+  if (!problem_ || problem_->what != error.what)
+    LogError({error.code, "the part '" + name_ + "': " + error.what, error.cure});
   problem_ = std::move(error);
 }
 

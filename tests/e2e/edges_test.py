@@ -85,4 +85,5 @@ def main():
     print("edges: good")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -15,7 +15,7 @@ class SmallDisk:
 
     def __init__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rigcal-disk-"))
-        done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48m", "tmpfs", str(folder)], capture_output=True, text=True)
+        done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=48m", "tmpfs", str(self.folder)], capture_output=True, text=True)
         if done.returncode != 0:
             self.folder.rmdir()
             print("SKIPPED: may not mount a small disk: " + done.stderr.strip())
@@ -99,6 +99,8 @@ def main():
             disk.fill()
             reads(flow, shown)
             refuses(flow, path)
+            disk.free()
+            await_health(flow, 200)
             for _ in range(2):
                 restart(flow, disk)
                 reads(flow, shown)

@@ -61,7 +61,9 @@ TEST_F(MissingReportTest, IsDrawnAgainWithTheSameBytes) {
 
 TEST_F(MissingReportTest, OlderOnesLookAsTheyDid) {
   const Files first = FilesIn(Report(1));
-  StoreEdges({GivenEdge("r", "a", "d", 4.0)});
+  std::vector<Edge> more = {GivenEdge("r", "a", "d", 4.0)};
+  AssignPushedIds(more);
+  StoreEdges(more);
   StepAll();
   const Files second = FilesIn(Report(2));
   fs::remove_all(store_->ReportFolder() / "r");
