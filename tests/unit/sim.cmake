@@ -1,5 +1,6 @@
 rigcal_test(sim_test COMPUTES
   SOURCES unit/sim_rig_test.cc unit/sim_lens_test.cc unit/sim_scan_test.cc unit/sim_bound_test.cc unit/sim_session_test.cc unit/sim_calibration_test.cc
+          unit/sim_disturbance_test.cc
           unit/sim_sample.cc
   DEPS rigcal_sim rigcal_formats rigcal_calib)
 rigcal_test(sim_picture_test COMPUTES
