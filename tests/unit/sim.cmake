@@ -9,3 +9,6 @@ rigcal_test(sim_picture_test COMPUTES
 rigcal_test(sim_lidar_pair_test COMPUTES
   SOURCES unit/sim_lidar_pair_test.cc bench/feature_session.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph)
+rigcal_test(trust_words_test
+  SOURCES unit/trust_words_test.cc bench/told_words.cc
+  DEPS rigcal_calib rigcal_graph rigcal_sim)
