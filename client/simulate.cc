@@ -8,6 +8,7 @@
 #include "client/progress.h"
 #include "client/sim/bound.h"
 #include "client/sim/rig_yaml.h"
+#include "client/simulate_disturbances.h"
 #include "client/table.h"
 #include "client/transfer.h"
 #include "client/verbs.h"
@@ -16,21 +17,22 @@ namespace rigcal::client {
 namespace {
 
 struct Options {
-  std::string rig, out, print_rig, motion = "free", intrinsics = "calibrated", format = "jpg", bump;
+  std::string rig, out, print_rig, motion = "free", intrinsics = "calibrated", format = "jpg";
   double tilt_deg = -1;
   int captures = 0, threads = 0;
+  DisturbanceWords disturbances;
   sim::Options simulation;
 };
 
-sim::Options Simulation(const Options& options) {
+Result<sim::Options> Simulation(const Options& options) {
   sim::Options simulation = options.simulation;
   if (options.captures > 0) simulation.captures = options.captures;
   if (options.tilt_deg >= 0) simulation.tilt_rms_rad = options.tilt_deg * M_PI / 180;
-  if (!options.bump.empty()) simulation.bump = SensorId(options.bump);
   if (options.motion == "planar") simulation.motion = sim::MotionKind::kPlanar;
   if (options.motion == "spot") simulation.motion = sim::MotionKind::kSpot;
   if (options.intrinsics == "exact") simulation.intrinsics = sim::IntrinsicsKind::kExact;
   if (options.intrinsics == "absent") simulation.intrinsics = sim::IntrinsicsKind::kAbsent;
+  RIGCAL_TRY(ReadDisturbances(options.disturbances, simulation));
   return simulation;
 }
 
@@ -43,7 +45,8 @@ struct Done {
 
 Result<Done> Record(const Context& context, const Options& options) {
   RIGCAL_ASSIGN(sim::Rig rig, sim::LoadRig(options.rig));
-  RIGCAL_ASSIGN(const sim::Experiment experiment, sim::Prepare(std::move(rig), Simulation(options)));
+  RIGCAL_ASSIGN(const sim::Options simulation, Simulation(options));
+  RIGCAL_ASSIGN(const sim::Experiment experiment, sim::Prepare(std::move(rig), simulation));
   Done done;
   done.truth = sim::TruthOf(experiment);
   for (const auto& [id, bound] : sim::CramerRaoBound(experiment)) done.truth.sensors.at(id).bound = bound;
@@ -151,8 +154,6 @@ void AddOptions(CLI::App& verb, Options& options) {
   verb.add_option("--seed", simulation.seed, "Of everything that is drawn at random (default 1)")->type_name("N");
   verb.add_option("--noise", simulation.noise_factor, "Factor on all noise (default 1)")->type_name("FACTOR");
   verb.add_option("--dropouts", simulation.dropout_ratio, "Part of the files that is missing")->type_name("RATIO");
-  verb.add_option("--bump", options.bump, "A sensor that is moved by 5 mm and 0.5 deg halfway through")
-      ->type_name("SENSOR");
   verb.add_option("--motion", options.motion, "free; planar: level; spot: turning about one upright axis")
       ->check(CLI::IsMember({"free", "planar", "spot"}));
   verb.add_option("--tilt-deg", options.tilt_deg, "Tilt of the poses, rms (default: the rig's; 0 if planar or spot)")
@@ -173,6 +174,7 @@ void AddOptions(CLI::App& verb, Options& options) {
   verb.add_option("--captured-at", simulation.captured_at, "Time of the visit (default 2026-01-31T12:00:00Z)")
       ->type_name("TIME");
   verb.add_option("--threads", options.threads, "At most (default: all)")->type_name("N")->check(CLI::Range(1, 1024));
+  AddDisturbances(verb, options.disturbances, simulation);
 }
 
 }  // namespace
@@ -190,6 +192,7 @@ void AddSimulate(CLI::App& app, Context& context) {
       "  rigcal simulate mars-mapper --out small/ --scale 0.4 --captures 16    the same in seconds\n"
       "  rigcal simulate mars-mapper --captures 20                             how well can it be known at all?\n"
       "  rigcal simulate mars-mapper --out level/ --motion planar --seed 7\n"
+      "  rigcal simulate mars-mapper --out moved/ --bump back --bump-at 0.25   a sensor gives way during the visit\n"
       "  rigcal simulate --print-rig mars-mapper > mine.yaml                   to begin a rig of your own\n"
       "  rigcal simulate mine.yaml --out visit/ --json\n");
   verb->callback([&context, options] {

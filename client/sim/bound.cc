@@ -23,6 +23,15 @@ Step Moved(const Vector3d& p) {
   return step;
 }
 
+// As if nothing had happened during the visit.
+Experiment Undisturbed(Experiment experiment) {
+  experiment.T_body_bumped.clear();
+  experiment.moved_board.reset();
+  experiment.wrong_instant.reset();
+  experiment.shifted.reset();
+  return experiment;
+}
+
 // Where each unknown of the rig stands; -1: it is none. Poses of captures are eliminated on the way.
 struct Layout {
   std::map<SensorId, int> pose, lens;
@@ -93,7 +102,7 @@ struct CaptureInformation {
 class Builder {
  public:
   explicit Builder(const Experiment& experiment)
-      : experiment_(experiment), scene_(SceneOf(experiment.rig)), layout_(experiment) {}
+      : experiment_(Undisturbed(experiment)), scene_(SceneOf(experiment.rig)), layout_(experiment) {}
 
   [[nodiscard]] const Layout& layout() const { return layout_; }
 
@@ -186,7 +195,7 @@ class Builder {
     }
   }
 
-  const Experiment& experiment_;
+  const Experiment experiment_;
   const Scene scene_;
   const Layout layout_;
 };

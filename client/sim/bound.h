@@ -13,7 +13,8 @@ namespace rigcal::sim {
 // are exact, the lenses (with a calibration's sigmas as what is known beforehand). Enters what the pairs of the session
 // use: corners of each camera's board where it is seen whole; points of each lidar on the boards of the cameras that it
 // is calibrated with; tracker poses. The room's walls do not enter: they would tell two lidars more. Without noise
-// there is no bound: empty. A bumped sensor is taken as never bumped.
+// there is no bound: empty. What happens at single captures (a sensor or board that is moved, a picture of
+// another instant or shifted) is taken as if it had not; corners of a burst as if each had errors of its own.
 [[nodiscard]] std::map<SensorId, BoundSigma> CramerRaoBound(const Experiment& experiment);
 
 // The whole covariance of one sensor's pose; nothing where the data leave a direction of it open, or without noise.

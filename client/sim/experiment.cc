@@ -4,51 +4,16 @@
 #include <cmath>
 
 #include "client/sim/declared.h"
-#include "client/sim/facing.h"
+#include "client/sim/disturb.h"
 #include "client/sim/lens.h"
+#include "client/sim/placement.h"
 #include "client/sim/random.h"
 
 namespace rigcal::sim {
 namespace {
 
-constexpr double kTiltMax = 2.5;  // of one axis, in its standard deviations: no robot falls over
-constexpr std::int64_t kBetweenCaptures_ns = 10'000'000'000;
-
-double ClampedNormal(Random& random) { return std::clamp(random.Normal(), -kTiltMax, kTiltMax); }
-
-Se3 DrawPose(const MotionPlan& plan, MotionKind kind, std::uint64_t key) {
-  Random random(key);
-  Eigen::Vector3d offset_m, rpy_rad;
-  for (int k = 0; k < 3; ++k) offset_m[k] = plan.position_range_m[k] * random.Uniform(-1, 1);
-  // The angle of the tilt has two axes of its own share each.
-  for (int k = 0; k < 2; ++k) rpy_rad[k] = plan.tilt_rms_rad / std::sqrt(2.0) * ClampedNormal(random);
-  rpy_rad[2] = plan.yaw_range_rad * random.Uniform(-1, 1);
-  if (kind == MotionKind::kSpot) offset_m.setZero();
-  if (kind == MotionKind::kPlanar) offset_m.z() = 0;
-  return (plan.T_world_body_start * Turned(offset_m, rpy_rad)).Normalized();
-}
-
-std::string CaptureName(std::size_t idx, std::size_t count) {
-  const std::size_t digits = std::max<std::size_t>(2, std::to_string(count).size());
-  const std::string number = std::to_string(idx + 1);
-  return std::string(digits - std::min(digits, number.size()), '0') + number;
-}
-
-void PlaceCaptures(Experiment& experiment, Stamp start) {
-  MotionPlan plan = experiment.rig.motion;
-  // Level motions stay level unless a tilt is asked for.
-  if (experiment.options.motion != MotionKind::kFree) plan.tilt_rms_rad = 0;
-  plan.tilt_rms_rad = experiment.options.tilt_rms_rad.value_or(plan.tilt_rms_rad);
-  const auto count = static_cast<std::size_t>(experiment.options.captures.value_or(plan.captures));
-  for (std::size_t k = 0; k < count; ++k) {
-    experiment.captures.push_back(CaptureId(CaptureName(k, count)));
-    experiment.stamps_ns.push_back(start.ns + static_cast<std::int64_t>(k) * kBetweenCaptures_ns);
-    experiment.T_world_body.push_back(
-        DrawPose(plan, experiment.options.motion, KeyOf(experiment.options.seed, "pose", {}, k)));
-  }
-}
-
 void Bump(Experiment& experiment) {
+  experiment.bumped_from_idx = experiment.IndexAt(experiment.options.bump_at_ratio);
   if (!experiment.options.bump) return;
   const SensorId& id = *experiment.options.bump;
   Random random(KeyOf(experiment.options.seed, "bump", id.str()));
@@ -102,6 +67,8 @@ Status CheckOptions(const Rig& rig, const Options& options) {
     return refuse("dropouts is out of range", "Give 0 to 0.99.");
   if (!(options.board_scale_ratio > 0.5 && options.board_scale_ratio < 2))
     return refuse("board-scale is out of range", "Give 0.5 to 2; 1.001 is a board 0.1 % too large.");
+  if (!(options.bump_at_ratio > 0 && options.bump_at_ratio < 1))
+    return refuse("bump-at is out of range", "Give a ratio between 0 and 1; 0.25 is after the first quarter.");
   if (options.captures && (*options.captures < 1 || *options.captures > 10'000))
     return refuse("captures is out of range", "Give 1 to 10000.");
   return {};
@@ -111,12 +78,33 @@ Status CheckOptions(const Rig& rig, const Options& options) {
 
 Se3 Experiment::T_body_sensor(const SensorId& id, std::size_t capture_idx) const {
   const auto bumped = T_body_bumped.find(id);
-  if (bumped != T_body_bumped.end() && capture_idx >= captures.size() / 2) return bumped->second;
+  if (bumped != T_body_bumped.end() && capture_idx >= bumped_from_idx) return bumped->second;
   return rig.SensorOf(id).T_body_sensor;
 }
 
 Se3 Experiment::T_world_sensor(const SensorId& id, std::size_t capture_idx) const {
-  return T_world_body[capture_idx] * T_body_sensor(id, capture_idx);
+  const bool is_elsewhere = wrong_instant && wrong_instant->sensor == id && wrong_instant->capture_idx == capture_idx;
+  return (is_elsewhere ? wrong_instant->T_world_body : T_world_body[capture_idx]) * T_body_sensor(id, capture_idx);
+}
+
+RigBoard Experiment::BoardAt(const TargetId& id, std::size_t capture_idx) const {
+  RigBoard board = rig.BoardOf(id);
+  if (moved_board && moved_board->board == id && capture_idx >= moved_board->from_idx)
+    board.T_world_plate = moved_board->T_world_plate;
+  return board;
+}
+
+Eigen::Vector2d Experiment::ShiftOf(const SensorId& id, std::size_t capture_idx) const {
+  const bool is_shifted = shifted && shifted->sensor == id && shifted->capture_idx == capture_idx;
+  return is_shifted ? shifted->shift_px : Eigen::Vector2d::Zero();
+}
+
+std::size_t Experiment::BurstOf(std::size_t capture_idx) const {
+  return capture_idx / static_cast<std::size_t>(options.disturb.burst);
+}
+
+std::size_t Experiment::IndexAt(double ratio) const {
+  return static_cast<std::size_t>(ratio * static_cast<double>(captures.size()));
 }
 
 Se3 Experiment::T_ref_sensor(const SensorId& id) const {
@@ -131,17 +119,26 @@ bool Experiment::IsRecorded(const SensorId& id, std::size_t capture_idx) const {
 Result<Experiment> Prepare(Rig rig, const Options& options) {
   RIGCAL_TRY(Validate(rig));
   RIGCAL_TRY(CheckOptions(rig, options));
+  RIGCAL_TRY(CheckDisturbances(rig, options));
   RIGCAL_ASSIGN(const Stamp start, ParseIso(options.captured_at));
   Experiment experiment;
   experiment.options = options;
   experiment.rig = std::move(rig);
   const std::vector<RigBoard> boards_as_declared = experiment.rig.boards;
   ScaleAndSoil(options, experiment.rig);
+  DisturbRig(options, experiment.rig);
   PlaceCaptures(experiment, start);
   Bump(experiment);
   DrawBeamBiases(experiment);
+  RIGCAL_TRY(DisturbCaptures(experiment));
   experiment.declared = Declare(experiment, boards_as_declared, start);
   return experiment;
+}
+
+Scene SceneAt(const Experiment& experiment, std::size_t capture_idx) {
+  Rig rig = experiment.rig;
+  for (RigBoard& board : rig.boards) board = experiment.BoardAt(board.target.id, capture_idx);
+  return SceneOf(rig);
 }
 
 }  // namespace rigcal::sim

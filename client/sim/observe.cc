@@ -102,14 +102,41 @@ std::vector<TargetId> BoardsOf(const Experiment& experiment, const SensorId& lid
 std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experiment, const Scene& scene,
                                                         const RigSensor& camera, std::size_t capture_idx) {
   const TargetId id = camera.sees.value_or(experiment.rig.boards.front().target.id);
-  const RigBoard& board = experiment.rig.BoardOf(id);
+  const RigBoard board = experiment.BoardAt(id, capture_idx);
   const Se3 T_world_cam = experiment.T_world_sensor(camera.id, capture_idx);
   if (!SeesWhole(scene, camera, board, T_world_cam)) return std::nullopt;
   const Se3 T_cam_board = T_world_cam.Inverse() * board.T_world_board();
   std::vector<Eigen::Vector3d> points_cam;
-  for (const Eigen::Vector3d& point : TargetPoints(board.target)) points_cam.push_back(T_cam_board * point);
-  return PixelsOf(camera.camera.intrinsics, points_cam);
+  for (Eigen::Vector3d point : TargetPoints(board.target)) {
+    point.z() += board.bend.At(point.head<2>() - CentreOf(board.target).head<2>());
+    points_cam.push_back(T_cam_board * point);
+  }
+  std::vector<Eigen::Vector2d> corners = PixelsOf(camera.camera.intrinsics, points_cam);
+  const Eigen::Vector2d shift_px = experiment.ShiftOf(camera.id, capture_idx);
+  for (Eigen::Vector2d& corner : corners) corner += camera.camera.misfit.At(corner) + shift_px;
+  return corners;
 }
+
+// Pictures of one burst are wrong alike: the same light, the same blur, the same places on the pixels.
+constexpr double kBurstShare = 0.8;  // of a corner's variance
+
+class CornerNoise {
+ public:
+  CornerNoise(const Experiment& experiment, const RigSensor& camera, std::size_t capture_idx)
+      : sigma_px_(camera.camera.corner_sigma_px),
+        share_(experiment.options.disturb.burst > 1 ? kBurstShare : 0.0),
+        own_(KeyOf(experiment.options.seed, "corners", camera.id.str(), capture_idx)),
+        shared_(KeyOf(experiment.options.seed, "burst corners", camera.id.str(), experiment.BurstOf(capture_idx))) {}
+  [[nodiscard]] Eigen::Vector2d Next() {
+    const Eigen::Vector2d own = sigma_px_ * own_.Normals<2>();
+    if (share_ == 0) return own;
+    return std::sqrt(1 - share_) * own + std::sqrt(share_) * sigma_px_ * shared_.Normals<2>();
+  }
+
+ private:
+  double sigma_px_, share_;
+  Random own_, shared_;
+};
 
 BoardView ObserveBoard(const Experiment& experiment, const Scene& scene, const RigSensor& camera,
                        std::size_t capture_idx) {
@@ -123,17 +150,17 @@ BoardView ObserveBoard(const Experiment& experiment, const Scene& scene, const R
     view.why_not = "the board is not seen whole";
     return view;
   }
-  Random random(KeyOf(experiment.options.seed, "corners", camera.id.str(), capture_idx));
+  CornerNoise noise(experiment, camera, capture_idx);
   for (const Eigen::Vector2d& corner : *corners) {
     view.corner_idx.push_back(static_cast<int>(view.corners_px.size()));
-    view.corners_px.emplace_back(corner + camera.camera.corner_sigma_px * random.Normals<2>());
+    view.corners_px.emplace_back(corner + noise.Next());
   }
   return view;
 }
 
 std::vector<ScanPoint> PlatePoints(const Experiment& experiment, const Scene& scene, const RigSensor& lidar,
                                    const TargetId& board, std::size_t capture_idx) {
-  const RigBoard& plate = experiment.rig.BoardOf(board);
+  const RigBoard plate = experiment.BoardAt(board, capture_idx);
   const Se3 T_world_lidar = experiment.T_world_sensor(lidar.id, capture_idx);
   const int panel_idx = PanelIndexOf(scene, board);
   std::vector<ScanPoint> points =
@@ -167,9 +194,9 @@ CloudView ObservePlate(const Experiment& experiment, const Scene& scene, const R
 }
 
 Observations Observe(const Experiment& experiment) {
-  const Scene scene = SceneOf(experiment.rig);
   std::vector<Observations> parts(experiment.captures.size());
   ParallelFor(parts.size(), [&](std::size_t k) {
+    const Scene scene = SceneAt(experiment, k);
     const CaptureId& capture = experiment.captures[k];
     for (const RigSensor& sensor : experiment.rig.sensors) {
       if (sensor.kind == SensorKind::kTracker || !experiment.IsRecorded(sensor.id, k)) continue;

@@ -17,8 +17,9 @@ namespace rigcal::sim {
 // calibrated with a tracker.
 [[nodiscard]] std::vector<TargetId> BoardsOf(const Experiment& experiment, const SensorId& lidar);
 
-// Every inner corner without noise, in the order of TargetPoints(); nothing where the board is not seen whole: cut by
-// the picture's border, hidden, from behind or at more than 75 degrees.
+// Every inner corner without noise, in the order of TargetPoints(), where the lens and the board as they are put it;
+// nothing where the board is not seen whole: cut by the picture's border, hidden, from behind or at more than 75
+// degrees. `scene`: that of the capture.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const Experiment& experiment, const Scene& scene,
                                                                       const RigSensor& camera, std::size_t capture_idx);
 // The same with noise of corner_sigma_px on each coordinate, as detection tells it.

@@ -19,7 +19,7 @@ std::vector<PanelView> PanelViews(const Scene& scene, const Se3& T_world_cam) {
     const double farthest_m = offset.norm() + panel.half_m.norm();
     views.push_back({&panel, numerator(panel.u), numerator(panel.v), (R_cam_world * n).cast<float>(),
                      static_cast<float>(std::abs(plane_m)), static_cast<float>(0.5 * std::abs(plane_m) / farthest_m),
-                     plane_m > 0});
+                     plane_m > 0, Eigen::Vector3d(-panel.u.dot(offset), -panel.v.dot(offset), -plane_m).cast<float>()});
   }
   return views;
 }

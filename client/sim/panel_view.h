@@ -17,6 +17,7 @@ struct PanelView {
   float least = 0;            // half of the smallest D.r of a ray that meets the panel: below it, near the plane's
                               // horizon, coordinates are far beyond the panel with it as well
   bool is_back = false;       // of a plate
+  Eigen::Vector3f from_m{0, 0, 1};  // of the camera along u, v and outward, from the panel's middle
 };
 
 // Panels that face the camera.

@@ -17,7 +17,8 @@ struct RayGrid {
   std::vector<Eigen::Vector3f> rays;  // in the camera's frame, row by row
   std::vector<float> brightness;      // 0 to 1
 
-  explicit RayGrid(const CameraTruth& camera);
+  // `shift_px`: of the whole picture.
+  explicit RayGrid(const CameraTruth& camera, const Eigen::Vector2d& shift_px = Eigen::Vector2d::Zero());
   [[nodiscard]] std::size_t NodeIndex(int node_x, int node_y) const {
     return static_cast<std::size_t>(node_y) * static_cast<std::size_t>(2 * tiles_x + 1) +
            static_cast<std::size_t>(node_x);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "client/sim/bend.h"
+#include "client/sim/lens_misfit.h"
 #include "server/math/se3.h"
 #include "server/model/session.h"
 
@@ -31,6 +33,7 @@ struct Room {
 struct RigBoard {
   Target target;
   Se3 T_world_plate;
+  Bend bend = {};
 
   [[nodiscard]] Se3 T_world_board() const;  // of the board's frame, server/model/target.h
 };
@@ -43,12 +46,14 @@ struct CameraTruth {
   double vignetting_ratio = 0.3;         // of the natural fall of light (fourth power of the cosine)
   double corner_sigma_px = 0.05;         // what finding a corner is expected to add: for feature level and the bound
   std::vector<double> intrinsics_sigma;  // of a calibration beforehand: fx fy cx cy and the distortion
+  LensMisfit misfit = {};                // beyond the intrinsics
 };
 
 struct LidarTruth {
   std::vector<double> elevations_rad;  // one per beam, from the lowest: ring 0
   int firings_per_turn = 2170;
   double range_sigma_m = 0.02, range_min_m = 0.5, range_max_m = 80.0;
+  double mixed_pixels_ratio = 0.0, incidence_bias_m = 0.0;  // see Disturbances
 };
 
 struct TrackerTruth {

@@ -13,10 +13,10 @@ namespace rigcal::sim {
 
 struct ScanPoint {
   Eigen::Vector3d p_lidar;  // metres, with noise
-  double range_m = 0;       // true
+  double range_m = 0;       // true, without bias and noise
   float intensity = 0;      // 0 to 255, of the surface
   int ring = 0;             // beam, 0 the lowest
-  int panel_idx = -1;       // of the scene: what it lies on
+  int panel_idx = -1;       // of the scene: what it lies on; -1: between two surfaces
 };
 
 // Which way each beam goes at each firing.

@@ -70,6 +70,7 @@ Panel PlateOf(const RigBoard& board, int board_idx) {
   panel.half_m = *board.target.plate_m / 2;
   panel.colour = Colour::Constant(0.45);  // of its back
   panel.board_idx = board_idx;
+  panel.bend = board.bend;
   return panel;
 }
 
@@ -95,6 +96,8 @@ Scene SceneOf(const Rig& rig) {
   }
   return scene;
 }
+
+double BendAlong(const Panel& panel, const Vector2d& ab_m, double height_m) { return panel.bend.At(ab_m) / height_m; }
 
 double ShadeAt(const Scene& scene, const Vector3d& point_m, const Vector3d& outward) {
   const Vector3d light = scene.lamp_m - point_m;

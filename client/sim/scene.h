@@ -19,6 +19,7 @@ struct Panel {
   Layer layer = Layer::kObject;
   Colour colour = Colour::Constant(0.5);
   int board_idx = -1;  // of Scene::boards; otherwise plain
+  Bend bend = {};      // of a board
 };
 
 struct Scene {
@@ -30,6 +31,9 @@ struct Scene {
 constexpr double kWhite = 0.86, kBlack = 0.05;  // of printed boards
 
 [[nodiscard]] Scene SceneOf(const Rig& rig);
+// How much farther along a ray a bent panel is than its plane, over the distance of the plane, where the ray meets the
+// plane; `height_m`: of the ray's origin over the plane.
+[[nodiscard]] double BendAlong(const Panel& panel, const Eigen::Vector2d& ab_m, double height_m);
 // Light that a surface sends back to every side, over what it would under the lamp.
 [[nodiscard]] double ShadeAt(const Scene& scene, const Eigen::Vector3d& point_m, const Eigen::Vector3d& outward);
 [[nodiscard]] Colour AlbedoAt(const Scene& scene, const Panel& panel, const Eigen::Vector2d& ab_m);

@@ -63,12 +63,7 @@ class Recorder {
  public:
   Recorder(const Experiment& experiment, const fs::path& folder, const WriteOptions& options,
            const FilesProgress& progress)
-      : experiment_(experiment),
-        folder_(folder),
-        options_(options),
-        progress_(progress),
-        scene_(SceneOf(experiment.rig)),
-        shots_(ShotsOf(experiment)) {
+      : experiment_(experiment), folder_(folder), options_(options), progress_(progress), shots_(ShotsOf(experiment)) {
     summary_.threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
   }
 
@@ -105,9 +100,11 @@ class Recorder {
     const double start_s = ThreadSeconds();
     const RigSensor& sensor = *shot.sensor;
     const auto& grid = grids_[static_cast<std::size_t>(shot.sensor - experiment_.rig.sensors.data())];
-    const Picture picture =
-        TakePicture(scene_, sensor.camera, *grid, experiment_.T_world_sensor(sensor.id, shot.capture_idx),
-                    KeyOf(experiment_.options.seed, "picture", sensor.id.str(), shot.capture_idx));
+    const Eigen::Vector2d shift_px = experiment_.ShiftOf(sensor.id, shot.capture_idx);
+    const Picture picture = TakePicture(SceneAt(experiment_, shot.capture_idx), sensor.camera,
+                                        shift_px.isZero() ? *grid : RayGrid(sensor.camera, shift_px),
+                                        experiment_.T_world_sensor(sensor.id, shot.capture_idx),
+                                        KeyOf(experiment_.options.seed, "picture", sensor.id.str(), shot.capture_idx));
     RIGCAL_ASSIGN(const std::string bytes, Encoded(picture, options_.format));
     const double spent_s = ThreadSeconds() - start_s;
     RIGCAL_ASSIGN(const std::int64_t written, Write(PathOf(shot, SuffixOf(options_.format)), bytes));
@@ -122,8 +119,8 @@ class Recorder {
   Status Measure(const Shot& shot) {
     const RigSensor& sensor = *shot.sensor;
     const std::vector<ScanPoint> points =
-        Scan(scene_, sensor.lidar, experiment_.T_world_sensor(sensor.id, shot.capture_idx),
-             experiment_.beam_bias_m.at(sensor.id),
+        Scan(SceneAt(experiment_, shot.capture_idx), sensor.lidar,
+             experiment_.T_world_sensor(sensor.id, shot.capture_idx), experiment_.beam_bias_m.at(sensor.id),
              KeyOf(experiment_.options.seed, "scan", sensor.id.str(), shot.capture_idx));
     RIGCAL_ASSIGN(const std::int64_t written, Write(PathOf(shot, "pcd"), PcdOf(points)));
     const std::lock_guard lock(mutex_);
@@ -146,7 +143,6 @@ class Recorder {
   const fs::path& folder_;
   const WriteOptions& options_;
   const FilesProgress& progress_;
-  const Scene scene_;
   const std::vector<Shot> shots_;
   std::vector<std::optional<RayGrid>> grids_;
   std::mutex mutex_;  // guards what follows

@@ -151,17 +151,26 @@ void FillPlain(const Colour& colour, const Quadratic& shade, Tile& tile) {
 // Plane coordinates of one row of pixels.
 struct Coordinates {
   Quadratic Na, Nb, D;
-  float least;
+  const PanelView& view;
   Row a_m, b_m;
 
-  Coordinates(const PanelView& view, const Rays& rays)
-      : Na(Along(view.Na, rays)), Nb(Along(view.Nb, rays)), D(Along(view.D, rays)), least(view.least), a_m{}, b_m{} {}
+  Coordinates(const PanelView& seen, const Rays& rays)
+      : Na(Along(seen.Na, rays)), Nb(Along(seen.Nb, rays)), D(Along(seen.D, rays)), view(seen), a_m{}, b_m{} {}
   void Fill(float y) {
     Row d;
     Na.Fill(y, a_m), Nb.Fill(y, b_m), D.Fill(y, d);
     for (std::size_t x = 0; x < kTile; ++x) {
-      const float inverse = 1 / std::max(d[x], least);
+      const float inverse = 1 / std::max(d[x], view.least);
       a_m[x] *= inverse, b_m[x] *= inverse;
+    }
+    if (!view.panel->bend.is_flat()) Bend();
+  }
+  // A ray goes on until it meets the bent plate.
+  void Bend() {
+    for (std::size_t x = 0; x < kTile; ++x) {
+      const auto farther = static_cast<float>(BendAlong(*view.panel, {a_m[x], b_m[x]}, view.from_m.z()));
+      a_m[x] += farther * (a_m[x] - view.from_m.x());
+      b_m[x] += farther * (b_m[x] - view.from_m.y());
     }
   }
 };

@@ -86,16 +86,48 @@ Truth ReadTree(const YamlField& root) {
     truth.sensors[SensorId(sensor.Key())] = ReadSensor(sensor.Called("sensor '" + sensor.Key() + "'"));
   for (const YamlField& board : root.At("boards").Members())
     truth.boards[TargetId(board.Key())] = {board.At("square_size_m").Number(), ReadPose(board.At("T_world_board"))};
+  if (const auto disturbances = root.Find("disturbances"))
+    for (const YamlField& one : disturbances->Members()) truth.disturbances[one.Key()] = one.Text();
   for (const YamlField& capture : root.At("captures").Items())
     truth.captures.push_back({CaptureId(capture.At("capture").Text()), ReadPose(capture.At("T_world_ref"))});
   return truth;
+}
+
+std::string By(const Displacement& by) { return Text(1e3 * by.m) + " mm and " + Text(by.rad * 180 / M_PI) + " deg"; }
+
+void DescribeCaptures(const Experiment& experiment, std::map<std::string, std::string>& words) {
+  const auto of = [&](const SensorId& sensor, std::size_t capture_idx) {
+    return sensor.str() + ", capture " + experiment.captures[capture_idx].str();
+  };
+  if (const auto& board = experiment.moved_board)
+    words["board_moved"] = board->board.str() + " by " + By(experiment.options.disturb.board_move->by) +
+                           " from capture " + experiment.captures[board->from_idx].str() + " on";
+  if (const auto& at = experiment.wrong_instant) words["wrong_instant"] = of(at->sensor, at->capture_idx);
+  if (const auto& at = experiment.shifted)
+    words["shift_capture"] = of(at->sensor, at->capture_idx) + " by " + Text(Eigen::VectorXd(at->shift_px)) + " px";
+}
+
+std::map<std::string, std::string> DisturbancesOf(const Experiment& experiment) {
+  const Disturbances& disturb = experiment.options.disturb;
+  std::map<std::string, std::string> words;
+  if (disturb.lens_misfit_px > 0) words["lens_misfit"] = Text(disturb.lens_misfit_px) + " px rms, every camera";
+  if (disturb.visit_scatter.m > 0 || disturb.visit_scatter.rad > 0)
+    words["visit_scatter"] = By(disturb.visit_scatter) + " per axis";
+  if (disturb.board_bend_m > 0) words["board_bend"] = Text(1e3 * disturb.board_bend_m) + " mm, every board";
+  if (disturb.mixed_pixels_ratio > 0) words["mixed_pixels"] = Text(disturb.mixed_pixels_ratio) + " of edge beams";
+  if (disturb.incidence_bias_m > 0)
+    words["incidence_bias"] = Text(1e3 * disturb.incidence_bias_m) + " mm at 60 deg of incidence";
+  if (disturb.burst > 1) words["bursts"] = std::to_string(disturb.burst) + " captures from nearly one place";
+  DescribeCaptures(experiment, words);
+  return words;
 }
 
 }  // namespace
 
 Truth TruthOf(const Experiment& experiment) {
   const Rig& rig = experiment.rig;
-  Truth truth{rig.name, experiment.options.seed, rig.reference, experiment.captures.size() / 2, {}, {}, {}};
+  Truth truth{rig.name, experiment.options.seed,   rig.reference, experiment.bumped_from_idx, {}, {},
+              {},       DisturbancesOf(experiment)};
   const Se3 T_ref_body = rig.SensorOf(rig.reference).T_body_sensor.Inverse();
   for (const RigSensor& sensor : rig.sensors) {
     SensorTruth& entry = truth.sensors[sensor.id];
@@ -127,6 +159,8 @@ std::string WriteTruth(const Truth& truth) {
   for (const auto& [id, board] : truth.boards)
     text += "  " + id.str() + ": {square_size_m: " + Text(board.square_m) +
             ", T_world_board: " + Text(board.T_world_board) + "}\n";
+  if (!truth.disturbances.empty()) text += "disturbances:\n";
+  for (const auto& [option, words] : truth.disturbances) text += "  " + option + ": \"" + words + "\"\n";
   text += "captures:\n";
   for (const CaptureTruth& capture : truth.captures)
     text += "  - {capture: \"" + capture.capture.str() + "\", T_world_ref: " + Text(capture.T_world_ref) + "}\n";

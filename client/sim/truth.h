@@ -42,6 +42,7 @@ struct Truth {
   std::map<SensorId, SensorTruth> sensors;
   std::map<TargetId, BoardTruth> boards;
   std::vector<CaptureTruth> captures;
+  std::map<std::string, std::string> disturbances;  // in words, by option; none: no line of the file
 };
 
 // Without bounds.

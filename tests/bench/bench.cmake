@@ -18,3 +18,7 @@ rigcal_program(rig_coverage
 rigcal_program(sigma_chance
   SOURCES bench/sigma_chance.cc bench/rig_case.cc bench/feature_session.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph)
+rigcal_program(trust_measure
+  SOURCES bench/trust_measure.cc bench/trust_scenarios.cc bench/trust_session.cc bench/trust_json.cc bench/told.cc bench/told_words.cc
+          bench/found_plates.cc bench/feature_session.cc bench/stereo_splits.cc bench/stereo_pictures.cc
+  DEPS rigcal_sim rigcal_calib rigcal_graph rigcal_fleet rigcal_detect rigcal_formats)

@@ -31,13 +31,14 @@ std::string_view MethodOf(const FeatureSession& session, const SensorPair& pair)
   return MethodFor(session.header, SensorNamed(session, pair.a), SensorNamed(session, pair.b));
 }
 
-std::vector<Eigen::Vector3f> WholeCloud(const sim::Experiment& experiment, const sim::Scene& scene,
-                                        const sim::RigSensor& lidar, std::size_t capture_idx, int of_firings) {
+std::vector<Eigen::Vector3f> WholeCloud(const sim::Experiment& experiment, const sim::RigSensor& lidar,
+                                        std::size_t capture_idx, int of_firings) {
   sim::LidarTruth sparse = lidar.lidar;
   sparse.firings_per_turn /= of_firings;
   std::vector<Eigen::Vector3f> points_m;
   for (const sim::ScanPoint& point :
-       sim::Scan(scene, sparse, experiment.T_world_sensor(lidar.id, capture_idx), experiment.beam_bias_m.at(lidar.id),
+       sim::Scan(sim::SceneAt(experiment, capture_idx), sparse, experiment.T_world_sensor(lidar.id, capture_idx),
+                 experiment.beam_bias_m.at(lidar.id),
                  sim::KeyOf(experiment.options.seed, "whole scan", lidar.id.str(), capture_idx)))
     points_m.push_back(point.p_lidar.cast<float>());
   return points_m;
@@ -45,7 +46,6 @@ std::vector<Eigen::Vector3f> WholeCloud(const sim::Experiment& experiment, const
 
 void DrawClouds(std::size_t lidar_captures, int of_firings, FeatureSession& session) {
   const sim::Experiment& experiment = session.experiment;
-  const sim::Scene scene = sim::SceneOf(experiment.rig);
   struct Slot {
     const sim::RigSensor* lidar;
     std::size_t capture_idx;
@@ -57,7 +57,7 @@ void DrawClouds(std::size_t lidar_captures, int of_firings, FeatureSession& sess
     for (std::size_t i = 0; sensor.kind == SensorKind::kLidar && i < count; ++i)
       slots.push_back({&sensor, i * experiment.captures.size() / count, {}});
   ParallelFor(slots.size(), [&](std::size_t i) {
-    slots[i].points_m = WholeCloud(experiment, scene, *slots[i].lidar, slots[i].capture_idx, of_firings);
+    slots[i].points_m = WholeCloud(experiment, *slots[i].lidar, slots[i].capture_idx, of_firings);
   });
   for (Slot& slot : slots)
     session.clouds[slot.lidar->id][experiment.captures[slot.capture_idx]] = std::move(slot.points_m);

@@ -15,7 +15,7 @@ rigcal_test(calib_real_test COMPUTES
   SOURCES unit/calib_real_test.cc unit/calib_fisheye_real_test.cc unit/calib_wide_real_test.cc
   DEPS rigcal_calib rigcal_detect)
 rigcal_program(stereo_measure
-  SOURCES bench/stereo_measure.cc
+  SOURCES bench/stereo_measure.cc bench/stereo_pictures.cc
   DEPS rigcal_calib rigcal_detect)
 rigcal_test(calib_lidar_camera_test COMPUTES
   SOURCES unit/calib_lidar_camera_test.cc unit/calib_one_plane_test.cc unit/calib_plane_moments_test.cc

@@ -78,6 +78,32 @@ TEST(Program, SimulateTakesItsWordsAndEndsLikeTheOthers) {
   EXPECT_NE(refused.text.find(R"("what":"rig no-such-rig)"), std::string::npos) << refused.text;
 }
 
+TEST(Program, SimulateSaysHowADisturbanceIsWritten) {
+  const auto [reads, refuses] = std::pair{
+      std::vector<std::string>{"--bump back --bump-by 0.02,2 --bump-at 0.25", "--board-moved 0.005,0.5@0.25:front",
+                               "--wrong-instant drawn", "--wrong-instant 02:back", "--shift-capture 8@01:back",
+                               "--visit-scatter 0.3,0.01", "--lens-misfit 0.05 --bursts 2"},
+      std::vector<std::pair<std::string, std::string>>{
+          {"--bump-by 5", "Write it as M,DEG"},
+          {"--board-moved 0.005,x", "Write it as M,DEG, M,DEG@RATIO"},
+          {"--board-moved 0.005,0.5:nobody", "board nobody cannot be moved"},
+          {"--wrong-instant 02", "Write it as CAPTURE:SENSOR"},
+          {"--shift-capture 8@99:back", "capture 99 is none of this visit"},
+          {"--shift-capture 8@01:body", "sensor body takes no pictures"},
+          {"--visit-scatter 0.3", "Write it as MM,DEG"},
+          {"--lens-misfit -1", "lens-misfit is out of range"},
+          {"--bump back --bump-at 1", "bump-at is out of range"}}};
+  for (const std::string& words : reads) {
+    const Ran ran = Rigcal("simulate mars-mapper --captures 4 " + words);
+    EXPECT_EQ(ran.code, 0) << words << "\n" << ran.text;
+  }
+  for (const auto& [words, sentence] : refuses) {
+    const Ran ran = Rigcal("simulate mars-mapper --captures 4 " + words);
+    EXPECT_EQ(ran.code, 4) << words << "\n" << ran.text;
+    EXPECT_NE(ran.text.find(sentence), std::string::npos) << words << "\n" << ran.text;
+  }
+}
+
 TEST(Program, ADomainThatIsNoneIsWrongUsage) {
   for (const char* domain : {"x", "231", "-1", "99999999999"}) {
     const Ran ran = Rigcal(std::string("status --timeout 0.2 --domain=") + domain);

@@ -27,8 +27,9 @@ void Compare(const Experiment& experiment, const Scene& scene, const RigSensor& 
   const auto truth = TrueCorners(experiment, scene, camera, capture_idx);
   if (!truth) return;
   const Picture picture =
-      TakePicture(scene, camera.camera, RayGrid(camera.camera), experiment.T_world_sensor(camera.id, capture_idx),
-                  KeyOf(7, "test", camera.id.str()));
+      TakePicture(SceneAt(experiment, capture_idx), camera.camera,
+                  RayGrid(camera.camera, experiment.ShiftOf(camera.id, capture_idx)),
+                  experiment.T_world_sensor(camera.id, capture_idx), KeyOf(7, "test", camera.id.str()));
   const auto bytes = Encoded(picture, format);
   ASSERT_TRUE(bytes);
   const auto found = detect::Detect(std::as_bytes(std::span(*bytes)), experiment.rig.BoardOf(*camera.sees).target);
@@ -84,6 +85,21 @@ TEST(SimPicture, CornersOfAFisheyeAreWhereGeometryPutsThem) {
   options.captures = 4;
   const Errors errors = ErrorsOf(rig, options, PictureFormat::kPng, 1);
   EXPECT_GE(errors.boards, 3);
+  EXPECT_EQ(errors.missed, 0);
+  EXPECT_LT(errors.Rms_px(), 0.05);
+}
+
+// Corners of bent lenses and boards, of a board that moved, and of shifted pictures: where they are said to be.
+TEST(SimPicture, CornersAreWhereDisturbancesPutThem) {
+  Options options;
+  options.captures = 4;
+  options.disturb.lens_misfit_px = 2;
+  options.disturb.board_bend_m = 0.02;
+  options.disturb.capture_shift = CaptureShift{9.3, Recording{CaptureId("01"), SensorId("left")}};
+  options.disturb.board_move = BoardMove{{0.05, 0.1}, 0.5, TargetId("front")};
+  options.disturb.wrong_instant = WrongInstant{Recording{CaptureId("03"), SensorId("left")}};
+  const Errors errors = ErrorsOf(SmallRig(), options, PictureFormat::kPng, 2);
+  EXPECT_GE(errors.boards, 6);
   EXPECT_EQ(errors.missed, 0);
   EXPECT_LT(errors.Rms_px(), 0.05);
 }

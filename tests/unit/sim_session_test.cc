@@ -145,6 +145,8 @@ TEST(SimSession, LeavesOutWhatDropsOutAndRefusesFoldersInUse) {
 TEST(SimTruth, ReadsBackWhatWasWritten) {
   Options options = Small();
   options.bump = SensorId("side");
+  options.disturb.lens_misfit_px = 0.05;
+  options.disturb.board_move = BoardMove{{0.005, 0.01}, 0.5, TargetId("front")};
   const Experiment experiment = Prepared(SmallRig(), options);
   Truth truth = TruthOf(experiment);
   truth.sensors.at(SensorId("top")).bound = BoundSigma{0.001, std::nullopt, 0.003, 0.1, 0.2, 0.3};
@@ -155,6 +157,8 @@ TEST(SimTruth, ReadsBackWhatWasWritten) {
   EXPECT_EQ(top.bound->at(0), 0.001);
   EXPECT_FALSE(top.bound->at(1));
   EXPECT_TRUE(read->sensors.at(SensorId("side")).T_ref_bumped);
+  EXPECT_EQ(read->disturbances.at("lens_misfit"), "0.05 px rms, every camera");
+  EXPECT_EQ(read->disturbances.at("board_moved").substr(0, 13), "front by 5 mm");
   EXPECT_FALSE(ReadTruth("format: 1\nrig: x\n", "truth.yaml"));
   // By another road: through the world at a capture.
   const Se3 expected =

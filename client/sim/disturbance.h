@@ -1,0 +1,48 @@
+// What goes wrong on a visit beyond noise: what a calibration takes for granted and what is not so. Nothing by default;
+// what is not named is drawn from the seed.
+#pragma once
+
+#include <optional>
+
+#include "server/base/ids.h"
+
+namespace rigcal::sim {
+
+struct Displacement {
+  double m = 0.0, rad = 0.0;
+};
+
+// One sensor's file of one capture.
+struct Recording {
+  CaptureId capture;
+  SensorId sensor;
+};
+
+struct BoardMove {
+  Displacement by;
+  double at_ratio = 0.5;  // of the captures that were taken before
+  std::optional<TargetId> board;
+};
+
+struct WrongInstant {
+  std::optional<Recording> of;
+};
+
+struct CaptureShift {
+  double px = 0.0;  // of the whole picture, in one direction
+  std::optional<Recording> of;
+};
+
+struct Disturbances {
+  double lens_misfit_px = 0.0;  // of each camera: rms of a fixed smooth field of shifts
+  std::optional<BoardMove> board_move;
+  std::optional<WrongInstant> wrong_instant;  // what one sensor tells of a capture is of another instant
+  std::optional<CaptureShift> capture_shift;
+  Displacement visit_scatter;     // sigma per axis of every sensor's pose on this visit about the rig's
+  double board_bend_m = 0.0;      // of every board: height of its corner over its middle
+  double mixed_pixels_ratio = 0;  // of a lidar's beams that meet an edge: their range lies between both surfaces
+  double incidence_bias_m = 0.0;  // that a lidar measures too long at 60 degrees of incidence; none head-on
+  int burst = 1;                  // captures in a row from nearly one place, with corner errors in common
+};
+
+}  // namespace rigcal::sim

@@ -1,0 +1,60 @@
+#include "tests/bench/told.h"
+
+#include <algorithm>
+
+#include "server/fleet/assess.h"
+#include "server/graph/cycles.h"
+#include "server/graph/graph_jackknife.h"
+#include "server/graph/suspects.h"
+
+namespace rigcal {
+namespace {
+
+// Sensors of which no edge came about are unknown, not absent.
+Graph WholeGraph(const std::vector<Edge>& edges, const SessionHeader& header) {
+  Graph graph = graph::GraphOf(edges, header.reference);
+  graph.reference = header.reference;
+  for (const Sensor& sensor : header.sensors)
+    if (std::find(graph.sensors.begin(), graph.sensors.end(), sensor.id) == graph.sensors.end())
+      graph.sensors.push_back(sensor.id);
+  std::sort(graph.sensors.begin(), graph.sensors.end());
+  return graph;
+}
+
+// As a revision is made (server/pipeline/revise.cc).
+GraphSolution Solved(const Graph& graph, const std::vector<Edge>& edges) {
+  GraphSolution solution = graph::Solve(graph);
+  const graph::BlocksByEdge blocks = graph::BlocksOf(edges);
+  graph::TakeHonest(graph, graph::JackknifeGraph(graph, solution, blocks), solution);
+  solution.suspects = graph::FindSuspects(graph, solution);
+  solution.cycles = graph::JudgeCycles(graph, blocks);
+  return solution;
+}
+
+std::vector<Said> SaidOf(const Verdict& verdict, const std::vector<Edge>& edges) {
+  std::vector<Said> said = {{"", verdict.why + " " + verdict.what_to_do, {}}};
+  for (const Edge& edge : edges) {
+    for (const Diagnosis& diagnosis : edge.diagnoses)
+      said.push_back({diagnosis.code, diagnosis.what + " " + diagnosis.cure, {edge.frame_a, edge.frame_b}});
+  }
+  return said;
+}
+
+}  // namespace
+
+Told Judge(const std::vector<FeatureSession>& visits) {
+  std::vector<Edge> edges;
+  for (const FeatureSession& visit : visits)
+    for (Edge& edge : EdgesOf(visit)) edges.push_back(std::move(edge));
+  const SessionHeader& header = visits.front().header;
+  const GraphSolution solution = Solved(WholeGraph(edges, header), edges);
+  Told told{header.reference, solution.poses, fleet::Assess(edges, solution), {}, 0};
+  told.said = SaidOf(told.verdict, edges);
+  told.failed_edges = static_cast<int>(
+      std::count_if(edges.begin(), edges.end(), [](const Edge& edge) { return edge.state != EdgeState::kGood; }));
+  return told;
+}
+
+Told Judge(const FeatureSession& session) { return Judge(std::vector<FeatureSession>{session}); }
+
+}  // namespace rigcal
