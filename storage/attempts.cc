@@ -75,8 +75,8 @@ std::string WorkOfJob(std::int64_t job_number) { return "job " + std::to_string(
 std::string WorkOfReport(const RevisionKey& key) {
   return "report " + key.robot.str() + " " + std::to_string(key.number);
 }
-std::string WorkOfRevision(const RobotId& robot, std::int64_t edge_watermark) {
-  return "revision " + robot.str() + " " + std::to_string(edge_watermark);
+std::string WorkOfRevision(const RobotId& robot, std::int64_t edge_watermark, std::int64_t standing_watermark) {
+  return "revision " + robot.str() + " " + std::to_string(edge_watermark) + "." + std::to_string(standing_watermark);
 }
 
 Status BeginAttempt(Store& store, const std::string& work, Stamp now) {

@@ -14,7 +14,8 @@ namespace rigcal::storage {
 // The names of work.
 [[nodiscard]] std::string WorkOfJob(std::int64_t job_number);
 [[nodiscard]] std::string WorkOfReport(const RevisionKey& key);
-[[nodiscard]] std::string WorkOfRevision(const RobotId& robot, std::int64_t edge_watermark);
+[[nodiscard]] std::string WorkOfRevision(const RobotId& robot, std::int64_t edge_watermark,
+                                         std::int64_t standing_watermark);
 
 enum class AttemptEnd {
   kDone,       // the work is finished: nothing of it is counted any more

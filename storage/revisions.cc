@@ -141,11 +141,7 @@ Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
 }
 
 Result<bool> IsPublished(Store& store, const RevisionKey& key) {
-<<<<<<< ours
-  return Load<bool>(store, RevisionsSubject(key.robot), [&]() -> Result<bool> {
-=======
   return Load<bool>(store, PublicationSubject(key), [&]() -> Result<bool> {
->>>>>>> theirs
     Query query(store, "SELECT 1 FROM publication WHERE robot_id = ? AND revision_number = ?");
     return query.Bind(key.robot, key.number).Step();
   });

@@ -13,6 +13,7 @@
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
+#include "storage/standing.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -127,10 +128,11 @@ Status SolveBurst(const StepContext& context, const RobotId& robot, bool over) {
   return {};
 }
 
-// A graph that ended the process so often is left as it is until the robot has another edge.
+// A graph that ended the process so often is left as it is until another edge or session of the robot counts.
 Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool over) {
-  RIGCAL_ASSIGN(const std::int64_t watermark, storage::LoadEdgeWatermark(context.store, robot));
-  const std::string work = storage::WorkOfRevision(robot, watermark);
+  RIGCAL_ASSIGN(const std::int64_t edges, storage::LoadEdgeWatermark(context.store, robot));
+  RIGCAL_ASSIGN(const std::int64_t standing, storage::LoadStandingWatermark(context.store, robot));
+  const std::string work = storage::WorkOfRevision(robot, edges, standing);
   RIGCAL_ASSIGN(const auto attempts, storage::LoadAttemptCounts(context.store));
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
