@@ -20,7 +20,8 @@ class Connection;
 class Store {
  public:
   // Opens or creates `folder`/rigcal.db and its subfolders, migrates forward; refuses a store of a newer version by
-  // name (kUnsupported) and leaves it as it is. On a full disk it may spend a part of the reserve (room.h). Sets WAL, synchronous FULL, foreign keys, a busy timeout.
+  // name (kUnsupported) and leaves it as it is. On a full disk it may spend a part of the reserve (room.h). Sets WAL,
+  // synchronous FULL, foreign keys, a busy timeout.
   [[nodiscard]] static Result<Store> Open(const std::filesystem::path& folder);
   ~Store();
   Store(Store&&) noexcept;

@@ -1,5 +1,5 @@
 // The query side: (verb, parameters) -> the /api/v1 document (docs/api.md), and the pages that are made when asked for.
-// Reads only; one Store per calling thread.
+// Reads only, but for a report that is to be drawn again; one Store per calling thread.
 #pragma once
 
 #include <functional>

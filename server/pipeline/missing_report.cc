@@ -10,7 +10,7 @@
 namespace rigcal::pipeline {
 namespace {
 
-constexpr const char* kSoon = "Wait a few seconds and reload this page.";
+constexpr const char* kSoon = "Ask for it again in a few seconds.";
 
 std::string ReportOf(const storage::RevisionKey& key) {
   return "the report of revision " + std::to_string(key.number) + " of " + key.robot.str();

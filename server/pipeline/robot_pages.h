@@ -12,7 +12,8 @@ namespace rigcal::pipeline {
 [[nodiscard]] report::FleetRow FleetRowOf(const formats::RobotAnswer& row);
 
 // `rest` is what follows "/robots/": "<id>/", "<id>/trend.js", "<id>/compare", "<id>/sessions/<id>/",
-// "<id>/sessions/<id>/evidence/<digest>.<suffix>". kNotFound for everything else; "<id>/revisions/<n>/...": why it is missing.
+// "<id>/sessions/<id>/evidence/<digest>.<suffix>". kNotFound for everything else; "<id>/revisions/<n>/...": why it is
+// missing.
 [[nodiscard]] Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string& rest,
                                                const std::string& query);
 

@@ -36,6 +36,7 @@ class LidarPipelineTest : public PipelineTest {
     board.cols = 9, board.rows = 6, board.square_m = 0.025;
     manifest.header.targets = {board};
     manifest.header.sensors = {problem.lidar_a, problem.lidar_b};
+    for (Sensor& lidar : manifest.header.sensors) lidar.layout = KittiLayout();
     if (with_nominal) {
       manifest.header.sensors[0].T_ref_nominal = Se3();
       manifest.header.sensors[1].T_ref_nominal = problem.T_a_b_nominal;

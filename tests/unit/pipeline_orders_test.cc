@@ -88,7 +88,8 @@ TEST_F(OrdersTest, ARestoredSessionTakesItsPlaceBack) {
 
   ASSERT_TRUE(Order("restore", {{"session", right.str()}, {"who", "Bob"}}));
   EXPECT_EQ(StepAll(), 0);  // twice is once
-  for (const json& session : json::parse(Ask("sessions", {{"robot", "r"}}))["sessions"]) {
+  const json sessions = json::parse(Ask("sessions", {{"robot", "r"}}))["sessions"];
+  for (const json& session : sessions) {
     if (session["session"] == right.str()) {
       EXPECT_TRUE(session["superseded_by"].is_null());
       EXPECT_EQ(session["standing"]["who"], "Ada");
@@ -141,8 +142,9 @@ TEST_F(OrdersTest, ARetiredEdgeIsPastForGood) {
   ASSERT_TRUE(Order("retire", {{"edge", id}, {"who", "Bob"}, {"reason", "me too"}}));
   EXPECT_EQ(StepAll(), 0);
   EXPECT_EQ(storage::LoadRetired(*store_, RobotId("r"))->at(edges.back().id).word.who, "Ada");
-  for (const json& edge : json::parse(Ask("edges", {{"robot", "r"}}))["edges"])
-    EXPECT_EQ(edge["state"] == "failed", edge["id"] == id);
+  const json listed = json::parse(Ask("edges", {{"robot", "r"}}))["edges"];
+  EXPECT_EQ(listed.size(), 4u);
+  for (const json& edge : listed) EXPECT_EQ(edge["state"] == "failed", edge["id"] == id);
 }
 
 TEST_F(OrdersTest, AnEstimatedEdgeCanBeRetiredToo) {

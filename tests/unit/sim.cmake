@@ -12,3 +12,6 @@ rigcal_test(sim_lidar_pair_test COMPUTES
 rigcal_test(trust_words_test
   SOURCES unit/trust_words_test.cc bench/told_words.cc
   DEPS rigcal_calib rigcal_graph rigcal_sim)
+rigcal_test(trust_session_test COMPUTES
+  SOURCES unit/trust_session_test.cc bench/trust_session.cc bench/told.cc bench/found_plates.cc bench/feature_session.cc
+  DEPS rigcal_sim rigcal_calib rigcal_graph rigcal_fleet rigcal_detect)
