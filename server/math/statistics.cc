@@ -30,6 +30,12 @@ double ChiSquareTail(double statistic, double dof) {
   return boost::math::cdf(complement(boost::math::chi_squared_distribution<double, Quiet>(dof), statistic));
 }
 
+double FisherTail(double statistic, double p, double nu) {
+  if (!(statistic > 0) || !(p > 0) || !(nu > 0)) return 1.0;
+  if (!std::isfinite(statistic)) return 0.0;
+  return boost::math::cdf(complement(boost::math::fisher_f_distribution<double, Quiet>(p, nu), statistic));
+}
+
 double StudentQuantile(double probability, double dof) {
   if (probability <= 0) return -kInfinity;
   if (probability >= 1) return kInfinity;

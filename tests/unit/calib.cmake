@@ -2,6 +2,9 @@ rigcal_test(calib_test COMPUTES
   SOURCES unit/calib_derivative_test.cc unit/calib_estimate_test.cc unit/calib_diagnosis_test.cc unit/calib_start_test.cc
           unit/calib_projection_test.cc unit/calib_camera_fit_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
+rigcal_test(calib_joint_test COMPUTES
+  SOURCES unit/calib_joint_test.cc bench/joint_session.cc bench/feature_session.cc
+  DEPS rigcal_calib rigcal_sim rigcal_graph TBB::tbb)
 rigcal_test(calib_models_test COMPUTES
   SOURCES unit/calib_models_test.cc unit/calib_symmetry_test.cc unit/calib_camera_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)

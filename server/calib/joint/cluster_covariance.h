@@ -1,0 +1,21 @@
+// Covariance of the refined sensor poses from how groups of captures disagree (cluster sandwich, CR2), shrunk towards the
+// model's H^-1 and never below it.
+#pragma once
+
+#include "server/calib/joint/refine.h"
+
+namespace rigcal::calib::joint {
+
+struct PoseCovariance {
+  std::vector<int> row_of_sensor;  // first of six rows in `joint`; kNone: the reference
+  Eigen::MatrixXd joint;           // right tangents
+  Eigen::MatrixXd model;           // H^-1 of the same rows
+  Eigen::MatrixXd influence;       // columns: what each group moves the poses by; their outer products sum to the sandwich
+  double model_ratio = 1.0;        // share of the model in `joint`
+  double spread_ratio = 1.0;       // variance between groups over what the model expects; about 1 where it holds
+  std::vector<double> dof;         // per sensor, behind its six rows of `joint`; 0: known
+};
+
+[[nodiscard]] PoseCovariance CovarianceOfPoses(const Refined& refined);
+
+}  // namespace rigcal::calib::joint

@@ -1,0 +1,141 @@
+#include "server/calib/joint/estimate_session.h"
+
+#include <algorithm>
+#include <exception>
+#include <tuple>
+
+#include "server/calib/joint/cluster_covariance.h"
+#include "server/calib/joint/moved_sensor.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr double kHeldBackBelow = 0.5;  // of a look's weight
+constexpr int kMovesMax = 4;            // in one session: more is no bump, but a rig that is not rigid
+constexpr int kGroupsForMoves = 4;      // fewer do not tell a bump from chance
+
+SessionEstimate Refused(const SessionViews& views, const Error& error) {
+  SessionEstimate estimate;
+  estimate.reference = views.reference;
+  estimate.why_not.push_back({NameOf(error.code), error.what, error.cure});
+  return estimate;
+}
+
+const CaptureId& CaptureAt(const SessionProblem& problem, int place) {
+  return problem.captures[static_cast<std::size_t>(problem.capture_of_place[static_cast<std::size_t>(place)])];
+}
+
+// Captures on both sides of the first place of `group` in which the sensor saw something.
+SensorMovedWithin Told(const SessionProblem& problem, const Refined& refined, const SensorMove& move) {
+  SensorMovedWithin told;
+  told.sensor = problem.sensors[static_cast<std::size_t>(move.sensor)];
+  told.step = move.step;
+  told.odds = move.odds;
+  int before = kNone, after = kNone;
+  const auto look_at = [&](const auto& looks) {
+    for (const auto& look : looks) {
+      if (look.sensor != move.sensor) continue;
+      const bool is_after = refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
+      if (is_after && (after == kNone || look.place < after)) after = look.place;
+      if (!is_after && look.place > before) before = look.place;
+    }
+  };
+  look_at(problem.corners);
+  look_at(problem.plates);
+  look_at(problem.poses);
+  if (before != kNone) told.last_before = CaptureAt(problem, before);
+  if (after != kNone) told.first_after = CaptureAt(problem, after);
+  return told;
+}
+
+bool IsMove(const SensorMove& move) {
+  return move.odds < kMovedOdds &&
+         (move.step.head<3>().norm() >= kMovedMin_m || move.step.tail<3>().norm() >= kMovedMin_rad);
+}
+
+// The sensor's looks from `group` on become those of a second sensor with a pose of its own.
+SessionStart Split(SessionStart start, const Refined& refined, const SensorMove& move) {
+  const auto old = static_cast<std::size_t>(move.sensor);
+  const int added = static_cast<int>(start.problem.sensors.size());
+  start.state = refined.state;
+  start.noise = refined.noise;
+  start.problem.sensors.push_back(start.problem.sensors[old]);
+  start.problem.range_bias_sigma_m.push_back(start.problem.range_bias_sigma_m[old]);
+  start.state.T_ref_sensor.push_back((start.state.T_ref_sensor[old] * Se3::Exp(move.step)).Normalized());
+  start.state.range_bias_m.push_back(start.state.range_bias_m[old]);
+  start.noise.push_back(start.noise[old]);
+  const auto split = [&](auto& looks) {
+    for (auto& look : looks)
+      if (look.sensor == move.sensor && refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group)
+        look.sensor = added;
+  };
+  split(start.problem.corners);
+  split(start.problem.plates);
+  split(start.problem.poses);
+  return start;
+}
+
+// Moves one after the other: each is taken out by giving the sensor a pose of its own from then on, so that it does not
+// hide the next.
+void FindMoves(SessionStart start, Refined refined, SessionEstimate& estimate) {
+  while (static_cast<int>(estimate.moved.size()) < kMovesMax && refined.groups >= kGroupsForMoves) {
+    const std::vector<SensorMove> moves = ScanForMoves(start.problem, refined);
+    if (moves.empty() || !IsMove(moves.front())) return;
+    estimate.moved.push_back(Told(start.problem, refined, moves.front()));
+    start = Split(std::move(start), refined, moves.front());
+    auto again = Refine(start.problem, start.state, start.noise, refined.group_of_place);
+    if (!again) return;
+    refined = std::move(*again);
+  }
+}
+
+template <typename Looks>
+void AddHeldBack(const SessionProblem& problem, const Looks& looks, const std::vector<double>& weights,
+                 std::vector<HeldBackLook>& held_back) {
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (weights[i] < kHeldBackBelow)
+      held_back.push_back({problem.sensors[static_cast<std::size_t>(looks[i].sensor)],
+                           CaptureAt(problem, looks[i].place)});
+}
+
+void AddPoses(const SessionProblem& problem, const Refined& refined, SessionEstimate& estimate) {
+  const PoseCovariance covariance = CovarianceOfPoses(refined);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    RefinedPose pose{problem.sensors[s], refined.state.T_ref_sensor[s], Matrix6d::Zero(), covariance.dof[s]};
+    if (const int row = covariance.row_of_sensor[s]; row != kNone) pose.covariance = covariance.joint.block<6, 6>(row, row);
+    estimate.poses.push_back(std::move(pose));
+  }
+  std::sort(estimate.poses.begin(), estimate.poses.end(),
+            [](const RefinedPose& x, const RefinedPose& y) { return x.sensor < y.sensor; });
+}
+
+SessionEstimate Estimate(const SessionViews& views) {
+  auto start = StartOf(views);
+  if (!start) return Refused(views, start.error());
+  auto refined = Refine(start->problem, start->state, start->noise, GroupsOf(start->problem, start->state));
+  if (!refined) return Refused(views, refined.error());
+  SessionEstimate estimate;
+  estimate.reference = views.reference;
+  AddPoses(start->problem, *refined, estimate);
+  AddHeldBack(start->problem, start->problem.corners, refined->weights.corners, estimate.held_back);
+  AddHeldBack(start->problem, start->problem.plates, refined->weights.plates, estimate.held_back);
+  AddHeldBack(start->problem, start->problem.poses, refined->weights.poses, estimate.held_back);
+  std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
+    return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
+  });
+  FindMoves(std::move(*start), std::move(*refined), estimate);
+  return estimate;
+}
+
+}  // namespace
+
+SessionEstimate EstimateSession(const SessionViews& views) {
+  try {
+    return Estimate(views);
+  } catch (const std::exception& exception) {
+    return Refused(views, {ErrorCode::kInternal, std::string("the joint refinement broke off: ") + exception.what(),
+                           "The calibration of the pairs stands; report this with the session's id."});
+  }
+}
+
+}  // namespace rigcal::calib::joint

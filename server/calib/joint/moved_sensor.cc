@@ -1,0 +1,124 @@
+#include "server/calib/joint/moved_sensor.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "server/math/statistics.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr double kOpen = 1e-9;  // of a scaled information matrix
+
+// Pseudo-inverse and rank of an information matrix.
+struct Inverse {
+  Matrix6d matrix = Matrix6d::Zero();
+  int rank = 0;
+};
+Inverse InverseOf(const Matrix6d& H) {
+  const Vector6d scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
+  Inverse inverse;
+  Vector6d values = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i)
+    if (axes.eigenvalues()[i] > kOpen) values[i] = 1 / axes.eigenvalues()[i], ++inverse.rank;
+  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors();
+  inverse.matrix = half * values.asDiagonal() * half.transpose();
+  return inverse;
+}
+
+// What the groups say of one sensor's pose by its own columns.
+struct Scores {
+  std::vector<Vector6d> b;
+  std::vector<Eigen::MatrixXd> H;  // 6 x unknowns
+  std::vector<Matrix6d> own;
+};
+Scores ScoresOf(const Refined& refined, int sensor) {
+  const int at = refined.layout.pose[static_cast<std::size_t>(sensor)];
+  Scores scores;
+  for (const NormalEquations& group : refined.at_optimum.groups) {
+    scores.b.emplace_back(group.b.segment<6>(at));
+    scores.H.emplace_back(group.H.middleRows(at, 6).leftCols(refined.layout.size));
+    scores.own.emplace_back(group.H.block<6, 6>(at, at));
+  }
+  return scores;
+}
+
+// A change from `group` on: the step that fits it best, and the gain of the cost.
+struct Change {
+  Vector6d step = Vector6d::Zero();
+  Eigen::VectorXd others;  // what the unknowns move by with it
+  double gain = 0.0;
+  int rank = 0;
+};
+Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::size_t group) {
+  Vector6d b = Vector6d::Zero();
+  Matrix6d own = Matrix6d::Zero();
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(6, covariance.rows());
+  for (std::size_t g = group; g < scores.b.size(); ++g) {
+    b += scores.b[g];
+    own += scores.own[g];
+    cross += scores.H[g];
+  }
+  const Eigen::MatrixXd half = cross * covariance;
+  const Inverse inverse = InverseOf(own - half * cross.transpose());
+  Change change;
+  change.step = -inverse.matrix * b;
+  change.others = -half.transpose() * change.step;
+  change.gain = -b.dot(change.step);
+  change.rank = inverse.rank;
+  return change;
+}
+
+// Mean square of the groups' scores beside the change, and its degrees of freedom.
+struct Scatter {
+  double mean_square = 1.0, dof = 0.0;
+};
+Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t group) {
+  double squares = 0.0;
+  int numbers = 0;
+  for (std::size_t g = 0; g < scores.b.size(); ++g) {
+    const Inverse inverse = InverseOf(scores.own[g]);
+    Vector6d score = scores.b[g] + scores.H[g] * change.others;
+    if (g >= group) score += scores.own[g] * change.step;
+    squares += score.dot(inverse.matrix * score);
+    numbers += inverse.rank;
+  }
+  const double dof = numbers - 2.0 * change.rank;
+  return {dof > 0 ? squares / dof : 1.0, std::max(0.0, dof)};
+}
+
+SensorMove LikeliestMove(const Refined& refined, int sensor) {
+  const Scores scores = ScoresOf(refined, sensor);
+  SensorMove best;
+  best.sensor = sensor;
+  for (std::size_t group = 1; group < scores.b.size(); ++group) {
+    const Change change = ChangeFrom(scores, refined.covariance, group);
+    if (change.rank == 0) continue;
+    const Scatter scatter = ScatterBeside(scores, change, group);
+    const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
+    const double odds = FisherTail(statistic, change.rank, scatter.dof);
+    if (best.statistic >= statistic) continue;
+    best = {sensor, static_cast<int>(group), change.step, statistic, scatter.dof, odds};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<SensorMove> ScanForMoves(const SessionProblem& problem, const Refined& refined) {
+  std::vector<SensorMove> moves;
+  for (int sensor = 0; sensor < static_cast<int>(problem.sensors.size()); ++sensor) {
+    const SensorMove move = LikeliestMove(refined, sensor);
+    if (move.statistic > 0) moves.push_back(move);
+  }
+  const double looks = static_cast<double>(moves.size()) * std::max(1, refined.groups - 1);
+  for (SensorMove& move : moves) move.odds = std::min(1.0, move.odds * looks);
+  std::sort(moves.begin(), moves.end(), [](const SensorMove& x, const SensorMove& y) {
+    return x.statistic != y.statistic ? x.statistic > y.statistic : x.sensor < y.sensor;
+  });
+  return moves;
+}
+
+}  // namespace rigcal::calib::joint

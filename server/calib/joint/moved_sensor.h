@@ -1,0 +1,23 @@
+// Is one rig behind all captures? A scan over sensors and captures for a change of one sensor's pose during the session
+// (score test for a change point; Andrews 1993), the reference sensor included.
+#pragma once
+
+#include "server/calib/joint/refine.h"
+
+namespace rigcal::calib::joint {
+
+struct SensorMove {
+  int sensor = kNone;
+  int group = 0;             // of captures; the first after the move
+  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor
+  double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
+  double dof = 0.0;
+  double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
+};
+
+// The likeliest change of each sensor that has observations in two groups or more, the most certain first.
+// The scatter of a sensor's captures beyond the change is its own measure of noise: a lens that does not fit moves a
+// sensor with the place in the picture, a bump with time.
+[[nodiscard]] std::vector<SensorMove> ScanForMoves(const SessionProblem& problem, const Refined& refined);
+
+}  // namespace rigcal::calib::joint

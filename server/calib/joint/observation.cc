@@ -1,0 +1,185 @@
+#include "server/calib/joint/observation.h"
+
+#include <cmath>
+
+namespace rigcal::calib::joint {
+namespace {
+
+// Length of a corner's residual, in sigmas, beyond which it counts by its length only (Huber). Two normal numbers are
+// beyond it once in 450 times.
+constexpr double kCornerKnee = 3.5;
+
+Se3 T_ref_board(const SessionState& state, const Where& where) {
+  const Se3 T_ref_world = state.T_world_ref[static_cast<std::size_t>(where.place)].Inverse();
+  return where.board == kNone ? T_ref_world
+                              : T_ref_world * state.T_world_board[static_cast<std::size_t>(where.board)];
+}
+
+// The own pose is that of the board in the sensor, T_sensor_board * Exp(own).
+void AddPoseColumns(const Layout& layout, const SessionState& state, const Where& where, Eigen::Index own,
+                    Observation& look) {
+  const Matrix6d by_sensor = -Adjoint(T_sensor_board(state, where).Inverse());
+  const auto add = [&](int at, const Matrix6d& by) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(own, 6);
+    rows.topRows<6>() = by;
+    look.columns.push_back({at, std::move(rows)});
+  };
+  add(layout.pose[static_cast<std::size_t>(where.sensor)], by_sensor);
+  if (where.board != kNone && layout.board[static_cast<std::size_t>(where.board)] != kNone)
+    add(layout.board[static_cast<std::size_t>(where.board)], Matrix6d::Identity());
+  look.by_place = Eigen::MatrixXd::Zero(own, 6);
+  look.by_place.topRows<6>() = -Adjoint(T_ref_board(state, where).Inverse());
+}
+
+void AddOwnColumn(int at, Eigen::Index own, Eigen::Index first, Eigen::Index count, Observation& look) {
+  if (at == kNone) return;
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(own, count);
+  by.middleRows(first, count).setIdentity();
+  look.columns.push_back({at, std::move(by)});
+}
+
+// d(T Exp(xi) p) in the frame of T's right side.
+Eigen::Matrix<double, 3, 6> MovedPoint(const Eigen::Vector3d& p) {
+  Eigen::Matrix<double, 3, 6> by;
+  by << Eigen::Matrix3d::Identity(), -Hat(p);
+  return by;
+}
+
+// Huber: weight of a residual and twice its cost.
+struct Robust {
+  double weight, cost;
+};
+Robust HuberOf(double norm) {
+  if (norm <= kCornerKnee) return {1.0, norm * norm};
+  return {kCornerKnee / norm, 2 * kCornerKnee * norm - kCornerKnee * kCornerKnee};
+}
+
+Eigen::Matrix<double, 2, Eigen::Dynamic> RefinedColumns(const Lens& lens, const IntrinsicsJacobian& d_intrinsics) {
+  Eigen::Matrix<double, 2, Eigen::Dynamic> columns(2, lens.refined.size());
+  for (std::size_t i = 0; i < lens.refined.size(); ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = d_intrinsics.col(lens.refined[i]);
+  return columns;
+}
+
+// Moments as a quadratic form of g = (n, b n, -d) for the board's plane (n, d) in the lidar, n towards the sensor.
+struct Plane {
+  Vector7d g = Vector7d::Zero();
+  Eigen::Matrix<double, 7, 7> by = Eigen::Matrix<double, 7, 7>::Zero();  // of [board pose, bias]
+};
+
+Plane PlaneOf(const Se3& T_lidar_board, double bias_m) {
+  Plane plane;
+  const Eigen::Matrix3d R = T_lidar_board.R();
+  const Eigen::Vector3d n = -R.col(2), t = T_lidar_board.p_m;
+  plane.g << n, bias_m * n, -n.dot(t);
+  // R' = R (I + [w]x): n' = n - R (w x e_z) = n + R [e_z]x w;  t' = t + R v.
+  const Eigen::Matrix3d dn = R * Hat(Eigen::Vector3d::UnitZ());
+  plane.by.block<3, 3>(0, 3) = dn;
+  plane.by.block<3, 3>(3, 3) = bias_m * dn;
+  plane.by.block<1, 3>(6, 0) = -n.transpose() * R;
+  plane.by.block<1, 3>(6, 3) = -t.transpose() * dn;
+  plane.by.block<3, 1>(3, 6) = n;
+  return plane;
+}
+
+}  // namespace
+
+Se3 T_sensor_board(const SessionState& state, const Where& where) {
+  return state.T_ref_sensor[static_cast<std::size_t>(where.sensor)].Inverse() * T_ref_board(state, where);
+}
+
+std::optional<Observation> Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                                   const CornersSeen& seen, const SensorNoise& noise, double weight) {
+  const auto camera = static_cast<std::size_t>(seen.camera), target = static_cast<std::size_t>(seen.target);
+  const Lens& lens = problem.cameras[camera];
+  const auto refined = static_cast<Eigen::Index>(lens.refined.size());
+  const bool scales = layout.scale[target] != kNone;
+  const Eigen::Index own = 6 + refined + (scales ? 1 : 0);
+  const Se3 T_cam_board = T_sensor_board(state, seen);
+  const Eigen::Matrix3d R = T_cam_board.R();
+  const double larger = 1 + state.board_scale_ratio[target];
+  Observation look;
+  look.A = Eigen::MatrixXd::Zero(own, own);
+  look.b = Eigen::VectorXd::Zero(own);
+  Eigen::Matrix<double, 2, Eigen::Dynamic> J(2, own);
+  for (std::size_t i = 0; i < seen.corners.size(); ++i) {
+    const Eigen::Vector3d p_board =
+        larger * problem.target_points[target][static_cast<std::size_t>(seen.corners.idx[i])];
+    const Projection projected = Project(lens.model, state.intrinsics[camera], T_cam_board * p_board);
+    if (!projected.in_front) return std::nullopt;
+    const PointJacobian by_point = projected.d_point * R;
+    J.leftCols<6>() = by_point * MovedPoint(p_board);
+    J.middleCols(6, refined) = RefinedColumns(lens, projected.d_intrinsics);
+    if (scales) J.rightCols<1>() = by_point * p_board / larger;
+    const Eigen::Vector2d r = (projected.uv_px - seen.corners.uv_px[i]) / noise.sigma;
+    const Robust robust = HuberOf(r.norm());
+    const double w = weight * robust.weight;
+    look.A.noalias() += w / (noise.sigma * noise.sigma) * J.transpose() * J;
+    look.b.noalias() += w / noise.sigma * J.transpose() * r;
+    look.cost += weight * robust.cost;
+    look.squares += robust.weight * r.squaredNorm();
+    look.numbers += 2 * robust.weight;
+    look.norms.push_back(r.norm());
+  }
+  AddPoseColumns(layout, state, seen, own, look);
+  AddOwnColumn(layout.lens[camera], own, 6, refined, look);
+  if (scales) AddOwnColumn(layout.scale[target], own, own - 1, 1, look);
+  return look;
+}
+
+Observation Observe(const SessionProblem&, const Layout& layout, const SessionState& state, const PlateSeen& seen,
+                    const SensorNoise& noise, double weight) {
+  const auto lidar = static_cast<std::size_t>(seen.sensor);
+  const bool biased = layout.bias[lidar] != kNone;
+  const Eigen::Index own = biased ? 7 : 6;
+  const Plane plane = PlaneOf(T_sensor_board(state, seen), state.range_bias_m[lidar]);
+  const Eigen::MatrixXd by = plane.by.leftCols(own);
+  const double scale = 1 / (noise.sigma * noise.sigma);
+  Observation look;
+  look.A = weight * scale * by.transpose() * seen.moments.sum * by;
+  look.b = weight * scale * by.transpose() * (seen.moments.sum * plane.g);
+  look.squares = scale * plane.g.dot(seen.moments.sum * plane.g);
+  look.cost = weight * look.squares;
+  look.numbers = 3.0;
+  AddPoseColumns(layout, state, seen, own, look);
+  if (biased) AddOwnColumn(layout.bias[lidar], own, 6, 1, look);
+  return look;
+}
+
+Observation Observe(const SessionProblem&, const Layout& layout, const SessionState& state, const PoseTold& told,
+                    const SensorNoise& noise, double weight) {
+  const auto sensor = static_cast<std::size_t>(told.sensor), place = static_cast<std::size_t>(told.place);
+  const Se3& T_ref_body = state.T_ref_sensor[sensor];
+  const Vector6d e = (told.T_world_body.Inverse() * state.T_world_ref[place] * T_ref_body).Log();
+  const Matrix6d J = RightJacobianInverse(e);
+  Vector6d information;
+  information << Eigen::Vector3d::Constant(std::pow(noise.sigma, -2)),
+      Eigen::Vector3d::Constant(std::pow(noise.sigma_rad, -2));
+  Observation look;
+  look.A = weight * J.transpose() * information.asDiagonal() * J;
+  look.b = weight * J.transpose() * information.asDiagonal() * e;
+  look.squares = e.dot(information.asDiagonal() * e);
+  look.cost = weight * look.squares;
+  look.numbers = 6.0;
+  look.norms = {e.head<3>().squaredNorm() * information[0], e.tail<3>().squaredNorm() * information[3]};
+  look.columns.push_back({layout.pose[sensor], Matrix6d::Identity()});
+  look.by_place = Adjoint(T_ref_body.Inverse());
+  return look;
+}
+
+Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known) {
+  const Se3 T_a_b = state.T_ref_sensor[static_cast<std::size_t>(known.sensor_a)].Inverse() *
+                    state.T_ref_sensor[static_cast<std::size_t>(known.sensor_b)];
+  const Vector6d e = (known.T_a_b.Inverse() * T_a_b).Log();
+  const Matrix6d J = RightJacobianInverse(e);
+  Observation look;
+  look.A = J.transpose() * known.Omega * J;
+  look.b = J.transpose() * known.Omega * e;
+  look.squares = look.cost = e.dot(known.Omega * e);
+  look.numbers = 6.0;
+  look.columns.push_back({layout.pose[static_cast<std::size_t>(known.sensor_a)], -Adjoint(T_a_b.Inverse())});
+  look.columns.push_back({layout.pose[static_cast<std::size_t>(known.sensor_b)], Matrix6d::Identity()});
+  return look;
+}
+
+}  // namespace rigcal::calib::joint

@@ -1,0 +1,225 @@
+#include "server/calib/joint/refine.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr int kIterationsMax = 12, kRoundsMax = 25, kRejectedMax = 10;
+constexpr double kSettled = 1e-8, kRounding = 1e-4;  // expected gain of a step, in squared sigmas
+constexpr double kSameNoise = 0.003;     // ratio, from round to round
+constexpr double kSameWeight = 0.01;
+constexpr double kCornerSigmaMin_px = 0.005, kTrackerSigmaMin = 1e-6;
+constexpr double kRedundancyMin = 6.0;   // fewer residuals than this more than unknowns: noise stays as it was
+
+Error NotSolvable(const std::string& why) {
+  return {ErrorCode::kInvalidInput, "the joint refinement of the session " + why,
+          "The calibration of its pairs stands; more captures from other places would settle it."};
+}
+
+// H^-1, scaled; nothing where H is not positive definite.
+std::optional<Eigen::MatrixXd> CovarianceOf(const Eigen::MatrixXd& H) {
+  const Eigen::VectorXd scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
+  if (llt.info() != Eigen::Success || llt.matrixLLT().diagonal().minCoeff() < 1e-7) return std::nullopt;
+  const Eigen::MatrixXd inverse = llt.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
+  return Eigen::MatrixXd(scale.asDiagonal() * inverse * scale.asDiagonal());
+}
+
+struct Step {
+  Eigen::VectorXd shared;
+  std::vector<Vector6d> places;
+  double gain = 0.0;  // expected of the cost
+};
+
+std::optional<Step> StepOf(const Linearized& linearized, int size, double damping) {
+  const NormalEquations total = linearized.Total();
+  Eigen::MatrixXd H = total.H.topLeftCorner(size, size);
+  const Eigen::VectorXd b = total.b.head(size);
+  const Eigen::VectorXd diagonal = H.diagonal();
+  H.diagonal() += damping * diagonal;
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(H);
+  if (ldlt.info() != Eigen::Success) return std::nullopt;
+  Step step;
+  step.shared = -ldlt.solve(b);
+  if (!step.shared.allFinite()) return std::nullopt;
+  step.gain = -b.dot(step.shared);
+  for (const PlaceEquations& place : linearized.places) {
+    step.places.emplace_back(-place.inverse * (place.b + place.by_shared.leftCols(size) * step.shared));
+    step.gain += place.b.dot(place.inverse * place.b);
+  }
+  return step;
+}
+
+// The minimum with noise and weights held, or what some iterations make of it: while noise is taken for smaller than it is,
+// Huber's loss is followed slowly, and a better noise is the better step.
+struct Minimum {
+  Linearized at;
+  bool settled = false;
+};
+Result<Minimum> Minimize(const Linearization& of, SessionState& state) {
+  auto now = Linearize(of, state);
+  if (!now) return Fail(NotSolvable("has no start: a camera cannot see a corner that it saw"));
+  double damping = 1e-6;
+  for (int iteration = 0, rejected = 0; iteration < kIterationsMax && rejected < kRejectedMax; ++iteration) {
+    const auto step = StepOf(*now, of.layout.size, damping);
+    if (step && step->gain < kSettled) return Minimum{std::move(*now), true};
+    const SessionState tried = step ? Moved(of.problem, of.layout, state, step->shared, step->places) : state;
+    auto then = step ? Linearize(of, tried) : std::nullopt;
+    if (!then || then->cost > now->cost) {
+      damping = std::max(1e-8, 10 * damping);
+      ++rejected;
+      if (then && step->gain < kRounding) return Minimum{std::move(*now), true};  // rounding of the cost hides what is left
+      continue;
+    }
+    damping = std::max(1e-12, damping / 10);
+    rejected = 0;
+    state = tried;
+    now = std::move(then);
+  }
+  return Minimum{std::move(*now), false};
+}
+
+double Squared(double value) { return value * value; }
+
+struct Component {
+  double squares = 0.0, redundancy = 0.0, numbers = 0.0, leverage = 0.0;
+  void Add(double weight, double squares_of, double numbers_of, double leverage_of) {
+    squares += weight * squares_of;
+    numbers += weight * numbers_of;
+    leverage += leverage_of;
+    redundancy += weight * numbers_of - leverage_of;
+  }
+};
+
+double Updated(double sigma, const Component& component, double least) {
+  if (component.redundancy < kRedundancyMin) return sigma;
+  return std::max(least, sigma * std::sqrt(std::max(0.0, component.squares) / component.redundancy));
+}
+
+// Moments are less what range noise is expected to add; what is more is shared by the points of a plate.
+double UpdatedLidar(double factor, const Component& component) {
+  if (component.redundancy < kRedundancyMin) return factor;
+  const double excess = component.squares * Squared(factor);
+  return std::sqrt(std::max(1.0, (excess + component.numbers) / component.redundancy));
+}
+
+std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const LookWeights& weights, const SessionFit& fit,
+                                   const std::vector<SensorNoise>& before) {
+  std::vector<Component> corners(before.size()), plates(before.size()), moved(before.size()), turned(before.size());
+  for (std::size_t i = 0; i < problem.corners.size(); ++i)
+    corners[static_cast<std::size_t>(problem.corners[i].sensor)].Add(
+        weights.corners[i], fit.corners[i].squares[0], fit.corners[i].numbers[0], fit.corners[i].leverage[0]);
+  for (std::size_t i = 0; i < problem.plates.size(); ++i)
+    plates[static_cast<std::size_t>(problem.plates[i].sensor)].Add(weights.plates[i], fit.plates[i].squares[0], 3.0,
+                                                                   fit.plates[i].leverage[0]);
+  for (std::size_t i = 0; i < problem.poses.size(); ++i) {
+    const auto sensor = static_cast<std::size_t>(problem.poses[i].sensor);
+    moved[sensor].Add(weights.poses[i], fit.poses[i].squares[0], 3.0, fit.poses[i].leverage[0]);
+    turned[sensor].Add(weights.poses[i], fit.poses[i].squares[1], 3.0, fit.poses[i].leverage[1]);
+  }
+  std::vector<SensorNoise> after = before;
+  for (std::size_t s = 0; s < before.size(); ++s) {
+    after[s].sigma = Updated(after[s].sigma, corners[s], kCornerSigmaMin_px);
+    after[s].sigma = UpdatedLidar(after[s].sigma, plates[s]);
+    after[s].sigma = Updated(after[s].sigma, moved[s], kTrackerSigmaMin);
+    after[s].sigma_rad = Updated(after[s].sigma_rad, turned[s], kTrackerSigmaMin);
+  }
+  return after;
+}
+
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return 1.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// A look whose squares are far beyond what is usual for its sensor counts less, by how far.
+template <typename Looks>
+std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& fits, std::size_t sensors) {
+  const auto ratio = [&](std::size_t i) { return std::max(0.0, fits[i].squares.sum()) / fits[i].numbers.sum(); };
+  std::vector<std::vector<double>> of_sensor(sensors);
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(ratio(i));
+  std::vector<double> usual;
+  for (const auto& ratios : of_sensor) usual.push_back(std::max(0.2, MedianOf(ratios)));
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const double limit =
+        usual[static_cast<std::size_t>(looks[i].sensor)] * Squared(1 + 8 / std::sqrt(fits[i].numbers.sum()));
+    weights.push_back(ratio(i) <= limit ? 1.0 : Squared(limit / ratio(i)));
+  }
+  return weights;
+}
+
+LookWeights WeightsOf(const SessionProblem& problem, const SessionFit& fit) {
+  const std::size_t sensors = problem.sensors.size();
+  return {WeightsFrom(problem.corners, fit.corners, sensors), WeightsFrom(problem.plates, fit.plates, sensors),
+          WeightsFrom(problem.poses, fit.poses, sensors)};
+}
+
+bool Same(const std::vector<SensorNoise>& x, const std::vector<SensorNoise>& y) {
+  const auto close = [](double a, double b) { return std::abs(a - b) <= kSameNoise * std::max(a, b); };
+  for (std::size_t s = 0; s < x.size(); ++s)
+    if (!close(x[s].sigma, y[s].sigma) || !close(x[s].sigma_rad, y[s].sigma_rad)) return false;
+  return true;
+}
+
+bool Same(const std::vector<double>& x, const std::vector<double>& y) {
+  return std::equal(x.begin(), x.end(), y.begin(),
+                    [](double a, double b) { return std::abs(a - b) <= kSameWeight * std::max(a, b); });
+}
+
+}  // namespace
+
+Result<Refined> Refine(const SessionProblem& problem, const SessionState& start, const std::vector<SensorNoise>& noise,
+                       const std::vector<int>& group_of_place) {
+  Refined refined{start, noise, FullWeights(problem), group_of_place, 0, LayoutOf(problem), {}, {}};
+  refined.groups = group_of_place.empty() ? 0 : group_of_place.back() + 1;
+  const Linearization of{problem,         refined.layout,         refined.noise,
+                         refined.weights, refined.group_of_place, refined.groups};
+  for (int round = 0; round < kRoundsMax; ++round) {
+    RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
+    refined.at_optimum = std::move(minimum.at);
+    const Eigen::MatrixXd H = refined.at_optimum.Total().H.topLeftCorner(refined.layout.size, refined.layout.size);
+    const auto covariance = CovarianceOf(H);
+    if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
+    refined.covariance = *covariance;
+    AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
+    const std::vector<SensorNoise> updated = NoiseFrom(problem, refined.weights, refined.at_optimum.fit, refined.noise);
+    const LookWeights weights = WeightsOf(problem, refined.at_optimum.fit);
+    const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
+                      Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
+    if (same && minimum.settled) return refined;
+    refined.noise = updated;
+    refined.weights = weights;
+  }
+  return Fail(NotSolvable("reached no minimum"));
+}
+
+namespace {
+
+// Poses of the rig nearer to each other than this are one place.
+constexpr double kBurst_m = 0.01, kBurst_rad = 0.01;
+
+}  // namespace
+
+std::vector<int> GroupsOf(const SessionProblem& problem, const SessionState& state, int groups_max) {
+  const std::size_t places = problem.capture_of_place.size();
+  std::vector<int> burst(places, 0);
+  for (std::size_t p = 1; p < places; ++p) {
+    const Vector6d xi = (state.T_world_ref[p - 1].Inverse() * state.T_world_ref[p]).Log();
+    const bool same = problem.capture_of_place[p] == problem.capture_of_place[p - 1] ||
+                      (xi.head<3>().norm() < kBurst_m && xi.tail<3>().norm() < kBurst_rad);
+    burst[p] = burst[p - 1] + (same ? 0 : 1);
+  }
+  const int bursts = places == 0 ? 0 : burst.back() + 1;
+  if (bursts > groups_max)
+    for (int& b : burst) b = static_cast<int>(static_cast<std::int64_t>(b) * groups_max / bursts);
+  return burst;
+}
+
+}  // namespace rigcal::calib::joint

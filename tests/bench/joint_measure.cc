@@ -1,0 +1,137 @@
+// The joint refinement of the virtual MARS Mapper at feature level: how near it comes to the Cramer-Rao bound, whether its
+// regions hold, how long it takes, and what the scan for moved sensors says. joint_measure SEEDS [--first N]
+// [--bump SENSOR MM DEG] [--captures N] [--intrinsics exact|calibrated|absent] prints one JSON object.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "client/sim/bound.h"
+#include "server/calib/joint/cluster_covariance.h"
+#include "server/calib/joint/moved_sensor.h"
+#include "server/math/statistics.h"
+#include "tests/bench/joint_session.h"
+#include "tests/bench/rig_coverage.h"
+
+namespace rigcal {
+namespace {
+
+struct Sums {
+  double error_m2 = 0, error_rad2 = 0, bound_m2 = 0, bound_rad2 = 0, t2 = 0, dof = 0, sigma_ratio = 0;
+  int count = 0, covered = 0;
+};
+
+struct Settings {
+  sim::Options options;
+  int first = 1, seeds = 1;
+};
+
+double Seconds(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+Settings Parse(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--first") {
+      settings.first = std::atoi(argv[++i]);
+    } else if (word == "--captures") {
+      settings.options.captures = std::atoi(argv[++i]);
+    } else if (word == "--bump") {
+      settings.options.bump = SensorId(argv[++i]);
+      settings.options.bump_m = std::atof(argv[++i]) / 1e3;
+      settings.options.bump_rad = std::atof(argv[++i]) * M_PI / 180;
+    } else if (word == "--intrinsics") {
+      const std::string kind = argv[++i];
+      settings.options.intrinsics = kind == "exact"    ? sim::IntrinsicsKind::kExact
+                                    : kind == "absent" ? sim::IntrinsicsKind::kAbsent
+                                                       : sim::IntrinsicsKind::kCalibrated;
+    } else {
+      settings.seeds = std::atoi(argv[i]);
+    }
+  }
+  return settings;
+}
+
+void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem& problem,
+              const calib::joint::Refined& refined, const calib::joint::PoseCovariance& covariance,
+              std::map<std::string, Sums>& sums) {
+  const auto bound = sim::CramerRaoBound(session.experiment);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const int row = covariance.row_of_sensor[s];
+    if (row == calib::joint::kNone) continue;
+    const Vector6d error =
+        (refined.state.T_ref_sensor[s].Inverse() * session.experiment.T_ref_sensor(problem.sensors[s])).Log();
+    const Matrix6d C = covariance.joint.block<6, 6>(row, row);
+    Sums& sum = sums[problem.sensors[s].str()];
+    sum.error_m2 += error.head<3>().squaredNorm(), sum.error_rad2 += error.tail<3>().squaredNorm();
+    for (std::size_t i = 0; i < 6; ++i)
+      (i < 3 ? sum.bound_m2 : sum.bound_rad2) += std::pow(bound.at(problem.sensors[s])[i].value_or(0.0), 2);
+    const double t2 = error.dot(C.ldlt().solve(error));
+    const double dof = covariance.dof[s];
+    sum.t2 += t2, sum.dof += dof, ++sum.count;
+    sum.sigma_ratio += std::sqrt(C.trace() / covariance.model.block<6, 6>(row, row).trace());
+    sum.covered += t2 <= (dof > 0 ? HotellingLimit(static_cast<int>(dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6));
+  }
+}
+
+int Measure(const Settings& settings) {
+  std::map<std::string, Sums> sums;
+  double start_s = 0, refine_s = 0, covariance_s = 0, scan_s = 0, ratio = 0, spread = 0;
+  std::printf("{\"moves\": [");
+  for (int i = 0; i < settings.seeds; ++i) {
+    sim::Options options = settings.options;
+    options.seed = static_cast<std::uint64_t>(settings.first + i);
+    const FeatureSession session = RecordFeatures(MarsMapper(options), 0);
+    auto since = std::chrono::steady_clock::now();
+    const auto views = ViewsOf(session, NominalPoses(session));
+    const auto start = calib::joint::StartOf(views);
+    if (!start) return std::fprintf(stderr, "%s\n", Sentence(start.error()).c_str()), 1;
+    start_s += Seconds(since);
+    since = std::chrono::steady_clock::now();
+    const auto groups = calib::joint::GroupsOf(start->problem, start->state);
+    const auto refined = calib::joint::Refine(start->problem, start->state, start->noise, groups);
+    if (!refined) return std::fprintf(stderr, "%s\n", Sentence(refined.error()).c_str()), 1;
+    refine_s += Seconds(since);
+    since = std::chrono::steady_clock::now();
+    const auto covariance = calib::joint::CovarianceOfPoses(*refined);
+    covariance_s += Seconds(since);
+    since = std::chrono::steady_clock::now();
+    const auto moves = calib::joint::ScanForMoves(start->problem, *refined);
+    scan_s += Seconds(since);
+    ratio += covariance.model_ratio, spread += covariance.spread_ratio;
+    AddPoses(session, start->problem, *refined, covariance, sums);
+    std::printf("%s\n[%llu", i ? "," : "", static_cast<unsigned long long>(options.seed));
+    for (std::size_t m = 0; m < std::min<std::size_t>(3, moves.size()); ++m)
+      std::printf(", {\"sensor\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
+                  start->problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str(), moves[m].group,
+                  moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
+                  180 / M_PI * moves[m].step.tail<3>().norm());
+    std::printf("]");
+    if (i == 0)
+      for (std::size_t s = 0; s < start->problem.sensors.size(); ++s)
+        std::fprintf(stderr, "%s noise %.4g %.4g\n", start->problem.sensors[s].str().c_str(), refined->noise[s].sigma,
+                     refined->noise[s].sigma_rad);
+  }
+  const double n = settings.seeds;
+  std::printf("],\n\"start_s\": %.3f, \"refine_s\": %.3f, \"covariance_s\": %.3f, \"scan_s\": %.3f, \"model_ratio\": "
+              "%.3f, \"spread_ratio\": %.3f,\n\"sensors\": {",
+              start_s / n, refine_s / n, covariance_s / n, scan_s / n, ratio / n, spread / n);
+  const char* comma = "";
+  for (const auto& [name, s] : sums) {
+    std::printf("%s\n\"%s\": {\"ratio_translation\": %.3f, \"ratio_rotation\": %.3f, \"mean_t2\": %.2f, \"covered\": "
+                "%.3f, \"dof\": %.1f, \"sigma_over_model\": %.3f, \"rms_mm\": %.4f}",
+                comma, name.c_str(), std::sqrt(s.error_m2 / s.bound_m2), std::sqrt(s.error_rad2 / s.bound_rad2),
+                s.t2 / s.count, static_cast<double>(s.covered) / s.count, s.dof / s.count, s.sigma_ratio / s.count,
+                1e3 * std::sqrt(s.error_m2 / s.count));
+    comma = ",";
+  }
+  std::printf("}}\n");
+  return 0;
+}
+
+}  // namespace
+}  // namespace rigcal
+
+int main(int argc, char** argv) { return rigcal::Measure(rigcal::Parse(argc, argv)); }

@@ -1,0 +1,202 @@
+// The joint refinement against a virtual robot that shares none of its mathematics: corners are projected by OpenCV.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "client/sim/rig_yaml.h"
+#include "server/calib/joint/cluster_covariance.h"
+#include "server/calib/joint/moved_sensor.h"
+#include "tests/bench/joint_session.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr int kCaptures = 12;
+
+sim::Options WithSeed(std::uint64_t seed) {
+  sim::Options options;
+  options.seed = seed;
+  return options;
+}
+
+FeatureSession Visit(sim::Options options) {
+  options.captures = kCaptures;
+  auto experiment = sim::Prepare(*sim::LoadRig("mars-mapper"), options);
+  return RecordFeatures(*experiment, 0);
+}
+
+SessionStart StartFrom(const FeatureSession& session) {
+  auto start = StartOf(ViewsOf(session, NominalPoses(session)));
+  EXPECT_TRUE(start) << Sentence(start.error());
+  return std::move(*start);
+}
+
+Refined RefinedFrom(const SessionStart& start) {
+  auto refined = Refine(start.problem, start.state, start.noise, GroupsOf(start.problem, start.state));
+  EXPECT_TRUE(refined) << Sentence(refined.error());
+  return std::move(*refined);
+}
+
+struct Fixed {
+  SessionStart start;
+  Layout layout;
+  LookWeights weights;
+  std::vector<int> groups;
+  [[nodiscard]] Linearization Of() const {
+    return {start.problem, layout, start.noise, weights, groups, groups.back() + 1};
+  }
+};
+Fixed FixedFrom(SessionStart start) {
+  // Large sigmas: no residual of the start is beyond Huber's knee, where the cost has a kink in its second derivative.
+  for (SensorNoise& noise : start.noise) noise = {noise.sigma_rad > 0 ? 0.05 : 5.0, noise.sigma_rad > 0 ? 0.05 : 0.0};
+  Fixed fixed{std::move(start), {}, {}, {}};
+  fixed.layout = LayoutOf(fixed.start.problem);
+  fixed.weights = FullWeights(fixed.start.problem);
+  fixed.groups = GroupsOf(fixed.start.problem, fixed.start.state);
+  return fixed;
+}
+
+// Away from the minimum the gradient of the reduced problem is that of the cost with the places at their best, so places
+// are moved to where their own gradient vanishes first.
+SessionState PlacesSettled(const Fixed& fixed, SessionState state) {
+  for (int i = 0; i < 20; ++i) {
+    const auto now = Linearize(fixed.Of(), state);
+    std::vector<Vector6d> steps;
+    for (const PlaceEquations& place : now->places) steps.emplace_back(-place.inverse * place.b);
+    state = Moved(fixed.start.problem, fixed.layout, state, Eigen::VectorXd::Zero(fixed.layout.size), steps);
+  }
+  return state;
+}
+
+TEST(CalibJoint, GradientIsThatOfTheCostAwayFromItsMinimum) {
+  const FeatureSession session = Visit(WithSeed(3));
+  const Fixed fixed = FixedFrom(StartFrom(session));
+  const SessionState state = PlacesSettled(fixed, fixed.start.state);
+  const auto at = Linearize(fixed.Of(), state);
+  ASSERT_TRUE(at);
+  const Eigen::VectorXd gradient = 2 * at->Total().b.head(fixed.layout.size);
+  const Eigen::MatrixXd H = at->Total().H;
+  ASSERT_GT(gradient.cwiseAbs().maxCoeff(), 1.0);  // nominal poses are off
+  const std::vector<Vector6d> still(state.T_world_ref.size(), Vector6d::Zero());
+  for (int i = 0; i < fixed.layout.size; ++i) {
+    const double h = 1e-3 / std::sqrt(H(i, i));
+    const auto cost = [&](double step) {
+      const SessionState moved = Moved(fixed.start.problem, fixed.layout, state,
+                                       step * Eigen::VectorXd::Unit(fixed.layout.size, i), still);
+      return Linearize(fixed.Of(), moved)->cost;
+    };
+    EXPECT_NEAR((cost(h) - cost(-h)) / (2 * h), gradient[i], 2e-4 * std::abs(gradient[i]) + 1e-3 * std::sqrt(H(i, i)))
+        << "unknown " << i;
+  }
+}
+
+TEST(CalibJoint, RefinedPosesAreWithinTheirSigmasOfTheTruth) {
+  const FeatureSession session = Visit(WithSeed(5));
+  const SessionStart start = StartFrom(session);
+  EXPECT_TRUE(start.unused.empty());
+  const Refined refined = RefinedFrom(start);
+  const PoseCovariance covariance = CovarianceOfPoses(refined);
+  for (std::size_t s = 0; s < start.problem.sensors.size(); ++s) {
+    const int row = covariance.row_of_sensor[s];
+    if (row == kNone) continue;
+    const Vector6d error =
+        (refined.state.T_ref_sensor[s].Inverse() * session.experiment.T_ref_sensor(start.problem.sensors[s])).Log();
+    const Matrix6d C = covariance.joint.block<6, 6>(row, row);
+    EXPECT_LT(error.dot(C.ldlt().solve(error)), 60.0) << start.problem.sensors[s].str();  // of 6: one in 1e10
+    EXPECT_LT(error.head<3>().norm(), 0.003);
+  }
+}
+
+TEST(CalibJoint, CovarianceIsNeverBelowTheModels) {
+  const PoseCovariance covariance = CovarianceOfPoses(RefinedFrom(StartFrom(Visit(WithSeed(6)))));
+  const Eigen::VectorXd scale = covariance.model.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scale.asDiagonal() * (covariance.joint - covariance.model) *
+                                                            scale.asDiagonal());
+  EXPECT_GT(axes.eigenvalues()[0], -1e-9);
+}
+
+TEST(CalibJoint, NoiseOfEachSensorIsFoundFromItsResiduals) {
+  const FeatureSession session = Visit(WithSeed(7));
+  const SessionStart start = StartFrom(session);
+  const Refined refined = RefinedFrom(start);
+  for (std::size_t s = 0; s < start.problem.sensors.size(); ++s) {
+    const sim::RigSensor& truth = session.experiment.rig.SensorOf(start.problem.sensors[s]);
+    if (truth.kind == SensorKind::kCamera) {
+      EXPECT_NEAR(refined.noise[s].sigma, truth.camera.corner_sigma_px, 0.1 * truth.camera.corner_sigma_px);
+    }
+    if (truth.kind == SensorKind::kTracker) {
+      EXPECT_NEAR(refined.noise[s].sigma_rad, truth.tracker.sigma_rad, 0.6 * truth.tracker.sigma_rad);
+    }
+  }
+}
+
+class BumpedSensor : public testing::TestWithParam<std::tuple<const char*, double, double>> {};
+
+TEST_P(BumpedSensor, IsNamedWithItsCapture) {
+  const auto [name, move_m, turn_rad] = GetParam();
+  sim::Options options = WithSeed(8);
+  options.bump = SensorId(name);
+  options.bump_m = move_m;
+  options.bump_rad = turn_rad;
+  const SessionStart start = StartFrom(Visit(options));
+  const Refined refined = RefinedFrom(start);
+  const std::vector<SensorMove> moves = ScanForMoves(start.problem, refined);
+  ASSERT_FALSE(moves.empty());
+  EXPECT_EQ(start.problem.sensors[static_cast<std::size_t>(moves[0].sensor)].str(), name);
+  EXPECT_NEAR(moves[0].group, kCaptures / 2, 1);
+  EXPECT_LT(moves[0].odds, 1e-6);
+  EXPECT_NEAR(moves[0].step.head<3>().norm(), move_m, 0.5 * move_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, BumpedSensor,
+                         testing::Values(std::tuple("front_right", 0.02, 0.035), std::tuple("back", 0.005, 0.0087),
+                                         std::tuple("front_left", 0.005, 0.0087),  // the reference
+                                         std::tuple("lidar_vertical", 0.02, 0.035)));
+
+TEST(CalibJoint, NoSensorIsAccusedWhereNoneMoved) {
+  for (const std::uint64_t seed : {11, 12, 13}) {
+    const SessionStart start = StartFrom(Visit(WithSeed(seed)));
+    const std::vector<SensorMove> moves = ScanForMoves(start.problem, RefinedFrom(start));
+    ASSERT_FALSE(moves.empty());
+    EXPECT_GT(moves[0].odds, 1e-6) << "seed " << seed;
+  }
+}
+
+TEST(CalibJoint, OnePictureOfAnotherInstantCostsLittleAndIsHeldBack) {
+  FeatureSession session = Visit(WithSeed(9));
+  auto& views = session.seen.views.at(SensorId("front_right"));
+  const auto bad = std::next(views.begin(), 4);
+  for (Eigen::Vector2d& corner : bad->second.corners_px) corner.x() += 8.0;
+  const SessionStart start = StartFrom(session);
+  const Refined refined = RefinedFrom(start);
+  for (std::size_t i = 0; i < start.problem.corners.size(); ++i) {
+    const CornersSeen& seen = start.problem.corners[i];
+    const bool is_bad = start.problem.sensors[static_cast<std::size_t>(seen.sensor)] == SensorId("front_right") &&
+                        start.problem.captures[static_cast<std::size_t>(
+                            start.problem.capture_of_place[static_cast<std::size_t>(seen.place)])] == bad->first;
+    if (is_bad) {
+      EXPECT_LT(refined.weights.corners[i], 0.01);
+    } else {
+      EXPECT_GT(refined.weights.corners[i], 0.99) << i;
+    }
+  }
+  const Refined clean = RefinedFrom(StartFrom(Visit(WithSeed(9))));
+  for (std::size_t s = 0; s < start.problem.sensors.size(); ++s) {
+    const Vector6d apart = (clean.state.T_ref_sensor[s].Inverse() * refined.state.T_ref_sensor[s]).Log();
+    EXPECT_LT(apart.head<3>().norm(), 5e-4) << start.problem.sensors[s].str();
+  }
+}
+
+TEST(CalibJoint, SaysWhyThereIsNothingToRefine) {
+  FeatureSession session = Visit(WithSeed(10));
+  for (auto& [camera, views] : session.seen.views)
+    for (auto& [capture, view] : views) view.found = false;
+  const auto start = StartOf(ViewsOf(session, NominalPoses(session)));
+  ASSERT_FALSE(start);
+  EXPECT_THAT(start.error().what, testing::HasSubstr("no picture of a board"));
+}
+
+}  // namespace
+}  // namespace rigcal::calib::joint
