@@ -27,9 +27,15 @@ std::int64_t FreeBytes(const fs::path& folder) {
   return static_cast<std::int64_t>(disk.f_bavail) * static_cast<std::int64_t>(disk.f_frsize);
 }
 
-Error FullDisk(const fs::path& folder, const std::string& why) {
+Error NoRoom(const fs::path& folder, const std::string& why, const char* cure) {
   return {ErrorCode::kStorage, "the disk of the data folder " + folder.string() + " cannot store anything: " + why,
-          "Free space on it; what is stored can still be read, and pushes go on once there is room."};
+          std::string(cure) + "; what is stored can still be read, and pushes go on once that is done."};
+}
+
+Error NoRoom(const fs::path& folder, int error) {
+  const bool is_full = error == ENOSPC || error == EDQUOT;
+  return NoRoom(folder, std::generic_category().message(error),
+                is_full ? "Free space on it" : "Check the disk and the permissions of the folder");
 }
 
 // 0 or the errno.
@@ -48,11 +54,16 @@ int TryWriting(const fs::path& file) {
 
 Result<std::int64_t> ProbeRoom(const fs::path& folder) {
   const std::int64_t free_bytes = FreeBytes(folder);
-  if (free_bytes < 0) return Fail(FullDisk(folder, std::generic_category().message(errno)));
+  if (free_bytes < 0) return Fail(NoRoom(folder, errno));
   const int error = TryWriting(IntakeFolderOf(folder) / ".room");
-  if (error != 0) return Fail(FullDisk(folder, std::generic_category().message(error)));
-  if (free_bytes < kLeastBytes) return Fail(FullDisk(folder, "less than 1 MiB is free"));
+  if (error != 0) return Fail(NoRoom(folder, error));
+  if (free_bytes < kLeastBytes) return Fail(NoRoom(folder, "less than 1 MiB is free", "Free space on it"));
   return free_bytes;
+}
+
+bool IsFull(const fs::path& folder) {
+  const std::int64_t free_bytes = FreeBytes(folder);
+  return free_bytes >= 0 && free_bytes < kLeastBytes;
 }
 
 void KeepReserve(const fs::path& folder) {
@@ -65,7 +76,7 @@ void KeepReserve(const fs::path& folder) {
 }
 
 bool SpendReserve(const fs::path& folder) {
-  if (FreeBytes(folder) >= kLeastBytes) return false;
+  if (!IsFull(folder)) return false;
   std::error_code code;
   const auto size = static_cast<std::int64_t>(fs::file_size(ReserveFile(folder), code));
   if (code || size < kReserveShareBytes) return false;

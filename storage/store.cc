@@ -41,8 +41,8 @@ Result<Store> Store::Open(const fs::path& folder) {
   RIGCAL_TRY(MakeFolders(folder));
   auto opened = OpenOnce(folder);
   while (!opened && SpendReserve(folder)) opened = OpenOnce(folder);
-  if (opened || opened.error().code != ErrorCode::kStorage) return opened;
-  RIGCAL_TRY(ProbeRoom(folder));  // says more than SQLite does of a full disk
+  if (opened || !IsFull(folder)) return opened;
+  RIGCAL_TRY(ProbeRoom(folder));  // says more than SQLite does
   return opened;
 }
 

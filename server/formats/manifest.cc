@@ -225,7 +225,8 @@ LidarPolish ReadLidarPolish(const JsonField& field) {
 
 SessionHeader ReadHeader(const JsonField& root) {
   SessionHeader header;
-  static_cast<void>(root.At("format").Integer(1, kFormatWithLayouts));
+  const JsonField format = root.At("format");
+  const std::int64_t number = format.Integer(1, kFormatWithLayouts);
   header.robot = ReadId<RobotId>(root.At("robot"));
   header.rig_model = root.At("rig_model").Text();
   header.captured_at = ReadStamp(root.At("captured_at"));
@@ -235,6 +236,7 @@ SessionHeader ReadHeader(const JsonField& root) {
     header.targets.push_back(ReadTarget(target));
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerSessionMax))
     header.sensors.push_back(ReadSensor(sensor));
+  if (number != FormatOf(header)) format.Refuse("must be 1, or 2 where a sensor has fields");
   if (const auto pairs = root.Find("skip_pairs"))
     for (const JsonField& pair : pairs->Items(kSkipPairsMax)) header.skip_pairs.push_back(ReadSkipPair(pair));
   if (const auto remounted = root.Find("remounted"))

@@ -16,10 +16,9 @@ std::string ReportOf(const storage::RevisionKey& key) {
   return "the report of revision " + std::to_string(key.number) + " of " + key.robot.str();
 }
 
-bool IsThere(const storage::Store& store, const storage::RevisionKey& key) {
+bool IsThere(const storage::Store& store, const storage::RevisionKey& key, const std::string& file = "index.html") {
   std::error_code error;
-  return std::filesystem::exists(store.ReportFolder() / key.robot.str() / std::to_string(key.number) / "index.html",
-                                 error);
+  return std::filesystem::exists(store.ReportFolder() / key.robot.str() / std::to_string(key.number) / file, error);
 }
 
 Result<bool> IsQueued(storage::Store& store, const storage::RevisionKey& key) {
@@ -66,6 +65,7 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
   if (!*revision)
     return {ErrorCode::kNotFound, key.robot.str() + " has no revision " + std::to_string(key.number),
             "See the robot's own page for those that it has."};
+  if (IsThere(store, key, file)) return Being(key, "drawn");  // it came since it was missed
   if (IsThere(store, key))
     return {ErrorCode::kNotFound, ReportOf(key) + " has no file " + file, "Start at the report's first page."};
   if (const auto why = undrawn.Find(key))

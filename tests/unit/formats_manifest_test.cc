@@ -121,7 +121,7 @@ TEST_P(RefusedManifest, NamesTheField) {
 INSTANTIATE_TEST_SUITE_P(
     Cases, RefusedManifest,
     testing::Values(
-        BadManifest{"\"format\":1", "\"format\":2", "manifest: format: must be an integer from 1 to 1"},
+        BadManifest{"\"format\":1", "\"format\":2", "manifest: format: must be 1, or 2 where a sensor has fields"},
         BadManifest{"\"robot\":\"mapper-01\"", "\"robot\":\"../x\"",
                     "manifest: robot: robot id \"../x\" is not a valid name"},
         BadManifest{"\"type\":\"camera\"", "\"type\":\"camra\"",

@@ -90,6 +90,11 @@ TEST_F(MissingReportTest, WhatCannotBeDrawnSaysWhy) {
   EXPECT_EQ(Ask().code, ErrorCode::kBusy);
 }
 
+TEST_F(MissingReportTest, WhatCameMeanwhileIsAskedForAgain) {
+  EXPECT_EQ(Ask().code, ErrorCode::kBusy);
+  EXPECT_EQ(StepAll(), 0);
+}
+
 TEST_F(MissingReportTest, WhatNeverWasIsNotThere) {
   EXPECT_EQ(Ask("revisions/2/").what, "r has no revision 2");
   EXPECT_EQ(Ask("revisions/1/evidence/x.png").what, "the report of revision 1 of r has no file evidence/x.png");
