@@ -13,7 +13,7 @@ from .measure import Measure, at_most, equal, info, skip
 from .server import Server
 
 # What a pair may fail for where the recording is right: too little of it, or a lens that its model does not describe.
-RIGHT_CAUSES = ("too_few_captures", "no_common_view", "ill_conditioned", "distortion_not_observable")
+RIGHT_CAUSES = ("too_few_captures", "no_common_view", "ill_conditioned", "distortion_not_observable", "no_tilt")
 AUTHOR_T_MM = (-75.00, 1.245, -0.549)  # left points into the right camera
 
 
