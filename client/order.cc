@@ -67,7 +67,7 @@ Status GiveOrder(Context& context, const OrderToGive& order, const OrderOptions&
   if (!options.no_wait && done["revision_follows"].Flag(true)) {
     RIGCAL_ASSIGN(awaited, AwaitRevision(context, options, done));
     if (!context.json) PrintResult(awaited, context.out);
-    context.exit_code = Judge(awaited.show["document"]["verdict"]);
+    context.exit_code = JudgeResult(awaited);
   }
   if (context.json) context.out << OrderJson(text, awaited) << std::endl;
   return {};

@@ -65,8 +65,9 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
 }  // namespace
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-               const SessionTimes& captured_at) {
+               const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates) {
   if (const auto none = FindNoEdges(edges)) return VerdictFrom(VerdictLevel::kUnknown, {*none});
+  if (const auto moved = FindMovedWithin(estimates, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
   if (const auto contradictions = FindContradictions(edges, solution, policy, captured_at); !contradictions.empty())

@@ -10,6 +10,7 @@
 
 #include "server/base/stamp.h"
 #include "server/model/graph.h"
+#include "server/model/session_estimate.h"
 
 namespace rigcal::fleet {
 
@@ -29,8 +30,10 @@ struct Policy {
 // sensors have a good edge as well (the failure was repaired since). Sessions are named by when they were captured, as
 // far as that is known.
 using SessionTimes = std::map<SessionId, Stamp>;
+// `estimates`: of the sessions that count, the newest first; a sensor that was moved during one of them fails the robot,
+// and is told before what it made of the edges.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
-                             const SessionTimes& captured_at = {});
+                             const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has
 // it, else e^T Omega e (edge covariance minus what the solution explains is not used: conservative). limit is 0 where

@@ -16,6 +16,9 @@ struct Finding {
 // The edge that contradicts the others most.
 [[nodiscard]] std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                        const Policy& policy);
+// Sensors that had two poses during the newest session in which one had.
+[[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
+                                                     const SessionTimes& captured_at);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);

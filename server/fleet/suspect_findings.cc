@@ -64,26 +64,6 @@ std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_
          name + "; if not, repeat it";
 }
 
-// "2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31".
-std::string TimeOf(Stamp stamp) {
-  constexpr std::size_t kDay = 10, kToMinute = 16;
-  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
-  if (stamp.ns % kDay_ns == 0) return ToIso(stamp).substr(0, kDay);
-  return ToIso(stamp).substr(0, kToMinute).replace(kDay, 1, " ") + " UTC";
-}
-
-// As people know a session: by its time; where that is not known by its id, where it is the same of two by both.
-std::string NameOf(const SessionId& session, const SessionTimes& captured_at) {
-  constexpr std::size_t kDigits = 12;  // as pages show them
-  const std::string id = session.str().substr(0, kDigits);
-  const auto found = captured_at.find(session);
-  if (found == captured_at.end()) return id;
-  const std::string time = TimeOf(found->second);
-  const auto alike = std::count_if(captured_at.begin(), captured_at.end(),
-                                   [&](const auto& one) { return TimeOf(one.second) == time; });
-  return time + (alike > 1 ? " (" + id + ")" : "");
-}
-
 // Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest
 // first.
 std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id,
@@ -91,7 +71,7 @@ std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, con
   const std::set<SessionId> sessions = SessionsOf(ids, by_id);
   if (sessions.empty() || sessions.contains(SessionId())) return "edges " + List(NamesOf(ids, by_id));
   std::vector<std::string> names;
-  for (const SessionId& session : sessions) names.push_back(NameOf(session, captured_at));
+  for (const SessionId& session : sessions) names.push_back(NameOfSession(session, captured_at));
   std::sort(names.begin(), names.end());
   return std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ") +
          (names.size() == 1 ? "session " : "sessions ") + List(names);

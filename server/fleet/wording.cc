@@ -1,5 +1,7 @@
 #include "server/fleet/wording.h"
 
+#include <algorithm>
+
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -39,6 +41,28 @@ std::string OffText(const Vector6d& e) {
   // Less than a millionth of a millimetre or degree is arithmetic, not a disagreement.
   const auto amount = [](double value, const char* unit) { return Number(value < 1e-6 ? 0.0 : value, unit); };
   return amount(1e3 * e.head<3>().norm(), "mm") + " and " + amount(kDegreesPerRadian * e.tail<3>().norm(), "deg");
+}
+
+namespace {
+
+std::string TimeOf(Stamp stamp) {
+  constexpr std::size_t kDay = 10, kToMinute = 16;
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  if (stamp.ns % kDay_ns == 0) return ToIso(stamp).substr(0, kDay);
+  return ToIso(stamp).substr(0, kToMinute).replace(kDay, 1, " ") + " UTC";
+}
+
+}  // namespace
+
+std::string NameOfSession(const SessionId& session, const std::map<SessionId, Stamp>& captured_at) {
+  constexpr std::size_t kDigits = 12;  // as pages show them
+  const std::string id = session.str().substr(0, kDigits);
+  const auto found = captured_at.find(session);
+  if (found == captured_at.end()) return id;
+  const std::string time = TimeOf(found->second);
+  const auto alike = std::count_if(captured_at.begin(), captured_at.end(),
+                                   [&](const auto& one) { return TimeOf(one.second) == time; });
+  return time + (alike > 1 ? " (" + id + ")" : "");
 }
 
 }  // namespace rigcal::fleet

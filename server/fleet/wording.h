@@ -1,9 +1,11 @@
 // Numbers and lists as sentences show them.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
+#include "server/base/stamp.h"
 #include "server/model/edge.h"
 
 namespace rigcal::fleet {
@@ -15,6 +17,10 @@ namespace rigcal::fleet {
 [[nodiscard]] std::string NameOfEdge(const Edge& edge);
 // "30 mm and 0.2 deg": the lengths of both halves of a tangent vector.
 [[nodiscard]] std::string OffText(const Vector6d& e);
+
+// As people know a session: by its time ("2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31"); where that
+// is not known by its id, where it is the same of two by both.
+[[nodiscard]] std::string NameOfSession(const SessionId& session, const std::map<SessionId, Stamp>& captured_at);
 
 constexpr double kDegreesPerRadian = 57.29577951308232;
 

@@ -35,9 +35,9 @@ std::optional<Scalar> ScalarOf(std::string_view type, std::string_view size) {
   return found == kTypes.end() ? std::nullopt : std::optional(found->second);
 }
 
-class Reader {
+class PcdReader {
  public:
-  explicit Reader(const std::string& name) : name_(name) {}
+  explicit PcdReader(const std::string& name) : name_(name) {}
 
   Result<PcdHeader> Read(std::string_view bytes) {
     TextLines lines(bytes.substr(0, limits::kCloudHeaderBytesMax));
@@ -162,6 +162,6 @@ class Reader {
 
 }  // namespace
 
-Result<PcdHeader> ReadPcdHeader(std::string_view bytes, const std::string& name) { return Reader(name).Read(bytes); }
+Result<PcdHeader> ReadPcdHeader(std::string_view bytes, const std::string& name) { return PcdReader(name).Read(bytes); }
 
 }  // namespace rigcal::formats

@@ -35,7 +35,7 @@ struct PlyHeader {
   std::size_t body_offset_bytes = 0, body_line = 1;
 };
 
-std::optional<Scalar> ScalarOf(std::string_view name) {
+std::optional<Scalar> PlyScalarOf(std::string_view name) {
   static const std::map<std::string_view, Scalar> kTypes = {
       {"char", Scalar::kInt8},      {"int8", Scalar::kInt8},       {"uchar", Scalar::kUint8},
       {"uint8", Scalar::kUint8},    {"short", Scalar::kInt16},     {"int16", Scalar::kInt16},
@@ -116,7 +116,7 @@ class HeaderReader {
       return {};
     }
     if (words.size() != 3) return Refuse("a property has a type and a name");
-    const auto type = ScalarOf(words[1]);
+    const auto type = PlyScalarOf(words[1]);
     if (!type) return Refuse("property " + Quoted(words[2]) + " has the unknown type " + Quoted(words[1]));
     properties.push_back({std::string(words[2]), *type, false});
     return {};

@@ -18,7 +18,6 @@ struct PairInputs {
   Problem problem;
   std::vector<Evidence> evidence;     // annotated pictures, in capture order, sensor a before sensor b
   std::vector<Diagnosis> notes = {};  // what a reader of the edge should know of its data
-};  // what the edge's reader should know of the data  // annotated pictures, in capture order, sensor a before sensor b
 };
 // Of the targets that both may see, the one found by both in most captures (the first, if equal).
 [[nodiscard]] Result<PairInputs<calib::StereoProblem>> LoadStereo(storage::Store& store, const Manifest& manifest,

@@ -14,6 +14,7 @@
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
@@ -110,7 +111,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   input.reference = loaded.graph.reference;
   input.solution = SolveHonestly(loaded);
   RIGCAL_ASSIGN(const fleet::SessionTimes captured_at, CapturedAt(store, robot));
-  input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at);
+  RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot));
+  input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
   input.edges = std::move(loaded.edges);
 
   const auto worst = WorstEdgeOf(input);

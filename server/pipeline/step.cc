@@ -9,6 +9,7 @@
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/run_edge_job.h"
+#include "server/pipeline/session_refinement.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -109,6 +110,7 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
 }
 
 Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
+  RIGCAL_TRY(RefineSessions(context.store, robot, context.cameras, context.clock));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock));
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),

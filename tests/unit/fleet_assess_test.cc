@@ -267,5 +267,28 @@ TEST(Assess, ADirectionThatTheMotionLeavesOpenIsToldByTheMotion) {
   EXPECT_THAT(rig.Judge().why, HasSubstr("one axis only; no good edges tie lidar to the reference."));
 }
 
+TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
+  const Rig rig;
+  SessionEstimate clean, bumped;
+  clean.session = SessionId(std::string(64, '1'));
+  bumped.session = SessionId(std::string(64, '2'));
+  SensorMovedWithin moved;
+  moved.sensor = SensorId("right");
+  moved.last_before = CaptureId("019"), moved.first_after = CaptureId("020");
+  moved.step[tangent::kX] = 0.02;
+  moved.step[tangent::kRz] = 0.0349;
+  bumped.moved = {moved};
+  const SessionTimes captured_at = {{bumped.session, ParseIso("2026-01-31T12:00:00Z").value()}};
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, captured_at, {clean}).level, VerdictLevel::kPass);
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, captured_at, {clean, bumped});
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_EQ(verdict.why,
+            "Right was moved during the session of 2026-01-31 12:00 UTC, between captures 019 and 020, by 20 mm and 2 "
+            "deg.");
+  EXPECT_EQ(verdict.what_to_do,
+            "Tighten the mount of right, capture a new session and push it with `--remounted right`; nothing that this "
+            "session says of right can be relied on.");
+}
+
 }  // namespace
 }  // namespace rigcal::fleet

@@ -1,6 +1,7 @@
 rigcal_test(formats_json_test SOURCES unit/formats_json_test.cc DEPS rigcal_formats)
 rigcal_test(formats_manifest_test SOURCES unit/formats_manifest_test.cc DEPS rigcal_formats)
 rigcal_test(formats_edge_test SOURCES unit/formats_edge_test.cc DEPS rigcal_formats)
+rigcal_test(formats_session_estimate_test SOURCES unit/formats_session_estimate_test.cc DEPS rigcal_formats)
 rigcal_test(formats_camera_fit_test SOURCES unit/formats_camera_fit_test.cc DEPS rigcal_formats)
 rigcal_test(formats_edge_file_test SOURCES unit/formats_edge_file_test.cc DEPS rigcal_formats)
 rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc DEPS rigcal_formats)

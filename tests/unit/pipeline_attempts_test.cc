@@ -174,7 +174,8 @@ TEST_F(AttemptsPipelineTest, APictureBeyondTheServersMemoryIsNamedAndLookedAtAga
   StorePictures("r", large);
   StepAll();
   ASSERT_EQ(EdgesOf("r").size(), 1u);
-  const std::string& what = EdgesOf("r")[0].diagnoses[0].what;
+  std::string what;
+  for (const Diagnosis& diagnosis : EdgesOf("r")[0].diagnoses) what += diagnosis.what + "\n";
   EXPECT_THAT(what, HasSubstr("file \"left/01.png\" of 2000 x 2000 pixels would take "));
   EXPECT_THAT(what, HasSubstr(" MiB of memory, and this server has 16 MiB for that"));
   EXPECT_FALSE(Seen(large));
@@ -212,7 +213,7 @@ TEST_F(AttemptsPipelineTest, AReportThatEndsItWithoutCloudsTooIsPassedOver) {
 TEST_F(AttemptsPipelineTest, AGraphThatEndedTheProcessThriceWaitsForAnotherEdge) {
   StoreEdges(Triangle("poison"));
   const auto watermark = storage::LoadEdgeWatermark(*store_, RobotId("poison"));
-  Die(storage::WorkOfRevision(RobotId("poison"), watermark.value()), 3);
+  Die(storage::WorkOfRevision(RobotId("poison"), watermark.value(), 0), 3);
   StoreEdges(Triangle("r"));
   StepAll();
   EXPECT_EQ(storage::LoadRevisions(*store_, RobotId("r")).value().size(), 1u);

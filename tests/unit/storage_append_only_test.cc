@@ -5,6 +5,7 @@
 #include "storage/fleet_facts.h"
 #include "storage/standing.h"
 #include "storage/lost_blobs.h"
+#include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -42,6 +43,9 @@ class AppendOnlyTest : public StoreTest {
       revision.calibrated_at = Stamp{4};
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, revision));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
+      SessionEstimate estimate;
+      estimate.session = session;
+      RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));

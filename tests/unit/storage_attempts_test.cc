@@ -78,7 +78,7 @@ TEST_F(AttemptsTest, AJobThatWasBegunBeforeComesAfterAllOthers) {
 }
 
 TEST_F(AttemptsTest, NamesOfWorkDiffer) {
-  EXPECT_NE(WorkOfReport({RobotId("1"), 2}), WorkOfRevision(RobotId("1"), 2));
+  EXPECT_NE(WorkOfReport({RobotId("1"), 2}), WorkOfRevision(RobotId("1"), 2, 0));
   EXPECT_NE(WorkOfReport({RobotId("r"), 12}), WorkOfReport({RobotId("r"), 1}));
 }
 

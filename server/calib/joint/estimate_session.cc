@@ -81,7 +81,9 @@ void FindMoves(SessionStart start, Refined refined, SessionEstimate& estimate) {
   while (static_cast<int>(estimate.moved.size()) < kMovesMax && refined.groups >= kGroupsForMoves) {
     const std::vector<SensorMove> moves = ScanForMoves(start.problem, refined);
     if (moves.empty() || !IsMove(moves.front())) return;
-    estimate.moved.push_back(Told(start.problem, refined, moves.front()));
+    const SensorMovedWithin told = Told(start.problem, refined, moves.front());
+    if (told.last_before.empty() || told.first_after.empty()) return;
+    estimate.moved.push_back(told);
     start = Split(std::move(start), refined, moves.front());
     auto again = Refine(start.problem, start.state, start.noise, refined.group_of_place);
     if (!again) return;

@@ -9,15 +9,15 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr double kOpen = 1e-9;  // of a scaled information matrix
+constexpr double kOpen = 1e-6;  // of the sensor's own information: less is what rounding leaves
 
-// Pseudo-inverse and rank of an information matrix.
+// Pseudo-inverse and rank of an information matrix, along what `whole` tells and it does not lack.
 struct Inverse {
   Matrix6d matrix = Matrix6d::Zero();
   int rank = 0;
 };
-Inverse InverseOf(const Matrix6d& H) {
-  const Vector6d scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
+  const Vector6d scale = whole.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
   Inverse inverse;
   Vector6d values = Vector6d::Zero();
@@ -62,7 +62,7 @@ Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::
     cross += scores.H[g];
   }
   const Eigen::MatrixXd half = cross * covariance;
-  const Inverse inverse = InverseOf(own - half * cross.transpose());
+  const Inverse inverse = InverseOf(own - half * cross.transpose(), own);
   Change change;
   change.step = -inverse.matrix * b;
   change.others = -half.transpose() * change.step;
@@ -79,7 +79,7 @@ Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t gr
   double squares = 0.0;
   int numbers = 0;
   for (std::size_t g = 0; g < scores.b.size(); ++g) {
-    const Inverse inverse = InverseOf(scores.own[g]);
+    const Inverse inverse = InverseOf(scores.own[g], scores.own[g]);
     Vector6d score = scores.b[g] + scores.H[g] * change.others;
     if (g >= group) score += scores.own[g] * change.step;
     squares += score.dot(inverse.matrix * score);

@@ -1,0 +1,27 @@
+#include <algorithm>
+
+#include "server/fleet/findings.h"
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+
+std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
+  const auto moved = std::find_if(estimates.begin(), estimates.end(), [](const auto& one) { return !one.moved.empty(); });
+  if (moved == estimates.end()) return std::nullopt;
+  Finding finding;
+  std::vector<std::string> names;
+  for (const SensorMovedWithin& one : moved->moved) {
+    finding.why += (names.empty() ? "" : "; ") + one.sensor.str() + " was moved during the session of " +
+                   NameOfSession(moved->session, captured_at) + ", between captures " + one.last_before.str() + " and " +
+                   one.first_after.str() + ", by " + OffText(one.step);
+    if (std::find(names.begin(), names.end(), one.sensor.str()) == names.end()) names.push_back(one.sensor.str());
+  }
+  std::string flags;
+  for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
+  finding.what_to_do = "Tighten the mount of " + List(names) +
+                       ", capture a new session and push it with `--remounted " + flags +
+                       "`; nothing that this session says of " + List(names) + " can be relied on";
+  return finding;
+}
+
+}  // namespace rigcal::fleet

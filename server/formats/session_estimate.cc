@@ -1,0 +1,84 @@
+#include "server/formats/session_estimate.h"
+
+#include "server/formats/json_values.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kSensorsMax = 10'000, kLooksMax = 10'000'000, kBytesMax = 256u << 20;
+
+void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("poses", [&] {
+    for (const RefinedPose& pose : estimate.poses)
+      out.Object([&] {
+        WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
+        WriteMatrix(out, "covariance", pose.covariance);
+        out.Number("dof", pose.dof);
+        out.Text("sensor", pose.sensor.str());
+      });
+  });
+}
+
+void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("moved", [&] {
+    for (const SensorMovedWithin& moved : estimate.moved)
+      out.Object([&] {
+        out.Text("first_after", moved.first_after.str());
+        out.Text("last_before", moved.last_before.str());
+        out.Number("odds", moved.odds);
+        out.Text("sensor", moved.sensor.str());
+        WriteVector(out, "step", moved.step);
+      });
+  });
+}
+
+void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("held_back", [&] {
+    for (const HeldBackLook& look : estimate.held_back)
+      out.Object([&] {
+        out.Text("capture", look.capture.str());
+        out.Text("sensor", look.sensor.str());
+      });
+  });
+}
+
+RefinedPose ReadRefinedPose(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
+          ReadMatrix(field.At("covariance")), field.At("dof").Number()};
+}
+
+SensorMovedWithin ReadMoved(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("last_before")),
+          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+}
+
+}  // namespace
+
+std::string WriteSessionEstimate(const SessionEstimate& estimate) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteHeldBack(out, estimate);
+    WriteMoved(out, estimate);
+    WritePoses(out, estimate);
+    out.Text("reference", estimate.reference.str());
+    out.Text("session", estimate.session.str());
+    WriteDiagnoses(out, "why_not", estimate.why_not);
+  });
+}
+
+Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
+  RIGCAL_ASSIGN(JsonDocument document,
+                JsonDocument::Parse(text, {"session estimate", "Run `rigcal doctor`: the store is damaged.", kBytesMax}));
+  const JsonField root = document.Root();
+  SessionEstimate estimate;
+  estimate.session = ReadId<SessionId>(root.At("session"));
+  estimate.reference = ReadId<SensorId>(root.At("reference"));
+  estimate.why_not = ReadDiagnoses(root.At("why_not"));
+  for (const JsonField& item : root.At("poses").Items(kSensorsMax)) estimate.poses.push_back(ReadRefinedPose(item));
+  for (const JsonField& item : root.At("moved").Items(kSensorsMax)) estimate.moved.push_back(ReadMoved(item));
+  for (const JsonField& item : root.At("held_back").Items(kLooksMax))
+    estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture"))});
+  RIGCAL_TRY(document.status());
+  return estimate;
+}
+
+}  // namespace rigcal::formats

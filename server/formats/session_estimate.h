@@ -1,0 +1,14 @@
+// The stored document of a session's joint refinement.
+#pragma once
+
+#include <string>
+
+#include "server/base/result.h"
+#include "server/model/session_estimate.h"
+
+namespace rigcal::formats {
+
+[[nodiscard]] std::string WriteSessionEstimate(const SessionEstimate& estimate);
+[[nodiscard]] Result<SessionEstimate> ReadSessionEstimate(std::string_view text);
+
+}  // namespace rigcal::formats

@@ -1,0 +1,44 @@
+// What one joint refinement of a session's raw observations says of the robot during that visit.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/math/se3.h"
+#include "server/model/diagnosis.h"
+
+namespace rigcal {
+
+// A sensor that had two poses during the session.
+struct SensorMovedWithin {
+  SensorId sensor;
+  CaptureId last_before, first_after;
+  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor, m and rad
+  double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
+};
+
+// One sensor's look in one capture that contradicts all others and was held back.
+struct HeldBackLook {
+  SensorId sensor;
+  CaptureId capture;
+};
+
+struct RefinedPose {
+  SensorId sensor;
+  Se3 T_ref_sensor;
+  Matrix6d covariance = Matrix6d::Zero();  // marginal, right tangent at the sensor; zero for the reference
+  double dof = 0.0;                        // behind it; 0: known
+};
+
+struct SessionEstimate {
+  SessionId session;
+  SensorId reference;
+  std::vector<Diagnosis> why_not;  // not empty: there is no estimate, and nothing below has a meaning
+  std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part
+  std::vector<SensorMovedWithin> moved;   // the most certain first
+  std::vector<HeldBackLook> held_back;    // by sensor, then capture
+};
+
+}  // namespace rigcal

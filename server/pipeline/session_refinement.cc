@@ -1,0 +1,166 @@
+#include "server/pipeline/session_refinement.h"
+
+#include <algorithm>
+#include <set>
+
+#include "server/base/log.h"
+#include "server/calib/joint/estimate_session.h"
+#include "server/graph/solve.h"
+#include "server/pipeline/pose_inputs.h"
+#include "server/pipeline/remounts.h"
+#include "server/pipeline/sightings.h"
+#include "storage/edges.h"
+#include "storage/session_estimates.h"
+#include "storage/sessions.h"
+#include "storage/standing.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using calib::joint::SessionViews;
+
+constexpr const char* kEstimator = "joint/1";  // raised when the same observations give another estimate
+
+std::size_t FoundIn(const Sightings<storage::StoredView>& views) {
+  return static_cast<std::size_t>(
+      std::count_if(views.begin(), views.end(), [](const auto& item) { return item.second.view.found; }));
+}
+
+// The pairs of the session that gave an edge: what was searched for them is in the store.
+struct Pairs {
+  const std::vector<Edge>& edges;
+
+  [[nodiscard]] std::set<SensorId> PartnersOf(const SensorId& sensor) const {
+    std::set<SensorId> partners;
+    for (const Edge& edge : edges) {
+      if (edge.frame_a == sensor) partners.insert(edge.frame_b);
+      if (edge.frame_b == sensor) partners.insert(edge.frame_a);
+    }
+    return partners;
+  }
+  [[nodiscard]] bool Has(std::initializer_list<std::string_view> methods) const {
+    return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+      return edge.state == EdgeState::kGood && std::find(methods.begin(), methods.end(), edge.method) != methods.end();
+    });
+  }
+};
+
+Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& camera, calib::CameraMemory& cameras,
+                 SessionViews& views) {
+  const Target* board = nullptr;
+  Sightings<storage::StoredView> best;
+  for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, SeePictures(store, manifest, camera.id, *target));
+    if (board != nullptr && FoundIn(seen) <= FoundIn(best)) continue;
+    board = target;
+    best = std::move(seen);
+  }
+  if (board == nullptr) return {};
+  calib::joint::CameraViews of_camera{camera, *board, {}, {}};
+  for (auto& [capture, seen] : best) of_camera.views.emplace_back(capture, std::move(seen.view));
+  auto estimate = cameras.Estimate({camera, *board, of_camera.views});
+  if (!estimate) return {};  // its edges failed and say why
+  of_camera.estimate = std::move(*estimate);
+  views.cameras.push_back(std::move(of_camera));
+  return {};
+}
+
+// Boards of cameras that the lidar is calibrated with were searched in its clouds.
+Status AddLidar(storage::Store& store, const Manifest& manifest, const Sensor& lidar, const Pairs& pairs,
+                SessionViews& views) {
+  calib::joint::LidarViews of_lidar{lidar, {}};
+  std::set<TargetId> looked_for;
+  for (const SensorId& partner : pairs.PartnersOf(lidar.id)) {
+    const Sensor* sensor = SensorOf(manifest.header, partner);
+    if (sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
+    for (const Target* target : CommonTargets(manifest.header, lidar, *sensor)) {
+      if (!looked_for.insert(target->id).second) continue;
+      RIGCAL_ASSIGN(auto clouds, SeeClouds(store, manifest, lidar.id, *target));
+      for (auto& [capture, seen] : clouds) {
+        seen.view.target = target->id;
+        of_lidar.clouds[capture].push_back(std::move(seen.view));
+      }
+    }
+  }
+  views.lidars.push_back(std::move(of_lidar));
+  return {};
+}
+
+Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& sensor, const Pairs& pairs,
+                 calib::CameraMemory& cameras, SessionViews& views) {
+  if (sensor.kind == SensorKind::kCamera) return AddCamera(store, manifest, sensor, cameras, views);
+  if (sensor.kind == SensorKind::kLidar) return AddLidar(store, manifest, sensor, pairs, views);
+  if (sensor.kind != SensorKind::kTracker) return {};
+  auto poses = LoadPoses(store, manifest, sensor);
+  if (!poses && poses.error().code == ErrorCode::kStorage) return Fail(poses.error());
+  if (poses) views.trackers.push_back({sensor, std::move(*poses)});
+  return {};
+}
+
+void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
+  for (const Edge& edge : edges)
+    if (edge.state == EdgeState::kGood && edge.method == "lidar_lidar")
+      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
+}
+
+// Sensors whose pose the session's own pairs tell whole.
+void AddStart(const std::vector<Edge>& edges, const SensorId& reference, SessionViews& views) {
+  for (const SensorPose& pose : graph::Solve(graph::GraphOf(edges, reference)).poses)
+    if (pose.known) views.T_ref_sensor[pose.sensor] = pose.T_ref_sensor;
+}
+
+Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, const std::vector<Edge>& edges,
+                               calib::CameraMemory& cameras) {
+  SessionViews views;
+  views.reference = manifest.header.reference;
+  views.targets = manifest.header.targets;
+  views.boards_stand_still = Pairs{edges}.Has({"non_overlapping", "tracker_camera", "tracker_lidar"});
+  AddStart(edges, views.reference, views);
+  for (const Sensor& sensor : manifest.header.sensors)
+    if (views.T_ref_sensor.contains(sensor.id))
+      RIGCAL_TRY(AddSensor(store, manifest, sensor, Pairs{edges}, cameras, views));
+  AddLidarPairs(edges, views);
+  return views;
+}
+
+Status RefineSession(storage::Store& store, const SessionId& session, calib::CameraMemory& cameras,
+                     const Clock& clock) {
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
+  RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
+  if (!manifest || edges.empty()) return {};
+  RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
+  SessionEstimate estimate = calib::joint::EstimateSession(views);
+  estimate.session = session;
+  if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal)) {
+    LogError({ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
+              estimate.why_not.front().cure});
+    return {};
+  }
+  return storage::AppendSessionEstimate(store, estimate, kEstimator, clock.Now());
+}
+
+}  // namespace
+
+Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kEstimator, kSessionsRefined));
+  for (const storage::SessionEstimateRow& row : rows)
+    if (!row.estimate) RIGCAL_TRY(RefineSession(store, row.session, cameras, clock));
+  return {};
+}
+
+Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kEstimator, kSessionsRefined));
+  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
+  std::vector<SessionEstimate> current;
+  for (storage::SessionEstimateRow& row : rows) {
+    if (!row.estimate || superseded.contains(row.session)) continue;
+    std::erase_if(row.estimate->moved, [&](const SensorMovedWithin& moved) {
+      return remounts.After(row.session, moved.sensor) != nullptr;
+    });
+    current.push_back(std::move(*row.estimate));
+  }
+  return current;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,24 @@
+// READ, joint refinement, WRITE: one estimate per session from the raw observations that its pairs were made from.
+#pragma once
+
+#include "server/base/stamp.h"
+#include "server/calib/camera_memory.h"
+#include "server/model/edge.h"
+#include "server/model/session_estimate.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Sessions captured before the newest so many are not refined any more.
+constexpr int kSessionsRefined = 8;
+
+// Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets an
+// estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next revision.
+[[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
+                                    const Clock& clock);
+
+// Of sessions that count (not superseded), the newest captured first; moves of sensors that were remounted since are left
+// out, for what was measured of those before is past.
+[[nodiscard]] Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include "server/formats/session_estimate.h"
+
+namespace rigcal::formats {
+namespace {
+
+SessionEstimate MakeEstimate() {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, 'a'));
+  estimate.reference = SensorId("left");
+  RefinedPose pose;
+  pose.sensor = SensorId("right");
+  pose.T_ref_sensor = Se3::Exp((Vector6d() << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03).finished());
+  pose.covariance = 1e-8 * Matrix6d::Identity();
+  pose.covariance(tangent::kX, tangent::kRz) = pose.covariance(tangent::kRz, tangent::kX) = 2e-9;
+  pose.dof = 25.5;
+  estimate.poses = {{SensorId("left"), {}, Matrix6d::Zero(), 0.0}, pose};
+  SensorMovedWithin moved;
+  moved.sensor = SensorId("right");
+  moved.last_before = CaptureId("019"), moved.first_after = CaptureId("020");
+  moved.step[tangent::kY] = 0.02;
+  moved.odds = 1e-30;
+  estimate.moved = {moved};
+  estimate.held_back = {{SensorId("left"), CaptureId("007")}};
+  return estimate;
+}
+
+TEST(SessionEstimateDocument, ComesBackAsItWas) {
+  const std::string text = WriteSessionEstimate(MakeEstimate());
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(WriteSessionEstimate(*read), text);
+  ASSERT_EQ(read->poses.size(), 2u);
+  EXPECT_EQ(read->poses[1].covariance, MakeEstimate().poses[1].covariance);
+  EXPECT_EQ(read->poses[1].dof, 25.5);
+  ASSERT_EQ(read->moved.size(), 1u);
+  EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
+  EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));
+  EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));
+}
+
+TEST(SessionEstimateDocument, RefusesWhatIsNone) {
+  EXPECT_FALSE(ReadSessionEstimate("{}"));
+  EXPECT_FALSE(ReadSessionEstimate("no document"));
+}
+
+}  // namespace
+}  // namespace rigcal::formats
