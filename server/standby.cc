@@ -86,9 +86,10 @@ Result<std::optional<dds::OnlyServer>> ClaimPlace(const Config& config, const ht
 
 Status ServeUntil(const sigset_t& signals, dds::OnlyServer& only, const std::string& data) {
   while (!Pause(signals)) {
-    RIGCAL_ASSIGN(const auto first, only.Before());
-    if (!first) continue;
-    Error error = dds::SecondServerError(*first);
+    const auto first = only.Before();
+    if (!first) LogWarn(Sentence(first.error()));
+    if (!first || !*first) continue;
+    Error error = dds::SecondServerError(**first);
     error.cure += ". This one came later and ends; what it took in meanwhile is in " + data;
     return Fail(std::move(error));
   }

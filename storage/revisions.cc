@@ -85,6 +85,11 @@ Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& 
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
     Query query(store, "SELECT " + kColumns +
                            "FROM revision WHERE robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') "
+                           // none that counts an edge which was retired since
+                           "AND NOT EXISTS (SELECT 1 FROM standing t JOIN counted_edge c ON c.edge_number = t.edge_number "
+                           "WHERE t.robot_id = revision.robot_id AND c.number <= revision.edge_watermark "
+                           "AND t.number > coalesce((SELECT standing_watermark FROM revision_standing s "
+                           "WHERE s.robot_id = revision.robot_id AND s.revision_number = revision.number), 0)) "
                            "ORDER BY number DESC LIMIT 1");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     return RevisionOf(query);

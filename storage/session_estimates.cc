@@ -7,10 +7,12 @@ namespace rigcal::storage {
 
 Status AppendSessionEstimate(Store& store, const SessionEstimate& estimate, const std::string& estimator, Stamp now) {
   return store.connection().Append("estimate of session " + estimate.session.str(), [&]() -> Status {
+    const std::string document = formats::WriteSessionEstimate(estimate);
+    RIGCAL_TRY(formats::ReadSessionEstimate(document));  // no number that is none, no name that is empty
     Query(store,
           "INSERT INTO session_estimate (session_number, estimator, made_ns, document) "
           "SELECT number, ?, ?, ? FROM session WHERE session_id = ? ON CONFLICT DO NOTHING")
-        .Bind(estimator, now, formats::WriteSessionEstimate(estimate), estimate.session)
+        .Bind(estimator, now, document, estimate.session)
         .Run();
     return {};
   });

@@ -3,6 +3,7 @@
 #include "server/base/durable_file.h"
 #include "server/base/parallel_for.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 
 namespace rigcal::dds {
 namespace {
@@ -18,7 +19,14 @@ Status Close(storage::Store& store, const SessionId& session, Stamp now) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
   if (!manifest)
     return Fail(ErrorCode::kStorage, "session " + session.str() + " has no manifest", "Run `rigcal doctor`");
-  return storage::CloseSession(store, session, PairsToCalibrate(manifest->header), now);
+  RIGCAL_ASSIGN(const auto before, storage::LoadSession(store, session));
+  RIGCAL_TRY(storage::CloseSession(store, session, PairsToCalibrate(manifest->header), now));
+  if (!before || !before->closed) return {};
+  // What the disk had lost was sent again, and the session with it.
+  const Word word{now, "robot " + before->robot.str(), ""};
+  if (const auto current = storage::MakeCurrent(store, session, storage::MadeCurrent::kPushedAgain, word); !current)
+    return Fail(current.error());
+  return {};
 }
 
 Status Record(storage::Store& store, const DurableBatch& batch, Stamp now) {

@@ -10,6 +10,8 @@
 namespace rigcal::pipeline {
 
 constexpr int kAttemptsMax = 3;
+// Of a report: what decodes is left out once it has failed so often; then so often again without it, and no more.
+constexpr int kPublishAttemptsMax = 2 * kAttemptsMax;
 
 // Of the store or of ours (no memory, say): nothing is known of the data then, and the work is done again.
 [[nodiscard]] bool IsOurFault(const Error& error);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "server/base/log.h"
+#include "server/pipeline/attempt.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
@@ -40,6 +41,17 @@ Error Being(const storage::RevisionKey& key, const char* drawn) {
   return {ErrorCode::kBusy, ReportOf(key) + " is being " + drawn, kSoon};
 }
 
+// Drawing it ended the server so often that it is not begun again.
+std::optional<Error> GivenUp(storage::Store& store, const storage::RevisionKey& key) {
+  const auto attempts = storage::LoadAttempts(store, storage::WorkOfReport(key));
+  const auto counts = storage::LoadAttemptCounts(store);
+  if (!attempts || !counts) return std::nullopt;
+  const auto count = counts->find(storage::WorkOfReport(key));
+  if (count == counts->end() || count->second < kPublishAttemptsMax) return std::nullopt;
+  return Error{ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + WhyGivenUp(*attempts, "made it"),
+               "Give the server more memory, or report it with the server's log."};
+}
+
 }  // namespace
 
 void UndrawnReports::Note(const storage::RevisionKey& key, const Error& error) {
@@ -70,6 +82,7 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
     return {ErrorCode::kNotFound, ReportOf(key) + " has no file " + file, "Start at the report's first page."};
   if (const auto why = undrawn.Find(key))
     return {ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + why->what, why->cure};
+  if (const auto given_up = GivenUp(store, key)) return *given_up;
   const auto is_new = Queue(store, key);
   if (!is_new) return is_new.error();
   if (*is_new && drawn_soon) drawn_soon();

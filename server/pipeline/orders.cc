@@ -70,8 +70,11 @@ Result<OrderDone> RetireOne(storage::Store& store, const Clock& clock, const Par
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(const auto ids, storage::FindEdges(store, prefix, robot));
     RIGCAL_ASSIGN(const EdgeId id, OnlyOne(ids, "edge", prefix, robot, "rigcal edges ROBOT"));
-    RIGCAL_TRY(storage::RetireEdge(store, id, word));
     RIGCAL_ASSIGN(edge, storage::LoadEdge(store, id));
+    if (!edge)
+      return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is of a batch that is not whole: it does not count",
+                  "There is nothing to retire; push the batch again, then retire the edge.");
+    RIGCAL_TRY(storage::RetireEdge(store, id, word));
     RIGCAL_ASSIGN(const auto all, storage::LoadRetired(store, edge->robot));
     retired = all.at(id);
     return {};

@@ -111,7 +111,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   input.reference = loaded.graph.reference;
   input.solution = SolveHonestly(loaded);
   RIGCAL_ASSIGN(const fleet::SessionTimes captured_at, CapturedAt(store, robot));
-  RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot));
+  RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot, loaded.edges));
   input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
   input.edges = std::move(loaded.edges);
 

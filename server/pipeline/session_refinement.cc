@@ -6,6 +6,7 @@
 #include "server/base/log.h"
 #include "server/calib/joint/estimate_session.h"
 #include "server/graph/solve.h"
+#include "server/model/past.h"
 #include "server/pipeline/pose_inputs.h"
 #include "server/pipeline/remounts.h"
 #include "server/pipeline/sightings.h"
@@ -123,11 +124,20 @@ Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, 
   return views;
 }
 
+// An edge could not be made from what the disk has kept, and was not made again yet.
+bool WaitsForFiles(const std::vector<Edge>& edges) {
+  std::set<EdgeId> ids;
+  for (const Edge& edge : edges) ids.insert(edge.id);
+  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return FailedForLostFile(edge) && !ids.contains(RepeatedEdgeId(edge.id));
+  });
+}
+
 Status RefineSession(storage::Store& store, const SessionId& session, calib::CameraMemory& cameras,
                      const Clock& clock) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
   RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
-  if (!manifest || edges.empty()) return {};
+  if (!manifest || edges.empty() || WaitsForFiles(edges)) return {};
   RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
   SessionEstimate estimate = calib::joint::EstimateSession(views);
   estimate.session = session;
@@ -139,16 +149,26 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
   return storage::AppendSessionEstimate(store, estimate, kEstimator, clock.Now());
 }
 
+// Whether an edge of the session still says something of the sensor.
+bool Counts(const SessionId& session, const SensorId& sensor, const std::vector<Edge>& edges) {
+  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return edge.state == EdgeState::kGood && edge.session == session &&
+           (edge.frame_a == sensor || edge.frame_b == sensor);
+  });
+}
+
 }  // namespace
 
 Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kEstimator, kSessionsRefined));
   for (const storage::SessionEstimateRow& row : rows)
-    if (!row.estimate) RIGCAL_TRY(RefineSession(store, row.session, cameras, clock));
+    if (!row.estimate)
+      if (const Status refined = RefineSession(store, row.session, cameras, clock); !refined) LogError(refined.error());
   return {};
 }
 
-Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot) {
+Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
+                                                          const std::vector<Edge>& edges) {
   RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kEstimator, kSessionsRefined));
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
@@ -156,7 +176,7 @@ Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store,
   for (storage::SessionEstimateRow& row : rows) {
     if (!row.estimate || superseded.contains(row.session)) continue;
     std::erase_if(row.estimate->moved, [&](const SensorMovedWithin& moved) {
-      return remounts.After(row.session, moved.sensor) != nullptr;
+      return remounts.After(row.session, moved.sensor) != nullptr || !Counts(row.session, moved.sensor, edges);
     });
     current.push_back(std::move(*row.estimate));
   }

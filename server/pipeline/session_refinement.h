@@ -17,8 +17,9 @@ constexpr int kSessionsRefined = 8;
 [[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
                                     const Clock& clock);
 
-// Of sessions that count (not superseded), the newest captured first; moves of sensors that were remounted since are left
-// out, for what was measured of those before is past.
-[[nodiscard]] Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot);
+// Of sessions that count (not superseded), the newest captured first. Moves of sensors that were remounted since, or of
+// which no edge of the session counts any more (`edges` are the robot's, as they stand), are left out.
+[[nodiscard]] Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
+                                                                        const std::vector<Edge>& edges);
 
 }  // namespace rigcal::pipeline

@@ -61,9 +61,6 @@ int CountOf(const std::map<std::string, int>& attempts, const std::string& work)
   return found == attempts.end() ? 0 : found->second;
 }
 
-// What decodes is left out once it has failed so often; then so often again without it, and no more.
-constexpr int kPublishAttemptsMax = 2 * kAttemptsMax;
-
 Result<std::filesystem::path> PublishOnce(const StepContext& context, const storage::RevisionKey& key, int before) {
   const std::string work = storage::WorkOfReport(key);
   const std::string said = "revision " + std::to_string(key.number) + " of robot " + key.robot.str();
@@ -110,7 +107,10 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
 }
 
 Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
-  RIGCAL_TRY(RefineSessions(context.store, robot, context.cameras, context.clock));
+  // Without it the revision is what the edges say, as it is of a session that cannot be refined.
+  if (const Status refined = Guarded([&] { return RefineSessions(context.store, robot, context.cameras, context.clock); });
+      !refined)
+    LogError(refined.error());
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock));
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
@@ -196,6 +196,7 @@ Status RunJob(const StepContext& context, const storage::JobRow& job) {
   RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, job, context.clock, context.cameras));
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
+  if (context.live.Of(job.robot).solver == nullptr) return {};  // WorkOn makes it next, and counts the attempt
   return UpdateLive(context, job.robot);
 }
 

@@ -41,7 +41,7 @@ def supersede(flow, session):
     true_mm = base_mm(flow)
     manifest = json.loads(flow.get("/api/v1/session?id=" + right))["manifest"]
     for target in manifest["targets"]:
-        target["square_m"] *= 1.1
+        target["square_size_m"] *= 1.1
     state, stranger = send_manifest(flow, dict(manifest, robot="stranger"))
     check(state == "open: 0 payloads held", "another robot has to send the pictures: %r" % state)
     check(not json.loads(flow.get("/api/v1/session?id=" + stranger))["edges"], "and nothing came of it")

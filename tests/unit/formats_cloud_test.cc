@@ -231,19 +231,19 @@ CloudSize ClaimOf(const std::string& bytes, std::string_view suffix, std::size_t
 }
 
 TEST(ClaimedSize, ComesFromTheHeaderAlone) {
-  const std::string pcd = XyzPcd(1234), ply = PlyHeaderOf("ascii", "element face 3\nproperty int a\n" + XyzElement(99));
+  const std::string pcd = XyzPcd(1234) + "DATA binary\n", ply = PlyHeaderOf("ascii", "element face 3\nproperty int a\n" + XyzElement(99));
   for (const auto& [bytes, suffix, points] : {std::tuple(pcd, "pcd", 1234u), {ply, "ply", 99u}}) {
     EXPECT_EQ(ClaimOf(bytes, suffix, bytes.size()).points, points);
     EXPECT_EQ(ClaimOf(bytes, suffix, bytes.size()).values, 3 * points);
     EXPECT_EQ(ClaimOf(bytes, suffix, 20).points, 0u);  // the header is cut off
   }
-  EXPECT_EQ(ClaimOf(std::string(160, 'x'), "bin", 0).points, 10u);
-  EXPECT_EQ(ClaimOf(std::string(160, 'x'), "bin", 0).values, 40u);
+  EXPECT_EQ(ClaimOf(std::string(160, 'x'), "bin", 0).points, 13u);  // of three numbers each
+  EXPECT_EQ(ClaimOf(std::string(160, 'x'), "bin", 0).values, 52u);
   EXPECT_EQ(ClaimOf(pcd, "txt", pcd.size()).points, 0u);
 }
 
 TEST(ClaimedSize, IsAtMostWhatIsAdmitted) {
-  const std::string pcd = XyzPcd(2'000'000'000);
+  const std::string pcd = XyzPcd(2'000'000'000) + "DATA binary\n";
   EXPECT_EQ(ClaimOf(pcd, "pcd", pcd.size()).points, limits::kCloudPointsMax);
   EXPECT_LE(ClaimOf(pcd, "pcd", pcd.size()).values, limits::kCloudValuesMax);
 }

@@ -222,7 +222,7 @@ TEST(ReportSession, EachPictureIsUsedOrSaysWhyNot) {
 TEST(ReportRobot, SessionsSayWhatTheyGave) {
   RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
   input.sessions = {{SessionId(Sha256Of("a").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 11, 3},
-                    {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, BySession("a")},
+                    {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, 0, BySession("a")},
                     {SessionId(Sha256Of("c").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 5, 9, 0}};
   const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
   EXPECT_THAT(page, HasSubstr("11 of 14 pairs good <span class=\"badge fail\">3 failed</span>"));

@@ -115,7 +115,9 @@ TEST(StoreOpen, MigratesABatchThatIsNotWhole) {
   Result<Store> store = Store::Open(folder.path());
   ASSERT_TRUE(store) << WordsOf(store);
   std::vector<std::string> counted;
-  for (const Edge& edge : LoadEdges(*store, RobotId("a"), true).value()) counted.push_back(edge.id.str().substr(63));
+  const auto edges = LoadEdges(*store, RobotId("a"), true);
+  ASSERT_TRUE(edges) << WordsOf(edges);
+  for (const Edge& edge : *edges) counted.push_back(edge.id.str().substr(63));
   EXPECT_THAT(counted, testing::ElementsAre("1", "2", "3", "5"));
   EXPECT_TRUE(LoadEdges(*store, RobotId("b"), true).value().empty());
   EXPECT_EQ(LoadUnsolvedRobots(*store).value(), std::vector<RobotId>{RobotId("a")});  // 3 and 5 are in no revision

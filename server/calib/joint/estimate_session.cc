@@ -1,6 +1,7 @@
 #include "server/calib/joint/estimate_session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <tuple>
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double kHeldBackBelow = 0.5;  // of a look's weight
 constexpr int kMovesMax = 4;            // in one session: more is no bump, but a rig that is not rigid
-constexpr int kGroupsForMoves = 4;      // fewer do not tell a bump from chance
+constexpr int kGroupsForMoves = 6;      // fewer do not tell a bump from chance
 
 SessionEstimate Refused(const SessionViews& views, const Error& error) {
   SessionEstimate estimate;
@@ -49,8 +50,11 @@ SensorMovedWithin Told(const SessionProblem& problem, const Refined& refined, co
 }
 
 bool IsMove(const SensorMove& move) {
+  const auto surely = [&](int at) {
+    return move.step.segment<3>(at).norm() - 3 * std::sqrt(move.covariance.block<3, 3>(at, at).trace());
+  };
   return move.odds < kMovedOdds &&
-         (move.step.head<3>().norm() >= kMovedMin_m || move.step.tail<3>().norm() >= kMovedMin_rad);
+         (surely(tangent::kTranslation) >= kMovedMin_m || surely(tangent::kRotation) >= kMovedMin_rad);
 }
 
 // The sensor's looks from `group` on become those of a second sensor with a pose of its own.
@@ -72,6 +76,10 @@ SessionStart Split(SessionStart start, const Refined& refined, const SensorMove&
   split(start.problem.corners);
   split(start.problem.plates);
   split(start.problem.poses);
+  // What was known of it from all captures together holds for neither of its poses.
+  std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {
+    return known.sensor_a == move.sensor || known.sensor_b == move.sensor;
+  });
   return start;
 }
 

@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kOpen = 1e-6;  // of the sensor's own information: less is what rounding leaves
 
+// Groups in which a sensor must have seen something on either side of a change: one picture of another instant is none.
+constexpr std::size_t kSideMin = 2;
+
 // Pseudo-inverse and rank of an information matrix, along what `whole` tells and it does not lack.
 struct Inverse {
   Matrix6d matrix = Matrix6d::Zero();
@@ -48,6 +51,7 @@ Scores ScoresOf(const Refined& refined, int sensor) {
 // A change from `group` on: the step that fits it best, and the gain of the cost.
 struct Change {
   Vector6d step = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
   Eigen::VectorXd others;  // what the unknowns move by with it
   double gain = 0.0;
   int rank = 0;
@@ -65,6 +69,7 @@ Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::
   const Inverse inverse = InverseOf(own - half * cross.transpose(), own);
   Change change;
   change.step = -inverse.matrix * b;
+  change.covariance = inverse.matrix;
   change.others = -half.transpose() * change.step;
   change.gain = -b.dot(change.step);
   change.rank = inverse.rank;
@@ -93,14 +98,18 @@ SensorMove LikeliestMove(const Refined& refined, int sensor) {
   const Scores scores = ScoresOf(refined, sensor);
   SensorMove best;
   best.sensor = sensor;
+  std::vector<std::size_t> seen_before = {0};
+  for (const Matrix6d& own : scores.own) seen_before.push_back(seen_before.back() + (own.trace() > 0 ? 1 : 0));
   for (std::size_t group = 1; group < scores.b.size(); ++group) {
+    if (std::min(seen_before[group], seen_before.back() - seen_before[group]) < kSideMin) continue;
     const Change change = ChangeFrom(scores, refined.covariance, group);
     if (change.rank == 0) continue;
     const Scatter scatter = ScatterBeside(scores, change, group);
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
-    best = {sensor, static_cast<int>(group), change.step, statistic, scatter.dof, odds};
+    best = {sensor, static_cast<int>(group), change.step, statistic, scatter.dof, odds,
+            std::max(1.0, scatter.mean_square) * change.covariance};
   }
   return best;
 }

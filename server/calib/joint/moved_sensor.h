@@ -13,6 +13,7 @@ struct SensorMove {
   double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
   double dof = 0.0;
   double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
+  Matrix6d covariance = Matrix6d::Zero();  // of the step
 };
 
 // The likeliest change of each sensor that has observations in two groups or more, the most certain first.

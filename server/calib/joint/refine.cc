@@ -65,10 +65,10 @@ Result<Minimum> Minimize(const Linearization& of, SessionState& state) {
   double damping = 1e-6;
   for (int iteration = 0, rejected = 0; iteration < kIterationsMax && rejected < kRejectedMax; ++iteration) {
     const auto step = StepOf(*now, of.layout.size, damping);
-    if (step && step->gain < kSettled) return Minimum{std::move(*now), true};
+    if (step && std::abs(step->gain) < kSettled) return Minimum{std::move(*now), true};
     const SessionState tried = step ? Moved(of.problem, of.layout, state, step->shared, step->places) : state;
     auto then = step ? Linearize(of, tried) : std::nullopt;
-    if (!then || then->cost > now->cost) {
+    if (!then || !(then->cost <= now->cost)) {
       damping = std::max(1e-8, 10 * damping);
       ++rejected;
       if (then && step->gain < kRounding) return Minimum{std::move(*now), true};  // rounding of the cost hides what is left
@@ -137,6 +137,25 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
+// A single picture may be of another instant; a run of them is a sensor that moved, and is what tells so.
+template <typename Looks>
+void KeepRuns(const Looks& looks, std::vector<double>& weights, std::size_t sensors) {
+  constexpr std::size_t kRun = 3;
+  std::vector<std::vector<std::size_t>> of_sensor(sensors);
+  for (std::size_t i = 0; i < looks.size(); ++i) of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(i);
+  for (auto& idx : of_sensor) {
+    std::stable_sort(idx.begin(), idx.end(),
+                     [&](std::size_t a, std::size_t b) { return looks[a].place < looks[b].place; });
+    for (std::size_t from = 0; from < idx.size();) {
+      std::size_t to = from;
+      while (to < idx.size() && weights[idx[to]] < 1.0) ++to;
+      if (to - from >= kRun)
+        for (std::size_t i = from; i < to; ++i) weights[idx[i]] = 1.0;
+      from = std::max(to, from + 1);
+    }
+  }
+}
+
 // A look whose squares are far beyond what is usual for its sensor counts less, by how far.
 template <typename Looks>
 std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& fits, std::size_t sensors) {
@@ -152,6 +171,7 @@ std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& 
         usual[static_cast<std::size_t>(looks[i].sensor)] * Squared(1 + 8 / std::sqrt(fits[i].numbers.sum()));
     weights.push_back(ratio(i) <= limit ? 1.0 : Squared(limit / ratio(i)));
   }
+  KeepRuns(looks, weights, sensors);
   return weights;
 }
 
@@ -179,6 +199,7 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                        const std::vector<int>& group_of_place) {
   Refined refined{start, noise, FullWeights(problem), group_of_place, 0, LayoutOf(problem), {}, {}};
   refined.groups = group_of_place.empty() ? 0 : group_of_place.back() + 1;
+  if (refined.layout.size == 0 || refined.groups == 0) return Fail(NotSolvable("has nothing to find"));
   const Linearization of{problem,         refined.layout,         refined.noise,
                          refined.weights, refined.group_of_place, refined.groups};
   for (int round = 0; round < kRoundsMax; ++round) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "server/calib/joint/observation.h"
@@ -70,6 +71,9 @@ class Starter {
 
   Result<SessionStart> Run() {
     ListSensors();
+    if (problem().reference == kNone || problem().sensors.size() < 2)
+      return Fail(ErrorCode::kInvalidInput, "the session's pairs do not tell two sensors, the reference among them",
+                  "Capture the boards with the reference sensor and another one at once.");
     ListTargets();
     ListCaptures();
     ListViews();
@@ -134,7 +138,10 @@ class Starter {
   void AddLens(const CameraViews& camera) {
     Lens lens;
     lens.model = camera.camera.camera_model;
-    if (!HoldsIntrinsics(camera.camera)) {
+    if (!camera.camera.intrinsics) {
+      lens.refined.resize(static_cast<std::size_t>(IntrinsicsCount(lens.model)));
+      std::iota(lens.refined.begin(), lens.refined.end(), 0);
+    } else if (!HoldsIntrinsics(camera.camera)) {
       lens.refined = RefinedOf(camera.camera);
       lens.given = camera.estimate.pull.given;
       if (camera.estimate.pull.Pulls()) lens.sigma = camera.estimate.pull.sigma;
