@@ -173,11 +173,22 @@ Edge Solved(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   return GoodEdge(problem, *estimate, std::move(*uncertainty), std::move(notes));
 }
 
+// A description that more pictures contradict than bear out is not the board's: what the others would give is of chance.
+bool ShowsOtherBoard(const StereoProblem& problem) {
+  std::ptrdiff_t contradicting = 0, seeing = 0;
+  for (const StereoCapture& capture : problem.captures)
+    for (const auto* view : {&capture.a, &capture.b}) {
+      if (Sees(*view, problem.board)) ++seeing;
+      else if (*view && ShowsOtherLayout(**view)) ++contradicting;
+    }
+  return contradicting > seeing;
+}
+
 }  // namespace
 
 Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return Solved(problem, fits);
+    return ShowsOtherBoard(problem) ? FailedEdge(problem, {}) : Solved(problem, fits);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem,

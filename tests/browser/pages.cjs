@@ -132,7 +132,7 @@ async function overdue(browser) {
 
 async function errors(browser) {
   const cases = [["/nope", "There is no page /nope.", "/"], ["/robots/nobody/", "is not known.", "/"],
-    ["/robots/rover/revisions/99/", "rover has no revision 99", "/robots/rover/"]];
+    ["/robots/rover/revisions/99/", "over has no revision 99", "/robots/rover/"]];
   for (const [path, text, on] of cases) {
     const context = await browser.newContext({ viewport: { width: 390, height: 844 } });
     const page = await context.newPage();

@@ -30,13 +30,13 @@ FeatureSession Visit(sim::Options options) {
 SessionStart StartFrom(const FeatureSession& session) {
   auto start = StartOf(ViewsOf(session, NominalPoses(session)));
   EXPECT_TRUE(start) << Sentence(start.error());
-  return std::move(*start);
+  return std::move(start).value();
 }
 
 Refined RefinedFrom(const SessionStart& start) {
   auto refined = Refine(start.problem, start.state, start.noise, GroupsOf(start.problem, start.state));
   EXPECT_TRUE(refined) << Sentence(refined.error());
-  return std::move(*refined);
+  return std::move(refined).value();
 }
 
 struct Fixed {

@@ -15,6 +15,9 @@ using wire::ReceiptState;
 
 using LostFileTest = ServiceTest;
 
+// The bits come in whole bytes.
+std::vector<bool> FirstThree(const Receipt& receipt) { return {receipt.held.begin(), receipt.held.begin() + 3}; }
+
 TEST_F(LostFileTest, APushOfAClosedSessionIsAskedForWhatWasLost) {
   const Session session = MakeSession("mapper-01", {1'000, 250'000, 3'000}, 1);
   Client client = MakeClient("mapper-01");
@@ -27,11 +30,11 @@ TEST_F(LostFileTest, APushOfAClosedSessionIsAskedForWhatWasLost) {
 
   client.SendHeader(session);
   const Receipt receiving = client.AwaitState(session.id.str(), ReceiptState::kReceiving);
-  EXPECT_THAT(receiving.held, ElementsAre(true, false, true));
+  EXPECT_THAT(FirstThree(receiving), ElementsAre(true, false, true));
   client.SendPayload(session, 1);
   const Receipt closed =
       client.Await(session.id.str(), [](const Receipt& one) { return one.state == ReceiptState::kClosed; });
-  EXPECT_THAT(closed.held, ElementsAre(true, true, true));
+  EXPECT_THAT(FirstThree(closed), ElementsAre(true, true, true));
   EXPECT_EQ(Must(storage::LoadBlob(store.BlobFolder(), lost, 1 << 20)), session.payloads[1]);
   EXPECT_EQ(Must(storage::LoadLost(store, 1)).count, 0);
   EXPECT_EQ(Work().size(), 2u);  // told again that there may be work

@@ -45,6 +45,7 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       SessionEstimate estimate;
       estimate.session = session;
+      estimate.reference = SensorId("left");
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       return AppendPublication(store_, {kRobot, number}, {6});

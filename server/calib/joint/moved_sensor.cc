@@ -109,7 +109,7 @@ SensorMove LikeliestMove(const Refined& refined, int sensor) {
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
     best = {sensor, static_cast<int>(group), change.step, statistic, scatter.dof, odds,
-            std::max(1.0, scatter.mean_square) * change.covariance};
+            scatter.mean_square * change.covariance};  // a bump makes the sensor's noise look larger than it is
   }
   return best;
 }

@@ -158,13 +158,14 @@ void KeepRuns(const Looks& looks, std::vector<double>& weights, std::size_t sens
 
 // A look whose squares are far beyond what is usual for its sensor counts less, by how far.
 template <typename Looks>
-std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& fits, std::size_t sensors) {
+std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& fits, std::size_t sensors,
+                                double least_usual) {
   const auto ratio = [&](std::size_t i) { return std::max(0.0, fits[i].squares.sum()) / fits[i].numbers.sum(); };
   std::vector<std::vector<double>> of_sensor(sensors);
   for (std::size_t i = 0; i < looks.size(); ++i)
     of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(ratio(i));
   std::vector<double> usual;
-  for (const auto& ratios : of_sensor) usual.push_back(std::max(0.2, MedianOf(ratios)));
+  for (const auto& ratios : of_sensor) usual.push_back(std::max(least_usual, MedianOf(ratios)));
   std::vector<double> weights;
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double limit =
@@ -177,8 +178,14 @@ std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& 
 
 LookWeights WeightsOf(const SessionProblem& problem, const SessionFit& fit) {
   const std::size_t sensors = problem.sensors.size();
-  return {WeightsFrom(problem.corners, fit.corners, sensors), WeightsFrom(problem.plates, fit.plates, sensors),
-          WeightsFrom(problem.poses, fit.poses, sensors)};
+  // Squares of plates are less what range noise is expected to add, so their median tells little.
+  return {WeightsFrom(problem.corners, fit.corners, sensors, 0.2), WeightsFrom(problem.plates, fit.plates, sensors, 1.0),
+          WeightsFrom(problem.poses, fit.poses, sensors, 0.2)};
+}
+
+// Half the way: a weight that lets a look fit worse would else swing between two values.
+void Approach(const std::vector<double>& before, std::vector<double>& weights) {
+  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = std::sqrt(before[i] * weights[i]);
 }
 
 bool Same(const std::vector<SensorNoise>& x, const std::vector<SensorNoise>& y) {
@@ -211,7 +218,12 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     refined.covariance = *covariance;
     AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
     const std::vector<SensorNoise> updated = NoiseFrom(problem, refined.weights, refined.at_optimum.fit, refined.noise);
-    const LookWeights weights = WeightsOf(problem, refined.at_optimum.fit);
+    LookWeights weights = WeightsOf(problem, refined.at_optimum.fit);
+    if (round > 1) {
+      Approach(refined.weights.corners, weights.corners);
+      Approach(refined.weights.plates, weights.plates);
+      Approach(refined.weights.poses, weights.poses);
+    }
     const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
                       Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
     if (same && minimum.settled) return refined;

@@ -5,21 +5,14 @@
 #include <numeric>
 #include <set>
 
+#include "server/calib/joint/board_candidates.h"
 #include "server/calib/joint/observation.h"
 
 namespace rigcal::calib::joint {
 namespace {
 
-// Poses that differ by less agree: well above the noise of one view, well below a board that is turned or mistaken.
-constexpr double kAgree_m = 0.15, kAgree_rad = 0.15;
-constexpr std::size_t kHypotheses = 60;  // of a consensus: more views than these only vote
 constexpr double kPatchAway_m = 0.3, kPatchTurned_rad = 0.2;
 constexpr double kTrackerStart_m = 0.001, kTrackerStart_rad = 0.001;
-
-struct Candidate {
-  Se3 T_cam_board;
-  int turn = 0;
-};
 
 // A camera's look at its board in one capture.
 struct View {
@@ -27,43 +20,6 @@ struct View {
   const BoardView* seen = nullptr;
   std::vector<Candidate> candidates;
 };
-
-bool Agrees(const Se3& x, const Se3& y) {
-  return (x.p_m - y.p_m).norm() < kAgree_m && x.q.angularDistance(y.q) < kAgree_rad;
-}
-
-// The pose that most of the lists have one of; nothing where there are no lists.
-std::optional<Se3> Agreed(const std::vector<std::vector<Se3>>& lists) {
-  std::optional<Se3> best;
-  std::size_t votes_of_best = 0;
-  for (std::size_t i = 0; i < std::min(kHypotheses, lists.size()); ++i)
-    for (const Se3& hypothesis : lists[i]) {
-      const auto votes = static_cast<std::size_t>(std::count_if(lists.begin(), lists.end(), [&](const auto& list) {
-        return std::any_of(list.begin(), list.end(), [&](const Se3& pose) { return Agrees(pose, hypothesis); });
-      }));
-      if (votes > votes_of_best) best = hypothesis, votes_of_best = votes;
-    }
-  return best;
-}
-
-// T_board_turned: the board's frame after it is turned about its centre as TurnedIndex renumbers it.
-Se3 TurnOf(const Target& target, int turn) {
-  const double angle = 2 * M_PI * turn / SymmetryOf(target);
-  const Eigen::Quaterniond q(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
-  const Eigen::Vector3d centre = CentreOf(target);
-  return {centre - q * centre, q};
-}
-
-std::vector<Candidate> CandidatesOf(const CameraViews& camera, const CaptureId& capture) {
-  std::vector<Se3> poses = {camera.estimate.T_cam_board.at(capture)};
-  if (const auto other = camera.estimate.alternatives.find(capture); other != camera.estimate.alternatives.end())
-    poses.insert(poses.end(), other->second.begin(), other->second.end());
-  std::vector<Candidate> candidates;
-  for (const Se3& pose : poses)
-    for (int turn = 0; turn < SymmetryOf(camera.board); ++turn)
-      candidates.push_back({pose * TurnOf(camera.board, turn), turn});
-  return candidates;
-}
 
 class Starter {
  public:
@@ -175,7 +131,7 @@ class Starter {
       for (const auto& [capture, seen] : camera.views) {
         if (!camera.estimate.T_cam_board.contains(capture)) continue;
         looks_.push_back({sensor, lens_of_camera_.at(camera.camera.id), TargetIndex(camera.board.id),
-                          CaptureIndex(capture), &seen, CandidatesOf(camera, capture)});
+                          CaptureIndex(capture), &seen, CandidatesOf(camera.estimate, camera.board, capture)});
       }
     }
   }
