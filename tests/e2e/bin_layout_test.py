@@ -45,7 +45,7 @@ def main():
         check('file "lidar_' in said and "fields: [x, y, z, intensity, ring]" in said, "the line to write is told: " + said)
         check("sensor 'lidar_" in said, "the sensor is named: " + said)
 
-        header.write_text(text.replace("type: lidar", "type: lidar, fields: [x, y, z, intensity, ring]"))
+        header.write_text(text.replace("type: lidar\n", "type: lidar\n    fields: [x, y, z, intensity, ring]\n"))
         check("fields" in header.read_text(), "session.yaml names them: " + header.read_text())
         flow.rigcal("push", visit)
         five = edge_of(flow, "five")
