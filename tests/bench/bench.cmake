@@ -20,7 +20,7 @@ rigcal_program(sigma_chance
   DEPS rigcal_sim rigcal_calib rigcal_graph)
 rigcal_program(trust_measure
   SOURCES bench/trust_measure.cc bench/trust_scenarios.cc bench/trust_session.cc bench/trust_json.cc bench/told.cc bench/told_words.cc
-          bench/found_plates.cc bench/feature_session.cc bench/stereo_splits.cc bench/stereo_pictures.cc
+          bench/found_plates.cc bench/feature_session.cc bench/joint_session.cc bench/stereo_splits.cc bench/stereo_pictures.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph rigcal_fleet rigcal_detect rigcal_formats)
 rigcal_program(joint_measure
   SOURCES bench/joint_measure.cc bench/joint_session.cc bench/rig_case.cc bench/feature_session.cc

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "server/calib/joint/estimate_session.h"
 #include "server/fleet/assess.h"
 #include "server/graph/cycles.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/suspects.h"
+#include "tests/bench/joint_session.h"
 
 namespace rigcal {
 namespace {
@@ -40,15 +42,37 @@ std::vector<Said> SaidOf(const Verdict& verdict, const std::vector<Edge>& edges)
   return said;
 }
 
+// As a session is refined (server/pipeline/session_refinement.cc).
+SessionEstimate Refined(const FeatureSession& visit, const std::vector<Edge>& edges) {
+  std::map<SensorId, Se3> T_ref_sensor;
+  for (const SensorPose& pose : graph::Solve(graph::GraphOf(edges, visit.header.reference)).poses)
+    if (pose.known) T_ref_sensor[pose.sensor] = pose.T_ref_sensor;
+  calib::joint::SessionViews views = ViewsOf(visit, std::move(T_ref_sensor));
+  views.boards_stand_still = false;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood) continue;
+    views.boards_stand_still |= edge.method == "non_overlapping" || edge.method == "tracker_camera";
+    if (edge.method == "lidar_lidar")
+      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
+  }
+  SessionEstimate estimate = calib::joint::EstimateSession(views);
+  if (!edges.empty()) estimate.session = edges.front().session;
+  return estimate;
+}
+
 }  // namespace
 
 Told Judge(const std::vector<FeatureSession>& visits) {
   std::vector<Edge> edges;
-  for (const FeatureSession& visit : visits)
-    for (Edge& edge : EdgesOf(visit)) edges.push_back(std::move(edge));
+  std::vector<SessionEstimate> estimates;
+  for (const FeatureSession& visit : visits) {
+    const std::vector<Edge> of_visit = EdgesOf(visit);
+    estimates.insert(estimates.begin(), Refined(visit, of_visit));
+    edges.insert(edges.end(), of_visit.begin(), of_visit.end());
+  }
   const SessionHeader& header = visits.front().header;
   const GraphSolution solution = Solved(WholeGraph(edges, header), edges);
-  Told told{header.reference, solution.poses, fleet::Assess(edges, solution), {}, 0};
+  Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates), {}, 0};
   told.said = SaidOf(told.verdict, edges);
   told.failed_edges = static_cast<int>(
       std::count_if(edges.begin(), edges.end(), [](const Edge& edge) { return edge.state != EdgeState::kGood; }));

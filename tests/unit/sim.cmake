@@ -13,5 +13,5 @@ rigcal_test(trust_words_test
   SOURCES unit/trust_words_test.cc bench/told_words.cc
   DEPS rigcal_calib rigcal_graph rigcal_sim)
 rigcal_test(trust_session_test COMPUTES
-  SOURCES unit/trust_session_test.cc bench/trust_session.cc bench/told.cc bench/found_plates.cc bench/feature_session.cc
+  SOURCES unit/trust_session_test.cc bench/trust_session.cc bench/told.cc bench/found_plates.cc bench/feature_session.cc bench/joint_session.cc
   DEPS rigcal_sim rigcal_calib rigcal_graph rigcal_fleet rigcal_detect)
