@@ -2,7 +2,7 @@
 import hashlib
 import json
 
-from flow import Flow, check, skip_without
+from flow import Flow, check, stereo_pairs
 from measures.sessions import picture_session
 
 VERDICT_FAIL = 1  # exit code of doctor as well
@@ -25,9 +25,7 @@ def edges_of(flow):
 
 def main():
     with Flow() as flow:
-        pictures = flow.context.data / "stereo_opencv"
-        skip_without(pictures)
-        session = picture_session(flow.folder / "session", "stereo", pictures)
+        session = picture_session(flow.folder / "session", "stereo", stereo_pairs(flow.context))
         # The first push brings the pictures; the second searches them for another board, once one of them is damaged.
         header = session / "session.yaml"
         text = header.read_text()
