@@ -20,8 +20,6 @@ namespace {
 
 using calib::joint::SessionViews;
 
-constexpr const char* kEstimator = "joint/1";  // raised when the same observations give another estimate
-
 std::size_t FoundIn(const Sightings<storage::StoredView>& views) {
   return static_cast<std::size_t>(
       std::count_if(views.begin(), views.end(), [](const auto& item) { return item.second.view.found; }));
@@ -146,7 +144,7 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
               estimate.why_not.front().cure});
     return {};
   }
-  return storage::AppendSessionEstimate(store, estimate, kEstimator, clock.Now());
+  return storage::AppendSessionEstimate(store, estimate, kSessionEstimator, clock.Now());
 }
 
 // Whether an edge of the session still says something of the sensor.
@@ -160,7 +158,7 @@ bool Counts(const SessionId& session, const SensorId& sensor, const std::vector<
 }  // namespace
 
 Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
-  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kEstimator, kSessionsRefined));
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
   for (const storage::SessionEstimateRow& row : rows)
     if (!row.estimate)
       if (const Status refined = RefineSession(store, row.session, cameras, clock); !refined) LogError(refined.error());
@@ -169,7 +167,7 @@ Status RefineSessions(storage::Store& store, const RobotId& robot, calib::Camera
 
 Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
                                                           const std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kEstimator, kSessionsRefined));
+  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
   std::vector<SessionEstimate> current;

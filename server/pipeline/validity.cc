@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <set>
 
+#include "server/pipeline/session_refinement.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
+#include "storage/session_estimates.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
@@ -22,6 +24,17 @@ Result<bool> WasRemountedAfter(storage::Store& store, const RobotId& robot, Stam
   });
 }
 
+// Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more.
+Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
+  for (const storage::SessionEstimateRow& row : rows) {
+    if (!row.estimate || row.estimate->moved.empty()) continue;
+    RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, row.session));
+    if (session && session->closed_at > solved_at) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Revision& revision) {
@@ -30,6 +43,8 @@ Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Re
   if (!usable) return std::nullopt;
   RIGCAL_ASSIGN(const bool remounted, WasRemountedAfter(store, revision.robot, usable->created_at));
   if (remounted) return std::nullopt;
+  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, revision.robot, usable->created_at));
+  if (gave_way) return std::nullopt;
   return UsableRevision{usable->number, usable->created_at};
 }
 

@@ -32,6 +32,8 @@ def main():
         check("--remounted " + MOVED in found["what_to_do"], "what to do: %r" % found)
         number = json.loads(flow.rigcal("show", "bumped", "--json", exit_code=1).stdout)["revision"]
         check("was moved during the session" in flow.get("/robots/bumped/revisions/%d/" % number), "the report says so")
+        shown = json.loads(flow.rigcal("show", "bumped", "--json", exit_code=1).stdout)
+        check(shown["usable"] is None, "what was known before the sensor gave way is nothing to fall back to: %r" % shown["usable"])
         flow.kill_and_restart()
         check(verdict(flow, exit_code=1) == found, "after a restart, too")
         mended = simulate(flow, "mended", 3, "2026-02-05")
