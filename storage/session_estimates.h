@@ -10,7 +10,7 @@
 
 namespace rigcal::storage {
 
-// `estimator` names what made it ("joint/1"); the same session by the same estimator again changes nothing.
+// `estimator` names what made it ("joint/2"); the same session by the same estimator again changes nothing.
 [[nodiscard]] Status AppendSessionEstimate(Store& store, const SessionEstimate& estimate, const std::string& estimator,
                                            Stamp now);
 // Of the robot's closed sessions, the newest captured first; at most `sessions_max` sessions are looked at.

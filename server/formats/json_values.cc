@@ -46,6 +46,15 @@ void WriteMatrix(JsonWriter& out, std::string_view key, const Matrix6d& matrix) 
   });
 }
 
+void WriteLowerTriangle(JsonWriter& out, std::string_view key, const Eigen::MatrixXd& matrix) {
+  out.List(key, [&] {
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+      const Eigen::VectorXd values = matrix.row(row).head(row + 1).transpose();
+      out.List([&] { WriteNumbers(out, values.data(), static_cast<std::size_t>(values.size())); });
+    }
+  });
+}
+
 void WritePose(JsonWriter& out, std::string_view key, const Se3& T) {
   out.Object(key, [&] {
     out.List("p_m", [&] { WriteNumbers(out, T.p_m.data(), 3); });
@@ -128,6 +137,19 @@ Matrix6d ReadMatrix(const JsonField& field) {
   }
   for (int row = 0; row < 6; ++row) matrix.row(row) = ReadVector(rows[static_cast<std::size_t>(row)]).transpose();
   return matrix;
+}
+
+Eigen::MatrixXd ReadLowerTriangle(const JsonField& field) {
+  constexpr std::size_t kRowsMax = 60'000;
+  const std::vector<JsonField> rows = field.Items(kRowsMax);
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd values(size);
+  for (Eigen::Index row = 0; row < size; ++row) {
+    rows[static_cast<std::size_t>(row)].Numbers(values.data(), static_cast<std::size_t>(row) + 1);
+    lower.row(row).head(row + 1) = values.head(row + 1).transpose();
+  }
+  return lower.selfadjointView<Eigen::Lower>();
 }
 
 Se3 ReadPose(const JsonField& field, double tolerance) {

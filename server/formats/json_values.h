@@ -17,6 +17,8 @@ namespace rigcal::formats {
 
 void WriteVector(JsonWriter& out, std::string_view key, const Vector6d& values);
 void WriteMatrix(JsonWriter& out, std::string_view key, const Matrix6d& matrix);  // 6 rows of 6
+// Rows of the lower triangle, the diagonal with it: row k has k + 1 numbers.
+void WriteLowerTriangle(JsonWriter& out, std::string_view key, const Eigen::MatrixXd& matrix);
 void WritePose(JsonWriter& out, std::string_view key, const Se3& T);              // {"p_m", "q_xyzw"}
 void WriteStamp(JsonWriter& out, std::string_view key, const std::optional<Stamp>& stamp);
 void WriteVerdict(JsonWriter& out, std::string_view key, const Verdict& verdict);
@@ -33,6 +35,7 @@ void WriteRevisionNumber(JsonWriter& out, int revision);
 
 [[nodiscard]] Vector6d ReadVector(const JsonField& field);
 [[nodiscard]] Matrix6d ReadMatrix(const JsonField& field);
+[[nodiscard]] Eigen::MatrixXd ReadLowerTriangle(const JsonField& field);
 // The numbers as they stand; the quaternion must have unit length to `tolerance`.
 [[nodiscard]] Se3 ReadPose(const JsonField& field, double tolerance);
 [[nodiscard]] Verdict ReadVerdict(const JsonField& field);

@@ -22,6 +22,55 @@ void WriteAnalytic(JsonWriter& out, const SensorPose& pose) {
   });
 }
 
+void WriteFused(JsonWriter& out, const SensorPose& pose) {
+  if (!pose.fused) return;
+  out.Object("fused", [&] {
+    out.Object("by_pairs", [&] {
+      WritePose(out, "T_ref_sensor", pose.fused->T_ref_sensor_by_pairs);
+      WriteMatrix(out, "covariance", pose.fused->covariance_by_pairs);
+    });
+    out.Integer("sessions", pose.fused->sessions);
+    out.Number("visit_sigma_m", pose.fused->visit_sigma_m);
+    out.Number("visit_sigma_rad", pose.fused->visit_sigma_rad);
+  });
+}
+
+std::optional<FusedPose> ReadFused(const JsonField& pose) {
+  const auto field = pose.Find("fused");
+  if (!field) return std::nullopt;
+  const JsonField by_pairs = field->At("by_pairs");
+  return FusedPose{ReadPose(by_pairs.At("T_ref_sensor"), kUnitTolerance), ReadMatrix(by_pairs.At("covariance")),
+                   static_cast<int>(field->At("sessions").Integer(0, INT_MAX)), field->At("visit_sigma_m").Number(),
+                   field->At("visit_sigma_rad").Number()};
+}
+
+void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
+  if (fused.sessions.empty()) return;
+  out.Object("fused", [&] {
+    WriteLowerTriangle(out, "covariance", fused.covariance);
+    out.List("sensors", [&] {
+      for (const SensorId& sensor : fused.sensors) out.Text(sensor.str());
+    });
+    out.List("sessions", [&] {
+      for (const SessionId& session : fused.sessions) out.Text(session.str());
+    });
+  });
+}
+
+FusedSessions ReadFusedSessions(const JsonField& root) {
+  FusedSessions fused;
+  const auto field = root.Find("fused");
+  if (!field) return fused;
+  fused.covariance = ReadLowerTriangle(field->At("covariance"));
+  for (const JsonField& sensor : field->At("sensors").Items(limits::kSensorsPerRobotMax))
+    fused.sensors.push_back(ReadId<SensorId>(sensor));
+  for (const JsonField& session : field->At("sessions").Items(limits::kEdgesPerBatchMax))
+    fused.sessions.push_back(ReadId<SessionId>(session));
+  if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
+    field->At("covariance").Refuse("needs six rows per sensor");
+  return fused;
+}
+
 // Only where it is known.
 void WriteBasis(JsonWriter& out, const std::vector<Vector6d>& basis) {
   if (basis.empty()) return;
@@ -41,7 +90,8 @@ void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
       WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
       WriteMatrix(out, "covariance", pose.covariance);
       WriteSigmas(out, pose.covariance);
-      out.Text("sigma_source", pose.by_jackknife ? "jackknife" : "analytic");
+      out.Text("sigma_source", SigmaSourceOf(pose));
+      WriteFused(out, pose);
     } else {
       for (const char* key : {"T_ref_sensor", "covariance", "sigma_source"}) out.Null(key);
       WriteNoSigmas(out);
@@ -60,6 +110,7 @@ SensorPose ReadSensorPose(const JsonField& field) {
   if (!pose.known) return pose;
   pose.T_ref_sensor = ReadPose(field.At("T_ref_sensor"), kUnitTolerance);
   pose.covariance = ReadMatrix(field.At("covariance"));
+  pose.fused = ReadFused(field);
   if (const auto analytic = field.Find("analytic")) {
     pose.by_jackknife = true;
     pose.covariance_analytic = ReadMatrix(analytic->At("covariance"));
@@ -104,6 +155,7 @@ void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
   WriteSuspects(out, "suspects", solution.suspects);
   WriteInfluenceState(out, "influence", solution.influences);
   WriteCycles(out, "cycles", solution.cycles);
+  WriteFusedSessions(out, solution.fused);
 }
 
 EdgeResidual ReadResidual(const JsonField& field, const EdgeId& edge) {
@@ -135,6 +187,7 @@ GraphSolution ReadSolution(const JsonField& root) {
   if (const auto suspects = root.Find("suspects")) solution.suspects = ReadSuspects(*suspects);
   if (const auto influence = root.Find("influence")) solution.influences = ReadInfluenceState(*influence);
   if (const auto cycles = root.Find("cycles")) solution.cycles = ReadCycles(*cycles);
+  solution.fused = ReadFusedSessions(root);
   return solution;
 }
 

@@ -12,7 +12,6 @@ void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
     for (const RefinedPose& pose : estimate.poses)
       out.Object([&] {
         WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
-        WriteMatrix(out, "covariance", pose.covariance);
         out.Number("dof", pose.dof);
         out.Text("sensor", pose.sensor.str());
       });
@@ -44,7 +43,7 @@ void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
 
 RefinedPose ReadRefinedPose(const JsonField& field) {
   return {ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
-          ReadMatrix(field.At("covariance")), field.At("dof").Number()};
+          field.At("dof").Number()};
 }
 
 SensorMovedWithin ReadMoved(const JsonField& field) {
@@ -52,10 +51,19 @@ SensorMovedWithin ReadMoved(const JsonField& field) {
           ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
 }
 
+void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
+  Eigen::Index rows = 0;
+  for (const RefinedPose& pose : estimate.poses) rows += pose.sensor == estimate.reference ? 0 : 6;
+  if (estimate.covariance.rows() != rows) root.At("covariance").Refuse("needs six rows per pose, none of the reference");
+  if (estimate.common.rows() != 0 && estimate.common.rows() != rows) root.At("common").Refuse("needs the covariance's rows");
+}
+
 }  // namespace
 
 std::string WriteSessionEstimate(const SessionEstimate& estimate) {
   return WriteObject([&](JsonWriter& out) {
+    WriteLowerTriangle(out, "common", estimate.common);
+    WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
     WriteMoved(out, estimate);
     WritePoses(out, estimate);
@@ -74,6 +82,9 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   estimate.reference = ReadId<SensorId>(root.At("reference"));
   estimate.why_not = ReadDiagnoses(root.At("why_not"));
   for (const JsonField& item : root.At("poses").Items(kSensorsMax)) estimate.poses.push_back(ReadRefinedPose(item));
+  estimate.covariance = ReadLowerTriangle(root.At("covariance"));
+  estimate.common = ReadLowerTriangle(root.At("common"));
+  CheckRows(root, estimate);
   for (const JsonField& item : root.At("moved").Items(kSensorsMax)) estimate.moved.push_back(ReadMoved(item));
   for (const JsonField& item : root.At("held_back").Items(kLooksMax))
     estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture"))});

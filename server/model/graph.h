@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/base/ids.h"
@@ -32,6 +33,15 @@ struct Graph {
   std::vector<GraphEdge> edges;    // any order; Solve sorts by id
 };
 
+// What the joint refinements of sessions made of a pose that the graph of pairs gave (graph/fuse_sessions.h).
+struct FusedPose {
+  Se3 T_ref_sensor_by_pairs;
+  Matrix6d covariance_by_pairs = Matrix6d::Zero();  // right tangent at the sensor
+  int sessions = 0;                                 // whose refinement tells this sensor
+  // How the sensor's place scatters from visit to visit, 1 sigma per axis; it is in the pose's covariance. 0: it does not.
+  double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
+};
+
 struct SensorPose {
   SensorId sensor;
   bool known = false;              // false: not connected to the reference, or not observable; then no numbers
@@ -45,6 +55,19 @@ struct SensorPose {
   // If not known: the directions that its edges leave free, as far as they were worked out. Right tangent at the
   // sensor, metres and radians; each has a coordinate of its own that is 1 in it and 0 in the others.
   std::vector<Vector6d> unobservable_basis = {};
+  std::optional<FusedPose> fused = {};  // present: T_ref_sensor, covariance and dof are the fused ones
+};
+
+// Where the sigmas of a known pose come from, as documents name it.
+[[nodiscard]] inline std::string_view SigmaSourceOf(const SensorPose& pose) {
+  return pose.fused ? "joint" : pose.by_jackknife ? "jackknife" : "analytic";
+}
+
+// Sessions whose joint refinement is in the poses, and the joint covariance of these.
+struct FusedSessions {
+  std::vector<SessionId> sessions;  // empty: the poses are those of the graph of pairs
+  std::vector<SensorId> sensors;    // six rows each of `covariance`, right tangents; the reference has none
+  Eigen::MatrixXd covariance;
 };
 
 struct EdgeResidual {
@@ -79,6 +102,7 @@ struct GraphSolution {
   Suspects suspects;                   // not judged unless asked for
   Influences influences;               // likewise
   Cycles cycles;                       // likewise
+  FusedSessions fused;                 // likewise; residuals and errors are the graph's all the same
 };
 
 // A numbered, stored, solved state. `document` is canonical JSON: same edges that count, same bytes; it does not hold its

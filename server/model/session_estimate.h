@@ -28,17 +28,27 @@ struct HeldBackLook {
 struct RefinedPose {
   SensorId sensor;
   Se3 T_ref_sensor;
-  Matrix6d covariance = Matrix6d::Zero();  // marginal, right tangent at the sensor; zero for the reference
-  double dof = 0.0;                        // behind it; 0: known
+  double dof = 0.0;  // behind its covariance; 0: known
 };
 
 struct SessionEstimate {
   SessionId session;
   SensorId reference;
   std::vector<Diagnosis> why_not;  // not empty: there is no estimate, and nothing below has a meaning
-  std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part
+  std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part; one that moved: its last pose
+  // Of the poses in their order, the reference left out: six rows each, right tangents at the sensors. `common` is the
+  // part of it that errs alike on every visit (given constants, lenses); without rows: none.
+  Eigen::MatrixXd covariance, common;
   std::vector<SensorMovedWithin> moved;   // the most certain first
   std::vector<HeldBackLook> held_back;    // by sensor, then capture
 };
+
+// First of the six rows of a pose; -1: the reference, which has none.
+[[nodiscard]] inline int RowOf(const SessionEstimate& estimate, std::size_t pose) {
+  if (estimate.poses[pose].sensor == estimate.reference) return -1;
+  int row = 0;
+  for (std::size_t i = 0; i < pose; ++i) row += estimate.poses[i].sensor == estimate.reference ? 0 : 6;
+  return row;
+}
 
 }  // namespace rigcal

@@ -10,6 +10,7 @@
 #include "server/formats/parameters.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/solve.h"
+#include "server/math/covariance.h"
 #include "server/model/past.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
@@ -127,9 +128,36 @@ Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::Rev
   return graph::BlocksOf(edges);
 }
 
+// Of sensors whose poses a revision has fused.
+std::optional<graph::RelativePose> FusedRelative(const formats::RevisionInput& document, const SensorId& a,
+                                                 const SensorId& b) {
+  const FusedSessions& fused = document.solution.fused;
+  const auto row_of = [&](const SensorId& sensor) {
+    const auto found = std::find(fused.sensors.begin(), fused.sensors.end(), sensor);
+    return found == fused.sensors.end() ? -1 : 6 * static_cast<int>(found - fused.sensors.begin());
+  };
+  const int row_a = row_of(a), row_b = row_of(b);
+  if ((row_a < 0 && a != document.reference) || (row_b < 0 && b != document.reference) || fused.sensors.empty() || a == b)
+    return std::nullopt;
+  const auto pose_of = [&](const SensorId& sensor) {
+    const auto& poses = document.solution.poses;
+    return std::find_if(poses.begin(), poses.end(), [&](const SensorPose& pose) { return pose.sensor == sensor; })
+        ->T_ref_sensor;
+  };
+  const auto block = [&](int row, int column) {
+    return row < 0 || column < 0 ? Matrix6d(Matrix6d::Zero()) : Matrix6d(fused.covariance.block<6, 6>(row, column));
+  };
+  graph::RelativePose relative;
+  relative.T_A_B = (pose_of(a).Inverse() * pose_of(b)).Normalized();
+  relative.covariance =
+      RelativeCovariance(relative.T_A_B, block(row_a, row_a), block(row_b, row_b), block(row_a, row_b));
+  return relative;
+}
+
 // By the same covariance as the sensors of the revision.
 Result<graph::RelativePose> RelativeIn(const AnswerContext& context, const formats::RevisionInput& document,
                                        const Graph& graph, const SensorId& a, const SensorId& b) {
+  if (const auto fused = FusedRelative(document, a, b)) return *fused;
   const auto& poses = document.solution.poses;
   const bool honest = std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; });
   RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));

@@ -9,6 +9,7 @@
 #include "server/formats/documents.h"
 #include "server/graph/cycles.h"
 #include "server/graph/edge_influence.h"
+#include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
@@ -112,6 +113,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   input.solution = SolveHonestly(loaded);
   RIGCAL_ASSIGN(const fleet::SessionTimes captured_at, CapturedAt(store, robot));
   RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot, loaded.edges));
+  graph::FuseSessions(loaded.edges, input.reference, estimates, input.solution);
   input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
   input.edges = std::move(loaded.edges);
 

@@ -12,7 +12,7 @@ namespace rigcal::pipeline {
 // Sessions captured before the newest so many are not refined any more.
 constexpr int kSessionsRefined = 8;
 // Of stored estimates; raised when the same observations give another estimate.
-inline constexpr const char* kSessionEstimator = "joint/1";
+inline constexpr const char* kSessionEstimator = "joint/2";
 
 // Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets an
 // estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next revision.

@@ -64,7 +64,7 @@ void WriteCovariance(JsonWriter& out, const SensorPose& pose) {
   const Matrix6d& C = pose.covariance;
   WriteNumbers(out, "cov", std::array<double, 6>{C(0, 0), C(0, 1), C(0, 2), C(1, 1), C(1, 2), C(2, 2)});
   WriteNumbers(out, "sigma", C.diagonal().cwiseMax(0.0).cwiseSqrt().eval());
-  out.Text("sigma_source", pose.by_jackknife ? "jackknife" : "analytic");
+  out.Text("sigma_source", SigmaSourceOf(pose));
 }
 
 void WriteSensors(JsonWriter& out, const ReportInput& input) {

@@ -10,6 +10,7 @@
 #include "server/report/drawing.h"
 #include "server/report/edge_section.h"
 #include "server/report/edge_state.h"
+#include "server/report/fused_section.h"
 #include "server/report/key_figures.h"
 #include "server/report/loop_section.h"
 #include "server/report/page_data.h"
@@ -71,6 +72,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillChanges(page, input);
   FillDrawing(page, input.revision, edges);
   FillPoses(page, input.revision);
+  FillFused(page, input.revision);
   FillEdges(page, input, edges);
   FillLoops(page, input.revision);
   FillCameras(page, input);

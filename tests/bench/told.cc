@@ -5,6 +5,7 @@
 #include "server/calib/joint/estimate_session.h"
 #include "server/fleet/assess.h"
 #include "server/graph/cycles.h"
+#include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/suspects.h"
 #include "tests/bench/joint_session.h"
@@ -71,7 +72,8 @@ Told Judge(const std::vector<FeatureSession>& visits) {
     edges.insert(edges.end(), of_visit.begin(), of_visit.end());
   }
   const SessionHeader& header = visits.front().header;
-  const GraphSolution solution = Solved(WholeGraph(edges, header), edges);
+  GraphSolution solution = Solved(WholeGraph(edges, header), edges);
+  graph::FuseSessions(edges, header.reference, estimates, solution);
   Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates), {}, 0};
   told.said = SaidOf(told.verdict, edges);
   told.failed_edges = static_cast<int>(

@@ -12,10 +12,11 @@ SessionEstimate MakeEstimate() {
   RefinedPose pose;
   pose.sensor = SensorId("right");
   pose.T_ref_sensor = Se3::Exp((Vector6d() << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03).finished());
-  pose.covariance = 1e-8 * Matrix6d::Identity();
-  pose.covariance(tangent::kX, tangent::kRz) = pose.covariance(tangent::kRz, tangent::kX) = 2e-9;
   pose.dof = 25.5;
-  estimate.poses = {{SensorId("left"), {}, Matrix6d::Zero(), 0.0}, pose};
+  estimate.poses = {{SensorId("left"), {}, 0.0}, pose};
+  estimate.covariance = 1e-8 * Matrix6d::Identity();
+  estimate.covariance(tangent::kX, tangent::kRz) = estimate.covariance(tangent::kRz, tangent::kX) = 2e-9;
+  estimate.common = 0.25 * estimate.covariance;
   SensorMovedWithin moved;
   moved.sensor = SensorId("right");
   moved.last_before = CaptureId("019"), moved.first_after = CaptureId("020");
@@ -32,7 +33,10 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_EQ(WriteSessionEstimate(*read), text);
   ASSERT_EQ(read->poses.size(), 2u);
-  EXPECT_EQ(read->poses[1].covariance, MakeEstimate().poses[1].covariance);
+  EXPECT_EQ(read->covariance, MakeEstimate().covariance);
+  EXPECT_EQ(read->common, MakeEstimate().common);
+  EXPECT_EQ(RowOf(*read, 0), -1);
+  EXPECT_EQ(RowOf(*read, 1), 0);
   EXPECT_EQ(read->poses[1].dof, 25.5);
   ASSERT_EQ(read->moved.size(), 1u);
   EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
@@ -43,6 +47,9 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
 TEST(SessionEstimateDocument, RefusesWhatIsNone) {
   EXPECT_FALSE(ReadSessionEstimate("{}"));
   EXPECT_FALSE(ReadSessionEstimate("no document"));
+  SessionEstimate estimate = MakeEstimate();
+  estimate.covariance = Eigen::MatrixXd::Identity(12, 12);
+  EXPECT_FALSE(ReadSessionEstimate(WriteSessionEstimate(estimate)));
 }
 
 }  // namespace

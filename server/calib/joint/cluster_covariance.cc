@@ -78,6 +78,19 @@ Shrunk Shrink(const MatrixXd& y, const MatrixXd& known) {
   return shrunk;
 }
 
+MatrixXd SelectedBlock(const MatrixXd& matrix, const std::vector<int>& rows) {
+  return SelectedRows(SelectedRows(matrix, rows).transpose(), rows).transpose();
+}
+
+// Of the information that is given, that of constants; the rest relates poses.
+MatrixXd OfConstants(MatrixXd given, const std::vector<int>& pose_rows) {
+  for (const int row : pose_rows) {
+    given.row(row).setZero();
+    given.col(row).setZero();
+  }
+  return given;
+}
+
 double DofOf(const MatrixXd& joint, const MatrixXd& influence, double share, int row) {
   const Matrix6d all = joint.block<6, 6>(row, row);
   PooledDof pooled(all);
@@ -103,11 +116,9 @@ PoseCovariance CovarianceOfPoses(const Refined& refined) {
   const VectorXd pose_scale = result.model.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<MatrixXd> of_model(pose_scale.asDiagonal() * result.model * pose_scale.asDiagonal());
   const MatrixXd y = of_model.matrixL().solve(pose_scale.asDiagonal() * result.influence);
-  const MatrixXd by_given = refined.covariance * refined.at_optimum.given.H.topLeftCorner(size, size) * refined.covariance;
-  MatrixXd given(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t j = 0; j < rows.size(); ++j)
-      given(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = by_given(rows[i], rows[j]);
+  const MatrixXd given_H = refined.at_optimum.given.H.topLeftCorner(size, size);
+  const MatrixXd given = SelectedBlock(refined.covariance * given_H * refined.covariance, rows);
+  result.common = SelectedBlock(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
   const MatrixXd half = of_model.matrixL().solve(pose_scale.asDiagonal() * given * pose_scale.asDiagonal());
   const MatrixXd known = of_model.matrixL().solve(half.transpose());
   const Shrunk shrunk = Shrink(y, known);

@@ -9,6 +9,7 @@ namespace rigcal::calib::joint {
 struct PoseCovariance {
   std::vector<int> row_of_sensor;  // first of six rows in `joint`; kNone: the reference
   Eigen::MatrixXd joint;           // right tangents
+  Eigen::MatrixXd common;          // part of `joint` that errs alike on every visit: constants of lenses, boards, ranges
   Eigen::MatrixXd model;           // H^-1 of the same rows
   Eigen::MatrixXd influence;       // columns: what each group moves the poses by; their outer products sum to the sandwich
   double model_ratio = 1.0;        // share of the model in `joint`

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <tuple>
 
 #include "server/calib/joint/cluster_covariance.h"
@@ -85,16 +86,17 @@ SessionStart Split(SessionStart start, const Refined& refined, const SensorMove&
 
 // Moves one after the other: each is taken out by giving the sensor a pose of its own from then on, so that it does not
 // hide the next.
-void FindMoves(SessionStart start, Refined refined, SessionEstimate& estimate) {
+void FindMoves(SessionStart& start, Refined& refined, SessionEstimate& estimate) {
   while (static_cast<int>(estimate.moved.size()) < kMovesMax && refined.groups >= kGroupsForMoves) {
     const std::vector<SensorMove> moves = ScanForMoves(start.problem, refined);
     if (moves.empty() || !IsMove(moves.front())) return;
     const SensorMovedWithin told = Told(start.problem, refined, moves.front());
     if (told.last_before.empty() || told.first_after.empty()) return;
     estimate.moved.push_back(told);
-    start = Split(std::move(start), refined, moves.front());
-    auto again = Refine(start.problem, start.state, start.noise, refined.group_of_place);
+    SessionStart split = Split(start, refined, moves.front());
+    auto again = Refine(split.problem, split.state, split.noise, refined.group_of_place);
     if (!again) return;
+    start = std::move(split);
     refined = std::move(*again);
   }
 }
@@ -108,15 +110,31 @@ void AddHeldBack(const SessionProblem& problem, const Looks& looks, const std::v
                            CaptureAt(problem, looks[i].place)});
 }
 
+// Rows of the poses in the order of `sensors`, indices of the problem.
+Eigen::MatrixXd InOrder(const Eigen::MatrixXd& joint, const std::vector<int>& row_of_sensor, const std::vector<int>& sensors) {
+  std::vector<int> rows;
+  for (const int sensor : sensors)
+    if (const int row = row_of_sensor[static_cast<std::size_t>(sensor)]; row != kNone)
+      for (int i = 0; i < 6; ++i) rows.push_back(row + i);
+  return joint(rows, rows);
+}
+
+// A sensor that moved is in the problem several times, its last pose last.
 void AddPoses(const SessionProblem& problem, const Refined& refined, SessionEstimate& estimate) {
+  std::map<SensorId, int> last;
+  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s)
+    if (s != problem.reference && problem.sensors[static_cast<std::size_t>(s)] != estimate.reference)
+      last[problem.sensors[static_cast<std::size_t>(s)]] = s;
+  last[estimate.reference] = problem.reference;
   const PoseCovariance covariance = CovarianceOfPoses(refined);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
-    RefinedPose pose{problem.sensors[s], refined.state.T_ref_sensor[s], Matrix6d::Zero(), covariance.dof[s]};
-    if (const int row = covariance.row_of_sensor[s]; row != kNone) pose.covariance = covariance.joint.block<6, 6>(row, row);
-    estimate.poses.push_back(std::move(pose));
+  std::vector<int> sensors;
+  for (const auto& [id, s] : last) {
+    estimate.poses.push_back({id, refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
+                              covariance.dof[static_cast<std::size_t>(s)]});
+    sensors.push_back(s);
   }
-  std::sort(estimate.poses.begin(), estimate.poses.end(),
-            [](const RefinedPose& x, const RefinedPose& y) { return x.sensor < y.sensor; });
+  estimate.covariance = InOrder(covariance.joint, covariance.row_of_sensor, sensors);
+  if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
 }
 
 SessionEstimate Estimate(const SessionViews& views) {
@@ -126,14 +144,14 @@ SessionEstimate Estimate(const SessionViews& views) {
   if (!refined) return Refused(views, refined.error());
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  AddPoses(start->problem, *refined, estimate);
   AddHeldBack(start->problem, start->problem.corners, refined->weights.corners, estimate.held_back);
   AddHeldBack(start->problem, start->problem.plates, refined->weights.plates, estimate.held_back);
   AddHeldBack(start->problem, start->problem.poses, refined->weights.poses, estimate.held_back);
   std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
     return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
   });
-  FindMoves(std::move(*start), std::move(*refined), estimate);
+  FindMoves(*start, *refined, estimate);
+  AddPoses(start->problem, *refined, estimate);
   return estimate;
 }
 

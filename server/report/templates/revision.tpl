@@ -87,6 +87,9 @@
 {{#MORE_POSES}}<p class="hint">{{COUNT}} more sensors are in <a href="revision.json">revision.json</a>.</p>{{/MORE_POSES}}
 <p class="hint">Rotation R = Rz(yaw) Ry(pitch) Rx(roll). &sigma; is one standard deviation along the sensor's own axes.</p>
 </section>
+{{#FUSED_SECTION}}
+{{>FUSED}}
+{{/FUSED_SECTION}}
 {{#CLOUDS_SECTION}}
 {{>CLOUDS}}
 {{/CLOUDS_SECTION}}

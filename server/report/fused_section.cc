@@ -1,0 +1,73 @@
+#include "server/report/fused_section.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/report/changes.h"
+#include "server/report/sigmas.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kRowsMax = 200;
+
+struct Moved {
+  const SensorPose* pose;
+  SensorMove by;  // from the pairs' pose, in their sigmas
+};
+
+std::vector<Moved> MostMovedFirst(const formats::RevisionInput& revision) {
+  std::vector<Moved> moved;
+  for (const SensorPose& pose : revision.solution.poses) {
+    if (!pose.fused) continue;
+    SensorPose before = pose, now = pose;
+    before.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
+    before.covariance = pose.fused->covariance_by_pairs;
+    now.covariance.setZero();
+    moved.push_back({&pose, MoveOf(before, now)});
+  }
+  std::stable_sort(moved.begin(), moved.end(),
+                   [](const Moved& x, const Moved& y) { return x.by.in_sigmas > y.by.in_sigmas; });
+  if (moved.size() > kRowsMax) moved.resize(kRowsMax);
+  return moved;
+}
+
+double LargestSigma_m(const Matrix6d& covariance) {
+  return std::sqrt(covariance.diagonal().head<3>().maxCoeff());
+}
+
+std::string VisitsText(const FusedPose& fused) {
+  if (fused.sessions < 2) return "one visit";
+  if (fused.visit_sigma_m <= 0 && fused.visit_sigma_rad <= 0) return "within \xCF\x83";
+  return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad);
+}
+
+void FillRow(Dictionary& row, const Moved& moved, bool visits) {
+  const FusedPose& fused = *moved.pose->fused;
+  row.SetValue("NAME", moved.pose->sensor.str());
+  row.SetValue("MM", Mm(moved.by.distance_m));
+  row.SetValue("DEG", Deg(moved.by.angle_rad));
+  row.SetValue("SIGMAS", SigmasText(moved.by.in_sigmas));
+  row.SetValue("CLASS", SigmasClass(moved.by.in_sigmas));
+  row.SetValue("BEFORE", SigmaMm(LargestSigma_m(fused.covariance_by_pairs)));
+  row.SetValue("NOW", SigmaMm(LargestSigma_m(moved.pose->covariance)));
+  if (visits) ShowValue(row, "VISITS", "TEXT", VisitsText(fused));
+}
+
+}  // namespace
+
+void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
+  const std::vector<Moved> rows = MostMovedFirst(revision);
+  if (rows.empty()) return;
+  Dictionary* section = page.AddSectionDictionary("FUSED_SECTION")->AddIncludeDictionary("FUSED");
+  section->SetFilename("fused.tpl");
+  const std::size_t sessions = revision.solution.fused.sessions.size();
+  section->SetValue("SUMMARY", "All that the sensors saw in " + Count(sessions, "session", "sessions") +
+                                   ", as one estimate" + (sessions > 1 ? " per session." : "."));
+  if (sessions > 1) section->ShowSection("VISITS_HEAD");
+  if (sessions > 1) section->ShowSection("VISITS_NOTE");
+  for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
+}
+
+}  // namespace rigcal::report
