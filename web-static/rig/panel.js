@@ -80,7 +80,7 @@ function poseTable(sensor) {
   return element("table", { className: "pose" }, element("thead", {}, head), element("tbody", {}, ...lines));
 }
 
-const SOURCES = { jackknife: "leaving out captures", analytic: "the edges' own \u03c3" };
+const SOURCES = { joint: "all that the sensors saw, as one estimate", jackknife: "leaving out captures", analytic: "the edges' own \u03c3" };
 
 export function showSensor(panel, sensor) {
   const list = element("dl", { className: "pairs" });
