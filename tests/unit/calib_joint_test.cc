@@ -7,6 +7,7 @@
 
 #include "client/sim/rig_yaml.h"
 #include "server/calib/joint/cluster_covariance.h"
+#include "server/calib/joint/estimate_session.h"
 #include "server/calib/joint/moved_sensor.h"
 #include "tests/bench/joint_session.h"
 
@@ -195,6 +196,41 @@ TEST(CalibJoint, OnePictureOfAnotherInstantCostsLittleAndIsHeldBack) {
     const Vector6d apart = (clean.state.T_ref_sensor[s].Inverse() * refined.state.T_ref_sensor[s]).Log();
     EXPECT_LT(apart.head<3>().norm(), 5e-4) << start.problem.sensors[s].str();
   }
+}
+
+TEST(CalibJoint, CapturesWithoutLeadingZerosAreInTheOrderInWhichTheyWereTaken) {
+  FeatureSession session = Visit(WithSeed(3));
+  const auto plain = [](const CaptureId& capture) { return CaptureId(std::to_string(std::stoi(capture.str()))); };
+  SessionViews views = ViewsOf(session, NominalPoses(session));
+  for (CameraViews& camera : views.cameras) {
+    for (auto& [capture, view] : camera.views) capture = plain(capture);
+    std::map<CaptureId, Se3> poses;
+    for (const auto& [capture, pose] : camera.estimate.T_cam_board) poses.emplace(plain(capture), pose);
+    camera.estimate.T_cam_board.clear();
+    for (const auto& [capture, pose] : poses) camera.estimate.T_cam_board.emplace(capture, pose);
+  }
+  for (TrackerPoses& tracker : views.trackers)
+    for (TimedPose& row : tracker.poses) row.capture = plain(row.capture);
+  views.lidars.clear();
+  const auto start = StartOf(views);
+  ASSERT_TRUE(start) << Sentence(start.error());
+  ASSERT_GT(start->problem.captures.size(), 10u);
+  for (std::size_t i = 1; i < start->problem.captures.size(); ++i)
+    EXPECT_LT(std::stoi(start->problem.captures[i - 1].str()), std::stoi(start->problem.captures[i].str()));
+}
+
+TEST(CalibJoint, SensorThatSawNothingDoesNotRefuseTheSession) {
+  const FeatureSession session = Visit(WithSeed(4));
+  SessionViews views = ViewsOf(session, NominalPoses(session));
+  for (LidarViews& lidar : views.lidars)
+    if (lidar.lidar.id == SensorId("lidar_vertical")) lidar.clouds.clear();
+  const SessionEstimate estimate = EstimateSession(views);
+  ASSERT_TRUE(estimate.why_not.empty()) << estimate.why_not.front().what;
+  std::set<SensorId> refined;
+  for (const RefinedPose& pose : estimate.poses) refined.insert(pose.sensor);
+  EXPECT_FALSE(refined.contains(SensorId("lidar_vertical")));
+  EXPECT_TRUE(refined.contains(SensorId("lidar_horizontal")));
+  EXPECT_EQ(refined.size() + 1, views.T_ref_sensor.size());
 }
 
 TEST(CalibJoint, SaysWhyThereIsNothingToRefine) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "server/calib/joint/cluster_covariance.h"
@@ -137,8 +138,19 @@ void AddPoses(const SessionProblem& problem, const Refined& refined, SessionEsti
   if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
 }
 
+// Without the sensors of which the session says too little: their pairs stand as they are.
+Result<SessionStart> StartOfWhatIsTold(const SessionViews& views) {
+  std::set<SensorId> left_out;
+  while (true) {
+    RIGCAL_ASSIGN(SessionStart start, StartOf(views, left_out));
+    const int open = OpenSensor(start.problem, start.state, start.noise, GroupsOf(start.problem, start.state));
+    if (open == kNone) return start;
+    left_out.insert(start.problem.sensors[static_cast<std::size_t>(open)]);
+  }
+}
+
 SessionEstimate Estimate(const SessionViews& views) {
-  auto start = StartOf(views);
+  auto start = StartOfWhatIsTold(views);
   if (!start) return Refused(views, start.error());
   auto refined = Refine(start->problem, start->state, start->noise, GroupsOf(start->problem, start->state));
   if (!refined) return Refused(views, refined.error());

@@ -1,6 +1,7 @@
 #include "server/calib/joint/refine.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -233,9 +234,32 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
   return Fail(NotSolvable("reached no minimum"));
 }
 
+int OpenSensor(const SessionProblem& problem, const SessionState& state, const std::vector<SensorNoise>& noise,
+               const std::vector<int>& group_of_place) {
+  const Layout layout = LayoutOf(problem);
+  const LookWeights weights = FullWeights(problem);
+  if (layout.size == 0 || group_of_place.empty()) return kNone;
+  const auto at = Linearize({problem, layout, noise, weights, group_of_place, group_of_place.back() + 1}, state);
+  if (!at) return kNone;
+  const Eigen::MatrixXd H = at->Total().H.topLeftCorner(layout.size, layout.size);
+  if (CovarianceOf(H)) return kNone;
+  const Eigen::VectorXd scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scale.asDiagonal() * H * scale.asDiagonal());
+  int most = 0;
+  axes.eigenvectors().col(0).cwiseAbs().maxCoeff(&most);
+  for (int s = 0; s < static_cast<int>(layout.pose.size()); ++s)
+    if (const int row = layout.pose[static_cast<std::size_t>(s)]; row <= most && most < row + 6) return s;
+  for (const CornersSeen& seen : problem.corners)
+    if (const int row = layout.lens[static_cast<std::size_t>(seen.camera)];
+        row != kNone && row <= most &&
+        most < row + static_cast<int>(problem.cameras[static_cast<std::size_t>(seen.camera)].refined.size()))
+      return seen.sensor == problem.reference ? kNone : seen.sensor;
+  return kNone;
+}
+
 namespace {
 
-// Poses of the rig nearer to each other than this are one place.
+// Poses of the rig nearer than this to where a burst began belong to it: a slow drive is not one.
 constexpr double kBurst_m = 0.01, kBurst_rad = 0.01;
 
 }  // namespace
@@ -243,11 +267,12 @@ constexpr double kBurst_m = 0.01, kBurst_rad = 0.01;
 std::vector<int> GroupsOf(const SessionProblem& problem, const SessionState& state, int groups_max) {
   const std::size_t places = problem.capture_of_place.size();
   std::vector<int> burst(places, 0);
-  for (std::size_t p = 1; p < places; ++p) {
-    const Vector6d xi = (state.T_world_ref[p - 1].Inverse() * state.T_world_ref[p]).Log();
+  for (std::size_t p = 1, first = 0; p < places; ++p) {
+    const Vector6d xi = (state.T_world_ref[first].Inverse() * state.T_world_ref[p]).Log();
     const bool same = problem.capture_of_place[p] == problem.capture_of_place[p - 1] ||
                       (xi.head<3>().norm() < kBurst_m && xi.tail<3>().norm() < kBurst_rad);
     burst[p] = burst[p - 1] + (same ? 0 : 1);
+    if (!same) first = p;
   }
   const int bursts = places == 0 ? 0 : burst.back() + 1;
   if (bursts > groups_max)

@@ -23,6 +23,11 @@ struct Refined {
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const std::vector<int>& group_of_place);
 
+// The sensor, other than the reference, whose pose the observations leave open most (too few of them, or all alike); kNone
+// where they tell every unknown, or what they leave open is no sensor's.
+[[nodiscard]] int OpenSensor(const SessionProblem& problem, const SessionState& state,
+                             const std::vector<SensorNoise>& noise, const std::vector<int>& group_of_place);
+
 // Captures contiguous in time, those of one place (a burst) in one group, at most `groups_max` groups of nearly equal size.
 [[nodiscard]] std::vector<int> GroupsOf(const SessionProblem& problem, const SessionState& state, int groups_max = 40);
 

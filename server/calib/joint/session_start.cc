@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <set>
 
@@ -14,6 +15,13 @@ namespace {
 constexpr double kPatchAway_m = 0.3, kPatchTurned_rad = 0.2;
 constexpr double kTrackerStart_m = 0.001, kTrackerStart_rad = 0.001;
 
+// Captures are named in the order in which they were taken, with leading zeros or without: "9" is before "10".
+struct TakenBefore {
+  bool operator()(const CaptureId& a, const CaptureId& b) const {
+    return strverscmp(a.str().c_str(), b.str().c_str()) < 0;
+  }
+};
+
 // A camera's look at its board in one capture.
 struct View {
   int sensor = kNone, camera = kNone, target = kNone, capture = kNone;
@@ -23,7 +31,7 @@ struct View {
 
 class Starter {
  public:
-  explicit Starter(const SessionViews& views) : views_(views) {}
+  Starter(const SessionViews& views, const std::set<SensorId>& left_out) : views_(views), left_out_(left_out) {}
 
   Result<SessionStart> Run() {
     ListSensors();
@@ -60,7 +68,7 @@ class Starter {
   }
   [[nodiscard]] int CaptureIndex(const CaptureId& id) const {
     const auto& captures = start_.problem.captures;
-    const auto at = std::lower_bound(captures.begin(), captures.end(), id);
+    const auto at = std::lower_bound(captures.begin(), captures.end(), id, TakenBefore{});
     return at != captures.end() && *at == id ? static_cast<int>(at - captures.begin()) : kNone;
   }
   [[nodiscard]] const Se3& T_ref(int sensor) const {
@@ -69,7 +77,7 @@ class Starter {
 
   void AddSensor(const Sensor& sensor, SensorNoise noise) {
     const auto pose = views_.T_ref_sensor.find(sensor.id);
-    if (pose == views_.T_ref_sensor.end()) return;
+    if (pose == views_.T_ref_sensor.end() || left_out_.contains(sensor.id)) return;
     if (sensor.id == views_.reference) problem().reference = static_cast<int>(problem().sensors.size());
     problem().sensors.push_back(sensor.id);
     problem().range_bias_sigma_m.push_back(sensor.kind == SensorKind::kLidar ? sensor.range_bias_sigma_m.value_or(0.0)
@@ -116,7 +124,7 @@ class Starter {
   }
 
   void ListCaptures() {
-    std::set<CaptureId> captures;
+    std::set<CaptureId, TakenBefore> captures;
     for (const CameraViews& camera : views_.cameras)
       for (const auto& [capture, pose] : camera.estimate.T_cam_board) captures.insert(capture);
     for (const TrackerPoses& tracker : views_.trackers)
@@ -349,6 +357,7 @@ class Starter {
   }
 
   const SessionViews& views_;
+  const std::set<SensorId>& left_out_;
   SessionStart start_;
   std::vector<View> looks_;
   std::map<SensorId, int> lens_of_camera_;
@@ -360,6 +369,8 @@ class Starter {
 
 }  // namespace
 
-Result<SessionStart> StartOf(const SessionViews& views) { return Starter(views).Run(); }
+Result<SessionStart> StartOf(const SessionViews& views, const std::set<SensorId>& left_out) {
+  return Starter(views, left_out).Run();
+}
 
 }  // namespace rigcal::calib::joint

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "server/base/result.h"
 #include "server/calib/intrinsics.h"
@@ -56,7 +57,7 @@ struct SessionStart {
   std::vector<UnusedLook> unused;
 };
 
-// Fails with a sentence where nothing connects the sensors: no capture that two of them share.
-[[nodiscard]] Result<SessionStart> StartOf(const SessionViews& views);
+// `left_out` take no part. Fails with a sentence where nothing connects the sensors: no capture that two of them share.
+[[nodiscard]] Result<SessionStart> StartOf(const SessionViews& views, const std::set<SensorId>& left_out = {});
 
 }  // namespace rigcal::calib::joint
