@@ -70,9 +70,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto moved = FindMovedWithin(estimates, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
-  if (const auto contradictions = FindContradictions(edges, solution, policy, captured_at); !contradictions.empty())
+  if (const auto moved = FindMovedBetween(solution, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
+  const GraphSolution judged = WithoutRefinedPairs(edges, solution);
+  if (const auto contradictions = FindContradictions(edges, judged, policy, captured_at); !contradictions.empty())
     return VerdictFrom(VerdictLevel::kFail, contradictions);
-  if (const auto open = FindOpenLoops(edges, solution, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
+  if (const auto open = FindOpenLoops(edges, judged, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
   const auto warnings = Collect({FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),

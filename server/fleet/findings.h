@@ -19,6 +19,11 @@ struct Finding {
 // Sensors that had two poses during the newest session in which one had.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);
+// Sensors that sat elsewhere from one session on.
+[[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const SessionTimes& captured_at);
+// What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one rig
+// is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose.
+[[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);

@@ -77,7 +77,33 @@ std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, con
          (names.size() == 1 ? "session " : "sessions ") + List(names);
 }
 
+std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vector<Edge>& edges) {
+  const std::set<SessionId> refined(sessions.begin(), sessions.end());
+  std::set<EdgeId> ids;
+  for (const Edge& edge : edges)
+    if (refined.contains(edge.session)) ids.insert(edge.id);
+  return ids;
+}
+
 }  // namespace
+
+GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  const std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
+  if (refined.empty()) return solution;
+  const auto all = [&](const std::vector<EdgeId>& ids) {
+    return std::all_of(ids.begin(), ids.end(), [&](const EdgeId& id) { return refined.contains(id); });
+  };
+  GraphSolution judged = solution;
+  std::erase_if(judged.suspects.two_poses, [&](const TwoPoses& two) { return all(two.group_a) && all(two.group_b); });
+  std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
+    return refined.contains(suspect.edge) && all(suspect.alternatives);
+  });
+  std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return refined.contains(residual.edge); });
+  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) { return all(cycle.edges); });
+  judged.cycles.failing = static_cast<int>(
+      std::count_if(judged.cycles.worst.begin(), judged.cycles.worst.end(), [](const auto& cycle) { return cycle.fails(); }));
+  return judged;
+}
 
 std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                     const SessionTimes& captured_at) {

@@ -17,8 +17,8 @@ double SquaresAt(const std::vector<VisitResidual>& visits, int part, double vari
   return squares;
 }
 
-double VarianceOf(const std::vector<VisitResidual>& visits, int part) {
-  const double expected = 3.0 * (static_cast<double>(visits.size()) - 1);
+double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means) {
+  const double expected = 3.0 * (static_cast<double>(visits.size()) - means);
   if (expected <= 0 || SquaresAt(visits, part, 0.0) <= expected) return 0.0;
   double low = 0.0, high = 0.0;
   for (const VisitResidual& visit : visits) high += visit.e.segment<3>(part).squaredNorm();  // sum e^2 / high <= 1
@@ -37,8 +37,8 @@ Matrix6d VisitVariance::Matrix() const {
   return diagonal.asDiagonal();
 }
 
-VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits) {
-  return {VarianceOf(visits, tangent::kTranslation), VarianceOf(visits, tangent::kRotation)};
+VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
+  return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};
 }
 
 }  // namespace rigcal::graph

@@ -20,8 +20,9 @@ struct VisitResidual {
   Matrix6d own;  // covariance of the visit by itself
 };
 
-// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - 1), for translation and for
-// rotation apart (Paule & Mandel 1982). Zero where the visits agree within their own sigmas, and with fewer than two.
-[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits);
+// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation and for
+// rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
+// within their own sigmas, and where there are not more of them than means.
+[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
 
 }  // namespace rigcal::graph

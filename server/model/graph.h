@@ -63,11 +63,20 @@ struct SensorPose {
   return pose.fused ? "joint" : pose.by_jackknife ? "jackknife" : "analytic";
 }
 
+// A sensor that sat elsewhere in all sessions from one on than in those before, beyond what visits scatter by.
+struct SensorMovedBetween {
+  SensorId sensor;
+  SessionId last_before, first_after;
+  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor, m and rad
+  double odds = 1.0;                 // of so large a change between any two sessions by chance, at most
+};
+
 // Sessions whose joint refinement is in the poses, and the joint covariance of these.
 struct FusedSessions {
   std::vector<SessionId> sessions;  // empty: the poses are those of the graph of pairs
   std::vector<SensorId> sensors;    // six rows each of `covariance`, right tangents; the reference has none
   Eigen::MatrixXd covariance;
+  std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 
 struct EdgeResidual {

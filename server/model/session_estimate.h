@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,18 @@
 #include "server/model/diagnosis.h"
 
 namespace rigcal {
+
+// Changes less likely than this by chance are told: of 1,000 sessions in which nothing moved, less than one is accused.
+constexpr double kMovedOdds = 5e-4;
+// A sensor that surely (by 3 sigmas) moved less than both is not told: no lens and no mount is known that well.
+constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001;
+[[nodiscard]] inline bool IsMove(const Vector6d& step, const Matrix6d& covariance, double odds) {
+  const auto surely = [&](int at) {
+    return step.segment<3>(at).norm() - 3 * std::sqrt(std::max(0.0, covariance.block<3, 3>(at, at).trace()));
+  };
+  return odds < kMovedOdds &&
+         (surely(tangent::kTranslation) >= kMovedMin_m || surely(tangent::kRotation) >= kMovedMin_rad);
+}
 
 // A sensor that had two poses during the session.
 struct SensorMovedWithin {

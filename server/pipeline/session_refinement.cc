@@ -167,7 +167,7 @@ Status RefineSessions(storage::Store& store, const RobotId& robot, calib::Camera
 
 Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
                                                           const std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
+  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused));
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
   std::vector<SessionEstimate> current;

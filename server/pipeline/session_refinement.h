@@ -11,6 +11,8 @@ namespace rigcal::pipeline {
 
 // Sessions captured before the newest so many are not refined any more.
 constexpr int kSessionsRefined = 8;
+// Of those that are, so many are fused: what is older than a robot's newest 32 visits says little of where sensors are now.
+constexpr int kSessionsFused = 32;
 // Of stored estimates; raised when the same observations give another estimate.
 inline constexpr const char* kSessionEstimator = "joint/2";
 

@@ -51,14 +51,6 @@ SensorMovedWithin Told(const SessionProblem& problem, const Refined& refined, co
   return told;
 }
 
-bool IsMove(const SensorMove& move) {
-  const auto surely = [&](int at) {
-    return move.step.segment<3>(at).norm() - 3 * std::sqrt(move.covariance.block<3, 3>(at, at).trace());
-  };
-  return move.odds < kMovedOdds &&
-         (surely(tangent::kTranslation) >= kMovedMin_m || surely(tangent::kRotation) >= kMovedMin_rad);
-}
-
 // The sensor's looks from `group` on become those of a second sensor with a pose of its own.
 SessionStart Split(SessionStart start, const Refined& refined, const SensorMove& move) {
   const auto old = static_cast<std::size_t>(move.sensor);
@@ -90,7 +82,7 @@ SessionStart Split(SessionStart start, const Refined& refined, const SensorMove&
 void FindMoves(SessionStart& start, Refined& refined, SessionEstimate& estimate) {
   while (static_cast<int>(estimate.moved.size()) < kMovesMax && refined.groups >= kGroupsForMoves) {
     const std::vector<SensorMove> moves = ScanForMoves(start.problem, refined);
-    if (moves.empty() || !IsMove(moves.front())) return;
+    if (moves.empty() || !IsMove(moves.front().step, moves.front().covariance, moves.front().odds)) return;
     const SensorMovedWithin told = Told(start.problem, refined, moves.front());
     if (told.last_before.empty() || told.first_after.empty()) return;
     estimate.moved.push_back(told);

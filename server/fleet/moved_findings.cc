@@ -24,4 +24,23 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   return finding;
 }
 
+std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const SessionTimes& captured_at) {
+  const std::vector<SensorMovedBetween>& moved = solution.fused.moved;
+  if (moved.empty()) return std::nullopt;
+  Finding finding;
+  std::vector<std::string> names;
+  for (const SensorMovedBetween& one : moved) {
+    finding.why += (names.empty() ? "" : "; ") + one.sensor.str() + " was moved between the sessions of " +
+                   NameOfSession(one.last_before, captured_at) + " and " + NameOfSession(one.first_after, captured_at) +
+                   ", by " + OffText(one.step);
+    if (std::find(names.begin(), names.end(), one.sensor.str()) == names.end()) names.push_back(one.sensor.str());
+  }
+  std::string flags;
+  for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
+  finding.what_to_do = "Look at the mount of " + List(names) + "; when it is tight, push the session of " +
+                       NameOfSession(moved.front().first_after, captured_at) + " again with `--remounted " + flags +
+                       "`, so that nothing from before counts for " + List(names);
+  return finding;
+}
+
 }  // namespace rigcal::fleet
