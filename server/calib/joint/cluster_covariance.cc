@@ -20,6 +20,10 @@ MatrixXd SelectedRows(const MatrixXd& matrix, const std::vector<int>& rows) {
   return selected;
 }
 
+MatrixXd SelectedBoth(const MatrixXd& symmetric, const std::vector<int>& rows) {
+  return SelectedRows(SelectedRows(symmetric, rows).transpose(), rows);
+}
+
 std::vector<int> PoseRows(const Refined& refined, std::vector<int>& row_of_sensor) {
   std::vector<int> rows;
   for (const int at : refined.layout.pose) {
@@ -88,7 +92,7 @@ double DofOf(const MatrixXd& joint, const MatrixXd& influence, double share, int
 
 }  // namespace
 
-PoseCovariance CovarianceOfPoses(const Refined& refined) {
+PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside) {
   const int size = refined.layout.size;
   PoseCovariance result;
   const std::vector<int> rows = PoseRows(refined, result.row_of_sensor);
@@ -104,15 +108,13 @@ PoseCovariance CovarianceOfPoses(const Refined& refined) {
   const Eigen::LLT<MatrixXd> of_model(pose_scale.asDiagonal() * result.model * pose_scale.asDiagonal());
   const MatrixXd y = of_model.matrixL().solve(pose_scale.asDiagonal() * result.influence);
   const MatrixXd by_given = refined.covariance * refined.at_optimum.given.H.topLeftCorner(size, size) * refined.covariance;
-  MatrixXd given(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t j = 0; j < rows.size(); ++j)
-      given(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = by_given(rows[i], rows[j]);
+  const MatrixXd given = SelectedBoth(by_given, rows);
   const MatrixXd half = of_model.matrixL().solve(pose_scale.asDiagonal() * given * pose_scale.asDiagonal());
   const MatrixXd known = of_model.matrixL().solve(half.transpose());
   const Shrunk shrunk = Shrink(y, known);
   const MatrixXd L = pose_scale.cwiseInverse().asDiagonal() * MatrixXd(of_model.matrixL());
-  result.joint = L * shrunk.S * L.transpose();
+  result.joint = result.without_beside = L * shrunk.S * L.transpose();
+  if (beside.size() > 0) result.joint += SelectedBoth(beside, rows);
   result.model_ratio = shrunk.ratio;
   result.spread_ratio = shrunk.mean;
   for (const int row : result.row_of_sensor)
