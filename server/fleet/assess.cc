@@ -62,6 +62,13 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   return suspects;
 }
 
+// Edges that do not agree, and loops of them that do not close.
+std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                                     const SessionTimes& captured_at) {
+  std::vector<Finding> contradictions = FindContradictions(edges, solution, policy, captured_at);
+  return contradictions.empty() ? Collect({FindOpenLoops(edges, solution, policy)}) : contradictions;
+}
+
 }  // namespace
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
@@ -70,12 +77,12 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto moved = FindMovedWithin(estimates, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
-  if (const auto contradictions = FindContradictions(edges, solution, policy, captured_at); !contradictions.empty())
-    return VerdictFrom(VerdictLevel::kFail, contradictions);
-  if (const auto open = FindOpenLoops(edges, solution, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
+  const std::vector<Finding> accusations = FindAccusations(edges, solution, policy, captured_at);
+  const bool lenses = !accusations.empty() && LensesExplain(edges, solution, estimates, policy);
+  if (!accusations.empty() && !lenses) return VerdictFrom(VerdictLevel::kFail, accusations);
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings = Collect({FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
+  const auto warnings = Collect({FindLensMisfits(estimates, lenses), FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
                                  FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
                                  FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);

@@ -19,6 +19,13 @@ struct Finding {
 // Sensors that had two poses during the newest session in which one had.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);
+// Cameras whose pictures are bent beyond their model, the worst first, each by the newest session that it took part in:
+// those that make a pose less certain by half or more, or, where edges disagree for it, all.
+[[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree);
+// All edges that count are of one session, whose raw observations agree with one rig but for its lenses: then edges that
+// disagree accuse no sensor. Not where an edge is grossly off, nor across sessions, between which sensors may move.
+[[nodiscard]] bool LensesExplain(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                 const std::vector<SessionEstimate>& estimates, const Policy& policy);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);
