@@ -62,6 +62,13 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   return suspects;
 }
 
+// Edges that do not agree, and loops of them that do not close.
+std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                                     const SessionTimes& captured_at) {
+  std::vector<Finding> contradictions = FindContradictions(edges, solution, policy, captured_at);
+  return contradictions.empty() ? Collect({FindOpenLoops(edges, solution, policy)}) : contradictions;
+}
+
 }  // namespace
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
@@ -71,14 +78,14 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
-  const GraphSolution judged = WithoutRefinedPairs(edges, solution);
-  if (const auto contradictions = FindContradictions(edges, judged, policy, captured_at); !contradictions.empty())
-    return VerdictFrom(VerdictLevel::kFail, contradictions);
-  if (const auto open = FindOpenLoops(edges, judged, policy)) return VerdictFrom(VerdictLevel::kFail, {*open});
+  const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy);
+  if (const auto accusations = FindAccusations(edges, judged, policy, captured_at); !accusations.empty())
+    return VerdictFrom(VerdictLevel::kFail, accusations);
+  const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings = Collect({FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
-                                 FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
+  const auto warnings = Collect({FindLensMisfits(estimates, pairs_disagree), FindFailedEdges(edges), FindPastPairs(edges),
+                                 FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
                                  FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return Pass(UntestedLoops(edges, solution));

@@ -31,7 +31,8 @@ struct Policy {
 // far as that is known.
 using SessionTimes = std::map<SessionId, Stamp>;
 // `estimates`: of the sessions that count, the newest first; a sensor that was moved during one of them fails the robot,
-// and is told before what it made of the edges.
+// and is told before what it made of the edges. A lens that bends beyond its model warns, by name; where nothing else than
+// such lenses of one session can be behind edges that disagree, no edge or sensor is accused.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {});
 

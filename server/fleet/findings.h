@@ -22,8 +22,13 @@ struct Finding {
 // Sensors that sat elsewhere from one session on.
 [[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const SessionTimes& captured_at);
 // What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one rig
-// is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose.
-[[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution);
+// is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose. What is off by
+// more than the policy's plain limits stays all the same.
+[[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                const Policy& policy);
+// Cameras whose pictures are bent beyond their model, the worst first, each by the newest session that it took part in:
+// those that make a pose less certain by half or more, or, where edges disagree for it, all.
+[[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);

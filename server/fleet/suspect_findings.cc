@@ -87,19 +87,25 @@ std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vect
 
 }  // namespace
 
-GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution) {
+GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
   const std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
   if (refined.empty()) return solution;
   const auto all = [&](const std::vector<EdgeId>& ids) {
     return std::all_of(ids.begin(), ids.end(), [&](const EdgeId& id) { return refined.contains(id); });
   };
+  const auto small = [&](const Vector6d& e) {
+    return e.head<3>().norm() <= policy.residual_max_m && e.tail<3>().norm() <= policy.residual_max_rad;
+  };
   GraphSolution judged = solution;
-  std::erase_if(judged.suspects.two_poses, [&](const TwoPoses& two) { return all(two.group_a) && all(two.group_b); });
-  std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
-    return refined.contains(suspect.edge) && all(suspect.alternatives);
+  std::erase_if(judged.suspects.two_poses, [&](const TwoPoses& two) {
+    return small(two.difference) && all(two.group_a) && all(two.group_b);
   });
-  std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return refined.contains(residual.edge); });
-  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) { return all(cycle.edges); });
+  std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
+    return small(suspect.e) && refined.contains(suspect.edge) && all(suspect.alternatives);
+  });
+  std::erase_if(judged.residuals,
+                [&](const EdgeResidual& residual) { return small(residual.e) && refined.contains(residual.edge); });
+  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) { return small(cycle.e) && all(cycle.edges); });
   judged.cycles.failing = static_cast<int>(
       std::count_if(judged.cycles.worst.begin(), judged.cycles.worst.end(), [](const auto& cycle) { return cycle.fails(); }));
   return judged;

@@ -41,6 +41,37 @@ void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
   });
 }
 
+void WriteMisfits(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("misfits", [&] {
+    for (const LensMisfit& misfit : estimate.misfits)
+      out.Object([&] {
+        out.Text("camera", misfit.camera.str());
+        out.Number("evidence", misfit.evidence);
+        out.Text("model", NameOf(misfit.model));
+        out.Number("pose_sigma_m", misfit.pose_sigma_m);
+        out.Number("pose_sigma_rad", misfit.pose_sigma_rad);
+        out.Number("rms_px", misfit.rms_px);
+        out.Number("sigma_ratio", misfit.sigma_ratio);
+      });
+  });
+}
+
+LensMisfit ReadMisfit(const JsonField& field) {
+  LensMisfit misfit;
+  misfit.camera = ReadId<SensorId>(field.At("camera"));
+  const JsonField model = field.At("model");
+  if (const auto known = CameraModelOf(model.Text()); known)
+    misfit.model = *known;
+  else
+    model.Refuse(known.error().what);
+  misfit.rms_px = field.At("rms_px").Number();
+  misfit.evidence = field.At("evidence").Number();
+  misfit.pose_sigma_m = field.At("pose_sigma_m").Number();
+  misfit.pose_sigma_rad = field.At("pose_sigma_rad").Number();
+  misfit.sigma_ratio = field.At("sigma_ratio").Number();
+  return misfit;
+}
+
 RefinedPose ReadRefinedPose(const JsonField& field) {
   return {ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
           field.At("dof").Number()};
@@ -65,6 +96,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteLowerTriangle(out, "common", estimate.common);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
+    WriteMisfits(out, estimate);
     WriteMoved(out, estimate);
     WritePoses(out, estimate);
     out.Text("reference", estimate.reference.str());
@@ -88,6 +120,8 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   for (const JsonField& item : root.At("moved").Items(kSensorsMax)) estimate.moved.push_back(ReadMoved(item));
   for (const JsonField& item : root.At("held_back").Items(kLooksMax))
     estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture"))});
+  if (const auto misfits = root.Find("misfits"))  // documents of before have none
+    for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
   RIGCAL_TRY(document.status());
   return estimate;
 }

@@ -9,6 +9,7 @@
 
 #include "server/base/ids.h"
 #include "server/math/se3.h"
+#include "server/model/camera.h"
 #include "server/model/diagnosis.h"
 
 namespace rigcal {
@@ -39,6 +40,18 @@ struct HeldBackLook {
   CaptureId capture;
 };
 
+// A camera whose pictures are bent in a way that its model cannot describe: a smooth field of shifts, the same in every
+// capture, beyond what chance makes.
+struct LensMisfit {
+  SensorId camera;
+  CameraModel model = CameraModel::kPinholeRadtan;
+  double rms_px = 0.0;          // of the field where the camera saw corners, of u and of v
+  double evidence = 0.0;        // twice the log of the likelihood's ratio with and without it
+  double pose_sigma_m = 0.0;    // the most that it adds to the sigma of an axis of any pose, the square root of the
+  double pose_sigma_rad = 0.0;  // variance
+  double sigma_ratio = 1.0;     // of that pose and axis that it makes less certain most: with it over without any misfit
+};
+
 struct RefinedPose {
   SensorId sensor;
   Se3 T_ref_sensor;
@@ -55,6 +68,7 @@ struct SessionEstimate {
   Eigen::MatrixXd covariance, common;
   std::vector<SensorMovedWithin> moved;   // the most certain first
   std::vector<HeldBackLook> held_back;    // by sensor, then capture
+  std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
 };
 
 // First of the six rows of a pose; -1: the reference, which has none.

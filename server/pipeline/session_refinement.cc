@@ -176,6 +176,9 @@ Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store,
     std::erase_if(row.estimate->moved, [&](const SensorMovedWithin& moved) {
       return remounts.After(row.session, moved.sensor) != nullptr || !Counts(row.session, moved.sensor, edges);
     });
+    std::erase_if(row.estimate->misfits, [&](const LensMisfit& misfit) {
+      return !Counts(row.session, misfit.camera, edges);
+    });
     current.push_back(std::move(*row.estimate));
   }
   return current;

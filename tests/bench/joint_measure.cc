@@ -1,6 +1,7 @@
 // The joint refinement of the virtual MARS Mapper at feature level: how near it comes to the Cramer-Rao bound, whether its
 // regions hold, how long it takes, and what the scan for moved sensors says. joint_measure SEEDS [--first N]
-// [--bump SENSOR MM DEG] [--captures N] [--intrinsics exact|calibrated|absent] prints one JSON object.
+// [--bump SENSOR MM DEG] [--misfit PX] [--captures N] [--intrinsics exact|calibrated|absent] prints one JSON object.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +9,8 @@
 
 #include "client/sim/bound.h"
 #include "server/calib/joint/cluster_covariance.h"
+#include "server/calib/joint/estimate_session.h"
+#include "server/calib/joint/lens_misfit.h"
 #include "server/calib/joint/moved_sensor.h"
 #include "server/math/statistics.h"
 #include "tests/bench/joint_session.h"
@@ -38,6 +41,8 @@ Settings Parse(int argc, char** argv) {
       settings.first = std::atoi(argv[++i]);
     } else if (word == "--captures") {
       settings.options.captures = std::atoi(argv[++i]);
+    } else if (word == "--misfit") {
+      settings.options.disturb.lens_misfit_px = std::atof(argv[++i]);
     } else if (word == "--bump") {
       settings.options.bump = SensorId(argv[++i]);
       settings.options.bump_m = std::atof(argv[++i]) / 1e3;
@@ -54,31 +59,40 @@ Settings Parse(int argc, char** argv) {
   return settings;
 }
 
-void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem& problem,
-              const calib::joint::Refined& refined, const calib::joint::PoseCovariance& covariance,
-              std::map<std::string, Sums>& sums) {
+void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem& problem, const SessionEstimate& estimate,
+              const calib::joint::PoseCovariance& plain, std::map<std::string, Sums>& sums) {
   const auto bound = sim::CramerRaoBound(session.experiment);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
-    const int row = covariance.row_of_sensor[s];
+  for (const RefinedPose& pose : estimate.poses) {
+    const auto s = static_cast<std::size_t>(
+        std::find(problem.sensors.begin(), problem.sensors.end(), pose.sensor) - problem.sensors.begin());
+    const int row = plain.row_of_sensor[s];
     if (row == calib::joint::kNone) continue;
-    const Vector6d error =
-        (refined.state.T_ref_sensor[s].Inverse() * session.experiment.T_ref_sensor(problem.sensors[s])).Log();
-    const Matrix6d C = covariance.joint.block<6, 6>(row, row);
-    Sums& sum = sums[problem.sensors[s].str()];
+    const Vector6d error = (pose.T_ref_sensor.Inverse() * session.experiment.T_ref_sensor(pose.sensor)).Log();
+    Sums& sum = sums[pose.sensor.str()];
     sum.error_m2 += error.head<3>().squaredNorm(), sum.error_rad2 += error.tail<3>().squaredNorm();
     for (std::size_t i = 0; i < 6; ++i)
-      (i < 3 ? sum.bound_m2 : sum.bound_rad2) += std::pow(bound.at(problem.sensors[s])[i].value_or(0.0), 2);
-    const double t2 = error.dot(C.ldlt().solve(error));
-    const double dof = covariance.dof[s];
-    sum.t2 += t2, sum.dof += dof, ++sum.count;
-    sum.sigma_ratio += std::sqrt(C.trace() / covariance.model.block<6, 6>(row, row).trace());
-    sum.covered += t2 <= (dof > 0 ? HotellingLimit(static_cast<int>(dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6));
+      (i < 3 ? sum.bound_m2 : sum.bound_rad2) += std::pow(bound.at(pose.sensor)[i].value_or(0.0), 2);
+    const double t2 = error.dot(pose.covariance.ldlt().solve(error));
+    sum.t2 += t2, sum.dof += pose.dof, ++sum.count;
+    sum.sigma_ratio += std::sqrt(pose.covariance.trace() / plain.model.block<6, 6>(row, row).trace());
+    sum.covered +=
+        t2 <= (pose.dof > 0 ? HotellingLimit(static_cast<int>(pose.dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6));
   }
+}
+
+void PrintFound(const SessionEstimate& estimate) {
+  for (const SensorMovedWithin& moved : estimate.moved)
+    std::printf(", {\"moved\": \"%s\", \"odds\": %.3g, \"mm\": %.3f}", moved.sensor.str().c_str(), moved.odds,
+                1e3 * moved.step.head<3>().norm());
+  for (const LensMisfit& misfit : estimate.misfits)
+    std::printf(", {\"misfit\": \"%s\", \"px\": %.4f, \"evidence\": %.0f, \"mm\": %.3f, \"ratio\": %.2f}",
+                misfit.camera.str().c_str(), misfit.rms_px, misfit.evidence, 1e3 * misfit.pose_sigma_m,
+                misfit.sigma_ratio);
 }
 
 int Measure(const Settings& settings) {
   std::map<std::string, Sums> sums;
-  double start_s = 0, refine_s = 0, covariance_s = 0, scan_s = 0, ratio = 0, spread = 0;
+  double start_s = 0, refine_s = 0, covariance_s = 0, scan_s = 0, fields_s = 0, whole_s = 0, ratio = 0, spread = 0;
   std::printf("{\"moves\": [");
   for (int i = 0; i < settings.seeds; ++i) {
     sim::Options options = settings.options;
@@ -101,23 +115,34 @@ int Measure(const Settings& settings) {
     const auto moves = calib::joint::ScanForMoves(start->problem, *refined);
     scan_s += Seconds(since);
     ratio += covariance.model_ratio, spread += covariance.spread_ratio;
-    AddPoses(session, start->problem, *refined, covariance, sums);
+    since = std::chrono::steady_clock::now();
+    const auto misfits = calib::joint::FindMisfits(start->problem, *refined);
+    fields_s += Seconds(since);
+    since = std::chrono::steady_clock::now();
+    const SessionEstimate estimate = calib::joint::EstimateSession(views);
+    whole_s += Seconds(since);
+    AddPoses(session, start->problem, estimate, covariance, sums);
     std::printf("%s\n[%llu", i ? "," : "", static_cast<unsigned long long>(options.seed));
     for (std::size_t m = 0; m < std::min<std::size_t>(3, moves.size()); ++m)
       std::printf(", {\"sensor\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
                   start->problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str(), moves[m].group,
                   moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
                   180 / M_PI * moves[m].step.tail<3>().norm());
+    PrintFound(estimate);
     std::printf("]");
     if (i == 0)
       for (std::size_t s = 0; s < start->problem.sensors.size(); ++s)
         std::fprintf(stderr, "%s noise %.4g %.4g\n", start->problem.sensors[s].str().c_str(), refined->noise[s].sigma,
                      refined->noise[s].sigma_rad);
+    for (std::size_t k = 0; i == 0 && k < misfits.components.variance.size(); ++k)
+      std::fprintf(stderr, "field %zu sigma_px %.4f evidence %.1f dof %.1f seen %td\n", k,
+                   std::sqrt(misfits.components.variance[k]), misfits.components.evidence[k], misfits.components.dof[k],
+                   misfits.components.seen.axes[k].cols());
   }
   const double n = settings.seeds;
-  std::printf("],\n\"start_s\": %.3f, \"refine_s\": %.3f, \"covariance_s\": %.3f, \"scan_s\": %.3f, \"model_ratio\": "
+  std::printf("],\n\"start_s\": %.3f, \"refine_s\": %.3f, \"covariance_s\": %.3f, \"scan_s\": %.3f, \"fields_s\": %.3f, \"whole_s\": %.3f, \"model_ratio\": "
               "%.3f, \"spread_ratio\": %.3f,\n\"sensors\": {",
-              start_s / n, refine_s / n, covariance_s / n, scan_s / n, ratio / n, spread / n);
+              start_s / n, refine_s / n, covariance_s / n, scan_s / n, fields_s / n, whole_s / n, ratio / n, spread / n);
   const char* comma = "";
   for (const auto& [name, s] : sums) {
     std::printf("%s\n\"%s\": {\"ratio_translation\": %.3f, \"ratio_rotation\": %.3f, \"mean_t2\": %.2f, \"covered\": "

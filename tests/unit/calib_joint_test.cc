@@ -233,6 +233,95 @@ TEST(CalibJoint, SensorThatSawNothingDoesNotRefuseTheSession) {
   EXPECT_EQ(refined.size() + 1, views.T_ref_sensor.size());
 }
 
+// Waves across the picture, of another length along u than along v.
+Eigen::Vector2d BentBy(double amplitude_px, const Eigen::Vector2d& uv_px) {
+  const Eigen::Vector2d turn = 2 * M_PI * uv_px / 2448;
+  return amplitude_px * Eigen::Vector2d(std::sin(2.2 * turn.x() + 0.9 * turn.y()), std::cos(1.8 * turn.y() - turn.x()));
+}
+
+void Bend(const char* camera, double amplitude_px, FeatureSession& session) {
+  for (auto& [capture, view] : session.seen.views.at(SensorId(camera)))
+    for (Eigen::Vector2d& corner : view.corners_px) corner += BentBy(amplitude_px, corner);
+}
+
+SessionEstimate EstimateFrom(const FeatureSession& session) {
+  SessionEstimate estimate = EstimateSession(ViewsOf(session, NominalPoses(session)));
+  EXPECT_TRUE(estimate.why_not.empty());
+  return estimate;
+}
+
+double T2(const FeatureSession& session, const SensorId& sensor, const Se3& T_ref_sensor, const Matrix6d& C) {
+  const Vector6d error = (T_ref_sensor.Inverse() * session.experiment.T_ref_sensor(sensor)).Log();
+  return error.dot(C.ldlt().solve(error));
+}
+
+// Of the sensor whose pose is told worst: squared error in sigmas; 6 are expected.
+double WorstT2(const FeatureSession& session, const SessionEstimate& estimate) {
+  double worst = 0;
+  for (std::size_t i = 0; i < estimate.poses.size(); ++i)
+    if (const int row = RowOf(estimate, i); row >= 0)
+      worst = std::max(worst, T2(session, estimate.poses[i].sensor, estimate.poses[i].T_ref_sensor,
+                                 estimate.covariance.block<6, 6>(row, row)));
+  return worst;
+}
+
+double WorstT2WithoutFields(const FeatureSession& session) {
+  const SessionStart start = StartFrom(session);
+  const Refined refined = RefinedFrom(start);
+  const PoseCovariance covariance = CovarianceOfPoses(refined);
+  double worst = 0;
+  for (std::size_t s = 0; s < start.problem.sensors.size(); ++s)
+    if (const int row = covariance.row_of_sensor[s]; row != kNone)
+      worst = std::max(worst, T2(session, start.problem.sensors[s], refined.state.T_ref_sensor[s],
+                                 covariance.joint.block<6, 6>(row, row)));
+  return worst;
+}
+
+TEST(CalibJoint, ALensThatBendsBeyondItsModelIsNamedAloneAndCovered) {
+  FeatureSession session = Visit(WithSeed(14));
+  Bend("right_back", 0.2, session);
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.misfits.size(), 1u);
+  EXPECT_EQ(estimate.misfits[0].camera.str(), "right_back");
+  EXPECT_GT(estimate.misfits[0].rms_px, 0.05);
+  EXPECT_LT(estimate.misfits[0].rms_px, 0.2);
+  EXPECT_GT(estimate.misfits[0].sigma_ratio, 1.5);
+  EXPECT_TRUE(estimate.moved.empty());
+  EXPECT_LT(WorstT2(session, estimate), 25.0);  // of one sensor by chance: one in 3,000
+  EXPECT_GT(WorstT2WithoutFields(session), 40.0);
+}
+
+TEST(CalibJoint, EveryLensMayBend) {
+  FeatureSession session = Visit(WithSeed(15));
+  for (const auto& [camera, views] : FeatureSession(session).seen.views) Bend(camera.str().c_str(), 0.1, session);
+  const SessionEstimate estimate = EstimateFrom(session);
+  EXPECT_EQ(estimate.misfits.size(), 9u);
+  EXPECT_TRUE(estimate.moved.empty());
+  EXPECT_LT(WorstT2(session, estimate), 30.0);
+}
+
+TEST(CalibJoint, NoLensIsAccusedWhereNoneBends) {
+  for (const std::uint64_t seed : {11, 12, 13}) EXPECT_TRUE(EstimateFrom(Visit(WithSeed(seed))).misfits.empty()) << seed;
+}
+
+TEST(CalibJoint, ABumpIsNoBentLensAndABentLensNoBump) {
+  sim::Options options = WithSeed(16);
+  options.bump = SensorId("left_front");
+  options.bump_m = 0.005;
+  options.bump_rad = 0.0087;
+  FeatureSession session = Visit(options);
+  const SessionEstimate bumped = EstimateFrom(session);
+  ASSERT_EQ(bumped.moved.size(), 1u);
+  EXPECT_EQ(bumped.moved[0].sensor.str(), "left_front");
+  EXPECT_TRUE(bumped.misfits.empty());
+  Bend("back", 0.2, session);
+  const SessionEstimate both = EstimateFrom(session);
+  ASSERT_EQ(both.moved.size(), 1u);
+  EXPECT_EQ(both.moved[0].sensor.str(), "left_front");
+  ASSERT_EQ(both.misfits.size(), 1u);
+  EXPECT_EQ(both.misfits[0].camera.str(), "back");
+}
+
 TEST(CalibJoint, SaysWhyThereIsNothingToRefine) {
   FeatureSession session = Visit(WithSeed(10));
   for (auto& [camera, views] : session.seen.views)

@@ -24,6 +24,12 @@ SessionEstimate MakeEstimate() {
   moved.odds = 1e-30;
   estimate.moved = {moved};
   estimate.held_back = {{SensorId("left"), CaptureId("007")}};
+  LensMisfit misfit;
+  misfit.camera = SensorId("right");
+  misfit.model = CameraModel::kPinholeRational;
+  misfit.rms_px = 0.05, misfit.evidence = 300, misfit.sigma_ratio = 2.5;
+  misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
+  estimate.misfits = {misfit};
   return estimate;
 }
 
@@ -42,6 +48,29 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
   EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));
   EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));
+  ASSERT_EQ(read->misfits.size(), 1u);
+  EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
+  EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);
+  EXPECT_EQ(read->misfits[0].sigma_ratio, 2.5);
+  EXPECT_EQ(read->misfits[0].pose_sigma_rad, 2e-4);
+}
+
+TEST(SessionEstimateDocument, OneOfBeforeMisfitsWereLookedForHasNone) {
+  std::string text = WriteSessionEstimate(MakeEstimate());
+  const auto from = text.find("\"misfits\""), to = text.find("\"moved\"");
+  ASSERT_LT(from, to);
+  text.erase(from, to - from);
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_TRUE(read->misfits.empty());
+}
+
+TEST(SessionEstimateDocument, RefusesALensThatIsNone) {
+  std::string text = WriteSessionEstimate(MakeEstimate());
+  text.replace(text.find("pinhole_rational"), 16, "pinhole_fanciful");
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().what.find("misfits[0].model"), std::string::npos) << read.error().what;
 }
 
 TEST(SessionEstimateDocument, RefusesWhatIsNone) {

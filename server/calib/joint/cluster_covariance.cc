@@ -20,6 +20,10 @@ MatrixXd SelectedRows(const MatrixXd& matrix, const std::vector<int>& rows) {
   return selected;
 }
 
+MatrixXd SelectedBoth(const MatrixXd& symmetric, const std::vector<int>& rows) {
+  return SelectedRows(SelectedRows(symmetric, rows).transpose(), rows);
+}
+
 std::vector<int> PoseRows(const Refined& refined, std::vector<int>& row_of_sensor) {
   std::vector<int> rows;
   for (const int at : refined.layout.pose) {
@@ -78,10 +82,6 @@ Shrunk Shrink(const MatrixXd& y, const MatrixXd& known) {
   return shrunk;
 }
 
-MatrixXd SelectedBlock(const MatrixXd& matrix, const std::vector<int>& rows) {
-  return SelectedRows(SelectedRows(matrix, rows).transpose(), rows).transpose();
-}
-
 // Of the information that is given, that of constants; the rest relates poses.
 MatrixXd OfConstants(MatrixXd given, const std::vector<int>& pose_rows) {
   for (const int row : pose_rows) {
@@ -101,7 +101,7 @@ double DofOf(const MatrixXd& joint, const MatrixXd& influence, double share, int
 
 }  // namespace
 
-PoseCovariance CovarianceOfPoses(const Refined& refined) {
+PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside) {
   const int size = refined.layout.size;
   PoseCovariance result;
   const std::vector<int> rows = PoseRows(refined, result.row_of_sensor);
@@ -117,13 +117,17 @@ PoseCovariance CovarianceOfPoses(const Refined& refined) {
   const Eigen::LLT<MatrixXd> of_model(pose_scale.asDiagonal() * result.model * pose_scale.asDiagonal());
   const MatrixXd y = of_model.matrixL().solve(pose_scale.asDiagonal() * result.influence);
   const MatrixXd given_H = refined.at_optimum.given.H.topLeftCorner(size, size);
-  const MatrixXd given = SelectedBlock(refined.covariance * given_H * refined.covariance, rows);
-  result.common = SelectedBlock(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
+  const MatrixXd given = SelectedBoth(refined.covariance * given_H * refined.covariance, rows);
+  result.common = SelectedBoth(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
   const MatrixXd half = of_model.matrixL().solve(pose_scale.asDiagonal() * given * pose_scale.asDiagonal());
   const MatrixXd known = of_model.matrixL().solve(half.transpose());
   const Shrunk shrunk = Shrink(y, known);
   const MatrixXd L = pose_scale.cwiseInverse().asDiagonal() * MatrixXd(of_model.matrixL());
-  result.joint = L * shrunk.S * L.transpose();
+  result.joint = result.without_beside = L * shrunk.S * L.transpose();
+  if (beside.size() > 0) {
+    result.joint += SelectedBoth(beside, rows);
+    result.common += SelectedBoth(beside, rows);  // a lens is the same on every visit
+  }
   result.model_ratio = shrunk.ratio;
   result.spread_ratio = shrunk.mean;
   for (const int row : result.row_of_sensor)

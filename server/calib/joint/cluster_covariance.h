@@ -10,6 +10,7 @@ struct PoseCovariance {
   std::vector<int> row_of_sensor;  // first of six rows in `joint`; kNone: the reference
   Eigen::MatrixXd joint;           // right tangents
   Eigen::MatrixXd common;          // part of `joint` that errs alike on every visit: constants of lenses, boards, ranges
+  Eigen::MatrixXd without_beside;  // the same as if nothing had been held
   Eigen::MatrixXd model;           // H^-1 of the same rows
   Eigen::MatrixXd influence;       // columns: what each group moves the poses by; their outer products sum to the sandwich
   double model_ratio = 1.0;        // share of the model in `joint`
@@ -17,6 +18,7 @@ struct PoseCovariance {
   std::vector<double> dof;         // per sensor, behind its six rows of `joint`; 0: known
 };
 
-[[nodiscard]] PoseCovariance CovarianceOfPoses(const Refined& refined);
+// `beside`: covariance of the layout's unknowns by what the refinement held; it is added to what is found. Empty: none.
+[[nodiscard]] PoseCovariance CovarianceOfPoses(const Refined& refined, const Eigen::MatrixXd& beside = {});
 
 }  // namespace rigcal::calib::joint

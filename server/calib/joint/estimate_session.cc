@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "server/calib/joint/cluster_covariance.h"
+#include "server/calib/joint/lens_misfit.h"
 #include "server/calib/joint/moved_sensor.h"
 
 namespace rigcal::calib::joint {
@@ -16,6 +17,7 @@ namespace {
 constexpr double kHeldBackBelow = 0.5;  // of a look's weight
 constexpr int kMovesMax = 4;            // in one session: more is no bump, but a rig that is not rigid
 constexpr int kGroupsForMoves = 6;      // fewer do not tell a bump from chance
+constexpr int kFieldRounds = 3;         // of fields and everything else in turn
 
 SessionEstimate Refused(const SessionViews& views, const Error& error) {
   SessionEstimate estimate;
@@ -77,20 +79,98 @@ SessionStart Split(SessionStart start, const Refined& refined, const SensorMove&
   return start;
 }
 
-// Moves one after the other: each is taken out by giving the sensor a pose of its own from then on, so that it does not
-// hide the next.
-void FindMoves(SessionStart& start, Refined& refined, SessionEstimate& estimate) {
-  while (static_cast<int>(estimate.moved.size()) < kMovesMax && refined.groups >= kGroupsForMoves) {
-    const std::vector<SensorMove> moves = ScanForMoves(start.problem, refined);
-    if (moves.empty() || !IsMove(moves.front().step, moves.front().covariance, moves.front().odds)) return;
-    const SensorMovedWithin told = Told(start.problem, refined, moves.front());
-    if (told.last_before.empty() || told.first_after.empty()) return;
-    estimate.moved.push_back(told);
-    SessionStart split = Split(start, refined, moves.front());
-    auto again = Refine(split.problem, split.state, split.noise, refined.group_of_place);
-    if (!again) return;
-    start = std::move(split);
-    refined = std::move(*again);
+// A session as it is explained so far.
+struct Explained {
+  SessionStart start;
+  Refined refined;
+  FoundMisfits misfits;
+};
+
+std::optional<Explained> Again(SessionStart start, const std::vector<int>& groups) {
+  auto refined = Refine(start.problem, start.state, start.noise, groups);
+  if (!refined) return std::nullopt;
+  FoundMisfits misfits = FindMisfits(start.problem, *refined);
+  return Explained{std::move(start), std::move(*refined), std::move(misfits)};
+}
+
+// Fields are taken out and everything is refined again, until they stay as they are.
+std::optional<Explained> WithMisfitsHeld(Explained now) {
+  for (int round = 0; round < kFieldRounds; ++round) {
+    SessionStart start = now.start;
+    start.state = WithFields(start.problem, now.misfits, now.refined.state);
+    start.noise = now.refined.noise;
+    auto next = Again(std::move(start), now.refined.group_of_place);
+    if (!next) return std::nullopt;
+    const bool same = SameFields(now.misfits, next->misfits);
+    now = std::move(*next);
+    if (same) break;
+  }
+  return now;
+}
+
+// The likeliest move, where it is one.
+std::optional<SensorMove> MoveIn(const Explained& now, const SessionEstimate& estimate) {
+  if (static_cast<int>(estimate.moved.size()) >= kMovesMax || now.refined.groups < kGroupsForMoves) return std::nullopt;
+  const std::vector<SensorMove> moves = ScanForMoves(now.start.problem, now.refined);
+  if (moves.empty() || !IsMove(moves.front().step, moves.front().covariance, moves.front().odds)) return std::nullopt;
+  const SensorMovedWithin told = Told(now.start.problem, now.refined, moves.front());
+  if (told.last_before.empty() || told.first_after.empty()) return std::nullopt;
+  return moves.front();
+}
+
+// Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
+// the noise that it leaves; with what its fields and its moves had to choose from (Schwarz 1978).
+double LeftOver(const Explained& explained) {
+  const SessionProblem& problem = explained.start.problem;
+  const SessionFit& fit = explained.refined.at_optimum.fit;
+  double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
+  const auto add = [&](const LookFit& look, double weight, double sigma, double sigma_rad) {
+    left += weight * look.squares.sum() + 2 * look.numbers[0] * std::log(sigma);
+    if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(sigma_rad);
+  };
+  const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights) {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      const SensorNoise& noise = explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)];
+      add(fits[i], weights[i], noise.sigma, noise.sigma_rad);
+    }
+  };
+  add_all(problem.corners, fit.corners, explained.refined.weights.corners);
+  add_all(problem.plates, fit.plates, explained.refined.weights.plates);
+  add_all(problem.poses, fit.poses, explained.refined.weights.poses);
+  return left + 6 * std::log(static_cast<double>(problem.corners.size())) *
+                    static_cast<double>(problem.sensors.size());
+}
+
+std::optional<Explained> WithMove(const Explained& now, const SensorMove& move) {
+  auto next = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
+  return next && next->misfits.held ? WithMisfitsHeld(std::move(*next)) : std::move(next);
+}
+
+// A bump is in time, a misfit in the picture, and either looks a little like the other: of the two the one is taken out
+// first that leaves less.
+struct Next {
+  std::optional<Explained> explained;
+  bool is_move = false;
+};
+Next NextOf(const Explained& now, const std::optional<SensorMove>& move) {
+  const bool bent = !now.misfits.held && now.misfits.any();
+  Next by_move{move ? WithMove(now, *move) : std::nullopt, true};
+  if (!bent) return by_move;
+  Next by_field{WithMisfitsHeld(now), false};
+  if (!by_field.explained) return by_move;
+  if (by_move.explained && LeftOver(*by_move.explained) < LeftOver(*by_field.explained)) return by_move;
+  return by_field;
+}
+
+// What is found is taken out before the next is looked for, so that it does not hide it.
+Explained ExplainAll(Explained now, SessionEstimate& estimate) {
+  while (true) {
+    const std::optional<SensorMove> move = MoveIn(now, estimate);
+    Next next = NextOf(now, move);
+    if (move && (next.is_move || !next.explained))
+      estimate.moved.push_back(Told(now.start.problem, now.refined, *move));
+    if (!next.explained) return now;
+    now = std::move(*next.explained);
   }
 }
 
@@ -104,7 +184,8 @@ void AddHeldBack(const SessionProblem& problem, const Looks& looks, const std::v
 }
 
 // Rows of the poses in the order of `sensors`, indices of the problem.
-Eigen::MatrixXd InOrder(const Eigen::MatrixXd& joint, const std::vector<int>& row_of_sensor, const std::vector<int>& sensors) {
+Eigen::MatrixXd InOrder(const Eigen::MatrixXd& joint, const std::vector<int>& row_of_sensor,
+                        const std::vector<int>& sensors) {
   std::vector<int> rows;
   for (const int sensor : sensors)
     if (const int row = row_of_sensor[static_cast<std::size_t>(sensor)]; row != kNone)
@@ -112,22 +193,38 @@ Eigen::MatrixXd InOrder(const Eigen::MatrixXd& joint, const std::vector<int>& ro
   return joint(rows, rows);
 }
 
-// A sensor that moved is in the problem several times, its last pose last.
-void AddPoses(const SessionProblem& problem, const Refined& refined, SessionEstimate& estimate) {
+// By name; of a sensor that moved, which is in the problem several times, its last.
+std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
   std::map<SensorId, int> last;
-  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s)
-    if (s != problem.reference && problem.sensors[static_cast<std::size_t>(s)] != estimate.reference)
-      last[problem.sensors[static_cast<std::size_t>(s)]] = s;
-  last[estimate.reference] = problem.reference;
-  const PoseCovariance covariance = CovarianceOfPoses(refined);
+  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s) last[problem.sensors[static_cast<std::size_t>(s)]] = s;
+  last[problem.sensors[static_cast<std::size_t>(problem.reference)]] = problem.reference;
+  return last;
+}
+
+void AddPoses(const Explained& explained, SessionEstimate& estimate) {
+  const SessionProblem& problem = explained.start.problem;
+  const PoseCovariance covariance = CovarianceOfPoses(explained.refined, CovarianceByFields(explained.misfits));
   std::vector<int> sensors;
-  for (const auto& [id, s] : last) {
-    estimate.poses.push_back({id, refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
+  for (const auto& [id, s] : LastOfEach(problem)) {
+    estimate.poses.push_back({id, explained.refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
                               covariance.dof[static_cast<std::size_t>(s)]});
     sensors.push_back(s);
   }
   estimate.covariance = InOrder(covariance.joint, covariance.row_of_sensor, sensors);
   if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
+  if (explained.misfits.held)
+    estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
+}
+
+void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
+  const SessionProblem& problem = explained.start.problem;
+  const LookWeights& weights = explained.refined.weights;
+  AddHeldBack(problem, problem.corners, weights.corners, estimate.held_back);
+  AddHeldBack(problem, problem.plates, weights.plates, estimate.held_back);
+  AddHeldBack(problem, problem.poses, weights.poses, estimate.held_back);
+  std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
+    return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
+  });
 }
 
 // Without the sensors of which the session says too little: their pairs stand as they are.
@@ -146,16 +243,12 @@ SessionEstimate Estimate(const SessionViews& views) {
   if (!start) return Refused(views, start.error());
   auto refined = Refine(start->problem, start->state, start->noise, GroupsOf(start->problem, start->state));
   if (!refined) return Refused(views, refined.error());
+  FoundMisfits misfits = FindMisfits(start->problem, *refined);
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  AddHeldBack(start->problem, start->problem.corners, refined->weights.corners, estimate.held_back);
-  AddHeldBack(start->problem, start->problem.plates, refined->weights.plates, estimate.held_back);
-  AddHeldBack(start->problem, start->problem.poses, refined->weights.poses, estimate.held_back);
-  std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
-    return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
-  });
-  FindMoves(*start, *refined, estimate);
-  AddPoses(start->problem, *refined, estimate);
+  const Explained last = ExplainAll({std::move(*start), std::move(*refined), std::move(misfits)}, estimate);
+  AddPoses(last, estimate);
+  AddHeldBack(last, estimate);
   return estimate;
 }
 

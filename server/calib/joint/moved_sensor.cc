@@ -108,7 +108,7 @@ SensorMove LikeliestMove(const Refined& refined, int sensor) {
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
-    best = {sensor, static_cast<int>(group), change.step, statistic, scatter.dof, odds,
+    best = {sensor, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
             scatter.mean_square * change.covariance};  // a bump makes the sensor's noise look larger than it is
   }
   return best;

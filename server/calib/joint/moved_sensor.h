@@ -10,6 +10,7 @@ struct SensorMove {
   int sensor = kNone;
   int group = 0;             // of captures; the first after the move
   Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor
+  double gain = 0.0;         // of the cost, which is twice that of the likelihood's logarithm
   double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
   double dof = 0.0;
   double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most

@@ -82,17 +82,29 @@ Plane PlaneOf(const Se3& T_lidar_board, double bias_m) {
   return plane;
 }
 
-}  // namespace
+// One corner: J of the predicted pixel by the own unknowns, the residual in px, and the weight of its square.
+struct CornerTerms {
+  const Eigen::Vector2d& uv_px;
+  const Eigen::Matrix<double, 2, Eigen::Dynamic>& J;
+  Eigen::Vector2d r_px;
+  double w;
+};
 
-Se3 T_sensor_board(const SessionState& state, const Where& where) {
-  return state.T_ref_sensor[static_cast<std::size_t>(where.sensor)].Inverse() * T_ref_board(state, where);
+Eigen::Vector2d HeldField(const FieldGrid& grid, const SessionState& state, std::size_t camera,
+                          const Eigen::Vector2d& uv_px) {
+  const bool none = camera >= state.field_px.size() || state.field_px[camera].size() == 0;
+  return none ? Eigen::Vector2d::Zero() : FieldAt(grid, state.field_px[camera], uv_px);
 }
 
-std::optional<Observation> Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
-                                   const CornersSeen& seen, const SensorNoise& noise, double weight) {
+// `visit` sees each corner. Nothing where one cannot be seen by the camera.
+template <typename Visit>
+std::optional<Observation> ObserveCorners(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                                          const CornersSeen& seen, const SensorNoise& noise, double weight,
+                                          const Visit& visit) {
   const auto camera = static_cast<std::size_t>(seen.camera), target = static_cast<std::size_t>(seen.target);
   const Lens& lens = problem.cameras[camera];
   const auto refined = static_cast<Eigen::Index>(lens.refined.size());
+  const FieldGrid grid = FieldGridOf(lens.picture);
   const bool scales = layout.scale[target] != kNone;
   const Eigen::Index own = 6 + refined + (scales ? 1 : 0);
   const Se3 T_cam_board = T_sensor_board(state, seen);
@@ -103,6 +115,7 @@ std::optional<Observation> Observe(const SessionProblem& problem, const Layout& 
   look.b = Eigen::VectorXd::Zero(own);
   Eigen::Matrix<double, 2, Eigen::Dynamic> J(2, own);
   for (std::size_t i = 0; i < seen.corners.size(); ++i) {
+    const Eigen::Vector2d& uv_px = seen.corners.uv_px[i];
     const Eigen::Vector3d p_board =
         larger * problem.target_points[target][static_cast<std::size_t>(seen.corners.idx[i])];
     const Projection projected = Project(lens.model, state.intrinsics[camera], T_cam_board * p_board);
@@ -111,7 +124,8 @@ std::optional<Observation> Observe(const SessionProblem& problem, const Layout& 
     J.leftCols<6>() = by_point * MovedPoint(p_board);
     J.middleCols(6, refined) = RefinedColumns(lens, projected.d_intrinsics);
     if (scales) J.rightCols<1>() = by_point * p_board / larger;
-    const Eigen::Vector2d r = (projected.uv_px - seen.corners.uv_px[i]) / noise.sigma;
+    const Eigen::Vector2d r_px = projected.uv_px + HeldField(grid, state, camera, uv_px) - uv_px;
+    const Eigen::Vector2d r = r_px / noise.sigma;
     const Robust robust = HuberOf(r.norm());
     const double w = weight * robust.weight;
     look.A.noalias() += w / (noise.sigma * noise.sigma) * J.transpose() * J;
@@ -120,10 +134,50 @@ std::optional<Observation> Observe(const SessionProblem& problem, const Layout& 
     look.squares += robust.weight * r.squaredNorm();
     look.numbers += 2 * robust.weight;
     look.norms.push_back(r.norm());
+    visit(CornerTerms{uv_px, J, r_px, w / (noise.sigma * noise.sigma)});
   }
   AddPoseColumns(layout, state, seen, own, look);
   AddOwnColumn(layout.lens[camera], own, 6, refined, look);
   if (scales) AddOwnColumn(layout.scale[target], own, own - 1, 1, look);
+  return look;
+}
+
+void AddFieldTerms(const FieldWeights& field, const CornerTerms& corner, Eigen::Index points, FieldLook& look) {
+  for (std::size_t i = 0; i < field.point.size(); ++i) {
+    const double w = corner.w * field.weight[i];
+    const Eigen::Index u = field.point[i], v = points + u;
+    look.own_field.col(u) += w * corner.J.row(0).transpose();
+    look.own_field.col(v) += w * corner.J.row(1).transpose();
+    look.b[u] += w * corner.r_px[0];
+    look.b[v] += w * corner.r_px[1];
+    for (std::size_t j = 0; j < field.point.size(); ++j) look.by_points(u, field.point[j]) += w * field.weight[j];
+  }
+}
+
+}  // namespace
+
+Se3 T_sensor_board(const SessionState& state, const Where& where) {
+  return state.T_ref_sensor[static_cast<std::size_t>(where.sensor)].Inverse() * T_ref_board(state, where);
+}
+
+std::optional<Observation> Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                                   const CornersSeen& seen, const SensorNoise& noise, double weight) {
+  return ObserveCorners(problem, layout, state, seen, noise, weight, [](const CornerTerms&) {});
+}
+
+std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                                          const CornersSeen& seen, const SensorNoise& noise, double weight) {
+  const FieldGrid grid = FieldGridOf(problem.cameras[static_cast<std::size_t>(seen.camera)].picture);
+  const Eigen::Index points = grid.points();
+  FieldLook look;
+  look.by_points = Eigen::MatrixXd::Zero(points, points);
+  look.b = Eigen::VectorXd::Zero(2 * points);
+  auto plain = ObserveCorners(problem, layout, state, seen, noise, weight, [&](const CornerTerms& corner) {
+    if (look.own_field.size() == 0) look.own_field = Eigen::MatrixXd::Zero(corner.J.cols(), 2 * points);
+    AddFieldTerms(FieldWeightsAt(grid, corner.uv_px), corner, points, look);
+  });
+  if (!plain) return std::nullopt;
+  look.plain = std::move(*plain);
   return look;
 }
 

@@ -34,6 +34,17 @@ struct Observation {
                                   const PlateSeen& seen, const SensorNoise& noise, double weight);
 [[nodiscard]] Observation Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
                                   const PoseTold& told, const SensorNoise& noise, double weight);
+// The same look with the coefficients of its camera's field as unknowns too: B, each pixel by them, is known from the pixel.
+struct FieldLook {
+  Observation plain;
+  Eigen::MatrixXd own_field;  // J^T W B: own unknowns by coefficients
+  Eigen::MatrixXd by_points;  // of B^T W B the half of u, which is that of v; nothing is between them
+  Eigen::VectorXd b;          // B^T W r
+};
+// Of a camera whose picture's size is known.
+[[nodiscard]] std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout,
+                                                        const SessionState& state, const CornersSeen& seen,
+                                                        const SensorNoise& noise, double weight);
 // Without a place.
 [[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
 

@@ -107,12 +107,27 @@ double UpdatedLidar(double factor, const Component& component) {
   return std::sqrt(std::max(1.0, (excess + component.numbers) / component.redundancy));
 }
 
-std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const LookWeights& weights, const SessionFit& fit,
-                                   const std::vector<SensorNoise>& before) {
-  std::vector<Component> corners(before.size()), plates(before.size()), moved(before.size()), turned(before.size());
+// Of each camera: what its field took up, per number that it saw.
+std::vector<double> FieldLeverage(const SessionProblem& problem, const SessionState& state, const SessionFit& fit) {
+  std::vector<double> numbers(problem.cameras.size(), 0.0), leverage(problem.cameras.size(), 0.0);
   for (std::size_t i = 0; i < problem.corners.size(); ++i)
-    corners[static_cast<std::size_t>(problem.corners[i].sensor)].Add(
-        weights.corners[i], fit.corners[i].squares[0], fit.corners[i].numbers[0], fit.corners[i].leverage[0]);
+    numbers[static_cast<std::size_t>(problem.corners[i].camera)] += fit.corners[i].numbers[0];
+  for (std::size_t k = 0; k < state.field_dof.size(); ++k)
+    if (numbers[k] > 0) leverage[k] = state.field_dof[k] / numbers[k];
+  return leverage;
+}
+
+std::vector<SensorNoise> NoiseFrom(const SessionProblem& problem, const LookWeights& weights, const SessionFit& fit,
+                                   const SessionState& state, const std::vector<SensorNoise>& before) {
+  std::vector<Component> corners(before.size()), plates(before.size()), moved(before.size()), turned(before.size());
+  const std::vector<double> by_field = FieldLeverage(problem, state, fit);
+  for (std::size_t i = 0; i < problem.corners.size(); ++i) {
+    const CornersSeen& seen = problem.corners[i];
+    const LookFit& one = fit.corners[i];
+    const double field = one.numbers[0] * by_field[static_cast<std::size_t>(seen.camera)];
+    corners[static_cast<std::size_t>(seen.sensor)].Add(weights.corners[i], one.squares[0], one.numbers[0],
+                                                       one.leverage[0] + field);
+  }
   for (std::size_t i = 0; i < problem.plates.size(); ++i)
     plates[static_cast<std::size_t>(problem.plates[i].sensor)].Add(weights.plates[i], fit.plates[i].squares[0], 3.0,
                                                                    fit.plates[i].leverage[0]);
@@ -218,7 +233,8 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
     refined.covariance = *covariance;
     AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
-    const std::vector<SensorNoise> updated = NoiseFrom(problem, refined.weights, refined.at_optimum.fit, refined.noise);
+    const std::vector<SensorNoise> updated = NoiseFrom(problem, refined.weights, refined.at_optimum.fit,
+                                                              refined.state, refined.noise);
     LookWeights weights = WeightsOf(problem, refined.at_optimum.fit);
     if (round > 1) {
       Approach(refined.weights.corners, weights.corners);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "server/calib/joint/spline_field.h"
 #include "server/calib/plane_moments.h"
 #include "server/calib/projection.h"
 #include "server/calib/seen_corners.h"
@@ -48,6 +49,7 @@ struct Lens {
   std::vector<int> refined;                            // of the intrinsics, by index; the others stay
   IntrinsicsVector given = IntrinsicsVector::Zero();   // where a sigma pulls
   IntrinsicsVector sigma = IntrinsicsVector::Zero();   // 0: nothing pulls
+  PictureSize picture = {};                            // empty: no field of shifts is looked for
 };
 
 struct SessionProblem {
@@ -74,6 +76,8 @@ struct SessionState {
   std::vector<Se3> T_world_ref;              // per place
   std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
   std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
+  std::vector<Eigen::VectorXd> field_px;     // per camera, or none: coefficients of what shifts its pictures beyond the model
+  std::vector<double> field_dof;             // per camera, or none: as many of its numbers have the coefficients taken up
 };
 
 // How noisy each sensor is: of corners px, of plates a factor on range noise, of a tracker m and rad.

@@ -102,6 +102,9 @@ class Starter {
   void AddLens(const CameraViews& camera) {
     Lens lens;
     lens.model = camera.camera.camera_model;
+    for (const auto& [capture, view] : camera.views)
+      lens.picture = {std::max(lens.picture.width_px, view.image_width_px),
+                      std::max(lens.picture.height_px, view.image_height_px)};
     if (!camera.camera.intrinsics) {
       lens.refined.resize(static_cast<std::size_t>(IntrinsicsCount(lens.model)));
       std::iota(lens.refined.begin(), lens.refined.end(), 0);

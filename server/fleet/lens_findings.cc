@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <set>
+
+#include "server/fleet/findings.h"
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+namespace {
+
+// A sigma that is larger by half is worth a better lens model; what adds less is in the sigmas, and nobody need act on it.
+constexpr double kMatters = 1.5;
+
+// Of each camera what the newest session says in which it took part.
+std::vector<LensMisfit> NewestOf(const std::vector<SessionEstimate>& estimates) {
+  std::vector<LensMisfit> newest;
+  std::set<SensorId> judged;
+  for (const SessionEstimate& estimate : estimates) {
+    if (!estimate.why_not.empty()) continue;
+    for (const LensMisfit& misfit : estimate.misfits)
+      if (!judged.contains(misfit.camera)) newest.push_back(misfit);
+    for (const RefinedPose& pose : estimate.poses) judged.insert(pose.sensor);
+  }
+  return newest;
+}
+
+std::vector<std::string> NamesOf(const std::vector<LensMisfit>& misfits) {
+  std::vector<std::string> names;
+  for (const LensMisfit& misfit : misfits) names.push_back(misfit.camera.str());
+  return names;
+}
+
+std::string ModelsOf(const std::vector<LensMisfit>& misfits) {
+  std::vector<std::string> models;
+  for (const LensMisfit& misfit : misfits)
+    if (std::find(models.begin(), models.end(), NameOf(misfit.model)) == models.end())
+      models.push_back(NameOf(misfit.model));
+  return List(models);
+}
+
+std::string WhyOf(const std::vector<LensMisfit>& misfits, const LensMisfit& worst) {
+  const bool one = misfits.size() == 1;
+  return std::string(one ? "the lens of " : "the lenses of ") + List(NamesOf(misfits)) +
+         (one ? " bends in a way that " : " bend in ways that ") + ModelsOf(misfits) + " cannot: " +
+         (one ? "" : "worst is " + worst.camera.str() + ", ") + "by " + Number(worst.rms_px, "px") +
+         " rms, which makes poses uncertain by " + Number(1e3 * worst.pose_sigma_m, "mm") + " and " +
+         Number(kDegreesPerRadian * worst.pose_sigma_rad, "deg");
+}
+
+// A richer model where there is one; else only seeing more of the picture tells more of the lens.
+std::string CureOf(const std::vector<LensMisfit>& misfits) {
+  std::vector<std::string> radtan, others;
+  for (const LensMisfit& misfit : misfits)
+    (misfit.model == CameraModel::kPinholeRadtan ? radtan : others).push_back(misfit.camera.str());
+  std::string cure;
+  if (!radtan.empty()) cure = "Try `model: pinhole_rational` for " + List(radtan);
+  if (others.empty()) return cure;
+  return cure + (cure.empty() ? "Capture" : "; capture") + " boards all over the pictures of " + List(others) +
+         ", and have their intrinsics estimated (give `intrinsics_sigma`, or leave the intrinsics out)";
+}
+
+}  // namespace
+
+std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
+  std::vector<LensMisfit> misfits = NewestOf(estimates);
+  if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return one.sigma_ratio < kMatters; });
+  if (misfits.empty()) return std::nullopt;
+  std::stable_sort(misfits.begin(), misfits.end(),
+                   [](const LensMisfit& x, const LensMisfit& y) { return x.sigma_ratio > y.sigma_ratio; });
+  Finding finding{WhyOf(misfits, misfits.front()), CureOf(misfits)};
+  if (edges_disagree) finding.why = "pairs of sensors disagree beyond chance because " + finding.why;
+  return finding;
+}
+
+}  // namespace rigcal::fleet
