@@ -48,6 +48,14 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
   if (fused.sessions.empty()) return;
   out.Object("fused", [&] {
     WriteLowerTriangle(out, "covariance", fused.covariance);
+    out.List("held_back", [&] {
+      for (const FusedSessions::HeldBack& look : fused.held_back)
+        out.Object([&] {
+          out.Text("capture", look.capture.str());
+          out.Text("sensor", look.sensor.str());
+          out.Text("session", look.session.str());
+        });
+    });
     out.List("sensors", [&] {
       for (const SensorId& sensor : fused.sensors) out.Text(sensor.str());
     });
@@ -66,6 +74,9 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
     fused.sensors.push_back(ReadId<SensorId>(sensor));
   for (const JsonField& session : field->At("sessions").Items(limits::kEdgesPerBatchMax))
     fused.sessions.push_back(ReadId<SessionId>(session));
+  for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax))
+    fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
+                               ReadId<CaptureId>(look.At("capture"))});
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");
   return fused;

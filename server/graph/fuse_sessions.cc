@@ -130,6 +130,15 @@ void TakePoses(const SessionFusion& fusion, const Told& told, GraphSolution& sol
   }
 }
 
+std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimate>& estimates,
+                                                const std::vector<SessionId>& sessions) {
+  std::vector<FusedSessions::HeldBack> held_back;
+  for (const SessionEstimate& estimate : estimates)
+    if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
+      for (const HeldBackLook& look : estimate.held_back) held_back.push_back({estimate.session, look.sensor, look.capture});
+  return held_back;
+}
+
 }  // namespace
 
 void FuseSessions(const std::vector<Edge>& edges, const SensorId& reference,
@@ -141,6 +150,7 @@ void FuseSessions(const std::vector<Edge>& edges, const SensorId& reference,
   solution.fused.moved = FindMovesBetween({edges, reference, solution}, estimates);
   const Told told = ToldOf(fusion, *inverse);
   TakePoses(fusion, told, solution);
+  solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
   solution.fused.sensors = fusion.sensors;
   solution.fused.covariance = told.covariance;

@@ -76,6 +76,13 @@ struct FusedSessions {
   std::vector<SessionId> sessions;  // empty: the poses are those of the graph of pairs
   std::vector<SensorId> sensors;    // six rows each of `covariance`, right tangents; the reference has none
   Eigen::MatrixXd covariance;
+  // What one sensor said in one capture, against all others: it counts for next to nothing. By session, sensor, capture.
+  struct HeldBack {
+    SessionId session;
+    SensorId sensor;
+    CaptureId capture;
+  };
+  std::vector<HeldBack> held_back;
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "server/report/changes.h"
 #include "server/report/sigmas.h"
@@ -10,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::size_t kRowsMax = 200;
+constexpr std::size_t kRowsMax = 200, kNamesMax = 10;
 
 struct Moved {
   const SensorPose* pose;
@@ -55,6 +56,20 @@ void FillRow(Dictionary& row, const Moved& moved, bool visits) {
   if (visits) ShowValue(row, "VISITS", "TEXT", VisitsText(fused));
 }
 
+// "front_right in capture 007 contradicts all that was seen besides: ..."
+void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
+  std::map<SensorId, std::vector<std::string>> captures;
+  for (const FusedSessions::HeldBack& look : fused.held_back) captures[look.sensor].push_back(look.capture.str());
+  for (const auto& [sensor, names] : captures) {
+    std::string text = sensor.str() + (names.size() == 1 ? " in capture " : " in captures ");
+    for (std::size_t i = 0; i < std::min(names.size(), kNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
+    if (names.size() > kNamesMax) text += " and " + std::to_string(names.size() - kNamesMax) + " more";
+    ShowValue(section, "HELD_BACK", "TEXT",
+              text + (names.size() == 1 ? " contradicts" : " contradict") +
+                  " all that was seen besides, as a picture of another instant does; it counts for next to nothing.");
+  }
+}
+
 }  // namespace
 
 void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
@@ -67,6 +82,7 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
                                    ", as one estimate" + (sessions > 1 ? " per session." : "."));
   if (sessions > 1) section->ShowSection("VISITS_HEAD");
   if (sessions > 1) section->ShowSection("VISITS_NOTE");
+  FillHeldBack(*section, revision.solution.fused);
   for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
 }
 

@@ -62,7 +62,10 @@ Settings Parse(int argc, char** argv) {
 void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem& problem, const SessionEstimate& estimate,
               const calib::joint::PoseCovariance& plain, std::map<std::string, Sums>& sums) {
   const auto bound = sim::CramerRaoBound(session.experiment);
-  for (const RefinedPose& pose : estimate.poses) {
+  for (std::size_t i = 0; i < estimate.poses.size(); ++i) {
+    const RefinedPose& pose = estimate.poses[i];
+    if (RowOf(estimate, i) < 0) continue;
+    const Matrix6d C = estimate.covariance.block<6, 6>(RowOf(estimate, i), RowOf(estimate, i));
     const auto s = static_cast<std::size_t>(
         std::find(problem.sensors.begin(), problem.sensors.end(), pose.sensor) - problem.sensors.begin());
     const int row = plain.row_of_sensor[s];
@@ -70,11 +73,11 @@ void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem&
     const Vector6d error = (pose.T_ref_sensor.Inverse() * session.experiment.T_ref_sensor(pose.sensor)).Log();
     Sums& sum = sums[pose.sensor.str()];
     sum.error_m2 += error.head<3>().squaredNorm(), sum.error_rad2 += error.tail<3>().squaredNorm();
-    for (std::size_t i = 0; i < 6; ++i)
-      (i < 3 ? sum.bound_m2 : sum.bound_rad2) += std::pow(bound.at(pose.sensor)[i].value_or(0.0), 2);
-    const double t2 = error.dot(pose.covariance.ldlt().solve(error));
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      (axis < 3 ? sum.bound_m2 : sum.bound_rad2) += std::pow(bound.at(pose.sensor)[axis].value_or(0.0), 2);
+    const double t2 = error.dot(C.ldlt().solve(error));
     sum.t2 += t2, sum.dof += pose.dof, ++sum.count;
-    sum.sigma_ratio += std::sqrt(pose.covariance.trace() / plain.model.block<6, 6>(row, row).trace());
+    sum.sigma_ratio += std::sqrt(C.trace() / plain.model.block<6, 6>(row, row).trace());
     sum.covered +=
         t2 <= (pose.dof > 0 ? HotellingLimit(static_cast<int>(pose.dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6));
   }
