@@ -106,7 +106,7 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
     start.state = WithFields(start.problem, now.misfits, now.refined.state);
     start.noise = now.refined.noise;
     auto next = Again(std::move(start), now.refined.group_of_place);
-    if (!next) return std::nullopt;
+    if (!next) return now.misfits.held ? std::optional(std::move(now)) : std::nullopt;
     const bool same = SameFields(now.misfits, next->misfits);
     now = std::move(*next);
     if (same) break;
@@ -180,17 +180,18 @@ Explained ExplainAll(Explained now, SessionEstimate& estimate) {
   }
 }
 
-// The poses are those of a rig in which nothing moved, with the fields that were found in what did.
+// The poses are those of a rig in which nothing moved, with the fields that were found when what did was taken out.
 Explained Unsplit(const Explained& first, Explained last) {
   if (last.start.problem.sensors.size() == first.start.problem.sensors.size()) return last;
-  if (!last.misfits.held) return first;
-  SessionStart start = first.start;
-  start.state = WithFields(start.problem, last.misfits, first.refined.state);
-  start.noise = first.refined.noise;
-  auto again = Again(std::move(start), first.refined.group_of_place);
-  if (!again) return first;
-  again->misfits.components = last.misfits.components;
-  return std::move(*again);
+  Explained told = first;
+  if (last.misfits.held) {
+    SessionStart start = first.start;
+    start.state = WithFields(start.problem, last.misfits, first.refined.state);
+    start.noise = first.refined.noise;
+    if (auto again = Again(std::move(start), first.refined.group_of_place)) told = std::move(*again);
+  }
+  told.misfits.components = std::move(last.misfits.components);
+  return told;
 }
 
 template <typename Looks>
@@ -212,7 +213,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   }
   std::sort(estimate.poses.begin(), estimate.poses.end(),
             [](const RefinedPose& x, const RefinedPose& y) { return x.sensor < y.sensor; });
-  if (explained.misfits.held)
+  if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
 }
 

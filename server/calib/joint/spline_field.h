@@ -7,8 +7,9 @@
 
 namespace rigcal::calib::joint {
 
-// Of the longer side of a picture: what a lens does within a smaller part is left to the noise.
-constexpr int kFieldCells = 6;
+// Of the longer side of a picture: what bends within less than two cells is left to the noise. Of coarser grids the cost was
+// honesty: what they cannot follow is no noise, as neighbouring corners share it.
+constexpr int kFieldCells = 10;
 
 struct PictureSize {
   int width_px = 0, height_px = 0;
