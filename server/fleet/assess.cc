@@ -57,14 +57,15 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   const bool shared = std::any_of(solution.residuals.begin(), solution.residuals.end(),
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
-  std::vector<Finding> suspects = Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
+  std::vector<Finding> suspects =
+      Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
   if (suspects.empty() && contradiction) suspects.push_back(*contradiction);
   return suspects;
 }
 
 // Edges that do not agree, and loops of them that do not close.
-std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-                                     const SessionTimes& captured_at) {
+std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                     const Policy& policy, const SessionTimes& captured_at) {
   std::vector<Finding> contradictions = FindContradictions(edges, solution, policy, captured_at);
   return contradictions.empty() ? Collect({FindOpenLoops(edges, solution, policy)}) : contradictions;
 }
@@ -82,9 +83,9 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (!accusations.empty() && !lenses) return VerdictFrom(VerdictLevel::kFail, accusations);
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings = Collect({FindLensMisfits(estimates, lenses), FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
-                                 FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
-                                 FindUntestable(edges, solution, policy)});
+  const auto warnings = Collect({FindLensMisfits(estimates, lenses), FindFailedEdges(edges), FindPastPairs(edges),
+                                 FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
+                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return Pass(UntestedLoops(edges, solution));
 }

@@ -7,8 +7,14 @@
 namespace rigcal::fleet {
 namespace {
 
-// A sigma that is larger by half is worth a better lens model; what adds less is in the sigmas, and nobody need act on it.
-constexpr double kMatters = 1.5;
+// A sigma that is larger by half, and by more than any mount holds still, is worth a better lens model; what adds less
+// is in the sigmas, and nobody need act on it.
+constexpr double kMatters = 1.5, kMattersMin_m = 5e-5, kMattersMin_rad = 5e-5;
+
+bool Matters(const LensMisfit& misfit) {
+  return misfit.sigma_ratio >= kMatters &&
+         (misfit.pose_sigma_m >= kMattersMin_m || misfit.pose_sigma_rad >= kMattersMin_rad);
+}
 
 // Of each camera what the newest session says in which it took part.
 std::vector<LensMisfit> NewestOf(const std::vector<SessionEstimate>& estimates) {
@@ -40,8 +46,8 @@ std::string ModelsOf(const std::vector<LensMisfit>& misfits) {
 std::string WhyOf(const std::vector<LensMisfit>& misfits, const LensMisfit& worst) {
   const bool one = misfits.size() == 1;
   return std::string(one ? "the lens of " : "the lenses of ") + List(NamesOf(misfits)) +
-         (one ? " bends in a way that " : " bend in ways that ") + ModelsOf(misfits) + " cannot: " +
-         (one ? "" : "worst is " + worst.camera.str() + ", ") + "by " + Number(worst.rms_px, "px") +
+         (one ? " bends in a way that " : " bend in ways that ") + ModelsOf(misfits) +
+         " cannot: " + (one ? "" : "worst is " + worst.camera.str() + ", ") + "by " + Number(worst.rms_px, "px") +
          " rms, which makes poses uncertain by " + Number(1e3 * worst.pose_sigma_m, "mm") + " and " +
          Number(kDegreesPerRadian * worst.pose_sigma_rad, "deg");
 }
@@ -68,6 +74,22 @@ std::set<SessionId> SessionsIn(const std::vector<Edge>& edges, const GraphSoluti
   return sessions;
 }
 
+// Off by more than a lens makes of it, and beyond chance where that can be tested.
+bool IsGross(const Edge& edge, const EdgeResidual& residual, std::size_t edge_count, const Policy& policy) {
+  const EdgeTest test = TestResidual(edge, residual, edge_count, policy);
+  const bool is_far =
+      residual.e.head<3>().norm() > policy.residual_max_m || residual.e.tail<3>().norm() > policy.residual_max_rad;
+  return residual.in_solution && is_far && (test.limit <= 0.0 || test.statistic > test.limit);
+}
+
+bool IsAnyGross(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+  return std::any_of(solution.residuals.begin(), solution.residuals.end(), [&](const EdgeResidual& residual) {
+    const auto edge =
+        std::find_if(edges.begin(), edges.end(), [&](const Edge& one) { return one.id == residual.edge; });
+    return edge != edges.end() && IsGross(*edge, residual, solution.residuals.size(), policy);
+  });
+}
+
 }  // namespace
 
 bool LensesExplain(const std::vector<Edge>& edges, const GraphSolution& solution,
@@ -78,16 +100,12 @@ bool LensesExplain(const std::vector<Edge>& edges, const GraphSolution& solution
     return estimate.session == *sessions.begin() && estimate.why_not.empty() && !estimate.misfits.empty() &&
            estimate.moved.empty();
   });
-  const bool gross = std::any_of(solution.residuals.begin(), solution.residuals.end(), [&](const EdgeResidual& one) {
-    return one.in_solution &&
-           (one.e.head<3>().norm() > policy.residual_max_m || one.e.tail<3>().norm() > policy.residual_max_rad);
-  });
-  return bent != estimates.end() && !gross;
+  return bent != estimates.end() && !IsAnyGross(edges, solution, policy);
 }
 
 std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
   std::vector<LensMisfit> misfits = NewestOf(estimates);
-  if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return one.sigma_ratio < kMatters; });
+  if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return !Matters(one); });
   if (misfits.empty()) return std::nullopt;
   std::stable_sort(misfits.begin(), misfits.end(),
                    [](const LensMisfit& x, const LensMisfit& y) { return x.sigma_ratio > y.sigma_ratio; });

@@ -1,21 +1,15 @@
 #include "server/calib/joint/estimate_session.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <tuple>
 
-#include "server/calib/joint/cluster_covariance.h"
-#include "server/calib/joint/lens_misfit.h"
-#include "server/calib/joint/moved_sensor.h"
+#include "server/calib/joint/explained.h"
 
 namespace rigcal::calib::joint {
 namespace {
 
 constexpr double kHeldBackBelow = 0.5;  // of a look's weight
-constexpr int kMovesMax = 4;            // in one session: more is no bump, but a rig that is not rigid
-constexpr int kGroupsForMoves = 6;      // fewer do not tell a bump from chance
-constexpr int kFieldRounds = 3;         // of fields and everything else in turn
 
 SessionEstimate Refused(const SessionViews& views, const Error& error) {
   SessionEstimate estimate;
@@ -24,183 +18,13 @@ SessionEstimate Refused(const SessionViews& views, const Error& error) {
   return estimate;
 }
 
-const CaptureId& CaptureAt(const SessionProblem& problem, int place) {
-  return problem.captures[static_cast<std::size_t>(problem.capture_of_place[static_cast<std::size_t>(place)])];
-}
-
-// Captures on both sides of the first place of `group` in which the sensor saw something.
-SensorMovedWithin Told(const SessionProblem& problem, const Refined& refined, const SensorMove& move) {
-  SensorMovedWithin told;
-  told.sensor = problem.sensors[static_cast<std::size_t>(move.sensor)];
-  told.step = move.step;
-  told.odds = move.odds;
-  int before = kNone, after = kNone;
-  const auto look_at = [&](const auto& looks) {
-    for (const auto& look : looks) {
-      if (look.sensor != move.sensor) continue;
-      const bool is_after = refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
-      if (is_after && (after == kNone || look.place < after)) after = look.place;
-      if (!is_after && look.place > before) before = look.place;
-    }
-  };
-  look_at(problem.corners);
-  look_at(problem.plates);
-  look_at(problem.poses);
-  if (before != kNone) told.last_before = CaptureAt(problem, before);
-  if (after != kNone) told.first_after = CaptureAt(problem, after);
-  return told;
-}
-
-bool IsMove(const SensorMove& move) {
-  const auto surely = [&](int at) {
-    return move.step.segment<3>(at).norm() - 3 * std::sqrt(move.covariance.block<3, 3>(at, at).trace());
-  };
-  return move.odds < kMovedOdds &&
-         (surely(tangent::kTranslation) >= kMovedMin_m || surely(tangent::kRotation) >= kMovedMin_rad);
-}
-
-// The sensor's looks from `group` on become those of a second sensor with a pose of its own.
-SessionStart Split(SessionStart start, const Refined& refined, const SensorMove& move) {
-  const auto old = static_cast<std::size_t>(move.sensor);
-  const int added = static_cast<int>(start.problem.sensors.size());
-  start.state = refined.state;
-  start.noise = refined.noise;
-  start.problem.sensors.push_back(start.problem.sensors[old]);
-  start.problem.range_bias_sigma_m.push_back(start.problem.range_bias_sigma_m[old]);
-  start.state.T_ref_sensor.push_back((start.state.T_ref_sensor[old] * Se3::Exp(move.step)).Normalized());
-  start.state.range_bias_m.push_back(start.state.range_bias_m[old]);
-  start.noise.push_back(start.noise[old]);
-  const auto split = [&](auto& looks) {
-    for (auto& look : looks)
-      if (look.sensor == move.sensor && refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group)
-        look.sensor = added;
-  };
-  split(start.problem.corners);
-  split(start.problem.plates);
-  split(start.problem.poses);
-  // What was known of it from all captures together holds for neither of its poses.
-  std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {
-    return known.sensor_a == move.sensor || known.sensor_b == move.sensor;
-  });
-  return start;
-}
-
-// A session as it is explained so far.
-struct Explained {
-  SessionStart start;
-  Refined refined;
-  FoundMisfits misfits;
-};
-
-std::optional<Explained> Again(SessionStart start, const std::vector<int>& groups) {
-  auto refined = Refine(start.problem, start.state, start.noise, groups);
-  if (!refined) return std::nullopt;
-  FoundMisfits misfits = FindMisfits(start.problem, *refined);
-  return Explained{std::move(start), std::move(*refined), std::move(misfits)};
-}
-
-// Fields are taken out and everything is refined again, until they stay as they are.
-std::optional<Explained> WithMisfitsHeld(Explained now) {
-  for (int round = 0; round < kFieldRounds; ++round) {
-    SessionStart start = now.start;
-    start.state = WithFields(start.problem, now.misfits, now.refined.state);
-    start.noise = now.refined.noise;
-    auto next = Again(std::move(start), now.refined.group_of_place);
-    if (!next) return now.misfits.held ? std::optional(std::move(now)) : std::nullopt;
-    const bool same = SameFields(now.misfits, next->misfits);
-    now = std::move(*next);
-    if (same) break;
-  }
-  return now;
-}
-
-// The likeliest move, where it is one.
-std::optional<SensorMove> MoveIn(const Explained& now, const SessionEstimate& estimate) {
-  if (static_cast<int>(estimate.moved.size()) >= kMovesMax || now.refined.groups < kGroupsForMoves) return std::nullopt;
-  const std::vector<SensorMove> moves = ScanForMoves(now.start.problem, now.refined);
-  if (moves.empty() || !IsMove(moves.front())) return std::nullopt;
-  const SensorMovedWithin told = Told(now.start.problem, now.refined, moves.front());
-  if (told.last_before.empty() || told.first_after.empty()) return std::nullopt;
-  return moves.front();
-}
-
-// Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
-// the noise that it leaves; with what its fields and its moves had to choose from (Schwarz 1978).
-double LeftOver(const Explained& explained) {
-  const SessionProblem& problem = explained.start.problem;
-  const SessionFit& fit = explained.refined.at_optimum.fit;
-  double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
-  const auto add = [&](const LookFit& look, double weight, double sigma, double sigma_rad) {
-    left += weight * look.squares.sum() + 2 * look.numbers[0] * std::log(sigma);
-    if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(sigma_rad);
-  };
-  const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights) {
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      const SensorNoise& noise = explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)];
-      add(fits[i], weights[i], noise.sigma, noise.sigma_rad);
-    }
-  };
-  add_all(problem.corners, fit.corners, explained.refined.weights.corners);
-  add_all(problem.plates, fit.plates, explained.refined.weights.plates);
-  add_all(problem.poses, fit.poses, explained.refined.weights.poses);
-  return left + 6 * std::log(static_cast<double>(problem.corners.size())) *
-                    static_cast<double>(problem.sensors.size());
-}
-
-std::optional<Explained> WithMove(const Explained& now, const SensorMove& move) {
-  auto next = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
-  return next && next->misfits.held ? WithMisfitsHeld(std::move(*next)) : std::move(next);
-}
-
-// A bump is in time, a misfit in the picture, and either looks a little like the other: of the two the one is taken out
-// first that leaves less.
-struct Next {
-  std::optional<Explained> explained;
-  bool is_move = false;
-};
-Next NextOf(const Explained& now, const std::optional<SensorMove>& move) {
-  const bool bent = !now.misfits.held && now.misfits.any();
-  Next by_move{move ? WithMove(now, *move) : std::nullopt, true};
-  if (!bent) return by_move;
-  Next by_field{WithMisfitsHeld(now), false};
-  if (!by_field.explained) return by_move;
-  if (by_move.explained && LeftOver(*by_move.explained) < LeftOver(*by_field.explained)) return by_move;
-  return by_field;
-}
-
-// What is found is taken out before the next is looked for, so that it does not hide it.
-Explained ExplainAll(Explained now, SessionEstimate& estimate) {
-  while (true) {
-    const std::optional<SensorMove> move = MoveIn(now, estimate);
-    Next next = NextOf(now, move);
-    if (move && (next.is_move || !next.explained))
-      estimate.moved.push_back(Told(now.start.problem, now.refined, *move));
-    if (!next.explained) return now;
-    now = std::move(*next.explained);
-  }
-}
-
-// The poses are those of a rig in which nothing moved, with the fields that were found when what did was taken out.
-Explained Unsplit(const Explained& first, Explained last) {
-  if (last.start.problem.sensors.size() == first.start.problem.sensors.size()) return last;
-  Explained told = first;
-  if (last.misfits.held) {
-    SessionStart start = first.start;
-    start.state = WithFields(start.problem, last.misfits, first.refined.state);
-    start.noise = first.refined.noise;
-    if (auto again = Again(std::move(start), first.refined.group_of_place)) told = std::move(*again);
-  }
-  told.misfits.components = std::move(last.misfits.components);
-  return told;
-}
-
 template <typename Looks>
 void AddHeldBack(const SessionProblem& problem, const Looks& looks, const std::vector<double>& weights,
                  std::vector<HeldBackLook>& held_back) {
   for (std::size_t i = 0; i < looks.size(); ++i)
     if (weights[i] < kHeldBackBelow)
-      held_back.push_back({problem.sensors[static_cast<std::size_t>(looks[i].sensor)],
-                           CaptureAt(problem, looks[i].place)});
+      held_back.push_back(
+          {problem.sensors[static_cast<std::size_t>(looks[i].sensor)], CaptureAt(problem, looks[i].place)});
 }
 
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
@@ -208,7 +32,8 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const PoseCovariance covariance = CovarianceOfPoses(explained.refined, CovarianceByFields(explained.misfits));
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
     RefinedPose pose{problem.sensors[s], explained.refined.state.T_ref_sensor[s], Matrix6d::Zero(), covariance.dof[s]};
-    if (const int row = covariance.row_of_sensor[s]; row != kNone) pose.covariance = covariance.joint.block<6, 6>(row, row);
+    if (const int row = covariance.row_of_sensor[s]; row != kNone)
+      pose.covariance = covariance.joint.block<6, 6>(row, row);
     estimate.poses.push_back(std::move(pose));
   }
   std::sort(estimate.poses.begin(), estimate.poses.end(),
@@ -231,13 +56,11 @@ void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
 SessionEstimate Estimate(const SessionViews& views) {
   auto start = StartOf(views);
   if (!start) return Refused(views, start.error());
-  auto refined = Refine(start->problem, start->state, start->noise, GroupsOf(start->problem, start->state));
-  if (!refined) return Refused(views, refined.error());
-  FoundMisfits misfits = FindMisfits(start->problem, *refined);
-  const Explained first{std::move(*start), std::move(*refined), std::move(misfits)};
+  auto first = Explain(*start, GroupsOf(start->problem, start->state));
+  if (!first) return Refused(views, first.error());
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = Unsplit(first, ExplainAll(first, estimate));
+  const Explained last = WithoutMoves(*first, ExplainAll(*first, estimate.moved));
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   return estimate;

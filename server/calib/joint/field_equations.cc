@@ -50,7 +50,8 @@ class Accumulator {
   Accumulator(const SessionProblem& problem, const Refined& refined)
       : problem_(problem), refined_(refined), seen_points_(SeenPoints(problem)) {
     effects_.at = {0};
-    for (const auto& points : seen_points_) effects_.at.push_back(effects_.at.back() + 2 * static_cast<int>(points.size()));
+    for (const auto& points : seen_points_)
+      effects_.at.push_back(effects_.at.back() + 2 * static_cast<int>(points.size()));
     effects_.S = MatrixXd::Zero(effects_.at.back(), effects_.at.back());
     effects_.score = VectorXd::Zero(effects_.at.back());
     X_ = MatrixXd::Zero(refined.layout.size + 6, effects_.at.back());
@@ -108,7 +109,8 @@ class Accumulator {
     const auto own = std::find_if(terms.cameras.begin(), terms.cameras.end(),
                                   [&](const PlaceByField& one) { return one.camera == camera; });
     if (own == terms.cameras.end()) return;
-    const int at = effects_.at[static_cast<std::size_t>(camera)], size = effects_.size(static_cast<std::size_t>(camera));
+    const int at = effects_.at[static_cast<std::size_t>(camera)],
+              size = effects_.size(static_cast<std::size_t>(camera));
     for (const CameraLook& look : terms.looks)
       if (look.camera == camera) AddOwn(at, look.look);
     effects_.score.segment(at, size) -= own->solved.transpose() * place.b;

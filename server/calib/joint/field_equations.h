@@ -12,7 +12,7 @@ struct FieldEquations {
   // the size of its picture is not known.
   std::vector<std::vector<int>> seen_points;
   RandomEffects effects;
-  Eigen::MatrixXd by_unknowns;    // -d unknowns / d coefficients at the optimum: H^-1 X, unknowns x coefficients
+  Eigen::MatrixXd by_unknowns;  // -d unknowns / d coefficients at the optimum: H^-1 X, unknowns x coefficients
 };
 // Scores are those at fields of zero, whatever the state holds. Memory does not grow with the captures.
 [[nodiscard]] FieldEquations FieldEquationsOf(const SessionProblem& problem, const Refined& refined);
