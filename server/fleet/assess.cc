@@ -85,8 +85,8 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
   const auto warnings = Collect({FindLensMisfits(estimates, pairs_disagree), FindFailedEdges(edges), FindPastPairs(edges),
-                                 FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
-                                 FindUntestable(edges, solution, policy)});
+                                 FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
+                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return Pass(UntestedLoops(edges, solution));
 }

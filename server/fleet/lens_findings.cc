@@ -7,8 +7,14 @@
 namespace rigcal::fleet {
 namespace {
 
-// A sigma that is larger by half is worth a better lens model; what adds less is in the sigmas, and nobody need act on it.
-constexpr double kMatters = 1.5;
+// A sigma that is larger by half, and by more than any mount holds still, is worth a better lens model; what adds less
+// is in the sigmas, and nobody need act on it.
+constexpr double kMatters = 1.5, kMattersMin_m = 5e-5, kMattersMin_rad = 5e-5;
+
+bool Matters(const LensMisfit& misfit) {
+  return misfit.sigma_ratio >= kMatters &&
+         (misfit.pose_sigma_m >= kMattersMin_m || misfit.pose_sigma_rad >= kMattersMin_rad);
+}
 
 // Of each camera what the newest session says in which it took part.
 std::vector<LensMisfit> NewestOf(const std::vector<SessionEstimate>& estimates) {
@@ -40,8 +46,8 @@ std::string ModelsOf(const std::vector<LensMisfit>& misfits) {
 std::string WhyOf(const std::vector<LensMisfit>& misfits, const LensMisfit& worst) {
   const bool one = misfits.size() == 1;
   return std::string(one ? "the lens of " : "the lenses of ") + List(NamesOf(misfits)) +
-         (one ? " bends in a way that " : " bend in ways that ") + ModelsOf(misfits) + " cannot: " +
-         (one ? "" : "worst is " + worst.camera.str() + ", ") + "by " + Number(worst.rms_px, "px") +
+         (one ? " bends in a way that " : " bend in ways that ") + ModelsOf(misfits) +
+         " cannot: " + (one ? "" : "worst is " + worst.camera.str() + ", ") + "by " + Number(worst.rms_px, "px") +
          " rms, which makes poses uncertain by " + Number(1e3 * worst.pose_sigma_m, "mm") + " and " +
          Number(kDegreesPerRadian * worst.pose_sigma_rad, "deg");
 }
@@ -62,7 +68,7 @@ std::string CureOf(const std::vector<LensMisfit>& misfits) {
 
 std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
   std::vector<LensMisfit> misfits = NewestOf(estimates);
-  if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return one.sigma_ratio < kMatters; });
+  if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return !Matters(one); });
   if (misfits.empty()) return std::nullopt;
   std::stable_sort(misfits.begin(), misfits.end(),
                    [](const LensMisfit& x, const LensMisfit& y) { return x.sigma_ratio > y.sigma_ratio; });

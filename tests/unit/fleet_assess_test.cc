@@ -323,6 +323,9 @@ TEST(AssessLens, OneThatAddsLittleIsLeftToTheSigmas) {
   const Rig rig;
   const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.4)});
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {bent}).level, VerdictLevel::kPass);
+  LensMisfit tiny = MisfitOf("right", CameraModel::kPinholeRadtan, 5.0);
+  tiny.pose_sigma_m = tiny.pose_sigma_rad = 2e-5;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {tiny})}).level, VerdictLevel::kPass);
 }
 
 TEST(AssessLens, TheNewestSessionOfACameraCounts) {

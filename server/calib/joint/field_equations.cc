@@ -11,6 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kPlacesAtOnce = 64;
+constexpr double kReached = 0.1;  // corners at a control point: what fewer say of it is nothing
 
 struct CameraLook {
   int camera = kNone;
@@ -26,11 +27,31 @@ struct PlaceTerms {
   std::vector<PlaceByField> cameras;  // ascending
 };
 
+std::vector<std::vector<int>> SeenPoints(const SessionProblem& problem) {
+  std::vector<VectorXd> reached;
+  for (const Lens& lens : problem.cameras) reached.emplace_back(VectorXd::Zero(FieldGridOf(lens.picture).points()));
+  for (const CornersSeen& seen : problem.corners) {
+    const auto camera = static_cast<std::size_t>(seen.camera);
+    const FieldGrid grid = FieldGridOf(problem.cameras[camera].picture);
+    for (std::size_t i = 0; i < seen.corners.size() && grid.points() > 0; ++i) {
+      const FieldWeights field = FieldWeightsAt(grid, seen.corners.uv_px[i]);
+      for (std::size_t k = 0; k < field.point.size(); ++k) reached[camera][field.point[k]] += field.weight[k];
+    }
+  }
+  std::vector<std::vector<int>> points(reached.size());
+  for (std::size_t camera = 0; camera < reached.size(); ++camera)
+    for (int k = 0; k < reached[camera].size(); ++k)
+      if (reached[camera][k] > kReached) points[camera].push_back(k);
+  return points;
+}
+
 class Accumulator {
  public:
-  Accumulator(const SessionProblem& problem, const Refined& refined) : problem_(problem), refined_(refined) {
+  Accumulator(const SessionProblem& problem, const Refined& refined)
+      : problem_(problem), refined_(refined), seen_points_(SeenPoints(problem)) {
     effects_.at = {0};
-    for (const Lens& lens : problem.cameras) effects_.at.push_back(effects_.at.back() + 2 * FieldGridOf(lens.picture).points());
+    for (const auto& points : seen_points_)
+      effects_.at.push_back(effects_.at.back() + 2 * static_cast<int>(points.size()));
     effects_.S = MatrixXd::Zero(effects_.at.back(), effects_.at.back());
     effects_.score = VectorXd::Zero(effects_.at.back());
     X_ = MatrixXd::Zero(refined.layout.size + 6, effects_.at.back());
@@ -45,7 +66,7 @@ class Accumulator {
       Add(from, std::min(looks_.size(), from + kPlacesAtOnce));
     EliminateShared();
     AddHeld();
-    return {std::move(effects_), std::move(by_unknowns_)};
+    return {std::move(seen_points_), std::move(effects_), std::move(by_unknowns_)};
   }
 
  private:
@@ -63,7 +84,8 @@ class Accumulator {
     for (const std::size_t i : looks_[place]) {
       const CornersSeen& seen = problem_.corners[i];
       auto look = ObserveWithField(problem_, refined_.layout, refined_.state, seen,
-                                   refined_.noise[static_cast<std::size_t>(seen.sensor)], refined_.weights.corners[i]);
+                                   refined_.noise[static_cast<std::size_t>(seen.sensor)], refined_.weights.corners[i],
+                                   seen_points_[static_cast<std::size_t>(seen.camera)]);
       if (look) AddLook({seen.camera, std::move(*look)}, terms);
     }
     const Matrix6d& inverse = refined_.at_optimum.places[place].inverse;
@@ -87,7 +109,8 @@ class Accumulator {
     const auto own = std::find_if(terms.cameras.begin(), terms.cameras.end(),
                                   [&](const PlaceByField& one) { return one.camera == camera; });
     if (own == terms.cameras.end()) return;
-    const int at = effects_.at[static_cast<std::size_t>(camera)], size = effects_.size(static_cast<std::size_t>(camera));
+    const int at = effects_.at[static_cast<std::size_t>(camera)],
+              size = effects_.size(static_cast<std::size_t>(camera));
     for (const CameraLook& look : terms.looks)
       if (look.camera == camera) AddOwn(at, look.look);
     effects_.score.segment(at, size) -= own->solved.transpose() * place.b;
@@ -126,13 +149,19 @@ class Accumulator {
 
   void AddHeld() {
     VectorXd held = VectorXd::Zero(effects_.score.size());
-    for (std::size_t k = 0; k < refined_.state.field_px.size(); ++k)
-      if (refined_.state.field_px[k].size() > 0) held.segment(effects_.at[k], effects_.size(k)) = refined_.state.field_px[k];
+    for (std::size_t k = 0; k < refined_.state.field_px.size(); ++k) {
+      const VectorXd& field_px = refined_.state.field_px[k];
+      const Eigen::Index seen = effects_.size(k) / 2, all = field_px.size() / 2;
+      if (all == 0) continue;
+      held.segment(effects_.at[k], seen) = field_px.head(all)(seen_points_[k]);
+      held.segment(effects_.at[k] + seen, seen) = field_px.tail(all)(seen_points_[k]);
+    }
     effects_.score -= effects_.S * held;
   }
 
   const SessionProblem& problem_;
   const Refined& refined_;
+  std::vector<std::vector<int>> seen_points_;
   RandomEffects effects_;
   MatrixXd X_, by_unknowns_;
   std::vector<std::vector<std::size_t>> looks_;  // of corners, per place

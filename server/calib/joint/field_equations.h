@@ -8,8 +8,11 @@
 namespace rigcal::calib::joint {
 
 struct FieldEquations {
-  RandomEffects effects;          // per camera of the problem; no columns where its picture's size is not known
-  Eigen::MatrixXd by_unknowns;    // -d unknowns / d coefficients at the optimum: H^-1 X, unknowns x coefficients
+  // Per camera of the problem the control points that its corners reach: their coefficients of u, then of v. None where
+  // the size of its picture is not known.
+  std::vector<std::vector<int>> seen_points;
+  RandomEffects effects;
+  Eigen::MatrixXd by_unknowns;  // -d unknowns / d coefficients at the optimum: H^-1 X, unknowns x coefficients
 };
 // Scores are those at fields of zero, whatever the state holds. Memory does not grow with the captures.
 [[nodiscard]] FieldEquations FieldEquationsOf(const SessionProblem& problem, const Refined& refined);

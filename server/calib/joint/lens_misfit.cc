@@ -14,9 +14,15 @@ bool IsNamed(const FoundMisfits& found, std::size_t camera) {
   return found.components.variance[camera] > 0 && found.components.evidence[camera] >= kMisfitEvidence;
 }
 
-Eigen::VectorXd MeanOf(const FoundMisfits& found, std::size_t camera) {
+// Of all control points; those that no corner reaches are left as they are.
+Eigen::VectorXd MeanOf(const SessionProblem& problem, const FoundMisfits& found, std::size_t camera) {
   const RandomEffects& effects = found.equations.effects;
-  return found.components.mean.segment(effects.at[camera], effects.size(camera));
+  const std::vector<int>& seen_points = found.equations.seen_points[camera];
+  const Eigen::Index seen = effects.size(camera) / 2, all = FieldGridOf(problem.cameras[camera].picture).points();
+  Eigen::VectorXd coefficients_px = Eigen::VectorXd::Zero(2 * all);
+  coefficients_px.head(all)(seen_points) = found.components.mean.segment(effects.at[camera], seen);
+  coefficients_px.tail(all)(seen_points) = found.components.mean.segment(effects.at[camera] + seen, seen);
+  return coefficients_px;
 }
 
 // Of a field where the camera saw corners, of u and of v.
@@ -81,7 +87,7 @@ SessionState WithFields(const SessionProblem& problem, const FoundMisfits& found
   state.field_dof.assign(problem.cameras.size(), 0.0);
   for (std::size_t camera = 0; camera < problem.cameras.size(); ++camera) {
     if (!(found.components.variance[camera] > 0)) continue;
-    state.field_px[camera] = MeanOf(found, camera);
+    state.field_px[camera] = MeanOf(problem, found, camera);
     state.field_dof[camera] = found.components.dof[camera];
   }
   return state;
@@ -110,7 +116,7 @@ std::vector<LensMisfit> MisfitsTold(const SessionProblem& problem, const Refined
     LensMisfit one;
     one.camera = problem.sensors[static_cast<std::size_t>(sensor)];
     one.model = problem.cameras[camera].model;
-    one.rms_px = RmsOf_px(problem, static_cast<int>(camera), MeanOf(found, camera));
+    one.rms_px = RmsOf_px(problem, static_cast<int>(camera), MeanOf(problem, found, camera));
     one.evidence = found.components.evidence[camera];
     TellPoses(AddedBy(found, camera, refined.layout, covariance), covariance, one);
     told.push_back(std::move(one));

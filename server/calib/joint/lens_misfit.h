@@ -1,5 +1,6 @@
-// Does a camera bend its pictures in a way that its model cannot describe? A smooth field of shifts per camera as random
-// effects whose size the session tells (empirical Bayes): found, taken out as far as it is known, the rest in the sigmas.
+// Does a camera bend its pictures in a way that its model cannot describe? A smooth field of shifts per camera as
+// random effects whose size the session tells (empirical Bayes): found, taken out as far as it is known, the rest in
+// the sigmas.
 #pragma once
 
 #include "server/calib/joint/cluster_covariance.h"

@@ -1,5 +1,7 @@
 #include "server/calib/joint/observation.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rigcal::calib::joint {
@@ -142,15 +144,25 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   return look;
 }
 
-void AddFieldTerms(const FieldWeights& field, const CornerTerms& corner, Eigen::Index points, FieldLook& look) {
-  for (std::size_t i = 0; i < field.point.size(); ++i) {
+// The columns of the control points that reach a pixel, and their weights; a point that is left out reaches almost none.
+void AddFieldTerms(const FieldWeights& field, const std::vector<int>& seen_points, const CornerTerms& corner,
+                   FieldLook& look) {
+  std::array<Eigen::Index, 9> column{};
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const auto at = std::lower_bound(seen_points.begin(), seen_points.end(), field.point[i]);
+    column[i] = at != seen_points.end() && *at == field.point[i] ? at - seen_points.begin() : kNone;
+  }
+  const auto points = static_cast<Eigen::Index>(seen_points.size());
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (column[i] == kNone) continue;
     const double w = corner.w * field.weight[i];
-    const Eigen::Index u = field.point[i], v = points + u;
+    const Eigen::Index u = column[i], v = points + u;
     look.own_field.col(u) += w * corner.J.row(0).transpose();
     look.own_field.col(v) += w * corner.J.row(1).transpose();
     look.b[u] += w * corner.r_px[0];
     look.b[v] += w * corner.r_px[1];
-    for (std::size_t j = 0; j < field.point.size(); ++j) look.by_points(u, field.point[j]) += w * field.weight[j];
+    for (std::size_t j = 0; j < column.size(); ++j)
+      if (column[j] != kNone) look.by_points(u, column[j]) += w * field.weight[j];
   }
 }
 
@@ -166,15 +178,16 @@ std::optional<Observation> Observe(const SessionProblem& problem, const Layout& 
 }
 
 std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout, const SessionState& state,
-                                          const CornersSeen& seen, const SensorNoise& noise, double weight) {
+                                          const CornersSeen& seen, const SensorNoise& noise, double weight,
+                                          const std::vector<int>& seen_points) {
   const FieldGrid grid = FieldGridOf(problem.cameras[static_cast<std::size_t>(seen.camera)].picture);
-  const Eigen::Index points = grid.points();
+  const auto points = static_cast<Eigen::Index>(seen_points.size());
   FieldLook look;
   look.by_points = Eigen::MatrixXd::Zero(points, points);
   look.b = Eigen::VectorXd::Zero(2 * points);
   auto plain = ObserveCorners(problem, layout, state, seen, noise, weight, [&](const CornerTerms& corner) {
     if (look.own_field.size() == 0) look.own_field = Eigen::MatrixXd::Zero(corner.J.cols(), 2 * points);
-    AddFieldTerms(FieldWeightsAt(grid, corner.uv_px), corner, points, look);
+    AddFieldTerms(FieldWeightsAt(grid, corner.uv_px), seen_points, corner, look);
   });
   if (!plain) return std::nullopt;
   look.plain = std::move(*plain);

@@ -41,10 +41,11 @@ struct FieldLook {
   Eigen::MatrixXd by_points;  // of B^T W B the half of u, which is that of v; nothing is between them
   Eigen::VectorXd b;          // B^T W r
 };
-// Of a camera whose picture's size is known.
+// Of a camera whose picture's size is known, over the control points `seen_points`, ascending.
 [[nodiscard]] std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout,
                                                         const SessionState& state, const CornersSeen& seen,
-                                                        const SensorNoise& noise, double weight);
+                                                        const SensorNoise& noise, double weight,
+                                                        const std::vector<int>& seen_points);
 // Without a place.
 [[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
 

@@ -14,6 +14,10 @@ Se3 MovedPose(const Se3& T, int at, const Eigen::VectorXd& step) {
 
 }  // namespace
 
+const CaptureId& CaptureAt(const SessionProblem& problem, int place) {
+  return problem.captures[static_cast<std::size_t>(problem.capture_of_place[static_cast<std::size_t>(place)])];
+}
+
 Layout LayoutOf(const SessionProblem& problem) {
   Layout layout;
   for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s)

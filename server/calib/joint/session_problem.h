@@ -69,6 +69,8 @@ struct SessionProblem {
   std::vector<RelativeKnown> relatives;
 };
 
+[[nodiscard]] const CaptureId& CaptureAt(const SessionProblem& problem, int place);
+
 struct SessionState {
   std::vector<Se3> T_ref_sensor;             // per sensor
   std::vector<IntrinsicsVector> intrinsics;  // per camera of the problem

@@ -7,9 +7,7 @@ namespace rigcal::calib::joint {
 namespace {
 
 // The three splines that are not zero in a cell, at `t` of it.
-Eigen::Vector3d Quadratic(double t) {
-  return {0.5 * (1 - t) * (1 - t), 0.5 + t * (1 - t), 0.5 * t * t};
-}
+Eigen::Vector3d Quadratic(double t) { return {0.5 * (1 - t) * (1 - t), 0.5 + t * (1 - t), 0.5 * t * t}; }
 
 struct CellPlace {
   int cell;
@@ -32,8 +30,10 @@ FieldGrid FieldGridOf(const PictureSize& picture) {
 
 FieldWeights FieldWeightsAt(const FieldGrid& grid, const Eigen::Vector2d& uv_px) {
   // Pixel (0, 0) is the centre of the first one: the picture begins half a pixel before.
-  const CellPlace u = PlaceOf(std::clamp(uv_px.x() + 0.5, 0.0, 1.0 * grid.picture.width_px), grid.cell_px, grid.columns - 2);
-  const CellPlace v = PlaceOf(std::clamp(uv_px.y() + 0.5, 0.0, 1.0 * grid.picture.height_px), grid.cell_px, grid.rows - 2);
+  const CellPlace u =
+      PlaceOf(std::clamp(uv_px.x() + 0.5, 0.0, 1.0 * grid.picture.width_px), grid.cell_px, grid.columns - 2);
+  const CellPlace v =
+      PlaceOf(std::clamp(uv_px.y() + 0.5, 0.0, 1.0 * grid.picture.height_px), grid.cell_px, grid.rows - 2);
   const Eigen::Vector3d along_u = Quadratic(u.t), along_v = Quadratic(v.t);
   FieldWeights weights;
   for (int j = 0; j < 3; ++j)
@@ -49,8 +49,8 @@ Eigen::Vector2d FieldAt(const FieldGrid& grid, const Eigen::VectorXd& coefficien
   const FieldWeights weights = FieldWeightsAt(grid, uv_px);
   Eigen::Vector2d field_px = Eigen::Vector2d::Zero();
   for (std::size_t k = 0; k < weights.point.size(); ++k)
-    field_px += weights.weight[k] * Eigen::Vector2d(coefficients_px[weights.point[k]],
-                                                    coefficients_px[grid.points() + weights.point[k]]);
+    field_px += weights.weight[k] *
+                Eigen::Vector2d(coefficients_px[weights.point[k]], coefficients_px[grid.points() + weights.point[k]]);
   return field_px;
 }
 

@@ -1,5 +1,5 @@
-// A smooth field of shifts over a camera's picture, in px for u and for v: tensor products of uniform quadratic B-splines
-// (de Boor 2001, ch. IX), one coefficient each per control point of a square grid.
+// A smooth field of shifts over a camera's picture, in px for u and for v: tensor products of uniform quadratic
+// B-splines (de Boor 2001, ch. IX), one coefficient each per control point of a square grid.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,9 @@
 
 namespace rigcal::calib::joint {
 
-// Of the longer side of a picture: what a lens does within a smaller part is left to the noise.
-constexpr int kFieldCells = 6;
+// Of the longer side of a picture: what bends within less than two cells is left to the noise. Of coarser grids the
+// cost was honesty: what they cannot follow is no noise, as neighbouring corners share it.
+constexpr int kFieldCells = 10;
 
 struct PictureSize {
   int width_px = 0, height_px = 0;

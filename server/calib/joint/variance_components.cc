@@ -14,9 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kSweeps = 50, kIterationsMax = 15;
-constexpr double kUnseen = 0.01;    // information times variance: such a direction tells nothing of the variance
-constexpr double kSettled = 0.05;   // of a variance's own sigma
-constexpr double kStepMax = 5.0;    // ratio of a variance, from iteration to iteration
+constexpr double kUnseen = 0.01;   // information times variance: such a direction tells nothing of the variance
+constexpr double kSettled = 0.05;  // of a variance's own sigma
+constexpr double kStepMax = 5.0;   // ratio of a variance, from iteration to iteration
 
 auto BlockOf(const MatrixXd& S, const std::vector<int>& at, std::size_t row, std::size_t column) {
   return S.block(at[row], at[column], at[row + 1] - at[row], at[column + 1] - at[column]);
@@ -30,7 +30,8 @@ std::vector<double> VarianceByMoments(const RandomEffects& effects) {
   MatrixXd N(count, count);
   ParallelFor(blocks, [&](std::size_t k) {
     for (std::size_t l = 0; l < blocks; ++l)
-      N(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) = BlockOf(effects.S, effects.at, k, l).squaredNorm();
+      N(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) =
+          BlockOf(effects.S, effects.at, k, l).squaredNorm();
   });
   VectorXd excess(count), variance = VectorXd::Zero(count), least(count);
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -41,8 +42,7 @@ std::vector<double> VarianceByMoments(const RandomEffects& effects) {
   }
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (Eigen::Index k = 0; k < count; ++k)
-      if (N(k, k) > 0)
-        variance[k] = std::max(least[k], variance[k] + (excess[k] - N.row(k).dot(variance)) / N(k, k));
+      if (N(k, k) > 0) variance[k] = std::max(least[k], variance[k] + (excess[k] - N.row(k).dot(variance)) / N(k, k));
   return {variance.begin(), variance.end()};
 }
 

@@ -1,5 +1,5 @@
-// How large the random effects of several blocks are: restricted maximum likelihood (Patterson & Thompson 1971) from the
-// information that is left of them when everything else is eliminated.
+// How large the random effects of several blocks are: restricted maximum likelihood (Patterson & Thompson 1971) from
+// the information that is left of them when everything else is eliminated.
 #pragma once
 
 #include <Eigen/Core>
