@@ -1,5 +1,5 @@
-// The joint refinement of the virtual MARS Mapper at feature level: how near it comes to the Cramer-Rao bound, whether its
-// regions hold, how long it takes, and what the scan for moved sensors says. joint_measure SEEDS [--first N]
+// The joint refinement of the virtual MARS Mapper at feature level: how near it comes to the Cramer-Rao bound, whether
+// its regions hold, how long it takes, and what the scan for moved sensors says. joint_measure SEEDS [--first N]
 // [--bump SENSOR MM DEG] [--misfit PX] [--captures N] [--intrinsics exact|calibrated|absent] prints one JSON object.
 #include <algorithm>
 #include <chrono>
@@ -59,15 +59,16 @@ Settings Parse(int argc, char** argv) {
   return settings;
 }
 
-void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem& problem, const SessionEstimate& estimate,
-              const calib::joint::PoseCovariance& plain, std::map<std::string, Sums>& sums) {
+void AddPoses(const FeatureSession& session, const calib::joint::SessionProblem& problem,
+              const SessionEstimate& estimate, const calib::joint::PoseCovariance& plain,
+              std::map<std::string, Sums>& sums) {
   const auto bound = sim::CramerRaoBound(session.experiment);
   for (std::size_t i = 0; i < estimate.poses.size(); ++i) {
     const RefinedPose& pose = estimate.poses[i];
     if (RowOf(estimate, i) < 0) continue;
     const Matrix6d C = estimate.covariance.block<6, 6>(RowOf(estimate, i), RowOf(estimate, i));
-    const auto s = static_cast<std::size_t>(
-        std::find(problem.sensors.begin(), problem.sensors.end(), pose.sensor) - problem.sensors.begin());
+    const auto s = static_cast<std::size_t>(std::find(problem.sensors.begin(), problem.sensors.end(), pose.sensor) -
+                                            problem.sensors.begin());
     const int row = plain.row_of_sensor[s];
     if (row == calib::joint::kNone) continue;
     const Vector6d error = (pose.T_ref_sensor.Inverse() * session.experiment.T_ref_sensor(pose.sensor)).Log();
@@ -93,69 +94,93 @@ void PrintFound(const SessionEstimate& estimate) {
                 misfit.sigma_ratio);
 }
 
+/// What the parts of the refinement took, in seconds, and how much the groups of captures widen the model's sigma.
+struct Costs {
+  double start_s = 0, refine_s = 0, covariance_s = 0, scan_s = 0, fields_s = 0, whole_s = 0;
+  double model_ratio = 0, spread_ratio = 0;
+};
+
+template <typename Part>
+auto Timed(double& total_s, const Part& part) {
+  const auto since = std::chrono::steady_clock::now();
+  auto result = part();
+  total_s += Seconds(since);
+  return result;
+}
+
+void PrintMoves(const calib::joint::SessionProblem& problem, const std::vector<calib::joint::SensorMove>& moves) {
+  for (std::size_t m = 0; m < std::min<std::size_t>(3, moves.size()); ++m)
+    std::printf(", {\"sensor\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
+                problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str(), moves[m].group,
+                moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
+                180 / M_PI * moves[m].step.tail<3>().norm());
+}
+
+void TellFirst(const calib::joint::SessionProblem& problem, const calib::joint::Refined& refined,
+               const calib::joint::Components& components) {
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
+    std::fprintf(stderr, "%s noise %.4g %.4g\n", problem.sensors[s].str().c_str(), refined.noise[s].sigma,
+                 refined.noise[s].sigma_rad);
+  for (std::size_t k = 0; k < components.variance.size(); ++k)
+    std::fprintf(stderr, "field %zu sigma_px %.4f evidence %.1f dof %.1f seen %td\n", k,
+                 std::sqrt(components.variance[k]), components.evidence[k], components.dof[k],
+                 components.seen.axes[k].cols());
+}
+
+/// Refines one session of the drawn noise, part by part and whole. False, with the reason on stderr: it could not
+/// start.
+bool MeasureSession(const sim::Options& options, bool first, Costs& costs, std::map<std::string, Sums>& sums) {
+  const FeatureSession session = RecordFeatures(MarsMapper(options), 0);
+  const auto views = ViewsOf(session, NominalPoses(session));
+  const auto start = Timed(costs.start_s, [&] { return calib::joint::StartOf(views); });
+  if (!start) return std::fprintf(stderr, "%s\n", Sentence(start.error()).c_str()), false;
+  const auto groups = calib::joint::GroupsOf(start->problem, start->state);
+  const auto refined =
+      Timed(costs.refine_s, [&] { return calib::joint::Refine(start->problem, start->state, start->noise, groups); });
+  if (!refined) return std::fprintf(stderr, "%s\n", Sentence(refined.error()).c_str()), false;
+  const auto covariance = Timed(costs.covariance_s, [&] { return calib::joint::CovarianceOfPoses(*refined); });
+  const auto moves = Timed(costs.scan_s, [&] { return calib::joint::ScanForMoves(start->problem, *refined); });
+  const auto misfits = Timed(costs.fields_s, [&] { return calib::joint::FindMisfits(start->problem, *refined); });
+  const auto estimate = Timed(costs.whole_s, [&] { return calib::joint::EstimateSession(views); });
+  costs.model_ratio += covariance.model_ratio, costs.spread_ratio += covariance.spread_ratio;
+  AddPoses(session, start->problem, estimate, covariance, sums);
+  std::printf("%s\n[%llu", first ? "" : ",", static_cast<unsigned long long>(options.seed));
+  PrintMoves(start->problem, moves);
+  PrintFound(estimate);
+  std::printf("]");
+  if (first) TellFirst(start->problem, *refined, misfits.components);
+  return true;
+}
+
+void PrintSums(const Costs& c, double n, const std::map<std::string, Sums>& sums) {
+  std::printf(
+      "],\n\"start_s\": %.3f, \"refine_s\": %.3f, \"covariance_s\": %.3f, \"scan_s\": %.3f, "
+      "\"fields_s\": %.3f, \"whole_s\": %.3f, \"model_ratio\": %.3f, \"spread_ratio\": %.3f,\n\"sensors\": {",
+      c.start_s / n, c.refine_s / n, c.covariance_s / n, c.scan_s / n, c.fields_s / n, c.whole_s / n, c.model_ratio / n,
+      c.spread_ratio / n);
+  const char* comma = "";
+  for (const auto& [name, s] : sums) {
+    std::printf(
+        "%s\n\"%s\": {\"ratio_translation\": %.3f, \"ratio_rotation\": %.3f, \"mean_t2\": %.2f, \"covered\": "
+        "%.3f, \"dof\": %.1f, \"sigma_over_model\": %.3f, \"rms_mm\": %.4f}",
+        comma, name.c_str(), std::sqrt(s.error_m2 / s.bound_m2), std::sqrt(s.error_rad2 / s.bound_rad2), s.t2 / s.count,
+        static_cast<double>(s.covered) / s.count, s.dof / s.count, s.sigma_ratio / s.count,
+        1e3 * std::sqrt(s.error_m2 / s.count));
+    comma = ",";
+  }
+  std::printf("}}\n");
+}
+
 int Measure(const Settings& settings) {
   std::map<std::string, Sums> sums;
-  double start_s = 0, refine_s = 0, covariance_s = 0, scan_s = 0, fields_s = 0, whole_s = 0, ratio = 0, spread = 0;
+  Costs costs;
   std::printf("{\"moves\": [");
   for (int i = 0; i < settings.seeds; ++i) {
     sim::Options options = settings.options;
     options.seed = static_cast<std::uint64_t>(settings.first + i);
-    const FeatureSession session = RecordFeatures(MarsMapper(options), 0);
-    auto since = std::chrono::steady_clock::now();
-    const auto views = ViewsOf(session, NominalPoses(session));
-    const auto start = calib::joint::StartOf(views);
-    if (!start) return std::fprintf(stderr, "%s\n", Sentence(start.error()).c_str()), 1;
-    start_s += Seconds(since);
-    since = std::chrono::steady_clock::now();
-    const auto groups = calib::joint::GroupsOf(start->problem, start->state);
-    const auto refined = calib::joint::Refine(start->problem, start->state, start->noise, groups);
-    if (!refined) return std::fprintf(stderr, "%s\n", Sentence(refined.error()).c_str()), 1;
-    refine_s += Seconds(since);
-    since = std::chrono::steady_clock::now();
-    const auto covariance = calib::joint::CovarianceOfPoses(*refined);
-    covariance_s += Seconds(since);
-    since = std::chrono::steady_clock::now();
-    const auto moves = calib::joint::ScanForMoves(start->problem, *refined);
-    scan_s += Seconds(since);
-    ratio += covariance.model_ratio, spread += covariance.spread_ratio;
-    since = std::chrono::steady_clock::now();
-    const auto misfits = calib::joint::FindMisfits(start->problem, *refined);
-    fields_s += Seconds(since);
-    since = std::chrono::steady_clock::now();
-    const SessionEstimate estimate = calib::joint::EstimateSession(views);
-    whole_s += Seconds(since);
-    AddPoses(session, start->problem, estimate, covariance, sums);
-    std::printf("%s\n[%llu", i ? "," : "", static_cast<unsigned long long>(options.seed));
-    for (std::size_t m = 0; m < std::min<std::size_t>(3, moves.size()); ++m)
-      std::printf(", {\"sensor\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
-                  start->problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str(), moves[m].group,
-                  moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
-                  180 / M_PI * moves[m].step.tail<3>().norm());
-    PrintFound(estimate);
-    std::printf("]");
-    if (i == 0)
-      for (std::size_t s = 0; s < start->problem.sensors.size(); ++s)
-        std::fprintf(stderr, "%s noise %.4g %.4g\n", start->problem.sensors[s].str().c_str(), refined->noise[s].sigma,
-                     refined->noise[s].sigma_rad);
-    for (std::size_t k = 0; i == 0 && k < misfits.components.variance.size(); ++k)
-      std::fprintf(stderr, "field %zu sigma_px %.4f evidence %.1f dof %.1f seen %td\n", k,
-                   std::sqrt(misfits.components.variance[k]), misfits.components.evidence[k], misfits.components.dof[k],
-                   misfits.components.seen.axes[k].cols());
+    if (!MeasureSession(options, i == 0, costs, sums)) return 1;
   }
-  const double n = settings.seeds;
-  std::printf("],\n\"start_s\": %.3f, \"refine_s\": %.3f, \"covariance_s\": %.3f, \"scan_s\": %.3f, \"fields_s\": %.3f, \"whole_s\": %.3f, \"model_ratio\": "
-              "%.3f, \"spread_ratio\": %.3f,\n\"sensors\": {",
-              start_s / n, refine_s / n, covariance_s / n, scan_s / n, fields_s / n, whole_s / n, ratio / n, spread / n);
-  const char* comma = "";
-  for (const auto& [name, s] : sums) {
-    std::printf("%s\n\"%s\": {\"ratio_translation\": %.3f, \"ratio_rotation\": %.3f, \"mean_t2\": %.2f, \"covered\": "
-                "%.3f, \"dof\": %.1f, \"sigma_over_model\": %.3f, \"rms_mm\": %.4f}",
-                comma, name.c_str(), std::sqrt(s.error_m2 / s.bound_m2), std::sqrt(s.error_rad2 / s.bound_rad2),
-                s.t2 / s.count, static_cast<double>(s.covered) / s.count, s.dof / s.count, s.sigma_ratio / s.count,
-                1e3 * std::sqrt(s.error_m2 / s.count));
-    comma = ",";
-  }
-  std::printf("}}\n");
+  PrintSums(costs, settings.seeds, sums);
   return 0;
 }
 
