@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "server/calib/hand_eye.h"
-#include "server/calib/lidar_camera.h"
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/stereo.h"
-#include "server/calib/tracker_lidar.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/motion/hand_eye.h"
+#include "server/calib/stereo/stereo.h"
+#include "server/calib/tracker_lidar/tracker_lidar.h"
 #include "server/pipeline/decoding.h"
 #include "server/pipeline/sightings.h"
 

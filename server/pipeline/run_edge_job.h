@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/base/stamp.h"
-#include "server/calib/camera_memory.h"
+#include "server/calib/camera/camera_memory.h"
 #include "server/model/edge.h"
 #include "storage/jobs.h"
 

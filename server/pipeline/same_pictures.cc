@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "server/calib/diagnoses.h"
+#include "server/calib/core/diagnoses.h"
 
 namespace rigcal::pipeline {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "server/calib/stereo.h"
+#include "server/calib/stereo/stereo.h"
 
 namespace rigcal::pipeline {
 

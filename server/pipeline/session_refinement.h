@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/base/stamp.h"
-#include "server/calib/camera_memory.h"
+#include "server/calib/camera/camera_memory.h"
 #include "server/model/edge.h"
 #include "server/model/session_estimate.h"
 #include "storage/store.h"
@@ -11,13 +11,15 @@ namespace rigcal::pipeline {
 
 // Sessions captured before the newest so many are not refined any more.
 constexpr int kSessionsRefined = 8;
-// Of those that are, so many are fused: what is older than a robot's newest 32 visits says little of where sensors are now.
+// Of those that are, so many are fused: what is older than a robot's newest 32 visits says little of where sensors are
+// now.
 constexpr int kSessionsFused = 32;
 // Of stored estimates; raised when the same observations give another estimate.
 inline constexpr const char* kSessionEstimator = "joint/2";
 
-// Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets an
-// estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next revision.
+// Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets
+// an estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next
+// revision.
 [[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
                                     const Clock& clock);
 

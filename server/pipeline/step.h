@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "server/base/stamp.h"
-#include "server/calib/camera_memory.h"
+#include "server/calib/camera/camera_memory.h"
 #include "server/model/graph.h"
 #include "server/pipeline/live_graphs.h"
 #include "server/pipeline/missing_report.h"

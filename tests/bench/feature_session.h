@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "client/sim/observe.h"
-#include "server/calib/camera_memory.h"
-#include "server/calib/hand_eye.h"
-#include "server/calib/lidar_camera.h"
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/stereo.h"
+#include "server/calib/camera/camera_memory.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/motion/hand_eye.h"
+#include "server/calib/stereo/stereo.h"
 #include "server/model/graph.h"
 
 namespace rigcal {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "server/calib/hand_eye.h"
-#include "server/calib/motion_start.h"
+#include "server/calib/motion/hand_eye.h"
+#include "server/calib/motion/motion_start.h"
 #include "server/detect/board.h"
 #include "server/formats/poses.h"
 #include "server/formats/session_folder.h"

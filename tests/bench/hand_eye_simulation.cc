@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "server/calib/hand_eye_work.h"
+#include "server/calib/motion/hand_eye_work.h"
 #include "server/math/statistics.h"
 #include "tests/unit/calib_virtual_motion.h"
 

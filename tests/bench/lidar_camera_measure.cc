@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "server/calib/lidar_camera.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/detect/board.h"
 #include "server/detect/cloud_board.h"
 #include "server/formats/cloud.h"

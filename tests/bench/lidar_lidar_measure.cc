@@ -11,8 +11,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/lidar_lidar_work.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "server/formats/cloud.h"
 #include "server/formats/payload_path.h"
 

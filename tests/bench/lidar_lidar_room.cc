@@ -13,8 +13,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/lidar_lidar_work.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "tests/unit/calib_virtual_room.h"
 
 namespace rigcal {

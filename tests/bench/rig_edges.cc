@@ -5,11 +5,11 @@
 #include "client/sim/random.h"
 #include "client/sim/scan.h"
 #include "server/base/parallel_for.h"
-#include "server/calib/hand_eye.h"
-#include "server/calib/lidar_camera.h"
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/stereo.h"
-#include "server/calib/tracker_lidar.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/motion/hand_eye.h"
+#include "server/calib/stereo/stereo.h"
+#include "server/calib/tracker_lidar/tracker_lidar.h"
 #include "server/graph/graph_jackknife.h"
 
 namespace rigcal::sim {

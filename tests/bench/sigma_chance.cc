@@ -11,7 +11,7 @@
 
 #include "client/sim/random.h"
 #include "server/base/parallel_for.h"
-#include "server/calib/leave_one_out.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/math/statistics.h"
 #include "tests/bench/rig_coverage.h"
 

@@ -7,10 +7,10 @@
 #include "client/sim/scene.h"
 #include "server/base/parallel_for.h"
 #include "server/base/sha256.h"
-#include "server/calib/hand_eye.h"
-#include "server/calib/lidar_camera.h"
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/stereo.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/motion/hand_eye.h"
+#include "server/calib/stereo/stereo.h"
 
 namespace rigcal::paper {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "server/calib/camera_fit.h"
+#include "server/calib/camera/camera_fit.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {

@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "server/base/limits.h"
-#include "server/calib/camera_memory.h"
-#include "server/calib/intrinsics.h"
-#include "server/calib/projection.h"
+#include "server/calib/camera/camera_memory.h"
+#include "server/calib/camera/intrinsics.h"
+#include "server/calib/camera/projection.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {

@@ -4,11 +4,11 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "server/calib/costs/reference_view.h"
-#include "server/calib/costs/second_view.h"
-#include "server/calib/pose_block.h"
-#include "server/calib/projection.h"
-#include "server/calib/se3_manifold.h"
+#include "server/calib/camera/projection.h"
+#include "server/calib/core/costs/reference_view.h"
+#include "server/calib/core/costs/second_view.h"
+#include "server/calib/core/pose_block.h"
+#include "server/calib/core/se3_manifold.h"
 
 namespace rigcal::calib {
 namespace {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "server/calib/intrinsics.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/detect/corners.h"
 #include "tests/unit/recordings.h"
 

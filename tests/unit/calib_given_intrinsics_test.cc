@@ -5,9 +5,9 @@
 
 #include <random>
 
-#include "server/calib/costs/given_intrinsics.h"
-#include "server/calib/hand_eye.h"
-#include "server/calib/intrinsics_variants.h"
+#include "server/calib/camera/intrinsics_variants.h"
+#include "server/calib/core/costs/given_intrinsics.h"
+#include "server/calib/motion/hand_eye.h"
 #include "server/math/statistics.h"
 #include "tests/unit/calib_virtual_motion.h"
 #include "tests/unit/calib_virtual_pair.h"

@@ -3,10 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "server/calib/hand_eye_diagnoses.h"
-#include "server/calib/hand_eye_work.h"
-#include "server/calib/motion_start.h"
-#include "server/calib/stream_motion.h"
+#include "server/calib/motion/hand_eye_diagnoses.h"
+#include "server/calib/motion/hand_eye_work.h"
+#include "server/calib/motion/motion_start.h"
+#include "server/calib/motion/stream_motion.h"
 #include "server/math/statistics.h"
 #include "tests/unit/calib_virtual_motion.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/lidar_lidar_diagnoses.h"
-#include "server/calib/ndt_fit.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
+#include "server/calib/lidar_lidar/ndt_fit.h"
 #include "tests/unit/calib_virtual_room.h"
 
 namespace rigcal::calib {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "server/calib/plane_moments.h"
+#include "server/calib/planes/plane_moments.h"
 
 namespace rigcal::calib {
 namespace {

@@ -4,8 +4,8 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
-#include "server/calib/monotonic.h"
-#include "server/calib/projection.h"
+#include "server/calib/camera/monotonic.h"
+#include "server/calib/camera/projection.h"
 
 namespace rigcal::calib {
 namespace {

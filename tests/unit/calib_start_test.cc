@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "server/calib/pair_start.h"
+#include "server/calib/stereo/pair_start.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {

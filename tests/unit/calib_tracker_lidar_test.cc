@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "server/calib/tracker_lidar_work.h"
+#include "server/calib/tracker_lidar/tracker_lidar_work.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
 #include "tests/unit/calib_virtual_planes.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "server/calib/lidar_camera.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
 
 namespace rigcal::calib {
 

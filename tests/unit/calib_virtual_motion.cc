@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "server/calib/projection.h"
+#include "server/calib/camera/projection.h"
 
 namespace rigcal::calib {
 namespace {

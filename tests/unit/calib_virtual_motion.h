@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "server/calib/hand_eye.h"
+#include "server/calib/motion/hand_eye.h"
 
 namespace rigcal::calib {
 
@@ -35,12 +35,13 @@ struct VirtualView {
 };
 // A body whose two sensors both look at boards of their own from 1.2 to 2 m, from places `spread_m` apart and turned by
 // `tilt_rad` about the axes of the picture; a board's centre stays in view.
-[[nodiscard]] VirtualBody Looking(const VirtualView& view, int captures, double spread_m, double tilt_rad, unsigned seed);
+[[nodiscard]] VirtualBody Looking(const VirtualView& view, int captures, double spread_m, double tilt_rad,
+                                  unsigned seed);
 // What a camera at T_board_cam sees; corners behind or outside the picture: not found. `turn`: numbered as if turned.
 [[nodiscard]] BoardView SeenBy(const VirtualView& view, const Se3& T_board_cam, int turn, std::mt19937& random);
 // Side a: a tracker; side b: a camera with given intrinsics. `turned_ratio` of the views are numbered as if turned.
-[[nodiscard]] HandEyeProblem TrackerAndCamera(const VirtualBody& body, const VirtualView& view, const PoseNoise& tracker,
-                                              double turned_ratio, unsigned seed);
+[[nodiscard]] HandEyeProblem TrackerAndCamera(const VirtualBody& body, const VirtualView& view,
+                                              const PoseNoise& tracker, double turned_ratio, unsigned seed);
 // Two cameras before boards "board" and "other"; `given`: with their true intrinsics.
 [[nodiscard]] HandEyeProblem TwoCameras(const VirtualBody& body, const VirtualView& view, bool given, unsigned seed);
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "server/calib/tracker_lidar.h"
+#include "server/calib/tracker_lidar/tracker_lidar.h"
 #include "tests/unit/calib_virtual_motion.h"
 
 namespace rigcal::calib {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "server/calib/lidar_lidar.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
 #include "tests/unit/simulated_scan.h"
 
 namespace rigcal::calib {

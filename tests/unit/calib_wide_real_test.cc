@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "server/calib/stereo.h"
+#include "server/calib/stereo/stereo.h"
 #include "server/detect/board.h"
 #include "tests/unit/recordings.h"
 

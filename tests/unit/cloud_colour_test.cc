@@ -5,7 +5,7 @@
 #include <set>
 
 #include "server/base/limits.h"
-#include "server/calib/projection.h"
+#include "server/calib/camera/projection.h"
 #include "server/cloud/blend.h"
 #include "server/cloud/overlay.h"
 #include "server/cloud/point_files.h"

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "server/calib/projection.h"
+#include "server/calib/camera/projection.h"
 #include "server/cloud/lens.h"
 
 namespace rigcal::cloud {

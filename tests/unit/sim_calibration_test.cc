@@ -8,9 +8,9 @@
 #include "client/sim/observe.h"
 #include "client/sim/random.h"
 #include "client/sim/scan.h"
-#include "server/calib/lidar_camera.h"
-#include "server/calib/lidar_lidar.h"
-#include "server/calib/stereo.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/stereo/stereo.h"
 #include "server/math/statistics.h"
 #include "tests/unit/sim_sample.h"
 

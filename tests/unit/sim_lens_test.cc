@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "client/sim/lens.h"
-#include "server/calib/projection.h"
+#include "server/calib/camera/projection.h"
 
 namespace rigcal::sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/calib/intrinsics.h"
+#include "server/calib/camera/intrinsics.h"
 
 namespace rigcal::calib::joint {
 

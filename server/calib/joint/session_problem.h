@@ -1,5 +1,5 @@
-// All that one session's sensors saw, as one least-squares problem on raw observations: corners in pictures, plane moments
-// of plates in clouds, poses of a tracker, relative poses known from elsewhere. README.md has the equations.
+// All that one session's sensors saw, as one least-squares problem on raw observations: corners in pictures, plane
+// moments of plates in clouds, poses of a tracker, relative poses known from elsewhere. README.md has the equations.
 //
 // A place is a pose of the reference sensor in a world: the tracker's, or that of the boards that stand still, one per
 // capture. A board that does not stand still is a world of its own in every capture, and that capture's place is the
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "server/calib/camera/projection.h"
+#include "server/calib/camera/seen_corners.h"
 #include "server/calib/joint/spline_field.h"
-#include "server/calib/plane_moments.h"
-#include "server/calib/projection.h"
-#include "server/calib/seen_corners.h"
+#include "server/calib/planes/plane_moments.h"
 #include "server/math/se3.h"
 #include "server/model/session.h"
 
@@ -46,10 +46,10 @@ struct RelativeKnown {
 
 struct Lens {
   CameraModel model = CameraModel::kPinholeRadtan;
-  std::vector<int> refined;                            // of the intrinsics, by index; the others stay
-  IntrinsicsVector given = IntrinsicsVector::Zero();   // where a sigma pulls
-  IntrinsicsVector sigma = IntrinsicsVector::Zero();   // 0: nothing pulls
-  PictureSize picture = {};                            // empty: no field of shifts is looked for
+  std::vector<int> refined;                           // of the intrinsics, by index; the others stay
+  IntrinsicsVector given = IntrinsicsVector::Zero();  // where a sigma pulls
+  IntrinsicsVector sigma = IntrinsicsVector::Zero();  // 0: nothing pulls
+  PictureSize picture = {};                           // empty: no field of shifts is looked for
 };
 
 struct SessionProblem {
@@ -58,7 +58,7 @@ struct SessionProblem {
   std::vector<CaptureId> captures;
   std::vector<int> capture_of_place;  // ascending
   std::vector<TargetId> boards;       // that stand still; their poses in the world are unknown
-  int held_board = kNone;             // of `boards`: its pose is the world's frame; kNone where a tracker tells the world
+  int held_board = kNone;  // of `boards`: its pose is the world's frame; kNone where a tracker tells the world
   std::vector<Target> targets;
   std::vector<std::vector<Eigen::Vector3d>> target_points;  // TargetPoints of each
   std::vector<Lens> cameras;
@@ -78,8 +78,9 @@ struct SessionState {
   std::vector<Se3> T_world_ref;              // per place
   std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
   std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
-  std::vector<Eigen::VectorXd> field_px;     // per camera, or none: coefficients of what shifts its pictures beyond the model
-  std::vector<double> field_dof;             // per camera, or none: as many of its numbers have the coefficients taken up
+  std::vector<Eigen::VectorXd>
+      field_px;                   // per camera, or none: coefficients of what shifts its pictures beyond the model
+  std::vector<double> field_dof;  // per camera, or none: as many of its numbers have the coefficients taken up
 };
 
 // How noisy each sensor is: of corners px, of plates a factor on range noise, of a tracker m and rad.
@@ -87,15 +88,15 @@ struct SensorNoise {
   double sigma = 1.0, sigma_rad = 0.0;
 };
 
-// Where each unknown stands in the vector of all that captures share; kNone: held. Behind the last unknown the reference
-// sensor has six columns too: they are never moved, but tell what its observations say against its pose.
+// Where each unknown stands in the vector of all that captures share; kNone: held. Behind the last unknown the
+// reference sensor has six columns too: they are never moved, but tell what its observations say against its pose.
 struct Layout {
-  std::vector<int> pose;    // per sensor, six
-  std::vector<int> lens;    // per camera, as many as refined
-  std::vector<int> board;   // per board that stands still, six
-  std::vector<int> scale;   // per target, one
-  std::vector<int> bias;    // per sensor, one
-  int size = 0;             // without the reference's
+  std::vector<int> pose;   // per sensor, six
+  std::vector<int> lens;   // per camera, as many as refined
+  std::vector<int> board;  // per board that stands still, six
+  std::vector<int> scale;  // per target, one
+  std::vector<int> bias;   // per sensor, one
+  int size = 0;            // without the reference's
 };
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 

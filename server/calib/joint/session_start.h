@@ -1,13 +1,13 @@
-// From what each sensor saw and the solved graph of pairs to the session's problem and its start: which of a view's poses,
-// which way round a board that looks alike when turned, which patch of a cloud is the board. Choices are those that agree
-// with the pairs' poses over the whole session.
+// From what each sensor saw and the solved graph of pairs to the session's problem and its start: which of a view's
+// poses, which way round a board that looks alike when turned, which patch of a cloud is the board. Choices are those
+// that agree with the pairs' poses over the whole session.
 #pragma once
 
 #include <map>
 #include <set>
 
 #include "server/base/result.h"
-#include "server/calib/intrinsics.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/joint/session_problem.h"
 #include "server/model/pose_table.h"
 
@@ -33,9 +33,9 @@ struct SessionViews {
   std::vector<Target> targets;
   std::vector<CameraViews> cameras;
   std::vector<LidarViews> lidars;
-  std::vector<TrackerPoses> trackers;      // one at most is taken as the world
-  bool boards_stand_still = false;         // all session long, in one world
-  std::map<SensorId, Se3> T_ref_sensor;    // the solved graph's; sensors that are not here take no part
+  std::vector<TrackerPoses> trackers;    // one at most is taken as the world
+  bool boards_stand_still = false;       // all session long, in one world
+  std::map<SensorId, Se3> T_ref_sensor;  // the solved graph's; sensors that are not here take no part
   struct Relative {
     SensorId a, b;
     Se3 T_a_b;

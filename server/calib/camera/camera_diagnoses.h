@@ -1,0 +1,24 @@
+// The sentences about one camera by itself.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/base/result.h"
+#include "server/calib/camera/intrinsics.h"
+
+namespace rigcal::calib {
+
+// `why`: of the first view that cannot be used, or empty.
+[[nodiscard]] Diagnosis TooFewViews(const CameraProblem& problem, std::size_t usable, std::size_t needed,
+                                    const std::string& why);
+[[nodiscard]] Diagnosis CameraHighResidual(const CameraProblem& problem, double rms_px, double limit_px);
+[[nodiscard]] Diagnosis CameraIllConditioned(const SensorId& camera, const std::string& why);
+// The distortion of an estimated camera is not told by its views. `name` as in DistortionNames().
+[[nodiscard]] Diagnosis DistortionOpen(const SensorId& camera, CameraModel model, const std::string& name);
+[[nodiscard]] Diagnosis CameraError(const SensorId& camera, const std::string& code, const Error& error);
+
+// A note on a good edge: the views put refined intrinsics further than six sigmas from where they were given.
+[[nodiscard]] std::optional<Diagnosis> WhyGivenDisagree(const Sensor& camera, const CameraIntrinsics& refined);
+
+}  // namespace rigcal::calib

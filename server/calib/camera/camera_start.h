@@ -1,0 +1,32 @@
+// Starting values of one camera's intrinsics from its views.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "server/base/result.h"
+#include "server/calib/core/joint_problem.h"
+
+namespace rigcal::calib {
+
+// All views of one camera: pictures of one size.
+struct CameraViews {
+  int width_px = 0, height_px = 0;
+  std::vector<Eigen::Vector3d> corners_board;
+  std::vector<SeenCorners> seen;
+  CameraModel model = CameraModel::kPinholeRadtan;
+};
+
+// The first so many of `views`, evenly spread.
+[[nodiscard]] CameraViews Spread(const CameraViews& views, std::size_t count_max);
+// The camera alone, as camera a; no view is left away.
+[[nodiscard]] JointProblem OneCamera(const CameraViews& views, bool estimate);
+
+// Without distortion, principal point in the middle. Pinhole: focal lengths from vanishing points; where the views do
+// not tell them (no tilt), the picture's longer side. Fisheye: as RoughFisheye. Always usable.
+[[nodiscard]] IntrinsicsVector RoughIntrinsics(const CameraViews& views);
+// The rough intrinsics refined together with the board poses, a pinhole with two radial terms (Zhang 2000), on at most
+// some tens of the views, evenly spread; every corner of the views can be seen.
+[[nodiscard]] Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views);
+
+}  // namespace rigcal::calib

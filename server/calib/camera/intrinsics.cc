@@ -1,0 +1,288 @@
+#include "server/calib/camera/intrinsics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "server/base/out_of_memory.h"
+#include "server/calib/camera/camera_diagnoses.h"
+#include "server/calib/camera/camera_start.h"
+#include "server/calib/camera/lens_choice.h"
+#include "server/calib/core/diagnoses.h"
+#include "server/calib/core/joint_covariance.h"
+#include "server/calib/core/selection.h"
+#include "server/calib/planes/pose_choice.h"
+#include "server/calib/stereo/observability.h"
+
+namespace rigcal::calib {
+namespace {
+
+template <typename T>
+using OrDiagnosis = tl::expected<T, Diagnosis>;
+
+// As for a pair: only gross contradictions count while the intrinsics are rough.
+constexpr double kContradictingRatio = 6.0, kContradictingWidthRatio = 0.02;
+// Another sensor will judge, so more poses are kept than the corners alone leave open (16): ten sigma.
+constexpr double kAlternativeCost = 100.0;
+constexpr int kPoseRoundsMax = 4;
+constexpr int kPulledRounds = 2;
+constexpr double kSamePose = 1e-3;
+
+// Captures, views and board poses side by side.
+struct Work {
+  std::vector<CaptureId> captures;
+  std::map<CaptureId, std::string> unused;
+  CameraViews views;
+  JointProblem joint;
+  JointState state;
+  std::vector<std::vector<Se3>> alternatives;
+
+  void Drop(std::size_t k, const std::string& why) {
+    unused[captures[k]] = why;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    captures.erase(captures.begin() + at);
+    joint.captures.erase(joint.captures.begin() + at);
+    state.T_a_board.erase(state.T_a_board.begin() + at);
+  }
+};
+
+Work Collected(const CameraProblem& problem) {
+  Work work;
+  work.views.model = ModelOf(problem.camera);
+  work.views.corners_board = TargetPoints(problem.board);
+  for (const auto& [capture, view] : problem.views) {
+    if (std::string why = WhyUnusable(view, problem.board); !why.empty()) {
+      work.unused[capture] = std::move(why);
+      continue;
+    }
+    work.captures.push_back(capture);
+    work.views.seen.push_back(SeenIn(view, problem.board));
+    work.views.width_px = view.image_width_px;
+    work.views.height_px = view.image_height_px;
+  }
+  work.joint = OneCamera(work.views, !problem.camera.intrinsics);
+  return work;
+}
+
+std::size_t NeededViews(const CameraProblem& problem) { return problem.camera.intrinsics ? 1 : kCapturesMin; }
+
+OrDiagnosis<void> CheckCount(const CameraProblem& problem, const Work& work) {
+  if (work.captures.size() >= NeededViews(problem)) return {};
+  const std::string why = work.unused.empty() ? "" : work.unused.begin()->second;
+  return tl::unexpected(TooFewViews(problem, work.captures.size(), NeededViews(problem), why));
+}
+
+OrDiagnosis<void> CheckSizes(const CameraProblem& problem) {
+  const BoardView* first = nullptr;
+  std::vector<CaptureId> resized;
+  for (const auto& [capture, view] : problem.views) {
+    if (!view.found) continue;
+    if (first == nullptr) first = &view;
+    if (view.image_width_px != first->image_width_px || view.image_height_px != first->image_height_px)
+      resized.push_back(capture);
+  }
+  if (resized.empty()) return {};
+  return tl::unexpected(ImageSizeChanged(problem.camera.id, resized));
+}
+
+OrDiagnosis<IntrinsicsVector> StartOf(const CameraProblem& problem, const CameraViews& views) {
+  const SensorId& camera = problem.camera.id;
+  if (problem.camera.intrinsics) return VectorOf(*problem.camera.intrinsics);
+  if (auto no_tilt = WhyNoTilt(camera, views)) return tl::unexpected(std::move(*no_tilt));
+  const auto start = StartIntrinsics(views);
+  if (!start) return tl::unexpected(CameraError(camera, "no_intrinsics", start.error()));
+  return *start;
+}
+
+double RmsOf(const Work& work, std::size_t k) {
+  return std::sqrt(ErrorOf(work.joint, work.state, k).a_px2 / static_cast<double>(work.joint.captures[k].a.size()));
+}
+
+// Sets the board poses and drops the views that no pose explains.
+void PlaceBoards(Work& work) {
+  work.state.T_a_board.resize(work.captures.size());
+  std::vector<double> rms_px;
+  for (std::size_t k = 0; k < work.captures.size(); ++k) {
+    const std::vector<Se3> allowed = AllowedPoses(work.joint, work.state, k);
+    work.state.T_a_board[k] = ChoosePose(work.joint, work.state, k, allowed).T_a_board;
+    rms_px.push_back(allowed.empty() ? std::numeric_limits<double>::infinity() : RmsOf(work, k));
+  }
+  std::vector<double> sorted = rms_px;
+  std::sort(sorted.begin(), sorted.end());
+  const double limit_px =
+      std::max(kContradictingRatio * sorted[sorted.size() / 2], kContradictingWidthRatio * work.views.width_px);
+  for (std::size_t k = work.captures.size(); k-- > 0;)
+    if (!(rms_px[k] <= limit_px && std::isfinite(rms_px[k]))) work.Drop(k, "no pose of the board explains its corners");
+}
+
+double VarianceOf(const Work& work) {
+  double ssr_px2 = 0;
+  for (std::size_t k = 0; k < work.captures.size(); ++k) ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
+  return ssr_px2 / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
+}
+
+OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
+  if (problem.camera.intrinsics) {
+    for (std::size_t k = 0; k < work.captures.size(); ++k)
+      work.state.T_a_board[k] = SolveBoardPose(work.joint, work.state, k, work.state.T_a_board[k]);
+    return {};
+  }
+  auto solution = SolveJoint(work.joint, work.state);
+  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
+  work.state = std::move(solution->state);
+  return {};
+}
+
+// Frees intrinsics that were given with sigmas. What the corners are good for is known once they fit.
+OrDiagnosis<void> RefineWithin(const CameraProblem& problem, double corner_sigma_px, Work& work) {
+  work.joint.estimate_a = true;
+  work.joint.held_a = HeldOf(problem.camera);
+  work.joint.pull_a = PullOf(problem.camera, corner_sigma_px);
+  auto solution = SolveJoint(work.joint, work.state);
+  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
+  work.state = std::move(solution->state);
+  return {};
+}
+
+// One look at every board's other pose: kept as an alternative, or taken. Returns whether anything changed.
+bool ReconsiderBoards(Work& work) {
+  const double variance_px2 = VarianceOf(work);
+  bool changed = false;
+  work.alternatives.assign(work.captures.size(), {});
+  for (std::size_t k = 0; k < work.captures.size(); ++k) {
+    std::vector<Se3> candidates = AllowedPoses(work.joint, work.state, k);
+    candidates.insert(candidates.begin(), work.state.T_a_board[k]);
+    const PoseChoice choice = ChoosePose(work.joint, work.state, k, candidates);
+    if (choice.other_ssr_px2 - choice.ssr_px2 < kAlternativeCost * variance_px2)
+      work.alternatives[k] = {choice.T_a_board_other};
+    changed |= (work.state.T_a_board[k].Inverse() * choice.T_a_board).Log().norm() > kSamePose;
+    work.state.T_a_board[k] = choice.T_a_board;
+  }
+  return changed;
+}
+
+OrDiagnosis<void> RefineGiven(const CameraProblem& problem, Work& work) {
+  if (!RefinesIntrinsics(problem.camera)) return {};
+  for (int round = 0; round < kPoseRoundsMax; ++round) {
+    for (int again = 0; again < kPulledRounds; ++again)
+      if (auto refined = RefineWithin(problem, std::sqrt(VarianceOf(work)), work); !refined) return refined;
+    if (!ReconsiderBoards(work)) break;
+  }
+  return {};
+}
+
+OrDiagnosis<Work> FromScratch(const CameraProblem& problem) {
+  Work work = Collected(problem);
+  if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
+  if (auto sizes = CheckSizes(problem); !sizes) return tl::unexpected(sizes.error());
+  const auto start = StartOf(problem, work.views);
+  if (!start) return tl::unexpected(start.error());
+  work.state.intrinsics_a = *start;
+  PlaceBoards(work);
+  if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
+  for (int round = 0; round < kPoseRoundsMax; ++round) {
+    if (auto refined = Refine(problem, work); !refined) return tl::unexpected(refined.error());
+    if (!ReconsiderBoards(work)) break;
+  }
+  if (auto refined = RefineGiven(problem, work); !refined) return tl::unexpected(refined.error());
+  return work;
+}
+
+OrDiagnosis<Work> FromStart(const CameraProblem& problem, const CameraEstimate& start) {
+  Work work = Collected(problem);
+  work.state.intrinsics_a = VectorOf(HoldsIntrinsics(problem.camera) ? *problem.camera.intrinsics : start.intrinsics);
+  work.state.T_a_board.resize(work.captures.size());
+  for (std::size_t k = work.captures.size(); k-- > 0;) {
+    const auto board = start.T_cam_board.find(work.captures[k]);
+    if (board == start.T_cam_board.end())
+      work.Drop(k, "not in the estimate that this one starts from");
+    else
+      work.state.T_a_board[k] = board->second;
+  }
+  if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
+  const auto refined =
+      start.pull.Pulls() ? RefineWithin(problem, start.pull.corner_sigma_px, work) : Refine(problem, work);
+  if (!refined) return tl::unexpected(refined.error());
+  for (const CaptureId& capture : work.captures) {
+    const auto other = start.alternatives.find(capture);
+    work.alternatives.push_back(other == start.alternatives.end() ? std::vector<Se3>() : other->second);
+  }
+  return work;
+}
+
+OrDiagnosis<void> CheckConditioning(const CameraProblem& problem, const Work& work) {
+  if (problem.camera.intrinsics) return {};
+  const auto covariance = ModelCovariance(work.joint, work.state);
+  if (!covariance) return tl::unexpected(CameraIllConditioned(problem.camera.id, covariance.error().what));
+  const Eigen::VectorXd variances = covariance->captures.diagonal().segment<kIntrinsicsMax>(kIntrinsicsAStart);
+  if (auto open =
+          WhyDistortionOpen(problem.camera.id, work.joint.model_a, variances, work.views, work.state.intrinsics_a))
+    return tl::unexpected(std::move(*open));
+  return {};
+}
+
+void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) {
+  if (!work.joint.estimate_a) return;
+  if (const auto moments = MomentsAt(work.joint.model_a, work.state.intrinsics_a, work.joint.corners_board,
+                                     work.joint.captures[k].a, work.state.T_a_board[k]))
+    estimate.of_intrinsics.emplace(work.captures[k], Eliminated(*moments));
+}
+
+OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& work) {
+  if (auto conditioned = CheckConditioning(problem, work); !conditioned) return tl::unexpected(conditioned.error());
+  CameraEstimate estimate;
+  estimate.intrinsics = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
+  estimate.unused = work.unused;
+  estimate.variance_px2 = VarianceOf(work);
+  estimate.pull = work.joint.pull_a;
+  double ssr_px2 = 0;
+  for (std::size_t k = 0; k < work.captures.size(); ++k) {
+    const CaptureId& capture = work.captures[k];
+    const auto information = BoardInformation(work.joint, work.state, k);
+    if (!information) return tl::unexpected(CameraIllConditioned(problem.camera.id, information.error().what));
+    estimate.T_cam_board[capture] = work.state.T_a_board[k];
+    estimate.information[capture] = *information;
+    AddOfIntrinsics(work, k, estimate);
+    if (!work.alternatives[k].empty()) estimate.alternatives[capture] = work.alternatives[k];
+    estimate.rms_by_capture_px[capture] = RmsOf(work, k);
+    ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
+  }
+  estimate.rms_px = std::sqrt(2 * ssr_px2 / ResidualCount(work.joint));
+  const double limit_px = HighRms_px(work.views.width_px);
+  if (!(estimate.rms_px <= limit_px)) return tl::unexpected(CameraHighResidual(problem, estimate.rms_px, limit_px));
+  return estimate;
+}
+
+OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const CameraEstimate* start) {
+  try {
+    const auto work = start != nullptr ? FromStart(problem, *start) : FromScratch(problem);
+    if (!work) return tl::unexpected(work.error());
+    return Finished(problem, *work);
+  } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
+    const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};
+    return tl::unexpected(CameraError(problem.camera.id, "internal", error));
+  }
+}
+
+}  // namespace
+
+OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const CameraEstimate* start) {
+  auto estimate = Estimated(problem, start);
+  if (!estimate && start == nullptr) return tl::unexpected(WithLensAsCure(std::move(estimate.error()), {problem}));
+  return estimate;
+}
+
+OrDiagnosis<CameraEstimate> EstimateCameraAs(const CameraProblem& problem, CameraModel model) {
+  CameraProblem other = problem;
+  other.camera.intrinsics.reset();
+  other.camera.intrinsics_sigma.reset();
+  other.camera.camera_model = model;
+  return Estimated(other, nullptr);
+}
+
+OrDiagnosis<CameraEstimate> EstimateCameraBy(const CameraSolver& solver, const CameraProblem& problem) {
+  return solver ? solver(problem) : EstimateCamera(problem);
+}
+
+}  // namespace rigcal::calib

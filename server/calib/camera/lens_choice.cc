@@ -1,0 +1,85 @@
+#include "server/calib/camera/lens_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+
+#include "server/calib/camera/seen_corners.h"
+#include "server/calib/core/diagnoses.h"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr std::size_t kViewsTried = 30;
+constexpr double kClearlyBetterRatio = 0.5, kAlikeRatio = 1.1;
+// Those with fewer ways to go wrong first.
+constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4, CameraModel::kPinholeRational};
+constexpr std::array kLensCodes = {"high_residual", "ill_conditioned", "no_convergence", "no_intrinsics",
+                                   "distortion_not_observable"};
+
+std::string PixelsText(double value_px) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f px", value_px);
+  return text;
+}
+
+CameraProblem SomeViews(const CameraProblem& problem) {
+  CameraProblem usable{problem.camera, problem.board, {}}, some = usable;
+  for (const auto& view : problem.views)
+    if (WhyUnusable(view.second, problem.board).empty()) usable.views.push_back(view);
+  const std::size_t total = usable.views.size(), count = std::min(total, kViewsTried);
+  for (std::size_t i = 0; i < count; ++i) some.views.push_back(usable.views[i * total / count]);
+  return some;
+}
+
+// Infinite: it does not fit.
+double RmsOf_px(const CameraProblem& problem, CameraModel model) {
+  const auto estimate = EstimateCameraAs(problem, model);
+  return estimate ? estimate->rms_px : std::numeric_limits<double>::infinity();
+}
+
+std::string CureOf(const BetterLens& lens) {
+  return "Give " + lens.camera.str() + " 'model: " + NameOf(lens.model) +
+         "' in session.yaml: by itself it fits its corners to " + PixelsText(lens.rms_px) + " rms with it.";
+}
+
+}  // namespace
+
+double HighRms_px(int width_px) { return std::max(1.0, kHighRmsRatio * width_px); }
+
+std::optional<BetterLens> FindBetterLens(const CameraProblem& problem) {
+  if (problem.camera.intrinsics) return std::nullopt;
+  const CameraProblem tried = SomeViews(problem);
+  if (tried.views.empty()) return std::nullopt;
+  std::vector<BetterLens> others;
+  double least_px = std::numeric_limits<double>::infinity();
+  for (const CameraModel model : kLenses) {
+    if (model == problem.camera.camera_model) continue;
+    others.push_back({problem.camera.id, model, RmsOf_px(tried, model)});
+    least_px = std::min(least_px, others.back().rms_px);
+  }
+  const double own_px =
+      std::min(RmsOf_px(tried, problem.camera.camera_model), HighRms_px(tried.views.front().second.image_width_px));
+  if (!(least_px <= kClearlyBetterRatio * own_px)) return std::nullopt;
+  return *std::find_if(others.begin(), others.end(),
+                       [&](const BetterLens& other) { return other.rms_px <= kAlikeRatio * least_px; });
+}
+
+Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::vector<CameraProblem>& cameras) {
+  if (std::find(kLensCodes.begin(), kLensCodes.end(), diagnosis.code) == kLensCodes.end()) return diagnosis;
+  std::string cure;
+  for (const CameraProblem& camera : cameras)
+    if (const auto lens = FindBetterLens(camera)) cure += (cure.empty() ? "" : " ") + CureOf(*lens);
+  if (!cure.empty()) diagnosis.cure = std::move(cure);
+  return diagnosis;
+}
+
+Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens) {
+  return {"lens_model_suspected",
+          problem.camera.id.str() + " fits its corners to " + PixelsText(rms_px) + " rms with the lens model " +
+              NameOf(problem.camera.camera_model) + "; another one fits them better.",
+          CureOf(lens)};
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,32 @@
+// Whether another lens model explains what a camera's own does not.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "server/calib/camera/intrinsics.h"
+
+namespace rigcal::calib {
+
+// The same views with intrinsics of `model`, from scratch.
+[[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCameraAs(const CameraProblem& problem, CameraModel model);
+
+// An rms beyond this is refused.
+[[nodiscard]] double HighRms_px(int width_px);
+
+struct BetterLens {
+  SensorId camera;
+  CameraModel model = CameraModel::kPinholeRadtan;
+  double rms_px = 0;  // to which the camera by itself fits its corners with it
+};
+
+// Tries the other models on some of the camera's views. Nothing where intrinsics are given, where its own model fits
+// them within twice the residual, or where none fits them to half the residual that is refused.
+[[nodiscard]] std::optional<BetterLens> FindBetterLens(const CameraProblem& problem);
+// "high_residual", "ill_conditioned" and the like are also what a wrong lens gives: where another one fits, it is the
+// cure. Other diagnoses stay as they are.
+[[nodiscard]] Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::vector<CameraProblem>& cameras);
+// "lens_model_suspected": a note on a good edge of a camera that fits its corners to `rms_px`.
+[[nodiscard]] Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,51 @@
+// The sentences of lidar-camera calibration. Each names the sensors and captures it is about, and what to do.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/calib/lidar_camera/lidar_camera.h"
+
+namespace rigcal::calib {
+
+constexpr std::size_t kLidarCapturesMin = 4;           // seen by both
+constexpr std::size_t kLidarCapturesForJackknife = 5;  // fewer: the uncertainty is the model's
+constexpr std::size_t kLidarViewsForIntrinsics = 8;    // pictures; fewer: intrinsics must be given
+constexpr std::size_t kLidarCapturesEnough = 10;       // fewer: a note says so
+// With planes known to 10 mm each: worse than this along some direction is no calibration, and a note below.
+constexpr double kNormalSigmaMax_m = 0.05, kNormalSigmaGood_m = 0.02;
+// Residuals beyond these mean that something is wrong, not noisy.
+constexpr double kHighRms_m = 0.05, kHighRms_rad = 0.07;
+// A range bias is suspected beyond so many of its sigmas, and from so much.
+constexpr double kBiasSigmas = 3.0, kBiasMin_m = 0.005;
+// A board of another size likewise; beyond the last two nothing is good any more.
+constexpr double kScaleMin_ratio = 0.002, kScaleMax_ratio = 0.02, kBiasMax_m = 0.1;
+
+[[nodiscard]] std::string MillimetresText(double value_m);  // "12 mm"
+[[nodiscard]] std::string DegreesText(double value_rad);    // "1.2 deg"
+
+[[nodiscard]] Diagnosis TooFewLidarCaptures(const LidarCameraProblem& problem, std::size_t both);
+[[nodiscard]] Diagnosis FewLidarCaptures(const LidarCameraProblem& problem, std::size_t used);  // a note
+[[nodiscard]] Diagnosis BoardNotInPictures(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis BoardNotInClouds(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+// "picture_unreadable", "cloud_unreadable": a board was not even looked for.
+[[nodiscard]] Diagnosis PicturesUnreadable(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis CloudsUnreadable(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis NoAgreement(const LidarCameraProblem& problem, std::size_t both, std::size_t supporters);
+[[nodiscard]] Diagnosis AmbiguousBoard(const LidarCameraProblem& problem, std::size_t supporters, std::size_t others);
+[[nodiscard]] Diagnosis NoNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m);
+[[nodiscard]] Diagnosis NormalsInOnePlane(const LidarCameraProblem& problem,
+                                          const Eigen::Vector3d& axis_cam);                                    // a note
+[[nodiscard]] Diagnosis WeakNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m);  // a note
+[[nodiscard]] Diagnosis ContradictingClouds(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis HighLidarResidual(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+[[nodiscard]] Diagnosis RangeBiasSuspected(const LidarCameraProblem& problem,
+                                           const LidarCameraEstimate& estimate);  // a note
+[[nodiscard]] Diagnosis RangeTakenAsExact(const LidarCameraProblem& problem);     // a note
+[[nodiscard]] Diagnosis TooFewForIntrinsics(const LidarCameraProblem& problem, std::size_t views);
+[[nodiscard]] Diagnosis CapturesDisagree(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis BoardSizeSuspected(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+[[nodiscard]] Diagnosis BoardSizeTakenAsExact(const LidarCameraProblem& problem);  // a note
+[[nodiscard]] Diagnosis NotSolvable(const LidarCameraProblem& problem, const Error& error);
+
+}  // namespace rigcal::calib

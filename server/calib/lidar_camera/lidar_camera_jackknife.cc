@@ -1,0 +1,137 @@
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "server/calib/core/leave_one_out.h"
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
+#include "server/calib/lidar_camera/lidar_camera_variants.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::calib {
+namespace {
+
+Se3 EdgePose(const LidarCameraProblem& problem, const Se3& T_cam_lidar) {
+  return problem.camera_is_a ? T_cam_lidar : T_cam_lidar.Inverse();
+}
+
+Result<Se3> PoseFrom(const LidarCameraProblem& problem, const LidarCameraEstimate& start) {
+  RIGCAL_ASSIGN(const LidarCameraEstimate estimate, SolvedAgain(problem, start));
+  return EdgePose(problem, estimate.T_cam_lidar);
+}
+
+Result<Vector6d> WithoutCapture(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                const CaptureId& capture) {
+  RIGCAL_ASSIGN(const LidarCameraEstimate without, SolvedWithout(problem, estimate, capture));
+  const Se3 T_a_b = EdgePose(problem, estimate.T_cam_lidar);
+  return Vector6d((T_a_b.Inverse() * EdgePose(problem, without.T_cam_lidar)).Log());
+}
+
+void AddBoardSize(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                  std::vector<GivenConstant>& constants) {
+  const double shown_ratio = estimate.SuspectsBoardSize() ? std::abs(estimate.board_scale_ratio) : 0.0;
+  const double ratio = std::max(shown_ratio, problem.board.square_sigma_m / problem.board.square_m);
+  if (!(ratio > 0)) return;
+  constants.push_back({"size of board " + problem.board.id.str(), [&problem, &estimate, ratio](double steps) {
+                         LidarCameraEstimate start = estimate;
+                         for (auto& [capture, T_cam_board] : start.camera.T_cam_board)
+                           T_cam_board.p_m *= 1 + steps * ratio;
+                         return PoseFrom(problem, start);
+                       }});
+}
+
+void AddIntrinsics(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                   std::vector<GivenConstant>& constants) {
+  for (const std::size_t i : UncertainIntrinsics(problem))
+    constants.push_back(
+        {"intrinsics of " + problem.camera.id.str(), [&problem, &estimate, i](double sigmas) -> Result<Se3> {
+           RIGCAL_ASSIGN(const LidarCameraEstimate moved, SolvedWithIntrinsic(problem, estimate, i, sigmas));
+           return EdgePose(problem, moved.T_cam_lidar);
+         }});
+}
+
+// The part of the model that comes from the corners by way of the intrinsics: the planes take those as known.
+Result<Matrix6d> CornersPart(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  Matrix6d part = Matrix6d::Zero();
+  std::vector<GivenConstant> changes;
+  for (const IntrinsicsVector& change : ChangesOfIntrinsics(problem, estimate))
+    changes.push_back({"corners", [&problem, &estimate, change](double steps) -> Result<Se3> {
+                         RIGCAL_ASSIGN(const LidarCameraEstimate moved,
+                                       SolvedWithChange(problem, estimate, steps * change));
+                         return EdgePose(problem, moved.T_cam_lidar);
+                       }});
+  RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(changes));
+  for (const Contribution& contribution : contributions) part += contribution.covariance;
+  return part;
+}
+
+// What was given, and no less than what the captures show.
+double RangeBiasSigma_m(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  const double shown_m = estimate.SuspectsRangeBias() ? std::abs(estimate.range_bias_m - problem.range_bias_m) : 0.0;
+  return std::max(shown_m, problem.lidar.range_bias_sigma_m.value_or(0.0));
+}
+
+// Every group of beams errs by the given sigma alone as well; one constant per group, so that edges of a lidar share
+// them by their order.
+void AddBeams(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+              std::vector<GivenConstant>& constants) {
+  const double sigma_m = problem.lidar.range_bias_sigma_m.value_or(0.0);
+  if (!(sigma_m > 0)) return;
+  const std::vector<char> seen = BeamsSeen(problem, estimate);
+  for (std::size_t group = 0; group < seen.size(); ++group)
+    constants.push_back({SingleBeamsOf(problem.lidar.id),
+                         [&problem, &estimate, sigma_m, group, is_seen = seen[group]](double steps) -> Result<Se3> {
+                           if (is_seen == 0) return EdgePose(problem, estimate.T_cam_lidar);
+                           RIGCAL_ASSIGN(const LidarCameraEstimate moved,
+                                         SolvedWithBeamsMoved(problem, estimate, group, steps * sigma_m));
+                           return EdgePose(problem, moved.T_cam_lidar);
+                         }});
+}
+
+std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  std::vector<GivenConstant> constants;
+  AddBoardSize(problem, estimate, constants);
+  AddIntrinsics(problem, estimate, constants);
+  if (const double sigma_m = RangeBiasSigma_m(problem, estimate); sigma_m > 0)
+    constants.push_back({"range bias of " + problem.lidar.id.str(), [&problem, &estimate, sigma_m](double steps) {
+                           LidarCameraProblem moved = problem;
+                           moved.range_bias_m += steps * sigma_m;
+                           return PoseFrom(moved, estimate);
+                         }});
+  AddBeams(problem, estimate, constants);
+  return constants;
+}
+
+// Columns: the directions of the edge's pose, right tangent at its b, that the boards tell.
+Eigen::Matrix<double, 6, Eigen::Dynamic> ToldBy(const LidarCameraProblem& problem,
+                                                const LidarCameraEstimate& estimate) {
+  if (!estimate.held) return Matrix6d::Identity();
+  const Vector6d untold =
+      problem.camera_is_a ? estimate.untold : Vector6d(Adjoint(estimate.T_cam_lidar) * estimate.untold);
+  const Eigen::HouseholderQR<Vector6d> qr(untold);
+  const Matrix6d Q = qr.householderQ();
+  return Q.rightCols<5>();
+}
+
+}  // namespace
+
+Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate)));
+  RIGCAL_ASSIGN(const Matrix6d corners, CornersPart(problem, estimate));
+  const Matrix6d C_planes =
+      problem.camera_is_a ? estimate.C_model : InverseCovariance(estimate.T_cam_lidar, estimate.C_model);
+  const Matrix6d C_model = Symmetrized(C_planes + corners);
+  std::vector<BlockVector> blocks;
+  if (estimate.patch_idx.size() >= kLidarCapturesForJackknife) {
+    const std::vector<CaptureId> captures = BlocksOf(problem, estimate);
+    std::vector<std::string> ids;
+    for (const CaptureId& capture : captures) ids.push_back(capture.str());
+    const auto without = [&](std::size_t k) { return WithoutCapture(problem, estimate, captures[k]); };
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(ids, without));
+  }
+  const auto told = ToldBy(problem, estimate);
+  return UncertaintyAlong(told, told.transpose() * C_model * told, std::move(blocks), std::move(contributions),
+                          estimate.patch_idx.size());
+}
+
+}  // namespace rigcal::calib

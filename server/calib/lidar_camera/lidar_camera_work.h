@@ -1,0 +1,53 @@
+// The numbers of a lidar-camera problem as they shrink and improve, for lidar_camera*.cc.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/calib/lidar_camera/plane_problem.h"
+
+namespace rigcal::calib {
+
+struct UsedPatch {
+  std::size_t capture_idx = 0, patch_idx = 0;
+};
+
+struct LidarCameraWork {
+  std::vector<UsedPatch> used;
+  std::map<std::size_t, std::string> unused;  // capture index: why
+  CameraEstimate camera;
+  Se3 T_cam_lidar;
+  double range_bias_m = 0.0;         // the problem's
+  std::vector<PlaneCapture> planes;  // side by side with `used`
+  double range_sigma_m = 0.0, capture_sigma_m = 0.0;
+  std::optional<HeldDirection> held;
+  PlaneSolution solution;
+
+  [[nodiscard]] PlaneState StateOf() const;  // boards where the pictures put them
+  void Drop(std::size_t position, const std::string& why);
+};
+
+// Empty: picture and cloud both offer a board.
+[[nodiscard]] std::string WhyUseless(const LidarCameraProblem& problem, const CameraEstimate& camera,
+                                     std::size_t capture_idx);
+// Noise and moments of the chosen patches.
+void FillPlanes(const LidarCameraProblem& problem, LidarCameraWork& work);
+// The same choices and weights as an estimate's.
+[[nodiscard]] LidarCameraWork WorkOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+[[nodiscard]] LidarCameraCheck CheckOf(const LidarCameraProblem& problem, const LidarCameraWork& work,
+                                       std::size_t position);
+
+// Weights of the captures from how far their clouds are from their pictures.
+void Reweigh(const LidarCameraProblem& problem, LidarCameraWork& work);
+
+struct NormalSpread {
+  double cone_deg = 0.0;      // largest angle between two normals
+  double sigma_m = 0.0;       // of the worst direction of the translation if each plane is known to 10 mm
+  double next_sigma_m = 0.0;  // of the worst direction across that one
+  Eigen::Vector3d axis_cam = Eigen::Vector3d::UnitZ();  // that direction
+};
+[[nodiscard]] NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes);
+
+}  // namespace rigcal::calib

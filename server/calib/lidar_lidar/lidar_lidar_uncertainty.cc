@@ -1,0 +1,116 @@
+#include "server/calib/lidar_lidar/lidar_lidar_uncertainty.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "server/calib/core/beam_groups.h"
+#include "server/calib/core/leave_one_out.h"
+#include "server/calib/lidar_lidar/lidar_lidar_beams.h"
+#include "server/math/jackknife.h"
+
+namespace rigcal::calib {
+namespace {
+
+// Columns that span what is known.
+Directions Known(const Directions& unknown) {
+  if (unknown.cols() == 0) return Matrix6d::Identity();
+  const Eigen::HouseholderQR<Directions> qr(unknown);
+  const Matrix6d Q = qr.householderQ();
+  return Q.rightCols(6 - unknown.cols());
+}
+
+// What the two methods disagree by is one draw of an error that all captures share, so that neither the jackknife nor
+// the scatter within the clouds shows it. It arises where the pose rests on the surfaces, as chance does, and so has
+// the shape of the covariance by chance, along the columns of B. The scale of a covariance of known shape is, of one
+// draw, its mean square over the directions; the draw's own direction alone would leave the five others without any.
+// A polished pose is NDT's, whose error that is, and the way from there, which is as large: it has both.
+Contribution MethodContribution(const LidarLidarPose& pose, bool polished, const Directions& B, const Matrix6d& C) {
+  const Eigen::MatrixXd along = B.transpose() * C * B;
+  const Eigen::VectorXd apart = B.transpose() * (pose.ndt.Inverse() * pose.polished).Log();
+  const double scale = (polished ? 2 : 1) * apart.dot(along.ldlt().solve(apart)) / static_cast<double>(B.cols());
+  return {"method (NDT against GICP)", scale * Symmetrized(B * along * B.transpose())};
+}
+
+Result<std::vector<Contribution>> RangeContributions(const LidarLidarProblem& problem, const Se3& T_map_moving,
+                                                     const Directions& unknown) {
+  std::vector<GivenConstant> constants;
+  const auto add = [&](const Sensor& lidar, double RangeShift::*shift_m) {
+    const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
+    if (!(sigma_m > 0)) return;
+    constants.push_back({"range bias of " + lidar.id.str(), [&, shift_m, sigma_m](double steps) -> Result<Se3> {
+                           RangeShift shift;
+                           shift.*shift_m = steps * sigma_m;
+                           return FitFrom(WorkOf(problem, shift), T_map_moving, kNdtLevels - 1, unknown).T;
+                         }});
+  };
+  add(problem.lidar_a, &RangeShift::a_m);
+  add(problem.lidar_b, &RangeShift::b_m);
+  return ContributionsOf(constants);
+}
+
+// Every group of beams errs by the given sigma alone as well.
+void AddBeams(const Sensor& lidar, const Directions& shifts, std::vector<Contribution>& contributions) {
+  const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
+  if (!(sigma_m > 0)) return;
+  Contribution beams{SingleBeamsOf(lidar.id), Matrix6d(sigma_m * sigma_m * shifts * shifts.transpose())};
+  for (Eigen::Index group = 0; group < shifts.cols(); ++group) beams.shifts.push_back(sigma_m * shifts.col(group));
+  contributions.push_back(std::move(beams));
+}
+
+void AddBeams(const LidarLidarProblem& problem, const LidarLidarWork& work, const Se3& T_map_moving,
+              const Directions& unknown, std::vector<Contribution>& contributions) {
+  if (!(std::max(problem.lidar_a.range_bias_sigma_m.value_or(0.0), problem.lidar_b.range_bias_sigma_m.value_or(0.0)) >
+        0))
+    return;
+  const BeamShifts shifts = ShiftsByBeams(problem, work, T_map_moving, unknown);
+  AddBeams(problem.lidar_a, work.a_is_map ? shifts.of_map : shifts.of_moving, contributions);
+  AddBeams(problem.lidar_b, work.a_is_map ? shifts.of_moving : shifts.of_map, contributions);
+}
+
+}  // namespace
+
+Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
+                                          const LidarLidarPose& pose, const Directions& unknown,
+                                          const std::vector<SurfacePairs>& pairs, const std::vector<Vector6d>& d) {
+  const Se3& T_map_moving = pose.T;
+  const PairInformation model = InformationOf(pairs, T_map_moving, unknown, work.voxel_m);
+  const Directions B = Known(unknown);
+  const auto failed = [] {
+    return Fail(ErrorCode::kInvalidInput, "the common surroundings fix the pose too weakly",
+                "Take captures where both see walls or objects facing three different ways.");
+  };
+  const Eigen::MatrixXd known = B.transpose() * model.Omega * B;
+  if (!known.allFinite() || !(known.diagonal().minCoeff() > 0)) return failed();
+  const Matrix6d C_model = B * known.inverse() * B.transpose();
+  const std::size_t m = work.used.size();
+  const bool jackknife = m >= kCloudsForJackknife;
+  auto [C, share] = jackknife ? ShrinkTowardsModel(JackknifeCovariance(d), C_model, static_cast<int>(m))
+                              : ShrunkCovariance{C_model, 0.0};
+  RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
+  AddBeams(problem, work, T_map_moving, unknown, contributions);
+  contributions.push_back(MethodContribution(pose, work.polish, B, C));
+  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  Matrix6d Omega = Symmetrized(B * (B.transpose() * C * B).inverse() * B.transpose());
+  if (!Omega.allFinite()) return failed();
+  const Matrix6d Ad = Adjoint(T_map_moving);
+  if (!work.a_is_map) Omega = Symmetrized(InverseInformation(T_map_moving, Omega));
+  const int dof = static_cast<int>(jackknife ? m : model.blocks) - 1;
+  Uncertainty uncertainty =
+      FromInformation(Omega, jackknife ? UncertaintySource::kJackknife : UncertaintySource::kModel, dof);
+  if (uncertainty.rank != B.cols()) return failed();
+  for (Contribution& contribution : contributions) {
+    if (work.a_is_map) break;
+    contribution.covariance = InverseCovariance(T_map_moving, contribution.covariance);
+    for (Vector6d& shift : contribution.shifts) shift = -Ad * shift;
+  }
+  uncertainty.contributions = std::move(contributions);
+  uncertainty.jackknife_ratio = share;
+  for (std::size_t k = 0; jackknife && k < m; ++k)
+    uncertainty.blocks.push_back(
+        {problem.captures[work.used[k]].capture.str(), work.a_is_map ? d[k] : Vector6d(-Ad * d[k])});
+  return uncertainty;
+}
+
+}  // namespace rigcal::calib

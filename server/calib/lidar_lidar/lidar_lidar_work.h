@@ -1,0 +1,65 @@
+// The clouds of a lidar-lidar problem made ready, and the steps from a start to a pose, for lidar_lidar*.cc. Frames:
+// the denser lidar makes the maps, the other one moves; of two alike, the one whose name comes first makes them. So the
+// answer for (b, a) is the inverse of that for (a, b), bit for bit before it is inverted.
+#pragma once
+
+#include <vector>
+
+#include "server/calib/lidar_lidar/lidar_lidar.h"
+#include "server/calib/lidar_lidar/surface_pairs.h"
+
+namespace rigcal::calib {
+
+struct LidarLidarWork {
+  bool a_is_map = true, polish = false;
+  double voxel_m = 1;
+  std::vector<std::size_t> used;    // indices of the problem's captures
+  std::vector<LidarClouds> clouds;  // side by side with `used`
+  Se3 nominal;                      // T_map_moving
+};
+
+// Ranges longer by so much.
+struct RangeShift {
+  double a_m = 0, b_m = 0;
+};
+constexpr std::size_t kCloudPointsMin = 500;
+[[nodiscard]] bool IsUsable(const LidarLidarCapture& capture);
+// Without cells: nothing to polish with; FitFrom() then gives NDT's pose twice.
+[[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {},
+                                    bool with_cells = true);
+
+struct LidarLidarPose {
+  Se3 ndt, polished;     // T_map_moving
+  Se3 T;                 // whichever of them is asked for
+  double last_step = 0;  // of its last stage
+  bool converged = false;
+  double met_ratio = 0;  // part of the moving points with a voxel about them, at the finest level
+};
+// From a level of NDT down to the polish.
+[[nodiscard]] LidarLidarPose FitFrom(const LidarLidarWork& work, const Se3& start, std::size_t first_level,
+                                     const Directions& locked);
+
+// Where one start ends, after all levels of NDT, on a few captures. Higher scores are better.
+struct StartEnd {
+  Se3 T;
+  double score = 0, met_ratio = 0;  // as LidarLidarPose's
+};
+// On the captures of StartCaptures(); from a level of NDT on.
+[[nodiscard]] StartEnd EndFrom(const LidarLidarWork& work, const Se3& start, std::size_t first_level);
+// The nominal pose first, then it turned and shifted to all sides; from a level of NDT on.
+[[nodiscard]] std::vector<StartEnd> TryStarts(const LidarLidarWork& work, std::size_t first_level);
+// Which of `work.clouds` these few captures are.
+[[nodiscard]] std::vector<std::size_t> StartCaptures(const LidarLidarWork& work);
+
+// One Gauss-Newton step against each gradient (a column), but along `locked`.
+[[nodiscard]] Directions StepsTo(const Matrix6d& H, const Directions& gradients, const Directions& locked);
+
+// The pose without each block: the captures, or with one capture either half of its points. One Gauss-Newton step of
+// the last stage from the common pose, whose pairs it keeps.
+struct LidarLidarBlocks {
+  std::vector<Vector6d> d;          // Log(T^-1 T_(i))
+  std::vector<SurfacePairs> pairs;  // of the block left out, by the pose without it
+};
+[[nodiscard]] LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const Directions& locked);
+
+}  // namespace rigcal::calib

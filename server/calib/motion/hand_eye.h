@@ -1,0 +1,64 @@
+// Two sensors that ride on one rigid body and need not see the same thing: cameras before boards of their own, a camera
+// and a tracker or a robot, two pose streams. A_k X = Z B_k, the body's poses estimated too, one noise factor per side
+// from the residuals, jackknife over captures or stretches of time.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/calib/camera/intrinsics.h"
+#include "server/calib/motion/motion_observability.h"
+#include "server/model/camera_fit.h"
+#include "server/model/edge.h"
+#include "server/model/pose_table.h"
+
+namespace rigcal::calib {
+
+// One sensor: a camera with its views of one board that stands still, or a tracker or pose stream with its poses.
+struct HandEyeSide {
+  Sensor sensor;
+  std::optional<Target> board;                         // of a camera
+  std::vector<std::pair<CaptureId, BoardView>> views;  // of a camera, sorted by id; a view may be not found
+  PoseTable poses;                                     // of the others
+};
+
+struct HandEyeProblem {
+  std::string method;  // "non_overlapping", "tracker_camera", "pose_streams"
+  HandEyeSide a, b;
+  std::optional<Se3> T_a_b_nominal;  // one more start, and the value of what the motion leaves open
+  CameraSolver solve_camera = {};
+};
+
+// How noisy a side's poses are, as their residuals say; one sigma per axis, mean over the captures.
+struct SideNoise {
+  double translation_m = 0.0, rotation_rad = 0.0;
+  double factor = 1.0;  // of a camera: on the variance that its corners let expect
+};
+
+struct HandEyeEstimate {
+  Se3 T_a_b, T_world_a_world_b;
+  MotionReach reach;
+  SideNoise noise_a, noise_b;
+  std::map<CaptureId, Vector6d> residuals;         // Log((Z B)^-1 A X) of the captures used
+  std::map<CaptureId, std::string> unused;         // why, in words
+  double rms_m = 0.0, rms_rad = 0.0;               // of the residuals
+  std::optional<double> offset_s, offset_sigma_s;  // of pose streams: t_a = t_b + offset
+  std::size_t captures = 0;                        // used; of streams: samples
+};
+
+struct HandEyeResult {
+  HandEyeEstimate estimate;
+  Uncertainty uncertainty;
+  std::vector<Diagnosis> notes;
+  std::optional<CameraEstimate> camera_a, camera_b;  // of sides that are cameras, from their pictures alone
+};
+
+// Pure; deterministic. A diagnosis says why there is no answer.
+[[nodiscard]] tl::expected<HandEyeResult, Diagnosis> EstimateHandEye(const HandEyeProblem& problem);
+// The finished edge; a failed one carries the diagnoses. Throws where there is no memory, else
+// never. `fits`, if not null, becomes what it says of the cameras (camera_fit.h).
+[[nodiscard]] Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits = nullptr);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,133 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/calib/core/leave_one_out.h"
+#include "server/calib/motion/hand_eye_work.h"
+
+namespace rigcal::calib {
+namespace {
+
+// What is left out together: poses of the problem, and a view that only tells a camera's intrinsics.
+struct Block {
+  std::string id;
+  std::vector<std::size_t> poses;
+  std::optional<CaptureId> capture;
+};
+
+void AddSingleViews(const std::optional<CameraMotion>& camera, std::set<CaptureId>& known, std::vector<Block>& blocks) {
+  if (!camera || !camera->estimates_intrinsics) return;
+  for (const auto& [capture, views] : camera->views)
+    if (known.insert(capture).second) blocks.push_back({capture.str(), {}, capture});
+}
+
+std::vector<Block> BlocksOf(const HandEyeWork& work, const std::vector<std::size_t>& block_of_pose) {
+  std::vector<Block> blocks;
+  std::set<CaptureId> known;
+  for (std::size_t k = 0; k < work.captures.size(); ++k) {
+    known.insert(work.captures[k]);
+    if (!block_of_pose.empty()) {
+      if (blocks.size() <= block_of_pose[k]) blocks.push_back({"part " + std::to_string(blocks.size() + 1), {}, {}});
+      blocks[block_of_pose[k]].poses.push_back(k);
+    } else if (work.problem.used[k]) {
+      blocks.push_back({work.captures[k].str(), {k}, work.captures[k]});
+    }
+  }
+  AddSingleViews(work.camera_a, known, blocks);
+  AddSingleViews(work.camera_b, known, blocks);
+  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& x, const Block& y) { return x.capture < y.capture; });
+  return blocks;
+}
+
+Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
+  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, start));
+  return solution.state.X;
+}
+
+// `offset_s`: where the offset of the clocks comes to lie, if one is estimated.
+Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& offset_s) {
+  MotionProblem problem = work.problem;
+  for (const std::size_t k : block.poses) problem.used[k] = 0;
+  if (block.capture) SetShared(work, &*block.capture, problem);
+  RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state));
+  if (work.estimates_offset) offset_s = solution.state.shared_b[kStreamOffset];
+  return Vector6d((work.state.X.Inverse() * solution.state.X).Log());
+}
+
+// The jackknife's, shrunk towards the model's, which counts like seven blocks more.
+double OffsetSigma(const std::vector<double>& offsets_s, double model_sigma_s) {
+  const auto m = static_cast<double>(offsets_s.size());
+  if (m < 2) return model_sigma_s;
+  double mean_s = 0, sum_s2 = 0;
+  for (const double offset_s : offsets_s) mean_s += offset_s / m;
+  for (const double offset_s : offsets_s) sum_s2 += (offset_s - mean_s) * (offset_s - mean_s);
+  return std::sqrt(((m - 1) * (m - 1) / m * sum_s2 + 7 * model_sigma_s * model_sigma_s) / (m + 6));
+}
+
+// A board that is larger than given puts its camera farther away.
+void AddBoardSize(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
+                  std::vector<GivenConstant>& constants) {
+  if (!side.board || !(side.board->square_sigma_m > 0)) return;
+  const double ratio = side.board->square_sigma_m / side.board->square_m;
+  constants.push_back({"size of board " + side.board->id.str(), [&work, poses, ratio](double steps) {
+                         MotionProblem moved = work.problem;
+                         for (SidePose& pose : (moved.*poses).poses) pose.T_world_sensor.p_m *= 1 + steps * ratio;
+                         return SolvedPose(moved, work.state);
+                       }});
+}
+
+std::string IntrinsicsName(const HandEyeSide& side) { return "intrinsics of " + side.sensor.id.str(); }
+
+// A larger value given moves what pulls the shared parameter, 1/2 (s - value)^2 / sigma^2.
+void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
+                   std::vector<GivenConstant>& constants) {
+  for (const int i : RefinedOf(side.sensor)) {
+    const double sigma = (*side.sensor.intrinsics_sigma)[static_cast<std::size_t>(i)];
+    constants.push_back({IntrinsicsName(side), [&work, poses, i, sigma](double steps) {
+                           MotionProblem moved = work.problem;
+                           (moved.*poses).gradient[i] -= steps / sigma;
+                           return SolvedPose(moved, work.state);
+                         }});
+  }
+}
+
+// The model's covariance without what given intrinsics bring, which is a contribution of its own.
+Eigen::MatrixXd CapturesPart(const HandEyeProblem& problem, const HandEyeWork& work,
+                             const std::vector<Contribution>& contributions) {
+  const auto& free = work.problem.free;
+  Eigen::MatrixXd part = work.fit.C_X;
+  for (const Contribution& given : contributions)
+    if (given.name == IntrinsicsName(problem.a) || given.name == IntrinsicsName(problem.b))
+      part -= free.transpose() * given.covariance * free;
+  return Eigen::LLT<Eigen::MatrixXd>(part).info() == Eigen::Success ? part : work.fit.C_X;
+}
+
+}  // namespace
+
+Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
+                                          const std::vector<std::size_t>& block_of_pose) {
+  std::vector<GivenConstant> constants;
+  AddBoardSize(work, problem.a, &MotionProblem::a, constants);
+  AddBoardSize(work, problem.b, &MotionProblem::b, constants);
+  AddIntrinsics(work, problem.a, &MotionProblem::a, constants);
+  AddIntrinsics(work, problem.b, &MotionProblem::b, constants);
+  RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(constants));
+  const std::vector<Block> blocks = BlocksOf(work, block_of_pose);
+  const std::size_t carrying = block_of_pose.empty() ? work.problem.UsedCount() : blocks.size();
+  std::vector<BlockVector> vectors;
+  std::vector<double> offsets_s;
+  if (carrying >= kHandEyeForJackknife) {
+    std::vector<std::string> ids;
+    for (const Block& block : blocks) ids.push_back(block.id);
+    offsets_s.resize(blocks.size());
+    const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], offsets_s[i]); };
+    RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, without));
+  }
+  MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
+  RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, CapturesPart(problem, work, contributions),
+                                                std::move(vectors), std::move(contributions), carrying));
+  return uncertainty;
+}
+
+}  // namespace rigcal::calib

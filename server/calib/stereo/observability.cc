@@ -1,0 +1,154 @@
+#include "server/calib/stereo/observability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "server/calib/camera/camera_diagnoses.h"
+#include "server/calib/camera/given_intrinsics.h"
+#include "server/calib/core/diagnoses.h"
+#include "server/calib/core/joint_covariance.h"
+#include "server/calib/core/selection.h"
+#include "server/calib/planes/planar_pose.h"
+
+namespace rigcal::calib {
+namespace {
+
+using View = std::optional<BoardView>;
+
+// Well-tilted boards give 0.1 to 0.5 %; boards parallel to the picture give tens of per cent and more.
+constexpr double kFocalSigmaMaxRatio = 0.03;
+// Sigma of a coefficient times its power of the outermost radius: up to 20 where boards fill the picture (the rational
+// model's halves nearly cancel), hundreds to thousands where they stay in its middle.
+constexpr double kDistortionSigmaMax = 50.0;
+
+double LargestAngle_deg(const std::vector<Se3>& boards) {
+  double smallest_cosine = 1;
+  for (const Se3& left : boards)
+    for (const Se3& right : boards) smallest_cosine = std::min(smallest_cosine, left.R().col(2).dot(right.R().col(2)));
+  return std::acos(std::clamp(smallest_cosine, -1.0, 1.0)) * 180 / M_PI;
+}
+
+// Captures whose picture, where it was decoded, is not as large as the camera's first.
+std::vector<CaptureId> ResizedIn(const StereoProblem& problem, View StereoCapture::*camera) {
+  std::vector<CaptureId> resized;
+  const BoardView* first = nullptr;
+  for (const StereoCapture& capture : problem.captures) {
+    const View& view = capture.*camera;
+    if (!view || view->image_width_px == 0) continue;
+    if (first == nullptr) first = &*view;
+    if (view->image_width_px != first->image_width_px || view->image_height_px != first->image_height_px)
+      resized.push_back(capture.capture);
+  }
+  return resized;
+}
+
+std::vector<Diagnosis> CheckSizes(const StereoProblem& problem) {
+  std::vector<Diagnosis> diagnoses;
+  if (const auto resized = ResizedIn(problem, &StereoCapture::a); !resized.empty())
+    diagnoses.push_back(ImageSizeChanged(problem.camera_a.id, resized));
+  if (const auto resized = ResizedIn(problem, &StereoCapture::b); !resized.empty())
+    diagnoses.push_back(ImageSizeChanged(problem.camera_b.id, resized));
+  return diagnoses;
+}
+
+std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selection& selection, std::size_t both) {
+  const auto missed_a = MissedBy(problem, &StereoCapture::a), missed_b = MissedBy(problem, &StereoCapture::b);
+  const std::size_t total = problem.captures.size();
+  std::vector<Diagnosis> diagnoses;
+  if (both == 0 && missed_a.size() < total && missed_b.size() < total)
+    diagnoses.push_back(NoCommonView(problem));
+  else
+    diagnoses.push_back(TooFewCaptures(problem, both));
+  if (selection.repeated.empty()) return diagnoses;
+  std::vector<CaptureId> repeated;
+  for (const std::size_t idx : selection.repeated) repeated.push_back(problem.captures[idx].capture);
+  diagnoses.insert(diagnoses.begin(), IdenticalCaptures(problem, repeated));
+  return diagnoses;
+}
+
+void CheckTilt(const Sensor& camera, const CameraViews& views, std::vector<Diagnosis>& diagnoses) {
+  if (camera.intrinsics) return;
+  if (auto no_tilt = WhyNoTilt(camera.id, views)) diagnoses.push_back(std::move(*no_tilt));
+}
+
+// Of the corners seen, the largest radius (pinhole) or angle (fisheye), as the distortion's series takes it.
+double OutermostReach(CameraModel model, const IntrinsicsVector& intrinsics, const CameraViews& views) {
+  double reach = 0;
+  for (const SeenCorners& seen : views.seen)
+    for (const Eigen::Vector2d& uv_px : seen.uv_px) {
+      const auto ray = Unproject(model, intrinsics, uv_px);
+      if (!ray) continue;
+      const double r = ray->head<2>().norm();
+      reach = std::max(reach, model == CameraModel::kFisheyeKb4 ? std::atan2(r, ray->z()) : r / ray->z());
+    }
+  return reach;
+}
+
+// Of the radius or angle, by which the coefficient's effect grows against the undistorted lens.
+int PowerOf(CameraModel model, const std::string& name) {
+  if (name[0] == 'p') return 1;
+  const int order = name[1] - '0';
+  return 2 * (model == CameraModel::kPinholeRational && order > 3 ? order - 3 : order);
+}
+
+// Without distortion the two halves of the rational model are one: its focal length is judged as that of radtan.
+CameraModel OutlookModel(CameraModel model) {
+  return model == CameraModel::kPinholeRational ? CameraModel::kPinholeRadtan : model;
+}
+
+}  // namespace
+
+FocalOutlook PredictFocal(const CameraViews& views) {
+  const CameraModel model = OutlookModel(views.model);
+  JointProblem joint = OneCamera({views.width_px, views.height_px, views.corners_board, {}, model}, true);
+  JointState state;
+  state.intrinsics_a = RoughIntrinsics(views);
+  for (const SeenCorners& seen : views.seen) {
+    const std::vector<Se3> poses = PlanarPoses(model, state.intrinsics_a, views.corners_board, seen);
+    if (poses.empty()) continue;
+    joint.captures.push_back({seen, {}});
+    state.T_a_board.push_back(poses.front());
+  }
+  FocalOutlook outlook{std::numeric_limits<double>::infinity(), LargestAngle_deg(state.T_a_board)};
+  if (joint.captures.empty()) return outlook;
+  const auto normal = ReducedNormal(joint, state);
+  if (!normal) return outlook;
+  if (const auto inverse = InverseOfFree(*normal)) {
+    const double sigma_px = kTypicalCornerSigma_px * std::sqrt((*inverse)(kIntrinsicsAStart, kIntrinsicsAStart));
+    outlook.sigma_ratio = sigma_px / state.intrinsics_a[0];
+  }
+  return outlook;
+}
+
+std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views) {
+  const FocalOutlook outlook = PredictFocal(views);
+  if (outlook.sigma_ratio < kFocalSigmaMaxRatio) return std::nullopt;
+  return NoTilt(camera, outlook.spread_deg, outlook.sigma_ratio);
+}
+
+std::optional<Diagnosis> WhyDistortionOpen(const SensorId& camera, CameraModel model, const Eigen::VectorXd& variances,
+                                           const CameraViews& views, const IntrinsicsVector& intrinsics) {
+  if (model == CameraModel::kPinholeRadtan) return std::nullopt;
+  const double reach = OutermostReach(model, intrinsics, views);
+  const std::vector<std::string>& names = DistortionNames(model);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double sigma = std::sqrt(variances[4 + static_cast<Eigen::Index>(i)]);
+    const double effect = sigma * std::pow(reach, PowerOf(model, names[i]));
+    if (!(effect < kDistortionSigmaMax)) return DistortionOpen(camera, model, names[i]);
+  }
+  return std::nullopt;
+}
+
+std::vector<Diagnosis> Observability(const StereoProblem& problem) {
+  std::vector<Diagnosis> diagnoses = CheckSizes(problem);
+  if (!diagnoses.empty()) return diagnoses;
+  const Selection selection = Select(problem);
+  const std::size_t both = CountBoth(problem, selection.used);
+  if (both < kCapturesMin) return ExplainTooFew(problem, selection, both);
+  CheckTilt(problem.camera_a, ViewsOfA(problem, selection.used), diagnoses);
+  CheckTilt(problem.camera_b, ViewsOfB(problem, selection.used), diagnoses);
+  return diagnoses;
+}
+
+}  // namespace rigcal::calib

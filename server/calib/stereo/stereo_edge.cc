@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <cmath>
+
+#include "server/base/out_of_memory.h"
+#include "server/calib/camera/camera_diagnoses.h"
+#include "server/calib/camera/camera_fit.h"
+#include "server/calib/camera/layout_diagnosis.h"
+#include "server/calib/camera/lens_choice.h"
+#include "server/calib/core/diagnoses.h"
+#include "server/calib/core/selection.h"
+#include "server/calib/stereo/stereo.h"
+#include "server/calib/stereo/stereo_estimation.h"
+#include "server/math/jackknife.h"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr std::size_t kWorstShown = 3;
+constexpr double kSuspiciousRatio = 0.5;  // of the residual that is refused
+
+void AddMissed(const StereoProblem& problem, std::vector<Diagnosis>& diagnoses) {
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
+    for (Diagnosis& missed : Missed(problem, camera)) diagnoses.push_back(std::move(missed));
+}
+
+Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) {
+  Edge edge;
+  edge.frame_a = problem.camera_a.id;
+  edge.frame_b = problem.camera_b.id;
+  edge.method = "stereo";
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = std::move(diagnoses);
+  AddMissed(problem, edge.diagnoses);
+  PutLayoutFirst(edge.diagnoses);
+  const Selection selection = Select(problem);
+  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
+    const auto why = selection.unused.find(idx);
+    edge.captures.push_back({problem.captures[idx].capture, 0.0, false,
+                             why == selection.unused.end() ? "the pair was not solved" : why->second});
+  }
+  edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
+  edge.figures["captures_both"] = static_cast<double>(CountBoth(problem, selection.used));
+  return edge;
+}
+
+double HighestRms_px(const StereoProblem& problem) {
+  int width_px = 0;
+  for (const StereoCapture& capture : problem.captures)
+    for (const auto& view : {capture.a, capture.b})
+      if (view) width_px = std::max(width_px, view->image_width_px);
+  return HighRms_px(width_px);
+}
+
+Diagnosis LensAsCure(const StereoProblem& problem, Diagnosis diagnosis) {
+  return WithLensAsCure(std::move(diagnosis),
+                        {CameraOf(problem, &StereoCapture::a), CameraOf(problem, &StereoCapture::b)});
+}
+
+// Residuals that are not refused yet, where the lens is what they come from.
+void AddLensSuspicions(const StereoProblem& problem, const StereoEstimate& estimate, std::vector<Diagnosis>& notes) {
+  for (const auto& [camera, rms_px] :
+       {std::pair{&StereoCapture::a, estimate.rms_a_px}, {&StereoCapture::b, estimate.rms_b_px}}) {
+    if (!(rms_px > kSuspiciousRatio * HighestRms_px(problem))) continue;
+    const CameraProblem one = CameraOf(problem, camera);
+    if (const auto lens = FindBetterLens(one)) notes.push_back(LensSuspected(one, rms_px, *lens));
+  }
+}
+
+std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
+  std::vector<CaptureResidual> used;
+  for (const CaptureResidual& residual : estimate.residuals)
+    if (residual.used) used.push_back(residual);
+  std::stable_sort(used.begin(), used.end(), [](const auto& left, const auto& right) { return left.rms > right.rms; });
+  std::vector<CaptureId> worst;
+  for (std::size_t i = 0; i < std::min(kWorstShown, used.size()); ++i) worst.push_back(used[i].capture);
+  return worst;
+}
+
+// What a reader of a good edge should know.
+void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagnosis>& notes) {
+  if (both < kCapturesEnough) notes.push_back(FewCaptures(problem, both));
+  AddMissed(problem, notes);
+  std::vector<CaptureId> repeated;
+  for (const std::size_t idx : Select(problem).repeated) repeated.push_back(problem.captures[idx].capture);
+  if (!repeated.empty()) notes.push_back(IdenticalCaptures(problem, repeated));
+  for (const Sensor* camera : {&problem.camera_a, &problem.camera_b})
+    if (camera->intrinsics && !camera->intrinsics_sigma) notes.push_back(IntrinsicsTakenAsExact(camera->id));
+}
+
+void AddDisagreement(const Sensor& camera, const CameraIntrinsics& refined, std::vector<Diagnosis>& notes) {
+  if (auto why = WhyGivenDisagree(camera, refined)) notes.push_back(std::move(*why));
+}
+
+void AddIntrinsicsFigures(const std::string& camera, const CameraIntrinsics& intrinsics, Edge& edge) {
+  edge.figures["fx_" + camera + "_px"] = intrinsics.fx_px;
+  edge.figures["fy_" + camera + "_px"] = intrinsics.fy_px;
+  edge.figures["cx_" + camera + "_px"] = intrinsics.cx_px;
+  edge.figures["cy_" + camera + "_px"] = intrinsics.cy_px;
+  const std::vector<std::string>& names = DistortionNames(intrinsics.model);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    edge.figures[names[i] + "_" + camera + "_ratio"] = intrinsics.distortion[i];
+}
+
+// Jackknife sigma over model sigma, mean over the directions in which the model has unit sigma. 1: the model's noise
+// explains the scatter between captures.
+double SigmaRatio(const Matrix6d& C_jack, const Matrix6d& C_model) {
+  return std::sqrt(C_model.ldlt().solve(C_jack).trace() / 6);
+}
+
+void AddFigures(const StereoEstimate& estimate, std::size_t both, Edge& edge) {
+  const auto used = std::count_if(estimate.residuals.begin(), estimate.residuals.end(),
+                                  [](const CaptureResidual& residual) { return residual.used; });
+  edge.figures["rms_px"] = estimate.rms_px;
+  edge.figures["rms_a_px"] = estimate.rms_a_px;
+  edge.figures["rms_b_px"] = estimate.rms_b_px;
+  edge.figures["captures_used"] = static_cast<double>(used);
+  edge.figures["captures_both"] = static_cast<double>(both);
+  edge.figures["captures_total"] = static_cast<double>(estimate.residuals.size());
+  edge.figures["iterations"] = estimate.iterations;
+  AddIntrinsicsFigures("a", estimate.intrinsics_a, edge);
+  AddIntrinsicsFigures("b", estimate.intrinsics_b, edge);
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : edge.uncertainty.blocks) d.push_back(block.d);
+  if (!d.empty()) edge.figures["model_sigma_ratio"] = SigmaRatio(JackknifeCovariance(d), estimate.C_model);
+}
+
+std::size_t CountBoth(const StereoProblem& problem, const StereoEstimate& estimate) {
+  return static_cast<std::size_t>(
+      std::count_if(problem.captures.begin(), problem.captures.end(), [&](const StereoCapture& capture) {
+        return estimate.T_a_board.count(capture.capture) > 0 && BothSee(capture, problem.board);
+      }));
+}
+
+Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Uncertainty uncertainty,
+              std::vector<Diagnosis> notes) {
+  Edge edge;
+  edge.frame_a = problem.camera_a.id;
+  edge.frame_b = problem.camera_b.id;
+  edge.method = "stereo";
+  edge.state = EdgeState::kGood;
+  edge.T_a_b = estimate.T_a_b;
+  edge.uncertainty = std::move(uncertainty);
+  edge.captures = estimate.residuals;
+  edge.diagnoses = std::move(notes);
+  const std::size_t both = CountBoth(problem, estimate);
+  AddNotes(problem, both, edge.diagnoses);
+  AddLensSuspicions(problem, estimate, edge.diagnoses);
+  AddDisagreement(problem.camera_a, estimate.intrinsics_a, edge.diagnoses);
+  AddDisagreement(problem.camera_b, estimate.intrinsics_b, edge.diagnoses);
+  AddFigures(estimate, both, edge);
+  return edge;
+}
+
+Edge Solved(const StereoProblem& problem, std::vector<CameraFit>* fits) {
+  if (fits) *fits = FitsOf(problem, nullptr);
+  if (auto diagnoses = Observability(problem); !diagnoses.empty()) return FailedEdge(problem, std::move(diagnoses));
+  std::vector<Diagnosis> notes;
+  const auto estimate = EstimateOrDiagnose(problem, nullptr, &notes);
+  if (!estimate) return FailedEdge(problem, {LensAsCure(problem, estimate.error())});
+  if (fits) *fits = FitsOf(problem, &*estimate);
+  const double limit_px = HighestRms_px(problem);
+  if (!(estimate->rms_px <= limit_px)) {
+    const Diagnosis high = HighResidual(problem, estimate->rms_px, limit_px, WorstOf(*estimate));
+    notes.insert(notes.begin(), LensAsCure(problem, high));
+    Edge edge = FailedEdge(problem, std::move(notes));
+    edge.captures = estimate->residuals;
+    edge.figures["rms_px"] = estimate->rms_px;
+    return edge;
+  }
+  auto uncertainty = Jackknife(problem, *estimate);
+  if (!uncertainty)
+    return FailedEdge(problem, {LensAsCure(problem, IllConditioned(problem, uncertainty.error().what))});
+  return GoodEdge(problem, *estimate, std::move(*uncertainty), std::move(notes));
+}
+
+// A description that more pictures contradict than bear out is not the board's: what the others would give is of
+// chance.
+bool ShowsOtherBoard(const StereoProblem& problem) {
+  std::ptrdiff_t contradicting = 0, seeing = 0;
+  for (const StereoCapture& capture : problem.captures)
+    for (const auto* view : {&capture.a, &capture.b}) {
+      if (Sees(*view, problem.board))
+        ++seeing;
+      else if (*view && ShowsOtherLayout(**view))
+        ++contradicting;
+    }
+  return contradicting > seeing;
+}
+
+}  // namespace
+
+Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
+  try {
+    return ShowsOtherBoard(problem) ? FailedEdge(problem, {}) : Solved(problem, fits);
+  } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
+    return FailedEdge(problem,
+                      {FromError(problem, "internal",
+                                 {ErrorCode::kInternal, exception.what(), "Report this with the session's id."})});
+  }
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,95 @@
+#include "server/calib/core/diagnoses.h"
+#include "server/calib/core/joint_problem.h"
+#include "server/calib/core/leave_one_out.h"
+#include "server/calib/core/selection.h"
+#include "server/calib/stereo/stereo.h"
+
+namespace rigcal::calib {
+namespace {
+
+// The solved problem, ready to be solved again with something changed.
+struct Solved {
+  std::vector<std::size_t> used;
+  JointProblem joint;
+  JointState state;
+};
+
+Solved SolvedOf(const StereoProblem& problem, const StereoEstimate& estimate) {
+  Solved solved;
+  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
+    const auto board = estimate.T_a_board.find(problem.captures[idx].capture);
+    if (board == estimate.T_a_board.end()) continue;
+    solved.used.push_back(idx);
+    solved.state.T_a_board.push_back(board->second);
+  }
+  solved.joint = JointOf(problem, solved.used, estimate.turn_b);
+  SetCornerSigma(problem, estimate.corner_sigma_px, solved.joint);
+  solved.state.intrinsics_a = VectorOf(estimate.intrinsics_a);
+  solved.state.intrinsics_b = VectorOf(estimate.intrinsics_b);
+  solved.state.T_a_b = estimate.T_a_b;
+  return solved;
+}
+
+Result<Vector6d> WithoutCapture(const Solved& solved, std::size_t k) {
+  JointProblem joint = solved.joint;
+  JointState state = solved.state;
+  joint.captures.erase(joint.captures.begin() + static_cast<std::ptrdiff_t>(k));
+  state.T_a_board.erase(state.T_a_board.begin() + static_cast<std::ptrdiff_t>(k));
+  RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(joint, state));
+  return Vector6d((solved.state.T_a_b.Inverse() * solution.state.T_a_b).Log());
+}
+
+Solved WithSquare(const Solved& solved, double scale) {
+  Solved moved = solved;
+  for (Eigen::Vector3d& corner : moved.joint.corners_board) corner *= scale;
+  for (Se3& T_a_board : moved.state.T_a_board) T_a_board.p_m *= scale;
+  moved.state.T_a_b.p_m *= scale;
+  return moved;
+}
+
+Result<Se3> PoseOf(const Solved& solved) {
+  RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(solved.joint, solved.state));
+  return solution.state.T_a_b;
+}
+
+void AddIntrinsics(const Sensor& camera, const std::vector<Vector6d>& shifts, const Se3& T_a_b,
+                   std::vector<GivenConstant>& constants) {
+  for (const Vector6d& shift : shifts)
+    constants.push_back({"intrinsics of " + camera.id.str(),
+                         [&T_a_b, shift](double steps) { return Result<Se3>(T_a_b * Se3::Exp(steps * shift)); }});
+}
+
+std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const StereoEstimate& estimate,
+                                       const Solved& solved) {
+  std::vector<GivenConstant> constants;
+  const double ratio = problem.board.square_sigma_m / problem.board.square_m;
+  if (ratio > 0)
+    constants.push_back({"size of board " + problem.board.id.str(),
+                         [&solved, ratio](double steps) { return PoseOf(WithSquare(solved, 1 + steps * ratio)); }});
+  AddIntrinsics(problem.camera_a, estimate.shifts_a, estimate.T_a_b, constants);
+  AddIntrinsics(problem.camera_b, estimate.shifts_b, estimate.T_a_b, constants);
+  return constants;
+}
+
+std::vector<std::string> BlockIds(const StereoProblem& problem, const Solved& solved) {
+  std::vector<std::string> ids;
+  for (const std::size_t idx : solved.used) ids.push_back(problem.captures[idx].capture.str());
+  return ids;
+}
+
+}  // namespace
+
+Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate) {
+  const Solved solved = SolvedOf(problem, estimate);
+  // Single views are blocks too, but no degrees of freedom of the pair.
+  const std::size_t both = CountBoth(problem, solved.used);
+  RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate, solved)));
+  std::vector<BlockVector> blocks;
+  if (both >= kCapturesForJackknife) {
+    const auto without = [&](std::size_t k) { return WithoutCapture(solved, k); };
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(BlockIds(problem, solved), without));
+  }
+  return UncertaintyOf(estimate.C_model, std::move(blocks), contributions, both);
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,135 @@
+#include "server/calib/stereo/stereo_work.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/calib/core/diagnoses.h"
+#include "server/calib/core/selection.h"
+#include "server/calib/planes/pose_choice.h"
+
+namespace rigcal::calib {
+namespace {
+
+// At the start T_a_b is still rough, so only gross contradictions count: swapped or unsynchronized pictures.
+constexpr double kContradictingRatio = 6.0;        // times the median rms of the captures
+constexpr double kContradictingWidthRatio = 0.02;  // and this part of the picture's width
+// Two minima of a board's pose whose weighted costs differ by less than four sigma squared cannot be told apart.
+constexpr double kAmbiguousCost = 16.0;
+constexpr int kPoseRoundsMax = 4;
+constexpr int kPulledRounds = 2;
+
+// The best pose of one board over all turns of b's view; sets the turn.
+PoseChoice ChooseTurnAndPose(const StereoProblem& problem, std::size_t k, StereoWork& work) {
+  JointCapture& capture = work.joint.captures[k];
+  const int turns = capture.a.empty() || capture.b.empty() ? 1 : SymmetryOf(problem.board);
+  PoseChoice best;
+  SeenCorners best_b = capture.b;
+  for (int turn = 0; turn < turns; ++turn) {
+    if (turns > 1) capture.b = SeenIn(*problem.captures[work.used[k]].b, problem.board, turn);
+    const PoseChoice choice = ChoosePose(work.joint, work.state, k, AllowedPoses(work.joint, work.state, k));
+    if (turn > 0 && !(choice.ssr_px2 < best.ssr_px2)) continue;
+    best = choice;
+    best_b = capture.b;
+    work.turns_b[k] = turn;
+  }
+  capture.b = std::move(best_b);
+  return best;
+}
+
+// One look at every board's other pose. Returns whether anything changed.
+bool ReconsiderBoards(const StereoProblem& problem, StereoWork& work, std::vector<CaptureId>& ambiguous) {
+  const double s2_px2 = work.Variance_px2();
+  bool changed = false;
+  for (std::size_t k = work.used.size(); k-- > 0;) {
+    std::vector<Se3> candidates = AllowedPoses(work.joint, work.state, k);
+    candidates.insert(candidates.begin(), work.state.T_a_board[k]);
+    const PoseChoice choice = ChoosePose(work.joint, work.state, k, candidates);
+    if (choice.other_ssr_px2 - choice.ssr_px2 < kAmbiguousCost * s2_px2) {
+      ambiguous.push_back(problem.captures[work.used[k]].capture);
+      work.Drop(k, "two poses of the board fit equally");
+      changed = true;
+    } else if ((work.state.T_a_board[k].Inverse() * choice.T_a_board).Log().norm() > 1e-3) {
+      work.state.T_a_board[k] = choice.T_a_board;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
+void StereoWork::Drop(std::size_t position, const std::string& why) {
+  unused[used[position]] = why;
+  const auto at = static_cast<std::ptrdiff_t>(position);
+  used.erase(used.begin() + at);
+  turns_b.erase(turns_b.begin() + at);
+  joint.captures.erase(joint.captures.begin() + at);
+  state.T_a_board.erase(state.T_a_board.begin() + at);
+}
+
+double StereoWork::SumOfSquares_px2() const {
+  double ssr_px2 = 0;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const CaptureError error = ErrorOf(joint, state, k);
+    ssr_px2 += error.a_px2 + error.b_px2;
+  }
+  return ssr_px2;
+}
+
+double StereoWork::Variance_px2() const { return SumOfSquares_px2() / (ResidualCount(joint) - ParameterCount(joint)); }
+
+std::vector<CaptureId> PlaceBoards(const StereoProblem& problem, double width_px, StereoWork& work) {
+  work.state.T_a_board.resize(work.used.size());
+  work.turns_b.assign(work.used.size(), 0);
+  std::vector<double> rms_px;
+  for (std::size_t k = 0; k < work.used.size(); ++k) {
+    const PoseChoice choice = ChooseTurnAndPose(problem, k, work);
+    work.state.T_a_board[k] = choice.T_a_board;
+    const JointCapture& capture = work.joint.captures[k];
+    rms_px.push_back(std::sqrt(choice.ssr_px2 / static_cast<double>(capture.a.size() + capture.b.size())));
+  }
+  std::vector<double> sorted = rms_px;
+  std::sort(sorted.begin(), sorted.end());
+  const double limit_px =
+      std::max(kContradictingRatio * sorted[sorted.size() / 2], kContradictingWidthRatio * width_px);
+  std::vector<CaptureId> contradicting;
+  for (std::size_t k = work.used.size(); k-- > 0;) {
+    if (rms_px[k] <= limit_px && std::isfinite(rms_px[k])) continue;
+    contradicting.insert(contradicting.begin(), problem.captures[work.used[k]].capture);
+    work.Drop(k, "its pictures contradict the other captures");
+  }
+  return contradicting;
+}
+
+OrDiagnosis<void> Refine(const StereoProblem& problem, StereoWork& work) {
+  auto solution = SolveJoint(work.joint, work.state);
+  if (!solution) return tl::unexpected(FromError(problem, "no_convergence", solution.error()));
+  work.state = std::move(solution->state);
+  work.iterations += solution->iterations;
+  return {};
+}
+
+// What the corners are good for is known once they fit, and they fit a little better once it is known.
+OrDiagnosis<void> RefineAgainstGiven(const StereoProblem& problem, StereoWork& work) {
+  const bool pulled = work.joint.pull_a.Pulls() || work.joint.pull_b.Pulls();
+  for (int round = 1; pulled && round < kPulledRounds; ++round) {
+    SetCornerSigma(problem, std::sqrt(work.Variance_px2()), work.joint);
+    if (auto refined = Refine(problem, work); !refined) return refined;
+  }
+  if (pulled) SetCornerSigma(problem, std::sqrt(work.Variance_px2()), work.joint);
+  return Refine(problem, work);
+}
+
+OrDiagnosis<void> RefineWithChoices(const StereoProblem& problem, StereoWork& work, std::vector<Diagnosis>& notes) {
+  std::vector<CaptureId> ambiguous;
+  for (int round = 0; round < kPoseRoundsMax; ++round) {
+    if (auto refined = Refine(problem, work); !refined) return refined;
+    if (!ReconsiderBoards(problem, work, ambiguous)) break;
+    std::sort(ambiguous.begin(), ambiguous.end());
+    if (CountBoth(problem, work.used) < kCapturesMin) return tl::unexpected(AmbiguousPose(problem, ambiguous));
+  }
+  if (!ambiguous.empty()) notes.push_back(AmbiguousPose(problem, ambiguous));
+  return RefineAgainstGiven(problem, work);
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,52 @@
+// The numbers of a tracker-lidar problem as they shrink and improve, for tracker_lidar*.cc.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/calib/planes/plane_consensus.h"
+#include "server/calib/tracker_lidar/tracker_lidar.h"
+
+namespace rigcal::calib {
+
+constexpr std::size_t kTrackerLidarMin = 4;           // captures of both
+constexpr std::size_t kTrackerLidarForJackknife = 5;  // fewer: the uncertainty is the model's
+constexpr std::size_t kTrackerLidarEnough = 10;       // fewer: a note says so
+
+// A patch that is a board: which of the capture's, and what it is.
+struct ChosenPatch {
+  const PlanePatch* patch = nullptr;
+  std::size_t board_idx = 0;
+};
+
+struct TrackerLidarWork {
+  std::vector<std::size_t> captures;              // of the problem, those used
+  std::vector<std::vector<ChosenPatch>> patches;  // side by side with them
+  std::map<std::size_t, std::string> unused;      // of the problem's captures: why
+  std::vector<std::size_t> contradicting;         // of those: the ones whose boards are elsewhere
+  double range_sigma_m = 0.0;
+  // On the variances that a tracker is taken to have. They begin high: what then is told is told with any noise below.
+  double factor_translation = 100.0, factor_rotation = 100.0;
+  StaticProblem problem;  // in a world whose origin is in the middle of the body's places
+  StaticState state;
+  StaticFit fit;
+  PlaneReach reach;
+  MotionReach motion;
+};
+
+// Patches of a capture that may be boards; one seen under two plates' names counts once.
+[[nodiscard]] std::vector<const PlanePatch*> PatchesOf(const TrackerLidarCapture& capture);
+// Captures with a pose and a patch, each once; which patches are boards. Leaves the start in `state`.
+[[nodiscard]] tl::expected<TrackerLidarWork, Diagnosis> CollectPatches(const TrackerLidarProblem& problem);
+// Solves, finds the tracker's noise, what contradicts and what is open, until nothing changes.
+[[nodiscard]] tl::expected<void, Diagnosis> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
+[[nodiscard]] TrackerLidarCheck CheckOf(const TrackerLidarWork& work, std::size_t position);
+// The refinement's problem with the ranges of one group of beams longer.
+[[nodiscard]] StaticProblem ProblemWithBeamsMoved(const TrackerLidarWork& work, std::size_t group, double longer_m);
+// Uncertainty of the edge's T_a_b.
+[[nodiscard]] Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem,
+                                                        const TrackerLidarWork& work);
+[[nodiscard]] Matrix6d ModelInformation(const TrackerLidarWork& work);
+
+}  // namespace rigcal::calib
