@@ -15,14 +15,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// Two come within a few hundredths of sigma of where they lead.
-constexpr int kPasses = 2;
-// What weights do is mostly a matter of two blocks: one changes the weight, the other errs. A jackknife counts the
-// variance of what only two blocks do together twice (Efron & Stein 1981). The part is not purely that, as the held
-// weights fit these errors too: 1 / sqrt(2) is what simulations confirm (graph_weights_test: 1.03 of the true variance;
-// where most of a residual comes from elsewhere, as from given constants, variances are up to 1.18 times too large).
-constexpr double kOfTwoBlocks = 0.70710678118654752;
-
 // Adds up what the sources bring, a batch of columns at a time.
 class Accumulator {
  public:
@@ -72,56 +64,11 @@ class Accumulator {
       for (const ErrorPart& part : source->parts)
         AddToGradient(work_.problem.constraints[part.constraint], work_.jacobians[part.constraint], part.de,
                       pull.middleCols(at, source->column_count));
-    const MatrixXd moved = Followed(pull);
-    MatrixXd columns = moved;
-    for (int pass = 0; pass < kPasses && AnyWeight(begin, end); ++pass)
-      columns = Followed(pull + PullsByWeight(begin, end, columns));
-    columns = moved + kOfTwoBlocks * (columns - moved);
-    Centre(begin, end, columns);
+    cholesky_.SolveInPlace(pull);
+    const MatrixXd columns = -pull;  // where the optimum goes
     joint_.selfadjointView<Eigen::Lower>().rankUpdate(columns);
     AddResiduals(begin, end, columns);
     for (std::size_t v = 0; v < pose_dof_.size(); ++v) AddPoseDof(begin, end, columns, v);
-  }
-
-  // Where the optimum goes under a pull.
-  [[nodiscard]] MatrixXd Followed(MatrixXd pull) {
-    cholesky_.SolveInPlace(pull);
-    return -pull;
-  }
-
-  static bool AnyWeight(const ErrorSource* begin, const ErrorSource* end) {
-    return std::any_of(begin, end, [](const ErrorSource& source) { return source.HasWeight(); });
-  }
-
-  // Of the weights that each block leaves behind, at the poses that it leaves behind.
-  [[nodiscard]] MatrixXd PullsByWeight(const ErrorSource* begin, const ErrorSource* end,
-                                       const MatrixXd& columns) const {
-    MatrixXd pull = MatrixXd::Zero(columns.rows(), columns.cols());
-    Eigen::Index at = 0;
-    for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source) {
-      const Eigen::Index count = source->column_count;
-      for (const ErrorPart& part : source->parts) {
-        if (!part.weight) continue;
-        const Constraint& constraint = work_.problem.constraints[part.constraint];
-        const EdgeJacobian& jacobian = work_.jacobians[part.constraint];
-        MatrixXd residuals = part.de + ResidualChange(constraint, jacobian, columns.middleCols(at, count));
-        residuals.colwise() += BlockScale(count) * jacobian.e;
-        AddToGradient(constraint, jacobian, PullByWeight(*part.weight, constraint.Omega, residuals),
-                      pull.middleCols(at, count));
-      }
-    }
-    return pull;
-  }
-
-  // What weights do does not average to nothing over the blocks.
-  static void Centre(const ErrorSource* begin, const ErrorSource* end, MatrixXd& columns) {
-    Eigen::Index at = 0;
-    for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source) {
-      if (!source->HasWeight()) continue;
-      auto own = columns.middleCols(at, source->column_count);
-      const Eigen::VectorXd mean = own.rowwise().mean();
-      own.colwise() -= mean;
-    }
   }
 
   void AddPoseDof(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns, std::size_t free_vertex) {
@@ -187,6 +134,16 @@ void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const
   }
 }
 
+// Weights that were estimated from the same blocks fit their chance a little; no pose is told better than its edges would
+// be if they were independent.
+void KeepAboveAnalytic(GraphJackknife& jackknife) {
+  for (std::size_t s = 0; s < jackknife.sensors.size(); ++s) {
+    if (jackknife.row_of_sensor[s] < 0) continue;
+    auto own = jackknife.joint.block<6, 6>(jackknife.row_of_sensor[s], jackknife.row_of_sensor[s]);
+    own = LargerOf(own, jackknife.analytic[s]);
+  }
+}
+
 bool Usable(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
   return solution.converged && problem.free_count() > 0 && problem.free_count() < kJackknifeSensorsMax &&
          solution.poses.size() == graph.sensors.size() && solution.residuals.size() == graph.edges.size();
@@ -231,6 +188,7 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   jackknife.joint = accumulator.Joint();
   if (!jackknife.joint.allFinite()) return jackknife;
   FillSensors(work, solution, analytic, accumulator, jackknife);
+  KeepAboveAnalytic(jackknife);
   jackknife.residuals.resize(solution.residuals.size());
   for (std::size_t k = 0; k < problem.constraints.size(); ++k)
     jackknife.residuals[problem.constraints[k].edge] = {true, accumulator.C_e(k), accumulator.Dof(k)};

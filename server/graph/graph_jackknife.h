@@ -1,10 +1,7 @@
 // The honest covariance of a solution: a jackknife through the graph (design: correlated edges). Edges of one session
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
-// session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Where
-// the blocks made Omega too, K is that of Omega without block i: weights that fit chance in all blocks find too little
-// of it left in them. What that change of K does is mostly the work of two blocks, whose variance a jackknife counts
-// twice (Efron & Stein 1981), and counts by 1 / sqrt(2). Pure and deterministic: sessions, blocks and edges count
-// in sorted order.
+// session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Weights
+// are held, and no pose is told better than H^-1 tells it. Pure and deterministic: sessions, blocks and edges count in sorted order.
 #pragma once
 
 #include <map>
@@ -20,8 +17,6 @@ struct EdgeBlocks {
   Matrix6d C_given = Matrix6d::Zero();  // of given constants of its own; no block shows it, so it is added per edge
   std::map<std::string, std::vector<Vector6d>> shifts;  // of given constants that its session shares, by their name
   int dof = 0;                                          // of the edge's uncertainty
-  // Share of the edge's covariance that its blocks made: Omega errs as they do. 0: Omega is known apart from them.
-  double weight_share = 0.0;
 };
 // Fewer blocks than this do not carry a covariance of six directions: such an edge counts with the C_e of its Omega.
 constexpr std::size_t kJackknifeBlocksMin = 8;

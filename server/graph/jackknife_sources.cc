@@ -1,10 +1,7 @@
 #include "server/graph/jackknife_sources.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "server/math/covariance.h"
@@ -14,8 +11,6 @@ namespace rigcal::graph {
 namespace {
 
 using Eigen::MatrixXd;
-
-constexpr double kShareRounding = 1e-6, kShareMax = 0.999;
 
 // The session's key; an edge that belongs to none stands for itself. '/' is in no id.
 std::string SessionKey(const GraphEdge& edge) {
@@ -41,23 +36,6 @@ MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<st
   return BlockScale(count) * (d.colwise() - mean);
 }
 
-// What an Omega that the blocks made lacks without each of them; nothing where Omega is known apart from them.
-// Captures that the edge does not have made nothing of it, whatever other edges of the session made of them.
-std::optional<WeightBlocks> WeightOf(const EdgeBlocks& own, const std::vector<std::string>& ids) {
-  if (!(own.weight_share > 0.0)) return std::nullopt;
-  WeightBlocks weight{MatrixXd::Zero(6, static_cast<Eigen::Index>(ids.size())), std::vector<char>(ids.size(), 0),
-                      own.weight_share};
-  Vector6d mean = Vector6d::Zero();
-  for (const BlockVector& block : own.blocks) mean += block.d / static_cast<double>(own.blocks.size());
-  const double scale = BlockScale(static_cast<Eigen::Index>(own.blocks.size()));
-  for (const BlockVector& block : own.blocks) {
-    const Eigen::Index place = PlaceOf(block.block_id, ids);
-    weight.d.col(place) = scale * (block.d - mean);
-    weight.own[static_cast<std::size_t>(place)] = 1;
-  }
-  return weight;
-}
-
 ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size_t>& members) {
   std::set<std::string> unique;
   int dof = 0;
@@ -74,7 +52,7 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
   for (const std::size_t k : members) {
     const EdgeBlocks& own = *FindBlocks(work.blocks, work.EdgeOf(k).id);
     const MatrixXd d = CentredBlocks(own.blocks, ids);
-    source.parts.push_back({k, work.jacobians[k].D * d, WeightOf(own, ids)});
+    source.parts.push_back({k, work.jacobians[k].D * d});
   }
   return source;
 }
@@ -89,7 +67,7 @@ void AddGiven(const JackknifeWork& work, std::size_t constraint, const EdgeBlock
     MatrixXd columns(6, static_cast<Eigen::Index>(shifts.size()));
     for (std::size_t i = 0; i < shifts.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = shifts[i];
     source.column_count = std::max(source.column_count, columns.cols());
-    source.parts.push_back({constraint, work.jacobians[constraint].D * columns, {}});
+    source.parts.push_back({constraint, work.jacobians[constraint].D * columns});
   }
 }
 
@@ -104,22 +82,8 @@ ErrorSource OwnError(std::size_t constraint, const MatrixXd& de, int dof) {
   ErrorSource source;
   source.dof = dof;
   source.column_count = de.cols();
-  source.parts.push_back({constraint, de, {}});
+  source.parts.push_back({constraint, de});
   return source;
-}
-
-// Of what the blocks show in the covariance that Omega stands for; 0 where it is less than they alone would make it.
-// Never all of it along any direction: one that a single block shows would have no weight without that block.
-double ShareInOmega(const Uncertainty& uncertainty) {
-  if (uncertainty.source != UncertaintySource::kJackknife || uncertainty.dof < 1) return 0.0;
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : uncertainty.blocks) d.push_back(block.d);
-  const double most = JackknifeRatioMax(std::min(uncertainty.dof, std::numeric_limits<int>::max() - 1) + 1);
-  const double share = uncertainty.jackknife_ratio > 0.0 ? std::min(uncertainty.jackknife_ratio, most) : most;
-  const Matrix6d F = SquareRoot(uncertainty.Omega);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(F.transpose() * JackknifeCovariance(d) * F));
-  const double largest = share * eigen.eigenvalues()(5);
-  return largest <= 1.0 + kShareRounding ? share * std::min(1.0, kShareMax / largest) : 0.0;
 }
 
 // Block vectors that say something in every direction that the edge sees, each for a block of its own.
@@ -138,21 +102,6 @@ bool SpeakForTheirEdge(const Uncertainty& uncertainty) {
 
 double BlockScale(Eigen::Index m) { return std::sqrt(1.0 - 1.0 / static_cast<double>(m)); }
 
-// The covariance that the blocks show is C = sum d_i d_i^T. Without block i it is expected to be the same: what is left
-// counts for (m - 1) / (m - 2) of itself, so that C changes by (C - m d_i d_i^T) / (m - 2).
-MatrixXd PullByWeight(const WeightBlocks& weight, const Matrix6d& Omega, const MatrixXd& residuals) {
-  const auto m = static_cast<double>(std::count(weight.own.begin(), weight.own.end(), 1));
-  const Matrix6d C = weight.d * weight.d.transpose();
-  MatrixXd pull = MatrixXd::Zero(6, residuals.cols());
-  for (Eigen::Index i = 0; i < residuals.cols(); ++i) {
-    if (weight.own[static_cast<std::size_t>(i)] == 0) continue;
-    const Vector6d d = weight.d.col(i);
-    const Matrix6d change = weight.share / (m - 2.0) * (C - m * d * d.transpose()) * Omega;
-    pull.col(i) = -Matrix6d(Matrix6d::Identity() + change).partialPivLu().solve(change * residuals.col(i));
-  }
-  return pull;
-}
-
 BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
   BlocksByEdge blocks;
   for (const Edge& edge : edges) {
@@ -160,7 +109,6 @@ BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
     EdgeBlocks& own = blocks[edge.id];
     own.blocks = edge.uncertainty.blocks;
     own.dof = edge.uncertainty.dof;
-    own.weight_share = ShareInOmega(edge.uncertainty);
     for (const Contribution& part : edge.uncertainty.contributions)
       if (part.shifts.empty() || !own.shifts.emplace(part.name, part.shifts).second) own.C_given += part.covariance;
   }

@@ -37,7 +37,7 @@ struct Uncertainty {
   Eigen::Matrix<double, 6, Eigen::Dynamic> unobservable_basis;  // 6 x (6 - rank) (derived from Omega)
   std::vector<BlockVector> blocks;
   std::vector<Contribution> contributions;
-  // What the blocks make of the covariance without contributions, the rest is a model's; 0: nothing, or not told.
+  // As edges of before tell it: what the blocks made of the covariance without contributions; 0: not told.
   double jackknife_ratio = 0.0;
 };
 

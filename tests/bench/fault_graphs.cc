@@ -38,9 +38,7 @@ void TakeBlocks(const std::vector<Vector6d>& errors, const Matrix6d& C_model, bo
     own.blocks.push_back({std::to_string(100 + i), d.back()});
   }
   own.dof = edge.dof = m - 1;
-  const Matrix6d C_jack = JackknifeCovariance(d);
-  const auto [C, ratio] = shrink ? ShrinkTowardsModel(C_jack, C_model, m) : ShrunkCovariance{C_jack, 1.0};
-  own.weight_share = ratio;
+  const Matrix6d C = shrink ? JackknifeOrModel(d, C_model) : JackknifeCovariance(d);
   edge.Omega = Symmetrized(C.inverse());
   edge.T_a_b = (edge.T_a_b * Se3::Exp(mean)).Normalized();
 }

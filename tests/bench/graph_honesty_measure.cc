@@ -153,9 +153,7 @@ Session SimulateSession(int m, unsigned seed) {
       const Matrix6d C_camera = variance.asDiagonal();
       const Matrix6d C_model = (1.09 * C_camera + A * C_camera * A.transpose()) / m;
       edge.T_a_b = truth * Se3::Exp(mean);
-      const ShrunkCovariance shrunk = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
-      own.weight_share = shrunk.jackknife_ratio;
-      edge.Omega = Symmetrized(shrunk.C.inverse());
+      edge.Omega = Symmetrized(JackknifeOrModel(d, C_model).inverse());
     }
   return session;
 }

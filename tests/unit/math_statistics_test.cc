@@ -81,114 +81,88 @@ TEST(JackknifeDeathTest, OneBlockIsABrokenInvariant) {
   EXPECT_DEATH((void)JackknifeCovariance({Vector6d::Zero()}), "two blocks");
 }
 
-TEST(ShrinkTowardsModel, WeighsByBlocks) {
-  const Matrix6d one = Matrix6d::Identity(), two = 2.0 * one;
-  EXPECT_LT((ShrinkTowardsModel(one, two, 8).C - 1.5 * one).norm(), 1e-15);  // (7 * 1 + 7 * 2) / 14
-  EXPECT_LT((ShrinkTowardsModel(one, two, 1).C - two).norm(), 1e-15);
-  EXPECT_DOUBLE_EQ(ShrinkTowardsModel(one, two, 8).jackknife_ratio, 0.5);
-  EXPECT_DOUBLE_EQ(JackknifeRatioMax(40), 39.0 / 46.0);
+// Blocks whose jackknife is exactly `C`, in pairs of opposite signs along its axes.
+std::vector<Vector6d> BlocksOf(const Matrix6d& C) {
+  const Matrix6d F = SquareRoot(C);
+  const double m = 12;
+  std::vector<Vector6d> d;
+  for (int i = 0; i < 6; ++i)
+    for (const double sign : {-1.0, 1.0}) d.push_back(sign * std::sqrt(m / (m - 1) / 2) * F.col(i));
+  return d;
 }
 
-TEST(ShrinkTowardsModel, TrustsAModelThatTheBlocksConfirm) {
-  const Matrix6d model = Matrix6d::Identity();
-  const auto ratio = [&](const Matrix6d& C_jack) { return ShrinkTowardsModel(C_jack, model, 40).jackknife_ratio; };
-  EXPECT_LT(ratio(model), 0.6);  // not below 1/2
-  EXPECT_GT(ratio(model), 0.5);
-  Matrix6d one_off = model;
-  one_off(2, 2) = 30.0;
-  for (const Matrix6d& contradicted : {Matrix6d(0.1 * model), one_off}) {
-    EXPECT_GT(ratio(contradicted), JackknifeRatioMax(40) - 0.02);
-    EXPECT_LE(ratio(contradicted), JackknifeRatioMax(40));
-  }
-  const double sigma_beside = std::sqrt(ShrinkTowardsModel(one_off, model, 40).C(0, 0));
-  EXPECT_GT(sigma_beside, 1.0);
-  EXPECT_LT(sigma_beside, 1.4);
-}
-
-// Only its size is off, and of that the blocks know enough; too wide a model is left as it is.
-TEST(ShrinkTowardsModel, WidensAModelThatIsTooSure) {
+TEST(JackknifeOrModel, IsTheModelWhereTheBlocksConfirmItOrShowLess) {
   const Matrix6d one = Matrix6d::Identity();
-  EXPECT_LT((ShrinkTowardsModel(9.0 * one, one, 20).C - 9.0 * one).norm(), 1e-12);
-  const auto [C, ratio] = ShrinkTowardsModel(one, 9.0 * one, 20);
-  EXPECT_LT((C - (ratio + (1.0 - ratio) * 9.0) * one).norm(), 1e-12);
+  ASSERT_LT((JackknifeCovariance(BlocksOf(one)) - one).norm(), 1e-14);
+  EXPECT_LT((JackknifeOrModel(BlocksOf(one), one) - one).norm(), 1e-14);
+  EXPECT_LT((JackknifeOrModel(BlocksOf(0.1 * one), one) - one).norm(), 1e-14);
+}
+
+TEST(JackknifeOrModel, IsTheBlocksWhereTheyShowMore) {
+  const Matrix6d one = Matrix6d::Identity();
+  EXPECT_LT((JackknifeOrModel(BlocksOf(9.0 * one), one) - 9.0 * one).norm(), 1e-12);
+}
+
+MatrixXd Draws(int p, int count, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  MatrixXd draws(p, count);
+  for (double& value : draws.reshaped()) value = normal(random);
+  return draws;
+}
+
+std::vector<Vector6d> ColumnsOf(const MatrixXd& columns) {
+  std::vector<Vector6d> d;
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) d.emplace_back(columns.col(i));
+  return d;
 }
 
 // Along five directions of which the sixth is nothing's, in any frame and any unit.
-TEST(ShrinkTowardsModel, IsTheSameInEveryFrameAndWhereADirectionIsUnknown) {
+TEST(JackknifeOrModel, IsTheSameInEveryFrameAndWhereADirectionIsUnknown) {
   std::mt19937 random(3);
-  std::normal_distribution<double> normal;
-  Eigen::Matrix<double, 5, 30> samples;
-  for (double& value : samples.reshaped()) value = normal(random);
-  Matrix6d C_jack = Matrix6d::Zero(), C_model = Matrix6d::Zero();
-  C_jack.topLeftCorner<5, 5>() = samples * samples.transpose() / 30;
-  C_model.topLeftCorner<5, 5>().setIdentity();
-  const ShrunkCovariance here = ShrinkTowardsModel(C_jack, C_model, 31);
+  MatrixXd d = MatrixXd::Zero(6, 30);
+  d.topRows(5) = 2.0 * Draws(5, 30, random) / 30;
+  Matrix6d C_model = Matrix6d::Zero();
+  C_model.topLeftCorner<5, 5>() = Eigen::Matrix<double, 5, 5>::Identity() / 30;
+  const Matrix6d here = JackknifeOrModel(ColumnsOf(d), C_model);
   Vector6d units;
   units << 1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5;
   Vector6d turn;
   turn << 0.5, -1, 2, 0.3, 0.2, -0.4;
   const Matrix6d A = Matrix6d(units.asDiagonal()) * Adjoint(Se3::Exp(turn));
-  const auto moved =
-      ShrinkTowardsModel(Symmetrized(A * C_jack * A.transpose()), Symmetrized(A * C_model * A.transpose()), 31);
-  EXPECT_NEAR(moved.jackknife_ratio, here.jackknife_ratio, 1e-9);
-  const Matrix6d expected = A * here.C * A.transpose();
-  EXPECT_LT((moved.C - expected).norm(), 1e-9 * expected.norm());
+  const Matrix6d moved = JackknifeOrModel(ColumnsOf(A * d), Symmetrized(A * C_model * A.transpose()));
+  const Matrix6d expected = A * here * A.transpose();
+  EXPECT_LT((moved - expected).norm(), 1e-8 * expected.norm());
+  EXPECT_EQ(Observable(here).rank, 5);
 }
 
-MatrixXd WishartOf(const MatrixXd& L, int dof, std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  MatrixXd W = MatrixXd::Zero(L.rows(), L.rows());
-  VectorXd z(L.rows());
-  for (int i = 0; i < dof; ++i) {
-    for (double& value : z) value = normal(random);
-    const VectorXd x = L * z;
-    W += x * x.transpose();
-  }
-  return W;
-}
-
-// Mean of err^2 over variance that errors with covariance Sigma have, by thirds of how unlike the model C_jack is.
-// Sigma scatters around the model as assumed, but the model is told `size` times as large; along the first p
-// directions.
-struct Told {
-  std::array<double, 3> thirds{};
-  double by_seven = 0.0;
-};
-Told ToldOf(int p, double size) {
-  constexpr int kDraws = 3000, kBlocks = 40;
+// Mean of err^2 over the variance told, for errors of which 40 blocks show one draw; the model tells `size` of it.
+double MeanSquare(double size) {
+  constexpr int kDraws = 2000, kBlocks = 40;
   std::mt19937 random(11);
-  std::uniform_real_distribution<double> even;
-  Matrix6d C_model = Matrix6d::Zero();
-  C_model.topLeftCorner(p, p).diagonal().setConstant(size);
-  std::vector<std::pair<double, double>> drawn;
-  Told told;
-  for (int i = 0; i < kDraws; ++i) {
-    const int kappa = static_cast<int>(std::lround(7.0 * std::pow(39.0 / 7.0, even(random))));
-    const MatrixXd Sigma = (WishartOf(MatrixXd::Identity(p, p), kappa + p + 1, random) / kappa).inverse();
-    const MatrixXd jack = WishartOf(Sigma.llt().matrixL(), kBlocks - 1, random) / (kBlocks - 1);
-    Matrix6d C_jack = Matrix6d::Zero();
-    C_jack.topLeftCorner(p, p) = jack;
-    const MatrixXd C = ShrinkTowardsModel(C_jack, C_model, kBlocks).C.topLeftCorner(p, p);
-    const double unlike = jack.selfadjointView<Eigen::Lower>().eigenvalues().array().log().square().sum();
-    drawn.emplace_back(unlike, (C.inverse() * Sigma).trace() / p);
-    const double seven = JackknifeRatioMax(kBlocks);
-    const MatrixXd C_seven = seven * jack + (1.0 - seven) * C_model.topLeftCorner(p, p);
-    told.by_seven += (C_seven.inverse() * Sigma).trace() / (p * kDraws);
+  double sum = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const Matrix6d C = JackknifeOrModel(ColumnsOf(Draws(6, kBlocks, random) / (kBlocks - 1)),
+                                        size / kBlocks * Matrix6d::Identity());
+    sum += C.inverse().trace() / kBlocks / 6 / kDraws;
   }
-  std::sort(drawn.begin(), drawn.end());
-  for (std::size_t i = 0; i < kDraws; ++i) told.thirds[3 * i / kDraws] += drawn[i].second * 3 / kDraws;
-  return told;
+  return sum;
 }
 
-// Errors are as large as told, in all directions and however the blocks scatter. A model that is right may be taken for
-// too sure by chance, which widens it by a little; of one that is too sure by 2 a weight of seven blocks leaves too
-// much.
-TEST(ShrinkTowardsModel, IsThePosteriorMean) {
-  const Told right = ToldOf(6, 1.0), too_sure = ToldOf(5, 0.25);
-  for (const double third : right.thirds) EXPECT_NEAR(third, 0.975, 0.025);
-  for (const double third : too_sure.thirds) EXPECT_NEAR(third, 1.0, 0.03);
-  EXPECT_GT(right.by_seven, 1.04);
-  EXPECT_GT(too_sure.by_seven, 1.2);
+TEST(JackknifeOrModel, TellsErrorsAsLargeAsTheyAreWhereTheModelIsTooSure) {
+  EXPECT_NEAR(MeanSquare(1.0), 0.93, 0.07);  // never below the model, so a little too wide
+  EXPECT_NEAR(MeanSquare(0.25), 1.0, 0.07);
+}
+
+TEST(Covariance, TheLargerOfTwoIsNoLessThanEither) {
+  std::mt19937 random(5);
+  const MatrixXd a = Draws(6, 9, random), b = Draws(6, 9, random);
+  const Matrix6d A = a * a.transpose(), B = b * b.transpose(), C = LargerOf(A, B);
+  for (const Matrix6d& less : {A, B}) {
+    const double smallest = Eigen::SelfAdjointEigenSolver<Matrix6d>(C - less).eigenvalues()(0);
+    EXPECT_GT(smallest, -1e-10);
+    EXPECT_LT(smallest, 1e-10);  // nor more than needed
+  }
+  EXPECT_LT((LargerOf(0.5 * B, B) - B).norm(), 1e-10);
 }
 
 }  // namespace

@@ -15,17 +15,17 @@ Result<Vector6d> ShiftOf(const GivenConstant& constant) {
   return Vector6d(0.5 * (minus.Inverse() * plus).Log());
 }
 
-// With what the captures and the given constants add; `m` captures. Without blocks the model's stands for the captures.
-ShrunkCovariance CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
-                              const std::vector<Contribution>& contributions, int m) {
-  ShrunkCovariance shrunk{C_model, 0.0};
+// With what the captures and the given constants add. Without blocks the model's stands for the captures.
+Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
+                      const std::vector<Contribution>& contributions) {
+  Matrix6d C = C_model;
   if (!blocks.empty()) {
     std::vector<Vector6d> d;
     for (const BlockVector& block : blocks) d.push_back(block.d);
-    shrunk = ShrinkTowardsModel(JackknifeCovariance(d), C_model, m);
+    C = JackknifeOrModel(d, C_model);
   }
-  for (const Contribution& contribution : contributions) shrunk.C += contribution.covariance;
-  return shrunk;
+  for (const Contribution& contribution : contributions) C += contribution.covariance;
+  return C;
 }
 
 }  // namespace
@@ -60,12 +60,11 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
 Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
                                   std::vector<Contribution> contributions, std::size_t captures) {
   const int m = static_cast<int>(captures);
-  const auto [C, share] = CovarianceOf(C_model, blocks, contributions, m);
+  const Matrix6d C = CovarianceOf(C_model, blocks, contributions);
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
   RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, m - 1));
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
-  uncertainty.jackknife_ratio = share;
   return uncertainty;
 }
 
@@ -81,7 +80,7 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
   if (free.cols() == 6)
     return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
   const int m = static_cast<int>(captures);
-  const auto [C, share] = CovarianceOf(C_model, blocks, contributions, m);
+  const Matrix6d C = CovarianceOf(C_model, blocks, contributions);
   const Eigen::MatrixXd along = free.transpose() * C * free;
   const Eigen::LLT<Eigen::MatrixXd> llt(along);
   if (llt.info() != Eigen::Success || !along.allFinite())
@@ -92,7 +91,6 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
   Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, m - 1);
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
-  uncertainty.jackknife_ratio = share;
   return uncertainty;
 }
 

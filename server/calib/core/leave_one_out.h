@@ -24,7 +24,7 @@ struct GivenConstant {
 // Sum of (dT/dtheta) sigma^2 (dT/dtheta)^T per name, by central differences over one sigma either way; in parallel.
 [[nodiscard]] Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants);
 
-// Jackknife shrunk towards the model, or the model alone where there are no blocks, and the contributions. `captures`
+// Jackknife or model, whichever is larger, the model alone where there are no blocks, and the contributions. `captures`
 // is the number of captures that carry T_a_b: its degrees of freedom count them also for the model, whose residuals are
 // not independent.
 [[nodiscard]] Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,

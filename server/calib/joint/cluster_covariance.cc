@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 
 #include "server/base/parallel_for.h"
 #include "server/math/pooled_dof.h"
+#include "server/math/shrunk_scatter.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -59,29 +59,6 @@ MatrixXd WhitenedScores(const Refined& refined, const Eigen::LLT<MatrixXd>& H, c
   return scores;
 }
 
-// Linear shrinkage of S = sum y y^T + known towards f I, f >= 1 (Ledoit & Wolf 2004).
-struct Shrunk {
-  MatrixXd S;
-  double ratio = 1.0, f = 1.0, mean = 1.0;
-};
-Shrunk Shrink(const MatrixXd& y, const MatrixXd& known) {
-  const auto d = static_cast<double>(y.rows()), G = static_cast<double>(y.cols());
-  Shrunk shrunk;
-  const MatrixXd S = y * y.transpose() + known;
-  shrunk.mean = S.trace() / d;
-  const double spread = (S - shrunk.mean * MatrixXd::Identity(y.rows(), y.rows())).squaredNorm() / d;
-  double noise = 0.0;
-  const MatrixXd mean = y * y.transpose() / G;
-  for (Eigen::Index g = 0; g < y.cols(); ++g)
-    noise += (y.col(g) * y.col(g).transpose() - mean).squaredNorm() / d;
-  shrunk.ratio = G < 2 ? 1.0 : spread > 0 ? std::min(1.0, noise / spread) : 1.0;
-  shrunk.f = std::max(1.0, shrunk.mean);
-  shrunk.S = shrunk.ratio * shrunk.f * MatrixXd::Identity(y.rows(), y.rows()) + (1 - shrunk.ratio) * S;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(shrunk.S);
-  shrunk.S = axes.eigenvectors() * axes.eigenvalues().cwiseMax(1.0).asDiagonal() * axes.eigenvectors().transpose();
-  return shrunk;
-}
-
 // Of the information that is given, that of constants; the rest relates poses.
 MatrixXd OfConstants(MatrixXd given, const std::vector<int>& pose_rows) {
   for (const int row : pose_rows) {
@@ -121,17 +98,17 @@ PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside)
   result.common = SelectedBoth(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
   const MatrixXd half = of_model.matrixL().solve(pose_scale.asDiagonal() * given * pose_scale.asDiagonal());
   const MatrixXd known = of_model.matrixL().solve(half.transpose());
-  const Shrunk shrunk = Shrink(y, known);
+  const ShrunkScatter shrunk = ShrinkScatter(y, known);
   const MatrixXd L = pose_scale.cwiseInverse().asDiagonal() * MatrixXd(of_model.matrixL());
   result.joint = result.without_beside = L * shrunk.S * L.transpose();
   if (beside.size() > 0) {
     result.joint += SelectedBoth(beside, rows);
     result.common += SelectedBoth(beside, rows);  // a lens is the same on every visit
   }
-  result.model_ratio = shrunk.ratio;
+  result.model_ratio = shrunk.model_ratio;
   result.spread_ratio = shrunk.mean;
   for (const int row : result.row_of_sensor)
-    result.dof.push_back(row == kNone ? 0.0 : DofOf(result.joint, result.influence, 1 - shrunk.ratio, row));
+    result.dof.push_back(row == kNone ? 0.0 : DofOf(result.joint, result.influence, 1 - shrunk.model_ratio, row));
   return result;
 }
 

@@ -86,8 +86,7 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
   const Matrix6d C_model = B * known.inverse() * B.transpose();
   const std::size_t m = work.used.size();
   const bool jackknife = m >= kCloudsForJackknife;
-  auto [C, share] = jackknife ? ShrinkTowardsModel(JackknifeCovariance(d), C_model, static_cast<int>(m))
-                              : ShrunkCovariance{C_model, 0.0};
+  Matrix6d C = jackknife ? JackknifeOrModel(d, C_model) : C_model;
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
   AddBeams(problem, work, T_map_moving, unknown, contributions);
   contributions.push_back(MethodContribution(pose, work.polish, B, C));
@@ -106,7 +105,6 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
     for (Vector6d& shift : contribution.shifts) shift = -Ad * shift;
   }
   uncertainty.contributions = std::move(contributions);
-  uncertainty.jackknife_ratio = share;
   for (std::size_t k = 0; jackknife && k < m; ++k)
     uncertainty.blocks.push_back(
         {problem.captures[work.used[k]].capture.str(), work.a_is_map ? d[k] : Vector6d(-Ad * d[k])});

@@ -55,14 +55,14 @@ Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block, dou
   return Vector6d((work.state.X.Inverse() * solution.state.X).Log());
 }
 
-// The jackknife's, shrunk towards the model's, which counts like seven blocks more.
+// The jackknife's, or the model's where it is larger.
 double OffsetSigma(const std::vector<double>& offsets_s, double model_sigma_s) {
   const auto m = static_cast<double>(offsets_s.size());
   if (m < 2) return model_sigma_s;
   double mean_s = 0, sum_s2 = 0;
   for (const double offset_s : offsets_s) mean_s += offset_s / m;
   for (const double offset_s : offsets_s) sum_s2 += (offset_s - mean_s) * (offset_s - mean_s);
-  return std::sqrt(((m - 1) * (m - 1) / m * sum_s2 + 7 * model_sigma_s * model_sigma_s) / (m + 6));
+  return std::max(std::sqrt((m - 1) / m * sum_s2), model_sigma_s);
 }
 
 // A board that is larger than given puts its camera farther away.

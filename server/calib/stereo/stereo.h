@@ -50,8 +50,7 @@ struct StereoEstimate {
 [[nodiscard]] Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start = nullptr);
 // Leave one capture out, warm start, in parallel; block vectors in capture order. Adds the contribution of the board's
 // size (square_sigma_m) and of the sigmas that intrinsics were given with. Below 5 captures the source is the model:
-// from 5 to 7 ShrinkTowardsModel already weighs it heavily, while the model alone, blind to errors that a capture's
-// corners share, understates sigma about twice on real pictures.
+// the model alone, blind to errors that a capture's corners share, understates sigma about twice on real pictures.
 [[nodiscard]] Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate);
 
 // The three above as the finished edge; a failed one carries the diagnoses. Fills figures (rms_px, captures_used, ...).
