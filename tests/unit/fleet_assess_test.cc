@@ -334,6 +334,61 @@ TEST(AssessLens, TheNewestSessionOfACameraCounts) {
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), bent}).level, VerdictLevel::kPass);
 }
 
+SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, '1'));
+  for (const auto& [sensor, move] : moves) estimate.poses.push_back({SensorId(sensor), {}, 0.0, move});
+  return estimate;
+}
+
+Verdict VerdictOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  const Rig rig;
+  return Assess(rig.edges, rig.solution, {},
+                {{SessionId(std::string(64, '1')), ParseIso("2026-01-31T12:00:00Z").value()}},
+                {SessionOfMoves(std::move(moves))});
+}
+
+TEST(AssessUnseen, APassSaysWhatWouldHaveBeenNoticed) {
+  const Verdict verdict = VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_THAT(
+      verdict.why,
+      HasSubstr(" A bump of any sensor by 2 mm or 0.115 deg half-way through a session would have been noticed."));
+}
+
+TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumberOfPlaces) {
+  const Verdict verdict =
+      VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.008, 0.002, 20}}, {"top", {0.006, 0.001, 20}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "A bump of any of right and top half-way through the session of 2026-01-31 12:00 UTC would not have been "
+            "noticed, of right by "
+            "up to 8 mm or 0.115 deg.");
+  EXPECT_EQ(verdict.what_to_do, "Capture at least 52 places that right sees; it saw something in 20 captures.");
+}
+
+TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
+  EXPECT_EQ(VerdictOfMoves({{"right", {0.008, 0.002, 20}}}).why,
+            "A bump of right by up to 8 mm or 0.115 deg half-way through the session of 2026-01-31 12:00 UTC would not "
+            "have been noticed.");
+}
+
+TEST(AssessUnseen, WhereNoMoveWouldShowNoSizeIsTold) {
+  const Verdict verdict = VerdictOfMoves({{"right", {kAnyMove_m, kAnyMove_rad, 5}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "A bump of right half-way through the session of 2026-01-31 12:00 UTC would not have been noticed.");
+  EXPECT_EQ(verdict.what_to_do, "Capture more places that right sees; it saw something in 5 captures.");
+}
+
+TEST(AssessUnseen, TheNewestSessionOfASensorCounts) {
+  const Rig rig;
+  const auto blind = SessionOfMoves({{"right", {0.5, 0.5, 6}}}),
+             sharp = SessionOfMoves({{"right", {0.001, 0.001, 60}}});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {sharp, blind}).level, VerdictLevel::kPass);
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {blind, sharp}).level, VerdictLevel::kWarn);
+}
+
 TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
   const Rig rig;
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
