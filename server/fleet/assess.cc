@@ -33,12 +33,13 @@ Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings) {
 }
 
 // Claims no more agreement than was tested.
-Verdict Pass(const std::string& untested) {
-  const std::string why = untested.empty()
-                              ? "Every sensor is known well enough and the edges agree with each other."
-                              : "Every sensor is known well enough and each edge passes its own test against the "
-                                "others; " +
-                                    untested + ".";
+Verdict Pass(const std::string& untested, const std::string& noticed) {
+  std::string why = untested.empty()
+                        ? "Every sensor is known well enough and the edges agree with each other."
+                        : "Every sensor is known well enough and each edge passes its own test against the "
+                          "others; " +
+                              untested + ".";
+  if (!noticed.empty()) why += " " + noticed;
   return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
 }
 
@@ -84,11 +85,13 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings = Collect({FindLensMisfits(estimates, pairs_disagree), FindFailedEdges(edges), FindPastPairs(edges),
-                                 FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
-                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy)});
+  const auto warnings =
+      Collect({FindLensMisfits(estimates, pairs_disagree), FindFailedEdges(edges), FindPastPairs(edges),
+               FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
+               FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
+               FindUnseenMoves(estimates, policy, captured_at)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
-  return Pass(UntestedLoops(edges, solution));
+  return Pass(UntestedLoops(edges, solution), SmallestMoveNoticed(estimates));
 }
 
 }  // namespace rigcal::fleet

@@ -21,6 +21,8 @@ struct Policy {
   double residual_max_rad = 0.05;
   double residual_probability =
       0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
+  double unseen_move_max_m = 0.005;      // a session in which a sensor could have moved by more, unseen, is a warning
+  double unseen_move_max_rad = 0.00524;  // 0.3 deg
 };
 
 // Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph

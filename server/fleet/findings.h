@@ -28,7 +28,15 @@ struct Finding {
                                                 const Policy& policy);
 // Cameras whose pictures are bent beyond their model, the worst first, each by the newest session that it took part in:
 // those that make a pose less certain by half or more, or, where edges disagree for it, all.
-[[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree);
+[[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates,
+                                                     bool edges_disagree);
+// Sensors of which a move beyond the policy's tolerance could have stayed unseen, by the newest session that tells of
+// each.
+[[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,
+                                                     const Policy& policy, const SessionTimes& captured_at);
+// The smallest move that every one of the sensors' newest sessions would have shown, as a sentence; empty where none
+// tells.
+[[nodiscard]] std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);

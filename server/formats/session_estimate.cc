@@ -7,6 +7,14 @@ namespace {
 
 constexpr std::size_t kSensorsMax = 10'000, kLooksMax = 10'000'000, kBytesMax = 256u << 20;
 
+void WriteSmallestMove(JsonWriter& out, const SmallestMove& move) {
+  out.Object("smallest_move", [&] {
+    out.Integer("captures", move.captures);
+    out.Number("m", move.m);
+    out.Number("rad", move.rad);
+  });
+}
+
 void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
   out.List("poses", [&] {
     for (const RefinedPose& pose : estimate.poses)
@@ -14,6 +22,7 @@ void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
         WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
         out.Number("dof", pose.dof);
         out.Text("sensor", pose.sensor.str());
+        if (pose.smallest_move) WriteSmallestMove(out, *pose.smallest_move);
       });
   });
 }
@@ -73,8 +82,12 @@ LensMisfit ReadMisfit(const JsonField& field) {
 }
 
 RefinedPose ReadRefinedPose(const JsonField& field) {
-  return {ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
-          field.At("dof").Number()};
+  RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
+                   field.At("dof").Number(), std::nullopt};
+  if (const auto move = field.Find("smallest_move"))
+    pose.smallest_move = {move->At("m").Number(), move->At("rad").Number(),
+                          static_cast<int>(move->At("captures").Integer(0, kLooksMax))};
+  return pose;
 }
 
 SensorMovedWithin ReadMoved(const JsonField& field) {

@@ -2,8 +2,11 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace rigcal {
@@ -15,6 +18,7 @@ using Quiet =
     policies::policy<policies::domain_error<policies::ignore_error>, policies::overflow_error<policies::ignore_error>,
                      policies::evaluation_error<policies::ignore_error>>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoncentralityMax = 1e6;  // beyond it no test of ours has any power
 
 }  // namespace
 
@@ -34,6 +38,30 @@ double FisherTail(double statistic, double p, double nu) {
   if (!(statistic > 0) || !(p > 0) || !(nu > 0)) return 1.0;
   if (!std::isfinite(statistic)) return 0.0;
   return boost::math::cdf(complement(boost::math::fisher_f_distribution<double, Quiet>(p, nu), statistic));
+}
+
+double FisherQuantile(double tail, double p, double nu) {
+  if (!(p > 0) || !(nu > 0) || tail <= 0) return kInfinity;
+  if (tail >= 1) return 0.0;
+  return boost::math::quantile(complement(boost::math::fisher_f_distribution<double, Quiet>(p, nu), tail));
+}
+
+double FisherNoncentrality(double limit, double p, double nu, double power) {
+  if (!(p > 0) || !(nu > 0) || !std::isfinite(limit)) return kInfinity;
+  const auto missed = [&](double noncentrality) {
+    const boost::math::non_central_f_distribution<double, Quiet> fisher(p, nu, noncentrality);
+    return boost::math::cdf(fisher, limit) - (1 - power);
+  };
+  double high = p * limit + 1;
+  while (missed(high) > 0) {
+    high *= 2;
+    if (high > kNoncentralityMax) return kInfinity;
+  }
+  if (missed(0) <= 0) return 0.0;
+  std::uintmax_t rounds = 100;
+  const auto root =
+      boost::math::tools::toms748_solve(missed, 0.0, high, boost::math::tools::eps_tolerance<double>(30), rounds);
+  return (root.first + root.second) / 2;
 }
 
 double StudentQuantile(double probability, double dof) {

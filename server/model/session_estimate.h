@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,13 +50,22 @@ struct LensMisfit {
   double evidence = 0.0;        // twice the log of the likelihood's ratio with and without it
   double pose_sigma_m = 0.0;    // the most that it adds to the sigma of an axis of any pose, the square root of the
   double pose_sigma_rad = 0.0;  // variance
-  double sigma_ratio = 1.0;     // of that pose and axis that it makes less certain most: with it over without any misfit
+  double sigma_ratio = 1.0;  // of that pose and axis that it makes less certain most: with it over without any misfit
+};
+
+// The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
+// direction that is seen worst.
+constexpr double kAnyMove_m = 1e3, kAnyMove_rad = 3.14159265358979;  // nothing would be told
+struct SmallestMove {
+  double m = kAnyMove_m, rad = kAnyMove_rad;
+  int captures = 0;  // in which the sensor saw something
 };
 
 struct RefinedPose {
   SensorId sensor;
   Se3 T_ref_sensor;
-  double dof = 0.0;  // behind its covariance; 0: known
+  double dof = 0.0;                                // behind its covariance; 0: known
+  std::optional<SmallestMove> smallest_move = {};  // estimates of before have none
 };
 
 struct SessionEstimate {

@@ -173,6 +173,46 @@ TEST(CalibJoint, NoSensorIsAccusedWhereNoneMoved) {
   }
 }
 
+SmallestMove SmallestMoveOf(const SessionEstimate& estimate, const std::string& sensor) {
+  for (const RefinedPose& pose : estimate.poses)
+    if (pose.sensor.str() == sensor && pose.smallest_move) return *pose.smallest_move;
+  ADD_FAILURE() << sensor << " has no smallest move";
+  return {};
+}
+
+SessionEstimate EstimateFrom(const FeatureSession& session) {
+  SessionEstimate estimate = EstimateSession(ViewsOf(session, NominalPoses(session)));
+  EXPECT_TRUE(estimate.why_not.empty());
+  return estimate;
+}
+
+TEST(CalibJoint, AMoveAsSmallAsASessionSaysItWouldTellIsTold) {
+  for (const char* sensor : {"front_right", "lidar_vertical"})
+    for (const std::uint64_t seed : {21, 22, 23}) {
+      sim::Options options = WithSeed(seed);
+      const SmallestMove smallest = SmallestMoveOf(EstimateFrom(Visit(options)), sensor);
+      EXPECT_EQ(smallest.captures, kCaptures);
+      EXPECT_LT(smallest.m, 0.05);
+      options.bump = SensorId(sensor);
+      options.bump_m = smallest.m;
+      const SessionEstimate bumped = EstimateFrom(Visit(options));
+      ASSERT_EQ(bumped.moved.size(), 1u) << sensor << ", seed " << seed << ": " << smallest.m << " m";
+      EXPECT_EQ(bumped.moved[0].sensor.str(), sensor);
+    }
+}
+
+TEST(CalibJoint, TooFewCapturesTellNoMove) {
+  sim::Options options = WithSeed(21);
+  options.captures = 5;
+  auto experiment = sim::Prepare(*sim::LoadRig("mars-mapper"), options);
+  for (const RefinedPose& pose : EstimateFrom(RecordFeatures(*experiment, 0)).poses) {
+    ASSERT_TRUE(pose.smallest_move);
+    EXPECT_EQ(pose.smallest_move->m, kAnyMove_m) << pose.sensor.str();
+    EXPECT_EQ(pose.smallest_move->rad, kAnyMove_rad);
+    EXPECT_LE(pose.smallest_move->captures, 5);
+  }
+}
+
 TEST(CalibJoint, OnePictureOfAnotherInstantCostsLittleAndIsHeldBack) {
   FeatureSession session = Visit(WithSeed(9));
   auto& views = session.seen.views.at(SensorId("front_right"));
@@ -242,12 +282,6 @@ Eigen::Vector2d BentBy(double amplitude_px, const Eigen::Vector2d& uv_px) {
 void Bend(const char* camera, double amplitude_px, FeatureSession& session) {
   for (auto& [capture, view] : session.seen.views.at(SensorId(camera)))
     for (Eigen::Vector2d& corner : view.corners_px) corner += BentBy(amplitude_px, corner);
-}
-
-SessionEstimate EstimateFrom(const FeatureSession& session) {
-  SessionEstimate estimate = EstimateSession(ViewsOf(session, NominalPoses(session)));
-  EXPECT_TRUE(estimate.why_not.empty());
-  return estimate;
 }
 
 double T2(const FeatureSession& session, const SensorId& sensor, const Se3& T_ref_sensor, const Matrix6d& C) {

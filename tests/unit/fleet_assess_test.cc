@@ -3,59 +3,13 @@
 #include "server/fleet/assess.h"
 #include "server/math/statistics.h"
 #include "server/model/past.h"
+#include "tests/unit/fleet_rig.h"
 
 namespace rigcal::fleet {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-Edge MakeEdge(char letter, const std::string& a, const std::string& b, int dof = 0) {
-  Edge edge;
-  edge.id = EdgeId(std::string(64, letter));
-  edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
-  edge.uncertainty = FromInformation(1e6 * Matrix6d::Identity(), UncertaintySource::kGiven, dof);
-  edge.state = EdgeState::kGood;
-  return edge;
-}
-
-Edge FailedEdge(char letter, const std::string& a, const std::string& b) {
-  Edge edge = MakeEdge(letter, a, b);
-  edge.state = EdgeState::kFailed;
-  edge.diagnoses.push_back({"too_few_captures", "3 captures show the board", "Take at least 10 captures."});
-  return edge;
-}
-
-EdgeResidual ResidualOf(const Edge& edge, double off_m) {
-  EdgeResidual residual;
-  residual.edge = edge.id;
-  residual.in_solution = true;
-  residual.e(tangent::kY) = off_m;
-  residual.weighted = residual.e.dot(edge.uncertainty.Omega * residual.e);
-  return residual;
-}
-
-SensorPose PoseOf(const std::string& name, bool known = true, double variance = 1e-6) {
-  SensorPose pose;
-  pose.sensor = SensorId(name);
-  pose.known = known;
-  if (known) pose.covariance = variance * Matrix6d::Identity();
-  return pose;
-}
-
-// A triangle in which all is well.
-struct Rig {
-  std::vector<Edge> edges = {MakeEdge('a', "left", "right"), MakeEdge('b', "right", "top"),
-                             MakeEdge('c', "left", "top")};
-  GraphSolution solution;
-  Rig() {
-    solution.converged = true;
-    solution.dof = 6;
-    solution.poses = {PoseOf("left", true, 0.0), PoseOf("right"), PoseOf("top")};
-    for (const Edge& edge : edges) solution.residuals.push_back(ResidualOf(edge, 0.0005));
-  }
-  [[nodiscard]] Verdict Judge() const { return Assess(edges, solution); }
-};
 
 // However often a pair was measured.
 TEST(Assess, APairThatCannotBeTestedIsNamedOnce) {
@@ -288,104 +242,6 @@ TEST(Assess, ASensorThatWasMovedDuringASessionFailsTheRobotByName) {
   EXPECT_EQ(verdict.what_to_do,
             "Tighten the mount of right, capture a new session and push it with `--remounted right`; nothing that this "
             "session says of right can be relied on.");
-}
-
-LensMisfit MisfitOf(const std::string& camera, CameraModel model, double sigma_ratio) {
-  LensMisfit misfit;
-  misfit.camera = SensorId(camera);
-  misfit.model = model;
-  misfit.rms_px = 0.0512, misfit.evidence = 300, misfit.sigma_ratio = sigma_ratio;
-  misfit.pose_sigma_m = 2e-4, misfit.pose_sigma_rad = 1e-4;
-  return misfit;
-}
-
-SessionEstimate BentSession(char letter, std::vector<LensMisfit> misfits) {
-  SessionEstimate estimate;
-  estimate.session = SessionId(std::string(64, letter));
-  for (const char* sensor : {"left", "right", "top"}) estimate.poses.push_back({SensorId(sensor), {}});
-  estimate.misfits = std::move(misfits);
-  return estimate;
-}
-
-TEST(AssessLens, OneThatMattersWarnsByNameWithItsModel) {
-  const Rig rig;
-  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
-                                 {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 2.0),
-                                                    MisfitOf("top", CameraModel::kPinholeRadtan, 1.4)})});
-  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_EQ(verdict.why,
-            "The lens of right bends in a way that pinhole_radtan cannot: by 0.0512 px rms, which makes poses uncertain "
-            "by 0.2 mm and 0.00573 deg.");
-  EXPECT_EQ(verdict.what_to_do, "Try `model: pinhole_rational` for right.");
-}
-
-TEST(AssessLens, OneThatAddsLittleIsLeftToTheSigmas) {
-  const Rig rig;
-  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.4)});
-  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {bent}).level, VerdictLevel::kPass);
-  LensMisfit tiny = MisfitOf("right", CameraModel::kPinholeRadtan, 5.0);
-  tiny.pose_sigma_m = tiny.pose_sigma_rad = 2e-5;
-  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {tiny})}).level, VerdictLevel::kPass);
-}
-
-TEST(AssessLens, TheNewestSessionOfACameraCounts) {
-  const Rig rig;
-  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)});
-  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), bent}).level, VerdictLevel::kPass);
-}
-
-TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
-  const Rig rig;
-  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
-                                 {BentSession('1', {MisfitOf("left", CameraModel::kFisheyeKb4, 2.0),
-                                                    MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)})});
-  EXPECT_THAT(verdict.why, HasSubstr("The lenses of right and left bend in ways that pinhole_radtan and fisheye_kb4 cannot: "
-                                     "worst is right, by"));
-  EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
-}
-
-// A rig of one session, one of whose edges contradicts the others by so much.
-Rig Contradicted(double off_m) {
-  Rig rig;
-  for (Edge& edge : rig.edges) edge.session = SessionId(std::string(64, '1'));
-  rig.solution.residuals[0] = ResidualOf(rig.edges[0], off_m);
-  return rig;
-}
-
-TEST(AssessRefined, PairsOfARefinedSessionAccuseNoSensor) {
-  Rig rig = Contradicted(0.02);
-  ASSERT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
-  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
-  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kPass);
-  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)});
-  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {bent});
-  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
-  EXPECT_THAT(verdict.why, HasSubstr("Pairs of sensors disagree beyond chance because the lens of right bends"));
-}
-
-TEST(AssessRefined, WhatIsGrosslyOffFailsAllTheSame) {
-  Rig rig = Contradicted(0.06);
-  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
-  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
-}
-
-TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {
-  Rig rig = Contradicted(0.02);
-  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
-  rig.edges[0].session = SessionId();
-  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
-}
-
-TEST(AssessRefined, ASensorThatMovedBetweenSessionsFails) {
-  Rig rig;
-  SensorMovedBetween moved{SensorId("right"), SessionId(std::string(64, '1')), SessionId(std::string(64, '2')), {}, 1e-9};
-  moved.step[0] = 0.0097;
-  rig.solution.fused.moved = {moved};
-  const SessionTimes times = {{moved.last_before, Stamp{0}}, {moved.first_after, Stamp{86'400'000'000'000}}};
-  const Verdict verdict = Assess(rig.edges, rig.solution, {}, times);
-  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("Right was moved between the sessions of 1970-01-01 and 1970-01-02, by 9.7 mm"));
-  EXPECT_THAT(verdict.what_to_do, HasSubstr("`--remounted right`"));
 }
 
 }  // namespace

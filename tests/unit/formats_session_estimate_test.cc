@@ -13,6 +13,7 @@ SessionEstimate MakeEstimate() {
   pose.sensor = SensorId("right");
   pose.T_ref_sensor = Se3::Exp((Vector6d() << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03).finished());
   pose.dof = 25.5;
+  pose.smallest_move = {0.002, 0.003, 19};
   estimate.poses = {{SensorId("left"), {}, 0.0}, pose};
   estimate.covariance = 1e-8 * Matrix6d::Identity();
   estimate.covariance(tangent::kX, tangent::kRz) = estimate.covariance(tangent::kRz, tangent::kX) = 2e-9;
@@ -44,6 +45,11 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(RowOf(*read, 0), -1);
   EXPECT_EQ(RowOf(*read, 1), 0);
   EXPECT_EQ(read->poses[1].dof, 25.5);
+  EXPECT_FALSE(read->poses[0].smallest_move);  // as in documents of before
+  ASSERT_TRUE(read->poses[1].smallest_move);
+  EXPECT_EQ(read->poses[1].smallest_move->m, 0.002);
+  EXPECT_EQ(read->poses[1].smallest_move->rad, 0.003);
+  EXPECT_EQ(read->poses[1].smallest_move->captures, 19);
   ASSERT_EQ(read->moved.size(), 1u);
   EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
   EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));

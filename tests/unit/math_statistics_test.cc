@@ -25,6 +25,26 @@ TEST(Quantiles, AgreeWithPrintedTables) {
   EXPECT_NEAR(ChiSquareTail(12.592, 6), 0.05, 1e-5);
 }
 
+// Against draws: a chi-square over a chi-square with a shifted mean.
+TEST(Statistics, PowerOfAnFTest) {
+  const double limit = FisherQuantile(1e-3, 6, 40);
+  EXPECT_NEAR(FisherTail(limit, 6, 40), 1e-3, 1e-12);
+  const double noncentrality = FisherNoncentrality(limit, 6, 40, 0.95);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  const auto squares = [&](int count, double shift) {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += std::pow(normal(random) + (i == 0 ? shift : 0.0), 2);
+    return sum / count;
+  };
+  int told = 0;
+  for (int draw = 0; draw < 4000; ++draw) told += squares(6, std::sqrt(noncentrality)) / squares(40, 0) > limit ? 1 : 0;
+  EXPECT_NEAR(told / 4000.0, 0.95, 0.015);
+  EXPECT_TRUE(std::isinf(FisherQuantile(1e-3, 6, 0)));
+  EXPECT_TRUE(std::isinf(FisherNoncentrality(FisherQuantile(1e-3, 6, 0), 6, 0, 0.95)));
+  EXPECT_EQ(FisherNoncentrality(0.1, 6, 40, 0.5), 0.0);  // beyond it without any help
+}
+
 // With two degrees of freedom the tail is exp(-x/2).
 TEST(ChiSquare, ClosedForm) {
   EXPECT_NEAR(ChiSquareTail(3.0, 2), std::exp(-1.5), 1e-15);

@@ -53,7 +53,8 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   std::vector<int> sensors;
   for (const auto& [id, s] : LastOfEach(problem)) {
     estimate.poses.push_back({id, explained.refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
-                              covariance.dof[static_cast<std::size_t>(s)]});
+                              covariance.dof[static_cast<std::size_t>(s)],
+                              SmallestMoveTold(problem, explained.refined, s)});
     sensors.push_back(s);
   }
   estimate.covariance = InOrder(covariance.joint, covariance.row_of_sensor, sensors);

@@ -7,9 +7,8 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr int kMovesMax = 4;        // in one session: more is no bump, but a rig that is not rigid
-constexpr int kGroupsForMoves = 6;  // fewer do not tell a bump from chance
-constexpr int kFieldRounds = 3;     // of fields and everything else in turn
+constexpr int kMovesMax = 4;     // in one session: more is no bump, but a rig that is not rigid
+constexpr int kFieldRounds = 3;  // of fields and everything else in turn
 
 // Captures on both sides of the first place of `group` in which the sensor saw something.
 SensorMovedWithin Told(const SessionProblem& problem, const Refined& refined, const SensorMove& move) {

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "server/math/statistics.h"
 
@@ -13,6 +14,8 @@ constexpr double kOpen = 1e-6;  // of the sensor's own information: less is what
 
 // Groups in which a sensor must have seen something on either side of a change: one picture of another instant is none.
 constexpr std::size_t kSideMin = 2;
+
+constexpr double kPower = 0.95, kPowerSigmas = 1.645;  // P(z < kPowerSigmas) = kPower
 
 // Pseudo-inverse and rank of an information matrix, along what `whole` tells and it does not lack.
 struct Inverse {
@@ -94,14 +97,21 @@ Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t gr
   return {dof > 0 ? squares / dof : 1.0, std::max(0.0, dof)};
 }
 
+// Groups at which a change would have kSideMin groups on either side that see the sensor.
+std::vector<std::size_t> ChangePoints(const Scores& scores) {
+  std::vector<std::size_t> seen_before = {0};
+  for (const Matrix6d& own : scores.own) seen_before.push_back(seen_before.back() + (own.trace() > 0 ? 1 : 0));
+  std::vector<std::size_t> points;
+  for (std::size_t group = 1; group < scores.b.size(); ++group)
+    if (std::min(seen_before[group], seen_before.back() - seen_before[group]) >= kSideMin) points.push_back(group);
+  return points;
+}
+
 SensorMove LikeliestMove(const Refined& refined, int sensor) {
   const Scores scores = ScoresOf(refined, sensor);
   SensorMove best;
   best.sensor = sensor;
-  std::vector<std::size_t> seen_before = {0};
-  for (const Matrix6d& own : scores.own) seen_before.push_back(seen_before.back() + (own.trace() > 0 ? 1 : 0));
-  for (std::size_t group = 1; group < scores.b.size(); ++group) {
-    if (std::min(seen_before[group], seen_before.back() - seen_before[group]) < kSideMin) continue;
+  for (const std::size_t group : ChangePoints(scores)) {
     const Change change = ChangeFrom(scores, refined.covariance, group);
     if (change.rank == 0) continue;
     const Scatter scatter = ScatterBeside(scores, change, group);
@@ -114,7 +124,52 @@ SensorMove LikeliestMove(const Refined& refined, int sensor) {
   return best;
 }
 
+int CapturesOf(const SessionProblem& problem, int sensor) {
+  std::set<int> places;
+  const auto look_at = [&](const auto& looks) {
+    for (const auto& look : looks)
+      if (look.sensor == sensor) places.insert(look.place);
+  };
+  look_at(problem.corners);
+  look_at(problem.plates);
+  look_at(problem.poses);
+  return static_cast<int>(places.size());
+}
+
+// Largest standard deviation along any direction, and of the whole length.
+struct Spread {
+  double worst = 0.0, length = 0.0;
+};
+Spread SpreadOf(const Matrix6d& covariance, int at) {
+  const Eigen::Matrix3d C = covariance.block<3, 3>(at, at);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(C, Eigen::EigenvaluesOnly);
+  return {std::sqrt(std::max(0.0, axes.eigenvalues()[2])), std::sqrt(std::max(0.0, C.trace()))};
+}
+
+// Beyond the scan's limit, and surely larger than what is no move (IsMove).
+double ToldFrom(const Spread& spread, double noncentrality, double least) {
+  return std::max(std::sqrt(noncentrality) * spread.worst, least + 3 * spread.length + kPowerSigmas * spread.worst);
+}
+
 }  // namespace
+
+SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor) {
+  SmallestMove told{kAnyMove_m, kAnyMove_rad, CapturesOf(problem, sensor)};
+  const Scores scores = ScoresOf(refined, sensor);
+  const std::vector<std::size_t> points = ChangePoints(scores);
+  if (refined.groups < kGroupsForMoves || points.empty()) return told;
+  const double looks = static_cast<double>(problem.sensors.size()) * (refined.groups - 1);
+  const std::size_t half_way = points[points.size() / 2];
+  const Change change = ChangeFrom(scores, refined.covariance, half_way);
+  const Scatter scatter = ScatterBeside(scores, change, half_way);
+  if (change.rank < 6 || scatter.dof <= 0) return told;
+  const double limit = FisherQuantile(kMovedOdds / looks, change.rank, scatter.dof);
+  const double noncentrality = FisherNoncentrality(limit, change.rank, scatter.dof, kPower);
+  const Matrix6d covariance = std::max(scatter.mean_square, 1e-12) * change.covariance;
+  told.m = std::min(kAnyMove_m, ToldFrom(SpreadOf(covariance, tangent::kTranslation), noncentrality, kMovedMin_m));
+  told.rad = std::min(kAnyMove_rad, ToldFrom(SpreadOf(covariance, tangent::kRotation), noncentrality, kMovedMin_rad));
+  return told;
+}
 
 std::vector<SensorMove> ScanForMoves(const SessionProblem& problem, const Refined& refined) {
   std::vector<SensorMove> moves;

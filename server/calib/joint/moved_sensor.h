@@ -3,12 +3,15 @@
 #pragma once
 
 #include "server/calib/joint/refine.h"
+#include "server/model/session_estimate.h"
 
 namespace rigcal::calib::joint {
 
+constexpr int kGroupsForMoves = 6;  // fewer do not tell a bump from chance
+
 struct SensorMove {
   int sensor = kNone;
-  int group = 0;             // of captures; the first after the move
+  int group = 0;                     // of captures; the first after the move
   Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor
   double gain = 0.0;         // of the cost, which is twice that of the likelihood's logarithm
   double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
@@ -21,5 +24,11 @@ struct SensorMove {
 // The scatter of a sensor's captures beyond the change is its own measure of noise: a lens that does not fit moves a
 // sensor with the place in the picture, a bump with time.
 [[nodiscard]] std::vector<SensorMove> ScanForMoves(const SessionProblem& problem, const Refined& refined);
+
+// The smallest move of this sensor that the scan would have told (odds below kMovedOdds after correction for its looks,
+// and IsMove) with a probability of 95 %: noncentral F with the sensor's own scatter, along the direction in which
+// translation (rotation) is known worst, half-way through the groups that it is seen in. `kAnyMove` where a direction
+// is not seen or where there are fewer groups than the scan needs.
+[[nodiscard]] SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor);
 
 }  // namespace rigcal::calib::joint

@@ -1,0 +1,165 @@
+// Verdicts on what the refinement of whole sessions says.
+#include <gmock/gmock.h>
+
+#include "tests/unit/fleet_rig.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::HasSubstr;
+
+LensMisfit MisfitOf(const std::string& camera, CameraModel model, double sigma_ratio) {
+  LensMisfit misfit;
+  misfit.camera = SensorId(camera);
+  misfit.model = model;
+  misfit.rms_px = 0.0512, misfit.evidence = 300, misfit.sigma_ratio = sigma_ratio;
+  misfit.pose_sigma_m = 2e-4, misfit.pose_sigma_rad = 1e-4;
+  return misfit;
+}
+
+SessionEstimate BentSession(char letter, std::vector<LensMisfit> misfits) {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, letter));
+  for (const char* sensor : {"left", "right", "top"}) estimate.poses.push_back({SensorId(sensor), {}});
+  estimate.misfits = std::move(misfits);
+  return estimate;
+}
+
+TEST(AssessLens, OneThatMattersWarnsByNameWithItsModel) {
+  const Rig rig;
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
+                                 {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 2.0),
+                                                    MisfitOf("top", CameraModel::kPinholeRadtan, 1.4)})});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "The lens of right bends in a way that pinhole_radtan cannot: by 0.0512 px rms, which makes poses uncertain "
+            "by 0.2 mm and 0.00573 deg.");
+  EXPECT_EQ(verdict.what_to_do, "Try `model: pinhole_rational` for right.");
+}
+
+TEST(AssessLens, OneThatAddsLittleIsLeftToTheSigmas) {
+  const Rig rig;
+  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.4)});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {bent}).level, VerdictLevel::kPass);
+  LensMisfit tiny = MisfitOf("right", CameraModel::kPinholeRadtan, 5.0);
+  tiny.pose_sigma_m = tiny.pose_sigma_rad = 2e-5;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {tiny})}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessLens, TheNewestSessionOfACameraCounts) {
+  const Rig rig;
+  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), bent}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
+  const Rig rig;
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
+                                 {BentSession('1', {MisfitOf("left", CameraModel::kFisheyeKb4, 2.0),
+                                                    MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)})});
+  EXPECT_THAT(verdict.why, HasSubstr("The lenses of right and left bend in ways that pinhole_radtan and fisheye_kb4 cannot: "
+                                     "worst is right, by"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
+}
+
+// A rig of one session, one of whose edges contradicts the others by so much.
+SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, '1'));
+  for (const auto& [sensor, move] : moves) estimate.poses.push_back({SensorId(sensor), {}, 0.0, move});
+  return estimate;
+}
+
+Verdict VerdictOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  const Rig rig;
+  return Assess(rig.edges, rig.solution, {},
+                {{SessionId(std::string(64, '1')), ParseIso("2026-01-31T12:00:00Z").value()}},
+                {SessionOfMoves(std::move(moves))});
+}
+
+TEST(AssessUnseen, APassSaysWhatWouldHaveBeenNoticed) {
+  const Verdict verdict = VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_THAT(
+      verdict.why,
+      HasSubstr(" A bump of any sensor by 2 mm or 0.115 deg half-way through a session would have been noticed."));
+}
+
+TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumberOfPlaces) {
+  const Verdict verdict =
+      VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.008, 0.002, 20}}, {"top", {0.006, 0.001, 20}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "A bump of any of right and top half-way through the session of 2026-01-31 12:00 UTC would not have been "
+            "noticed, of right by "
+            "up to 8 mm or 0.115 deg.");
+  EXPECT_EQ(verdict.what_to_do, "Capture at least 52 places that right sees; it saw something in 20 captures.");
+}
+
+TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
+  EXPECT_EQ(VerdictOfMoves({{"right", {0.008, 0.002, 20}}}).why,
+            "A bump of right by up to 8 mm or 0.115 deg half-way through the session of 2026-01-31 12:00 UTC would not "
+            "have been noticed.");
+}
+
+TEST(AssessUnseen, WhereNoMoveWouldShowNoSizeIsTold) {
+  const Verdict verdict = VerdictOfMoves({{"right", {kAnyMove_m, kAnyMove_rad, 5}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "A bump of right half-way through the session of 2026-01-31 12:00 UTC would not have been noticed.");
+  EXPECT_EQ(verdict.what_to_do, "Capture more places that right sees; it saw something in 5 captures.");
+}
+
+TEST(AssessUnseen, TheNewestSessionOfASensorCounts) {
+  const Rig rig;
+  const auto blind = SessionOfMoves({{"right", {0.5, 0.5, 6}}}),
+             sharp = SessionOfMoves({{"right", {0.001, 0.001, 60}}});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {sharp, blind}).level, VerdictLevel::kPass);
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {blind, sharp}).level, VerdictLevel::kWarn);
+}
+
+Rig Contradicted(double off_m) {
+  Rig rig;
+  for (Edge& edge : rig.edges) edge.session = SessionId(std::string(64, '1'));
+  rig.solution.residuals[0] = ResidualOf(rig.edges[0], off_m);
+  return rig;
+}
+
+TEST(AssessRefined, PairsOfARefinedSessionAccuseNoSensor) {
+  Rig rig = Contradicted(0.02);
+  ASSERT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kPass);
+  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {bent});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("Pairs of sensors disagree beyond chance because the lens of right bends"));
+}
+
+TEST(AssessRefined, WhatIsGrosslyOffFailsAllTheSame) {
+  Rig rig = Contradicted(0.06);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+}
+
+TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {
+  Rig rig = Contradicted(0.02);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  rig.edges[0].session = SessionId();
+  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+}
+
+TEST(AssessRefined, ASensorThatMovedBetweenSessionsFails) {
+  Rig rig;
+  SensorMovedBetween moved{SensorId("right"), SessionId(std::string(64, '1')), SessionId(std::string(64, '2')), {}, 1e-9};
+  moved.step[0] = 0.0097;
+  rig.solution.fused.moved = {moved};
+  const SessionTimes times = {{moved.last_before, Stamp{0}}, {moved.first_after, Stamp{86'400'000'000'000}}};
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, times);
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("Right was moved between the sessions of 1970-01-01 and 1970-01-02, by 9.7 mm"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("`--remounted right`"));
+}
+
+}  // namespace
+}  // namespace rigcal::fleet
