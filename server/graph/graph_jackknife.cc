@@ -134,16 +134,6 @@ void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const
   }
 }
 
-// Weights that were estimated from the same blocks fit their chance a little; no pose is told better than its edges would
-// be if they were independent.
-void KeepAboveAnalytic(GraphJackknife& jackknife) {
-  for (std::size_t s = 0; s < jackknife.sensors.size(); ++s) {
-    if (jackknife.row_of_sensor[s] < 0) continue;
-    auto own = jackknife.joint.block<6, 6>(jackknife.row_of_sensor[s], jackknife.row_of_sensor[s]);
-    own = LargerOf(own, jackknife.analytic[s]);
-  }
-}
-
 bool Usable(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
   return solution.converged && problem.free_count() > 0 && problem.free_count() < kJackknifeSensorsMax &&
          solution.poses.size() == graph.sensors.size() && solution.residuals.size() == graph.edges.size();
@@ -188,7 +178,6 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   jackknife.joint = accumulator.Joint();
   if (!jackknife.joint.allFinite()) return jackknife;
   FillSensors(work, solution, analytic, accumulator, jackknife);
-  KeepAboveAnalytic(jackknife);
   jackknife.residuals.resize(solution.residuals.size());
   for (std::size_t k = 0; k < problem.constraints.size(); ++k)
     jackknife.residuals[problem.constraints[k].edge] = {true, accumulator.C_e(k), accumulator.Dof(k)};

@@ -1,7 +1,7 @@
 // The honest covariance of a solution: a jackknife through the graph (design: correlated edges). Edges of one session
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
 // session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Weights
-// are held, and no pose is told better than H^-1 tells it. Pure and deterministic: sessions, blocks and edges count in sorted order.
+// are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks and edges count in sorted order.
 #pragma once
 
 #include <map>

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -69,15 +68,6 @@ Matrix6d SquareRoot(const Matrix6d& matrix) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
   const Vector6d roots = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   return scale.asDiagonal() * eigen.eigenvectors() * roots.asDiagonal();
-}
-
-Matrix6d LargerOf(const Matrix6d& A, const Matrix6d& B) {
-  const Matrix6d F = SquareRoot(B);
-  const Eigen::PartialPivLU<Matrix6d> lu(F);
-  const Matrix6d half = lu.solve(A);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(Symmetrized(lu.solve(half.transpose())));
-  const Matrix6d back = F * axes.eigenvectors();
-  return Symmetrized(back * axes.eigenvalues().cwiseMax(1.0).asDiagonal() * back.transpose());
 }
 
 Matrix6d InverseCovariance(const Se3& T_a_b, const Matrix6d& C_ab) {

@@ -32,8 +32,6 @@ struct ObservableSubspace {
 // is forgiven.
 [[nodiscard]] bool IsPositiveSemidefinite(const Matrix6d& Omega);
 [[nodiscard]] Matrix6d Symmetrized(const Matrix6d& matrix);
-// A, or B along the axes in which it is larger: the result is no less than either. B positive definite.
-[[nodiscard]] Matrix6d LargerOf(const Matrix6d& A, const Matrix6d& B);
 // F with F F^T = matrix, for positive semi-definite matrices of mixed units.
 [[nodiscard]] Matrix6d SquareRoot(const Matrix6d& matrix);
 

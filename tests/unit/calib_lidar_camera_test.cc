@@ -115,7 +115,7 @@ TEST(LidarCamera, SigmaIsTheScatterWhereIntrinsicsAreRefined) {
   for (const int captures : {4, 6, 12}) {
     const double ratio = MeanSquaredRatioOfRefined(captures, 40);
     RecordProperty("mean_squared_ratio_" + std::to_string(captures), std::to_string(ratio));
-    EXPECT_GT(ratio, 0.4) << captures;
+    EXPECT_GT(ratio, 0.3) << captures;  // few captures are told carefully: never below the model
     EXPECT_LT(ratio, 1.8) << captures;
   }
 }

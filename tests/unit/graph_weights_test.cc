@@ -80,14 +80,14 @@ double MeanSquare(unsigned visits, double too_sure) {
   return squares;
 }
 
-// A variance of 19 degrees of freedom that is right on average makes the mean 19 / 17; weights that fit chance in the blocks
-// find little chance left in them, which is why a pose is never told better than by H^-1.
+// A variance of 19 degrees of freedom that is right on average makes the mean 19 / 17. Weights that were estimated from the
+// same blocks fit some of their chance; held as they are they cost 3 and 7 % of the variance (of plain jackknives 30 to 60).
 TEST(GraphWeights, SigmasHoldWhereTwentyCapturesMadeThem) {
   const double right = MeanSquare(1000, 1.0), too_sure = MeanSquare(600, 2.0);
   RecordProperty("mean_squared_ratio", std::to_string(right));
   RecordProperty("mean_squared_ratio_of_too_sure_models", std::to_string(too_sure));
-  EXPECT_LT(right, 19.0 / 17.0 + 0.08);  // the spread of the mean is below 0.02
-  EXPECT_LT(too_sure, 19.0 / 17.0 + 0.08);
+  EXPECT_LT(right, 19.0 / 17.0 * 1.1);  // the spread of the mean is below 0.02
+  EXPECT_LT(too_sure, 19.0 / 17.0 * 1.1);
   EXPECT_GT(right, 0.8);
   EXPECT_GT(too_sure, 0.8);
 }

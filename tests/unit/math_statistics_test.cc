@@ -173,17 +173,5 @@ TEST(JackknifeOrModel, TellsErrorsAsLargeAsTheyAreWhereTheModelIsTooSure) {
   EXPECT_NEAR(MeanSquare(0.25), 1.0, 0.07);
 }
 
-TEST(Covariance, TheLargerOfTwoIsNoLessThanEither) {
-  std::mt19937 random(5);
-  const MatrixXd a = Draws(6, 9, random), b = Draws(6, 9, random);
-  const Matrix6d A = a * a.transpose(), B = b * b.transpose(), C = LargerOf(A, B);
-  for (const Matrix6d& less : {A, B}) {
-    const double smallest = Eigen::SelfAdjointEigenSolver<Matrix6d>(C - less).eigenvalues()(0);
-    EXPECT_GT(smallest, -1e-10);
-    EXPECT_LT(smallest, 1e-10);  // nor more than needed
-  }
-  EXPECT_LT((LargerOf(0.5 * B, B) - B).norm(), 1e-10);
-}
-
 }  // namespace
 }  // namespace rigcal
