@@ -10,7 +10,7 @@ import tomllib
 
 from .formats import product, relative, rotated, transposed
 from .measure import Measure, at_most, equal, info, skip
-from .server import Server
+from .server import ANSWERED, Server
 
 # What a pair may fail for where the recording is right: too little of it, or a lens that its model does not describe.
 RIGHT_CAUSES = ("too_few_captures", "no_common_view", "ill_conditioned", "distortion_not_observable", "no_tilt")
@@ -33,7 +33,7 @@ def judged(context, session, robot):
     """The rows of the edges and the verdict of one push."""
     with context.folder() as data, Server(context, pathlib.Path(data) / "data") as server:
         pushed = server.rigcal("push", session, "--json", timeout=600)
-        if pushed.returncode not in (0, 1):
+        if pushed.returncode not in ANSWERED:
             raise RuntimeError("rigcal push %s: exit %d: %s" % (session, pushed.returncode, pushed.stderr.strip()[-300:]))
         edges = json.loads(server.rigcal("edges", robot, "--json").stdout)["edges"]
         return edges, json.loads(server.rigcal("show", robot, "--json").stdout)["document"]["verdict"]

@@ -177,6 +177,52 @@ TEST(PartialViews, OverlappingPartsAtOnePlaceRepeat) {
   EXPECT_THAT(estimate->residuals[6].note, HasSubstr("shows the same as 002"));
 }
 
+// As wide as 140 degrees: no series of radii starts near it, and its numerator and denominator are in the hundreds at
+// the edge.
+VirtualPair WidePair() {
+  VirtualPair pair;
+  pair.a = {
+      288, 287, 322, 238, {7.263, 2.337, 0.0, 0.0001, 0.0379, 7.636, 4.597, 0.3275}, CameraModel::kPinholeRational};
+  pair.b = {286, 286, 315, 244, {4.847, 1.624, 0.0, 0.0, 0.0342, 5.204, 3.114, 0.2477}, CameraModel::kPinholeRational};
+  return pair;
+}
+
+// Turned to face the camera from all round the picture, up to 55 degrees off its axis, and leaning.
+std::vector<Se3> BoardsAllRound(int count) {
+  std::vector<Se3> boards;
+  for (int k = 0; k < count; ++k) {
+    const double around = 2.4 * k, off = 0.96 * std::sqrt((k % 6) / 5.0), range_m = 0.34 + 0.05 * std::sin(1.9 * k);
+    const Eigen::Vector3d axis(std::cos(around), std::sin(around), 0);
+    const Eigen::Vector3d centre = range_m * (std::sin(off) * axis + std::cos(off) * Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d lean(0.4 * std::cos(1.3 * k), 0.4 * std::sin(1.3 * k), 0.15 * std::sin(1.7 * k));
+    boards.push_back(BoardAt(VirtualPair(), centre, 0.6 * off * Eigen::Vector3d::UnitZ().cross(axis) + lean));
+  }
+  return boards;
+}
+
+TEST(WideRationalPair, ViewsInPartAreEnough) {
+  const VirtualPair pair = WidePair();
+  StereoProblem problem = Photographed(pair, BoardsAllRound(18), 0.1, 4);
+  for (std::size_t k = 0; k < problem.captures.size(); ++k) {
+    problem.captures[k].a = Part(*problem.captures[k].a, problem.board, k % 2 == 0 ? 0 : 2, k % 2 == 0 ? 7 : 9);
+    problem.captures[k].b = Part(*problem.captures[k].b, problem.board, k % 3 == 0 ? 0 : 1, 8);
+  }
+  const Edge edge = EstimateEdge(problem);
+  ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses.at(0).what;
+  EXPECT_NEAR(edge.figures.at("rms_px"), 0.1 * std::sqrt(2.0), 0.02);
+  const Vector6d error = (pair.T_a_b.Inverse() * edge.T_a_b).Log();
+  const Vector6d sigma = edge.uncertainty.covariance.diagonal().cwiseSqrt();
+  for (int axis = 0; axis < 6; ++axis) EXPECT_LT(std::abs(error[axis]), 5 * sigma[axis]) << axis;
+}
+
+TEST(WideRationalPair, RadtanIsRefusedByName) {
+  StereoProblem problem = Photographed(WidePair(), BoardsAllRound(18), 0.1, 4);
+  problem.camera_a.camera_model = problem.camera_b.camera_model = CameraModel::kPinholeRadtan;
+  const Edge edge = EstimateEdge(problem);
+  ASSERT_EQ(edge.state, EdgeState::kFailed);
+  EXPECT_THAT(edge.diagnoses.at(0).cure, HasSubstr("'model: pinhole_rational'"));
+}
+
 // A rational lens in the middle of a picture: only sums of its coefficients can be known.
 TEST(RationalPair, TooLittleOfThePictureIsADiagnosis) {
   VirtualPair pair;

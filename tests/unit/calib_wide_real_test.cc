@@ -14,6 +14,7 @@ namespace rigcal::calib {
 namespace {
 
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 constexpr const char* kWall = "stereo_charuco_wide";
 
@@ -46,8 +47,22 @@ TEST(RealWideLens, ItsModelIsTheCure) {
   ASSERT_EQ(edge.state, EdgeState::kFailed);
   EXPECT_EQ(edge.diagnoses.front().code, "high_residual");
   for (const char* side : {"left", "right"})
-    EXPECT_THAT(edge.diagnoses.front().cure, HasSubstr(std::string("Give ") + side + " 'model: fisheye_kb4'"));
+    EXPECT_THAT(edge.diagnoses.front().cure, HasSubstr(std::string("Give ") + side + " 'model: pinhole_rational'"));
+  EXPECT_THAT(edge.diagnoses.front().cure,
+              MatchesRegex(".* 0\\.[23][0-9] px rms with it, not to [34]\\.[0-9]+ px\\..*"));
   EXPECT_EQ(edge.diagnoses.front().cure.find("ake more captures"), std::string::npos);
+}
+
+// Against the author's baseline of all 39 pairs, left points into the right camera.
+TEST(RealWideLens, ARationalLensConverges) {
+  RIGCAL_SKIP_WITHOUT_RECORDING(kWall);
+  const Edge edge = EstimateEdge(Wall(true, CameraModel::kPinholeRational));
+  ASSERT_EQ(edge.state, EdgeState::kGood) << edge.diagnoses.front().what;
+  EXPECT_LT(edge.figures.at("rms_px"), 0.34);
+  const Eigen::Vector3d T_right_left_m(-0.07500, 0.001245, -0.000549);
+  const Eigen::Vector3d away_m = edge.T_a_b.Inverse().p_m - T_right_left_m;
+  const Eigen::Vector3d sigma_m = edge.uncertainty.covariance.diagonal().head<3>().cwiseSqrt();
+  EXPECT_LT(away_m.cwiseQuotient(sigma_m).cwiseAbs().maxCoeff(), 3.0) << away_m.transpose();
 }
 
 TEST(RealWideLens, TheLayoutComesFirst) {

@@ -5,6 +5,8 @@
 #include <opencv2/calib3d.hpp>
 
 #include "server/calib/camera/fisheye_start.h"
+#include "server/calib/camera/rational_start.h"
+#include "server/calib/camera/seen_reach.h"
 #include "server/calib/planes/placed_boards.h"
 
 namespace rigcal::calib {
@@ -107,14 +109,42 @@ IntrinsicsVector RoughIntrinsics(const CameraViews& views) {
   return rough;
 }
 
-Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views) {
-  CameraViews spread = Spread(views, kViewsMax);
-  if (spread.model == CameraModel::kPinholeRational) spread.model = CameraModel::kPinholeRadtan;
+namespace {
+
+Result<IntrinsicsVector> StartAs(CameraModel model, CameraViews spread) {
+  spread.model = model;
   PlacedBoards placed = PlaceBoards(spread, RoughIntrinsics(spread));
-  if (spread.model == CameraModel::kPinholeRadtan) placed.joint.held_a = kTangentialAndThird;
+  if (model == CameraModel::kPinholeRadtan) placed.joint.held_a = kTangentialAndThird;
   const auto refined = SolveJoint(placed.joint, placed.state);
-  if (!refined || !CanBe(refined->state.intrinsics_a, views)) return NoIntrinsics();
-  return WithoutFold(views, refined->state.intrinsics_a);
+  if (!refined || !CanBe(refined->state.intrinsics_a, spread)) return NoIntrinsics();
+  return refined->state.intrinsics_a;
+}
+
+// Of a lens too wide for a series of radii: what a fisheye makes of the views, as a quotient.
+std::optional<IntrinsicsVector> WideRationalStart(const CameraViews& spread) {
+  const auto fisheye = StartAs(CameraModel::kFisheyeKb4, spread);
+  if (!fisheye) return std::nullopt;
+  const auto rational = RationalLike(*fisheye, SeenReach(CameraModel::kFisheyeKb4, *fisheye, spread));
+  return rational && CanBe(*rational, spread) ? rational : std::nullopt;
+}
+
+// Without its denominator, or from a fisheye: whose boards reproject better.
+Result<IntrinsicsVector> RationalStart(const CameraViews& views, const CameraViews& spread) {
+  auto start = StartAs(CameraModel::kPinholeRadtan, spread);
+  if (start) start = WithoutFold(views, *start);
+  const auto wide = WideRationalStart(spread);
+  if (!wide || !SeesAll(views, *wide)) return start;
+  if (start && PlaceBoards(spread, *start).cost_px2 <= PlaceBoards(spread, *wide).cost_px2) return start;
+  return *wide;
+}
+
+}  // namespace
+
+Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views) {
+  const CameraViews spread = Spread(views, kViewsMax);
+  if (views.model == CameraModel::kPinholeRational) return RationalStart(views, spread);
+  RIGCAL_ASSIGN(const IntrinsicsVector start, StartAs(views.model, spread));
+  return WithoutFold(views, start);
 }
 
 }  // namespace rigcal::calib

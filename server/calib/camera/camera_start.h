@@ -26,7 +26,8 @@ struct CameraViews {
 // not tell them (no tilt), the picture's longer side. Fisheye: as RoughFisheye. Always usable.
 [[nodiscard]] IntrinsicsVector RoughIntrinsics(const CameraViews& views);
 // The rough intrinsics refined together with the board poses, a pinhole with two radial terms (Zhang 2000), on at most
-// some tens of the views, evenly spread; every corner of the views can be seen.
+// some tens of the views, evenly spread; every corner of the views can be seen. Rational: those, or what a fisheye
+// makes of the views where boards reproject better with it.
 [[nodiscard]] Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views);
 
 }  // namespace rigcal::calib

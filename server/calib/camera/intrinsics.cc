@@ -115,10 +115,14 @@ void PlaceBoards(Work& work) {
     if (!(rms_px[k] <= limit_px && std::isfinite(rms_px[k]))) work.Drop(k, "no pose of the board explains its corners");
 }
 
-double VarianceOf(const Work& work) {
+double SumOfSquaresOf(const Work& work) {
   double ssr_px2 = 0;
   for (std::size_t k = 0; k < work.captures.size(); ++k) ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
-  return ssr_px2 / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
+  return ssr_px2;
+}
+
+double VarianceOf(const Work& work) {
+  return SumOfSquaresOf(work) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
 }
 
 OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
@@ -235,7 +239,6 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
   estimate.unused = work.unused;
   estimate.variance_px2 = VarianceOf(work);
   estimate.pull = work.joint.pull_a;
-  double ssr_px2 = 0;
   for (std::size_t k = 0; k < work.captures.size(); ++k) {
     const CaptureId& capture = work.captures[k];
     const auto information = BoardInformation(work.joint, work.state, k);
@@ -245,12 +248,18 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
     AddOfIntrinsics(work, k, estimate);
     if (!work.alternatives[k].empty()) estimate.alternatives[capture] = work.alternatives[k];
     estimate.rms_by_capture_px[capture] = RmsOf(work, k);
-    ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
   }
-  estimate.rms_px = std::sqrt(2 * ssr_px2 / ResidualCount(work.joint));
+  estimate.rms_px = std::sqrt(2 * SumOfSquaresOf(work) / ResidualCount(work.joint));
   const double limit_px = HighRms_px(work.views.width_px);
   if (!(estimate.rms_px <= limit_px)) return tl::unexpected(CameraHighResidual(problem, estimate.rms_px, limit_px));
   return estimate;
+}
+
+CameraProblem WithModel(CameraProblem problem, CameraModel model) {
+  problem.camera.intrinsics.reset();
+  problem.camera.intrinsics_sigma.reset();
+  problem.camera.camera_model = model;
+  return problem;
 }
 
 OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const CameraEstimate* start) {
@@ -274,11 +283,18 @@ OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const C
 }
 
 OrDiagnosis<CameraEstimate> EstimateCameraAs(const CameraProblem& problem, CameraModel model) {
-  CameraProblem other = problem;
-  other.camera.intrinsics.reset();
-  other.camera.intrinsics_sigma.reset();
-  other.camera.camera_model = model;
-  return Estimated(other, nullptr);
+  return Estimated(WithModel(problem, model), nullptr);
+}
+
+double FitRms_px(const CameraProblem& problem, CameraModel model) {
+  double rms_px = std::numeric_limits<double>::infinity();
+  try {
+    if (const auto work = FromScratch(WithModel(problem, model)))
+      rms_px = std::sqrt(2 * SumOfSquaresOf(*work) / ResidualCount(work->joint));
+  } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw;
+  }
+  return rms_px;
 }
 
 OrDiagnosis<CameraEstimate> EstimateCameraBy(const CameraSolver& solver, const CameraProblem& problem) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kViewsTried = 30;
 constexpr double kClearlyBetterRatio = 0.5, kAlikeRatio = 1.1;
-// Those with fewer ways to go wrong first.
+// Of those that fit alike the one that only adds terms to the camera's own, then those with fewer ways to go wrong.
 constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4, CameraModel::kPinholeRational};
 constexpr std::array kLensCodes = {"high_residual", "ill_conditioned", "no_convergence", "no_intrinsics",
                                    "distortion_not_observable"};
@@ -41,7 +42,19 @@ double RmsOf_px(const CameraProblem& problem, CameraModel model) {
 
 std::string CureOf(const BetterLens& lens) {
   return "Give " + lens.camera.str() + " 'model: " + NameOf(lens.model) +
-         "' in session.yaml: by itself it fits its corners to " + PixelsText(lens.rms_px) + " rms with it.";
+         "' in session.yaml: by itself it fits its corners to " + PixelsText(lens.rms_px) + " rms with it" +
+         (std::isfinite(lens.own_rms_px) ? ", not to " + PixelsText(lens.own_rms_px) + "." : ".");
+}
+
+bool AddsTermsTo(CameraModel own, CameraModel model) {
+  return own == CameraModel::kPinholeRadtan && model == CameraModel::kPinholeRational;
+}
+
+BetterLens Chosen(const std::vector<BetterLens>& others, double least_px, CameraModel own) {
+  const auto fits = [&](const BetterLens& lens) { return lens.rms_px <= kAlikeRatio * least_px; };
+  const auto adding = std::find_if(others.begin(), others.end(),
+                                   [&](const BetterLens& lens) { return fits(lens) && AddsTermsTo(own, lens.model); });
+  return adding != others.end() ? *adding : *std::find_if(others.begin(), others.end(), fits);
 }
 
 }  // namespace
@@ -52,18 +65,19 @@ std::optional<BetterLens> FindBetterLens(const CameraProblem& problem) {
   if (problem.camera.intrinsics) return std::nullopt;
   const CameraProblem tried = SomeViews(problem);
   if (tried.views.empty()) return std::nullopt;
+  const CameraModel own = problem.camera.camera_model;
   std::vector<BetterLens> others;
   double least_px = std::numeric_limits<double>::infinity();
   for (const CameraModel model : kLenses) {
-    if (model == problem.camera.camera_model) continue;
+    if (model == own) continue;
     others.push_back({problem.camera.id, model, RmsOf_px(tried, model)});
     least_px = std::min(least_px, others.back().rms_px);
   }
-  const double own_px =
-      std::min(RmsOf_px(tried, problem.camera.camera_model), HighRms_px(tried.views.front().second.image_width_px));
-  if (!(least_px <= kClearlyBetterRatio * own_px)) return std::nullopt;
-  return *std::find_if(others.begin(), others.end(),
-                       [&](const BetterLens& other) { return other.rms_px <= kAlikeRatio * least_px; });
+  const double high_px = HighRms_px(tried.views.front().second.image_width_px);
+  if (!(least_px <= kClearlyBetterRatio * std::min(RmsOf_px(tried, own), high_px))) return std::nullopt;
+  BetterLens chosen = Chosen(others, least_px, own);
+  chosen.own_rms_px = FitRms_px(tried, own);
+  return chosen;
 }
 
 Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::vector<CameraProblem>& cameras) {

@@ -1,6 +1,7 @@
 // Whether another lens model explains what a camera's own does not.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace rigcal::calib {
 // The same views with intrinsics of `model`, from scratch.
 [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCameraAs(const CameraProblem& problem, CameraModel model);
 
+// To which they then fit, refused or not; infinite where no minimum is reached.
+[[nodiscard]] double FitRms_px(const CameraProblem& problem, CameraModel model);
+
 // An rms beyond this is refused.
 [[nodiscard]] double HighRms_px(int width_px);
 
@@ -18,6 +22,7 @@ struct BetterLens {
   SensorId camera;
   CameraModel model = CameraModel::kPinholeRadtan;
   double rms_px = 0;  // to which the camera by itself fits its corners with it
+  double own_rms_px = std::numeric_limits<double>::infinity();  // with its own model
 };
 
 // Tries the other models on some of the camera's views. Nothing where intrinsics are given, where its own model fits

@@ -6,6 +6,7 @@
 
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/given_intrinsics.h"
+#include "server/calib/camera/seen_reach.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/selection.h"
@@ -18,8 +19,8 @@ using View = std::optional<BoardView>;
 
 // Well-tilted boards give 0.1 to 0.5 %; boards parallel to the picture give tens of per cent and more.
 constexpr double kFocalSigmaMaxRatio = 0.03;
-// Sigma of a coefficient times its power of the outermost radius: up to 20 where boards fill the picture (the rational
-// model's halves nearly cancel), hundreds to thousands where they stay in its middle.
+// Sigma of a coefficient times its power of the outermost radius, over what it is a part of: up to 20 where boards fill
+// the picture (the rational model's halves nearly cancel), hundreds to thousands where they stay in its middle.
 constexpr double kDistortionSigmaMax = 50.0;
 
 double LargestAngle_deg(const std::vector<Se3>& boards) {
@@ -72,24 +73,20 @@ void CheckTilt(const Sensor& camera, const CameraViews& views, std::vector<Diagn
   if (auto no_tilt = WhyNoTilt(camera.id, views)) diagnoses.push_back(std::move(*no_tilt));
 }
 
-// Of the corners seen, the largest radius (pinhole) or angle (fisheye), as the distortion's series takes it.
-double OutermostReach(CameraModel model, const IntrinsicsVector& intrinsics, const CameraViews& views) {
-  double reach = 0;
-  for (const SeenCorners& seen : views.seen)
-    for (const Eigen::Vector2d& uv_px : seen.uv_px) {
-      const auto ray = Unproject(model, intrinsics, uv_px);
-      if (!ray) continue;
-      const double r = ray->head<2>().norm();
-      reach = std::max(reach, model == CameraModel::kFisheyeKb4 ? std::atan2(r, ray->z()) : r / ray->z());
-    }
-  return reach;
-}
-
 // Of the radius or angle, by which the coefficient's effect grows against the undistorted lens.
 int PowerOf(CameraModel model, const std::string& name) {
   if (name[0] == 'p') return 1;
   const int order = name[1] - '0';
   return 2 * (model == CameraModel::kPinholeRational && order > 3 ? order - 3 : order);
+}
+
+// At s, the square of that radius: the numerator or the denominator that the coefficient is a part of. Both are large
+// where a lens is wide, up to about (1 + s)^3; beyond that they only cancel.
+double WholeAt(CameraModel model, const IntrinsicsVector& intrinsics, const std::string& name, double s) {
+  if (model != CameraModel::kPinholeRational || name[0] == 'p') return 1.0;
+  const Eigen::Vector3d powers(s, s * s, s * s * s), above(intrinsics[4], intrinsics[5], intrinsics[8]);
+  const Eigen::Vector3d below = intrinsics.segment<3>(9);
+  return std::clamp(1 + (name[1] > '3' ? below : above).dot(powers), 1.0, std::pow(1 + s, 3));
 }
 
 // Without distortion the two halves of the rational model are one: its focal length is judged as that of radtan.
@@ -130,11 +127,12 @@ std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& vi
 std::optional<Diagnosis> WhyDistortionOpen(const SensorId& camera, CameraModel model, const Eigen::VectorXd& variances,
                                            const CameraViews& views, const IntrinsicsVector& intrinsics) {
   if (model == CameraModel::kPinholeRadtan) return std::nullopt;
-  const double reach = OutermostReach(model, intrinsics, views);
+  const double reach = SeenReach(model, intrinsics, views);
   const std::vector<std::string>& names = DistortionNames(model);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double sigma = std::sqrt(variances[4 + static_cast<Eigen::Index>(i)]);
-    const double effect = sigma * std::pow(reach, PowerOf(model, names[i]));
+    const double effect =
+        sigma * std::pow(reach, PowerOf(model, names[i])) / WholeAt(model, intrinsics, names[i], reach * reach);
     if (!(effect < kDistortionSigmaMax)) return DistortionOpen(camera, model, names[i]);
   }
   return std::nullopt;

@@ -18,8 +18,9 @@ struct FocalOutlook {
 [[nodiscard]] std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views);
 
 // After solving: the diagnosis if the views leave a distortion open. `variances` of the intrinsics. Judged by what a
-// sigma of each coefficient does at the outermost corner seen: far more than the lens itself means that only sums of
-// coefficients are known. Never for the radtan model, whose focal length goes first (WhyNoTilt).
+// sigma of each coefficient does at the outermost corner seen, against the polynomial it is a part of: far more than
+// the lens itself means that only sums of coefficients are known. Never for the radtan model, whose focal length goes
+// first (WhyNoTilt).
 [[nodiscard]] std::optional<Diagnosis> WhyDistortionOpen(const SensorId& camera, CameraModel model,
                                                          const Eigen::VectorXd& variances, const CameraViews& views,
                                                          const IntrinsicsVector& intrinsics);
