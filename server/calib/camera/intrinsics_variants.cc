@@ -50,17 +50,24 @@ CameraEstimate Moved(CameraEstimate estimate, const IntrinsicsVector& change) {
 
 }  // namespace
 
-CameraEstimate WithoutView(const CameraEstimate& estimate, const CaptureId& capture) {
+CameraEstimate WithoutViews(const CameraEstimate& estimate, const std::set<CaptureId>& captures) {
   CameraEstimate without = estimate;
-  without.T_cam_board.erase(capture);
-  without.information.erase(capture);
-  without.alternatives.erase(capture);
-  without.rms_by_capture_px.erase(capture);
-  without.of_intrinsics.erase(capture);
-  const auto view = estimate.of_intrinsics.find(capture);
-  if (view == estimate.of_intrinsics.end()) return without;
-  return Moved(std::move(without),
-               Solved(estimate, InformationOf(estimate) - view->second.information, view->second.gradient));
+  Information information = InformationOf(estimate);
+  IntrinsicsVector gradient = IntrinsicsVector::Zero();
+  bool is_told = false;
+  for (const CaptureId& capture : captures) {
+    without.T_cam_board.erase(capture);
+    without.information.erase(capture);
+    without.alternatives.erase(capture);
+    without.rms_by_capture_px.erase(capture);
+    without.of_intrinsics.erase(capture);
+    const auto view = estimate.of_intrinsics.find(capture);
+    if (view == estimate.of_intrinsics.end()) continue;
+    information -= view->second.information;
+    gradient += view->second.gradient;
+    is_told = true;
+  }
+  return is_told ? Moved(std::move(without), Solved(estimate, information, gradient)) : without;
 }
 
 std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/calib/core/capture_blocks.h"
 #include "server/model/uncertainty.h"
 
 namespace rigcal::calib {

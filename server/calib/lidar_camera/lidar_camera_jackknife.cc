@@ -20,9 +20,9 @@ Result<Se3> PoseFrom(const LidarCameraProblem& problem, const LidarCameraEstimat
   return EdgePose(problem, estimate.T_cam_lidar);
 }
 
-Result<Vector6d> WithoutCapture(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
-                                const CaptureId& capture) {
-  RIGCAL_ASSIGN(const LidarCameraEstimate without, SolvedWithout(problem, estimate, capture));
+Result<Vector6d> WithoutBlockOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                const CaptureBlock& block) {
+  RIGCAL_ASSIGN(const LidarCameraEstimate without, SolvedWithout(problem, estimate, block.captures));
   const Se3 T_a_b = EdgePose(problem, estimate.T_cam_lidar);
   return Vector6d((T_a_b.Inverse() * EdgePose(problem, without.T_cam_lidar)).Log());
 }
@@ -123,15 +123,15 @@ Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, cons
   const Matrix6d C_model = Symmetrized(C_planes + corners);
   std::vector<BlockVector> blocks;
   if (estimate.patch_idx.size() >= kLidarCapturesForJackknife) {
-    const std::vector<CaptureId> captures = BlocksOf(problem, estimate);
-    std::vector<std::string> ids;
-    for (const CaptureId& capture : captures) ids.push_back(capture.str());
-    const auto without = [&](std::size_t k) { return WithoutCapture(problem, estimate, captures[k]); };
-    RIGCAL_ASSIGN(blocks, LeaveOneOut(ids, without));
+    const std::vector<CaptureBlock> left_out = BlocksOf(problem, estimate);
+    const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, estimate, left_out[k]); };
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
   }
+  const std::size_t both = estimate.patch_idx.size();
+  const std::size_t carrying = blocks.empty() ? both : std::min(both, blocks.size());
   const auto told = ToldBy(problem, estimate);
   return UncertaintyAlong(told, told.transpose() * C_model * told, std::move(blocks), std::move(contributions),
-                          estimate.patch_idx.size());
+                          carrying);
 }
 
 }  // namespace rigcal::calib

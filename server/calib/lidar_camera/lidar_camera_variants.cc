@@ -9,24 +9,28 @@ Error Reason(const Diagnosis& diagnosis) { return {ErrorCode::kInvalidInput, dia
 
 // Poses of the boards and intrinsics from the other pictures.
 tl::expected<CameraEstimate, Diagnosis> CameraWithout(const LidarCameraProblem& problem,
-                                                      const LidarCameraEstimate& estimate, const CaptureId& without) {
+                                                      const LidarCameraEstimate& estimate,
+                                                      const std::set<CaptureId>& without) {
   CameraProblem camera{problem.camera, problem.board, {}};
   for (const LidarCameraCapture& capture : problem.captures) {
     if (!estimate.camera.T_cam_board.contains(capture.capture)) continue;
-    if (capture.capture != without) camera.views.emplace_back(capture.capture, *capture.view);
+    if (!without.contains(capture.capture)) camera.views.emplace_back(capture.capture, *capture.view);
   }
   return EstimateCamera(camera, &estimate.camera);
 }
 
 }  // namespace
 
-std::vector<CaptureId> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  std::vector<CaptureId> blocks;
-  for (const LidarCameraCapture& capture : problem.captures)
+std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  std::vector<CaptureId> all;
+  std::set<CaptureId> used;
+  for (const LidarCameraCapture& capture : problem.captures) {
+    all.push_back(capture.capture);
     if (estimate.patch_idx.contains(capture.capture) ||
         (!HoldsIntrinsics(problem.camera) && estimate.camera.T_cam_board.contains(capture.capture)))
-      blocks.push_back(capture.capture);
-  return blocks;
+      used.insert(capture.capture);
+  }
+  return CaptureBlocks(all, used);
 }
 
 Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem, const LidarCameraEstimate& start) {
@@ -36,13 +40,13 @@ Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem, const
 }
 
 Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
-                                          const CaptureId& capture) {
+                                          const std::set<CaptureId>& captures) {
   LidarCameraEstimate start = estimate;
-  start.patch_idx.erase(capture);
+  for (const CaptureId& capture : captures) start.patch_idx.erase(capture);
   if (RefinesIntrinsics(problem.camera)) {
-    start.camera = WithoutView(estimate.camera, capture);
+    start.camera = WithoutViews(estimate.camera, captures);
   } else if (!problem.camera.intrinsics) {
-    auto camera = CameraWithout(problem, estimate, capture);
+    auto camera = CameraWithout(problem, estimate, captures);
     if (!camera) return Fail(Reason(camera.error()));
     start.camera = std::move(*camera);
   }

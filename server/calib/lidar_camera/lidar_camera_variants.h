@@ -4,17 +4,20 @@
 #include <vector>
 
 #include "server/calib/core/beam_groups.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 
 namespace rigcal::calib {
 
-// Captures that carry the answer: those of both, and every picture unless intrinsics are held.
-[[nodiscard]] std::vector<CaptureId> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+// Of the captures that carry the answer: those of both, and every picture unless intrinsics are held.
+[[nodiscard]] std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem,
+                                                 const LidarCameraEstimate& estimate);
 [[nodiscard]] Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem,
                                                       const LidarCameraEstimate& start);
 // Everything estimated anew, intrinsics too unless they are held.
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem,
-                                                        const LidarCameraEstimate& estimate, const CaptureId& capture);
+                                                        const LidarCameraEstimate& estimate,
+                                                        const std::set<CaptureId>& captures);
 // Of given intrinsics with sigmas: fx fy cx cy and the distortion, the idx-th given larger by so many of its sigmas.
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithIntrinsic(const LidarCameraProblem& problem,
                                                               const LidarCameraEstimate& estimate, std::size_t idx,

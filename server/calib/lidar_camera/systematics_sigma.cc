@@ -39,10 +39,10 @@ Result<std::vector<Pair>> PairsOf(const Nearby& nearby, std::size_t count, const
 }
 
 Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  const std::vector<CaptureId> captures = BlocksOf(problem, estimate);
+  const std::vector<CaptureBlock> blocks = BlocksOf(problem, estimate);
   RIGCAL_ASSIGN(const std::vector<Pair> pairs,
-                PairsOf({problem, estimate.board_scale_ratio}, captures.size(),
-                        [&](std::size_t i) { return SolvedWithout(problem, estimate, captures[i]); }));
+                PairsOf({problem, estimate.board_scale_ratio}, blocks.size(),
+                        [&](std::size_t i) { return SolvedWithout(problem, estimate, blocks[i].captures); }));
   const auto m = static_cast<double>(pairs.size());
   Pair mean = Pair::Zero(), variance = Pair::Zero();
   for (const Pair& pair : pairs) mean += pair / m;

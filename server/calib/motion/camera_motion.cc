@@ -81,14 +81,14 @@ SidePose PoseOf(const CameraMotion& motion, const ViewMoments& view, int turn) {
   return pose;
 }
 
-void FillShared(const CameraMotion& motion, const std::map<CaptureId, std::size_t>& chosen, const CaptureId* without,
-                double factor, MotionSide& side) {
+void FillShared(const CameraMotion& motion, const std::map<CaptureId, std::size_t>& chosen,
+                const std::set<CaptureId>& without, double factor, MotionSide& side) {
   const int count = motion.estimates_intrinsics ? motion.intrinsics_count : 0;
   side.information = SharedMatrix::Zero(count, count);
   side.gradient = SharedVector::Zero(count);
   if (count == 0) return;
   for (const auto& [capture, views] : motion.views) {
-    if (without != nullptr && capture == *without) continue;
+    if (without.contains(capture)) continue;
     const auto choice = chosen.find(capture);
     const ViewOfIntrinsics view = Eliminated(views[choice == chosen.end() ? 0 : choice->second]);
     side.information += view.information.topLeftCorner(count, count) / (factor * VarianceOf(motion));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "server/calib/camera/intrinsics.h"
@@ -28,9 +29,9 @@ struct CameraMotion {
 
 // The pose and what the intrinsics do to it. `turn`: the board taken as turned by that many of its symmetric turns.
 [[nodiscard]] SidePose PoseOf(const CameraMotion& motion, const ViewMoments& view, int turn);
-// What all views but `without` (may be null) say of the intrinsics, each with the first of its poses, and what was
+// What all views but those `without` say of the intrinsics, each with the first of its poses, and what was
 // given of them. `factor`: on the variance of corners.
-void FillShared(const CameraMotion& motion, const std::map<CaptureId, std::size_t>& chosen, const CaptureId* without,
-                double factor, MotionSide& side);
+void FillShared(const CameraMotion& motion, const std::map<CaptureId, std::size_t>& chosen,
+                const std::set<CaptureId>& without, double factor, MotionSide& side);
 
 }  // namespace rigcal::calib

@@ -9,34 +9,49 @@
 namespace rigcal::calib {
 namespace {
 
-// What is left out together: poses of the problem, and a view that only tells a camera's intrinsics.
+// What is left out together: poses of the problem, and views of these captures, which tell a camera's intrinsics.
 struct Block {
   std::string id;
   std::vector<std::size_t> poses;
-  std::optional<CaptureId> capture;
+  std::set<CaptureId> captures;
 };
 
-void AddSingleViews(const std::optional<CameraMotion>& camera, std::set<CaptureId>& known, std::vector<Block>& blocks) {
-  if (!camera || !camera->estimates_intrinsics) return;
-  for (const auto& [capture, views] : camera->views)
-    if (known.insert(capture).second) blocks.push_back({capture.str(), {}, capture});
+// Captures with a view that only tells a camera's intrinsics.
+std::set<CaptureId> SingleViews(const HandEyeWork& work) {
+  std::set<CaptureId> singles;
+  for (const auto* camera : {&work.camera_a, &work.camera_b}) {
+    if (!*camera || !(*camera)->estimates_intrinsics) continue;
+    for (const auto& [capture, views] : (*camera)->views) singles.insert(capture);
+  }
+  for (const CaptureId& capture : work.captures) singles.erase(capture);
+  return singles;
 }
 
-std::vector<Block> BlocksOf(const HandEyeWork& work, const std::vector<std::size_t>& block_of_pose) {
+// Parts of a stream, and single views.
+std::vector<Block> PartsOf(const HandEyeWork& work, const std::vector<std::size_t>& block_of_pose) {
   std::vector<Block> blocks;
-  std::set<CaptureId> known;
   for (std::size_t k = 0; k < work.captures.size(); ++k) {
-    known.insert(work.captures[k]);
-    if (!block_of_pose.empty()) {
-      if (blocks.size() <= block_of_pose[k]) blocks.push_back({"part " + std::to_string(blocks.size() + 1), {}, {}});
-      blocks[block_of_pose[k]].poses.push_back(k);
-    } else if (work.problem.used[k]) {
-      blocks.push_back({work.captures[k].str(), {k}, work.captures[k]});
-    }
+    if (blocks.size() <= block_of_pose[k]) blocks.push_back({"part " + std::to_string(blocks.size() + 1), {}, {}});
+    blocks[block_of_pose[k]].poses.push_back(k);
   }
-  AddSingleViews(work.camera_a, known, blocks);
-  AddSingleViews(work.camera_b, known, blocks);
-  std::stable_sort(blocks.begin(), blocks.end(), [](const Block& x, const Block& y) { return x.capture < y.capture; });
+  for (const CaptureId& capture : SingleViews(work)) blocks.push_back({capture.str(), {}, {capture}});
+  return blocks;
+}
+
+std::vector<Block> BlocksOf(const HandEyeWork& work) {
+  std::set<CaptureId> used = SingleViews(work), all(work.captures.begin(), work.captures.end());
+  for (const auto* camera : {&work.camera_a, &work.camera_b})
+    if (*camera)
+      for (const auto& [capture, views] : (*camera)->views) all.insert(capture);
+  for (std::size_t k = 0; k < work.captures.size(); ++k)
+    if (work.problem.used[k]) used.insert(work.captures[k]);
+  std::vector<Block> blocks;
+  for (CaptureBlock& one : CaptureBlocks({all.begin(), all.end()}, used)) {
+    Block block{std::move(one.id), {}, std::move(one.captures)};
+    for (std::size_t k = 0; k < work.captures.size(); ++k)
+      if (work.problem.used[k] && block.captures.contains(work.captures[k])) block.poses.push_back(k);
+    blocks.push_back(std::move(block));
+  }
   return blocks;
 }
 
@@ -49,7 +64,7 @@ Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
 Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& offset_s) {
   MotionProblem problem = work.problem;
   for (const std::size_t k : block.poses) problem.used[k] = 0;
-  if (block.capture) SetShared(work, &*block.capture, problem);
+  if (!block.captures.empty()) SetShared(work, block.captures, problem);
   RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state));
   if (work.estimates_offset) offset_s = solution.state.shared_b[kStreamOffset];
   return Vector6d((work.state.X.Inverse() * solution.state.X).Log());
@@ -113,7 +128,7 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
   AddIntrinsics(work, problem.a, &MotionProblem::a, constants);
   AddIntrinsics(work, problem.b, &MotionProblem::b, constants);
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(constants));
-  const std::vector<Block> blocks = BlocksOf(work, block_of_pose);
+  const std::vector<Block> blocks = block_of_pose.empty() ? BlocksOf(work) : PartsOf(work, block_of_pose);
   const std::size_t carrying = block_of_pose.empty() ? work.problem.UsedCount() : blocks.size();
   std::vector<BlockVector> vectors;
   std::vector<double> offsets_s;
@@ -124,9 +139,10 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
     const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], offsets_s[i]); };
     RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, without));
   }
+  const std::size_t degrees = vectors.empty() ? carrying : std::min(carrying, vectors.size());
   MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
   RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, CapturesPart(problem, work, contributions),
-                                                std::move(vectors), std::move(contributions), carrying));
+                                                std::move(vectors), std::move(contributions), degrees));
   return uncertainty;
 }
 

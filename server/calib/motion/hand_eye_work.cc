@@ -113,7 +113,7 @@ OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem) {
   return work;
 }
 
-void SetShared(const HandEyeWork& work, const CaptureId* without, MotionProblem& problem) {
+void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, MotionProblem& problem) {
   const auto fill = [&](const std::optional<CameraMotion>& camera, std::size_t MotionChoice::*choice, double factor,
                         MotionSide& side) {
     if (!camera) return;
@@ -170,7 +170,7 @@ void SetChosen(const std::vector<MotionCandidates>& scaled, HandEyeWork& work) {
   std::vector<char> used = std::move(work.problem.used);
   work.problem = ProblemOf(scaled, work.choices);
   if (used.size() == work.problem.used.size()) work.problem.used = std::move(used);
-  SetShared(work, nullptr, work.problem);
+  SetShared(work, {}, work.problem);
 }
 
 double UpdatedFactor(double factor, double squares, double redundancy, double prior) {

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <set>
+
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_problem.h"
 #include "server/calib/core/leave_one_out.h"
@@ -30,11 +33,16 @@ Solved SolvedOf(const StereoProblem& problem, const StereoEstimate& estimate) {
   return solved;
 }
 
-Result<Vector6d> WithoutCapture(const Solved& solved, std::size_t k) {
+Result<Vector6d> WithoutBlockOf(const StereoProblem& problem, const Solved& solved, const CaptureBlock& block) {
   JointProblem joint = solved.joint;
   JointState state = solved.state;
-  joint.captures.erase(joint.captures.begin() + static_cast<std::ptrdiff_t>(k));
-  state.T_a_board.erase(state.T_a_board.begin() + static_cast<std::ptrdiff_t>(k));
+  joint.captures.clear();
+  state.T_a_board.clear();
+  for (std::size_t k = 0; k < solved.used.size(); ++k) {
+    if (block.captures.contains(problem.captures[solved.used[k]].capture)) continue;
+    joint.captures.push_back(solved.joint.captures[k]);
+    state.T_a_board.push_back(solved.state.T_a_board[k]);
+  }
   RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(joint, state));
   return Vector6d((solved.state.T_a_b.Inverse() * solution.state.T_a_b).Log());
 }
@@ -71,10 +79,12 @@ std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const Stere
   return constants;
 }
 
-std::vector<std::string> BlockIds(const StereoProblem& problem, const Solved& solved) {
-  std::vector<std::string> ids;
-  for (const std::size_t idx : solved.used) ids.push_back(problem.captures[idx].capture.str());
-  return ids;
+std::vector<CaptureBlock> BlocksOf(const StereoProblem& problem, const Solved& solved) {
+  std::vector<CaptureId> all;
+  std::set<CaptureId> used;
+  for (const StereoCapture& capture : problem.captures) all.push_back(capture.capture);
+  for (const std::size_t idx : solved.used) used.insert(problem.captures[idx].capture);
+  return CaptureBlocks(all, used);
 }
 
 }  // namespace
@@ -86,10 +96,12 @@ Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate
   RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate, solved)));
   std::vector<BlockVector> blocks;
   if (both >= kCapturesForJackknife) {
-    const auto without = [&](std::size_t k) { return WithoutCapture(solved, k); };
-    RIGCAL_ASSIGN(blocks, LeaveOneOut(BlockIds(problem, solved), without));
+    const std::vector<CaptureBlock> left_out = BlocksOf(problem, solved);
+    const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, solved, left_out[k]); };
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
   }
-  return UncertaintyOf(estimate.C_model, std::move(blocks), contributions, both);
+  const std::size_t carrying = blocks.empty() ? both : std::min(both, blocks.size());
+  return UncertaintyOf(estimate.C_model, std::move(blocks), contributions, carrying);
 }
 
 }  // namespace rigcal::calib

@@ -2,6 +2,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "server/calib/core/beam_groups.h"
 #include "server/calib/core/leave_one_out.h"
@@ -22,13 +23,26 @@ Result<Se3> PoseFrom(const TrackerLidarProblem& problem, const StaticProblem& mo
   return EdgePose(problem, solution.state.T_body_lidar);
 }
 
-Result<Vector6d> WithoutCapture(const TrackerLidarProblem& problem, const TrackerLidarWork& work, std::size_t k) {
+Result<Vector6d> WithoutBlockOf(const TrackerLidarProblem& problem, const TrackerLidarWork& work,
+                                const CaptureBlock& block) {
   StaticProblem without = work.problem;
   StaticState start = work.state;
-  without.captures.erase(without.captures.begin() + static_cast<std::ptrdiff_t>(k));
-  start.T_world_body.erase(start.T_world_body.begin() + static_cast<std::ptrdiff_t>(k));
+  for (std::size_t k = work.captures.size(); k-- > 0;) {
+    if (!block.captures.contains(problem.captures[work.captures[k]].capture)) continue;
+    without.captures.erase(without.captures.begin() + static_cast<std::ptrdiff_t>(k));
+    start.T_world_body.erase(start.T_world_body.begin() + static_cast<std::ptrdiff_t>(k));
+  }
   RIGCAL_ASSIGN(const Se3 T_a_b, PoseFrom(problem, without, start));
   return Vector6d((EdgePose(problem, work.state.T_body_lidar).Inverse() * T_a_b).Log());
+}
+
+std::vector<CaptureBlock> BlocksOf(const TrackerLidarProblem& problem, const TrackerLidarWork& work) {
+  std::vector<CaptureId> all;
+  std::set<CaptureId> used;
+  for (const TrackerLidarCapture& capture : problem.captures) all.push_back(capture.capture);
+  for (const std::size_t idx : work.captures) used.insert(problem.captures[idx].capture);
+  std::sort(all.begin(), all.end());
+  return CaptureBlocks(all, used);
 }
 
 std::vector<char> BeamsSeen(const TrackerLidarWork& work) {
@@ -95,14 +109,15 @@ Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem, co
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, work)));
   std::vector<BlockVector> blocks;
   if (work.captures.size() >= kTrackerLidarForJackknife) {
-    std::vector<std::string> ids;
-    for (const std::size_t idx : work.captures) ids.push_back(problem.captures[idx].capture.str());
-    RIGCAL_ASSIGN(blocks, LeaveOneOut(ids, [&](std::size_t k) { return WithoutCapture(problem, work, k); }));
+    const std::vector<CaptureBlock> left_out = BlocksOf(problem, work);
+    const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, work, left_out[k]); };
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
   }
   const OfEdge edge = InEdge(problem, work);
   const Eigen::MatrixXd along = edge.free.transpose() * edge.information * edge.free;
   const Eigen::MatrixXd C = along.llt().solve(Eigen::MatrixXd::Identity(along.rows(), along.cols()));
-  return UncertaintyAlong(edge.free, C, std::move(blocks), std::move(contributions), work.captures.size());
+  const std::size_t carrying = blocks.empty() ? work.captures.size() : blocks.size();
+  return UncertaintyAlong(edge.free, C, std::move(blocks), std::move(contributions), carrying);
 }
 
 }  // namespace rigcal::calib
