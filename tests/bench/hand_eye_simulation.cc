@@ -104,7 +104,7 @@ void AddBound(const HandEyeProblem& exact, const VirtualBody& body, const PoseNo
                  : Matrix6d(variances.asDiagonal());
     }
   MotionProblem problem = ProblemOf(work->candidates, work->choices);
-  SetShared(*work, nullptr, problem);
+  SetShared(*work, {}, problem);
   const auto fit = FitOf(problem, StateFrom(problem, body.X, body.Z));
   if (!fit) return;
   statistics.bound_m2 += fit->C_X.topLeftCorner(3, 3).trace();

@@ -159,7 +159,7 @@ TEST(GivenIntrinsics, VariantsAreWhatEstimatingAgainGives) {
   fewer.views.erase(fewer.views.begin() + 3);
   const auto again_moved = EstimateCamera(moved, &*estimate), again_fewer = EstimateCamera(fewer, &*estimate);
   ASSERT_TRUE(again_moved && again_fewer);
-  const CameraEstimate closed_moved = WithGiven(*estimate, 0, 2), closed_fewer = WithoutView(*estimate, gone);
+  const CameraEstimate closed_moved = WithGiven(*estimate, 0, 2), closed_fewer = WithoutViews(*estimate, {gone});
   EXPECT_FALSE(closed_fewer.T_cam_board.contains(gone));
   for (const auto& [closed, again] :
        {std::pair(&closed_moved, &*again_moved), std::pair(&closed_fewer, &*again_fewer)}) {
