@@ -91,7 +91,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
                FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
                FindUnseenMoves(estimates, policy, captured_at)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
-  return Pass(UntestedLoops(edges, solution), SmallestMoveNoticed(estimates));
+  return Pass(UntestedLoops(edges, solution), SmallestMoveNoticed(estimates, solution));
 }
 
 }  // namespace rigcal::fleet

@@ -34,9 +34,10 @@ struct Finding {
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
-// The smallest move that every one of the sensors' newest sessions would have shown, as a sentence; empty where none
-// tells.
-[[nodiscard]] std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates);
+// The smallest move that every one of the sensors' newest sessions would have shown, as a sentence that names the known
+// sensors of which no session tells; empty where none tells of any.
+[[nodiscard]] std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates,
+                                              const GraphSolution& solution);
 // A sensor whose edges fall into two groups; no side is chosen.
 [[nodiscard]] std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                   const SessionTimes& captured_at);

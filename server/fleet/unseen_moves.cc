@@ -37,12 +37,22 @@ std::string SizeText(const SmallestMove& move) {
   return Number(1e3 * move.m, "mm") + " or " + Number(kDegreesPerRadian * move.rad, "deg");
 }
 
-// Sigmas fall with the root of the captures.
+// How many times as many captures would bring `told` down to `tolerance`: sigmas fall with their root, the size below
+// which nothing is told as a move does not.
+double TimesTheCaptures(double told, double tolerance, double least) {
+  return std::max(std::pow(told / tolerance, 2), std::pow((told - least) / (tolerance - least), 2));
+}
+
 std::string MorePlaces(const Unseen& worst, const Policy& policy) {
   const std::string seen = "; it saw something in " + std::to_string(worst.move.captures) + " captures";
   if (IsAnyMove(worst.move)) return "Capture more places that " + worst.sensor.str() + " sees" + seen;
-  const double enough = worst.move.captures * std::pow(TimesTheTolerance(worst.move, policy), 2);
-  return "Capture at least " + std::to_string(static_cast<long>(std::ceil(enough))) + " places that " +
+  if (policy.unseen_move_max_m <= kMovedMin_m || policy.unseen_move_max_rad <= kMovedMin_rad)
+    return "Allow a larger unseen bump: one below 1 mm and 1 mrad is not told";
+  const double times =
+      std::max(TimesTheCaptures(std::max(worst.move.m, policy.unseen_move_max_m), policy.unseen_move_max_m, kMovedMin_m),
+               TimesTheCaptures(std::max(worst.move.rad, policy.unseen_move_max_rad), policy.unseen_move_max_rad,
+                                kMovedMin_rad));
+  return "Capture at least " + std::to_string(static_cast<long>(std::ceil(worst.move.captures * times))) + " places that " +
          worst.sensor.str() + " sees" + seen;
 }
 
@@ -56,9 +66,10 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   std::stable_sort(unseen.begin(), unseen.end(), [&](const Unseen& x, const Unseen& y) {
     return TimesTheTolerance(x.move, policy) > TimesTheTolerance(y.move, policy);
   });
-  const Unseen& worst = unseen.front();
+  const Unseen worst = unseen.front();
   std::vector<std::string> names;
-  for (const Unseen& one : unseen) names.push_back(one.sensor.str());
+  for (const Unseen& one : unseen)
+    if (one.session == worst.session) names.push_back(one.sensor.str());
   Finding finding;
   const bool one = names.size() == 1;
   const std::string size = IsAnyMove(worst.move) ? "" : "by up to " + SizeText(worst.move);
@@ -70,14 +81,21 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   return finding;
 }
 
-std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates) {
+std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution) {
   SmallestMove largest{0.0, 0.0, 0};
+  std::set<SensorId> told;
   for (const Unseen& one : NewestMovesOf(estimates)) {
     largest.m = std::max(largest.m, one.move.m);
     largest.rad = std::max(largest.rad, one.move.rad);
+    told.insert(one.sensor);
   }
-  if (largest.m == 0.0 || IsAnyMove(largest)) return "";
-  return "A bump of any sensor by " + SizeText(largest) + " half-way through a session would have been noticed.";
+  if (told.empty() || IsAnyMove(largest)) return "";
+  std::vector<std::string> untold;
+  for (const SensorPose& pose : solution.poses)
+    if (pose.known && !told.contains(pose.sensor)) untold.push_back(pose.sensor.str());
+  return "A bump of any sensor " + (untold.empty() ? "" : "but " + List(untold) + " ") + "by " + SizeText(largest) +
+         " half-way through a session would have been noticed" +
+         (untold.empty() ? "." : "; of " + List(untold) + " it is not known.");
 }
 
 }  // namespace rigcal::fleet

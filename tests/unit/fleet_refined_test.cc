@@ -62,7 +62,6 @@ TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
   EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
 }
 
-// A rig of one session, one of whose edges contradicts the others by so much.
 SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
   SessionEstimate estimate;
   estimate.session = SessionId(std::string(64, '1'));
@@ -78,7 +77,8 @@ Verdict VerdictOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) 
 }
 
 TEST(AssessUnseen, APassSaysWhatWouldHaveBeenNoticed) {
-  const Verdict verdict = VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}});
+  const Verdict verdict = VerdictOfMoves(
+      {{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}, {"top", {0.001, 0.001, 40}}});
   EXPECT_EQ(verdict.level, VerdictLevel::kPass);
   EXPECT_THAT(
       verdict.why,
@@ -93,7 +93,23 @@ TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumber
             "A bump of any of right and top half-way through the session of 2026-01-31 12:00 UTC would not have been "
             "noticed, of right by "
             "up to 8 mm or 0.115 deg.");
-  EXPECT_EQ(verdict.what_to_do, "Capture at least 52 places that right sees; it saw something in 20 captures.");
+  EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees; it saw something in 20 captures.");
+}
+
+TEST(AssessUnseen, ASensorThatNoSessionTellsOfIsNamed) {
+  EXPECT_THAT(VerdictOfMoves({{"left", {0.002, 0.002, 40}}, {"top", {0.001, 0.001, 40}}}).why,
+              HasSubstr(" A bump of any sensor but right by 2 mm or 0.115 deg half-way through a session would have been "
+                        "noticed; of right it is not known."));
+}
+
+TEST(AssessUnseen, OnlySensorsOfTheWorstSessionAreGivenToIt) {
+  const Rig rig;
+  SessionEstimate other = SessionOfMoves({{"left", {0.006, 0.002, 20}}});
+  other.session = SessionId(std::string(64, '2'));
+  const Verdict verdict =
+      Assess(rig.edges, rig.solution, {}, {}, {SessionOfMoves({{"right", {0.008, 0.002, 20}}}), other});
+  EXPECT_THAT(verdict.why, HasSubstr("A bump of right by up to 8 mm"));
+  EXPECT_THAT(verdict.why, testing::Not(HasSubstr("left")));
 }
 
 TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
@@ -118,6 +134,7 @@ TEST(AssessUnseen, TheNewestSessionOfASensorCounts) {
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {blind, sharp}).level, VerdictLevel::kWarn);
 }
 
+// A rig of one session, one of whose edges contradicts the others by so much.
 Rig Contradicted(double off_m) {
   Rig rig;
   for (Edge& edge : rig.edges) edge.session = SessionId(std::string(64, '1'));

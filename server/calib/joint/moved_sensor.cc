@@ -97,10 +97,16 @@ Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t gr
   return {dof > 0 ? squares / dof : 1.0, std::max(0.0, dof)};
 }
 
-// Groups at which a change would have kSideMin groups on either side that see the sensor.
-std::vector<std::size_t> ChangePoints(const Scores& scores) {
+// Per group, and behind the last: how many groups before it see the sensor.
+std::vector<std::size_t> SeenBefore(const Scores& scores) {
   std::vector<std::size_t> seen_before = {0};
   for (const Matrix6d& own : scores.own) seen_before.push_back(seen_before.back() + (own.trace() > 0 ? 1 : 0));
+  return seen_before;
+}
+
+// Groups at which a change would have kSideMin groups on either side that see the sensor.
+std::vector<std::size_t> ChangePoints(const Scores& scores) {
+  const std::vector<std::size_t> seen_before = SeenBefore(scores);
   std::vector<std::size_t> points;
   for (std::size_t group = 1; group < scores.b.size(); ++group)
     if (std::min(seen_before[group], seen_before.back() - seen_before[group]) >= kSideMin) points.push_back(group);
@@ -124,16 +130,25 @@ SensorMove LikeliestMove(const Refined& refined, int sensor) {
   return best;
 }
 
+// Of `points`, not empty, the first with half of the groups that see the sensor before it.
+std::size_t HalfWay(const Scores& scores, const std::vector<std::size_t>& points) {
+  const std::vector<std::size_t> seen_before = SeenBefore(scores);
+  const auto half = std::find_if(points.begin(), points.end(), [&](std::size_t group) {
+    return 2 * seen_before[group] >= seen_before.back();
+  });
+  return half == points.end() ? points.back() : *half;
+}
+
 int CapturesOf(const SessionProblem& problem, int sensor) {
-  std::set<int> places;
+  std::set<int> captures;  // a board that is carried about makes a place of its own in each
   const auto look_at = [&](const auto& looks) {
     for (const auto& look : looks)
-      if (look.sensor == sensor) places.insert(look.place);
+      if (look.sensor == sensor) captures.insert(problem.capture_of_place[static_cast<std::size_t>(look.place)]);
   };
   look_at(problem.corners);
   look_at(problem.plates);
   look_at(problem.poses);
-  return static_cast<int>(places.size());
+  return static_cast<int>(captures.size());
 }
 
 // Largest standard deviation along any direction, and of the whole length.
@@ -159,7 +174,7 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   const std::vector<std::size_t> points = ChangePoints(scores);
   if (refined.groups < kGroupsForMoves || points.empty()) return told;
   const double looks = static_cast<double>(problem.sensors.size()) * (refined.groups - 1);
-  const std::size_t half_way = points[points.size() / 2];
+  const std::size_t half_way = HalfWay(scores, points);
   const Change change = ChangeFrom(scores, refined.covariance, half_way);
   const Scatter scatter = ScatterBeside(scores, change, half_way);
   if (change.rank < 6 || scatter.dof <= 0) return told;
