@@ -1,5 +1,7 @@
 #include "server/pipeline/run_edge_job.h"
 
+#include <set>
+
 #include "server/base/log.h"
 #include "server/model/past.h"
 #include "server/pipeline/attempt.h"
@@ -45,9 +47,27 @@ Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, const std::
   return edge;
 }
 
+// Captures that a camera or a lidar has a file of.
+std::vector<CaptureId> CapturesOf(const Manifest& manifest) {
+  std::set<CaptureId> captures;
+  for (const Payload& payload : manifest.payloads) {
+    const Sensor* sensor = SensorOf(manifest.header, payload.sensor);
+    if (sensor != nullptr && (sensor->kind == SensorKind::kCamera || sensor->kind == SensorKind::kLidar))
+      captures.insert(payload.capture);
+  }
+  return {captures.begin(), captures.end()};
+}
+
+// All pairs of a session leave out the same captures at once.
+template <typename Inputs>
+Result<Inputs> InSession(const Manifest& manifest, Result<Inputs> inputs) {
+  if (inputs) inputs->problem.session_captures = CapturesOf(manifest);
+  return inputs;
+}
+
 Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
   const std::vector<CaptureId> same = SamePictures(manifest, pair);
-  auto inputs = LoadStereo(store, manifest, pair);
+  auto inputs = InSession(manifest, LoadStereo(store, manifest, pair));
   if (inputs) LeaveOut(same, inputs->problem);
   RIGCAL_ASSIGN(Edge edge, EdgeFrom(store, pair, "stereo", std::move(inputs), calib::EstimateEdge));
   TellLeftOut(same, edge);
@@ -58,7 +78,7 @@ Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const S
 Result<Edge> LidarLidarEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
   const auto share = TakeMemory(ToRegister(store, manifest, pair));
   if (!share) return FailedEdge(pair, "lidar_lidar", share.error());
-  const auto inputs = LoadLidarLidar(store, manifest, pair);
+  const auto inputs = InSession(manifest, LoadLidarLidar(store, manifest, pair));
   if (!inputs && IsOurFault(inputs.error())) return Fail(inputs.error());
   if (!inputs) return FailedEdge(pair, "lidar_lidar", inputs.error());
   Edge edge = calib::EstimateLidarLidarEdge(inputs->problem);
@@ -90,14 +110,14 @@ Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, cal
   const std::string method = MethodOf(manifest->header, job.pair);
   if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
   if (method == "lidar_camera")
-    return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadLidarCamera(store, *manifest, job.pair)),
+    return EdgeFrom(store, job.pair, method, Remembering(cameras, InSession(*manifest, LoadLidarCamera(store, *manifest, job.pair))),
                     calib::EstimateLidarCameraEdge);
   if (method == "lidar_lidar") return LidarLidarEdge(store, *manifest, job.pair);
   if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
-    return EdgeFrom(store, job.pair, method, Remembering(cameras, LoadHandEye(store, *manifest, job.pair)),
+    return EdgeFrom(store, job.pair, method, Remembering(cameras, InSession(*manifest, LoadHandEye(store, *manifest, job.pair))),
                     calib::EstimateHandEyeEdge);
   if (method == "tracker_lidar")
-    return EdgeFrom(store, job.pair, method, LoadTrackerLidar(store, *manifest, job.pair),
+    return EdgeFrom(store, job.pair, method, InSession(*manifest, LoadTrackerLidar(store, *manifest, job.pair)),
                     [](const calib::TrackerLidarProblem& problem, std::vector<CameraFit>*) {
                       return calib::EstimateTrackerLidarEdge(problem);
                     });

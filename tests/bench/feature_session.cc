@@ -88,6 +88,7 @@ FeatureSession RecordFeatures(const sim::Experiment& experiment, std::size_t lid
 calib::StereoProblem StereoOf(const FeatureSession& session, const SensorPair& pair) {
   const Sensor &a = SensorNamed(session, pair.a), &b = SensorNamed(session, pair.b);
   calib::StereoProblem problem{a, b, TargetOf(session, a), {}};
+  problem.session_captures = session.experiment.captures;
   std::map<CaptureId, calib::StereoCapture> captures;
   for (const auto& [id, view] : session.seen.views.at(a.id)) captures[id].a = view;
   for (const auto& [id, view] : session.seen.views.at(b.id)) captures[id].b = view;
@@ -104,6 +105,7 @@ calib::LidarCameraProblem LidarCameraOf(const FeatureSession& session, const Sen
   const Sensor &camera = camera_is_a ? a : b, &lidar = camera_is_a ? b : a;
   calib::LidarCameraProblem problem{camera, lidar, TargetOf(session, camera), {}, camera_is_a, 0.0, {}};
   problem.T_cam_lidar_nominal = NominalPose(session.header, camera, lidar);
+  problem.session_captures = session.experiment.captures;
   std::map<CaptureId, calib::LidarCameraCapture> captures;
   for (const auto& [id, view] : session.seen.views.at(camera.id)) captures[id].view = view;
   for (const auto& [id, boards] : session.seen.clouds.at(lidar.id))
@@ -120,6 +122,7 @@ calib::LidarLidarProblem LidarLidarOf(const FeatureSession& session, const Senso
   problem.lidar_a = SensorNamed(session, pair.a);
   problem.lidar_b = SensorNamed(session, pair.b);
   problem.T_a_b_nominal = NominalPose(session.header, SensorNamed(session, pair.a), SensorNamed(session, pair.b));
+  problem.session_captures = session.experiment.captures;
   for (const auto& [id, points_m] : session.clouds.at(pair.a))
     problem.captures.push_back({id, points_m, session.clouds.at(pair.b).at(id), {}});
   return problem;
@@ -131,6 +134,7 @@ calib::HandEyeProblem HandEyeOf(const FeatureSession& session, const SensorPair&
   problem.a = SideOf(session, SensorNamed(session, pair.a));
   problem.b = SideOf(session, SensorNamed(session, pair.b));
   problem.T_a_b_nominal = NominalPose(session.header, SensorNamed(session, pair.a), SensorNamed(session, pair.b));
+  problem.session_captures = session.experiment.captures;
   return problem;
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "server/calib/core/capture_blocks.h"
+#include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {
 namespace {
@@ -42,6 +43,65 @@ TEST(CaptureBlocks, GroupsDoNotDependOnWhatIsUsed) {
     for (const CaptureBlock& whole : every)
       EXPECT_EQ(whole.id == block.id, whole.captures.contains(*block.captures.begin()));
   EXPECT_EQ(IdsOf(every).size(), 40u);
+}
+
+TEST(CaptureBlocks, OfTheSessionWhereItIsNotTold) {
+  const std::vector<CaptureId> all = Captures(90);
+  EXPECT_EQ(CaptureBlocks({}, {all.begin(), all.end()}).size(), 40u);
+}
+
+TEST(CaptureBlocks, FollowOneAnotherByNumber) {
+  std::vector<CaptureId> all;
+  for (int i = 1; i <= 80; ++i) all.emplace_back(std::to_string(i));
+  const auto blocks = CaptureBlocks(all, {all.begin(), all.end()});
+  EXPECT_EQ(blocks[0].id, "1-2");
+  EXPECT_EQ(blocks[39].id, "79-80");
+}
+
+// The wire and documents hold 64 characters.
+TEST(CaptureBlocks, IdsAreShort) {
+  std::vector<CaptureId> all;
+  for (int i = 0; i < 82; ++i) all.emplace_back("image_2026-01-31_12-00-00_" + std::to_string(100000 + i));
+  const auto blocks = CaptureBlocks(all, {all.begin(), all.end()});
+  ASSERT_EQ(blocks.size(), 40u);
+  std::set<std::string> ids;
+  for (const CaptureBlock& block : blocks) ids.insert(block.id);
+  EXPECT_EQ(ids.size(), 40u);
+  for (const std::string& id : ids) EXPECT_LE(id.size(), 64u);
+}
+
+TEST(CaptureBlocks, CountsThoseThatCarryAPair) {
+  const std::vector<CaptureId> all = Captures(400);
+  const auto blocks = CaptureBlocks(all, {all.begin(), all.end()});
+  EXPECT_EQ(CountWith(blocks, {all.begin() + 100, all.begin() + 120}), 2u);
+  EXPECT_EQ(CountWith(blocks, {}), 0u);
+}
+
+// Twelve captures of a session of 800, all in one of its stretches: nothing is left of the pair without it.
+TEST(CaptureBlocks, APairOfOneStretchIsTheModels) {
+  VirtualPair pair;
+  StereoProblem problem = Photographed(pair, TiltedBoards(12), 0.1, 3);
+  problem.camera_a.intrinsics = pair.a;
+  problem.camera_b.intrinsics = pair.b;
+  for (int i = 0; i < 800; ++i) problem.session_captures.emplace_back(std::to_string(1000 + i).substr(1));
+  const Edge edge = EstimateEdge(problem);
+  ASSERT_EQ(edge.state, EdgeState::kGood);
+  EXPECT_EQ(edge.uncertainty.source, UncertaintySource::kModel);
+  EXPECT_TRUE(edge.uncertainty.blocks.empty());
+  EXPECT_EQ(edge.uncertainty.dof, 1);
+}
+
+// Two sets of captures, the same session: what is left out of both has one name.
+TEST(CaptureBlocks, PairsOfASessionShareTheirBlocks) {
+  VirtualPair pair;
+  StereoProblem first = Photographed(pair, TiltedBoards(12), 0.1, 3);
+  for (int i = 0; i < 60; ++i) first.session_captures.emplace_back(std::to_string(1000 + i).substr(1));
+  StereoProblem second = first;
+  second.captures.erase(second.captures.begin(), second.captures.begin() + 1);
+  std::set<std::string> ids;
+  for (const StereoProblem* problem : {&first, &second})
+    for (const BlockVector& block : EstimateEdge(*problem).uncertainty.blocks) ids.insert(block.block_id);
+  EXPECT_EQ(ids, std::set<std::string>({"000", "001-002", "003", "004-005", "006", "007-008", "009", "010-011"}));
 }
 
 }  // namespace

@@ -28,6 +28,9 @@ Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& b
   return C;
 }
 
+// At least one: none would say that nothing was estimated.
+int DofOf(std::size_t carrying) { return carrying > 2 ? static_cast<int>(carrying) - 1 : 1; }
+
 }  // namespace
 
 Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const WithoutBlock& without) {
@@ -58,11 +61,10 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
 }
 
 Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
-                                  std::vector<Contribution> contributions, std::size_t captures) {
-  const int m = static_cast<int>(captures);
+                                  std::vector<Contribution> contributions, std::size_t carrying) {
   const Matrix6d C = CovarianceOf(C_model, blocks, contributions);
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
-  RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, m - 1));
+  RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, DofOf(carrying)));
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
   return uncertainty;
@@ -70,7 +72,7 @@ Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVect
 
 Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
                                      const Eigen::MatrixXd& C_model_along, std::vector<BlockVector> blocks,
-                                     std::vector<Contribution> contributions, std::size_t captures) {
+                                     std::vector<Contribution> contributions, std::size_t carrying) {
   const Matrix6d onto = free * free.transpose(), C_model = free * C_model_along * free.transpose();
   for (BlockVector& block : blocks) block.d = onto * block.d;
   for (Contribution& contribution : contributions) {
@@ -78,8 +80,7 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
     for (Vector6d& shift : contribution.shifts) shift = onto * shift;
   }
   if (free.cols() == 6)
-    return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), captures);
-  const int m = static_cast<int>(captures);
+    return UncertaintyOf(Symmetrized(C_model), std::move(blocks), std::move(contributions), carrying);
   const Matrix6d C = CovarianceOf(C_model, blocks, contributions);
   const Eigen::MatrixXd along = free.transpose() * C * free;
   const Eigen::LLT<Eigen::MatrixXd> llt(along);
@@ -88,7 +89,7 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
                 "Take more captures from different places.");
   const Eigen::MatrixXd information = llt.solve(Eigen::MatrixXd::Identity(free.cols(), free.cols()));
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
-  Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, m - 1);
+  Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
   return uncertainty;

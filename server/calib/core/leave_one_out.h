@@ -25,17 +25,17 @@ struct GivenConstant {
 // Sum of (dT/dtheta) sigma^2 (dT/dtheta)^T per name, by central differences over one sigma either way; in parallel.
 [[nodiscard]] Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants);
 
-// Jackknife or model, whichever is larger, the model alone where there are no blocks, and the contributions. `captures`
-// is the number of captures that carry T_a_b: its degrees of freedom count them also for the model, whose residuals are
-// not independent.
+// Jackknife or model, whichever is larger, the model alone where there are no blocks, and the contributions. `carrying`
+// is the number of blocks with captures that carry T_a_b: degrees of freedom count them also for the model, whose
+// residuals are not independent.
 [[nodiscard]] Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
-                                                std::vector<Contribution> contributions, std::size_t captures);
+                                                std::vector<Contribution> contributions, std::size_t carrying);
 
 // The same where the answer is estimated along some directions only (orthonormal columns, right tangent at b): the rest
 // carries no information.
 [[nodiscard]] Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
                                                    const Eigen::MatrixXd& C_model_along,
                                                    std::vector<BlockVector> blocks,
-                                                   std::vector<Contribution> contributions, std::size_t captures);
+                                                   std::vector<Contribution> contributions, std::size_t carrying);
 
 }  // namespace rigcal::calib

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "server/calib/joint/board_candidates.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/joint/observation.h"
 
 namespace rigcal::calib::joint {
@@ -14,13 +15,6 @@ namespace {
 
 constexpr double kPatchAway_m = 0.3, kPatchTurned_rad = 0.2;
 constexpr double kTrackerStart_m = 0.001, kTrackerStart_rad = 0.001;
-
-// Captures are named in the order in which they were taken, with leading zeros or without: "9" is before "10".
-struct TakenBefore {
-  bool operator()(const CaptureId& a, const CaptureId& b) const {
-    return strverscmp(a.str().c_str(), b.str().c_str()) < 0;
-  }
-};
 
 // A camera's look at its board in one capture.
 struct View {

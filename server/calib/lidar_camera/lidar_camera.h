@@ -32,6 +32,7 @@ struct LidarCameraProblem {
   double range_bias_m = 0.0;               // known: ranges are too short by this much
   std::optional<Se3> T_cam_lidar_nominal;  // one more start, and the judge between two that fit equally
   CameraSolver solve_camera = {};
+  std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
 struct LidarCameraCheck {

@@ -122,13 +122,12 @@ Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, cons
       problem.camera_is_a ? estimate.C_model : InverseCovariance(estimate.T_cam_lidar, estimate.C_model);
   const Matrix6d C_model = Symmetrized(C_planes + corners);
   std::vector<BlockVector> blocks;
-  if (estimate.patch_idx.size() >= kLidarCapturesForJackknife) {
-    const std::vector<CaptureBlock> left_out = BlocksOf(problem, estimate);
+  const std::vector<CaptureBlock> left_out = BlocksOf(problem, estimate);
+  const std::size_t carrying = CarryingBlocks(left_out, estimate);
+  if (carrying >= kLidarCapturesForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, estimate, left_out[k]); };
     RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
   }
-  const std::size_t both = estimate.patch_idx.size();
-  const std::size_t carrying = blocks.empty() ? both : std::min(both, blocks.size());
   const auto told = ToldBy(problem, estimate);
   return UncertaintyAlong(told, told.transpose() * C_model * told, std::move(blocks), std::move(contributions),
                           carrying);

@@ -22,15 +22,17 @@ tl::expected<CameraEstimate, Diagnosis> CameraWithout(const LidarCameraProblem& 
 }  // namespace
 
 std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  std::vector<CaptureId> all;
   std::set<CaptureId> used;
-  for (const LidarCameraCapture& capture : problem.captures) {
-    all.push_back(capture.capture);
-    if (estimate.patch_idx.contains(capture.capture) ||
-        (!HoldsIntrinsics(problem.camera) && estimate.camera.T_cam_board.contains(capture.capture)))
-      used.insert(capture.capture);
-  }
-  return CaptureBlocks(all, used);
+  for (const auto& [capture, patch] : estimate.patch_idx) used.insert(capture);
+  if (!HoldsIntrinsics(problem.camera))
+    for (const auto& [capture, pose] : estimate.camera.T_cam_board) used.insert(capture);
+  return CaptureBlocks(problem.session_captures, used);
+}
+
+std::size_t CarryingBlocks(const std::vector<CaptureBlock>& blocks, const LidarCameraEstimate& estimate) {
+  std::set<CaptureId> both;
+  for (const auto& [capture, patch] : estimate.patch_idx) both.insert(capture);
+  return CountWith(blocks, both);
 }
 
 Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem, const LidarCameraEstimate& start) {

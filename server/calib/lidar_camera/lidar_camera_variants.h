@@ -12,6 +12,8 @@ namespace rigcal::calib {
 // Of the captures that carry the answer: those of both, and every picture unless intrinsics are held.
 [[nodiscard]] std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem,
                                                  const LidarCameraEstimate& estimate);
+// Those of them with a capture of both.
+[[nodiscard]] std::size_t CarryingBlocks(const std::vector<CaptureBlock>& blocks, const LidarCameraEstimate& estimate);
 [[nodiscard]] Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem,
                                                       const LidarCameraEstimate& start);
 // Everything estimated anew, intrinsics too unless they are held.

@@ -38,8 +38,8 @@ Result<std::vector<Pair>> PairsOf(const Nearby& nearby, std::size_t count, const
   return pairs;
 }
 
-Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  const std::vector<CaptureBlock> blocks = BlocksOf(problem, estimate);
+Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                               const std::vector<CaptureBlock>& blocks) {
   RIGCAL_ASSIGN(const std::vector<Pair> pairs,
                 PairsOf({problem, estimate.board_scale_ratio}, blocks.size(),
                         [&](std::size_t i) { return SolvedWithout(problem, estimate, blocks[i].captures); }));
@@ -92,8 +92,9 @@ void Forget(LidarCameraEstimate& estimate) {
 
 Status WidenSystematics(const LidarCameraProblem& problem, LidarCameraEstimate& estimate) {
   RIGCAL_ASSIGN(Pair variance, ModelVariance(problem, estimate));
-  if (estimate.patch_idx.size() >= kLidarCapturesForJackknife) {
-    RIGCAL_ASSIGN(const Pair shown, JackknifeVariance(problem, estimate));
+  const std::vector<CaptureBlock> blocks = BlocksOf(problem, estimate);
+  if (CarryingBlocks(blocks, estimate) >= kLidarCapturesForJackknife) {
+    RIGCAL_ASSIGN(const Pair shown, JackknifeVariance(problem, estimate, blocks));
     variance = variance.binaryExpr(shown, &Larger);
   }
   RIGCAL_ASSIGN(const Pair given, IntrinsicsVariance(problem, estimate));

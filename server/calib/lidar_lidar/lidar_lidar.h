@@ -25,6 +25,7 @@ struct LidarLidarProblem {
   std::optional<Se3> T_a_b_nominal;  // no search without it
   std::vector<LidarLidarCapture> captures;
   bool polish = false;  // the answer is the polished pose, not NDT's
+  std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
 // How well a pose fits clouds that it was not made from, by flat voxels of NDT's finest size.

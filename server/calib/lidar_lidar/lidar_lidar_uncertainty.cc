@@ -4,8 +4,11 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "server/calib/core/beam_groups.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/lidar_lidar/lidar_lidar_beams.h"
 #include "server/math/jackknife.h"
@@ -69,6 +72,31 @@ void AddBeams(const LidarLidarProblem& problem, const LidarLidarWork& work, cons
   AddBeams(problem.lidar_b, work.a_is_map ? shifts.of_moving : shifts.of_map, contributions);
 }
 
+// What is left out at once. Without several captures the pose goes, to first order, where each of them would take it.
+std::vector<BlockVector> BlockVectors(const LidarLidarProblem& problem, const LidarLidarWork& work,
+                                      const std::vector<Vector6d>& d) {
+  std::map<CaptureId, Vector6d> of_capture;
+  std::set<CaptureId> used;
+  for (std::size_t k = 0; k < work.used.size(); ++k) {
+    const CaptureId& capture = problem.captures[work.used[k]].capture;
+    of_capture[capture] = d[k];
+    used.insert(capture);
+  }
+  std::vector<BlockVector> blocks;
+  for (const CaptureBlock& block : CaptureBlocks(problem.session_captures, used)) {
+    Vector6d sum = Vector6d::Zero();
+    for (const CaptureId& capture : block.captures) sum += of_capture.at(capture);
+    blocks.push_back({block.id, sum});
+  }
+  return blocks;
+}
+
+std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : blocks) d.push_back(block.d);
+  return d;
+}
+
 }  // namespace
 
 Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
@@ -84,9 +112,11 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
   const Eigen::MatrixXd known = B.transpose() * model.Omega * B;
   if (!known.allFinite() || !(known.diagonal().minCoeff() > 0)) return failed();
   const Matrix6d C_model = B * known.inverse() * B.transpose();
-  const std::size_t m = work.used.size();
+  const bool each_left_out = d.size() == work.used.size();
+  std::vector<BlockVector> blocks = each_left_out ? BlockVectors(problem, work, d) : std::vector<BlockVector>{};
+  const std::size_t m = blocks.size();
   const bool jackknife = m >= kCloudsForJackknife;
-  Matrix6d C = jackknife ? JackknifeOrModel(d, C_model) : C_model;
+  Matrix6d C = jackknife ? JackknifeOrModel(VectorsOf(blocks), C_model) : C_model;
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, RangeContributions(problem, T_map_moving, unknown));
   AddBeams(problem, work, T_map_moving, unknown, contributions);
   contributions.push_back(MethodContribution(pose, work.polish, B, C));
@@ -105,9 +135,10 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
     for (Vector6d& shift : contribution.shifts) shift = -Ad * shift;
   }
   uncertainty.contributions = std::move(contributions);
-  for (std::size_t k = 0; jackknife && k < m; ++k)
-    uncertainty.blocks.push_back(
-        {problem.captures[work.used[k]].capture.str(), work.a_is_map ? d[k] : Vector6d(-Ad * d[k])});
+  if (!jackknife) return uncertainty;
+  for (BlockVector& block : blocks)
+    if (!work.a_is_map) block.d = -Ad * block.d;
+  uncertainty.blocks = std::move(blocks);
   return uncertainty;
 }
 

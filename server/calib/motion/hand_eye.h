@@ -29,6 +29,7 @@ struct HandEyeProblem {
   HandEyeSide a, b;
   std::optional<Se3> T_a_b_nominal;  // one more start, and the value of what the motion leaves open
   CameraSolver solve_camera = {};
+  std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
 // How noisy a side's poses are, as their residuals say; one sigma per axis, mean over the captures.

@@ -27,32 +27,33 @@ std::set<CaptureId> SingleViews(const HandEyeWork& work) {
   return singles;
 }
 
-// Parts of a stream, and single views.
+// Parts of a stream.
 std::vector<Block> PartsOf(const HandEyeWork& work, const std::vector<std::size_t>& block_of_pose) {
   std::vector<Block> blocks;
   for (std::size_t k = 0; k < work.captures.size(); ++k) {
     if (blocks.size() <= block_of_pose[k]) blocks.push_back({"part " + std::to_string(blocks.size() + 1), {}, {}});
     blocks[block_of_pose[k]].poses.push_back(k);
   }
-  for (const CaptureId& capture : SingleViews(work)) blocks.push_back({capture.str(), {}, {capture}});
   return blocks;
 }
 
-std::vector<Block> BlocksOf(const HandEyeWork& work) {
-  std::set<CaptureId> used = SingleViews(work), all(work.captures.begin(), work.captures.end());
-  for (const auto* camera : {&work.camera_a, &work.camera_b})
-    if (*camera)
-      for (const auto& [capture, views] : (*camera)->views) all.insert(capture);
+std::vector<Block> BlocksOf(const HandEyeProblem& problem, const HandEyeWork& work) {
+  std::set<CaptureId> used = SingleViews(work);
   for (std::size_t k = 0; k < work.captures.size(); ++k)
     if (work.problem.used[k]) used.insert(work.captures[k]);
   std::vector<Block> blocks;
-  for (CaptureBlock& one : CaptureBlocks({all.begin(), all.end()}, used)) {
+  for (CaptureBlock& one : CaptureBlocks(problem.session_captures, used)) {
     Block block{std::move(one.id), {}, std::move(one.captures)};
     for (std::size_t k = 0; k < work.captures.size(); ++k)
       if (work.problem.used[k] && block.captures.contains(work.captures[k])) block.poses.push_back(k);
     blocks.push_back(std::move(block));
   }
   return blocks;
+}
+
+std::size_t CarryingBlocks(const std::vector<Block>& blocks) {
+  return static_cast<std::size_t>(
+      std::count_if(blocks.begin(), blocks.end(), [](const Block& block) { return !block.poses.empty(); }));
 }
 
 Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
@@ -128,8 +129,8 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
   AddIntrinsics(work, problem.a, &MotionProblem::a, constants);
   AddIntrinsics(work, problem.b, &MotionProblem::b, constants);
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(constants));
-  const std::vector<Block> blocks = block_of_pose.empty() ? BlocksOf(work) : PartsOf(work, block_of_pose);
-  const std::size_t carrying = block_of_pose.empty() ? work.problem.UsedCount() : blocks.size();
+  const std::vector<Block> blocks = block_of_pose.empty() ? BlocksOf(problem, work) : PartsOf(work, block_of_pose);
+  const std::size_t carrying = CarryingBlocks(blocks);
   std::vector<BlockVector> vectors;
   std::vector<double> offsets_s;
   if (carrying >= kHandEyeForJackknife) {
@@ -139,10 +140,9 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
     const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], offsets_s[i]); };
     RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, without));
   }
-  const std::size_t degrees = vectors.empty() ? carrying : std::min(carrying, vectors.size());
   MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
   RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, CapturesPart(problem, work, contributions),
-                                                std::move(vectors), std::move(contributions), degrees));
+                                                std::move(vectors), std::move(contributions), carrying));
   return uncertainty;
 }
 

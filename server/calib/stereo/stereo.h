@@ -23,6 +23,7 @@ struct StereoProblem {
   Sensor camera_a, camera_b;  // intrinsics given (with sigmas: refined within them) or absent
   Target board;
   std::vector<StereoCapture> captures;
+  std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
 struct StereoEstimate {

@@ -80,27 +80,31 @@ std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const Stere
 }
 
 std::vector<CaptureBlock> BlocksOf(const StereoProblem& problem, const Solved& solved) {
-  std::vector<CaptureId> all;
   std::set<CaptureId> used;
-  for (const StereoCapture& capture : problem.captures) all.push_back(capture.capture);
   for (const std::size_t idx : solved.used) used.insert(problem.captures[idx].capture);
-  return CaptureBlocks(all, used);
+  return CaptureBlocks(problem.session_captures, used);
+}
+
+// Single views are left out too, but are no degrees of freedom of the pair.
+std::set<CaptureId> SeenByBoth(const StereoProblem& problem, const Solved& solved) {
+  std::set<CaptureId> both;
+  for (const std::size_t idx : solved.used)
+    if (CountBoth(problem, {idx}) > 0) both.insert(problem.captures[idx].capture);
+  return both;
 }
 
 }  // namespace
 
 Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate) {
   const Solved solved = SolvedOf(problem, estimate);
-  // Single views are blocks too, but no degrees of freedom of the pair.
-  const std::size_t both = CountBoth(problem, solved.used);
+  const std::vector<CaptureBlock> left_out = BlocksOf(problem, solved);
+  const std::size_t carrying = CountWith(left_out, SeenByBoth(problem, solved));
   RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate, solved)));
   std::vector<BlockVector> blocks;
-  if (both >= kCapturesForJackknife) {
-    const std::vector<CaptureBlock> left_out = BlocksOf(problem, solved);
+  if (carrying >= kCapturesForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, solved, left_out[k]); };
     RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
   }
-  const std::size_t carrying = blocks.empty() ? both : std::min(both, blocks.size());
   return UncertaintyOf(estimate.C_model, std::move(blocks), contributions, carrying);
 }
 

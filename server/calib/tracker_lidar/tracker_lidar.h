@@ -31,6 +31,7 @@ struct TrackerLidarProblem {
   bool tracker_is_a = false;                // the edge's frame_a is the tracker's
   double range_bias_m = 0.0;                // known: ranges are too short by this much
   std::optional<Se3> T_body_lidar_nominal;  // the first start, and the value of what the motion leaves open
+  std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
 struct TrackerLidarCheck {

@@ -37,12 +37,9 @@ Result<Vector6d> WithoutBlockOf(const TrackerLidarProblem& problem, const Tracke
 }
 
 std::vector<CaptureBlock> BlocksOf(const TrackerLidarProblem& problem, const TrackerLidarWork& work) {
-  std::vector<CaptureId> all;
   std::set<CaptureId> used;
-  for (const TrackerLidarCapture& capture : problem.captures) all.push_back(capture.capture);
   for (const std::size_t idx : work.captures) used.insert(problem.captures[idx].capture);
-  std::sort(all.begin(), all.end());
-  return CaptureBlocks(all, used);
+  return CaptureBlocks(problem.session_captures, used);
 }
 
 std::vector<char> BeamsSeen(const TrackerLidarWork& work) {
@@ -108,16 +105,15 @@ Matrix6d ModelInformation(const TrackerLidarWork& work) {
 Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem, const TrackerLidarWork& work) {
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, work)));
   std::vector<BlockVector> blocks;
-  if (work.captures.size() >= kTrackerLidarForJackknife) {
-    const std::vector<CaptureBlock> left_out = BlocksOf(problem, work);
+  const std::vector<CaptureBlock> left_out = BlocksOf(problem, work);
+  if (left_out.size() >= kTrackerLidarForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, work, left_out[k]); };
     RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
   }
   const OfEdge edge = InEdge(problem, work);
   const Eigen::MatrixXd along = edge.free.transpose() * edge.information * edge.free;
   const Eigen::MatrixXd C = along.llt().solve(Eigen::MatrixXd::Identity(along.rows(), along.cols()));
-  const std::size_t carrying = blocks.empty() ? work.captures.size() : blocks.size();
-  return UncertaintyAlong(edge.free, C, std::move(blocks), std::move(contributions), carrying);
+  return UncertaintyAlong(edge.free, C, std::move(blocks), std::move(contributions), left_out.size());
 }
 
 }  // namespace rigcal::calib
