@@ -1,8 +1,7 @@
 #include "server/calib/core/capture_blocks.h"
 
-#include <string.h>  // strverscmp
-
 #include <algorithm>
+#include <cstring>
 
 namespace rigcal::calib {
 namespace {
