@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "server/model/field_hash.h"
+#include "server/model/method.h"
 #include "server/model/plausible.h"
 
 namespace rigcal {
@@ -65,10 +66,8 @@ Status CheckFigures(const Edge& edge) {
 }  // namespace
 
 std::string ResidualUnitOf(const std::string& method) {
-  for (const char* in_metres :
-       {"lidar_camera", "lidar_lidar", "non_overlapping", "tracker_camera", "tracker_lidar", "pose_streams"})
-    if (method == in_metres) return "m";
-  return "px";
+  const std::optional<Method> ours = MethodNamed(method);
+  return std::string(ours ? RowOf(*ours).residual_unit : "px");
 }
 
 // Fields: robot, session, method, frame_a, frame_b.

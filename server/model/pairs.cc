@@ -2,7 +2,7 @@
 #include <set>
 #include <utility>
 
-#include "server/model/session.h"
+#include "server/model/method.h"
 
 namespace rigcal {
 namespace {
@@ -14,24 +14,37 @@ bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor) {
                      [&](const Target& target) { return !sensor.sees || *sensor.sees == target.id; });
 }
 
+// Whether sensors of the method's kinds, in its order, can be calibrated by it.
+bool Applies(Method method, const SessionHeader& header, const Sensor& a, const Sensor& b) {
+  switch (method) {
+    case Method::kStereo:
+    case Method::kLidarCamera: return MayShareTarget(a, b);
+    case Method::kNonOverlapping: return !MayShareTarget(a, b);
+    case Method::kTrackerLidar: return MaySeeTarget(header, a);
+    case Method::kLidarLidar:
+    case Method::kTrackerCamera:
+    case Method::kPoseStreams: return true;
+  }
+  return false;
+}
+
 std::optional<Se3> DrawnPose(const SessionHeader& header, const Sensor& sensor) {
   return sensor.id == header.reference ? Se3{} : sensor.T_ref_nominal;
 }
 
 }  // namespace
 
-std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const Sensor& b) {
+std::optional<Method> MethodNamed(std::string_view name) {
+  for (const MethodRow& row : kMethods)
+    if (row.name == name) return row.method;
+  return std::nullopt;
+}
+
+std::optional<Method> MethodFor(const SessionHeader& header, const Sensor& a, const Sensor& b) {
   if (b.kind < a.kind) return MethodFor(header, b, a);
-  using Kinds = std::pair<SensorKind, SensorKind>;
-  const Kinds kinds{a.kind, b.kind};
-  if (kinds == Kinds{SensorKind::kCamera, SensorKind::kCamera})
-    return MayShareTarget(a, b) ? "stereo" : "non_overlapping";
-  if (kinds == Kinds{SensorKind::kCamera, SensorKind::kLidar}) return MayShareTarget(a, b) ? "lidar_camera" : "";
-  if (kinds == Kinds{SensorKind::kCamera, SensorKind::kTracker}) return "tracker_camera";
-  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kLidar}) return "lidar_lidar";
-  if (kinds == Kinds{SensorKind::kLidar, SensorKind::kTracker}) return MaySeeTarget(header, a) ? "tracker_lidar" : "";
-  if (kinds == Kinds{SensorKind::kPoseStream, SensorKind::kPoseStream}) return "pose_streams";
-  return "";
+  for (const MethodRow& row : kMethods)
+    if (row.a == a.kind && row.b == b.kind && Applies(row.method, header, a, b)) return row.method;
+  return std::nullopt;
 }
 
 std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
@@ -40,7 +53,7 @@ std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {
   std::vector<SensorPair> pairs;
   for (auto a = header.sensors.begin(); a != header.sensors.end(); ++a)
     for (auto b = a + 1; b != header.sensors.end(); ++b)
-      if (!MethodFor(header, *a, *b).empty() && !skipped.contains(std::minmax(a->id, b->id)))
+      if (MethodFor(header, *a, *b) && !skipped.contains(std::minmax(a->id, b->id)))
         pairs.push_back({a->id, b->id});
   return pairs;
 }

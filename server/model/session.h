@@ -87,10 +87,7 @@ struct Manifest {
 [[nodiscard]] Status Validate(const SessionHeader& header);
 [[nodiscard]] Status Validate(const Manifest& manifest);
 
-// "stereo", "non_overlapping", "lidar_camera", "lidar_lidar", "tracker_camera", "tracker_lidar", "pose_streams"; empty:
-// this pair cannot be calibrated. `a` and `b` in either order.
-[[nodiscard]] std::string_view MethodFor(const SessionHeader& header, const Sensor& a, const Sensor& b);
-// All pairs of sensors of a session that there is a method for and that are not to be skipped; a < b in the order of
+// All pairs of sensors of a session that there is a method (method.h) for and that are not to be skipped; a < b in the order of
 // the session's sensors.
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
 // Whether the session says that these two are not to be calibrated, in either order.

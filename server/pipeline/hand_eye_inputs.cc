@@ -60,7 +60,7 @@ Result<SideInputs> LoadSide(storage::Store& store, const Manifest& manifest, con
 }  // namespace
 
 Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, const Manifest& manifest,
-                                                      const SensorPair& pair) {
+                                                      const SensorPair& pair, Method method) {
   RIGCAL_ASSIGN(SideInputs a, LoadSide(store, manifest, pair.a));
   RIGCAL_ASSIGN(SideInputs b, LoadSide(store, manifest, pair.b));
   PairInputs<calib::HandEyeProblem> inputs;
@@ -68,7 +68,7 @@ Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, con
   inputs.evidence.insert(inputs.evidence.end(), b.evidence.begin(), b.evidence.end());
   std::stable_sort(inputs.evidence.begin(), inputs.evidence.end(),
                    [](const Evidence& x, const Evidence& y) { return x.capture < y.capture; });
-  inputs.problem.method = MethodFor(manifest.header, a.side.sensor, b.side.sensor);
+  inputs.problem.method = method;
   inputs.problem.T_a_b_nominal = NominalPose(manifest.header, a.side.sensor, b.side.sensor);
   inputs.problem.a = std::move(a.side);
   inputs.problem.b = std::move(b.side);

@@ -28,7 +28,7 @@ struct PairInputs {
 // Of the targets that a camera may see, the one found in most captures. A table of poses that cannot be read is an
 // error.
 [[nodiscard]] Result<PairInputs<calib::HandEyeProblem>> LoadHandEye(storage::Store& store, const Manifest& manifest,
-                                                                    const SensorPair& pair);
+                                                                    const SensorPair& pair, Method method);
 // No target: every capture of either, with both clouds as they were decoded.
 [[nodiscard]] Result<PairInputs<calib::LidarLidarProblem>> LoadLidarLidar(storage::Store& store,
                                                                           const Manifest& manifest,

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "server/base/log.h"
+#include "server/model/method.h"
 #include "server/model/past.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/camera_fits.h"
@@ -33,11 +34,11 @@ void AddNotes(const std::vector<Diagnosis>& notes, Edge& edge) {
 
 // A method from its loader and its estimator. What cannot be loaded is a failed edge, unless it is our fault.
 template <typename Inputs, typename Estimate>
-Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, const std::string& method, Result<Inputs> inputs,
+Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, Method method, Result<Inputs> inputs,
                       const Estimate& estimate) {
   if (!inputs) {
     if (IsOurFault(inputs.error())) return Fail(inputs.error());
-    return FailedEdge(pair, method, inputs.error());
+    return FailedEdge(pair, NameOf(method), inputs.error());
   }
   std::vector<CameraFit> fits;
   Edge edge = estimate(inputs->problem, &fits);
@@ -69,7 +70,7 @@ Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const S
   const std::vector<CaptureId> same = SamePictures(manifest, pair);
   auto inputs = InSession(manifest, LoadStereo(store, manifest, pair));
   if (inputs) LeaveOut(same, inputs->problem);
-  RIGCAL_ASSIGN(Edge edge, EdgeFrom(store, pair, "stereo", std::move(inputs), calib::EstimateEdge));
+  RIGCAL_ASSIGN(Edge edge, EdgeFrom(store, pair, Method::kStereo, std::move(inputs), calib::EstimateEdge));
   TellLeftOut(same, edge);
   return edge;
 }
@@ -77,10 +78,10 @@ Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const S
 // The pictures show the answer, so they are made after it.
 Result<Edge> LidarLidarEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
   const auto share = TakeMemory(ToRegister(store, manifest, pair));
-  if (!share) return FailedEdge(pair, "lidar_lidar", share.error());
+  if (!share) return FailedEdge(pair, NameOf(Method::kLidarLidar), share.error());
   const auto inputs = InSession(manifest, LoadLidarLidar(store, manifest, pair));
   if (!inputs && IsOurFault(inputs.error())) return Fail(inputs.error());
-  if (!inputs) return FailedEdge(pair, "lidar_lidar", inputs.error());
+  if (!inputs) return FailedEdge(pair, NameOf(Method::kLidarLidar), inputs.error());
   Edge edge = calib::EstimateLidarLidarEdge(inputs->problem);
   AddNotes(inputs->notes, edge);
   RIGCAL_TRY(AddOverlays(store, inputs->problem, edge));
@@ -96,33 +97,49 @@ Result<Inputs> Remembering(calib::CameraMemory& cameras, Result<Inputs> inputs) 
   return inputs;
 }
 
-std::string MethodOf(const SessionHeader& header, const SensorPair& pair) {
+std::optional<Method> MethodOf(const SessionHeader& header, const SensorPair& pair) {
   const Sensor *a = SensorOf(header, pair.a), *b = SensorOf(header, pair.b);
-  return std::string(a && b ? MethodFor(header, *a, *b) : "stereo");
+  return a && b ? MethodFor(header, *a, *b) : std::nullopt;
+}
+
+std::string MethodName(const SessionHeader& header, const SensorPair& pair) {
+  const std::optional<Method> method = MethodOf(header, pair);
+  return method ? NameOf(*method) : "none";
+}
+
+// Each method's loader and estimator.
+Result<Edge> EstimateBy(Method method, storage::Store& store, const Manifest& manifest, const SensorPair& pair,
+                        calib::CameraMemory& cameras) {
+  switch (method) {
+    case Method::kStereo: return StereoEdge(store, manifest, pair);
+    case Method::kLidarCamera:
+      return EdgeFrom(store, pair, method, Remembering(cameras, InSession(manifest, LoadLidarCamera(store, manifest, pair))),
+                      calib::EstimateLidarCameraEdge);
+    case Method::kLidarLidar: return LidarLidarEdge(store, manifest, pair);
+    case Method::kNonOverlapping:
+    case Method::kTrackerCamera:
+    case Method::kPoseStreams:
+      return EdgeFrom(store, pair, method, Remembering(cameras, InSession(manifest, LoadHandEye(store, manifest, pair, method))),
+                      calib::EstimateHandEyeEdge);
+    case Method::kTrackerLidar:
+      return EdgeFrom(store, pair, method, InSession(manifest, LoadTrackerLidar(store, manifest, pair)),
+                      [](const calib::TrackerLidarProblem& problem, std::vector<CameraFit>*) {
+                        return calib::EstimateTrackerLidarEdge(problem);
+                      });
+  }
+  return Fail(ErrorCode::kInternal, "there is no such method", "Report this with the session's id.");
 }
 
 Result<Edge> EstimatePair(storage::Store& store, const storage::JobRow& job, calib::CameraMemory& cameras) {
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, job.session));
   if (!manifest)
     return FailedEdge(
-        job.pair, "stereo",
+        job.pair, "none",
         {ErrorCode::kNotFound, "session " + job.session.str() + " is not in the store", "Push the session again."});
-  const std::string method = MethodOf(manifest->header, job.pair);
-  if (method == "stereo") return StereoEdge(store, *manifest, job.pair);
-  if (method == "lidar_camera")
-    return EdgeFrom(store, job.pair, method, Remembering(cameras, InSession(*manifest, LoadLidarCamera(store, *manifest, job.pair))),
-                    calib::EstimateLidarCameraEdge);
-  if (method == "lidar_lidar") return LidarLidarEdge(store, *manifest, job.pair);
-  if (method == "non_overlapping" || method == "tracker_camera" || method == "pose_streams")
-    return EdgeFrom(store, job.pair, method, Remembering(cameras, InSession(*manifest, LoadHandEye(store, *manifest, job.pair))),
-                    calib::EstimateHandEyeEdge);
-  if (method == "tracker_lidar")
-    return EdgeFrom(store, job.pair, method, InSession(*manifest, LoadTrackerLidar(store, *manifest, job.pair)),
-                    [](const calib::TrackerLidarProblem& problem, std::vector<CameraFit>*) {
-                      return calib::EstimateTrackerLidarEdge(problem);
-                    });
+  if (const std::optional<Method> method = MethodOf(manifest->header, job.pair))
+    return EstimateBy(*method, store, *manifest, job.pair, cameras);
   return FailedEdge(
-      job.pair, method.empty() ? "none" : method,
+      job.pair, "none",
       {ErrorCode::kUnsupported, "this server has no method for " + job.pair.a.str() + " and " + job.pair.b.str(),
        "Update the server and push the session again."});
 }
@@ -140,7 +157,7 @@ Result<Edge> GivenUp(storage::Store& store, const storage::JobRow& job) {
                      "Push the session with fewer or smaller pictures and clouds, or give the server more memory; if "
                      "that does not help, report it with the session's id and the server's log."};
   LogError(why);
-  return FailedEdge(job.pair, manifest ? MethodOf(manifest->header, job.pair) : "none", why);
+  return FailedEdge(job.pair, manifest ? MethodName(manifest->header, job.pair) : "none", why);
 }
 
 // An edge, and what it could not be made from.
@@ -162,7 +179,7 @@ Result<Outcome> FailedFor(const Error& error, storage::Store& store, const stora
   if (outcome.lost.empty()) return Fail(error);
   outcome.edge.frame_a = job.pair.a;
   outcome.edge.frame_b = job.pair.b;
-  outcome.edge.method = MethodOf(outcome.manifest->header, job.pair);
+  outcome.edge.method = MethodName(outcome.manifest->header, job.pair);
   outcome.edge.diagnoses = {TellLost(job.robot, outcome.lost)};
   LogError({ErrorCode::kStorage, outcome.edge.diagnoses[0].what, outcome.edge.diagnoses[0].cure});
   return outcome;

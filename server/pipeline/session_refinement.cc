@@ -6,6 +6,7 @@
 #include "server/base/log.h"
 #include "server/calib/joint/estimate_session.h"
 #include "server/graph/solve.h"
+#include "server/model/method.h"
 #include "server/model/past.h"
 #include "server/pipeline/pose_inputs.h"
 #include "server/pipeline/remounts.h"
@@ -37,9 +38,10 @@ struct Pairs {
     }
     return partners;
   }
-  [[nodiscard]] bool Has(std::initializer_list<std::string_view> methods) const {
-    return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
-      return edge.state == EdgeState::kGood && std::find(methods.begin(), methods.end(), edge.method) != methods.end();
+  [[nodiscard]] bool HaveBoardsThatStandStill() const {
+    return std::any_of(edges.begin(), edges.end(), [](const Edge& edge) {
+      const std::optional<Method> method = MethodNamed(edge.method);
+      return edge.state == EdgeState::kGood && method && RowOf(*method).board_stands_still;
     });
   }
 };
@@ -98,7 +100,7 @@ Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& 
 
 void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
   for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kGood && edge.method == "lidar_lidar")
+    if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar))
       views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
 }
 
@@ -113,7 +115,7 @@ Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, 
   SessionViews views;
   views.reference = manifest.header.reference;
   views.targets = manifest.header.targets;
-  views.boards_stand_still = Pairs{edges}.Has({"non_overlapping", "tracker_camera", "tracker_lidar"});
+  views.boards_stand_still = Pairs{edges}.HaveBoardsThatStandStill();
   AddStart(edges, views.reference, views);
   for (const Sensor& sensor : manifest.header.sensors)
     if (views.T_ref_sensor.contains(sensor.id))

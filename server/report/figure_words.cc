@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "server/model/method.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -149,15 +150,8 @@ FigureRows RowsOf(const Edge& edge) {
 }
 
 std::string MethodText(const std::string& method) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 6> kNames = {{{"non_overlapping", "non-overlapping"},
-                                                                               {"tracker_lidar", "tracker-lidar"},
-                                                                               {"lidar_camera", "lidar-camera"},
-                                                                               {"lidar_lidar", "lidar-lidar"},
-                                                                               {"tracker_camera", "tracker-camera"},
-                                                                               {"pose_streams", "pose streams"}}};
-  for (const auto& [code, name] : kNames)
-    if (method == code) return name;
-  return method;
+  const std::optional<Method> ours = MethodNamed(method);
+  return ours ? std::string(RowOf(*ours).label) : method;
 }
 
 bool IsPolished(const Edge& edge) {

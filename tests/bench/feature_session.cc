@@ -27,8 +27,8 @@ const Target& TargetOf(const FeatureSession& session, const Sensor& camera) {
   std::exit(2);
 }
 
-std::string_view MethodOf(const FeatureSession& session, const SensorPair& pair) {
-  return MethodFor(session.header, SensorNamed(session, pair.a), SensorNamed(session, pair.b));
+Method MethodOf(const FeatureSession& session, const SensorPair& pair) {
+  return MethodFor(session.header, SensorNamed(session, pair.a), SensorNamed(session, pair.b)).value();
 }
 
 std::vector<Eigen::Vector3f> WholeCloud(const sim::Experiment& experiment, const sim::RigSensor& lidar,
@@ -141,21 +141,21 @@ calib::HandEyeProblem HandEyeOf(const FeatureSession& session, const SensorPair&
 std::vector<SensorPair> PairsOf(const FeatureSession& session) {
   std::vector<SensorPair> pairs = PairsToCalibrate(session.header);
   if (session.clouds.empty())
-    std::erase_if(pairs, [&](const SensorPair& pair) { return MethodOf(session, pair) == "lidar_lidar"; });
+    std::erase_if(pairs, [&](const SensorPair& pair) { return MethodOf(session, pair) == Method::kLidarLidar; });
   return pairs;
 }
 
 Edge EdgeOf(const FeatureSession& session, const SensorPair& pair, calib::CameraMemory* cameras) {
-  const std::string_view method = MethodOf(session, pair);
+  const Method method = MethodOf(session, pair);
   const auto remembering = [cameras](auto problem) {
     if (cameras != nullptr)
       problem.solve_camera = [cameras](const calib::CameraProblem& camera) { return cameras->Estimate(camera); };
     return problem;
   };
-  Edge edge = method == "stereo"         ? calib::EstimateEdge(StereoOf(session, pair))
-              : method == "lidar_camera" ? calib::EstimateLidarCameraEdge(remembering(LidarCameraOf(session, pair)))
-              : method == "lidar_lidar"  ? calib::EstimateLidarLidarEdge(LidarLidarOf(session, pair))
-                                         : calib::EstimateHandEyeEdge(remembering(HandEyeOf(session, pair)));
+  Edge edge = method == Method::kStereo       ? calib::EstimateEdge(StereoOf(session, pair))
+              : method == Method::kLidarCamera ? calib::EstimateLidarCameraEdge(remembering(LidarCameraOf(session, pair)))
+              : method == Method::kLidarLidar  ? calib::EstimateLidarLidarEdge(LidarLidarOf(session, pair))
+                                               : calib::EstimateHandEyeEdge(remembering(HandEyeOf(session, pair)));
   edge.robot = session.header.robot;
   edge.session = SessionId(Sha256Of("seed " + std::to_string(session.experiment.options.seed)).str());
   edge.id = EstimatedEdgeId(edge.robot, edge.session, edge.method, edge.frame_a, edge.frame_b);

@@ -86,7 +86,7 @@ int Measure(const std::filesystem::path& folder, const std::string& a, const std
   HandEyeProblem problem;
   problem.a = SideOf(folder, *manifest, a);
   problem.b = SideOf(folder, *manifest, b);
-  problem.method = MethodFor(manifest->header, problem.a.sensor, problem.b.sensor);
+  problem.method = MethodFor(manifest->header, problem.a.sensor, problem.b.sensor).value();
   const auto start = std::chrono::steady_clock::now();
   const Edge edge = calib::EstimateHandEyeEdge(problem);
   const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -97,7 +97,7 @@ int Measure(const std::filesystem::path& folder, const std::string& a, const std
   std::printf("], ");
   for (const Diagnosis& diagnosis : edge.diagnoses)
     std::fprintf(stderr, "%s: %s\n", diagnosis.code.c_str(), diagnosis.what.c_str());
-  if (problem.method != "pose_streams") PrintClosedForm(problem);
+  if (problem.method != Method::kPoseStreams) PrintClosedForm(problem);
   PrintPose("T_a_b", edge.T_a_b);
   const Vector6d sigma = edge.uncertainty.covariance.diagonal().cwiseSqrt();
   std::printf("\"rank\": %d, \"sigma_mm\": [%.4f, %.4f, %.4f], \"sigma_deg\": [%.5f, %.5f, %.5f], ",

@@ -94,7 +94,7 @@ calib::HandEyeSide SideOf(const Experiment& experiment, const Observations& seen
   return side;
 }
 
-Edge HandEyeEdge(const Experiment& experiment, const Observations& seen, const std::string& method, const Sensor& a,
+Edge HandEyeEdge(const Experiment& experiment, const Observations& seen, Method method, const Sensor& a,
                  const Sensor& b) {
   calib::HandEyeProblem problem{method, SideOf(experiment, seen, a), SideOf(experiment, seen, b),
                                 NominalOf(experiment, a, b)};
@@ -121,11 +121,11 @@ Edge TrackerLidarEdge(const Experiment& experiment, const Observations& seen, co
 }
 
 Edge EdgeOf(const Experiment& experiment, const Observations& seen, const Sensor& a, const Sensor& b) {
-  const std::string method(MethodFor(experiment.declared, a, b));
-  if (method == "stereo") return StereoEdge(experiment, seen, a, b);
-  if (method == "lidar_camera") return LidarCameraEdge(experiment, seen, a, b);
-  if (method == "lidar_lidar") return LidarLidarEdge(experiment, a, b);
-  if (method == "tracker_lidar") return TrackerLidarEdge(experiment, seen, a, b);
+  const Method method = MethodFor(experiment.declared, a, b).value();
+  if (method == Method::kStereo) return StereoEdge(experiment, seen, a, b);
+  if (method == Method::kLidarCamera) return LidarCameraEdge(experiment, seen, a, b);
+  if (method == Method::kLidarLidar) return LidarLidarEdge(experiment, a, b);
+  if (method == Method::kTrackerLidar) return TrackerLidarEdge(experiment, seen, a, b);
   return HandEyeEdge(experiment, seen, method, a, b);
 }
 

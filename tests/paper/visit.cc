@@ -66,7 +66,7 @@ calib::HandEyeSide SideOf(const Experiment& experiment, const Observations& seen
 }
 
 Edge HandEyeEdge(const Experiment& experiment, const Observations& seen, const Sensor& a, const Sensor& b,
-                 const std::string& method) {
+                 Method method) {
   return calib::EstimateHandEyeEdge(
       {method, SideOf(experiment, seen, a), SideOf(experiment, seen, b), NominalOf(experiment.declared, a, b)});
 }
@@ -98,7 +98,7 @@ Edge LidarLidarEdge(const Experiment& experiment, const Sensor& a, const Sensor&
 
 struct Job {
   const Sensor *a, *b;
-  std::string method;
+  Method method;
   bool other_method = false;
 };
 
@@ -108,16 +108,16 @@ std::vector<Job> JobsOf(const Experiment& experiment, const std::vector<SensorPa
   std::vector<Job> jobs;
   for (const SensorPair& pair : only.empty() ? PairsToCalibrate(pairs_of) : only) {
     const Sensor &a = DeclaredOf(experiment.declared, pair.a), &b = DeclaredOf(experiment.declared, pair.b);
-    jobs.push_back({&a, &b, std::string(MethodFor(experiment.declared, a, b)), false});
-    if (jobs.back().method == "stereo") jobs.push_back({&a, &b, "non_overlapping", true});
+    jobs.push_back({&a, &b, MethodFor(experiment.declared, a, b).value(), false});
+    if (jobs.back().method == Method::kStereo) jobs.push_back({&a, &b, Method::kNonOverlapping, true});
   }
   return jobs;
 }
 
 Edge Estimated(const Experiment& experiment, const Observations& seen, const Job& job, const VisitOptions& how) {
-  if (job.method == "stereo") return StereoEdge(experiment, seen, *job.a, *job.b);
-  if (job.method == "lidar_camera") return LidarCameraEdge(experiment, seen, *job.a, *job.b);
-  if (job.method == "lidar_lidar") return LidarLidarEdge(experiment, *job.a, *job.b, how.lidar_pair_captures);
+  if (job.method == Method::kStereo) return StereoEdge(experiment, seen, *job.a, *job.b);
+  if (job.method == Method::kLidarCamera) return LidarCameraEdge(experiment, seen, *job.a, *job.b);
+  if (job.method == Method::kLidarLidar) return LidarLidarEdge(experiment, *job.a, *job.b, how.lidar_pair_captures);
   return HandEyeEdge(experiment, seen, *job.a, *job.b, job.method);
 }
 

@@ -87,7 +87,7 @@ VirtualBody Driven(Drive drive, int captures, double tilt_rad, unsigned seed) {
 HandEyeProblem Tracked(const VirtualBody& body, const PoseNoise& a, const PoseNoise& b, unsigned seed) {
   Random random(seed);
   HandEyeProblem problem;
-  problem.method = "tracker_camera";
+  problem.method = Method::kTrackerCamera;
   problem.a.sensor = SensorCalled("body", SensorKind::kTracker);
   problem.b.sensor = SensorCalled("flange", SensorKind::kTracker);
   for (std::size_t k = 0; k < body.T_world_a.size(); ++k) {
@@ -148,7 +148,7 @@ HandEyeProblem TrackerAndCamera(const VirtualBody& body, const VirtualView& view
   Random random(seed), turns(seed + 1);
   std::uniform_real_distribution<double> chance(0, 1);
   HandEyeProblem problem;
-  problem.method = "tracker_camera";
+  problem.method = Method::kTrackerCamera;
   problem.a.sensor = SensorCalled("body", SensorKind::kTracker);
   problem.b = CameraSide("camera", view, true);
   for (std::size_t k = 0; k < body.T_world_a.size(); ++k) {
@@ -162,7 +162,7 @@ HandEyeProblem TrackerAndCamera(const VirtualBody& body, const VirtualView& view
 HandEyeProblem TwoCameras(const VirtualBody& body, const VirtualView& view, bool given, unsigned seed) {
   Random random(seed);
   HandEyeProblem problem;
-  problem.method = "non_overlapping";
+  problem.method = Method::kNonOverlapping;
   problem.a = CameraSide("front", view, given);
   problem.b = CameraSide("back", view, given);
   problem.b.board->id = TargetId("other");
@@ -177,7 +177,7 @@ HandEyeProblem Streamed(const VirtualBody& body, const PoseNoise& noise, double 
                         unsigned seed) {
   Random random(seed);
   HandEyeProblem problem;
-  problem.method = "pose_streams";
+  problem.method = Method::kPoseStreams;
   problem.a.sensor = SensorCalled("vio", SensorKind::kPoseStream);
   problem.b.sensor = SensorCalled("odo", SensorKind::kPoseStream);
   std::uniform_real_distribution<double> phase(0, 2 * M_PI), rate(0.2, 1.4);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 
+#include "server/model/method.h"
 #include "server/model/past.h"
 #include "server/model/session.h"
 
@@ -291,7 +292,7 @@ std::string PairsOf(const SessionHeader& header) {
   };
   for (const SensorPair& pair : PairsToCalibrate(header))
     text += (text.empty() ? "" : "; ") + pair.a.str() + " " + pair.b.str() + " " +
-            std::string(MethodFor(header, sensor(pair.a), sensor(pair.b)));
+            NameOf(MethodFor(header, sensor(pair.a), sensor(pair.b)).value());
   return text;
 }
 

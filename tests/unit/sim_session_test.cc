@@ -7,6 +7,7 @@
 #include "client/sim/bound.h"
 #include "client/sim/simulate.h"
 #include "server/formats/session_folder.h"
+#include "server/model/method.h"
 #include "tests/unit/sim_sample.h"
 
 namespace rigcal::sim {
@@ -100,8 +101,7 @@ TEST(SimSession, MarsMapperFolderIsAcceptedWithItsPairs) {
       });
       if (skipped) continue;
       ++pairs;
-      const bool two_lidars = a->kind == SensorKind::kLidar && b->kind == SensorKind::kLidar;
-      ++methods[two_lidars ? "lidar_lidar" : std::string(MethodFor(header, *a, *b))];
+      ++methods[NameOf(MethodFor(header, *a, *b).value())];
     }
   const std::map<std::string, int> expected = {
       {"stereo", 4}, {"non_overlapping", 32}, {"lidar_camera", 13}, {"lidar_lidar", 1}, {"tracker_camera", 9}};

@@ -8,6 +8,7 @@
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/systematics.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 namespace {
@@ -53,7 +54,7 @@ Edge EdgeOf(const LidarCameraProblem& problem) {
   Edge edge;
   edge.frame_a = problem.camera_is_a ? problem.camera.id : problem.lidar.id;
   edge.frame_b = problem.camera_is_a ? problem.lidar.id : problem.camera.id;
-  edge.method = "lidar_camera";
+  edge.method = NameOf(Method::kLidarCamera);
   edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
   return edge;
 }

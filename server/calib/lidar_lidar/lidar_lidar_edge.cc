@@ -1,6 +1,7 @@
 #include "server/base/out_of_memory.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
 #include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 namespace {
@@ -9,7 +10,7 @@ Edge EdgeOf(const LidarLidarProblem& problem) {
   Edge edge;
   edge.frame_a = problem.lidar_a.id;
   edge.frame_b = problem.lidar_b.id;
-  edge.method = "lidar_lidar";
+  edge.method = NameOf(Method::kLidarLidar);
   edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
   return edge;
 }

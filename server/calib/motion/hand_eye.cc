@@ -160,7 +160,7 @@ OrDiagnosis<HandEyeResult> FromStreams(const HandEyeProblem& problem) {
 }  // namespace
 
 OrDiagnosis<HandEyeResult> EstimateHandEye(const HandEyeProblem& problem) {
-  return problem.method == "pose_streams" ? FromStreams(problem) : FromCaptures(problem);
+  return problem.method == Method::kPoseStreams ? FromStreams(problem) : FromCaptures(problem);
 }
 
 }  // namespace rigcal::calib

@@ -12,6 +12,7 @@
 #include "server/calib/motion/motion_observability.h"
 #include "server/model/camera_fit.h"
 #include "server/model/edge.h"
+#include "server/model/method.h"
 #include "server/model/pose_table.h"
 
 namespace rigcal::calib {
@@ -25,7 +26,7 @@ struct HandEyeSide {
 };
 
 struct HandEyeProblem {
-  std::string method;  // "non_overlapping", "tracker_camera", "pose_streams"
+  Method method = Method::kPoseStreams;  // or kNonOverlapping, kTrackerCamera
   HandEyeSide a, b;
   std::optional<Se3> T_a_b_nominal;  // one more start, and the value of what the motion leaves open
   CameraSolver solve_camera = {};

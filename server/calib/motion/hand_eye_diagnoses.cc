@@ -36,7 +36,7 @@ std::string SecondsText(double value_s) {
   return text;
 }
 
-bool OfStreams(const HandEyeProblem& problem) { return problem.method == "pose_streams"; }
+bool OfStreams(const HandEyeProblem& problem) { return problem.method == Method::kPoseStreams; }
 
 std::string AxisText(const Eigen::Vector3d& axis) {
   char text[64];

@@ -28,8 +28,8 @@ Edge EdgeOf(const HandEyeProblem& problem) {
   Edge edge;
   edge.frame_a = problem.a.sensor.id;
   edge.frame_b = problem.b.sensor.id;
-  edge.method = problem.method;
-  if (problem.method != "pose_streams")
+  edge.method = NameOf(problem.method);
+  if (problem.method != Method::kPoseStreams)
     edge.figures["captures_total"] = static_cast<double>(AllCaptures(problem).size());
   return edge;
 }

@@ -11,6 +11,7 @@
 #include "server/calib/stereo/stereo.h"
 #include "server/calib/stereo/stereo_estimation.h"
 #include "server/math/jackknife.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 namespace {
@@ -27,7 +28,7 @@ Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) 
   Edge edge;
   edge.frame_a = problem.camera_a.id;
   edge.frame_b = problem.camera_b.id;
-  edge.method = "stereo";
+  edge.method = NameOf(Method::kStereo);
   edge.state = EdgeState::kFailed;
   edge.diagnoses = std::move(diagnoses);
   AddMissed(problem, edge.diagnoses);
@@ -136,7 +137,7 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   Edge edge;
   edge.frame_a = problem.camera_a.id;
   edge.frame_b = problem.camera_b.id;
-  edge.method = "stereo";
+  edge.method = NameOf(Method::kStereo);
   edge.state = EdgeState::kGood;
   edge.T_a_b = estimate.T_a_b;
   edge.uncertainty = std::move(uncertainty);

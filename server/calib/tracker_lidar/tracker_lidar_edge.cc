@@ -5,6 +5,7 @@
 #include "server/calib/tracker_lidar/tracker_lidar.h"
 #include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 namespace {
@@ -13,7 +14,7 @@ Edge EdgeOf(const TrackerLidarProblem& problem) {
   Edge edge;
   edge.frame_a = problem.tracker_is_a ? problem.tracker.id : problem.lidar.id;
   edge.frame_b = problem.tracker_is_a ? problem.lidar.id : problem.tracker.id;
-  edge.method = "tracker_lidar";
+  edge.method = NameOf(Method::kTrackerLidar);
   edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
   return edge;
 }
