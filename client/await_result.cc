@@ -96,6 +96,9 @@ Status ResultWatch::AskRevision(State& state) {
   const std::string robot = state.place.robot.str();
   RIGCAL_ASSIGN(state.result.status, connection_.AskDocument("status", JsonObject({{"robot", robot}}), kAnswerWithin));
   const Document rows = state.result.status["robots"];
+  if (const std::string why = rows.size() > 0 ? rows[0]["given_up"].Text() : ""; !why.empty())
+    return Fail(ErrorCode::kInternal, "the result of robot '" + robot + "' could not be worked out",
+                why + " What was sent is kept.");
   const std::int64_t newest = rows.size() > 0 ? rows[0]["revision"].Integer().value_or(0) : 0;
   if (newest == 0 || (newest == state.looked_at_revision && state.looked_for == state.place.edges.size())) return {};
   RIGCAL_ASSIGN(state.result.show_text,

@@ -86,6 +86,7 @@ void PrintVerdict(const Document& verdict, const Document& validity, std::ostrea
   out << "verdict  " << VerdictText(verdict) << '\n';
   if (const std::string text = ValidityText(verdict, validity); !text.empty()) out << "         " << text << '\n';
   if (validity["calculating"].Flag()) out << "         " << kCalculatingText << '\n';
+  if (const std::string text = Plain(validity["given_up"].Text()); !text.empty()) out << "         " << text << '\n';
 }
 
 std::string DayOf(const Document& time) {

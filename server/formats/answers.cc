@@ -20,6 +20,7 @@ void WriteValidity(JsonWriter& out, const Validity& validity) {
   out.Flag("overdue", validity.overdue);
   WriteUsable(out, validity.usable);
   out.Flag("calculating", validity.calculating);
+  validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
 }
 
 void WriteRobotRow(JsonWriter& out, const RobotAnswer& robot, Stamp now) {

@@ -24,6 +24,7 @@ struct Validity {
   bool overdue = false;                  // now
   std::optional<UsableRevision> usable;  // the newest; absent: there is none to fall back to
   bool calculating = false;              // something arrived that the newest revision does not hold
+  std::string given_up = {};             // a sentence with the cure, where that could not be solved; then not calculating
 };
 
 [[nodiscard]] bool IsUsable(const Verdict& verdict);

@@ -31,6 +31,7 @@ Result<std::optional<Error>> IncompleteBatch(storage::Store& store, const RobotI
 // Of a robot without a revision. `whole`: a session of it came whole.
 Verdict FirstVerdict(const formats::RobotAnswer& row, bool whole, const std::optional<Error>& incomplete) {
   const char* wait = "Wait: the result appears by itself.";
+  if (!row.validity.given_up.empty()) return {VerdictLevel::kUnknown, row.validity.given_up, ""};
   if (row.jobs_waiting > 0) return {VerdictLevel::kUnknown, "The first session is being calibrated.", wait};
   if (row.edges > 0) return {VerdictLevel::kUnknown, "The first result is being worked out.", wait};
   if (whole)
@@ -52,7 +53,7 @@ Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRo
   RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
   if (!revision) {
-    row.validity.calculating = row.jobs_waiting > 0 || row.edges > 0;
+    RIGCAL_TRY(LoadWhatIsNew(store, robot.robot, row.validity));
     RIGCAL_ASSIGN(const bool whole, HasWholeSession(store, robot.robot));
     RIGCAL_ASSIGN(const auto incomplete, IncompleteBatch(store, robot.robot));
     row.verdict = FirstVerdict(row, whole, incomplete);

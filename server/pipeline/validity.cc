@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <set>
 
+#include "server/pipeline/attempt.h"
 #include "server/pipeline/session_refinement.h"
+#include "storage/attempts.h"
+#include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
 #include "storage/session_estimates.h"
 #include "storage/sessions.h"
+#include "storage/standing.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -35,6 +39,15 @@ Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp sol
   return false;
 }
 
+Result<std::string> LoadGivenUp(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const std::int64_t edges, storage::LoadEdgeWatermark(store, robot));
+  RIGCAL_ASSIGN(const std::int64_t standing, storage::LoadStandingWatermark(store, robot));
+  RIGCAL_ASSIGN(const auto attempts, storage::LoadAttempts(store, storage::WorkOfRevision(robot, edges, standing)));
+  if (attempts.failed + attempts.cut_off < kAttemptsMax) return std::string();
+  return "What came last is in no revision: " + WhyGivenUp(attempts, "solved the graph of robot " + robot.str()) +
+         ". Give the server more memory and push another session, or take the newest edge out with `rigcal retire`.";
+}
+
 }  // namespace
 
 Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Revision& revision) {
@@ -48,10 +61,14 @@ Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Re
   return UsableRevision{usable->number, usable->created_at};
 }
 
-Result<bool> IsCalculating(storage::Store& store, const RobotId& robot) {
+Status LoadWhatIsNew(storage::Store& store, const RobotId& robot, Validity& validity) {
   RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(store, robot));
-  if (jobs > 0) return true;
-  return storage::IsUnsolved(store, robot);
+  RIGCAL_ASSIGN(const bool unsolved, storage::IsUnsolved(store, robot));
+  if (jobs == 0 && unsolved) {
+    RIGCAL_ASSIGN(validity.given_up, LoadGivenUp(store, robot));
+  }
+  validity.calculating = jobs > 0 || (unsolved && validity.given_up.empty());
+  return {};
 }
 
 Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, Stamp now) {
@@ -59,7 +76,7 @@ Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, S
   validity.calibrated_at = revision.calibrated_at;
   validity.overdue = IsOverdue(validity.calibrated_at, kDefaultMaxAge_ns, now);
   RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision));
-  RIGCAL_ASSIGN(validity.calculating, IsCalculating(store, revision.robot));
+  RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
   return validity;
 }
 

@@ -139,9 +139,9 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
                                ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
                                Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
   FillBanner(page, row.verdict, row.validity, row.revision > 0);
-  if (row.validity.calculating && row.revision > 0) {
+  if ((row.validity.calculating || !row.validity.given_up.empty()) && row.revision > 0) {
     Dictionary* newer = page.AddSectionDictionary("NEWER");
-    newer->SetValue("TEXT", kCalculatingText);
+    newer->SetValue("TEXT", row.validity.given_up.empty() ? kCalculatingText : row.validity.given_up);
     newer->SetValue("NUMBER", std::to_string(row.revision));
   }
   FillNewest(page, input.revisions);

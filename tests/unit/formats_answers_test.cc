@@ -25,7 +25,7 @@ SessionAnswer SampleSession() {
 TEST(Answers, Robots) {
   EXPECT_EQ(WriteRobots({SampleRobot()}, kNow),
             "{\"robots\":[{\"age_ns\":86400000000000,\"calculating\":true,\"calibrated_at\":\"2026-01-31T12:00:00Z\","
-            "\"edges\":7,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\",\"sessions\":2,"
+            "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\",\"sessions\":2,"
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
             "\"valid_until\":\"2026-05-01T12:00:00Z\",\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\","
             "\"why\":\"All is well.\"}}]}");

@@ -4,7 +4,10 @@
 #include "server/pipeline/answer.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/startup.h"
+#include "storage/attempts.h"
+#include "storage/edges.h"
 #include "storage/revisions.h"
+#include "storage/standing.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {
@@ -139,6 +142,33 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
             std::string::npos);
   EXPECT_EQ(page.find("Valid until"), std::string::npos);
   EXPECT_LT(fleet.find("<span class=\"badge fail\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
+}
+
+TEST_F(ValidityTest, AGraphThatWasGivenUpIsToldWithItsCure) {
+  PushGood();
+  std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001)};
+  AssignPushedIds(more);
+  StoreEdges(more);
+  const std::string work = storage::WorkOfRevision(RobotId("r"), storage::LoadEdgeWatermark(*store_, RobotId("r")).value(),
+                                                   storage::LoadStandingWatermark(*store_, RobotId("r")).value());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(Row()["calculating"], true);
+    ASSERT_TRUE(storage::BeginAttempt(*store_, work, clock_.now));
+    ASSERT_TRUE(storage::EndAttempt(*store_, work, storage::AttemptEnd::kCutOff, "", clock_.now));
+  }
+  for (const json& document : {Row(), Ask("show")}) {
+    EXPECT_EQ(document["calculating"], false);
+    const std::string why = document["given_up"];
+    EXPECT_NE(why.find("the server was stopped 3 times while it solved the graph of robot r"), std::string::npos) << why;
+    EXPECT_NE(why.find("rigcal retire"), std::string::npos);
+  }
+  EXPECT_NE(Page("/robots/r/").find("What came last is in no revision"), std::string::npos);
+  more = {GivenEdge("r", "a", "b", 1.0002)};
+  AssignPushedIds(more);
+  StoreEdges(more);
+  EXPECT_EQ(Row()["calculating"], true);
+  StepAll();
+  EXPECT_EQ(Row()["given_up"], nullptr);
 }
 
 // What a session that is still being calibrated gave is in no revision yet: nobody tells it.

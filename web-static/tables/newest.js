@@ -24,9 +24,10 @@ export async function tellOfNewer() {
   let ahead_ms = 0;
   try {
     const { now, robots } = await (await fetch("../../../../api/v1/status?robot=" + here[1])).json();
-    const [{ revision, calculating }] = robots;
+    const [{ revision, calculating, given_up: givenUp }] = robots;
     ahead_ms = Date.parse(now) - Date.now();
     if (revision > Number(here[2])) add(header, `This is an old report: the robot has revision ${revision} by now. `, linkTo(revision));
+    else if (givenUp) add(header, givenUp);
     else if (calculating) add(header, "A newer revision is being calculated.");
   } catch {
     // Nobody to ask: the report stands by itself.
