@@ -13,7 +13,8 @@ std::string InUnit(double value, int axis) { return axis < tangent::kRotation ? 
 std::string SourceText(const Uncertainty& uncertainty) {
   switch (uncertainty.source) {
     case UncertaintySource::kJackknife:
-      return "\xCF\x83 from leaving out one of " + Count(uncertainty.dof + 1UL, "capture", "captures") + " at a time.";
+      return "\xCF\x83 from leaving out one of " + std::to_string(uncertainty.dof + 1UL) +
+             " captures, or groups of captures, at a time.";
     case UncertaintySource::kModel:
       return "\xCF\x83 from the model alone: too few captures to test it.";
     case UncertaintySource::kGiven:

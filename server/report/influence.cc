@@ -37,7 +37,7 @@ const EdgeInfluence* InfluenceOf(const Influences& influences, const EdgeId& edg
 
 std::string InfluenceText(const Influence& influence) {
   if (influence.block_id.empty()) return "";
-  return "Without capture " + influence.block_id + " the position moves most: by " +
+  return "Leaving out " + influence.block_id + " moves the position most: by " +
          Significant(influence.position_m * kMmPerMetre, 3) + " mm and " +
          Significant(influence.rotation_rad * kDegPerRad, 3) + " deg, " + Fixed(influence.in_sigmas, 1) + " \xCF\x83.";
 }

@@ -9,12 +9,12 @@
 namespace rigcal::report {
 
 struct Influence {
-  std::string block_id;  // the capture whose absence moves the position most; empty: no block vectors
+  std::string block_id;  // the capture, or group of captures, whose absence moves the position most; empty: no block vectors
   double position_m = 0.0, rotation_rad = 0.0;
   double in_sigmas = 0.0;  // largest |d| / sigma of the six axes
 };
 [[nodiscard]] Influence LargestInfluence(const std::vector<BlockVector>& blocks, const Uncertainty& uncertainty);
-// "Without capture 07 the position moves most: 0.12 mm and 0.004 deg, 0.4 sigma."; empty without block vectors.
+// "Leaving out 07 moves the position most: by 0.12 mm and 0.004 deg, 0.4 sigma."; empty without block vectors.
 [[nodiscard]] std::string InfluenceText(const Influence& influence);
 // nullptr: not worked out for this edge.
 [[nodiscard]] const EdgeInfluence* InfluenceOf(const Influences& influences, const EdgeId& edge);

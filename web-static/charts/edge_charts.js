@@ -119,7 +119,7 @@ export function drawEdge(place, edge) {
     draw(figure(place, "Residual of each capture", `dashed: rms of all, ${digits(rmsOf(edge))} ${unitOf(edge).unit}${unused}`, 190), () => residualOption(edge));
   }
   if (edge.blocks.length)
-    draw(figure(place, "Which capture moves the answer", "how far the pose moves when one capture is left out", 200), () => influenceOption(edge));
+    draw(figure(place, "Which capture moves the answer", "how far the pose moves when one capture, or group of captures, is left out", 200), () => influenceOption(edge));
   if (edge.state === "good")
     draw(figure(place, "How well each direction is known", "one \u03c3 along and about the axes of " + edge.b, 190), () => directionOption(edge));
 }

@@ -4,8 +4,8 @@
 <div>
 {{#OVERDUE}}<p class="late">{{TEXT}}</p>{{/OVERDUE}}{{#LATER}}<template data-from="{{UNTIL}}"><p class="late">{{TEXT}}</p></template>{{/LATER}}
 <p class="word">{{WORD}}</p>
-<p class="why" dir="auto">{{WHY}}</p>
-{{#DO}}<p class="do" dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO}}</p>{{/DO}}
+<p class="why" dir="auto">{{WHY:x-typed}}</p>
+{{#DO}}<p class="do" dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
 {{#KEEP}}<p class="keep">{{TEXT}}</p>{{/KEEP}}
 {{#VALID}}<p class="until">{{TEXT}}</p>{{/VALID}}
 </div>

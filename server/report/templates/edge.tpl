@@ -4,7 +4,7 @@
 <div id="{{ANCHOR}}" class="body">
 {{#DIAGNOSES}}
 <div class="diagnosis {{LEVEL}}">
-{{#DIAGNOSIS}}<p class="what" dir="auto">{{WHAT}}</p><p class="cure" dir="auto">{{CURE}}</p>
+{{#DIAGNOSIS}}<p class="what" dir="auto">{{WHAT:x-typed}}</p><p class="cure" dir="auto">{{CURE:x-typed}}</p>
 {{/DIAGNOSIS}}
 </div>
 {{/DIAGNOSES}}

@@ -11,7 +11,7 @@
 {{>BANNER}}
 {{#NOTES}}
 <ul class="notes">
-{{#NOTE}}<li dir="auto">{{WHAT}} <span class="cure">{{CURE}}</span></li>
+{{#NOTE}}<li dir="auto">{{WHAT:x-typed}} <span class="cure">{{CURE:x-typed}}</span></li>
 {{/NOTE}}
 </ul>
 {{/NOTES}}

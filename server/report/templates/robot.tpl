@@ -9,7 +9,7 @@
 <p class="meta">{{SUMMARY}}</p>
 </header>
 {{>BANNER}}
-{{#NEWER}}<p class="working" role="status">{{TEXT}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
+{{#NEWER}}<p class="working" role="status">{{TEXT:x-typed}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
 {{#NEWEST}}<p class="ways"><a class="button" href="revisions/{{NUMBER}}/">Report of revision {{NUMBER}}</a>{{#SINCE}} <a class="button" href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">What moved since revision {{BEFORE}}</a>{{/SINCE}}</p>{{/NEWEST}}
 {{#OPEN}}
 <p class="working"><a href="sessions/{{ID}}/">Session {{SHORT}}</a> {{STATE}}: {{DONE}} of {{ALL}} {{UNIT}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress of session {{SHORT}}"></progress></p>

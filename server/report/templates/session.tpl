@@ -10,7 +10,7 @@
 <div id="live" data-fresh{{#LIVE}} data-live="../../../../api/v1/live?robot={{ROBOT}}"{{/LIVE}}>
 <section class="card moved {{OUTCOME_LEVEL}}" aria-label="Outcome">
 <p class="what" role="status">{{OUTCOME}}{{#PROGRESS}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress"></progress>{{/PROGRESS}}</p>
-{{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO}}</p>{{/DO}}
+{{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
 </section>
 <section class="card">
 <h2 id="edges">What it gave{{#FAILED_FIRST}} <span class="soft">failed pairs first</span>{{/FAILED_FIRST}}</h2>
@@ -21,7 +21,7 @@
 <table class="list">
 <thead><tr><th scope="col">Pair</th><th scope="col">State</th><th scope="col">Method</th></tr></thead>
 <tbody>
-{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY}}</span>{{#CURE}} <span class="cure" dir="auto">{{TEXT}}</span>{{/CURE}}</td><td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
+{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY:x-typed}}</span>{{#CURE}} <span class="cure" dir="auto">{{TEXT:x-typed}}</span>{{/CURE}}</td><td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
 {{/EDGE}}
 </tbody>
 </table>
