@@ -79,17 +79,18 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
-  const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy);
+  const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
   if (const auto accusations = FindAccusations(edges, judged, policy, captured_at); !accusations.empty())
     return VerdictFrom(VerdictLevel::kFail, accusations);
   const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);
   const auto warnings =
-      Collect({FindLensMisfits(estimates, pairs_disagree), FindFailedEdges(edges), FindPastPairs(edges),
-               FindUncertainSensors(solution, policy), FindUncheckedSensors(edges, solution),
-               FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
-               FindUnseenMoves(estimates, policy, captured_at)});
+      Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
+               FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
+               FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
+               FindUntestable(edges, solution, policy),
+               FindUnrefined(estimates, captured_at), FindUnseenMoves(estimates, policy, captured_at)});
   if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
   return Pass(UntestedLoops(edges, solution), SmallestMoveNoticed(estimates, solution));
 }

@@ -19,13 +19,16 @@ struct Finding {
 // Sensors that had two poses during the newest session in which one had.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);
+// Boards that were moved during the newest session that was refined, though its pairs take them to stand still.
+[[nodiscard]] std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates,
+                                                     const SessionTimes& captured_at);
 // Sensors that sat elsewhere from one session on.
 [[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const SessionTimes& captured_at);
 // What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one rig
 // is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose. What is off by
-// more than the policy's plain limits stays all the same.
+// more than the policy's plain limits stays all the same, but where a board moved that its pairs took to stand still.
 [[nodiscard]] GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                                const Policy& policy);
+                                                const Policy& policy, const std::vector<SessionEstimate>& estimates);
 // Cameras whose pictures are bent beyond their model, the worst first, each by the newest session that it took part in:
 // those that make a pose less certain by half or more, or, where edges disagree for it, all.
 [[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates,
@@ -34,6 +37,9 @@ struct Finding {
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
+// The newest session, where it says enough to be refined as a whole and could not be.
+[[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,
+                                                   const SessionTimes& captured_at);
 // The smallest move that every one of the sensors' newest sessions would have shown, as a sentence that names the known
 // sensors of which no session tells; empty where none tells of any.
 [[nodiscard]] std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates,

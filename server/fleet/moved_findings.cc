@@ -24,6 +24,19 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   return finding;
 }
 
+std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
+  const auto newest = std::find_if(estimates.begin(), estimates.end(), [](const auto& one) { return one.why_not.empty(); });
+  if (newest == estimates.end() || newest->boards_moved.empty()) return std::nullopt;
+  Finding finding;
+  for (const BoardMovedWithin& one : newest->boards_moved)
+    finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() + " was moved during the session of " +
+                   NameOfSession(newest->session, captured_at) + ", between captures " + one.last_before.str() + " and " +
+                   one.first_after.str() + ", by " + OffText(one.step);
+  finding.what_to_do = "Poses count it as two boards; where a pair of it contradicts others, fasten the board and capture "
+                       "a new session";
+  return finding;
+}
+
 std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const SessionTimes& captured_at) {
   const std::vector<SensorMovedBetween>& moved = solution.fused.moved;
   if (moved.empty()) return std::nullopt;

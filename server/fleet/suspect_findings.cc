@@ -85,27 +85,37 @@ std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vect
   return ids;
 }
 
+std::vector<SessionId> WithMovedBoards(const std::vector<SessionEstimate>& estimates) {
+  std::vector<SessionId> sessions;
+  for (const SessionEstimate& estimate : estimates)
+    if (!estimate.boards_moved.empty()) sessions.push_back(estimate.session);
+  return sessions;
+}
+
 }  // namespace
 
-GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                                  const std::vector<SessionEstimate>& estimates) {
   const std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
   if (refined.empty()) return solution;
-  const auto all = [&](const std::vector<EdgeId>& ids) {
-    return std::all_of(ids.begin(), ids.end(), [&](const EdgeId& id) { return refined.contains(id); });
-  };
-  const auto small = [&](const Vector6d& e) {
-    return e.head<3>().norm() <= policy.residual_max_m && e.tail<3>().norm() <= policy.residual_max_rad;
+  const std::set<EdgeId> before_moved_boards = EdgesOf(WithMovedBoards(estimates), edges);
+  const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {
+    bool small = e.head<3>().norm() <= policy.residual_max_m && e.tail<3>().norm() <= policy.residual_max_rad;
+    for (const std::vector<EdgeId>& ids : groups)
+      for (const EdgeId& id : ids) {
+        if (!refined.contains(id)) return false;
+        small = small || before_moved_boards.contains(id);
+      }
+    return small;
   };
   GraphSolution judged = solution;
-  std::erase_if(judged.suspects.two_poses, [&](const TwoPoses& two) {
-    return small(two.difference) && all(two.group_a) && all(two.group_b);
-  });
+  std::erase_if(judged.suspects.two_poses,
+                [&](const TwoPoses& two) { return excused(two.difference, {two.group_a, two.group_b}); });
   std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
-    return small(suspect.e) && refined.contains(suspect.edge) && all(suspect.alternatives);
+    return excused(suspect.e, {{suspect.edge}, suspect.alternatives});
   });
-  std::erase_if(judged.residuals,
-                [&](const EdgeResidual& residual) { return small(residual.e) && refined.contains(residual.edge); });
-  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) { return small(cycle.e) && all(cycle.edges); });
+  std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return excused(residual.e, {{residual.edge}}); });
+  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) { return excused(cycle.e, {cycle.edges}); });
   judged.cycles.failing = static_cast<int>(
       std::count_if(judged.cycles.worst.begin(), judged.cycles.worst.end(), [](const auto& cycle) { return cycle.fails(); }));
   return judged;

@@ -26,6 +26,16 @@ std::vector<Unseen> NewestMovesOf(const std::vector<SessionEstimate>& estimates)
   return newest;
 }
 
+// Known sensors of which no session tells.
+std::vector<std::string> WithoutSession(const std::vector<Unseen>& told, const GraphSolution& solution) {
+  std::vector<std::string> untold;
+  for (const SensorPose& pose : solution.poses) {
+    const auto tells = [&](const Unseen& one) { return one.sensor == pose.sensor; };
+    if (pose.known && std::none_of(told.begin(), told.end(), tells)) untold.push_back(pose.sensor.str());
+  }
+  return untold;
+}
+
 // Times the tolerance, whichever of the two is exceeded more.
 double TimesTheTolerance(const SmallestMove& move, const Policy& policy) {
   return std::max(move.m / policy.unseen_move_max_m, move.rad / policy.unseen_move_max_rad);
@@ -81,18 +91,25 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   return finding;
 }
 
+std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
+  if (estimates.empty() || estimates.front().why_not.empty()) return std::nullopt;
+  const Diagnosis& why = estimates.front().why_not.front();
+  if (why.code != kRefinementFailed) return std::nullopt;
+  return Finding{"the session of " + NameOfSession(estimates.front().session, captured_at) +
+                     " could not be refined as a whole (" + why.what +
+                     "), so that nobody knows whether a sensor was bumped during it",
+                 "Capture another session, from other places"};
+}
+
 std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution) {
   SmallestMove largest{0.0, 0.0, 0};
-  std::set<SensorId> told;
-  for (const Unseen& one : NewestMovesOf(estimates)) {
+  const std::vector<Unseen> told = NewestMovesOf(estimates);
+  for (const Unseen& one : told) {
     largest.m = std::max(largest.m, one.move.m);
     largest.rad = std::max(largest.rad, one.move.rad);
-    told.insert(one.sensor);
   }
   if (told.empty() || IsAnyMove(largest)) return "";
-  std::vector<std::string> untold;
-  for (const SensorPose& pose : solution.poses)
-    if (pose.known && !told.contains(pose.sensor)) untold.push_back(pose.sensor.str());
+  const std::vector<std::string> untold = WithoutSession(told, solution);
   return "A bump of any sensor " + (untold.empty() ? "" : "but " + List(untold) + " ") + "by " + SizeText(largest) +
          " half-way through a session would have been noticed" +
          (untold.empty() ? "." : "; of " + List(untold) + " it is not known.");

@@ -55,5 +55,11 @@ template <typename IdType>
   field.Refuse(id.error().what);
   return IdType();
 }
+// Empty where there is no such member.
+template <typename IdType>
+[[nodiscard]] IdType ReadOptionalId(const JsonField& parent, const std::string& name) {
+  const auto field = parent.Find(name);
+  return field ? ReadId<IdType>(*field) : IdType();
+}
 
 }  // namespace rigcal::formats

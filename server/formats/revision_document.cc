@@ -51,6 +51,7 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
     out.List("held_back", [&] {
       for (const FusedSessions::HeldBack& look : fused.held_back)
         out.Object([&] {
+          if (!look.against.empty()) out.Text("against", look.against.str());
           out.Text("capture", look.capture.str());
           out.Text("sensor", look.sensor.str());
           out.Text("session", look.session.str());
@@ -76,7 +77,7 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
     fused.sessions.push_back(ReadId<SessionId>(session));
   for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax))
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
-                               ReadId<CaptureId>(look.At("capture"))});
+                               ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");
   return fused;

@@ -40,10 +40,24 @@ void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
   });
 }
 
+void WriteBoardsMoved(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("boards_moved", [&] {
+    for (const BoardMovedWithin& moved : estimate.boards_moved)
+      out.Object([&] {
+        out.Text("board", moved.board.str());
+        out.Text("first_after", moved.first_after.str());
+        out.Text("last_before", moved.last_before.str());
+        out.Number("odds", moved.odds);
+        WriteVector(out, "step", moved.step);
+      });
+  });
+}
+
 void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
   out.List("held_back", [&] {
     for (const HeldBackLook& look : estimate.held_back)
       out.Object([&] {
+        if (!look.against.empty()) out.Text("against", look.against.str());
         out.Text("capture", look.capture.str());
         out.Text("sensor", look.sensor.str());
       });
@@ -95,6 +109,11 @@ SensorMovedWithin ReadMoved(const JsonField& field) {
           ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
 }
 
+BoardMovedWithin ReadBoardMoved(const JsonField& field) {
+  return {ReadId<TargetId>(field.At("board")), ReadId<CaptureId>(field.At("last_before")),
+          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+}
+
 void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
   Eigen::Index rows = 0;
   for (const RefinedPose& pose : estimate.poses) rows += pose.sensor == estimate.reference ? 0 : 6;
@@ -106,6 +125,7 @@ void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
 
 std::string WriteSessionEstimate(const SessionEstimate& estimate) {
   return WriteObject([&](JsonWriter& out) {
+    WriteBoardsMoved(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
@@ -132,8 +152,11 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
   CheckRows(root, estimate);
   for (const JsonField& item : root.At("moved").Items(kSensorsMax)) estimate.moved.push_back(ReadMoved(item));
   for (const JsonField& item : root.At("held_back").Items(kLooksMax))
-    estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture"))});
-  if (const auto misfits = root.Find("misfits"))  // documents of before have none
+    estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture")),
+                                  ReadOptionalId<SensorId>(item, "against")});
+  if (const auto boards = root.Find("boards_moved"))  // documents of before have none
+    for (const JsonField& item : boards->Items(kSensorsMax)) estimate.boards_moved.push_back(ReadBoardMoved(item));
+  if (const auto misfits = root.Find("misfits"))  // nor these
     for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
   RIGCAL_TRY(document.status());
   return estimate;

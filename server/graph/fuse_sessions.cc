@@ -135,7 +135,8 @@ std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimat
   std::vector<FusedSessions::HeldBack> held_back;
   for (const SessionEstimate& estimate : estimates)
     if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
-      for (const HeldBackLook& look : estimate.held_back) held_back.push_back({estimate.session, look.sensor, look.capture});
+      for (const HeldBackLook& look : estimate.held_back)
+        held_back.push_back({estimate.session, look.sensor, look.capture, look.against});
   return held_back;
 }
 

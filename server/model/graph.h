@@ -81,6 +81,7 @@ struct FusedSessions {
     SessionId session;
     SensorId sensor;
     CaptureId capture;
+    SensorId against = {};  // the only other sensor that saw that place: either may be wrong; empty: several did
   };
   std::vector<HeldBack> held_back;
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict

@@ -35,10 +35,19 @@ struct SensorMovedWithin {
   double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
 };
 
+// A board that was taken to stand still and did not: its two places are told apart, so that no pose suffers.
+struct BoardMovedWithin {
+  TargetId board;
+  CaptureId last_before, first_after;
+  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the board, m and rad
+  double odds = 1.0;                 // as of a sensor
+};
+
 // One sensor's look in one capture that contradicts all others and was held back.
 struct HeldBackLook {
   SensorId sensor;
   CaptureId capture;
+  SensorId against = {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
 };
 
 // A camera whose pictures are bent in a way that its model cannot describe: a smooth field of shifts, the same in every
@@ -68,6 +77,9 @@ struct RefinedPose {
   std::optional<SmallestMove> smallest_move = {};  // estimates of before have none
 };
 
+// Code of `why_not` where a session says enough to be refined as a whole, and that failed.
+constexpr const char* kRefinementFailed = "refinement_failed";
+
 struct SessionEstimate {
   SessionId session;
   SensorId reference;
@@ -76,7 +88,8 @@ struct SessionEstimate {
   // Of the poses in their order, the reference left out: six rows each, right tangents at the sensors. `common` is the
   // part of it that errs alike on every visit (given constants, lenses); without rows: none.
   Eigen::MatrixXd covariance, common;
-  std::vector<SensorMovedWithin> moved;   // the most certain first
+  std::vector<SensorMovedWithin> moved;  // the most certain first
+  std::vector<BoardMovedWithin> boards_moved;
   std::vector<HeldBackLook> held_back;    // by sensor, then capture
   std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
 };

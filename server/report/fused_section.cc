@@ -56,17 +56,26 @@ void FillRow(Dictionary& row, const Moved& moved, bool visits) {
   if (visits) ShowValue(row, "VISITS", "TEXT", VisitsText(fused));
 }
 
-// "front_right in capture 007 contradicts all that was seen besides: ..."
+std::string CapturesText(const std::vector<std::string>& names) {
+  std::string text = names.size() == 1 ? "capture " : "captures ";
+  for (std::size_t i = 0; i < std::min(names.size(), kNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return text + (names.size() > kNamesMax ? " and " + std::to_string(names.size() - kNamesMax) + " more" : "");
+}
+
+// "front_right in capture 007 contradicts all that was seen besides: ..."; where only two sensors saw the place, either
+// may be wrong.
 void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
-  std::map<SensorId, std::vector<std::string>> captures;
-  for (const FusedSessions::HeldBack& look : fused.held_back) captures[look.sensor].push_back(look.capture.str());
-  for (const auto& [sensor, names] : captures) {
-    std::string text = sensor.str() + (names.size() == 1 ? " in capture " : " in captures ");
-    for (std::size_t i = 0; i < std::min(names.size(), kNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
-    if (names.size() > kNamesMax) text += " and " + std::to_string(names.size() - kNamesMax) + " more";
+  std::map<std::pair<SensorId, SensorId>, std::vector<std::string>> captures;
+  for (const FusedSessions::HeldBack& look : fused.held_back)
+    captures[{look.sensor, look.against}].push_back(look.capture.str());
+  for (const auto& [who, names] : captures) {
+    const auto& [sensor, against] = who;
+    const std::string contradicts = names.size() == 1 ? " contradicts " : " contradict ";
     ShowValue(section, "HELD_BACK", "TEXT",
-              text + (names.size() == 1 ? " contradicts" : " contradict") +
-                  " all that was seen besides, as a picture of another instant does; it counts for next to nothing.");
+              sensor.str() + " in " + CapturesText(names) + contradicts +
+                  (against.empty() ? "all that was seen besides, as a picture of another instant does; it"
+                                   : against.str() + ", and either may be of another instant; what " + sensor.str() + " saw") +
+                  " counts for next to nothing.");
   }
 }
 

@@ -11,7 +11,7 @@
 #include "server/calib/joint/cluster_covariance.h"
 #include "server/calib/joint/estimate_session.h"
 #include "server/calib/joint/lens_misfit.h"
-#include "server/calib/joint/moved_sensor.h"
+#include "server/calib/joint/moved_pose.h"
 #include "server/math/statistics.h"
 #include "tests/bench/joint_session.h"
 #include "tests/bench/rig_coverage.h"
@@ -108,10 +108,13 @@ auto Timed(double& total_s, const Part& part) {
   return result;
 }
 
-void PrintMoves(const calib::joint::SessionProblem& problem, const std::vector<calib::joint::SensorMove>& moves) {
+void PrintMoves(const calib::joint::SessionProblem& problem, const std::vector<calib::joint::Move>& moves) {
   for (std::size_t m = 0; m < std::min<std::size_t>(3, moves.size()); ++m)
-    std::printf(", {\"sensor\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
-                problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str(), moves[m].group,
+    std::printf(", {\"moved\": \"%s\", \"group\": %d, \"f\": %.3g, \"odds\": %.3g, \"mm\": %.3f, \"deg\": %.4f}",
+                moves[m].board == calib::joint::kNone
+                    ? problem.sensors[static_cast<std::size_t>(moves[m].sensor)].str().c_str()
+                    : problem.boards[static_cast<std::size_t>(moves[m].board)].str().c_str(),
+                moves[m].group,
                 moves[m].statistic, moves[m].odds, 1e3 * moves[m].step.head<3>().norm(),
                 180 / M_PI * moves[m].step.tail<3>().norm());
 }
@@ -139,7 +142,7 @@ bool MeasureSession(const sim::Options& options, bool first, Costs& costs, std::
       Timed(costs.refine_s, [&] { return calib::joint::Refine(start->problem, start->state, start->noise, groups); });
   if (!refined) return std::fprintf(stderr, "%s\n", Sentence(refined.error()).c_str()), false;
   const auto covariance = Timed(costs.covariance_s, [&] { return calib::joint::CovarianceOfPoses(*refined); });
-  const auto moves = Timed(costs.scan_s, [&] { return calib::joint::ScanForMoves(start->problem, *refined); });
+  const auto moves = Timed(costs.scan_s, [&] { return calib::joint::ScanForMoves(*refined); });
   const auto misfits = Timed(costs.fields_s, [&] { return calib::joint::FindMisfits(start->problem, *refined); });
   const auto estimate = Timed(costs.whole_s, [&] { return calib::joint::EstimateSession(views); });
   costs.model_ratio += covariance.model_ratio, costs.spread_ratio += covariance.spread_ratio;

@@ -77,7 +77,8 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates), {}, 0};
   told.said = SaidOf(told.verdict, edges);
   for (const FusedSessions::HeldBack& look : solution.fused.held_back)  // as the report has it
-    told.said.push_back({"held_back", look.sensor.str() + " in capture " + look.capture.str(), {look.sensor}});
+    told.said.push_back({"held_back", look.sensor.str() + " in capture " + look.capture.str() +
+                                          (look.against.empty() ? "" : " contradicts " + look.against.str()), {look.sensor}});
   told.failed_edges = static_cast<int>(
       std::count_if(edges.begin(), edges.end(), [](const Edge& edge) { return edge.state != EdgeState::kGood; }));
   return told;

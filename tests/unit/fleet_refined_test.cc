@@ -112,6 +112,34 @@ TEST(AssessUnseen, OnlySensorsOfTheWorstSessionAreGivenToIt) {
   EXPECT_THAT(verdict.why, testing::Not(HasSubstr("left")));
 }
 
+TEST(AssessMovedBoard, OneOfTheNewestSessionWarnsByNameAndCapture) {
+  const Rig rig;
+  SessionEstimate moved = SessionOfMoves({{"left", {0.001, 0.001, 40}}});
+  moved.boards_moved.push_back({TargetId("wall"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.005, 1e-9});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {moved});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("oard wall was moved during the session of"));
+  EXPECT_THAT(verdict.why, HasSubstr("between captures 019 and 020, by 5 mm and 0 deg"));
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), moved}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessUnseen, ASessionWhoseRefinementFailedIsNoPass) {
+  const Rig rig;
+  SessionEstimate failed;
+  failed.session = SessionId(std::string(64, '2'));
+  failed.why_not.push_back({kRefinementFailed, "the joint refinement reached no minimum", "More captures."});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {failed});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("could not be refined as a whole (the joint refinement reached no minimum), so that "
+                                     "nobody knows whether a sensor was bumped during it"));
+  const SmallestMove small{0.001, 0.001, 40};
+  const auto whole = SessionOfMoves({{"left", small}, {"right", small}, {"top", small}});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {failed, whole}).level, VerdictLevel::kWarn);
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {whole, failed}).level, VerdictLevel::kPass);
+  failed.why_not.front().code = "invalid_input";
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {failed}).level, VerdictLevel::kPass);
+}
+
 TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
   EXPECT_EQ(VerdictOfMoves({{"right", {0.008, 0.002, 20}}}).why,
             "A bump of right by up to 8 mm or 0.115 deg half-way through the session of 2026-01-31 12:00 UTC would not "
@@ -157,6 +185,18 @@ TEST(AssessRefined, WhatIsGrosslyOffFailsAllTheSame) {
   Rig rig = Contradicted(0.06);
   rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
   EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+}
+
+TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
+  Rig rig = Contradicted(0.06);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  SessionEstimate moved = BentSession('1', {});
+  moved.boards_moved.push_back({TargetId("wall"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.005, 1e-9});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {moved});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("oard wall was moved"));
+  moved.session = SessionId(std::string(64, '2'));
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {moved}).level, VerdictLevel::kFail);
 }
 
 TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {

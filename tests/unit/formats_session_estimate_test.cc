@@ -24,7 +24,8 @@ SessionEstimate MakeEstimate() {
   moved.step[tangent::kY] = 0.02;
   moved.odds = 1e-30;
   estimate.moved = {moved};
-  estimate.held_back = {{SensorId("left"), CaptureId("007")}};
+  estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9}};
+  estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
   LensMisfit misfit;
   misfit.camera = SensorId("right");
   misfit.model = CameraModel::kPinholeRational;
@@ -54,6 +55,12 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
   EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));
   EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));
+  EXPECT_EQ(read->held_back[0].against, SensorId("right"));
+  EXPECT_TRUE(read->held_back[1].against.empty());
+  ASSERT_EQ(read->boards_moved.size(), 1u);
+  EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
+  EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
+  EXPECT_EQ(read->boards_moved[0].step[tangent::kY], 0.02);
   ASSERT_EQ(read->misfits.size(), 1u);
   EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
   EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);

@@ -13,20 +13,32 @@ namespace {
 
 constexpr double kHeldBackBelow = 0.5;  // of a look's weight
 
-SessionEstimate Refused(const SessionViews& views, const Error& error) {
+SessionEstimate Refused(const SessionViews& views, const std::string& code, const Error& error) {
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  estimate.why_not.push_back({NameOf(error.code), error.what, error.cure});
+  estimate.why_not.push_back({code, error.what, error.cure});
   return estimate;
 }
 
+// Per place.
+std::vector<std::set<SensorId>> SensorsThatSaw(const SessionProblem& problem) {
+  std::vector<std::set<SensorId>> sensors(problem.capture_of_place.size());
+  ForEachLook(problem, [&](const Where& look) {
+    sensors[static_cast<std::size_t>(look.place)].insert(problem.sensors[static_cast<std::size_t>(look.sensor)]);
+  });
+  return sensors;
+}
+
 template <typename Looks>
-void AddHeldBack(const SessionProblem& problem, const Looks& looks, const std::vector<double>& weights,
-                 std::vector<HeldBackLook>& held_back) {
-  for (std::size_t i = 0; i < looks.size(); ++i)
-    if (weights[i] < kHeldBackBelow)
-      held_back.push_back(
-          {problem.sensors[static_cast<std::size_t>(looks[i].sensor)], CaptureAt(problem, looks[i].place)});
+void AddHeldBack(const SessionProblem& problem, const std::vector<std::set<SensorId>>& saw, const Looks& looks,
+                 const std::vector<double>& weights, std::vector<HeldBackLook>& held_back) {
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (weights[i] >= kHeldBackBelow) continue;
+    HeldBackLook look{problem.sensors[static_cast<std::size_t>(looks[i].sensor)], CaptureAt(problem, looks[i].place)};
+    const std::set<SensorId>& all = saw[static_cast<std::size_t>(looks[i].place)];
+    if (all.size() == 2) look.against = *all.begin() == look.sensor ? *all.rbegin() : *all.begin();
+    held_back.push_back(std::move(look));
+  }
 }
 
 // Rows of the poses in the order of `sensors`, indices of the problem.
@@ -39,10 +51,18 @@ Eigen::MatrixXd InOrder(const Eigen::MatrixXd& joint, const std::vector<int>& ro
   return joint(rows, rows);
 }
 
-// By name; of a sensor that moved, which is in the problem several times, its last.
+// By name; of a sensor that moved, which is in the problem several times, the one that was seen last.
 std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
+  std::vector<int> place(problem.sensors.size(), kNone);
+  ForEachLook(problem, [&](const Where& look) {
+    int& last = place[static_cast<std::size_t>(look.sensor)];
+    last = std::max(last, look.place);
+  });
   std::map<SensorId, int> last;
-  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s) last[problem.sensors[static_cast<std::size_t>(s)]] = s;
+  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s) {
+    const auto [known, is_new] = last.try_emplace(problem.sensors[static_cast<std::size_t>(s)], s);
+    if (!is_new && place[static_cast<std::size_t>(s)] > place[static_cast<std::size_t>(known->second)]) known->second = s;
+  }
   last[problem.sensors[static_cast<std::size_t>(problem.reference)]] = problem.reference;
   return last;
 }
@@ -66,9 +86,10 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
   const LookWeights& weights = explained.refined.weights;
-  AddHeldBack(problem, problem.corners, weights.corners, estimate.held_back);
-  AddHeldBack(problem, problem.plates, weights.plates, estimate.held_back);
-  AddHeldBack(problem, problem.poses, weights.poses, estimate.held_back);
+  const auto saw = SensorsThatSaw(problem);
+  AddHeldBack(problem, saw, problem.corners, weights.corners, estimate.held_back);
+  AddHeldBack(problem, saw, problem.plates, weights.plates, estimate.held_back);
+  AddHeldBack(problem, saw, problem.poses, weights.poses, estimate.held_back);
   std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
     return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
   });
@@ -87,12 +108,12 @@ Result<SessionStart> StartOfWhatIsTold(const SessionViews& views) {
 
 SessionEstimate Estimate(const SessionViews& views) {
   auto start = StartOfWhatIsTold(views);
-  if (!start) return Refused(views, start.error());
+  if (!start) return Refused(views, NameOf(start.error().code), start.error());
   auto first = Explain(*start, GroupsOf(start->problem, start->state));
-  if (!first) return Refused(views, first.error());
+  if (!first) return Refused(views, kRefinementFailed, first.error());
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(std::move(*first), estimate.moved);
+  const Explained last = ExplainAll(std::move(*first), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   return estimate;
@@ -104,8 +125,9 @@ SessionEstimate EstimateSession(const SessionViews& views) {
   try {
     return Estimate(views);
   } catch (const std::exception& exception) {
-    return Refused(views, {ErrorCode::kInternal, std::string("the joint refinement broke off: ") + exception.what(),
-                           "The calibration of the pairs stands; report this with the session's id."});
+    return Refused(views, NameOf(ErrorCode::kInternal),
+                   {ErrorCode::kInternal, std::string("the joint refinement broke off: ") + exception.what(),
+                    "The calibration of the pairs stands; report this with the session's id."});
   }
 }
 

@@ -2,60 +2,83 @@
 
 #include <cmath>
 
-#include "server/model/session_estimate.h"
-
 namespace rigcal::calib::joint {
 namespace {
 
 constexpr int kMovesMax = 4;     // in one session: more is no bump, but a rig that is not rigid
+constexpr int kMovesTried = 3;  // of the likeliest; those too small to be told, or that nothing solves, hide no other
 constexpr int kFieldRounds = 3;  // of fields and everything else in turn
 
-// Captures on both sides of the first place of `group` in which the sensor saw something.
-SensorMovedWithin Told(const SessionProblem& problem, const Refined& refined, const SensorMove& move) {
-  SensorMovedWithin told;
-  told.sensor = problem.sensors[static_cast<std::size_t>(move.sensor)];
-  told.step = move.step;
-  told.odds = move.odds;
-  int before = kNone, after = kNone;
-  const auto look_at = [&](const auto& looks) {
-    for (const auto& look : looks) {
-      if (look.sensor != move.sensor) continue;
-      const bool is_after = refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
-      if (is_after && (after == kNone || look.place < after)) after = look.place;
-      if (!is_after && look.place > before) before = look.place;
-    }
-  };
-  look_at(problem.corners);
-  look_at(problem.plates);
-  look_at(problem.poses);
-  if (before != kNone) told.last_before = CaptureAt(problem, before);
-  if (after != kNone) told.first_after = CaptureAt(problem, after);
-  return told;
+bool IsOf(const Move& move, const Where& look) {
+  return move.board == kNone ? look.sensor == move.sensor : look.board == move.board;
 }
 
-// The sensor's looks from `group` on become those of a second sensor with a pose of its own.
-SessionStart Split(SessionStart start, const Refined& refined, const SensorMove& move) {
-  const auto old = static_cast<std::size_t>(move.sensor);
-  const int added = static_cast<int>(start.problem.sensors.size());
-  start.state = refined.state;
-  start.noise = refined.noise;
+bool IsAfter(const Refined& refined, const Move& move, const Where& look) {
+  return refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
+}
+
+// Captures on both sides of the first place of `group` in which the one that moved was seen; kNone: in none.
+struct Sides {
+  int before = kNone, after = kNone;
+};
+Sides SidesOf(const SessionProblem& problem, const Refined& refined, const Move& move) {
+  Sides sides;
+  ForEachLook(problem, [&](const Where& look) {
+    if (!IsOf(move, look)) return;
+    const bool is_after = IsAfter(refined, move, look);
+    if (is_after && (sides.after == kNone || look.place < sides.after)) sides.after = look.place;
+    if (!is_after && look.place > sides.before) sides.before = look.place;
+  });
+  return sides;
+}
+
+void Tell(const SessionProblem& problem, const Refined& refined, const Move& move, SessionEstimate& told) {
+  const Sides sides = SidesOf(problem, refined, move);
+  const CaptureId &before = CaptureAt(problem, sides.before), &after = CaptureAt(problem, sides.after);
+  if (move.board == kNone)
+    told.moved.push_back(
+        {problem.sensors[static_cast<std::size_t>(move.sensor)], before, after, move.step, move.odds});
+  else
+    told.boards_moved.push_back(
+        {problem.boards[static_cast<std::size_t>(move.board)], before, after, move.step, move.odds});
+}
+
+void AddSensorLike(int sensor, const Vector6d& step, SessionStart& start) {
+  const auto old = static_cast<std::size_t>(sensor);
   start.problem.sensors.push_back(start.problem.sensors[old]);
   start.problem.range_bias_sigma_m.push_back(start.problem.range_bias_sigma_m[old]);
-  start.state.T_ref_sensor.push_back((start.state.T_ref_sensor[old] * Se3::Exp(move.step)).Normalized());
+  start.state.T_ref_sensor.push_back((start.state.T_ref_sensor[old] * Se3::Exp(step)).Normalized());
   start.state.range_bias_m.push_back(start.state.range_bias_m[old]);
   start.noise.push_back(start.noise[old]);
+  // What was known of it from all captures together holds for neither of its poses.
+  std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {
+    return known.sensor_a == sensor || known.sensor_b == sensor;
+  });
+}
+
+void AddBoardLike(int board, const Vector6d& step, SessionStart& start) {
+  const auto old = static_cast<std::size_t>(board);
+  start.problem.boards.push_back(start.problem.boards[old]);
+  start.state.T_world_board.push_back((start.state.T_world_board[old] * Se3::Exp(step)).Normalized());
+}
+
+// Looks from `group` on become those of a second sensor, or at a second board, with a pose of its own.
+SessionStart Split(SessionStart start, const Refined& refined, const Move& move) {
+  start.state = refined.state;
+  start.noise = refined.noise;
+  const bool is_board = move.board != kNone;
+  const int added = static_cast<int>(is_board ? start.problem.boards.size() : start.problem.sensors.size());
+  if (is_board)
+    AddBoardLike(move.board, move.step, start);
+  else
+    AddSensorLike(move.sensor, move.step, start);
   const auto split = [&](auto& looks) {
     for (auto& look : looks)
-      if (look.sensor == move.sensor && refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group)
-        look.sensor = added;
+      if (IsOf(move, look) && IsAfter(refined, move, look)) (is_board ? look.board : look.sensor) = added;
   };
   split(start.problem.corners);
   split(start.problem.plates);
   split(start.problem.poses);
-  // What was known of it from all captures together holds for neither of its poses.
-  std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {
-    return known.sensor_a == move.sensor || known.sensor_b == move.sensor;
-  });
   return start;
 }
 
@@ -79,16 +102,6 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
   return now;
 }
 
-// The likeliest move, where it is one.
-std::optional<SensorMove> MoveIn(const Explained& now) {
-  if (now.refined.groups < kGroupsForMoves) return std::nullopt;
-  const std::vector<SensorMove> moves = ScanForMoves(now.start.problem, now.refined);
-  if (moves.empty() || !IsMove(moves.front().step, moves.front().covariance, moves.front().odds)) return std::nullopt;
-  const SensorMovedWithin told = Told(now.start.problem, now.refined, moves.front());
-  if (told.last_before.empty() || told.first_after.empty()) return std::nullopt;
-  return moves.front();
-}
-
 // Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
 // the noise that it leaves; with what its fields and its moves had to choose from (Schwarz 1978).
 double LeftOver(const Explained& explained) {
@@ -108,25 +121,66 @@ double LeftOver(const Explained& explained) {
   add_all(problem.corners, fit.corners, explained.refined.weights.corners);
   add_all(problem.plates, fit.plates, explained.refined.weights.plates);
   add_all(problem.poses, fit.poses, explained.refined.weights.poses);
-  return left + 6 * std::log(static_cast<double>(problem.corners.size())) * static_cast<double>(problem.sensors.size());
+  const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
+  return left + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
 }
 
-std::optional<Explained> WithMove(const Explained& now, const SensorMove& move) {
-  auto next = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
-  return next && next->misfits.held ? WithMisfitsHeld(std::move(*next)) : std::move(next);
+// T_before^-1 T_after of the two that `move` has become, and its covariance: the scan's own step is that of a sensor whose
+// noise holds the bump.
+struct Step {
+  Vector6d step = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
+};
+Step StepOf(const Refined& split, const Move& move) {
+  const bool is_board = move.board != kNone;
+  const auto& T = is_board ? split.state.T_world_board : split.state.T_ref_sensor;
+  const std::vector<int>& rows = is_board ? split.layout.board : split.layout.pose;
+  const auto before = static_cast<std::size_t>(is_board ? move.board : move.sensor);
+  const Se3 T_before_after = T[before].Inverse() * T.back();
+  Matrix6d C = Matrix6d::Zero();
+  const auto add = [&](const Matrix6d& by_row, int row, const Matrix6d& by_column, int column) {
+    if (row + 6 <= split.layout.size && column + 6 <= split.layout.size)  // the reference has none
+      C += by_row * split.covariance.block<6, 6>(row, column) * by_column.transpose();
+  };
+  const Matrix6d by_after = Matrix6d::Identity(), by_before = -Adjoint(T_before_after.Inverse());
+  add(by_before, rows[before], by_before, rows[before]);
+  add(by_before, rows[before], by_after, rows.back());
+  add(by_after, rows.back(), by_before, rows[before]);
+  add(by_after, rows.back(), by_after, rows.back());
+  return {T_before_after.Log(), std::max(1.0, move.scatter) * C};
+}
+
+struct Next {
+  std::optional<Explained> explained;
+  std::optional<Move> move;
+};
+
+// The likeliest move that is none of chance and, by the refined poses on both its sides, large enough to be told.
+Next ByMove(const Explained& now) {
+  if (now.refined.groups < kGroupsForMoves) return {};
+  int tried = 0;
+  for (Move move : ScanForMoves(now.refined)) {
+    if (move.odds >= kMovedOdds || tried == kMovesTried) break;
+    const Sides sides = SidesOf(now.start.problem, now.refined, move);
+    if (sides.before == kNone || sides.after == kNone) continue;
+    ++tried;
+    auto split = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
+    if (!split) continue;
+    const Step step = StepOf(split->refined, move);
+    if (!IsMove(step.step, step.covariance, move.odds)) continue;
+    move.step = step.step;
+    return {split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
+  }
+  return {};
 }
 
 // A bump is in time, a misfit in the picture, and either looks a little like the other: of the two the one is taken out
 // first that leaves less.
-struct Next {
-  std::optional<Explained> explained;
-  bool is_move = false;
-};
-Next NextOf(const Explained& now, const std::optional<SensorMove>& move) {
+Next NextOf(const Explained& now, bool may_move) {
   const bool bent = !now.misfits.held && now.misfits.any();
-  Next by_move{move ? WithMove(now, *move) : std::nullopt, true};
+  Next by_move = may_move ? ByMove(now) : Next{};
   if (!bent) return by_move;
-  Next by_field{WithMisfitsHeld(now), false};
+  Next by_field{WithMisfitsHeld(now), std::nullopt};
   if (!by_field.explained) return by_move;
   if (by_move.explained && LeftOver(*by_move.explained) < LeftOver(*by_field.explained)) return by_move;
   return by_field;
@@ -141,11 +195,11 @@ Result<Explained> Explain(SessionStart start, const std::vector<int>& group_of_p
 }
 
 // What is found is taken out before the next is looked for, so that it does not hide it.
-Explained ExplainAll(Explained now, std::vector<SensorMovedWithin>& moved) {
-  while (true) {
-    const std::optional<SensorMove> move = static_cast<int>(moved.size()) < kMovesMax ? MoveIn(now) : std::nullopt;
-    Next next = NextOf(now, move);
-    if (move && (next.is_move || !next.explained)) moved.push_back(Told(now.start.problem, now.refined, *move));
+Explained ExplainAll(Explained now, SessionEstimate& told) {
+  for (int moves = 0;;) {
+    Next next = NextOf(now, moves < kMovesMax);
+    if (next.move) Tell(now.start.problem, now.refined, *next.move, told);
+    moves += next.move ? 1 : 0;
     if (!next.explained) return now;
     now = std::move(*next.explained);
   }

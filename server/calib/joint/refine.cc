@@ -8,7 +8,7 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr int kIterationsMax = 12, kRoundsMax = 25, kRejectedMax = 10;
+constexpr int kIterationsMax = 12, kRoundsMax = 40, kRejectedMax = 10;
 constexpr double kSettled = 1e-8, kRounding = 1e-4;  // expected gain of a step, in squared sigmas
 constexpr double kSameNoise = 0.003;     // ratio, from round to round
 constexpr double kSameWeight = 0.01;
@@ -16,7 +16,7 @@ constexpr double kCornerSigmaMin_px = 0.005, kTrackerSigmaMin = 1e-6;
 constexpr double kRedundancyMin = 6.0;   // fewer residuals than this more than unknowns: noise stays as it was
 
 Error NotSolvable(const std::string& why) {
-  return {ErrorCode::kInvalidInput, "the joint refinement of the session " + why,
+  return {ErrorCode::kInvalidInput, "the joint refinement " + why,
           "The calibration of its pairs stands; more captures from other places would settle it."};
 }
 
@@ -153,23 +153,28 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
-// A single picture may be of another instant; a run of them is a sensor that moved, and is what tells so.
+// Of each look: what the least of three successive looks of its sensor exceeds, of the three that exceed most.
 template <typename Looks>
-void KeepRuns(const Looks& looks, std::vector<double>& weights, std::size_t sensors) {
-  constexpr std::size_t kRun = 3;
+std::vector<double> ExcessOfRun(const Looks& looks, const std::vector<double>& excess, std::size_t sensors) {
   std::vector<std::vector<std::size_t>> of_sensor(sensors);
   for (std::size_t i = 0; i < looks.size(); ++i) of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(i);
+  std::vector<double> of_run(looks.size(), 0.0);
   for (auto& idx : of_sensor) {
     std::stable_sort(idx.begin(), idx.end(),
                      [&](std::size_t a, std::size_t b) { return looks[a].place < looks[b].place; });
-    for (std::size_t from = 0; from < idx.size();) {
-      std::size_t to = from;
-      while (to < idx.size() && weights[idx[to]] < 1.0) ++to;
-      if (to - from >= kRun)
-        for (std::size_t i = from; i < to; ++i) weights[idx[i]] = 1.0;
-      from = std::max(to, from + 1);
+    for (std::size_t k = 0; k + 2 < idx.size(); ++k) {
+      const double least = std::min({excess[idx[k]], excess[idx[k + 1]], excess[idx[k + 2]]});
+      for (std::size_t i = k; i < k + 3; ++i) of_run[idx[i]] = std::max(of_run[idx[i]], least);
     }
   }
+  return of_run;
+}
+
+// A single picture may be of another instant and is held back; a run of them is a sensor that moved, and is what tells so.
+// Between the two the weight has no step: one that depends on itself through the noise would find no rest at it.
+double WeightOf(double excess, double excess_of_run) {
+  if (excess <= 1.0) return 1.0;
+  return std::pow(excess, -2.0 * (1.0 - std::clamp(excess_of_run - 1.0, 0.0, 1.0)));
 }
 
 // A look whose squares are far beyond what is usual for its sensor counts less, by how far.
@@ -182,13 +187,13 @@ std::vector<double> WeightsFrom(const Looks& looks, const std::vector<LookFit>& 
     of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(ratio(i));
   std::vector<double> usual;
   for (const auto& ratios : of_sensor) usual.push_back(std::max(least_usual, MedianOf(ratios)));
+  std::vector<double> excess;
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    excess.push_back(ratio(i) / (usual[static_cast<std::size_t>(looks[i].sensor)] *
+                                 Squared(1 + 8 / std::sqrt(fits[i].numbers.sum()))));
+  const std::vector<double> of_run = ExcessOfRun(looks, excess, sensors);
   std::vector<double> weights;
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    const double limit =
-        usual[static_cast<std::size_t>(looks[i].sensor)] * Squared(1 + 8 / std::sqrt(fits[i].numbers.sum()));
-    weights.push_back(ratio(i) <= limit ? 1.0 : Squared(limit / ratio(i)));
-  }
-  KeepRuns(looks, weights, sensors);
+  for (std::size_t i = 0; i < excess.size(); ++i) weights.push_back(WeightOf(excess[i], of_run[i]));
   return weights;
 }
 
@@ -199,10 +204,24 @@ LookWeights WeightsOf(const SessionProblem& problem, const SessionFit& fit) {
           WeightsFrom(problem.poses, fit.poses, sensors, 0.2)};
 }
 
-// Half the way: a weight that lets a look fit worse would else swing between two values.
-void Approach(const std::vector<double>& before, std::vector<double>& weights) {
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = std::sqrt(before[i] * weights[i]);
-}
+// Weights go towards what the residuals say by a part of the way, in logarithms: half of it wherever that turned round,
+// for a weight that lets a look fit worse would else swing between two values.
+class Approach {
+ public:
+  explicit Approach(std::size_t looks) : part_(looks, 1.0), way_(looks, 0.0) {}
+  void Go(const std::vector<double>& from, std::vector<double>& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      const double way = std::log(to[i] / from[i]);
+      part_[i] = way * way_[i] < 0 ? 0.5 * part_[i] : std::min(1.0, kFaster * part_[i]);
+      way_[i] = way;
+      to[i] = from[i] * std::exp(part_[i] * way);
+    }
+  }
+
+ private:
+  static constexpr double kFaster = 1.1;
+  std::vector<double> part_, way_;
+};
 
 bool Same(const std::vector<SensorNoise>& x, const std::vector<SensorNoise>& y) {
   const auto close = [](double a, double b) { return std::abs(a - b) <= kSameNoise * std::max(a, b); };
@@ -225,6 +244,7 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
   if (refined.layout.size == 0 || refined.groups == 0) return Fail(NotSolvable("has nothing to find"));
   const Linearization of{problem,         refined.layout,         refined.noise,
                          refined.weights, refined.group_of_place, refined.groups};
+  Approach corners(problem.corners.size()), plates(problem.plates.size()), poses(problem.poses.size());
   for (int round = 0; round < kRoundsMax; ++round) {
     RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
     refined.at_optimum = std::move(minimum.at);
@@ -236,11 +256,9 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     const std::vector<SensorNoise> updated = NoiseFrom(problem, refined.weights, refined.at_optimum.fit,
                                                               refined.state, refined.noise);
     LookWeights weights = WeightsOf(problem, refined.at_optimum.fit);
-    if (round > 1) {
-      Approach(refined.weights.corners, weights.corners);
-      Approach(refined.weights.plates, weights.plates);
-      Approach(refined.weights.poses, weights.poses);
-    }
+    corners.Go(refined.weights.corners, weights.corners);
+    plates.Go(refined.weights.plates, weights.plates);
+    poses.Go(refined.weights.poses, weights.poses);
     const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
                       Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
     if (same && minimum.settled) return refined;

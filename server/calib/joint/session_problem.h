@@ -69,6 +69,12 @@ struct SessionProblem {
   std::vector<RelativeKnown> relatives;
 };
 
+template <typename Visit>
+void ForEachLook(const SessionProblem& problem, const Visit& visit) {
+  for (const Where& look : problem.corners) visit(look);
+  for (const Where& look : problem.plates) visit(look);
+  for (const Where& look : problem.poses) visit(look);
+}
 [[nodiscard]] const CaptureId& CaptureAt(const SessionProblem& problem, int place);
 
 struct SessionState {

@@ -1,4 +1,4 @@
-#include "server/calib/joint/moved_sensor.h"
+#include "server/calib/joint/moved_pose.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -34,14 +34,13 @@ Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
   return inverse;
 }
 
-// What the groups say of one sensor's pose by its own columns.
+// What the groups say of one pose by its own columns, from `at` on.
 struct Scores {
   std::vector<Vector6d> b;
   std::vector<Eigen::MatrixXd> H;  // 6 x unknowns
   std::vector<Matrix6d> own;
 };
-Scores ScoresOf(const Refined& refined, int sensor) {
-  const int at = refined.layout.pose[static_cast<std::size_t>(sensor)];
+Scores ScoresOf(const Refined& refined, int at) {
   Scores scores;
   for (const NormalEquations& group : refined.at_optimum.groups) {
     scores.b.emplace_back(group.b.segment<6>(at));
@@ -113,10 +112,9 @@ std::vector<std::size_t> ChangePoints(const Scores& scores) {
   return points;
 }
 
-SensorMove LikeliestMove(const Refined& refined, int sensor) {
-  const Scores scores = ScoresOf(refined, sensor);
-  SensorMove best;
-  best.sensor = sensor;
+Move LikeliestMove(const Refined& refined, int at) {
+  const Scores scores = ScoresOf(refined, at);
+  Move best;
   for (const std::size_t group : ChangePoints(scores)) {
     const Change change = ChangeFrom(scores, refined.covariance, group);
     if (change.rank == 0) continue;
@@ -124,8 +122,8 @@ SensorMove LikeliestMove(const Refined& refined, int sensor) {
     const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
-    best = {sensor, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
-            scatter.mean_square * change.covariance};  // a bump makes the sensor's noise look larger than it is
+    best = {kNone, kNone, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
+            scatter.mean_square};
   }
   return best;
 }
@@ -141,13 +139,9 @@ std::size_t HalfWay(const Scores& scores, const std::vector<std::size_t>& points
 
 int CapturesOf(const SessionProblem& problem, int sensor) {
   std::set<int> captures;  // a board that is carried about makes a place of its own in each
-  const auto look_at = [&](const auto& looks) {
-    for (const auto& look : looks)
-      if (look.sensor == sensor) captures.insert(problem.capture_of_place[static_cast<std::size_t>(look.place)]);
-  };
-  look_at(problem.corners);
-  look_at(problem.plates);
-  look_at(problem.poses);
+  ForEachLook(problem, [&](const Where& look) {
+    if (look.sensor == sensor) captures.insert(problem.capture_of_place[static_cast<std::size_t>(look.place)]);
+  });
   return static_cast<int>(captures.size());
 }
 
@@ -170,10 +164,10 @@ double ToldFrom(const Spread& spread, double noncentrality, double least) {
 
 SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor) {
   SmallestMove told{kAnyMove_m, kAnyMove_rad, CapturesOf(problem, sensor)};
-  const Scores scores = ScoresOf(refined, sensor);
+  const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)]);
   const std::vector<std::size_t> points = ChangePoints(scores);
   if (refined.groups < kGroupsForMoves || points.empty()) return told;
-  const double looks = static_cast<double>(problem.sensors.size()) * (refined.groups - 1);
+  const double looks = static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups - 1);
   const std::size_t half_way = HalfWay(scores, points);
   const Change change = ChangeFrom(scores, refined.covariance, half_way);
   const Scatter scatter = ScatterBeside(scores, change, half_way);
@@ -186,16 +180,22 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   return told;
 }
 
-std::vector<SensorMove> ScanForMoves(const SessionProblem& problem, const Refined& refined) {
-  std::vector<SensorMove> moves;
-  for (int sensor = 0; sensor < static_cast<int>(problem.sensors.size()); ++sensor) {
-    const SensorMove move = LikeliestMove(refined, sensor);
-    if (move.statistic > 0) moves.push_back(move);
-  }
+std::vector<Move> ScanForMoves(const Refined& refined) {
+  std::vector<Move> moves;
+  const auto look_for = [&](const std::vector<int>& columns, int Move::* which) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (columns[i] == kNone) continue;
+      Move move = LikeliestMove(refined, columns[i]);
+      move.*which = static_cast<int>(i);
+      if (move.statistic > 0) moves.push_back(move);
+    }
+  };
+  look_for(refined.layout.pose, &Move::sensor);
+  look_for(refined.layout.board, &Move::board);
   const double looks = static_cast<double>(moves.size()) * std::max(1, refined.groups - 1);
-  for (SensorMove& move : moves) move.odds = std::min(1.0, move.odds * looks);
-  std::sort(moves.begin(), moves.end(), [](const SensorMove& x, const SensorMove& y) {
-    return x.statistic != y.statistic ? x.statistic > y.statistic : x.sensor < y.sensor;
+  for (Move& move : moves) move.odds = std::min(1.0, move.odds * looks);
+  std::stable_sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) {
+    return x.odds != y.odds ? x.odds < y.odds : x.statistic > y.statistic;
   });
   return moves;
 }

@@ -1,5 +1,5 @@
-// Is one rig behind all captures? A scan over sensors and captures for a change of one sensor's pose during the session
-// (score test for a change point; Andrews 1993), the reference sensor included.
+// Is one rig before boards that stand still behind all captures? A scan over sensors, the reference included, boards and
+// captures for a change of one pose during the session (score test for a change point; Andrews 1993).
 #pragma once
 
 #include "server/calib/joint/refine.h"
@@ -9,21 +9,22 @@ namespace rigcal::calib::joint {
 
 constexpr int kGroupsForMoves = 6;  // fewer do not tell a bump from chance
 
-struct SensorMove {
-  int sensor = kNone;
-  int group = 0;                     // of captures; the first after the move
-  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor
+struct Move {
+  int sensor = kNone, board = kNone;  // of which one moved
+  int group = 0;                      // of captures; the first after the move
+  Vector6d step = Vector6d::Zero();   // T_after = T_before Exp(step), right tangent at the sensor or the board
   double gain = 0.0;         // of the cost, which is twice that of the likelihood's logarithm
   double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
   double dof = 0.0;
   double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
-  Matrix6d covariance = Matrix6d::Zero();  // of the step
+  double scatter = 1.0;      // mean square of the groups' scores beside the change
 };
 
-// The likeliest change of each sensor that has observations in two groups or more, the most certain first.
+// The likeliest change of each sensor and board that was seen in two groups or more, the least odds first. The board
+// that is the world's frame is left out: where it moves, all others move.
 // The scatter of a sensor's captures beyond the change is its own measure of noise: a lens that does not fit moves a
 // sensor with the place in the picture, a bump with time.
-[[nodiscard]] std::vector<SensorMove> ScanForMoves(const SessionProblem& problem, const Refined& refined);
+[[nodiscard]] std::vector<Move> ScanForMoves(const Refined& refined);
 
 // The smallest move of this sensor that the scan would have told (odds below kMovedOdds after correction for its looks,
 // and IsMove) with a probability of 95 %: noncentral F with the sensor's own scatter, along the direction in which
