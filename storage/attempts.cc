@@ -62,6 +62,11 @@ void BeginOne(Store& store, const std::string& work, Stamp now) {
       .Run();
 }
 
+int TimesBegun(Store& store, const std::string& work) {
+  Query query(store, "SELECT count(*) FROM attempt WHERE work = ?");
+  return query.Bind(work).Step() ? static_cast<int>(query.Int(0)) : 0;
+}
+
 std::vector<std::string> OpenWorks(Store& store) {
   Query query(store, "SELECT work FROM waiting_attempt WHERE open_number IS NOT NULL ORDER BY open_number");
   std::vector<std::string> works;
@@ -96,7 +101,8 @@ Status EndAttempt(Store& store, const std::string& work, AttemptEnd end, const s
 Result<std::vector<std::string>> EndOpenAttempts(Store& store, AttemptEnd end, Stamp now) {
   return Append<std::vector<std::string>>(store, "open attempts", [&]() -> Result<std::vector<std::string>> {
     const std::vector<std::string> works = OpenWorks(store);
-    for (const std::string& work : works) EndOne(store, work, end, "", now);
+    for (const std::string& work : works)
+      EndOne(store, work, TimesBegun(store, work) < kBegunMax ? end : AttemptEnd::kCutOff, "", now);
     return works;
   });
 }

@@ -29,7 +29,9 @@ enum class AttemptEnd {
 // Ends the one that is open; none: nothing, but that work which is done is forgotten. `why` is kept of a failed one.
 [[nodiscard]] Status EndAttempt(Store& store, const std::string& work, AttemptEnd end, const std::string& why,
                                 Stamp now);
-// The same for every open attempt; the works that were open.
+// The same for every open attempt; the works that were open. What was begun kBegunMax times counts as cut off even if it is
+// given back: a cause that is always outside is no such cause.
+constexpr int kBegunMax = 30;
 [[nodiscard]] Result<std::vector<std::string>> EndOpenAttempts(Store& store, AttemptEnd end, Stamp now);
 
 // Attempts that count, of work that is not done; with the one under way.

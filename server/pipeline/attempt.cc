@@ -39,8 +39,8 @@ void EndAttempt(storage::Store& store, const Clock& clock, const std::string& wo
 std::string WhyGivenUp(const storage::Attempts& attempts, const std::string& doing) {
   std::string why;
   if (attempts.cut_off > 0)
-    why = "the server was stopped " + Times(attempts.cut_off) + " while it " + doing +
-          ": the system kills what takes too much memory";
+    why = "the server died " + Times(attempts.cut_off) + " while it " + doing +
+          ": of too much memory, for which the system kills, or of a fault of its own";
   if (attempts.failed > 0)
     why += (why.empty() ? "" : "; ") + std::string("it failed ") + Times(attempts.failed) + " when it " + doing + ": " +
            attempts.newest_why;

@@ -44,7 +44,7 @@ auto Attempted(storage::Store& store, const Clock& clock, const std::string& wor
   return result;
 }
 
-// "the server was stopped 3 times while it ...", or why it failed; `doing`: "calibrated left and right of session ...".
+// "the server died 3 times while it ...", or why it failed; `doing`: "calibrated left and right of session ...".
 [[nodiscard]] std::string WhyGivenUp(const storage::Attempts& attempts, const std::string& doing);
 
 }  // namespace rigcal::pipeline

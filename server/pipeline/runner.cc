@@ -15,8 +15,10 @@ namespace {
 constexpr std::int64_t kRetry_ns = 2'000'000'000;
 constexpr std::chrono::hours kLongestStep{6};  // a large session on a small machine
 
-Status NoteCutOffWork(storage::Store& store, const Clock& clock) {
-  RIGCAL_ASSIGN(const auto works, storage::EndOpenAttempts(store, storage::AttemptEnd::kCutOff, clock.Now()));
+// Work that was under way when the last run ended. It is not to blame where that came from outside.
+Status NoteCutOffWork(storage::Store& store, const Clock& clock, RunEnd last_run) {
+  const auto end = last_run == RunEnd::kFromOutside ? storage::AttemptEnd::kGivenBack : storage::AttemptEnd::kCutOff;
+  RIGCAL_ASSIGN(const auto works, storage::EndOpenAttempts(store, end, clock.Now()));
   for (const std::string& work : works) LogWarn("the server was stopped in the middle of " + work);
   return {};
 }
@@ -103,7 +105,7 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   impl->options = options;
   impl->announcer = std::move(announcer);
   RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.folder));
-  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock));
+  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, options.last_run));
   for (int i = 0; i < options.threads; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
     impl->stores.push_back(std::move(store));

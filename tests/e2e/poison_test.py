@@ -1,10 +1,11 @@
-"""A session of pictures that take more memory than there is, and one whose job is killed again and again, beside good ones: each ends
+"""A session of pictures that take more memory than there is, and one whose job crashes again and again, beside good ones: each ends
 as a failed edge that says why, the server serves on, and nobody else waits."""
 import contextlib
 import json
 import pathlib
 import re
 import resource
+import signal
 import struct
 import subprocess
 import sys
@@ -97,30 +98,39 @@ def begun(flow, attempt, times):
     return len(re.findall(r"job 1: .*attempt %d of 3" % attempt, log_of(flow))) == times
 
 
-def killed_thrice(session):
+def crash_and_restart(flow):
+    flow.server.process.send_signal(signal.SIGABRT)
+    flow.server.process.wait()
+    flow.server.start()
+    flow.address = flow.ready()
+
+
+def crashed_thrice(session):
     with Flow() as flow:
         flow.rigcal("push", session, "--no-wait")
         wait_for(flow, "the first attempt", lambda: begun(flow, 1, 1))
-        flow.kill_and_restart()
+        flow.kill_and_restart()  # from outside: not the work's doing
+        wait_for(flow, "the first attempt again", lambda: begun(flow, 1, 2))
+        crash_and_restart(flow)
         push_good(flow, "beside")  # what was cut off comes after all others
         wait_for(flow, "the second attempt", lambda: begun(flow, 2, 1))
         flow.server.stop()  # an orderly stop does not count
         flow.server.start()
         flow.address = flow.ready()
         wait_for(flow, "the second attempt again", lambda: begun(flow, 2, 2))
-        flow.kill_and_restart()
+        crash_and_restart(flow)
         wait_for(flow, "the third attempt", lambda: begun(flow, 3, 1))
-        flow.kill_and_restart()
+        crash_and_restart(flow)
         said = failed_edge(flow)
-        check("the server was stopped 3 times while it calibrated left and right of robot poison" in said, "the reason: " + said)
+        check("the server died 3 times while it calibrated left and right of robot poison" in said, "the reason: " + said)
         push_good(flow, "after")
-        print("killed thrice: %s" % said[:200])
+        print("crashed thrice: %s" % said[:200])
 
 
 def main():
     with tempfile.TemporaryDirectory(prefix="rigcal-poison-") as folder:
         session = poison_session(pathlib.Path(folder) / "poison")
-        for part in (little_memory, killed_thrice):
+        for part in (little_memory, crashed_thrice):
             if not sys.argv[1:] or part.__name__ in sys.argv[1:]:
                 part(session)
     print("poison: good")

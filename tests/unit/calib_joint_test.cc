@@ -1,44 +1,14 @@
 // The joint refinement against a virtual robot that shares none of its mathematics: corners are projected by OpenCV.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "client/sim/rig_yaml.h"
 #include "server/calib/joint/cluster_covariance.h"
-#include "server/calib/joint/estimate_session.h"
-#include "server/calib/joint/moved_pose.h"
-#include "tests/bench/joint_session.h"
+#include "tests/unit/calib_joint_visit.h"
 
 namespace rigcal::calib::joint {
 namespace {
-
-constexpr int kCaptures = 12;
-
-sim::Options WithSeed(std::uint64_t seed) {
-  sim::Options options;
-  options.seed = seed;
-  return options;
-}
-
-FeatureSession Visit(sim::Options options) {
-  options.captures = kCaptures;
-  auto experiment = sim::Prepare(*sim::LoadRig("mars-mapper"), options);
-  return RecordFeatures(*experiment, 0);
-}
-
-SessionStart StartFrom(const FeatureSession& session) {
-  auto start = StartOf(ViewsOf(session, NominalPoses(session)));
-  EXPECT_TRUE(start) << Sentence(start.error());
-  return std::move(start).value();
-}
-
-Refined RefinedFrom(const SessionStart& start) {
-  auto refined = Refine(start.problem, start.state, start.noise, GroupsOf(start.problem, start.state));
-  EXPECT_TRUE(refined) << Sentence(refined.error());
-  return std::move(refined).value();
-}
 
 struct Fixed {
   SessionStart start;
@@ -141,86 +111,6 @@ TEST(CalibJoint, NoiseOfEachSensorIsFoundFromItsResiduals) {
   }
 }
 
-class BumpedSensor : public testing::TestWithParam<std::tuple<const char*, double, double>> {};
-
-TEST_P(BumpedSensor, IsNamedWithItsCapture) {
-  const auto [name, move_m, turn_rad] = GetParam();
-  sim::Options options = WithSeed(8);
-  options.bump = SensorId(name);
-  options.bump_m = move_m;
-  options.bump_rad = turn_rad;
-  const SessionStart start = StartFrom(Visit(options));
-  const Refined refined = RefinedFrom(start);
-  const std::vector<Move> moves = ScanForMoves(refined);
-  ASSERT_FALSE(moves.empty());
-  ASSERT_NE(moves[0].sensor, kNone) << "a board: " << start.problem.boards[static_cast<std::size_t>(moves[0].board)].str();
-  EXPECT_EQ(start.problem.sensors[static_cast<std::size_t>(moves[0].sensor)].str(), name);
-  EXPECT_NEAR(moves[0].group, kCaptures / 2, 1);
-  EXPECT_LT(moves[0].odds, 1e-6);
-  EXPECT_NEAR(moves[0].step.head<3>().norm(), move_m, 0.5 * move_m);
-}
-
-INSTANTIATE_TEST_SUITE_P(Sizes, BumpedSensor,
-                         testing::Values(std::tuple("front_right", 0.02, 0.035), std::tuple("back", 0.005, 0.0087),
-                                         std::tuple("front_left", 0.005, 0.0087),  // the reference
-                                         std::tuple("lidar_vertical", 0.02, 0.035)));
-
-TEST(CalibJoint, NoSensorIsAccusedWhereNoneMoved) {
-  for (const std::uint64_t seed : {11, 12, 13}) {
-    const SessionStart start = StartFrom(Visit(WithSeed(seed)));
-    const std::vector<Move> moves = ScanForMoves(RefinedFrom(start));
-    ASSERT_FALSE(moves.empty());
-    EXPECT_GT(moves[0].odds, 1e-6) << "seed " << seed;
-  }
-}
-
-SmallestMove SmallestMoveOf(const SessionEstimate& estimate, const std::string& sensor) {
-  for (const RefinedPose& pose : estimate.poses)
-    if (pose.sensor.str() == sensor && pose.smallest_move) return *pose.smallest_move;
-  ADD_FAILURE() << sensor << " has no smallest move";
-  return {};
-}
-
-SessionEstimate EstimateFrom(const FeatureSession& session) {
-  SessionEstimate estimate = EstimateSession(ViewsOf(session, NominalPoses(session)));
-  EXPECT_TRUE(estimate.why_not.empty());
-  return estimate;
-}
-
-// Told moved in a session in which it was shifted and turned so.
-void ExpectToldMoved(sim::Options options, const char* sensor, double shift_m, double turn_rad) {
-  options.bump = SensorId(sensor);
-  options.bump_m = shift_m;
-  options.bump_rad = turn_rad;
-  const SessionEstimate bumped = EstimateFrom(Visit(options));
-  ASSERT_EQ(bumped.moved.size(), 1u) << sensor << ", seed " << options.seed << ": " << shift_m << " m, " << turn_rad << " rad";
-  EXPECT_EQ(bumped.moved[0].sensor.str(), sensor);
-}
-
-TEST(CalibJoint, AMoveAsSmallAsASessionSaysItWouldTellIsTold) {
-  for (const char* sensor : {"front_right", "lidar_vertical"})
-    for (const std::uint64_t seed : {21, 22, 23}) {
-      const sim::Options options = WithSeed(seed);
-      const SmallestMove smallest = SmallestMoveOf(EstimateFrom(Visit(options)), sensor);
-      EXPECT_EQ(smallest.captures, kCaptures);
-      EXPECT_LT(smallest.m, 0.05);
-      ExpectToldMoved(options, sensor, smallest.m, 0.0);
-      ExpectToldMoved(options, sensor, 0.0, smallest.rad);
-    }
-}
-
-TEST(CalibJoint, TooFewCapturesTellNoMove) {
-  sim::Options options = WithSeed(21);
-  options.captures = 5;
-  auto experiment = sim::Prepare(*sim::LoadRig("mars-mapper"), options);
-  for (const RefinedPose& pose : EstimateFrom(RecordFeatures(*experiment, 0)).poses) {
-    ASSERT_TRUE(pose.smallest_move);
-    EXPECT_EQ(pose.smallest_move->m, kAnyMove_m) << pose.sensor.str();
-    EXPECT_EQ(pose.smallest_move->rad, kAnyMove_rad);
-    EXPECT_LE(pose.smallest_move->captures, 5);
-  }
-}
-
 TEST(CalibJoint, OnePictureOfAnotherInstantCostsLittleAndIsHeldBack) {
   FeatureSession session = Visit(WithSeed(9));
   auto& views = session.seen.views.at(SensorId("front_right"));
@@ -292,21 +182,6 @@ void Bend(const char* camera, double amplitude_px, FeatureSession& session) {
     for (Eigen::Vector2d& corner : view.corners_px) corner += BentBy(amplitude_px, corner);
 }
 
-double T2(const FeatureSession& session, const SensorId& sensor, const Se3& T_ref_sensor, const Matrix6d& C) {
-  const Vector6d error = (T_ref_sensor.Inverse() * session.experiment.T_ref_sensor(sensor)).Log();
-  return error.dot(C.ldlt().solve(error));
-}
-
-// Of the sensor whose pose is told worst: squared error in sigmas; 6 are expected.
-double WorstT2(const FeatureSession& session, const SessionEstimate& estimate) {
-  double worst = 0;
-  for (std::size_t i = 0; i < estimate.poses.size(); ++i)
-    if (const int row = RowOf(estimate, i); row >= 0)
-      worst = std::max(worst, T2(session, estimate.poses[i].sensor, estimate.poses[i].T_ref_sensor,
-                                 estimate.covariance.block<6, 6>(row, row)));
-  return worst;
-}
-
 double WorstT2WithoutFields(const FeatureSession& session) {
   const SessionStart start = StartFrom(session);
   const Refined refined = RefinedFrom(start);
@@ -344,58 +219,6 @@ TEST(CalibJoint, EveryLensMayBend) {
 
 TEST(CalibJoint, NoLensIsAccusedWhereNoneBends) {
   for (const std::uint64_t seed : {11, 12, 13}) EXPECT_TRUE(EstimateFrom(Visit(WithSeed(seed))).misfits.empty()) << seed;
-}
-
-FeatureSession BumpedVisit(const char* sensor, double shift_m, double at_ratio) {
-  sim::Options options = WithSeed(20);
-  options.bump = SensorId(sensor);
-  options.bump_m = shift_m;
-  options.bump_rad = 0.0;
-  options.bump_at_ratio = at_ratio;
-  return Visit(options);
-}
-
-Se3 PoseIn(const SessionEstimate& estimate, const char* sensor) {
-  const auto found = std::find_if(estimate.poses.begin(), estimate.poses.end(),
-                                  [&](const RefinedPose& pose) { return pose.sensor.str() == sensor; });
-  EXPECT_NE(found, estimate.poses.end());
-  return found->T_ref_sensor;
-}
-
-double ShiftBetween_m(const Se3& T_a, const Se3& T_b) { return (T_a.Inverse() * T_b).Log().head<3>().norm(); }
-
-TEST(CalibJoint, AMoveTooSmallToTellDividesNoSession) {
-  for (const char* sensor : {"right_back", "front_left"}) {  // the reference, too
-    const SessionEstimate estimate = EstimateFrom(BumpedVisit(sensor, 0.0006, 0.5));
-    EXPECT_TRUE(estimate.moved.empty()) << sensor;
-    EXPECT_EQ(SmallestMoveOf(estimate, sensor).captures, SmallestMoveOf(EstimateFrom(Visit(WithSeed(20))), sensor).captures);
-  }
-}
-
-TEST(CalibJoint, ASensorThatMovedTwiceHasItsLastPose) {
-  FeatureSession session = BumpedVisit("back", 0.01, 1.0 / 3);
-  const FeatureSession later = BumpedVisit("back", 0.03, 2.0 / 3);
-  for (auto& [capture, view] : session.seen.views.at(SensorId("back")))
-    if (capture >= session.experiment.captures[2 * kCaptures / 3]) view = later.seen.views.at(SensorId("back")).at(capture);
-  const SessionEstimate estimate = EstimateFrom(session);
-  ASSERT_EQ(estimate.moved.size(), 2u);
-  const Se3 first = PoseIn(EstimateFrom(Visit(WithSeed(20))), "back");
-  EXPECT_NEAR(ShiftBetween_m(first, PoseIn(estimate, "back")), 0.03, 0.002);
-}
-
-TEST(CalibJoint, ABoardThatMovedIsNamedAndCostsNoPose) {
-  for (const std::uint64_t seed : {17, 18, 19}) {
-    sim::Options options = WithSeed(seed);
-    options.disturb.board_move = sim::BoardMove{{0.005, 0.0087}, 0.5, {}};
-    const FeatureSession session = Visit(options);
-    const SessionEstimate estimate = EstimateFrom(session);
-    EXPECT_TRUE(estimate.moved.empty()) << estimate.moved[0].sensor.str() << ", seed " << seed;
-    ASSERT_EQ(estimate.boards_moved.size(), 1u) << "seed " << seed;
-    EXPECT_EQ(estimate.boards_moved[0].board, session.experiment.moved_board->board);
-    EXPECT_GE(estimate.boards_moved[0].first_after, session.experiment.captures[kCaptures / 2]);
-    EXPECT_LT(estimate.boards_moved[0].last_before, session.experiment.captures[kCaptures / 2]);
-    EXPECT_LT(WorstT2(session, estimate), 25.0) << "seed " << seed;
-  }
 }
 
 TEST(CalibJoint, ABumpIsNoBentLensAndABentLensNoBump) {

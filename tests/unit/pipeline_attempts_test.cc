@@ -89,7 +89,7 @@ TEST_F(AttemptsPipelineTest, AJobThatEndedTheProcessThriceIsAFailedEdgeAndStopsN
   EXPECT_EQ(edges[0].method, "stereo");
   EXPECT_EQ(edges[0].session, session);
   EXPECT_THAT(edges[0].diagnoses[0].what,
-              HasSubstr("the server was stopped 3 times while it calibrated left and right of robot poison, session " +
+              HasSubstr("the server died 3 times while it calibrated left and right of robot poison, session " +
                         session.str()));
   EXPECT_THAT(edges[0].diagnoses[0].cure, HasSubstr("fewer or smaller pictures"));
   EXPECT_TRUE(std::filesystem::exists(store_->ReportFolder() / "poison" / "1" / "index.html"));
@@ -103,7 +103,7 @@ TEST_F(AttemptsPipelineTest, TwoDeathsAndAnOrderlyStopAreNotThree) {
   ASSERT_TRUE(storage::EndOpenAttempts(*store_, storage::AttemptEnd::kGivenBack, clock_.now));
   StepAll();
   ASSERT_EQ(EdgesOf("r").size(), 1u);
-  EXPECT_THAT(EdgesOf("r")[0].diagnoses[0].what, Not(HasSubstr("the server was stopped")));
+  EXPECT_THAT(EdgesOf("r")[0].diagnoses[0].what, Not(HasSubstr("the server died")));
 }
 
 // One piece of work at a time of those that were begun before: nobody is blamed for a neighbour's death.
@@ -197,7 +197,7 @@ TEST_F(AttemptsPipelineTest, AReportThatEndedTheProcessThriceComesWithoutItsClou
   EXPECT_EQ(Page("poison", "1"), "");  // after all others' work
   StepAll();
   EXPECT_THAT(Page("r", "1"), Not(HasSubstr("The clouds in colour are not shown")));
-  EXPECT_THAT(Page("poison", "1"), HasSubstr("The clouds in colour are not shown: the server was stopped 3 times"));
+  EXPECT_THAT(Page("poison", "1"), HasSubstr("The clouds in colour are not shown: the server died 3 times"));
 }
 
 TEST_F(AttemptsPipelineTest, AReportThatEndsItWithoutCloudsTooIsPassedOver) {

@@ -159,7 +159,7 @@ TEST_F(ValidityTest, AGraphThatWasGivenUpIsToldWithItsCure) {
   for (const json& document : {Row(), Ask("show")}) {
     EXPECT_EQ(document["calculating"], false);
     const std::string why = document["given_up"];
-    EXPECT_NE(why.find("the server was stopped 3 times while it solved the graph of robot r"), std::string::npos) << why;
+    EXPECT_NE(why.find("the server died 3 times while it solved the graph of robot r"), std::string::npos) << why;
     EXPECT_NE(why.find("rigcal retire"), std::string::npos);
   }
   EXPECT_NE(Page("/robots/r/").find("What came last is in no revision"), std::string::npos);

@@ -48,6 +48,14 @@ TEST_F(AttemptsTest, WhatIsGivenBackDoesNotCount) {
   EXPECT_EQ(attempts.newest_why, "no memory");
 }
 
+TEST_F(AttemptsTest, WhatIsAlwaysGivenBackCountsInTheEnd) {
+  for (int i = 0; i < kBegunMax + 2; ++i) {
+    ASSERT_TRUE(BeginAttempt(store_, work_, {2 * i}));
+    ASSERT_TRUE(EndOpenAttempts(store_, AttemptEnd::kGivenBack, {2 * i + 1}));
+  }
+  EXPECT_EQ(Counted(), 3);
+}
+
 TEST_F(AttemptsTest, WorkThatIsDoneBeginsAtNoughtAgain) {
   ASSERT_TRUE(BeginAttempt(store_, work_, {1}));
   ASSERT_TRUE(EndAttempt(store_, work_, AttemptEnd::kFailed, "no memory", {2}));

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "server/base/last_run.h"
+
+namespace rigcal {
+namespace {
+
+class LastRunTest : public testing::Test {
+ protected:
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("rigcal-last-run-" + std::to_string(getpid()));
+  LastRunTest() { std::filesystem::create_directories(folder_); }
+  ~LastRunTest() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string Noted() const {
+    std::stringstream text;
+    text << std::ifstream(folder_ / "run").rdbuf();
+    return text.str();
+  }
+  void Note(const std::string& text) const { std::ofstream(folder_ / "run") << text; }
+
+  // A process of its own that serves from the folder and ends so.
+  template <typename End>
+  int StatusOf(const End& end) const {
+    const pid_t child = fork();
+    if (child == 0) {
+      static_cast<void>(BeginRun(folder_));
+      end();
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return status;
+  }
+};
+
+TEST_F(LastRunTest, OfTheFirstNothingIsKnown) { EXPECT_EQ(BeginRun(folder_), RunEnd::kMayBeItsOwn); }
+
+TEST_F(LastRunTest, AKillComesFromOutside) {
+  const int status = StatusOf([] { kill(getpid(), SIGKILL); });
+  EXPECT_EQ(WTERMSIG(status), SIGKILL);
+  if (Noted().empty()) GTEST_SKIP() << "/proc does not tell the boot and what was killed for want of memory";
+  EXPECT_EQ(BeginRun(folder_), RunEnd::kFromOutside);
+}
+
+TEST_F(LastRunTest, ACrashIsItsOwnAndIsToldOnce) {
+  for (const auto& [end, signal] : {std::pair{+[] { std::abort(); }, SIGABRT}, std::pair{+[] { raise(SIGSEGV); }, SIGSEGV}}) {
+    const int status = StatusOf(end);
+    ASSERT_TRUE(WIFSIGNALED(status)) << signal;
+    EXPECT_EQ(WTERMSIG(status), signal);
+    EXPECT_EQ(BeginRun(folder_), RunEnd::kMayBeItsOwn);
+  }
+  if (!Noted().empty()) {
+    EXPECT_EQ(BeginRun(folder_), RunEnd::kFromOutside);
+  }
+}
+
+TEST_F(LastRunTest, WhereTheSystemKilledForMemoryItMayBeItsOwnButNotAcrossABoot) {
+  static_cast<void>(BeginRun(folder_));
+  const std::string now = Noted();
+  if (now.empty()) GTEST_SKIP() << "/proc does not tell the boot and what was killed for want of memory";
+  Note(now.substr(0, now.find('\n')) + "\noom_kill 987654321\n");
+  EXPECT_EQ(BeginRun(folder_), RunEnd::kMayBeItsOwn);
+  Note("another boot\noom_kill 987654321\n");
+  EXPECT_EQ(BeginRun(folder_), RunEnd::kFromOutside);
+}
+
+}  // namespace
+}  // namespace rigcal
