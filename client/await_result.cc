@@ -96,11 +96,17 @@ Status ResultWatch::AskRevision(State& state) {
   const std::string robot = state.place.robot.str();
   RIGCAL_ASSIGN(state.result.status, connection_.AskDocument("status", JsonObject({{"robot", robot}}), kAnswerWithin));
   const Document rows = state.result.status["robots"];
-  if (const std::string why = rows.size() > 0 ? rows[0]["given_up"].Text() : ""; !why.empty())
-    return Fail(ErrorCode::kInternal, "the result of robot '" + robot + "' could not be worked out",
-                why + " What was sent is kept.");
-  const std::int64_t newest = rows.size() > 0 ? rows[0]["revision"].Integer().value_or(0) : 0;
+  RIGCAL_TRY(LookAt(rows.size() > 0 ? rows[0]["revision"].Integer().value_or(0) : 0, state));
+  const std::string given_up = rows.size() > 0 ? rows[0]["given_up"].Text() : "";
+  if (state.finished || given_up.empty()) return {};
+  return Fail(ErrorCode::kInternal, "the result of robot '" + robot + "' could not be worked out",
+              given_up + " What was sent is kept.");
+}
+
+// Whether the newest revision holds what is waited for, unless it was asked that before.
+Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   if (newest == 0 || (newest == state.looked_at_revision && state.looked_for == state.place.edges.size())) return {};
+  const std::string robot = state.place.robot.str();
   RIGCAL_ASSIGN(state.result.show_text,
                 connection_.Ask("show", JsonObject({{"robot", robot}, {"revision", newest}}), kAnswerWithin));
   RIGCAL_ASSIGN(state.result.show, Document::Parse(state.result.show_text, "the server's answer to 'show'"));

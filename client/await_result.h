@@ -47,6 +47,7 @@ class ResultWatch {
   void TakeEvent(const rigcal_wire_Event& event, State& state) const;
   [[nodiscard]] Status AskSession(State& state);
   [[nodiscard]] Status AskRevision(State& state);
+  [[nodiscard]] Status LookAt(std::int64_t newest, State& state);
   [[nodiscard]] Status AskAll(State& state);
   [[nodiscard]] Status AwaitPublished(State& state);
   [[nodiscard]] Status TakeEvents(State& state, std::chrono::milliseconds timeout);

@@ -8,7 +8,6 @@
 #include <iostream>
 #include <mutex>
 
-#include "server/base/last_run.h"
 #include "server/base/leave_soon.h"
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
@@ -80,7 +79,6 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
-  const RunEnd last_run = BeginRun(config.data);
   RIGCAL_ASSIGN(storage::Store query_store, storage::Store::Open(config.data));
   if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
@@ -119,7 +117,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
-      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, last_run}, announcer));
+      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn}, announcer));
   relay.Set(&runner);
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()

@@ -62,9 +62,23 @@ void BeginOne(Store& store, const std::string& work, Stamp now) {
       .Run();
 }
 
-int TimesBegun(Store& store, const std::string& work) {
-  Query query(store, "SELECT count(*) FROM attempt WHERE work = ?");
-  return query.Bind(work).Step() ? static_cast<int>(query.Int(0)) : 0;
+constexpr const char* kKilled = "killed from outside";
+
+int TimesKilled(Store& store, const std::string& work) {
+  Query query(store,
+              "SELECT count(*) FROM attempt a JOIN attempt_ended e ON e.attempt_number = a.number "
+              "WHERE a.work = ? AND e.why = ?");
+  return query.Bind(work, std::string(kKilled)).Step() ? static_cast<int>(query.Int(0)) : 0;
+}
+
+void EndKilled(Store& store, const std::string& work, Stamp now) {
+  const auto begun = BegunOf(store, work);
+  if (!begun || !begun->open_number) return;
+  if (TimesKilled(store, work) + 1 >= kKillsMax) return EndOne(store, work, AttemptEnd::kCutOff, "", now);
+  InsertEnd(store, *begun->open_number, AttemptEnd::kGivenBack, kKilled, now);
+  Query(store, "UPDATE waiting_attempt SET attempts = ?, open_number = NULL WHERE work = ?")
+      .Bind(begun->attempts - 1, work)
+      .Run();
 }
 
 std::vector<std::string> OpenWorks(Store& store) {
@@ -101,8 +115,15 @@ Status EndAttempt(Store& store, const std::string& work, AttemptEnd end, const s
 Result<std::vector<std::string>> EndOpenAttempts(Store& store, AttemptEnd end, Stamp now) {
   return Append<std::vector<std::string>>(store, "open attempts", [&]() -> Result<std::vector<std::string>> {
     const std::vector<std::string> works = OpenWorks(store);
-    for (const std::string& work : works)
-      EndOne(store, work, TimesBegun(store, work) < kBegunMax ? end : AttemptEnd::kCutOff, "", now);
+    for (const std::string& work : works) EndOne(store, work, end, "", now);
+    return works;
+  });
+}
+
+Result<std::vector<std::string>> EndKilledAttempts(Store& store, Stamp now) {
+  return Append<std::vector<std::string>>(store, "open attempts", [&]() -> Result<std::vector<std::string>> {
+    const std::vector<std::string> works = OpenWorks(store);
+    for (const std::string& work : works) EndKilled(store, work, now);
     return works;
   });
 }
@@ -120,6 +141,7 @@ Result<Attempts> LoadAttempts(Store& store, const std::string& work) {
   return Load<Attempts>(store, AttemptSubject(work), [&]() -> Result<Attempts> {
     const auto begun = BegunOf(store, work);
     Attempts attempts;
+    attempts.under_way = begun && begun->open_number;
     Query query(store,
                 "SELECT coalesce(e.how, 'cut_off'), coalesce(e.why, '') FROM attempt a "
                 "LEFT JOIN attempt_ended e ON e.attempt_number = a.number "

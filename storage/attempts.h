@@ -29,15 +29,18 @@ enum class AttemptEnd {
 // Ends the one that is open; none: nothing, but that work which is done is forgotten. `why` is kept of a failed one.
 [[nodiscard]] Status EndAttempt(Store& store, const std::string& work, AttemptEnd end, const std::string& why,
                                 Stamp now);
-// The same for every open attempt; the works that were open. What was begun kBegunMax times counts as cut off even if it is
-// given back: a cause that is always outside is no such cause.
-constexpr int kBegunMax = 30;
+// The same for every open attempt; the works that were open.
 [[nodiscard]] Result<std::vector<std::string>> EndOpenAttempts(Store& store, AttemptEnd end, Stamp now);
+// The same where the process was killed from outside: given back, but still work that was begun before; from the
+// kKillsMax-th kill of the same work on cut off, for a cause that is always outside is none.
+constexpr int kKillsMax = 10;
+[[nodiscard]] Result<std::vector<std::string>> EndKilledAttempts(Store& store, Stamp now);
 
 // Attempts that count, of work that is not done; with the one under way.
 [[nodiscard]] Result<std::map<std::string, int>> LoadAttemptCounts(Store& store);
 struct Attempts {
-  int failed = 0, cut_off = 0;
+  int failed = 0, cut_off = 0;  // one that is open is cut off, unless it is
+  bool under_way = false;
   std::string newest_why;  // of those that failed
 };
 [[nodiscard]] Result<Attempts> LoadAttempts(Store& store, const std::string& work);

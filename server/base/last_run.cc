@@ -5,7 +5,6 @@
 
 #include <array>
 #include <csignal>
-#include <cstring>
 #include <fstream>
 #include <string>
 
@@ -15,25 +14,22 @@
 namespace rigcal {
 namespace {
 
-constexpr std::array kCrashes = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV};
+constexpr std::array kCrashes = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP};
 constexpr std::size_t kNoteBytesMax = 4096;
+constexpr char kRuns = '-', kCrashed = 'x';  // the first byte of a note
 
-std::array<char, 4096> g_crash_note;  // its path: a handler may not make one
+volatile int g_note = -1;  // open: a handler may need a disk that is full
 std::array<struct sigaction, kCrashes.size()> g_before;
 
-// A file that is there: this run crashed. Then whoever handled the signal before does so.
+// Then whoever handled the signal before does so.
 void NoteCrash(int signal) {
-  if (const int file = open(g_crash_note.data(), O_CREAT | O_WRONLY | O_CLOEXEC, 0644); file >= 0) close(file);
+  if (g_note >= 0) static_cast<void>(!pwrite(g_note, &kCrashed, 1, 0));
   for (std::size_t i = 0; i < kCrashes.size(); ++i)
     if (kCrashes[i] == signal) sigaction(signal, &g_before[i], nullptr);
   raise(signal);
 }
 
-void NoteCrashesIn(const std::filesystem::path& note) {
-  if (note.native().size() >= g_crash_note.size()) return;
-  const bool handled = g_crash_note[0] != '\0';
-  std::strcpy(g_crash_note.data(), note.c_str());
-  if (handled) return;
+void HandleCrashes() {
   struct sigaction action = {};
   action.sa_handler = NoteCrash;
   sigemptyset(&action.sa_mask);
@@ -53,23 +49,29 @@ std::string MachineState() {
   return boot.empty() || killed.empty() ? "" : boot + "\n" + killed + "\n";
 }
 
-RunEnd Judged(const std::string& then, const std::string& now, bool crashed) {
-  if (crashed || then.empty() || now.empty()) return RunEnd::kMayBeItsOwn;
+std::filesystem::path NoteIn(const std::filesystem::path& folder) { return folder / "run"; }
+
+}  // namespace
+
+RunEnd EndOfLastRun(const std::filesystem::path& folder) {
+  const std::string note = ReadFile(NoteIn(folder), kNoteBytesMax).value_or(""), now = MachineState();
+  if (note.size() < 2 || note[0] != kRuns || now.empty()) return RunEnd::kMayBeItsOwn;
+  const std::string then = note.substr(1);
   const bool same_boot = then.substr(0, then.find('\n')) == now.substr(0, now.find('\n'));
   return !same_boot || then == now ? RunEnd::kFromOutside : RunEnd::kMayBeItsOwn;
 }
 
-}  // namespace
-
-RunEnd BeginRun(const std::filesystem::path& folder) {
-  const std::filesystem::path run = folder / "run", crash = folder / "run.crashed";
-  const std::string now = MachineState();
-  const RunEnd last = Judged(ReadFile(run, kNoteBytesMax).value_or(""), now, std::filesystem::exists(crash));
-  std::error_code failed;
-  std::filesystem::remove(crash, failed);
-  NoteCrashesIn(crash);
-  if (const Status noted = WriteDurably(run, now); !noted) LogWarn(noted.error().what);
-  return last;
+void BeginRun(const std::filesystem::path& folder) {
+  const Status noted = WriteDurably(NoteIn(folder), kRuns + MachineState());
+  if (!noted) {
+    LogWarn(noted.error().what);
+    std::error_code gone;
+    std::filesystem::remove(NoteIn(folder), gone);
+  }
+  const bool handled = g_note >= 0;
+  if (handled) close(g_note);
+  g_note = open(NoteIn(folder).c_str(), O_WRONLY | O_CLOEXEC);
+  if (!handled && g_note >= 0) HandleCrashes();
 }
 
 }  // namespace rigcal

@@ -4,6 +4,7 @@
 
 #include "server/fleet/findings.h"
 #include "server/fleet/wording.h"
+#include "server/model/method.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -85,11 +86,15 @@ std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vect
   return ids;
 }
 
-std::vector<SessionId> WithMovedBoards(const std::vector<SessionEstimate>& estimates) {
+// Edges of sessions in which a board moved, by methods that take boards to stand still.
+std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
   std::vector<SessionId> sessions;
   for (const SessionEstimate& estimate : estimates)
     if (!estimate.boards_moved.empty()) sessions.push_back(estimate.session);
-  return sessions;
+  std::set<EdgeId> ids = EdgesOf(sessions, edges);
+  for (const Edge& edge : edges)
+    if (const auto method = MethodNamed(edge.method); !method || !RowOf(*method).board_stands_still) ids.erase(edge.id);
+  return ids;
 }
 
 }  // namespace
@@ -98,7 +103,7 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
                                   const std::vector<SessionEstimate>& estimates) {
   const std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
   if (refined.empty()) return solution;
-  const std::set<EdgeId> before_moved_boards = EdgesOf(WithMovedBoards(estimates), edges);
+  const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
   const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {
     bool small = e.head<3>().norm() <= policy.residual_max_m && e.tail<3>().norm() <= policy.residual_max_rad;
     for (const std::vector<EdgeId>& ids : groups)
@@ -115,9 +120,11 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
     return excused(suspect.e, {{suspect.edge}, suspect.alternatives});
   });
   std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return excused(residual.e, {{residual.edge}}); });
-  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) { return excused(cycle.e, {cycle.edges}); });
-  judged.cycles.failing = static_cast<int>(
-      std::count_if(judged.cycles.worst.begin(), judged.cycles.worst.end(), [](const auto& cycle) { return cycle.fails(); }));
+  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) {
+    const bool gone = excused(cycle.e, {cycle.edges});
+    judged.cycles.failing -= gone && cycle.fails() ? 1 : 0;
+    return gone;
+  });
   return judged;
 }
 

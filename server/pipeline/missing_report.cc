@@ -47,7 +47,7 @@ std::optional<Error> GivenUp(storage::Store& store, const storage::RevisionKey& 
   const auto counts = storage::LoadAttemptCounts(store);
   if (!attempts || !counts) return std::nullopt;
   const auto count = counts->find(storage::WorkOfReport(key));
-  if (count == counts->end() || count->second < kPublishAttemptsMax) return std::nullopt;
+  if (count == counts->end() || count->second < kPublishAttemptsMax || attempts->under_way) return std::nullopt;
   return Error{ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + WhyGivenUp(*attempts, "made it"),
                "Give the server more memory, or report it with the server's log."};
 }

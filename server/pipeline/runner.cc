@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/base/last_run.h"
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
 #include "storage/attempts.h"
@@ -17,8 +18,9 @@ constexpr std::chrono::hours kLongestStep{6};  // a large session on a small mac
 
 // Work that was under way when the last run ended. It is not to blame where that came from outside.
 Status NoteCutOffWork(storage::Store& store, const Clock& clock, RunEnd last_run) {
-  const auto end = last_run == RunEnd::kFromOutside ? storage::AttemptEnd::kGivenBack : storage::AttemptEnd::kCutOff;
-  RIGCAL_ASSIGN(const auto works, storage::EndOpenAttempts(store, end, clock.Now()));
+  RIGCAL_ASSIGN(const auto works, last_run == RunEnd::kFromOutside
+                                      ? storage::EndKilledAttempts(store, clock.Now())
+                                      : storage::EndOpenAttempts(store, storage::AttemptEnd::kCutOff, clock.Now()));
   for (const std::string& work : works) LogWarn("the server was stopped in the middle of " + work);
   return {};
 }
@@ -105,7 +107,8 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   impl->options = options;
   impl->announcer = std::move(announcer);
   RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.folder));
-  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, options.last_run));
+  RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.folder)));
+  BeginRun(options.folder);
   for (int i = 0; i < options.threads; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
     impl->stores.push_back(std::move(store));

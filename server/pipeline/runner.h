@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "server/base/last_run.h"
 #include "server/base/vitals.h"
 #include "server/pipeline/step.h"
 
@@ -18,7 +17,6 @@ class Runner {
     int threads = 2;
     Vitals* vitals = nullptr;           // told how the threads are; none: nobody asks
     UndrawnReports* undrawn = nullptr;  // likewise
-    RunEnd last_run = RunEnd::kMayBeItsOwn;
   };
   [[nodiscard]] static Result<Runner> Start(const Options& options, Announcer announcer);
   ~Runner();  // finishes the step at hand, then joins; unfinished work is found again at the next start

@@ -43,7 +43,7 @@ Result<std::string> LoadGivenUp(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const std::int64_t edges, storage::LoadEdgeWatermark(store, robot));
   RIGCAL_ASSIGN(const std::int64_t standing, storage::LoadStandingWatermark(store, robot));
   RIGCAL_ASSIGN(const auto attempts, storage::LoadAttempts(store, storage::WorkOfRevision(robot, edges, standing)));
-  if (attempts.failed + attempts.cut_off < kAttemptsMax) return std::string();
+  if (attempts.under_way || attempts.failed + attempts.cut_off < kAttemptsMax) return std::string();
   return "What came last is in no revision: " + WhyGivenUp(attempts, "solved the graph of robot " + robot.str()) +
          ". Give the server more memory and push another session, or take the newest edge out with `rigcal retire`.";
 }

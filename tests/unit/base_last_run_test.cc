@@ -30,7 +30,7 @@ class LastRunTest : public testing::Test {
   int StatusOf(const End& end) const {
     const pid_t child = fork();
     if (child == 0) {
-      static_cast<void>(BeginRun(folder_));
+      BeginRun(folder_);
       end();
       _exit(0);
     }
@@ -40,35 +40,33 @@ class LastRunTest : public testing::Test {
   }
 };
 
-TEST_F(LastRunTest, OfTheFirstNothingIsKnown) { EXPECT_EQ(BeginRun(folder_), RunEnd::kMayBeItsOwn); }
+TEST_F(LastRunTest, OfTheFirstNothingIsKnown) { EXPECT_EQ(EndOfLastRun(folder_), RunEnd::kMayBeItsOwn); }
 
 TEST_F(LastRunTest, AKillComesFromOutside) {
   const int status = StatusOf([] { kill(getpid(), SIGKILL); });
   EXPECT_EQ(WTERMSIG(status), SIGKILL);
-  if (Noted().empty()) GTEST_SKIP() << "/proc does not tell the boot and what was killed for want of memory";
-  EXPECT_EQ(BeginRun(folder_), RunEnd::kFromOutside);
+  if (Noted() == "-") GTEST_SKIP() << "/proc does not tell the boot and what was killed for want of memory";
+  EXPECT_EQ(EndOfLastRun(folder_), RunEnd::kFromOutside);
 }
 
-TEST_F(LastRunTest, ACrashIsItsOwnAndIsToldOnce) {
+TEST_F(LastRunTest, ACrashIsItsOwn) {
   for (const auto& [end, signal] : {std::pair{+[] { std::abort(); }, SIGABRT}, std::pair{+[] { raise(SIGSEGV); }, SIGSEGV}}) {
     const int status = StatusOf(end);
     ASSERT_TRUE(WIFSIGNALED(status)) << signal;
     EXPECT_EQ(WTERMSIG(status), signal);
-    EXPECT_EQ(BeginRun(folder_), RunEnd::kMayBeItsOwn);
-  }
-  if (!Noted().empty()) {
-    EXPECT_EQ(BeginRun(folder_), RunEnd::kFromOutside);
+    EXPECT_EQ(EndOfLastRun(folder_), RunEnd::kMayBeItsOwn);
+    EXPECT_EQ(EndOfLastRun(folder_), RunEnd::kMayBeItsOwn);  // until the next run begins
   }
 }
 
 TEST_F(LastRunTest, WhereTheSystemKilledForMemoryItMayBeItsOwnButNotAcrossABoot) {
-  static_cast<void>(BeginRun(folder_));
+  BeginRun(folder_);
   const std::string now = Noted();
-  if (now.empty()) GTEST_SKIP() << "/proc does not tell the boot and what was killed for want of memory";
+  if (now == "-") GTEST_SKIP() << "/proc does not tell the boot and what was killed for want of memory";
   Note(now.substr(0, now.find('\n')) + "\noom_kill 987654321\n");
-  EXPECT_EQ(BeginRun(folder_), RunEnd::kMayBeItsOwn);
-  Note("another boot\noom_kill 987654321\n");
-  EXPECT_EQ(BeginRun(folder_), RunEnd::kFromOutside);
+  EXPECT_EQ(EndOfLastRun(folder_), RunEnd::kMayBeItsOwn);
+  Note("-another boot\noom_kill 987654321\n");
+  EXPECT_EQ(EndOfLastRun(folder_), RunEnd::kFromOutside);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Verdicts on what the refinement of whole sessions says.
 #include <gmock/gmock.h>
 
+#include "server/model/method.h"
 #include "tests/unit/fleet_rig.h"
 
 namespace rigcal::fleet {
@@ -191,7 +192,10 @@ TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
   Rig rig = Contradicted(0.06);
   rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
   SessionEstimate moved = BentSession('1', {});
+  rig.edges[0].method = NameOf(Method::kStereo);  // takes no board to stand still
   moved.boards_moved.push_back({TargetId("wall"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.005, 1e-9});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {moved}).level, VerdictLevel::kFail);
+  rig.edges[0].method = NameOf(Method::kTrackerCamera);
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {moved});
   EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
   EXPECT_THAT(verdict.why, HasSubstr("oard wall was moved"));

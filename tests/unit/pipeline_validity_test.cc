@@ -154,6 +154,7 @@ TEST_F(ValidityTest, AGraphThatWasGivenUpIsToldWithItsCure) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(Row()["calculating"], true);
     ASSERT_TRUE(storage::BeginAttempt(*store_, work, clock_.now));
+    EXPECT_EQ(Row()["given_up"], nullptr);  // it is under way
     ASSERT_TRUE(storage::EndAttempt(*store_, work, storage::AttemptEnd::kCutOff, "", clock_.now));
   }
   for (const json& document : {Row(), Ask("show")}) {

@@ -48,12 +48,23 @@ TEST_F(AttemptsTest, WhatIsGivenBackDoesNotCount) {
   EXPECT_EQ(attempts.newest_why, "no memory");
 }
 
-TEST_F(AttemptsTest, WhatIsAlwaysGivenBackCountsInTheEnd) {
-  for (int i = 0; i < kBegunMax + 2; ++i) {
+TEST_F(AttemptsTest, WhatIsKilledFromOutsideCountsFromTheTenthOn) {
+  for (int i = 1; i < kKillsMax; ++i) {
     ASSERT_TRUE(BeginAttempt(store_, work_, {2 * i}));
-    ASSERT_TRUE(EndOpenAttempts(store_, AttemptEnd::kGivenBack, {2 * i + 1}));
+    EXPECT_TRUE(LoadAttempts(store_, work_).value().under_way);
+    EXPECT_THAT(EndKilledAttempts(store_, {2 * i + 1}).value(), ElementsAre(work_));
+    EXPECT_THAT(LoadAttemptCounts(store_).value(), ElementsAre(Pair(work_, 0)));  // still begun before
+  }
+  ASSERT_TRUE(BeginAttempt(store_, work_, {100}));
+  EXPECT_THAT(EndOpenAttempts(store_, AttemptEnd::kGivenBack, {101}).value(), ElementsAre(work_));  // an orderly stop
+  EXPECT_EQ(Counted(), 0);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(BeginAttempt(store_, work_, {200 + i}));
+    ASSERT_TRUE(EndKilledAttempts(store_, {200 + i}));
   }
   EXPECT_EQ(Counted(), 3);
+  EXPECT_EQ(LoadAttempts(store_, work_).value().cut_off, 3);
+  EXPECT_FALSE(LoadAttempts(store_, work_).value().under_way);
 }
 
 TEST_F(AttemptsTest, WorkThatIsDoneBeginsAtNoughtAgain) {
