@@ -98,6 +98,13 @@ TEST(ReportFleet, LastSessionAndWorstEdgeAreShownSearchedAndSorted) {
   EXPECT_EQ(order({"", "quiet", "", false, 1}), "quiet ");
 }
 
+TEST(ReportFleet, WhatStandsBetweenBackticksIsCodeAndEscaped) {
+  FleetRow row = RowOf("a", VerdictLevel::kWarn, 1);
+  row.verdict.what_to_do = "Type `<b>--remounted a&b` or `` or ` alone.";
+  EXPECT_THAT(RenderFleet({row}, Stamp{0}).value(),
+              HasSubstr("Type <code class=\"typed\">&lt;b&gt;--remounted a&amp;b</code> or <code class=\"typed\"></code> or ` alone."));
+}
+
 TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
   const std::vector<FleetRow> rows = {RowOf("a", VerdictLevel::kPass, 1)};
   EXPECT_THAT(RenderFleet(rows, Stamp{0}).value(), Not(HasSubstr("experiments/")));
@@ -194,7 +201,7 @@ TEST(ReportSession, SaysWhatCameOfItAndWhatToDo) {
                         " of the same pictures (captured 1970-01-02 00:00:00 UTC, by Eve), restored by Ada (wrong "
                         "squares) on 1970-01-03 00:00:00 UTC, supersedes it."));
   EXPECT_THAT(RenderSession(input).value(),
-              HasSubstr("rigcal restore " + input.row.id.str().substr(0, 16) + "` takes it back."));
+              HasSubstr("<code class=\"typed\">rigcal restore " + input.row.id.str().substr(0, 16) + "</code> takes it back."));
   input.row.pairs_waiting = 1;
   const std::string working = RenderSession(input).value();
   EXPECT_THAT(working, HasSubstr("is being calibrated: 1 of 2 pairs are done."));
@@ -231,7 +238,7 @@ TEST(ReportRobot, SessionsSayWhatTheyGave) {
   EXPECT_THAT(page, HasSubstr("by <a href=\"sessions/" + a + "/\"><code>" + a.substr(0, 12) +
                               "</code></a> (captured 1970-01-02 00:00:00 UTC, by <bdi>Eve</bdi>), restored by Ada "
                               "(wrong squares) on 1970-01-03 00:00:00 UTC."));
-  EXPECT_THAT(page, HasSubstr("<code>rigcal restore " + b.substr(0, 16) + "</code>"));
+  EXPECT_THAT(page, HasSubstr("<code class=\"typed\">rigcal restore " + b.substr(0, 16) + "</code>"));
   EXPECT_THAT(page, HasSubstr("is being calibrated: 9 of 14 pairs"));
 }
 
