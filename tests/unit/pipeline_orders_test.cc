@@ -98,7 +98,7 @@ TEST_F(OrdersTest, ARestoredSessionTakesItsPlaceBack) {
     EXPECT_EQ(session["superseded_by"]["session"], right.str());
     EXPECT_EQ(session["superseded_by"]["standing"]["reason"], "wrong squares");
   }
-  EXPECT_THAT(Page("/robots/r/"), HasSubstr("<code>rigcal restore " + wrong.str().substr(0, 16) + "</code>"));
+  EXPECT_THAT(Page("/robots/r/"), HasSubstr("<code class=\"typed\">rigcal restore " + wrong.str().substr(0, 16) + "</code>"));
   EXPECT_THAT(Page("/robots/r/sessions/" + wrong.str() + "/"), HasSubstr("restored by Ada (wrong squares)"));
 }
 
