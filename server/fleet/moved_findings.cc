@@ -32,8 +32,8 @@ std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estim
     finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() + " was moved during the session of " +
                    NameOfSession(newest->session, captured_at) + ", between captures " + one.last_before.str() + " and " +
                    one.first_after.str() + ", by " + OffText(one.step);
-  finding.what_to_do = "Poses count it as two boards; where a pair of it contradicts others, fasten the board and capture "
-                       "a new session";
+  finding.what_to_do = "Fasten the board before the next session; poses of this one tell its two places apart, as far as "
+                       "each was seen";
   return finding;
 }
 

@@ -35,7 +35,7 @@ struct SensorMovedWithin {
   double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
 };
 
-// A board that was taken to stand still and did not: its two places are told apart, so that no pose suffers.
+// A board that was taken to stand still and did not: its two places are told apart, unless one was seen too little.
 struct BoardMovedWithin {
   TargetId board;
   CaptureId last_before, first_after;

@@ -59,6 +59,15 @@ TEST_F(LastRunTest, ACrashIsItsOwn) {
   }
 }
 
+TEST_F(LastRunTest, WhatCannotBeNotedMayBeItsOwn) {
+  BeginRun(folder_);
+  std::filesystem::create_directories(folder_ / "gone");
+  BeginRun(folder_ / "gone");
+  std::filesystem::remove_all(folder_ / "gone");
+  BeginRun(folder_ / "gone");  // warns, and goes on
+  EXPECT_EQ(EndOfLastRun(folder_ / "gone"), RunEnd::kMayBeItsOwn);
+}
+
 TEST_F(LastRunTest, WhereTheSystemKilledForMemoryItMayBeItsOwnButNotAcrossABoot) {
   BeginRun(folder_);
   const std::string now = Noted();

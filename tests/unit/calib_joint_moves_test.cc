@@ -110,6 +110,24 @@ TEST(JointMoves, AMoveTooSmallToTellDividesNoSession) {
   }
 }
 
+// After the bump the lidar sees two plates: where it is along the line in which they meet is open.
+TEST(JointMoves, AMoveWhoseOtherSideTellsNoWholePoseIsToldAllTheSame) {
+  sim::Options options = WithSeed(25);
+  options.bump = SensorId("lidar_vertical");
+  options.bump_m = 0.05;
+  options.bump_rad = 0.05;
+  FeatureSession session = Visit(options);
+  int plates = 0;
+  for (auto& [capture, clouds] : session.seen.clouds.at(SensorId("lidar_vertical"))) {
+    if (capture < session.experiment.captures[kCaptures / 2]) continue;
+    while (!clouds.empty() && (plates >= 2 || clouds.size() > 1)) clouds.erase(std::prev(clouds.end()));
+    plates += static_cast<int>(clouds.size());
+  }
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "lidar_vertical");
+}
+
 TEST(JointMoves, ASensorThatMovedTwiceHasItsLastPose) {
   FeatureSession session = BumpedVisit("back", 0.01, 1.0 / 3);
   const FeatureSession later = BumpedVisit("back", 0.03, 2.0 / 3);

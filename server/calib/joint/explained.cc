@@ -6,7 +6,7 @@ namespace rigcal::calib::joint {
 namespace {
 
 constexpr int kMovesMax = 4;     // in one session: more is no bump, but a rig that is not rigid
-constexpr int kMovesTried = 3;  // of the likeliest; those too small to be told, or that nothing solves, hide no other
+constexpr int kMovesTried = 3;   // of the likeliest; those too small to be told hide no other
 constexpr int kFieldRounds = 3;  // of fields and everything else in turn
 
 bool IsOf(const Move& move, const Where& look) {
@@ -165,11 +165,11 @@ Next ByMove(const Explained& now) {
     if (sides.before == kNone || sides.after == kNone) continue;
     ++tried;
     auto split = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
-    if (!split) continue;
-    const Step step = StepOf(split->refined, move);
+    // One side may tell too little for a pose of its own: then the scan's step is all there is.
+    const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.covariance};
     if (!IsMove(step.step, step.covariance, move.odds)) continue;
     move.step = step.step;
-    return {split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
+    return {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
   }
   return {};
 }

@@ -123,7 +123,7 @@ Move LikeliestMove(const Refined& refined, int at) {
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
     best = {kNone, kNone, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
-            scatter.mean_square};
+            scatter.mean_square, scatter.mean_square * change.covariance};
   }
   return best;
 }
