@@ -37,8 +37,10 @@ struct Layout {
   std::map<SensorId, int> pose, lens;
   std::map<TargetId, int> board;
   int size = 0;
+  // The other pose of the sensor that is bumped; -1: it keeps its one.
+  int pose_after = -1;
 
-  explicit Layout(const Experiment& experiment) {
+  Layout(const Experiment& experiment, bool with_bump) {
     bool has_tracker = false;
     for (const RigSensor& sensor : experiment.rig.sensors) {
       pose[sensor.id] = sensor.id == experiment.rig.reference ? -1 : Take(6);
@@ -50,6 +52,7 @@ struct Layout {
     // Without a tracker the first board is the world.
     for (const RigBoard& other : experiment.rig.boards)
       board[other.target.id] = !has_tracker && board.empty() ? -1 : Take(6);
+    if (with_bump) pose_after = Take(6);
   }
   int Take(int count) {
     size += count;
@@ -101,8 +104,9 @@ struct CaptureInformation {
 
 class Builder {
  public:
-  explicit Builder(const Experiment& experiment)
-      : experiment_(Undisturbed(experiment)), scene_(SceneOf(experiment.rig)), layout_(experiment) {}
+  // With the bump as an unknown, the sensor has a pose of its own from then on.
+  Builder(const Experiment& experiment, bool with_bump)
+      : experiment_(Undisturbed(experiment)), scene_(SceneOf(experiment.rig)), layout_(experiment, with_bump) {}
 
   [[nodiscard]] const Layout& layout() const { return layout_; }
 
@@ -122,9 +126,14 @@ class Builder {
       if (!experiment_.IsRecorded(sensor.id, k)) continue;
       if (sensor.kind == SensorKind::kCamera) AddView(sensor, k, information);
       if (sensor.kind == SensorKind::kLidar) AddCloud(sensor, k, information);
-      if (sensor.kind == SensorKind::kTracker) AddTracker(sensor, information);
+      if (sensor.kind == SensorKind::kTracker) AddTracker(sensor, k, information);
     }
     return information.Eliminated();
+  }
+
+  [[nodiscard]] int PoseAt(const SensorId& id, std::size_t k) const {
+    const bool is_after = layout_.pose_after >= 0 && id == *experiment_.options.bump && k >= experiment_.bumped_from_idx;
+    return is_after ? layout_.pose_after : layout_.pose.at(id);
   }
 
   [[nodiscard]] Se3 T_world_ref(std::size_t k) const {
@@ -144,7 +153,7 @@ class Builder {
     const int lens_count = static_cast<int>(4 + camera.camera.intrinsics.distortion.size());
     Rows rows{
         MatrixXd(2 * static_cast<Eigen::Index>(points.size()), 18 + lens_count),
-        {{layout_.pose.at(camera.id), 6}, {layout_.board.at(board_id), 6}, {layout_.lens.at(camera.id), lens_count}}};
+        {{PoseAt(camera.id, k), 6}, {layout_.board.at(board_id), 6}, {layout_.lens.at(camera.id), lens_count}}};
     const Matrix3d R_cam_ref = T_cam_ref.R(), R_cam_board = R_cam_ref * T_ref_board.R();
     for (std::size_t i = 0; i < points.size(); ++i)
       rows.J.middleRows<2>(2 * static_cast<Eigen::Index>(i)) << -pixels[i].d_point * Moved(points_cam[i]),
@@ -161,7 +170,7 @@ class Builder {
       const Se3 T_board_ref = experiment_.rig.BoardOf(id).T_world_board().Inverse() * T_world_ref(k);
       const Eigen::RowVector3d n_ref = T_board_ref.R().row(2), n_lidar = n_ref * T_ref_lidar.R();
       Rows rows{MatrixXd(static_cast<Eigen::Index>(points.size()), 18),
-                {{layout_.pose.at(lidar.id), 6}, {layout_.board.at(id), 6}}};
+                {{PoseAt(lidar.id, k), 6}, {layout_.board.at(id), 6}}};
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Vector3d direction = points[i].p_lidar.normalized(), p_lidar = points[i].range_m * direction;
         const Vector3d p_ref = T_ref_lidar * p_lidar, p_board = T_board_ref * p_ref;
@@ -173,10 +182,10 @@ class Builder {
     }
   }
 
-  void AddTracker(const RigSensor& tracker, CaptureInformation& information) const {
+  void AddTracker(const RigSensor& tracker, std::size_t k, CaptureInformation& information) const {
     Vector6d weight;
     weight << Vector3d::Constant(1 / tracker.tracker.sigma_m), Vector3d::Constant(1 / tracker.tracker.sigma_rad);
-    Rows rows{MatrixXd(6, 12), {{layout_.pose.at(tracker.id), 6}}};
+    Rows rows{MatrixXd(6, 12), {{PoseAt(tracker.id, k), 6}}};
     rows.J << Matrix6d(weight.asDiagonal()),
         weight.asDiagonal() * Adjoint(experiment_.T_ref_sensor(tracker.id).Inverse());
     information.Add(rows);
@@ -232,7 +241,7 @@ bool HasNoise(const Rig& rig) {
 std::map<SensorId, BoundSigma> CramerRaoBound(const Experiment& experiment) {
   std::map<SensorId, BoundSigma> bound;
   if (!HasNoise(experiment.rig)) return bound;
-  const Builder builder(experiment);
+  const Builder builder(experiment, false);
   const Inverse inverse = InverseOf(builder.Information());
   for (const auto& [id, at] : builder.layout().pose) {
     BoundSigma& sigma = bound[id];
@@ -247,12 +256,25 @@ std::map<SensorId, BoundSigma> CramerRaoBound(const Experiment& experiment) {
 
 std::optional<Matrix6d> CramerRaoCovariance(const Experiment& experiment, const SensorId& sensor) {
   if (!HasNoise(experiment.rig)) return std::nullopt;
-  const Builder builder(experiment);
+  const Builder builder(experiment, false);
   const int at = builder.layout().pose.at(sensor);
   if (at < 0) return Matrix6d(Matrix6d::Zero());
   const Inverse inverse = InverseOf(builder.Information());
   if (inverse.open_ratio.segment<6>(at).maxCoeff() > Inverse::kOpenShare) return std::nullopt;
   return Matrix6d(inverse.covariance.block<6, 6>(at, at));
+}
+
+std::optional<Matrix6d> CramerRaoCovarianceOfBump(const Experiment& experiment) {
+  if (!experiment.options.bump || !HasNoise(experiment.rig)) return std::nullopt;
+  const Builder builder(experiment, true);
+  const int before = builder.layout().pose.at(*experiment.options.bump), after = builder.layout().pose_after;
+  const Inverse inverse = InverseOf(builder.Information());
+  MatrixXd step = MatrixXd::Zero(6, builder.layout().size);
+  step.middleCols<6>(after).setIdentity();
+  if (before >= 0) step.middleCols<6>(before) -= Matrix6d::Identity();
+  if (inverse.open_ratio.segment<6>(after).maxCoeff() > Inverse::kOpenShare) return std::nullopt;
+  if (before >= 0 && inverse.open_ratio.segment<6>(before).maxCoeff() > Inverse::kOpenShare) return std::nullopt;
+  return Matrix6d(step * inverse.covariance * step.transpose());
 }
 
 }  // namespace rigcal::sim

@@ -20,4 +20,8 @@ namespace rigcal::sim {
 // The whole covariance of one sensor's pose; nothing where the data leave a direction of it open, or without noise.
 [[nodiscard]] std::optional<Matrix6d> CramerRaoCovariance(const Experiment& experiment, const SensorId& sensor);
 
+// Of what the bumped sensor's pose changed by, Log(T_before^-1 T_after), from the captures on both sides of the bump,
+// the time of which is taken as known; nothing where one side leaves a direction open, without a bump or noise.
+[[nodiscard]] std::optional<Matrix6d> CramerRaoCovarianceOfBump(const Experiment& experiment);
+
 }  // namespace rigcal::sim

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "server/base/ids.h"
+#include "server/math/ball_distance.h"
 #include "server/math/se3.h"
 #include "server/model/camera.h"
 #include "server/model/diagnosis.h"
@@ -17,14 +16,12 @@ namespace rigcal {
 
 // Changes less likely than this by chance are told: of 1,000 sessions in which nothing moved, less than one is accused.
 constexpr double kMovedOdds = 5e-4;
-// A sensor that surely (by 3 sigmas) moved less than both is not told: no lens and no mount is known that well.
-constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001;
+// A step that may as well be smaller than both (SquaredDistanceFromBalls within 3 sigmas) is not told: no lens and no
+// mount is known that well.
+constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3.0;
 [[nodiscard]] inline bool IsMove(const Vector6d& step, const Matrix6d& covariance, double odds) {
-  const auto surely = [&](int at) {
-    return step.segment<3>(at).norm() - 3 * std::sqrt(std::max(0.0, covariance.block<3, 3>(at, at).trace()));
-  };
-  return odds < kMovedOdds &&
-         (surely(tangent::kTranslation) >= kMovedMin_m || surely(tangent::kRotation) >= kMovedMin_rad);
+  return odds < kMovedOdds && SquaredDistanceFromBalls(step, covariance, kMovedMin_m, kMovedMin_rad) >=
+                                  kMovedMinSigmas * kMovedMinSigmas;
 }
 
 // A sensor that had two poses during the session.

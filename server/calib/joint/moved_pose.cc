@@ -145,19 +145,15 @@ int CapturesOf(const SessionProblem& problem, int sensor) {
   return static_cast<int>(captures.size());
 }
 
-// Largest standard deviation along any direction, and of the whole length.
-struct Spread {
-  double worst = 0.0, length = 0.0;
-};
-Spread SpreadOf(const Matrix6d& covariance, int at) {
-  const Eigen::Matrix3d C = covariance.block<3, 3>(at, at);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(C, Eigen::EigenvaluesOnly);
-  return {std::sqrt(std::max(0.0, axes.eigenvalues()[2])), std::sqrt(std::max(0.0, C.trace()))};
+// Largest standard deviation along any direction.
+double WorstSigma(const Matrix6d& covariance, int at) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.block<3, 3>(at, at), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
 }
 
 // Beyond the scan's limit, and surely larger than what is no move (IsMove).
-double ToldFrom(const Spread& spread, double noncentrality, double least) {
-  return std::max(std::sqrt(noncentrality) * spread.worst, least + 3 * spread.length + kPowerSigmas * spread.worst);
+double ToldFrom(double sigma, double noncentrality, double least) {
+  return std::max(std::sqrt(noncentrality) * sigma, least + (kMovedMinSigmas + kPowerSigmas) * sigma);
 }
 
 }  // namespace
@@ -175,8 +171,8 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   const double limit = FisherQuantile(kMovedOdds / looks, change.rank, scatter.dof);
   const double noncentrality = FisherNoncentrality(limit, change.rank, scatter.dof, kPower);
   const Matrix6d covariance = std::max(scatter.mean_square, 1e-12) * change.covariance;
-  told.m = std::min(kAnyMove_m, ToldFrom(SpreadOf(covariance, tangent::kTranslation), noncentrality, kMovedMin_m));
-  told.rad = std::min(kAnyMove_rad, ToldFrom(SpreadOf(covariance, tangent::kRotation), noncentrality, kMovedMin_rad));
+  told.m = std::min(kAnyMove_m, ToldFrom(WorstSigma(covariance, tangent::kTranslation), noncentrality, kMovedMin_m));
+  told.rad = std::min(kAnyMove_rad, ToldFrom(WorstSigma(covariance, tangent::kRotation), noncentrality, kMovedMin_rad));
   return told;
 }
 
