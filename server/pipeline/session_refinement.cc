@@ -1,6 +1,7 @@
 #include "server/pipeline/session_refinement.h"
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 
 #include "server/base/log.h"
@@ -133,8 +134,14 @@ bool WaitsForFiles(const std::vector<Edge>& edges) {
   });
 }
 
+void LogTime(const SessionId& session, std::chrono::steady_clock::time_point began) {
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  LogInfo("session " + session.str() + ": refined in " + std::to_string(took.count()) + " s");
+}
+
 Status RefineSession(storage::Store& store, const SessionId& session, calib::CameraMemory& cameras,
                      const Clock& clock) {
+  const auto began = std::chrono::steady_clock::now();
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
   RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
   if (!manifest || edges.empty() || WaitsForFiles(edges)) return {};
@@ -146,7 +153,9 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
               estimate.why_not.front().cure});
     return {};
   }
-  return storage::AppendSessionEstimate(store, estimate, kSessionEstimator, clock.Now());
+  RIGCAL_TRY(storage::AppendSessionEstimate(store, estimate, kSessionEstimator, clock.Now()));
+  LogTime(session, began);
+  return {};
 }
 
 // Whether an edge of the session still says something of the sensor.

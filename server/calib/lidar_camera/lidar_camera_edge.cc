@@ -5,6 +5,7 @@
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/camera/layout_diagnosis.h"
 #include "server/calib/core/diagnoses.h"
+#include "server/calib/core/pair_captures.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/systematics.h"
@@ -169,11 +170,19 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   return edge;
 }
 
+std::set<CaptureId> SeenByBoth(const LidarCameraProblem& problem) {
+  std::set<CaptureId> both;
+  for (const LidarCameraCapture& capture : problem.captures)
+    if (capture.view && capture.view->found && capture.cloud && capture.cloud->found) both.insert(capture.capture);
+  return both;
+}
+
 }  // namespace
 
 Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return Solved(problem, fits);
+    return EstimateOfChosen(problem, SeenByBoth(problem), DropCaptures<LidarCameraProblem>,
+                            [&](const LidarCameraProblem& chosen) { return Solved(chosen, fits); });
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(

@@ -4,6 +4,7 @@
 #include "server/base/out_of_memory.h"
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/camera/layout_diagnosis.h"
+#include "server/calib/core/pair_captures.h"
 #include "server/calib/motion/hand_eye.h"
 #include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"
@@ -109,11 +110,36 @@ Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   return edge;
 }
 
+std::set<CaptureId> SeenBy(const HandEyeSide& side) {
+  std::set<CaptureId> captures;
+  for (const auto& [capture, view] : side.views)
+    if (view.found) captures.insert(capture);
+  for (const TimedPose& pose : side.poses)
+    if (!pose.capture.empty()) captures.insert(pose.capture);
+  return captures;
+}
+
+std::set<CaptureId> SeenByBoth(const HandEyeProblem& problem) {
+  const std::set<CaptureId> by_b = SeenBy(problem.b);
+  std::set<CaptureId> both = SeenBy(problem.a);
+  std::erase_if(both, [&](const CaptureId& capture) { return !by_b.contains(capture); });
+  return both;
+}
+
+void Drop(HandEyeProblem& problem, const std::set<CaptureId>& left_out) {
+  for (HandEyeSide* side : {&problem.a, &problem.b}) {
+    std::erase_if(side->views, [&](const auto& view) { return left_out.contains(view.first); });
+    std::erase_if(side->poses, [&](const TimedPose& pose) { return left_out.contains(pose.capture); });
+  }
+}
+
 }  // namespace
 
 Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return Solved(problem, fits);
+    if (problem.method == Method::kPoseStreams) return Solved(problem, fits);
+    return EstimateOfChosen(problem, SeenByBoth(problem), Drop,
+                            [&](const HandEyeProblem& chosen) { return Solved(chosen, fits); });
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem, MotionNotSolvable(problem, {ErrorCode::kInternal, exception.what(),

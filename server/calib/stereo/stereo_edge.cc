@@ -7,6 +7,7 @@
 #include "server/calib/camera/layout_diagnosis.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"
+#include "server/calib/core/pair_captures.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/stereo/stereo.h"
 #include "server/calib/stereo/stereo_estimation.h"
@@ -188,11 +189,21 @@ bool ShowsOtherBoard(const StereoProblem& problem) {
   return contradicting > seeing;
 }
 
+std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
+  std::set<CaptureId> both;
+  for (const StereoCapture& capture : problem.captures)
+    if (BothSee(capture, problem.board)) both.insert(capture.capture);
+  return both;
+}
+
 }  // namespace
 
 Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return ShowsOtherBoard(problem) ? FailedEdge(problem, {}) : Solved(problem, fits);
+    const auto estimate = [&](const StereoProblem& chosen) {
+      return ShowsOtherBoard(chosen) ? FailedEdge(chosen, {}) : Solved(chosen, fits);
+    };
+    return EstimateOfChosen(problem, SeenByBoth(problem), DropCaptures<StereoProblem>, estimate);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem,

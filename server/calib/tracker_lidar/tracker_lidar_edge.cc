@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "server/base/out_of_memory.h"
+#include "server/calib/core/pair_captures.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/tracker_lidar/tracker_lidar.h"
 #include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
@@ -89,11 +90,18 @@ Edge Solved(const TrackerLidarProblem& problem) {
   return edge;
 }
 
+std::set<CaptureId> SeenByBoth(const TrackerLidarProblem& problem) {
+  std::set<CaptureId> both;
+  for (const TrackerLidarCapture& capture : problem.captures)
+    if (capture.T_world_body && !PatchesOf(capture).empty()) both.insert(capture.capture);
+  return both;
+}
+
 }  // namespace
 
 Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem) {
   try {
-    return Solved(problem);
+    return EstimateOfChosen(problem, SeenByBoth(problem), DropCaptures<TrackerLidarProblem>, Solved);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem, TrackerLidarNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
