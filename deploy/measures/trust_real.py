@@ -30,13 +30,13 @@ def splits(context):
 
 
 def judged(context, session, robot):
-    """The rows of the edges and the verdict of one push."""
+    """The rows of the edges and the document of one push."""
     with context.folder() as data, Server(context, pathlib.Path(data) / "data") as server:
         pushed = server.rigcal("push", session, "--json", timeout=600)
         if pushed.returncode not in ANSWERED:
             raise RuntimeError("rigcal push %s: exit %d: %s" % (session, pushed.returncode, pushed.stderr.strip()[-300:]))
         edges = json.loads(server.rigcal("edges", robot, "--json").stdout)["edges"]
-        return edges, json.loads(server.rigcal("show", robot, "--json").stdout)["document"]["verdict"]
+        return edges, json.loads(server.rigcal("show", robot, "--json").stdout)["document"]
 
 
 def text_of(edge):
@@ -91,7 +91,8 @@ def caliscope(context):
         author = {"cam_" + key: (camera["rotation"], camera["translation"]) for key, camera in tomllib.load(file)["cameras"].items()}
     with context.folder() as name:
         for title, session in caliscope_cases(context, pathlib.Path(name), source):
-            edges, verdict = judged(context, session, "caliscope-rig")
+            edges, document = judged(context, session, "caliscope-rig")
+            verdict = document["verdict"]
             said = verdict["why"] + " " + verdict["what_to_do"]
             yield equal(title + "_moved_said", bool(re.search(r"\bmoved\b|two poses", said)), False)
             good = [edge for edge in edges if edge["state"] == "good" and edge["rank"] == 6]
@@ -111,6 +112,20 @@ def charuco_sigmas(edge):
     return max(abs(t - a) / (1e3 * s) for t, a, s in zip(baseline_mm(edge), AUTHOR_T_MM, edge["sigma_m"]))
 
 
+def told_sigmas(document):
+    """Of the pose that `lookup` gives, right in left: its inverse's translation t against the author's, by dt = [t]x r - p."""
+    if document["fused"]["sensors"] != ["right"]:
+        return math.inf
+    [right] = [sensor for sensor in document["sensors"] if sensor["id"] == "right"]
+    t_mm = baseline_mm({"frame_a": "left", "T_a_b": right["T_ref_sensor"]})
+    x, y, z = (1e-3 * v for v in t_mm)
+    lower = document["fused"]["covariance"]
+    C = [[lower[max(i, k)][min(i, k)] for k in range(6)] for i in range(6)]
+    J = [[-1, 0, 0, 0, -z, y], [0, -1, 0, z, 0, -x], [0, 0, -1, -y, x, 0]]
+    variances = [sum(row[i] * C[i][k] * row[k] for i in range(6) for k in range(6)) for row in J]
+    return max(abs(t - a) / (1e3 * math.sqrt(v)) for t, a, v in zip(t_mm, AUTHOR_T_MM, variances))
+
+
 def charuco(context):
     source = context.data / "stereo_charuco_wide"
     if not source.is_dir():
@@ -122,7 +137,7 @@ def charuco(context):
             shutil.copytree(source, session, ignore=shutil.ignore_patterns("PROVENANCE*"))
             text = (session / "session.yaml").read_text().replace("DICT_4X4_250}", "DICT_4X4_250, legacy_layout: true}")
             (session / "session.yaml").write_text(text.replace("pinhole_rational", model))
-            [edge], _ = judged(context, session, "charuco-wide")
+            [edge], document = judged(context, session, "charuco-wide")
         is_good = edge["state"] == "good"
         if model == "pinhole_radtan":
             yield Measure("charuco_wide_radtan", "good" if is_good else edge["diagnoses"][0]["code"], "refused:_try_pinhole_rational",
@@ -131,6 +146,7 @@ def charuco(context):
         if model == "pinhole_rational":
             yield at_most("charuco_wide_rational_rms", edge["figures"].get("rms_px", math.inf) if is_good else math.inf, 0.36, "px")
         yield at_most("charuco_wide_%s_sigmas" % model, charuco_sigmas(edge) if is_good else math.inf, 3.0)
+        yield at_most("charuco_wide_%s_told_sigmas" % model, told_sigmas(document), 3.0)
 
 
 def run(context):
