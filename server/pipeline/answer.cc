@@ -8,9 +8,8 @@
 #include "server/base/version.h"
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
-#include "server/graph/graph_jackknife.h"
+#include "server/graph/joint_poses.h"
 #include "server/graph/solve.h"
-#include "server/math/covariance.h"
 #include "server/model/past.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
@@ -19,6 +18,7 @@
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/lost_blobs.h"
+#include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -128,66 +128,47 @@ Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::Rev
   return graph::BlocksOf(edges);
 }
 
-// Of sensors whose poses a revision has fused.
-std::optional<graph::RelativePose> FusedRelative(const formats::RevisionInput& document, const SensorId& a,
-                                                 const SensorId& b) {
-  const FusedSessions& fused = document.solution.fused;
-  const auto row_of = [&](const SensorId& sensor) {
-    const auto found = std::find(fused.sensors.begin(), fused.sensors.end(), sensor);
-    return found == fused.sensors.end() ? -1 : 6 * static_cast<int>(found - fused.sensors.begin());
-  };
-  const int row_a = row_of(a), row_b = row_of(b);
-  if ((row_a < 0 && a != document.reference) || (row_b < 0 && b != document.reference) || fused.sensors.empty() || a == b)
-    return std::nullopt;
-  const auto pose_of = [&](const SensorId& sensor) {
-    const auto& poses = document.solution.poses;
-    return std::find_if(poses.begin(), poses.end(), [&](const SensorPose& pose) { return pose.sensor == sensor; })
-        ->T_ref_sensor;
-  };
-  const auto block = [&](int row, int column) {
-    return row < 0 || column < 0 ? Matrix6d(Matrix6d::Zero()) : Matrix6d(fused.covariance.block<6, 6>(row, column));
-  };
-  graph::RelativePose relative;
-  relative.T_A_B = (pose_of(a).Inverse() * pose_of(b)).Normalized();
-  relative.covariance =
-      RelativeCovariance(relative.T_A_B, block(row_a, row_a), block(row_b, row_b), block(row_a, row_b));
-  return relative;
-}
-
-// By the same covariance as the sensors of the revision.
-Result<graph::RelativePose> RelativeIn(const AnswerContext& context, const formats::RevisionInput& document,
-                                       const Graph& graph, const SensorId& a, const SensorId& b) {
-  if (const auto fused = FusedRelative(document, a, b)) return *fused;
-  const auto& poses = document.solution.poses;
-  const bool honest = std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; });
-  RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
-  if (!honest) return analytic;
-  RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, LoadBlocks(context.store, document));
-  const graph::GraphJackknife jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
-  return jackknife.available ? graph::HonestRelative(jackknife, document.solution, a, b) : analytic;
-}
-
-// Poses and edges both come from the revision's own document: an edge that arrived since plays no part.
-Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
-  RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, 0));
+// From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
+// and for the reason why a pose is not known.
+Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const RobotId& robot, int number, const SensorId& a,
+                                            const SensorId& b) {
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, number));
   const formats::RevisionInput& document = *revision.document;
   Graph graph = graph::GraphOf(document.edges, document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
   for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);
-  RIGCAL_ASSIGN(const auto relative, RelativeIn(context, document, graph, a, b));
+  RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
+  const auto& poses = document.solution.poses;
+  graph::GraphJackknife jackknife;
+  if (std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; })) {
+    RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, LoadBlocks(context.store, document));
+    jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
+  }
+  if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
+  return jackknife.available ? graph::HonestRelative(jackknife, document.solution, a, b) : analytic;
+}
+
+// What the newest revision says: an edge that arrived since plays no part.
+Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
+  RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
+  RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, 0));
+  RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(context.store, {robot, revision.number}));
+  std::optional<graph::RelativePose> relative = poses ? graph::RelativeOf(*poses, a, b) : std::nullopt;
+  if (!relative) {
+    RIGCAL_ASSIGN(relative, DerivedRelative(context, robot, revision.number, a, b));
+  }
   formats::LookupAnswer answer;
   answer.robot = robot;
-  answer.revision = revision.summary.number;
+  answer.revision = revision.number;
   answer.frame_a = a;
   answer.frame_b = b;
-  answer.T_a_b = relative.T_A_B;
-  answer.covariance = relative.covariance;
-  answer.verdict = revision.summary.verdict;
-  RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision.summary, context.clock.Now()));
+  answer.T_a_b = relative->T_A_B;
+  answer.covariance = relative->covariance;
+  answer.verdict = revision.verdict;
+  RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));
   return formats::WriteLookup(answer);
 }
 

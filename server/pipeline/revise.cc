@@ -11,6 +11,7 @@
 #include "server/graph/edge_influence.h"
 #include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
+#include "server/graph/joint_poses.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
@@ -19,6 +20,7 @@
 #include "server/report/edge_order.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
+#include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 #include "storage/standing.h"
@@ -54,16 +56,23 @@ void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector
   std::sort(graph.sensors.begin(), graph.sensors.end(), graph::SensorBefore);
 }
 
+struct HonestSolution {
+  GraphSolution solution;
+  graph::GraphJackknife jackknife;
+};
+
 // Plain optimum of all edges; sigmas and tests by the jackknife where blocks are there; beside it suspects, what each
 // edge does to it, and how its loops close.
-GraphSolution SolveHonestly(const RobotGraph& loaded) {
-  GraphSolution solution = graph::Solve(loaded.graph);
+HonestSolution SolveHonestly(const RobotGraph& loaded) {
+  HonestSolution honest{graph::Solve(loaded.graph), {}};
+  GraphSolution& solution = honest.solution;
   const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
-  graph::TakeHonest(loaded.graph, graph::JackknifeGraph(loaded.graph, solution, blocks), solution);
+  honest.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
+  graph::TakeHonest(loaded.graph, honest.jackknife, solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
   solution.influences = graph::InfluenceOfEdges(loaded.graph, solution);
   solution.cycles = graph::JudgeCycles(loaded.graph, blocks);
-  return solution;
+  return honest;
 }
 
 // When the newest of the edges that count was measured.
@@ -110,10 +119,12 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   formats::RevisionInput input;
   input.robot = robot;
   input.reference = loaded.graph.reference;
-  input.solution = SolveHonestly(loaded);
+  HonestSolution honest = SolveHonestly(loaded);
+  input.solution = std::move(honest.solution);
   RIGCAL_ASSIGN(const fleet::SessionTimes captured_at, CapturedAt(store, robot));
   RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot, loaded.edges));
   graph::FuseSessions(loaded.edges, input.reference, estimates, input.solution);
+  const JointPoses poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
   input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
   input.edges = std::move(loaded.edges);
 
@@ -129,6 +140,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.standing_watermark = loaded.standing_watermark;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
+    RIGCAL_TRY(storage::AppendRevisionPoses(store, {robot, revision.number}, poses));
     if (worst) return storage::AppendWorstEdge(store, {robot, revision.number}, *worst);
     return {};
   }));

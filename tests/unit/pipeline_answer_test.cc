@@ -1,3 +1,4 @@
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <cmath>
 
 #include "server/base/base64.h"
@@ -117,6 +118,30 @@ TEST_F(AnswerTest, SigmasAreTheJackknifesWhereBlocksAreThere) {
   const std::string key = "\"covariance\":[[";
   const double variance = std::stod(answer->substr(answer->find(key) + key.size()));
   EXPECT_NEAR(variance, 4.0 * 2.0 / 3.0 * 1e-6, 1e-11);
+}
+
+// A revision from before its poses were kept: the same answer, derived from its document and the block vectors.
+TEST_F(AnswerTest, LookupOfARevisionFromBeforeIsDerived) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  const auto numbers = [](const std::string& answer) {
+    std::vector<double> values;
+    const std::size_t from = answer.find("\"T_a_b\""), covariance = answer.find("\"covariance\"");
+    for (const std::size_t first : {from, covariance})
+      for (std::size_t at = answer.find('[', first); at < answer.size() && values.size() < 43; at = answer.find_first_of("[,", at + 1))
+        if (const char next = answer[at + 1]; next == '-' || (next >= '0' && next <= '9')) values.push_back(std::stod(answer.substr(at + 1)));
+    return values;
+  };
+  const auto kept = Ask("lookup", R"({"robot":"r","a":"b","b":"c"})");
+  ASSERT_TRUE(kept) << Sentence(kept.error());
+  store_->database().exec("DROP TRIGGER revision_pose_no_delete; DROP TRIGGER revision_covariance_no_delete; "
+                          "DELETE FROM revision_pose; DELETE FROM revision_covariance");
+  const auto derived = Ask("lookup", R"({"robot":"r","a":"b","b":"c"})");
+  ASSERT_TRUE(derived) << Sentence(derived.error());
+  const std::vector<double> x = numbers(*kept), y = numbers(*derived);
+  ASSERT_EQ(x.size(), y.size());
+  ASSERT_GE(x.size(), 43u);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-12 + 1e-9 * std::abs(x[i])) << i;
 }
 
 TEST_F(AnswerTest, WhatCannotBeAnsweredIsSaidByName) {

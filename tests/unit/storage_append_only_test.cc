@@ -5,6 +5,7 @@
 #include "storage/fleet_facts.h"
 #include "storage/standing.h"
 #include "storage/lost_blobs.h"
+#include "storage/revision_poses.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
 
@@ -42,6 +43,8 @@ class AppendOnlyTest : public StoreTest {
       Revision revision = MakeRevision(1);
       revision.calibrated_at = Stamp{4};
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, revision));
+      JointPoses poses{SensorId("left"), {{SensorId("left"), {}}}, {{{SensorId("right")}, Eigen::MatrixXd::Identity(6, 6)}}};
+      RIGCAL_TRY(AppendRevisionPoses(store_, {kRobot, number}, poses));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       SessionEstimate estimate;
       estimate.session = session;

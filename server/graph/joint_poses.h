@@ -1,0 +1,20 @@
+// What a revision keeps so that the relative pose of two of its sensors is read, not derived.
+#pragma once
+
+#include <optional>
+
+#include "server/graph/graph_jackknife.h"
+#include "server/graph/solve.h"
+#include "server/model/joint_poses.h"
+
+namespace rigcal::graph {
+
+// At the solution's poses: the covariance of the fused sessions, and where these do not have all known sensors that of the
+// graph, by the jackknife where it is available, else H^-1; that one not of more than kJointPosesMax sensors.
+[[nodiscard]] JointPoses JointPosesOf(const Graph& graph, const GraphSolution& solution, const GraphJackknife& jackknife);
+
+// T_a_b with its covariance, cross terms included (math/covariance.h: RelativeCovariance). Nothing where one of the two is
+// not known or no covariance has both.
+[[nodiscard]] std::optional<RelativePose> RelativeOf(const JointPoses& poses, const SensorId& a, const SensorId& b);
+
+}  // namespace rigcal::graph
