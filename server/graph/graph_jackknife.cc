@@ -1,6 +1,7 @@
 #include "server/graph/graph_jackknife.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -67,7 +68,7 @@ class Accumulator {
     cholesky_.SolveInPlace(pull);
     const MatrixXd columns = -pull;  // where the optimum goes
     joint_.selfadjointView<Eigen::Lower>().rankUpdate(columns);
-    AddResiduals(begin, end, columns);
+    AddResidualsOf(begin, end, columns);
     for (std::size_t v = 0; v < pose_dof_.size(); ++v) AddPoseDof(begin, end, columns, v);
   }
 
@@ -90,6 +91,29 @@ class Accumulator {
     for (const ErrorSource* source = begin; source != end; at += source->column_count, ++source)
       if (source->dof > 0) sum += std::pow(weights.segment(at, source->column_count).sum(), 2) / source->dof;
     return sum;
+  }
+
+  // What one edge alone errs by has six directions, however many blocks told it: with de^T = Q R, C = de de^T is R^T R, and
+  // the poses follow de. So each of its columns need not meet each edge of the graph.
+  void AddResidualsOf(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns) {
+    std::vector<ErrorSource> narrow(begin, end);
+    MatrixXd narrow_columns(columns.rows(), columns.cols());
+    Eigen::Index from = 0, to = 0;
+    for (ErrorSource& source : narrow) {
+      const auto wide = columns.middleCols(from, source.column_count);
+      from += source.column_count;
+      if (source.parts.size() == 1 && source.column_count > 6) {
+        const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 6>> qr(source.parts[0].de.transpose());
+        const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(source.column_count, 6);
+        source.column_count = 6;
+        source.parts[0].de = qr.matrixQR().topRows<6>().triangularView<Eigen::Upper>().transpose();
+        narrow_columns.middleCols<6>(to) = wide * Q;
+      } else {
+        narrow_columns.middleCols(to, source.column_count) = wide;
+      }
+      to += source.column_count;
+    }
+    AddResiduals(narrow.data(), narrow.data() + narrow.size(), narrow_columns.leftCols(to));
   }
 
   void AddResiduals(const ErrorSource* begin, const ErrorSource* end, const MatrixXd& columns) {
