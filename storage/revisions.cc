@@ -37,6 +37,25 @@ int NewestNumber(Store& store, const RobotId& robot) {
   return query.Bind(robot).Step() ? static_cast<int>(query.Int(0)) : 0;
 }
 
+// Four index look-ups, whatever the number of edges and revisions.
+const std::string kUnsolved =
+    "SELECT 1 FROM robot r WHERE robot_id = ? "
+    "AND ((SELECT max(number) FROM counted_edge c WHERE c.robot_id = r.robot_id) > "
+    "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
+    "ORDER BY v.number DESC LIMIT 1), 0) "
+    "OR (EXISTS (SELECT 1 FROM counted_edge e WHERE e.robot_id = r.robot_id) AND "
+    "(SELECT max(number) FROM standing t WHERE t.robot_id = r.robot_id) > "
+    "coalesce((SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = r.robot_id "
+    "ORDER BY s.revision_number DESC LIMIT 1), 0)))";
+
+// Triggers on what arrives put the robot there; it stays where something arrived while the revision was made.
+void UpdateWaiting(Store& store, const RobotId& robot) {
+  const bool unsolved = Query(store, kUnsolved).Bind(robot).Step();
+  Query(store, unsolved ? "INSERT OR IGNORE INTO waiting_revision VALUES (?)" : "DELETE FROM waiting_revision WHERE robot_id = ?")
+      .Bind(robot)
+      .Run();
+}
+
 void Insert(Store& store, const Revision& revision, int number) {
   Query insert(store, "INSERT INTO revision VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
@@ -50,6 +69,7 @@ void Insert(Store& store, const Revision& revision, int number) {
         .Bind(revision.robot, number, *revision.calibrated_at)
         .Run();
   Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
+  UpdateWaiting(store, revision.robot);
 }
 
 }  // namespace
@@ -106,30 +126,15 @@ Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) 
   });
 }
 
-namespace {
-
-// Four index look-ups per robot, whatever the number of edges and revisions.
-const std::string kUnsolved =
-    "SELECT robot_id FROM robot r "
-    "WHERE ((SELECT max(number) FROM counted_edge c WHERE c.robot_id = r.robot_id) > "
-    "coalesce((SELECT edge_watermark FROM revision v WHERE v.robot_id = r.robot_id "
-    "ORDER BY v.number DESC LIMIT 1), 0) "
-    "OR (EXISTS (SELECT 1 FROM counted_edge e WHERE e.robot_id = r.robot_id) AND "
-    "(SELECT max(number) FROM standing t WHERE t.robot_id = r.robot_id) > "
-    "coalesce((SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = r.robot_id "
-    "ORDER BY s.revision_number DESC LIMIT 1), 0))) ";
-
-}  // namespace
-
 Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
   return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
-    return Query(store, kUnsolved + "AND robot_id = ?").Bind(robot).Step();
+    return Query(store, kUnsolved).Bind(robot).Step();
   });
 }
 
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
-    Query query(store, kUnsolved + "ORDER BY robot_id");
+    Query query(store, "SELECT robot_id FROM waiting_revision ORDER BY robot_id");
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
     return robots;
@@ -142,6 +147,13 @@ Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
     std::vector<RevisionKey> keys;
     while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});
     return keys;
+  });
+}
+
+Result<std::int64_t> CountUnpublished(Store& store, const RobotId& robot) {
+  return Load<std::int64_t>(store, RevisionsSubject(robot), [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT count(*) FROM waiting_publication WHERE robot_id = ?");
+    return query.Bind(robot).Step() ? query.Int(0) : 0;
   });
 }
 

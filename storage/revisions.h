@@ -30,6 +30,7 @@ struct RevisionKey {
   int number = 0;
 };
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
+[[nodiscard]] Result<std::int64_t> CountUnpublished(Store& store, const RobotId& robot);
 // To be published, perhaps again.
 [[nodiscard]] Status QueuePublication(Store& store, const RevisionKey& key);
 [[nodiscard]] Result<bool> IsPublished(Store& store, const RevisionKey& key);

@@ -130,6 +130,19 @@ Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot)
   });
 }
 
+Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot) {
+  return Load<std::vector<SessionRow>>(store, Subject(robot), [&]() -> Result<std::vector<SessionRow>> {
+    Query query(store, kSelectRow +
+                           "WHERE s.robot_id = ? AND (c.closed_ns IS NULL OR EXISTS (SELECT 1 FROM job j "
+                           "JOIN waiting_job w ON w.job_number = j.number WHERE j.session_number = s.number)) "
+                           "ORDER BY s.captured_ns DESC, s.number DESC");
+    query.Bind(robot);
+    std::vector<SessionRow> rows;
+    while (query.Step()) rows.push_back(SessionRowOf(query));
+    return rows;
+  });
+}
+
 Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now) {
   return store.connection().Append(Subject(id), [&]() -> Status {
     RIGCAL_ASSIGN(const std::optional<SessionRow> row, LoadSession(store, id));

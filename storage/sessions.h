@@ -27,6 +27,8 @@ struct SessionRow {
 [[nodiscard]] Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id);
 // All of one robot, or of all robots if `robot` is empty; newest captured_at first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
+// Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.
+[[nodiscard]] Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot);
 
 // held[i]: payload i of the manifest is durable, and was not lost since. kNotFound if the session is unknown.
 [[nodiscard]] Result<std::vector<bool>> LoadHeld(Store& store, const SessionId& id);
@@ -60,6 +62,8 @@ struct RobotRow {
 };
 [[nodiscard]] Status AppendRobot(Store& store, const RobotId& robot, Stamp now);
 [[nodiscard]] Result<std::vector<RobotRow>> LoadRobots(Store& store);
+// Nothing of a robot that is not known.
+[[nodiscard]] Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot);
 [[nodiscard]] Result<bool> HasRobot(Store& store, const RobotId& robot);
 
 }  // namespace rigcal::storage

@@ -89,29 +89,45 @@ Result<formats::SessionAnswer> RowOf(storage::Store& store, const storage::Sessi
 
 }  // namespace
 
+Result<std::vector<storage::RobotRow>> LoadKnown(storage::Store& store, const RobotId& robot) {
+  if (robot.empty()) return storage::LoadRobots(store);
+  RIGCAL_ASSIGN(const auto one, storage::LoadRobot(store, robot));
+  if (one) return std::vector{*one};
+  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+}
+
 Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot, Stamp now) {
   std::vector<formats::RobotAnswer> rows;
-  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
+  RIGCAL_ASSIGN(const auto robots, LoadKnown(store, robot));
   for (const storage::RobotRow& item : robots) {
-    if (!robot.empty() && item.robot != robot) continue;
     RIGCAL_ASSIGN(auto row, RowOf(store, item, now));
     rows.push_back(std::move(row));
   }
-  if (!robot.empty() && rows.empty())
-    return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known",
-                "`rigcal robots` lists those that are.");
   std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) { return x.robot < y.robot; });
   return rows;
 }
 
-Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot) {
+namespace {
+
+Result<std::vector<formats::SessionAnswer>> RowsOf(storage::Store& store, const std::vector<storage::SessionRow>& sessions) {
   std::vector<formats::SessionAnswer> rows;
-  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
   for (const storage::SessionRow& item : sessions) {
     RIGCAL_ASSIGN(auto row, RowOf(store, item));
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+}  // namespace
+
+Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
+  return RowsOf(store, sessions);
+}
+
+Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto sessions, storage::LoadOpenSessions(store, robot));
+  return RowsOf(store, sessions);
 }
 
 Status AddStanding(storage::Store& store, const RobotId& robot, std::vector<formats::SessionAnswer>& rows) {

@@ -5,16 +5,20 @@
 
 #include "server/base/stamp.h"
 #include "server/formats/answers.h"
+#include "storage/sessions.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
 
-// One row per robot, of its newest revision, sorted by id; only `robot` if it is not empty (kNotFound if there is
-// none).
+// All robots, or only `robot` if it is not empty (kNotFound if there is none).
+[[nodiscard]] Result<std::vector<storage::RobotRow>> LoadKnown(storage::Store& store, const RobotId& robot);
+// Of the same, one row each, of its newest revision, sorted by id.
 [[nodiscard]] Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot,
                                                                       Stamp now);
 // Without their standing.
 [[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot);
+// Those that are still arriving, or whose pairs are still being calibrated.
+[[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& store, const RobotId& robot);
 // Which of the robot's sessions are current, and by which the others are superseded; of all robots if it is empty.
 [[nodiscard]] Status AddStanding(storage::Store& store, const RobotId& robot,
                                  std::vector<formats::SessionAnswer>& rows);

@@ -1,9 +1,10 @@
 // Stores for measuring pages.  `page_store render DIR`: a rig of 12 sensors, 59 edges of 40 captures with two pictures
-// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT`: robots.
+// each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT [VISITS]`: robots.
 // `page_store serve DIR`: pages alone, without DDS, until its input ends.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "server/formats/documents.h"
@@ -122,14 +123,13 @@ int Render(const char* folder) {
   return 0;
 }
 
-Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int number) {
-  const RobotId robot(Name("robot-", number));
+// Three edges and a published revision of them.
+Status AppendVisit(storage::Store& store, const graph::RandomRig& rig, const RobotId& robot, int number, int visit) {
   const Stamp now = SystemClock().Now();
-  RIGCAL_TRY(storage::AppendRobot(store, robot, now));
   formats::RevisionInput input;
   input.robot = robot;
   for (int i = 0; i < 3; ++i) {
-    input.edges.push_back(EdgeFrom(rig.graph.edges[static_cast<std::size_t>(i)], robot, i));
+    input.edges.push_back(EdgeFrom(rig.graph.edges[static_cast<std::size_t>(i)], robot, 3 * visit + i));
     RIGCAL_TRY(storage::AppendEdge(store, input.edges.back(), now));
   }
   input.reference = input.edges.front().frame_a;
@@ -147,11 +147,21 @@ Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int 
   return storage::AppendPublication(store, {robot, added}, now);
 }
 
-int FillFleet(const char* folder, int count) {
+Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int number, int visits) {
+  const RobotId robot(Name("robot-", number));
+  RIGCAL_TRY(storage::AppendRobot(store, robot, SystemClock().Now()));
+  for (int visit = 0; visit < visits; ++visit) RIGCAL_TRY(AppendVisit(store, rig, robot, number, visit));
+  const std::filesystem::path report = store.ReportFolder() / robot.str() / std::to_string(visits);
+  std::filesystem::create_directories(report);  // a server draws again what is missing
+  std::ofstream(report / "index.html") << "<p>A report.</p>";
+  return {};
+}
+
+int FillFleet(const char* folder, int count, int visits) {
   storage::Store store = storage::Store::Open(folder).value();
   const graph::RandomRig rig = graph::MakeRig(12, 59, 77, 0.001, 0.0005);
   const Status filled = store.Write([&]() -> Status {
-    for (int i = 0; i < count; ++i) RIGCAL_TRY(AppendSmallRobot(store, rig, i));
+    for (int i = 0; i < count; ++i) RIGCAL_TRY(AppendSmallRobot(store, rig, i, visits));
     return {};
   });
   if (!filled) std::fprintf(stderr, "%s\n", filled.error().what.c_str());
@@ -183,8 +193,8 @@ int Serve(const char* folder) {
 int main(int argc, char** argv) {
   const std::string mode = argc > 2 ? argv[1] : "";
   if (mode == "render") return rigcal::Render(argv[2]);
-  if (mode == "fleet" && argc > 3) return rigcal::FillFleet(argv[2], std::atoi(argv[3]));
+  if (mode == "fleet" && argc > 3) return rigcal::FillFleet(argv[2], std::atoi(argv[3]), argc > 4 ? std::atoi(argv[4]) : 1);
   if (mode == "serve") return rigcal::Serve(argv[2]);
-  std::fprintf(stderr, "usage: page_store render DIR | page_store fleet DIR COUNT | page_store serve DIR\n");
+  std::fprintf(stderr, "usage: page_store render DIR | page_store fleet DIR COUNT [VISITS] | page_store serve DIR\n");
   return 2;
 }

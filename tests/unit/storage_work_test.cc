@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
+#include <random>
 
+#include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -167,6 +170,37 @@ TEST_F(WorkTest, ARobotIsUnsolvedWhileItsNewestEdgeIsInNoRevision) {
   EXPECT_FALSE(IsUnsolved(store_, kRobot).value());
   ASSERT_TRUE(AppendEdge(store_, MakeFailedEdge(1), {1}));
   EXPECT_THAT(unsolved(), ElementsAre(kRobot, kOther));
+}
+
+// The queue of robots to solve is kept by triggers and by AppendRevision; it must always say what IsUnsolved works out.
+TEST_F(WorkTest, TheQueueOfRobotsIsWhatTheWatermarksSay) {
+  std::mt19937 random(11);
+  const auto draw = [&](int count) { return std::uniform_int_distribution<int>(0, count - 1)(random); };
+  std::map<RobotId, std::vector<EdgeId>> edges;
+  int number = 0, unsolved_seen = 0, solved_seen = 0;
+  for (int step = 0; step < 200; ++step) {
+    const RobotId robot = draw(2) == 0 ? kRobot : kOther;
+    const int what = draw(4);
+    if (what < 2) {
+      const Edge edge = MakeEdge(++number, robot);
+      ASSERT_TRUE(AppendEdge(store_, edge, {step}));
+      edges[robot].push_back(edge.id);
+    } else if (what == 2 && !edges[robot].empty()) {
+      ASSERT_TRUE(RetireEdge(store_, edges[robot].back(), {{step}, "Ada", "typed wrong"}));
+      edges[robot].pop_back();
+    } else {
+      Revision revision = MakeRevision(LoadEdgeWatermark(store_, robot).value() - draw(2), robot);  // one may have come meanwhile
+      revision.standing_watermark = LoadStandingWatermark(store_, robot).value();
+      ASSERT_TRUE(AppendRevision(store_, revision));
+    }
+    const std::vector<RobotId> queue = LoadUnsolvedRobots(store_).value();
+    for (const RobotId& one : {kRobot, kOther}) {
+      const bool is_queued = std::find(queue.begin(), queue.end(), one) != queue.end();
+      EXPECT_EQ(is_queued, IsUnsolved(store_, one).value()) << one.str() << " after step " << step;
+      ++(is_queued ? unsolved_seen : solved_seen);
+    }
+  }
+  EXPECT_GT(std::min(unsolved_seen, solved_seen), 50);
 }
 
 TEST_F(WorkTest, RevisionsAreNumberedPerRobot) {

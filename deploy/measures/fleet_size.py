@@ -1,0 +1,80 @@
+"""Many robots in one store: what one robot's question costs must not depend on how many others there are."""
+import json
+import pathlib
+import statistics
+import subprocess
+import threading
+import time
+import urllib.request
+
+from .growth import Rig
+from .measure import at_most, info
+from .server import ANSWERED, Server
+
+
+def seconds(url):
+    began = time.perf_counter()
+    with urllib.request.urlopen(url, timeout=60) as reply:
+        reply.read()
+    return time.perf_counter() - began
+
+
+class Pushes:
+    """One robot's weekly visits, one after the other without a pause, until it is left."""
+
+    def __init__(self, server, folder):
+        self.server, self.path, self.stopped, self.pushed = server, folder / "busy.json", threading.Event(), 0
+        self.thread = threading.Thread(target=self.push)
+
+    def push(self):
+        rig = Rig()
+        while not self.stopped.is_set():
+            self.path.write_text(json.dumps(rig.week(self.pushed + 1)))
+            done = self.server.rigcal("push-edges", self.path, "--robot", "busy", "--no-wait")
+            if done.returncode not in ANSWERED:
+                raise RuntimeError("push-edges: " + done.stderr)
+            self.pushed += 1
+
+    def __enter__(self):
+        self.began = time.monotonic()
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.stopped.set()
+        self.thread.join()
+
+    def edges_per_s(self):
+        return 59 * self.pushed / (time.monotonic() - self.began)
+
+
+def asked(context, server, count):
+    """Figures in ms of one robot's questions and of the fleet's page."""
+    address = server.address
+    polls = sorted(seconds(address + "/api/v1/live?robot=robot-500") for _ in range(count))
+    robot_pages = [seconds(address + "/robots/robot-500/") for _ in range(10)]
+    fleet_pages = [seconds(address + "/") for _ in range(3)]
+    lookups = context.run_json("query_bench", "--tag", server.tag, "--robot", "asked", "--a", "s00", "--b", "s11", "--count", count, env=server.environment())
+    return {"poll_p99": (1e3 * polls[int(0.99 * (count - 1))], 5.0), "robot_page": (1e3 * statistics.median(robot_pages), 50.0),
+            "fleet_page": (1e3 * statistics.median(fleet_pages), 500.0), "lookup_p99": (lookups["p99_ms"], 20.0)}
+
+
+def run(context):
+    robots, visits = (1000, 52) if context.full else (1000, 12)
+    with context.folder() as name:
+        folder = pathlib.Path(name)
+        subprocess.run([str(context.bin / "page_store"), "fleet", str(folder / "data"), str(robots), str(visits)], check=True, stdout=subprocess.DEVNULL)
+        began = time.monotonic()
+        with Server(context, folder / "data") as server:
+            yield at_most("start_to_serving", time.monotonic() - began, 3.0, "s")
+            path = folder / "asked.json"
+            path.write_text(json.dumps(Rig().week(1)))
+            if server.rigcal("push-edges", path, "--robot", "asked").returncode not in ANSWERED:
+                raise RuntimeError("push-edges failed")
+            for key, (value_ms, limit_ms) in asked(context, server, 300).items():
+                yield at_most("%s_%d_robots_%d_visits" % (key, robots, visits), value_ms, limit_ms, "ms")
+            with Pushes(server, folder) as pushes:
+                time.sleep(1)
+                for key, (value_ms, limit_ms) in asked(context, server, 300).items():
+                    yield at_most("%s_beside_pushes" % key, value_ms, limit_ms, "ms")
+                yield info("edges_pushed_meanwhile", pushes.edges_per_s(), "/s")

@@ -1,0 +1,74 @@
+// A question about one robot looks at rows of that robot: no statement of it walks through a whole table.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
+#include <map>
+
+#include "storage/edges.h"
+#include "storage/jobs.h"
+#include "storage/revision_poses.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+#include "storage/standing.h"
+#include "tests/unit/storage_fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+class QueryPlanTest : public StoreTest {
+ protected:
+  void SetUp() override {
+    const SensorPair pair{SensorId("left"), SensorId("right")};
+    const SessionId session = AppendClosedSession(store_, 2, {pair});
+    for (const RobotId& robot : {kRobot, RobotId("b"), RobotId("c"), RobotId("d")}) {
+      ASSERT_TRUE(AppendRobot(store_, robot, {1}));
+      for (int i = 0; i < 3; ++i) ASSERT_TRUE(AppendEdge(store_, MakeEdge(i, robot), {1}));
+      ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, robot).value(), robot)));
+    }
+    session_ = session;
+  }
+
+  // Rows that a statement stepped through without an index, by its text. A CROSS JOIN from a queue is meant: it holds
+  // only what is still to be done.
+  std::map<std::string, int> Scanned() {
+    std::map<std::string, int> scanned;
+    sqlite3* database = store_.database().getHandle();
+    for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr; one = sqlite3_next_stmt(database, one))
+      if (const int steps = sqlite3_stmt_status(one, SQLITE_STMTSTATUS_FULLSCAN_STEP, 1); steps > 0) scanned[sqlite3_sql(one)] = steps;
+    return scanned;
+  }
+
+  SessionId session_;
+};
+
+TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
+  (void)Scanned();  // what SetUp left
+  EXPECT_TRUE(LoadRobot(store_, kRobot).value());
+  EXPECT_TRUE(HasRobot(store_, kRobot).value());
+  EXPECT_TRUE(LoadOpenSessions(store_, kRobot));
+  EXPECT_TRUE(LoadSessions(store_, kRobot));
+  EXPECT_TRUE(LoadSession(store_, session_));
+  EXPECT_TRUE(CountJobs(store_, kRobot));
+  EXPECT_TRUE(CountJobs(store_, session_));
+  EXPECT_TRUE(IsUnsolved(store_, kRobot));
+  EXPECT_TRUE(CountUnpublished(store_, kRobot));
+  EXPECT_TRUE(LoadRevision(store_, kRobot, 0));
+  EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 0));
+  EXPECT_TRUE(LoadUsableRevision(store_, kRobot, 0));
+  EXPECT_TRUE(LoadRevisionPoses(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
+  EXPECT_TRUE(LoadStandingWatermark(store_, kRobot));
+  EXPECT_TRUE(LoadEdges(store_, kRobot, true));
+  EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+// The test sees a scan where there is one.
+TEST_F(QueryPlanTest, TheListOfAllRobotsScans) {
+  (void)Scanned();
+  EXPECT_TRUE(LoadRobots(store_));
+  EXPECT_FALSE(Scanned().empty());
+}
+
+}  // namespace
+}  // namespace rigcal::storage
