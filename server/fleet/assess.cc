@@ -80,8 +80,10 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
   const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
-  if (const auto accusations = FindAccusations(edges, judged, policy, captured_at); !accusations.empty())
+  if (auto accusations = FindAccusations(edges, judged, policy, captured_at); !accusations.empty()) {
+    if (auto misfits = FindLensMisfits(estimates, true)) accusations.push_back(std::move(*misfits));  // what may be behind it
     return VerdictFrom(VerdictLevel::kFail, accusations);
+  }
   const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();
   if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
     return VerdictFrom(VerdictLevel::kUnknown, unknown);

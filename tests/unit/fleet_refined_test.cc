@@ -8,6 +8,7 @@ namespace rigcal::fleet {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 LensMisfit MisfitOf(const std::string& camera, CameraModel model, double sigma_ratio) {
   LensMisfit misfit;
@@ -45,6 +46,25 @@ TEST(AssessLens, OneThatAddsLittleIsLeftToTheSigmas) {
   LensMisfit tiny = MisfitOf("right", CameraModel::kPinholeRadtan, 5.0);
   tiny.pose_sigma_m = tiny.pose_sigma_rad = 2e-5;
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {tiny})}).level, VerdictLevel::kPass);
+}
+
+// A loop that fails by more than any lens is excused for still says which lens may be behind it.
+TEST(AssessLens, BesideAnOpenLoopItIsNamedToo) {
+  Rig rig;
+  CycleResidual loop;
+  for (const char* name : {"left", "right", "top"}) loop.sensors.emplace_back(name);
+  loop.e << 0.06, 0.08, 0.0, 0.0, 0.0, 0.0;
+  loop.tested = true;
+  loop.t_squared = 80.0, loop.limit = 40.0;
+  rig.solution.cycles.judged = true;
+  rig.solution.cycles.worst = {loop};
+  rig.solution.cycles.failing = 1;
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {})}).why, Not(HasSubstr("lens")));
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)})});
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("does not close"));
+  EXPECT_THAT(verdict.why, HasSubstr("because the lens of right bends in a way that pinhole_radtan cannot"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("pinhole_rational"));
 }
 
 TEST(AssessLens, TheNewestSessionOfACameraCounts) {
