@@ -53,6 +53,10 @@ TEST(AssessLens, BesideAnOpenLoopItIsNamedToo) {
   Rig rig;
   CycleResidual loop;
   for (const char* name : {"left", "right", "top"}) loop.sensors.emplace_back(name);
+  for (Edge& edge : rig.edges) {
+    edge.uncertainty.dof = 39;  // estimated: the loops judge them, not the cost
+    loop.edges.push_back(edge.id);
+  }
   loop.e << 0.06, 0.08, 0.0, 0.0, 0.0, 0.0;
   loop.tested = true;
   loop.t_squared = 80.0, loop.limit = 40.0;
