@@ -8,7 +8,7 @@ import time
 import urllib.request
 
 from .growth import Rig
-from .measure import at_most, info
+from .measure import at_least, at_most, info
 from .server import ANSWERED, Server
 
 
@@ -24,16 +24,16 @@ class Pushes:
 
     def __init__(self, server, folder):
         self.server, self.path, self.stopped, self.pushed = server, folder / "busy.json", threading.Event(), 0
+        self.refused = ""
         self.thread = threading.Thread(target=self.push)
 
     def push(self):
         rig = Rig()
-        while not self.stopped.is_set():
+        while not self.stopped.is_set() and not self.refused:
             self.path.write_text(json.dumps(rig.week(self.pushed + 1)))
             done = self.server.rigcal("push-edges", self.path, "--robot", "busy", "--no-wait")
-            if done.returncode not in ANSWERED:
-                raise RuntimeError("push-edges: " + done.stderr)
-            self.pushed += 1
+            self.refused = done.stderr if done.returncode not in ANSWERED else ""
+            self.pushed += 0 if self.refused else 1
 
     def __enter__(self):
         self.began = time.monotonic()
@@ -43,6 +43,8 @@ class Pushes:
     def __exit__(self, *_):
         self.stopped.set()
         self.thread.join()
+        if self.refused:
+            raise RuntimeError("push-edges: " + self.refused)
 
     def edges_per_s(self):
         return 59 * self.pushed / (time.monotonic() - self.began)
@@ -77,4 +79,5 @@ def run(context):
                 time.sleep(1)
                 for key, (value_ms, limit_ms) in asked(context, server, 300).items():
                     yield at_most("%s_beside_pushes" % key, value_ms, limit_ms, "ms")
+                yield at_least("pushes_meanwhile", pushes.pushed, 2)
                 yield info("edges_pushed_meanwhile", pushes.edges_per_s(), "/s")

@@ -96,6 +96,14 @@ def wait_published(server, number):
     raise RuntimeError("revision %d was not published" % number)
 
 
+def is_right(answer, rig, week):
+    """Of the newest revision, the pose within 4 of its sigmas of the truth."""
+    p, q = composed(inverse(rig.poses[0]), rig.poses[11])
+    apart_m = [a - b for a, b in zip(answer["T_a_b"]["p_m"], p)]
+    length_m, sigma_m = math.sqrt(sum(x * x for x in apart_m)), math.sqrt(sum(answer["covariance"][i][i] for i in range(3)))
+    return answer["revision"] == week and 0 < sigma_m < 1e-2 and length_m < 4 * sigma_m
+
+
 def visit(server, rig, folder, week):
     """Figures of one weekly visit."""
     path = folder / "week.json"
@@ -105,7 +113,7 @@ def visit(server, rig, folder, week):
         raise RuntimeError("week %d: push-edges: exit %d: %s" % (week, pushed.returncode, pushed.stderr.strip()[-200:]))
     figures = {"push_to_revision_s": push_s}
     figures["cold_lookup_s"], looked = timed(server, "lookup", "growing", "s00", "s11", "--json")
-    figures["lookup_answered"] = looked.returncode in ANSWERED
+    figures["lookup_answered"] = looked.returncode in ANSWERED and is_right(json.loads(looked.stdout), rig, week)
     return figures
 
 

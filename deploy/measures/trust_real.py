@@ -114,7 +114,7 @@ def charuco_sigmas(edge):
 
 def told_sigmas(document):
     """Of the pose that `lookup` gives, right in left: its inverse's translation t against the author's, by dt = [t]x r - p."""
-    if document["fused"]["sensors"] != ["right"]:
+    if document.get("fused", {}).get("sensors") != ["right"]:
         return math.inf
     [right] = [sensor for sensor in document["sensors"] if sensor["id"] == "right"]
     t_mm = baseline_mm({"frame_a": "left", "T_a_b": right["T_ref_sensor"]})

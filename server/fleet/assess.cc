@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include "server/fleet/findings.h"
 
@@ -70,6 +71,18 @@ std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const Graph
   return contradictions.empty() ? Collect({FindOpenLoops(edges, solution, policy)}) : contradictions;
 }
 
+// Of loops that do not close, and of edges and sensors that others contradict.
+std::set<SensorId> AccusedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  std::set<SensorId> accused;
+  for (const CycleResidual& loop : solution.cycles.worst)
+    if (loop.fails()) accused.insert(loop.sensors.begin(), loop.sensors.end());
+  for (const TwoPoses& two : solution.suspects.two_poses) accused.insert(two.sensor);
+  for (const SuspectEdge& suspect : solution.suspects.edges)
+    for (const Edge& edge : edges)
+      if (edge.id == suspect.edge) accused.insert({edge.frame_a, edge.frame_b});
+  return accused;
+}
+
 }  // namespace
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
@@ -81,7 +94,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto moved = FindMovedBetween(solution, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
   const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
   if (auto accusations = FindAccusations(edges, judged, policy, captured_at); !accusations.empty()) {
-    if (auto misfits = FindLensMisfits(estimates, true)) accusations.push_back(std::move(*misfits));  // what may be behind it
+    if (auto lens = FindLensBehind(estimates, AccusedSensors(edges, judged))) accusations.push_back(std::move(*lens));
     return VerdictFrom(VerdictLevel::kFail, accusations);
   }
   const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();

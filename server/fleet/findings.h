@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 
 #include "server/fleet/assess.h"
@@ -33,6 +34,9 @@ struct Finding {
 // those that make a pose less certain by half or more, or, where edges disagree for it, all.
 [[nodiscard]] std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates,
                                                      bool edges_disagree);
+// Likewise of accused sensors, whatever it adds: it may be what is behind a loop or a contradiction.
+[[nodiscard]] std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates,
+                                                    const std::set<SensorId>& accused);
 // Sensors of which a move beyond the policy's tolerance could have stayed unseen, by the newest session that tells of
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,

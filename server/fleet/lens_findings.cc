@@ -64,16 +64,30 @@ std::string CureOf(const std::vector<LensMisfit>& misfits) {
          ", and have their intrinsics estimated (give `intrinsics_sigma`, or leave the intrinsics out)";
 }
 
+// The one that adds most first; at least one.
+Finding FindingOf(std::vector<LensMisfit> misfits) {
+  std::stable_sort(misfits.begin(), misfits.end(),
+                   [](const LensMisfit& x, const LensMisfit& y) { return x.sigma_ratio > y.sigma_ratio; });
+  return {WhyOf(misfits, misfits.front()), CureOf(misfits)};
+}
+
 }  // namespace
 
 std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
   std::vector<LensMisfit> misfits = NewestOf(estimates);
   if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return !Matters(one); });
   if (misfits.empty()) return std::nullopt;
-  std::stable_sort(misfits.begin(), misfits.end(),
-                   [](const LensMisfit& x, const LensMisfit& y) { return x.sigma_ratio > y.sigma_ratio; });
-  Finding finding{WhyOf(misfits, misfits.front()), CureOf(misfits)};
+  Finding finding = FindingOf(std::move(misfits));
   if (edges_disagree) finding.why = "pairs of sensors disagree beyond chance because " + finding.why;
+  return finding;
+}
+
+std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates, const std::set<SensorId>& accused) {
+  std::vector<LensMisfit> misfits = NewestOf(estimates);
+  std::erase_if(misfits, [&](const LensMisfit& one) { return !accused.contains(one.camera); });
+  if (misfits.empty()) return std::nullopt;
+  Finding finding = FindingOf(std::move(misfits));
+  finding.why = "a cause may be that " + finding.why;
   return finding;
 }
 

@@ -62,17 +62,21 @@ int RowOf(const JointPoses& poses, const JointCovariance& covariance, const Sens
 
 }  // namespace
 
+JointPoses FusedPosesOf(const GraphSolution& solution, const SensorId& reference) {
+  JointPoses joint{reference, {}, {}};
+  for (const SensorPose& pose : solution.poses)
+    if (pose.known) joint.T_ref_sensor.emplace(pose.sensor, pose.T_ref_sensor);
+  if (!solution.fused.sensors.empty()) joint.covariances.push_back({solution.fused.sensors, solution.fused.covariance});
+  return joint;
+}
+
 JointPoses JointPosesOf(const Graph& graph, const GraphSolution& solution, const GraphJackknife& jackknife) {
-  JointPoses joint{graph.reference, {}, {}};
+  JointPoses joint = FusedPosesOf(solution, graph.reference);
   std::vector<SensorId> sensors;
-  for (const SensorPose& pose : solution.poses) {
-    if (!pose.known) continue;
-    joint.T_ref_sensor.emplace(pose.sensor, pose.T_ref_sensor);
-    if (pose.sensor != graph.reference) sensors.push_back(pose.sensor);
-  }
-  const FusedSessions& fused = solution.fused;
-  if (!fused.sensors.empty()) joint.covariances.push_back({fused.sensors, fused.covariance});
-  if (fused.sensors.size() >= sensors.size() || sensors.size() > kJointPosesMax) return joint;
+  for (const auto& [sensor, T_ref_sensor] : joint.T_ref_sensor)
+    if (sensor != graph.reference) sensors.push_back(sensor);
+  if (sensors.size() > kJointPosesMax) joint.covariances.clear();
+  if (solution.fused.sensors.size() >= sensors.size() || sensors.size() > kJointPosesMax) return joint;
   auto of_graph = jackknife.available ? JackknifeJoint(jackknife, sensors) : AnalyticJoint(graph, solution, sensors);
   if (of_graph) joint.covariances.push_back(std::move(*of_graph));
   return joint;

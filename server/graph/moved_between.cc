@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/math/covariance.h"
 #include "server/math/statistics.h"
 
 namespace rigcal::graph {
@@ -146,7 +147,7 @@ std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<Ses
   std::optional<Found> best;
   for (std::size_t k = 1; k < oldest_first.size(); ++k) {
     auto found = ChangeBefore(input, oldest_first, k, left_out);
-    if (found && IsMove(found->moved.step, found->covariance, found->moved.odds) &&
+    if (found && IsMove(found->moved.step, Observable(found->covariance).covariance, found->moved.odds) &&
         (!best || found->moved.odds < best->moved.odds || (found->moved.odds == best->moved.odds && found->gain > best->gain)))
       best = std::move(found);
   }

@@ -2,8 +2,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "server/math/covariance.h"
-
 namespace rigcal {
 namespace {
 
@@ -23,12 +21,9 @@ double MultiplierOf(double scale, const Excess& excess) {
 
 }  // namespace
 
-double SquaredDistanceFromBalls(const Vector6d& step, const Matrix6d& C, double radius_m, double radius_rad) {
+double SquaredDistanceFromBalls(const Vector6d& step, const Matrix6d& W, double radius_m, double radius_rad) {
   const auto translation = [](const Vector6d& y) { return y.segment<3>(tangent::kTranslation).norm(); };
   const auto rotation = [](const Vector6d& y) { return y.segment<3>(tangent::kRotation).norm(); };
-  const double size = C.trace();
-  if (!(size > 0)) return 0.0;
-  const Matrix6d W = Observable(Symmetrized(C) / size).covariance / size;
   const double scale = W.trace() / 6;
   const auto nearest = [&](double mu, double nu) -> Vector6d {
     Matrix6d H = W;

@@ -33,6 +33,9 @@ struct CaptureResidual {
   std::string note;  // why it was not used
 };
 
+// How a note begins of a capture that a pair of a very large session left out.
+inline constexpr std::string_view kLeftToRefinement = "left to the joint refinement";
+
 struct Edge {
   EdgeId id;
   RobotId robot;

@@ -138,6 +138,7 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
   graph.reference = document.reference;
   graph.sensors.clear();
   for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);
+  if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(document.solution, document.reference), a, b)) return *fused;
   RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
   const auto& poses = document.solution.poses;
   graph::GraphJackknife jackknife;

@@ -90,9 +90,12 @@ bool FillNoneUsed(Dictionary& notes, const Edge& edge) {
 void FillUnused(Dictionary& notes, const Edge& edge) {
   constexpr std::size_t kUnusedMax = 30;
   if (FillNoneUsed(notes, edge)) return;
-  std::size_t shown = 0;
-  for (const CaptureResidual& capture : edge.captures) {
-    if (capture.used || shown++ >= kUnusedMax) continue;
+  const auto is_odd = [](const CaptureResidual& capture) { return !capture.note.starts_with(kLeftToRefinement); };
+  std::vector<CaptureResidual> unused = edge.captures;
+  std::erase_if(unused, [](const CaptureResidual& capture) { return capture.used; });
+  std::stable_partition(unused.begin(), unused.end(), is_odd);  // those of which something is to be learned come first
+  unused.resize(std::min(unused.size(), kUnusedMax));
+  for (const CaptureResidual& capture : unused) {
     Dictionary* row = notes.AddSectionDictionary("UNUSED");
     row->SetValue("CAPTURE", capture.capture.str());
     if (!capture.note.empty()) ShowValue(*row, "REASON", "NOTE", capture.note);

@@ -67,8 +67,11 @@ TEST(AssessLens, BesideAnOpenLoopItIsNamedToo) {
   const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)})});
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_THAT(verdict.why, HasSubstr("does not close"));
-  EXPECT_THAT(verdict.why, HasSubstr("because the lens of right bends in a way that pinhole_radtan cannot"));
+  EXPECT_THAT(verdict.why, HasSubstr("a cause may be that the lens of right bends in a way that pinhole_radtan cannot"));
   EXPECT_THAT(verdict.what_to_do, HasSubstr("pinhole_rational"));
+  // A lens that has no part in the loop is not behind it.
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("back", CameraModel::kPinholeRadtan, 1.1)})}).why,
+              Not(HasSubstr("lens")));
 }
 
 TEST(AssessLens, TheNewestSessionOfACameraCounts) {

@@ -156,6 +156,34 @@ TEST(SimBound, IsTheDiagonalOfItsCovariance) {
   EXPECT_FALSE(CramerRaoCovariance(Prepared(SmallRig(), options), SensorId("body")));
 }
 
+// What a sensor moved by is known better than from either side by itself, as both sides know the others; and not at all
+// where one side saw nothing.
+TEST(SimBound, OfABumpIsAtMostWhatItsTwoSidesKnowByThemselves) {
+  Options options;
+  options.captures = 12;
+  EXPECT_FALSE(CramerRaoCovarianceOfBump(Prepared(SmallRig(), options)));
+  for (const char* id : {"side", "top", "left"}) {
+    options.bump = SensorId(id);
+    const Experiment whole = Prepared(SmallRig(), options);
+    const auto bump = CramerRaoCovarianceOfBump(whole);
+    ASSERT_TRUE(bump) << id;
+    EXPECT_TRUE(bump->llt().info() == Eigen::Success) << id;
+    if (std::string(id) == "left") continue;  // the reference's own pose is exact
+    Matrix6d sides = Matrix6d::Zero();
+    for (const bool after : {false, true}) {
+      Experiment part = whole;
+      const auto cut = static_cast<std::ptrdiff_t>(whole.bumped_from_idx);
+      const auto keep = [&](auto& of_captures) {
+        after ? of_captures.erase(of_captures.begin(), of_captures.begin() + cut) : of_captures.erase(of_captures.begin() + cut, of_captures.end());
+      };
+      keep(part.captures), keep(part.T_world_body), keep(part.stamps_ns);
+      sides += CramerRaoCovariance(part, SensorId(id)).value();
+    }
+    EXPECT_GT((1.02 * sides - *bump).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0) << id;
+    EXPECT_GT(bump->trace(), 0.02 * sides.trace()) << id;
+  }
+}
+
 TEST(SimBound, LevelMotionLeavesTheTrackersHeightUnknownAndNothingElse) {
   Options options;
   options.captures = 12;

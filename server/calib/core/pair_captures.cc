@@ -1,7 +1,9 @@
 #include "server/calib/core/pair_captures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "server/calib/core/capture_blocks.h"
 
@@ -10,14 +12,17 @@ namespace {
 
 using InOrder = std::set<CaptureId, TakenBefore>;
 
-// `count` of them, or all.
+// `count` of them, or all: one of each of so many stretches. The place in the stretch moves on by the golden ratio, so that
+// captures that alternate between two places are all drawn from.
 template <typename Each>
-void ForEvenlySpread(const InOrder& captures, std::size_t count, const Each& each) {
-  count = std::min(count, captures.size());
-  std::size_t idx = 0;
-  for (const CaptureId& capture : captures) {
-    if ((idx + 1) * count / captures.size() > idx * count / captures.size()) each(capture);
-    ++idx;
+void ForSpread(const InOrder& captures, std::size_t count, const Each& each) {
+  constexpr double kGolden = 0.6180339887498949;
+  const std::vector<CaptureId> all(captures.begin(), captures.end());
+  count = std::min(count, all.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t first = k * all.size() / count, size = (k + 1) * all.size() / count - first;
+    const double place = std::fmod(static_cast<double>(k) * kGolden, 1.0);
+    each(all[first + static_cast<std::size_t>(place * static_cast<double>(size))]);
   }
 }
 
@@ -27,24 +32,27 @@ PairCaptures ChooseCaptures(const std::vector<CaptureId>& session, const std::se
   const InOrder all(session.begin(), session.end());
   PairCaptures chosen;
   const auto use = [&](const CaptureId& capture) { chosen.used.insert(capture); };
-  ForEvenlySpread(all, all.size() <= kPairCapturesMax ? all.size() : kPairCapturesMax, use);
+  ForSpread(all, all.size() <= kPairCapturesMax ? all.size() : kPairCapturesMax, use);
   InOrder more;
   for (const CaptureId& capture : seen_by_both)
     if (all.contains(capture) && !chosen.used.contains(capture)) more.insert(capture);
   const std::size_t used_by_both = seen_by_both.size() - more.size();
-  if (used_by_both < kSeenByBothMin) ForEvenlySpread(more, kSeenByBothMin - used_by_both, use);
+  if (used_by_both < kSeenByBothMin) ForSpread(more, kSeenByBothMin - used_by_both, use);
   for (const CaptureId& capture : all)
     if (!chosen.used.contains(capture)) chosen.left_out.insert(capture);
   return chosen;
 }
 
-void AddLeftOut(const PairCaptures& chosen, Edge& edge) {
-  const std::string why = "left to the joint refinement: the pair uses " + std::to_string(chosen.used.size()) +
-                          " of the session's captures, evenly spread";
-  for (const CaptureId& capture : chosen.left_out) edge.captures.push_back({capture, 0.0, false, why});
+void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge) {
+  std::size_t left_out = 0;
+  for (const CaptureId& capture : chosen.left_out) left_out += of_pair.contains(capture) ? 1 : 0;
+  const std::string why = std::string(kLeftToRefinement) + ": the pair uses " + std::to_string(of_pair.size() - left_out) + " of its " +
+                          std::to_string(of_pair.size()) + " captures, spread over the session";
+  for (const CaptureId& capture : chosen.left_out)
+    if (of_pair.contains(capture)) edge.captures.push_back({capture, 0.0, false, why});
   std::stable_sort(edge.captures.begin(), edge.captures.end(),
                    [](const CaptureResidual& a, const CaptureResidual& b) { return a.capture < b.capture; });
-  edge.figures["captures_total"] = static_cast<double>(chosen.used.size() + chosen.left_out.size());
+  edge.figures["captures_total"] = static_cast<double>(of_pair.size());
 }
 
 }  // namespace rigcal::calib

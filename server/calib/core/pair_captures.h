@@ -11,33 +11,41 @@
 namespace rigcal::calib {
 
 constexpr std::size_t kPairCapturesMax = 120;  // of the session, the same for all its pairs
-constexpr std::size_t kSeenByBothMin = 30;     // a pair that has fewer of them uses more of its own, up to these
+constexpr std::size_t kSeenByBothMin = 60;     // a pair that has fewer of them uses more of its own, up to these
 
 struct PairCaptures {
   std::set<CaptureId> used, left_out;  // of `session`
 };
 
-// Evenly spread over the session in the order in which captures were taken; a session that is not told, or has no more
-// than kPairCapturesMax captures, is used whole.
+// Spread over the session in the order in which captures were taken, one of each of kPairCapturesMax stretches, at a place
+// in it that does not repeat from stretch to stretch; a session that is not told, or has no more captures, is used whole.
 [[nodiscard]] PairCaptures ChooseCaptures(const std::vector<CaptureId>& session, const std::set<CaptureId>& seen_by_both);
 
-// Tells each capture that was left out, with the reason; captures_total counts them.
-void AddLeftOut(const PairCaptures& chosen, Edge& edge);
+// Tells each of the pair's own captures that was left out, with the reason.
+void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge);
 
-// The edge of the captures chosen; `drop(problem, left_out)` takes the others out of a problem.
+// The edge of the captures chosen; where that is none, or leaves a direction open, the edge of all. `drop(problem, left_out)`
+// takes captures out of a problem; `of_pair` are those that it has files of.
 template <typename Problem, typename Drop, typename Estimate>
-Edge EstimateOfChosen(const Problem& problem, const std::set<CaptureId>& seen_by_both, const Drop& drop,
-                      const Estimate& estimate) {
+Edge EstimateOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair, const std::set<CaptureId>& seen_by_both,
+                      const Drop& drop, const Estimate& estimate) {
   const PairCaptures chosen = ChooseCaptures(problem.session_captures, seen_by_both);
   if (chosen.left_out.empty()) return estimate(problem);
   Problem fewer = problem;
   drop(fewer, chosen.left_out);
   Edge edge = estimate(fewer);
-  AddLeftOut(chosen, edge);
+  if (edge.state != EdgeState::kGood || edge.uncertainty.rank < 6) return estimate(problem);
+  AddLeftOut(chosen, of_pair, edge);
   return edge;
 }
 
 // Of a problem with a list of `captures`.
+template <typename Problem>
+std::set<CaptureId> CapturesOf(const Problem& problem) {
+  std::set<CaptureId> captures;
+  for (const auto& capture : problem.captures) captures.insert(capture.capture);
+  return captures;
+}
 template <typename Problem>
 void DropCaptures(Problem& problem, const std::set<CaptureId>& left_out) {
   std::erase_if(problem.captures, [&](const auto& capture) { return left_out.contains(capture.capture); });

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "server/math/covariance.h"
+
 namespace rigcal::calib::joint {
 namespace {
 
@@ -125,11 +127,11 @@ double LeftOver(const Explained& explained) {
   return left + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
 }
 
-// T_before^-1 T_after of the two that `move` has become, and its covariance: the scan's own step is that of a sensor whose
+// T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a sensor whose
 // noise holds the bump.
 struct Step {
   Vector6d step = Vector6d::Zero();
-  Matrix6d covariance = Matrix6d::Zero();
+  Matrix6d information = Matrix6d::Zero();
 };
 Step StepOf(const Refined& split, const Move& move) {
   const bool is_board = move.board != kNone;
@@ -147,7 +149,7 @@ Step StepOf(const Refined& split, const Move& move) {
   add(by_before, rows[before], by_after, rows.back());
   add(by_after, rows.back(), by_before, rows[before]);
   add(by_after, rows.back(), by_after, rows.back());
-  return {T_before_after.Log(), std::max(1.0, move.scatter) * C};
+  return {T_before_after.Log(), Observable(C).covariance / std::max(1.0, move.scatter)};
 }
 
 struct Next {
@@ -166,8 +168,8 @@ Next ByMove(const Explained& now) {
     ++tried;
     auto split = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
     // One side may tell too little for a pose of its own: then the scan's step is all there is.
-    const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.covariance};
-    if (!IsMove(step.step, step.covariance, move.odds)) continue;
+    const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.information};
+    if (!IsMove(step.step, step.information, move.odds)) continue;
     move.step = step.step;
     return {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
   }

@@ -20,17 +20,19 @@ constexpr double kPower = 0.95, kPowerSigmas = 1.645;  // P(z < kPowerSigmas) = 
 // Pseudo-inverse and rank of an information matrix, along what `whole` tells and it does not lack.
 struct Inverse {
   Matrix6d matrix = Matrix6d::Zero();
+  Matrix6d of = Matrix6d::Zero();  // H without what counts as rounding
   int rank = 0;
 };
 Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
   const Vector6d scale = whole.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
   Inverse inverse;
-  Vector6d values = Vector6d::Zero();
+  Vector6d values = Vector6d::Zero(), inverted = Vector6d::Zero();
   for (int i = 0; i < 6; ++i)
-    if (axes.eigenvalues()[i] > kOpen) values[i] = 1 / axes.eigenvalues()[i], ++inverse.rank;
-  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors();
-  inverse.matrix = half * values.asDiagonal() * half.transpose();
+    if (axes.eigenvalues()[i] > kOpen) values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
+  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors(), other = scale.cwiseInverse().asDiagonal() * axes.eigenvectors();
+  inverse.matrix = half * inverted.asDiagonal() * half.transpose();
+  inverse.of = other * values.asDiagonal() * other.transpose();
   return inverse;
 }
 
@@ -53,7 +55,7 @@ Scores ScoresOf(const Refined& refined, int at) {
 // A change from `group` on: the step that fits it best, and the gain of the cost.
 struct Change {
   Vector6d step = Vector6d::Zero();
-  Matrix6d covariance = Matrix6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero(), information = Matrix6d::Zero();
   Eigen::VectorXd others;  // what the unknowns move by with it
   double gain = 0.0;
   int rank = 0;
@@ -72,6 +74,7 @@ Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::
   Change change;
   change.step = -inverse.matrix * b;
   change.covariance = inverse.matrix;
+  change.information = inverse.of;
   change.others = -half.transpose() * change.step;
   change.gain = -b.dot(change.step);
   change.rank = inverse.rank;
@@ -123,7 +126,7 @@ Move LikeliestMove(const Refined& refined, int at) {
     const double odds = FisherTail(statistic, change.rank, scatter.dof);
     if (best.statistic >= statistic) continue;
     best = {kNone, kNone, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
-            scatter.mean_square, scatter.mean_square * change.covariance};
+            scatter.mean_square, change.information / std::max(scatter.mean_square, 1e-12)};
   }
   return best;
 }

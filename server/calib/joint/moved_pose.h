@@ -18,7 +18,7 @@ struct Move {
   double dof = 0.0;
   double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
   double scatter = 1.0;      // mean square of the groups' scores beside the change
-  Matrix6d covariance = Matrix6d::Zero();  // of the step, scatter included; nothing is told along what it leaves open
+  Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open
 };
 
 // The likeliest change of each sensor and board that was seen in two groups or more, the least odds first. The board

@@ -181,7 +181,7 @@ std::set<CaptureId> SeenByBoth(const LidarCameraProblem& problem) {
 
 Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   try {
-    return EstimateOfChosen(problem, SeenByBoth(problem), DropCaptures<LidarCameraProblem>,
+    return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<LidarCameraProblem>,
                             [&](const LidarCameraProblem& chosen) { return Solved(chosen, fits); });
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again

@@ -138,7 +138,7 @@ void Drop(HandEyeProblem& problem, const std::set<CaptureId>& left_out) {
 Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   try {
     if (problem.method == Method::kPoseStreams) return Solved(problem, fits);
-    return EstimateOfChosen(problem, SeenByBoth(problem), Drop,
+    return EstimateOfChosen(problem, AllCaptures(problem), SeenByBoth(problem), Drop,
                             [&](const HandEyeProblem& chosen) { return Solved(chosen, fits); });
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again

@@ -203,7 +203,7 @@ Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
     const auto estimate = [&](const StereoProblem& chosen) {
       return ShowsOtherBoard(chosen) ? FailedEdge(chosen, {}) : Solved(chosen, fits);
     };
-    return EstimateOfChosen(problem, SeenByBoth(problem), DropCaptures<StereoProblem>, estimate);
+    return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>, estimate);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem,

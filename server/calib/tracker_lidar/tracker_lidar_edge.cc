@@ -101,7 +101,7 @@ std::set<CaptureId> SeenByBoth(const TrackerLidarProblem& problem) {
 
 Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem) {
   try {
-    return EstimateOfChosen(problem, SeenByBoth(problem), DropCaptures<TrackerLidarProblem>, Solved);
+    return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<TrackerLidarProblem>, Solved);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     return FailedEdge(problem, TrackerLidarNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
