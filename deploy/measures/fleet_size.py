@@ -24,7 +24,7 @@ class Pushes:
 
     def __init__(self, server, folder):
         self.server, self.path, self.stopped, self.pushed = server, folder / "busy.json", threading.Event(), 0
-        self.refused = ""
+        self.refused, self.first = "", threading.Event()
         self.thread = threading.Thread(target=self.push)
 
     def push(self):
@@ -34,6 +34,7 @@ class Pushes:
             done = self.server.rigcal("push-edges", self.path, "--robot", "busy", "--no-wait")
             self.refused = done.stderr if done.returncode not in ANSWERED else ""
             self.pushed += 0 if self.refused else 1
+            self.first.set()
 
     def __enter__(self):
         self.began = time.monotonic()
@@ -76,7 +77,7 @@ def run(context):
             for key, (value_ms, limit_ms) in asked(context, server, 300).items():
                 yield at_most("%s_%d_robots_%d_visits" % (key, robots, visits), value_ms, limit_ms, "ms")
             with Pushes(server, folder) as pushes:
-                time.sleep(1)
+                pushes.first.wait(timeout=60)
                 for key, (value_ms, limit_ms) in asked(context, server, 300).items():
                     yield at_most("%s_beside_pushes" % key, value_ms, limit_ms, "ms")
                 yield at_least("pushes_meanwhile", pushes.pushed, 2)

@@ -75,11 +75,8 @@ std::string WhyNot(const Graph& graph, const GraphSolution& solution) {
 
 std::optional<EdgeChecks> ChecksAt(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
   const Poses T_ref = SolvedPoses(graph, problem, solution);
-  NormalEquations equations;
-  Linearize(problem, T_ref, equations);
-  AddPins(Observe(problem, T_ref).pins, equations.H);
-  const auto cholesky = MakeCholesky<6>(problem.pattern);
-  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return std::nullopt;
+  const auto cholesky = FactorAt(problem, T_ref);
+  if (cholesky == nullptr) return std::nullopt;
   return CheckEdges(problem, T_ref, std::vector<bool>(problem.constraints.size(), true), *cholesky);
 }
 

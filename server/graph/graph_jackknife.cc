@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "server/graph/jackknife_sources.h"
-#include "server/graph/observability.h"
 #include "server/graph/solved_poses.h"
 #include "server/math/covariance.h"
 #include "server/math/pooled_dof.h"
@@ -191,11 +190,8 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   if (!Usable(graph, problem, solution) || !AnySession(work)) return jackknife;
   const Poses T_ref = SolvedPoses(graph, problem, solution);
   for (const Constraint& constraint : problem.constraints) work.jacobians.push_back(JacobianOf(constraint, T_ref));
-  NormalEquations equations;
-  Linearize(problem, T_ref, equations);
-  AddPins(Observe(problem, T_ref).pins, equations.H);
-  const auto cholesky = MakeCholesky<6>(problem.pattern);
-  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return jackknife;
+  const auto cholesky = FactorAt(problem, T_ref);
+  if (cholesky == nullptr) return jackknife;
   const std::vector<Matrix6d> analytic = cholesky->InverseDiagonal();
   Accumulator accumulator(work, *cholesky, analytic);
   accumulator.Add(SourcesOf(work));

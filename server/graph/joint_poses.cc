@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "server/graph/observability.h"
 #include "server/graph/solved_poses.h"
 #include "server/math/covariance.h"
 
@@ -15,12 +14,8 @@ constexpr int kOfReference = -1, kNone = -2;
 std::optional<JointCovariance> AnalyticJoint(const Graph& graph, const GraphSolution& solution,
                                              const std::vector<SensorId>& sensors) {
   const Problem problem = MakeProblem(graph);
-  const Poses T_ref = SolvedPoses(graph, problem, solution);
-  NormalEquations equations;
-  Linearize(problem, T_ref, equations);
-  AddPins(Observe(problem, T_ref).pins, equations.H);
-  const auto cholesky = MakeCholesky<6>(problem.pattern);
-  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0)) return std::nullopt;
+  const auto cholesky = FactorAt(problem, SolvedPoses(graph, problem, solution));
+  if (cholesky == nullptr) return std::nullopt;
   const auto rows = static_cast<Eigen::Index>(6 * sensors.size());
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(6 * problem.free_count(), rows);
   std::vector<Eigen::Index> row_of;
@@ -35,7 +30,7 @@ std::optional<JointCovariance> AnalyticJoint(const Graph& graph, const GraphSolu
   JointCovariance joint{sensors, Eigen::MatrixXd(rows, rows)};
   for (std::size_t k = 0; k < sensors.size(); ++k)
     joint.matrix.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = columns.middleRows<6>(row_of[k]);
-  return joint;
+  return joint.matrix.allFinite() ? std::optional(std::move(joint)) : std::nullopt;
 }
 
 std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, const std::vector<SensorId>& sensors) {

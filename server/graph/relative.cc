@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "server/graph/observability.h"
 #include "server/graph/solve.h"
 #include "server/graph/solved_poses.h"
 #include "server/math/covariance.h"
@@ -35,11 +34,8 @@ struct JointCovariance {
 };
 
 Result<JointCovariance> SolveColumns(const Problem& problem, const Poses& T_ref, int a, int b) {
-  NormalEquations equations;
-  Linearize(problem, T_ref, equations);
-  AddPins(Observe(problem, T_ref).pins, equations.H);
-  const auto cholesky = MakeCholesky<6>(problem.pattern);
-  if (cholesky == nullptr || !cholesky->Factor(equations.H, 0.0))
+  const auto cholesky = FactorAt(problem, T_ref);
+  if (cholesky == nullptr)
     return Fail(
         ErrorCode::kInvalidInput,
         "the uncertainty between these sensors cannot be computed: the graph is too large, or the information of "

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "server/graph/observability.h"
 #include "server/graph/spanning_tree.h"
 
 namespace rigcal::graph {
@@ -18,6 +19,14 @@ Poses SolvedPoses(const Graph& graph, const Problem& problem, const GraphSolutio
     if (placed[v]) T_ref[v] = *found->second;
   }
   return T_ref.empty() ? T_ref : GrowTree(problem, std::move(T_ref), std::move(placed));
+}
+
+std::unique_ptr<BlockCholesky<6>> FactorAt(const Problem& problem, const Poses& T_ref) {
+  NormalEquations equations;
+  Linearize(problem, T_ref, equations);
+  AddPins(Observe(problem, T_ref).pins, equations.H);
+  auto cholesky = MakeCholesky<6>(problem.pattern);
+  return cholesky != nullptr && cholesky->Factor(equations.H, 0.0) ? std::move(cholesky) : nullptr;
 }
 
 }  // namespace rigcal::graph

@@ -87,19 +87,25 @@ bool FillNoneUsed(Dictionary& notes, const Edge& edge) {
   return true;
 }
 
+// What a pair of a very large session left out is one sentence: nothing is to be learned of each.
+void FillLeftOut(Dictionary& notes, const std::vector<CaptureResidual>& left_out) {
+  if (left_out.empty()) return;
+  ShowValue(notes, "LEFT_OUT", "TEXT", std::to_string(left_out.size()) + " captures are " + left_out.front().note + ".");
+}
+
 void FillUnused(Dictionary& notes, const Edge& edge) {
   constexpr std::size_t kUnusedMax = 30;
   if (FillNoneUsed(notes, edge)) return;
-  const auto is_odd = [](const CaptureResidual& capture) { return !capture.note.starts_with(kLeftToRefinement); };
-  std::vector<CaptureResidual> unused = edge.captures;
-  std::erase_if(unused, [](const CaptureResidual& capture) { return capture.used; });
-  std::stable_partition(unused.begin(), unused.end(), is_odd);  // those of which something is to be learned come first
-  unused.resize(std::min(unused.size(), kUnusedMax));
-  for (const CaptureResidual& capture : unused) {
+  std::vector<CaptureResidual> left_out;
+  std::size_t shown = 0;
+  for (const CaptureResidual& capture : edge.captures) {
+    if (capture.note.starts_with(kLeftToRefinement)) left_out.push_back(capture);
+    if (capture.used || capture.note.starts_with(kLeftToRefinement) || shown++ >= kUnusedMax) continue;
     Dictionary* row = notes.AddSectionDictionary("UNUSED");
     row->SetValue("CAPTURE", capture.capture.str());
     if (!capture.note.empty()) ShowValue(*row, "REASON", "NOTE", capture.note);
   }
+  FillLeftOut(notes, left_out);
 }
 
 bool IsMetric(const Edge& edge) { return ResidualUnitOf(edge.method) == "m"; }

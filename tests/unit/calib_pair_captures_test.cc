@@ -85,20 +85,60 @@ TEST(PairCaptures, ThoseLeftOutAreToldOnTheEdge) {
   EXPECT_LT((edge.T_a_b.p_m - pair.T_a_b.p_m).norm(), 1e-3);
 }
 
-// What fails with the captures chosen is tried with all: here the boards of those are all parallel to the picture.
-TEST(PairCaptures, APairThatNeedsMoreUsesAll) {
-  VirtualPair pair;
-  const int count = static_cast<int>(kPairCapturesMax) + 30;
-  StereoProblem problem = Photographed(pair, TiltedBoards(count), 0.1, 3);
-  problem.camera_a.intrinsics = pair.a;
-  problem.camera_b.intrinsics = pair.b;
-  for (const StereoCapture& capture : problem.captures) problem.session_captures.push_back(capture.capture);
-  std::set<CaptureId> both;
-  for (const StereoCapture& capture : problem.captures) both.insert(capture.capture);
-  const PairCaptures chosen = ChooseCaptures(problem.session_captures, both);
-  for (StereoCapture& capture : problem.captures)
-    if (chosen.used.contains(capture.capture)) capture.b->corners_px.front().x() += 300;
-  EXPECT_NE(EstimateEdge(problem).captures.front().note.substr(0, 26), std::string(kLeftToRefinement).substr(0, 26));
+struct SomeProblem {
+  std::vector<StereoCapture> captures;
+  std::vector<CaptureId> session_captures;
+};
+
+// `tells`: what is told of so many captures.
+template <typename Tells>
+Edge EdgeOf(const SomeProblem& problem, const Tells& tells) {
+  const std::set<CaptureId> captures = CapturesOf(problem);
+  return EstimateOfChosen(problem, captures, captures, DropCaptures<SomeProblem>, [&](const SomeProblem& one) {
+    Edge edge = tells(one.captures.size());
+    for (const StereoCapture& capture : one.captures) edge.captures.push_back({capture.capture, 0.1, true, ""});
+    return edge;
+  });
+}
+
+// A pair that fails with the captures chosen, or leaves a direction open, is tried with all, and tells of none left out.
+TEST(PairCaptures, WhatTheChosenCannotTellIsAskedOfAll) {
+  SomeProblem problem;
+  problem.session_captures = Captures(200);
+  for (const CaptureId& capture : problem.session_captures) problem.captures.push_back({capture, {}, {}});
+  const auto good = [](int rank) {
+    Edge edge;
+    edge.state = EdgeState::kGood;
+    edge.uncertainty.rank = rank;
+    return edge;
+  };
+  const auto used = [](const Edge& edge) {
+    return std::count_if(edge.captures.begin(), edge.captures.end(), [](const CaptureResidual& one) { return one.used; });
+  };
+  const Edge enough = EdgeOf(problem, [&](std::size_t) { return good(6); });
+  EXPECT_EQ(used(enough), static_cast<std::ptrdiff_t>(kPairCapturesMax));
+  EXPECT_EQ(enough.captures.size(), 200u);
+  const Edge failed = EdgeOf(problem, [&](std::size_t count) { return count < 200 ? Edge{} : good(6); });
+  EXPECT_EQ(failed.state, EdgeState::kGood);
+  EXPECT_EQ(used(failed), 200);
+  const Edge open = EdgeOf(problem, [&](std::size_t count) { return good(count < 200 ? 5 : 6); });
+  EXPECT_EQ(open.uncertainty.rank, 6);
+  EXPECT_EQ(used(open), 200);
+}
+
+// A capture that is none of the pair's, as it has no files in it, is not told as left out.
+TEST(PairCaptures, OnlyThePairsOwnAreToldAsLeftOut) {
+  SomeProblem problem;
+  problem.session_captures = Captures(400);
+  for (std::size_t i = 0; i < 400; i += 2) problem.captures.push_back({problem.session_captures[i], {}, {}});
+  const Edge edge = EdgeOf(problem, [](std::size_t) {
+    Edge good;
+    good.state = EdgeState::kGood;
+    good.uncertainty.rank = 6;
+    return good;
+  });
+  EXPECT_EQ(edge.captures.size(), 200u);
+  EXPECT_EQ(edge.figures.at("captures_total"), 200);
 }
 
 }  // namespace

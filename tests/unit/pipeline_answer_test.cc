@@ -144,6 +144,27 @@ TEST_F(AnswerTest, LookupOfARevisionFromBeforeIsDerived) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-12 + 1e-9 * std::abs(x[i])) << i;
 }
 
+// Likewise where sessions were fused: by their covariance, which the document has, and by no edge.
+TEST_F(AnswerTest, LookupOfAFusedRevisionFromBeforeIsReadFromItsDocument) {
+  StoreEdges(Triangle("r"));
+  StepAll();
+  Revision revision = storage::LoadRevision(*store_, RobotId("r"), 0).value().value();
+  auto input = formats::ReadRevisionDocument(revision.document).value();
+  input.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  input.solution.fused.sensors = {SensorId("b"), SensorId("c")};
+  input.solution.fused.covariance = 4e-8 * Eigen::MatrixXd::Identity(12, 12);
+  revision.document = formats::WriteRevisionDocument(input);
+  revision.digest = Sha256Of(revision.document);
+  ASSERT_TRUE(store_->Write([&]() -> Status {
+    RIGCAL_ASSIGN(revision.number, storage::AppendRevision(*store_, revision));
+    return {};
+  }));
+  const auto answer = Ask("lookup", R"({"robot":"r","a":"a","b":"b"})");
+  ASSERT_TRUE(answer) << Sentence(answer.error());
+  const std::string key = "\"covariance\":[[";
+  EXPECT_NEAR(std::stod(answer->substr(answer->find(key) + key.size())), 4e-8, 1e-15) << *answer;
+}
+
 TEST_F(AnswerTest, WhatCannotBeAnsweredIsSaidByName) {
   StoreEdges(Triangle("r"));
   StepAll();

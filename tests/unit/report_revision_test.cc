@@ -136,6 +136,20 @@ TEST(ReportRevision, AnEdgeThatUsedNoCaptureSaysSoOnce) {
   EXPECT_EQ(page.find("was not used: not solved"), std::string::npos);
 }
 
+// What a pair of a very large session left to the refinement is one sentence; an outlier beside it has its own.
+TEST(ReportRevision, CapturesLeftToTheRefinementAreOneSentence) {
+  ReportInput input = SampleReport();
+  auto good = std::find_if(input.revision.edges.begin(), input.revision.edges.end(), [](const Edge& edge) { return edge.state == EdgeState::kGood; });
+  ASSERT_NE(good, input.revision.edges.end());
+  for (int i = 0; i < 50; ++i)
+    good->captures.push_back({CaptureId("a" + std::to_string(i)), 0.0, false, std::string(kLeftToRefinement) + ": the pair uses 120"});
+  good->captures.push_back({CaptureId("z"), 0.0, false, "it contradicts the others"});
+  const std::string page = PageOf(input);
+  EXPECT_THAT(page, HasSubstr(">50 captures are left to the joint refinement: the pair uses 120.<"));
+  EXPECT_THAT(page, Not(HasSubstr("was not used: left to")));
+  EXPECT_THAT(page, HasSubstr("<strong>z</strong> was not used: it contradicts the others."));
+}
+
 TEST(ReportRevision, FailedEdgeComesFirstWithReasonAndCure) {
   const std::string page = PageOf(SampleReport());
   const auto failed = page.find("<details class=\"card edge failed\"");

@@ -61,6 +61,7 @@
 {{#NONE_USED}}<p class="hint" dir="auto">{{TEXT}}</p>{{/NONE_USED}}
 {{#UNUSED}}<p class="hint" dir="auto"><strong>{{CAPTURE}}</strong> was not used{{#REASON}}: {{NOTE}}{{/REASON}}.</p>
 {{/UNUSED}}
+{{#LEFT_OUT}}<p class="hint" dir="auto">{{TEXT}}</p>{{/LEFT_OUT}}
 {{/CAPTURE_NOTES}}
 {{#INFLUENCE}}<p class="hint">{{TEXT}}</p>{{/INFLUENCE}}
 {{#PICTURES}}
