@@ -146,6 +146,7 @@ def bursts(context, counts):
     for name, covered in covered_by_sensor(judged).items():
         yield within("bursts_covered_" + name, covered, 95, 2, "%") if context.full else info("bursts_covered_" + name, covered, "%")
     yield at_least("bursts_covered_of_all_%d" % len(judged), covered_of_all(judged), 93 if context.full else 80, "%")
+    yield at_most("bursts_lens_named", percent(bool(one["lens_sensors"]) for one in judged), 1.0, "%")
     if not context.full:
         yield skip("thousand_captures", "only with --full")
         return

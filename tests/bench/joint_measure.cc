@@ -1,6 +1,7 @@
 // The joint refinement of the virtual MARS Mapper at feature level: how near it comes to the Cramer-Rao bound, whether
 // its regions hold, how long it takes, and what the scan for moved sensors says. joint_measure SEEDS [--first N]
-// [--bump SENSOR MM DEG] [--misfit PX] [--captures N] [--intrinsics exact|calibrated|absent] prints one JSON object.
+// [--bump SENSOR MM DEG] [--misfit PX] [--captures N] [--bursts N] [--intrinsics exact|calibrated|absent]
+// prints one JSON object.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -41,6 +42,8 @@ Settings Parse(int argc, char** argv) {
       settings.first = std::atoi(argv[++i]);
     } else if (word == "--captures") {
       settings.options.captures = std::atoi(argv[++i]);
+    } else if (word == "--bursts") {
+      settings.options.disturb.burst = std::atoi(argv[++i]);
     } else if (word == "--misfit") {
       settings.options.disturb.lens_misfit_px = std::atof(argv[++i]);
     } else if (word == "--bump") {

@@ -14,9 +14,9 @@ struct Fixed {
   SessionStart start;
   Layout layout;
   LookWeights weights;
-  std::vector<int> groups;
+  CaptureGroups groups;
   [[nodiscard]] Linearization Of() const {
-    return {start.problem, layout, start.noise, weights, groups, groups.back() + 1};
+    return {start.problem, layout, start.noise, weights, groups};
   }
 };
 Fixed FixedFrom(SessionStart start) {

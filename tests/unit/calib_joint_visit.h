@@ -5,6 +5,7 @@
 
 #include "client/sim/rig_yaml.h"
 #include "server/calib/joint/estimate_session.h"
+#include "server/calib/joint/refine.h"
 #include "tests/bench/joint_session.h"
 
 namespace rigcal::calib::joint {

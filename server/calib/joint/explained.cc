@@ -16,7 +16,7 @@ bool IsOf(const Move& move, const Where& look) {
 }
 
 bool IsAfter(const Refined& refined, const Move& move, const Where& look) {
-  return refined.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
+  return refined.groups.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
 }
 
 // Captures on both sides of the first place of `group` in which the one that moved was seen; kNone: in none.
@@ -84,8 +84,8 @@ SessionStart Split(SessionStart start, const Refined& refined, const Move& move)
   return start;
 }
 
-std::optional<Explained> Again(SessionStart start, const std::vector<int>& group_of_place) {
-  auto explained = Explain(std::move(start), group_of_place);
+std::optional<Explained> Again(SessionStart start, const CaptureGroups& groups) {
+  auto explained = Explain(std::move(start), groups);
   return explained ? std::optional(std::move(*explained)) : std::nullopt;
 }
 
@@ -95,7 +95,7 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
     SessionStart start = now.start;
     start.state = WithFields(start.problem, now.misfits, now.refined.state);
     start.noise = now.refined.noise;
-    auto next = Again(std::move(start), now.refined.group_of_place);
+    auto next = Again(std::move(start), now.refined.groups);
     if (!next) return now.misfits.held ? std::optional(std::move(now)) : std::nullopt;
     const bool same = SameFields(now.misfits, next->misfits);
     now = std::move(*next);
@@ -110,19 +110,20 @@ double LeftOver(const Explained& explained) {
   const SessionProblem& problem = explained.start.problem;
   const SessionFit& fit = explained.refined.at_optimum.fit;
   double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
-  const auto add = [&](const LookFit& look, double weight, double sigma, double sigma_rad) {
-    left += weight * look.squares.sum() + 2 * look.numbers[0] * std::log(sigma);
-    if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(sigma_rad);
+  const auto add = [&](const LookFit& look, double weight, double in_burst, const SensorNoise& noise) {
+    left += in_burst * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
+    if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(noise.sigma_rad);
   };
-  const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights) {
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      const SensorNoise& noise = explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)];
-      add(fits[i], weights[i], noise.sigma, noise.sigma_rad);
-    }
+  const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights,
+                           const auto& in_burst) {
+    for (std::size_t i = 0; i < looks.size(); ++i)
+      add(fits[i], weights[i], in_burst(i), explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)]);
   };
-  add_all(problem.corners, fit.corners, explained.refined.weights.corners);
-  add_all(problem.plates, fit.plates, explained.refined.weights.plates);
-  add_all(problem.poses, fit.poses, explained.refined.weights.poses);
+  const LookWeights& weights = explained.refined.weights;
+  const auto alone = [](std::size_t) { return 1.0; };
+  add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return weights.in_burst[i]; });
+  add_all(problem.plates, fit.plates, weights.plates, alone);
+  add_all(problem.poses, fit.poses, weights.poses, alone);
   const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
   return left + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
 }
@@ -159,14 +160,14 @@ struct Next {
 
 // The likeliest move that is none of chance and, by the refined poses on both its sides, large enough to be told.
 Next ByMove(const Explained& now) {
-  if (now.refined.groups < kGroupsForMoves) return {};
+  if (now.refined.groups.groups() < kGroupsForMoves) return {};
   int tried = 0;
   for (Move move : ScanForMoves(now.refined)) {
     if (move.odds >= kMovedOdds || tried == kMovesTried) break;
     const Sides sides = SidesOf(now.start.problem, now.refined, move);
     if (sides.before == kNone || sides.after == kNone) continue;
     ++tried;
-    auto split = Again(Split(now.start, now.refined, move), now.refined.group_of_place);
+    auto split = Again(Split(now.start, now.refined, move), now.refined.groups);
     // One side may tell too little for a pose of its own: then the scan's step is all there is.
     const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.information};
     if (!IsMove(step.step, step.information, move.odds)) continue;
@@ -190,8 +191,8 @@ Next NextOf(const Explained& now, bool may_move) {
 
 }  // namespace
 
-Result<Explained> Explain(SessionStart start, const std::vector<int>& group_of_place) {
-  RIGCAL_ASSIGN(Refined refined, Refine(start.problem, start.state, start.noise, group_of_place));
+Result<Explained> Explain(SessionStart start, const CaptureGroups& groups) {
+  RIGCAL_ASSIGN(Refined refined, Refine(start.problem, start.state, start.noise, groups));
   FoundMisfits misfits = FindMisfits(start.problem, refined);
   return Explained{std::move(start), std::move(refined), std::move(misfits)};
 }

@@ -17,7 +17,7 @@ struct Explained {
 };
 
 // Fails as Refine does.
-[[nodiscard]] Result<Explained> Explain(SessionStart start, const std::vector<int>& group_of_place);
+[[nodiscard]] Result<Explained> Explain(SessionStart start, const CaptureGroups& groups);
 
 // With all that is found, poses too: of a sensor or a board that moved those before and after. What moved is added to
 // `told`, the one that explains most first.

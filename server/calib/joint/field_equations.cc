@@ -84,7 +84,7 @@ class Accumulator {
     for (const std::size_t i : looks_[place]) {
       const CornersSeen& seen = problem_.corners[i];
       auto look = ObserveWithField(problem_, refined_.layout, refined_.state, seen,
-                                   refined_.noise[static_cast<std::size_t>(seen.sensor)], refined_.weights.corners[i],
+                                   refined_.noise[static_cast<std::size_t>(seen.sensor)], refined_.weights.OfCorners(i),
                                    seen_points_[static_cast<std::size_t>(seen.camera)]);
       if (look) AddLook({seen.camera, std::move(*look)}, terms);
     }

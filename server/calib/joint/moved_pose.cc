@@ -165,8 +165,8 @@ SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refi
   SmallestMove told{kAnyMove_m, kAnyMove_rad, CapturesOf(problem, sensor)};
   const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)]);
   const std::vector<std::size_t> points = ChangePoints(scores);
-  if (refined.groups < kGroupsForMoves || points.empty()) return told;
-  const double looks = static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups - 1);
+  if (refined.groups.groups() < kGroupsForMoves || points.empty()) return told;
+  const double looks = static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups.groups() - 1);
   const std::size_t half_way = HalfWay(scores, points);
   const Change change = ChangeFrom(scores, refined.covariance, half_way);
   const Scatter scatter = ScatterBeside(scores, change, half_way);
@@ -191,7 +191,7 @@ std::vector<Move> ScanForMoves(const Refined& refined) {
   };
   look_for(refined.layout.pose, &Move::sensor);
   look_for(refined.layout.board, &Move::board);
-  const double looks = static_cast<double>(moves.size()) * std::max(1, refined.groups - 1);
+  const double looks = static_cast<double>(moves.size()) * std::max(1, refined.groups.groups() - 1);
   for (Move& move : moves) move.odds = std::min(1.0, move.odds * looks);
   std::stable_sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) {
     return x.odds != y.odds ? x.odds < y.odds : x.statistic > y.statistic;

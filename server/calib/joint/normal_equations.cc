@@ -32,7 +32,7 @@ std::optional<Observation> ObserveLook(const Linearization& of, const SessionSta
   const auto noise = [&](const Where& where) { return of.noise[static_cast<std::size_t>(where.sensor)]; };
   if (look.kind == Kind::kCorners) {
     const CornersSeen& seen = of.problem.corners[look.idx];
-    return Observe(of.problem, of.layout, state, seen, noise(seen), of.weights.corners[look.idx]);
+    return Observe(of.problem, of.layout, state, seen, noise(seen), of.weights.OfCorners(look.idx));
   }
   if (look.kind == Kind::kPlate) {
     const PlateSeen& seen = of.problem.plates[look.idx];
@@ -152,11 +152,19 @@ Eigen::MatrixXd OwnCovariance(const Observation& look, const Eigen::MatrixXd& sh
   return own;
 }
 
+// Leverage of a look that counts less as others share its errors. Its place, which it alone tells, takes up as much of them as
+// of errors of its own; what captures share takes up more than its weight says, by that weight.
+double InBurst(double leverage, double weight, const Observation& look, const Matrix6d& place_alone) {
+  if (weight == 1.0) return leverage;
+  const double by_place = (look.A * look.by_place * place_alone * look.by_place.transpose()).trace();
+  return by_place + (leverage - by_place) / weight;
+}
+
 }  // namespace
 
 LookWeights FullWeights(const SessionProblem& problem) {
   return {std::vector<double>(problem.corners.size(), 1.0), std::vector<double>(problem.plates.size(), 1.0),
-          std::vector<double>(problem.poses.size(), 1.0)};
+          std::vector<double>(problem.poses.size(), 1.0), std::vector<double>(problem.corners.size(), 1.0)};
 }
 
 NormalEquations Linearized::Total() const {
@@ -171,7 +179,7 @@ NormalEquations Linearized::Total() const {
 std::optional<Linearized> Linearize(const Linearization& of, const SessionState& state) {
   const LooksOfPlaces looks = LooksOf(of.problem);
   Linearized linearized;
-  linearized.groups.assign(static_cast<std::size_t>(of.groups), {});
+  linearized.groups.assign(static_cast<std::size_t>(of.groups.groups()), {});
   linearized.places.resize(looks.size());
   linearized.fit = {std::vector<LookFit>(of.problem.corners.size()), std::vector<LookFit>(of.problem.plates.size()),
                     std::vector<LookFit>(of.problem.poses.size())};
@@ -180,7 +188,7 @@ std::optional<Linearized> Linearize(const Linearization& of, const SessionState&
   ParallelFor(linearized.groups.size(), [&](std::size_t g) {
     linearized.groups[g] = Zero(of.layout);
     for (std::size_t p = 0; p < looks.size() && seen[g]; ++p)
-      if (of.group_of_place[p] == static_cast<int>(g))
+      if (of.groups.group_of_place[p] == static_cast<int>(g))
         seen[g] = AddPlace(of, state, looks[p], linearized.groups[g], linearized.places[p], linearized.fit, cost[g]);
   });
   for (std::size_t g = 0; g < cost.size(); ++g) {
@@ -206,8 +214,10 @@ void AddLeverage(const Linearization& of, const SessionState& state, const Eigen
       LookFit& fit = FitOf(linearized.fit, one);
       if (one.kind == Kind::kPose)
         fit.leverage << share.head<3>().sum(), share.tail<3>().sum();
-      else
+      else if (one.kind == Kind::kPlate)
         fit.leverage[0] = share.sum();
+      else
+        fit.leverage[0] = InBurst(share.sum(), of.weights.in_burst[one.idx], *look, place.inverse);
     }
   });
 }

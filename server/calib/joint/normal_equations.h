@@ -1,13 +1,16 @@
 // The session's problem linearized: per place, then with the places eliminated (Schur complement), per group of captures.
 #pragma once
 
+#include "server/calib/joint/capture_groups.h"
 #include "server/calib/joint/observation.h"
 
 namespace rigcal::calib::joint {
 
 // Of whole looks, in the order of the problem's lists; 1: counts in full.
 struct LookWeights {
-  std::vector<double> corners, plates, poses;
+  std::vector<double> corners, plates, poses;  // below 1: contradicts the others
+  std::vector<double> in_burst;                // of corners: below 1: has errors in common with others
+  [[nodiscard]] double OfCorners(std::size_t i) const { return corners[i] * in_burst[i]; }
 };
 [[nodiscard]] LookWeights FullWeights(const SessionProblem& problem);
 
@@ -23,7 +26,8 @@ struct PlaceEquations {
 };
 
 // What one look said at the state: squares of its residuals in sigmas, how many numbers, and how many of them the
-// unknowns take up (leverage; filled by AddLeverage). Of a tracker translation and rotation apart, of others first.
+// unknowns take up (leverage; filled by AddLeverage). Of a tracker translation and rotation apart, of others first. Neither is
+// less where a look counts less.
 struct LookFit {
   Eigen::Vector2d squares = Eigen::Vector2d::Zero(), numbers = Eigen::Vector2d::Zero();
   Eigen::Vector2d leverage = Eigen::Vector2d::Zero();
@@ -47,8 +51,7 @@ struct Linearization {
   const Layout& layout;
   const std::vector<SensorNoise>& noise;  // per sensor
   const LookWeights& weights;
-  const std::vector<int>& group_of_place;
-  int groups = 0;
+  const CaptureGroups& groups;
 };
 // Nothing where a camera cannot see a corner that it saw. Deterministic for any number of threads.
 [[nodiscard]] std::optional<Linearized> Linearize(const Linearization& of, const SessionState& state);

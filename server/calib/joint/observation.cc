@@ -194,6 +194,14 @@ std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const L
   return look;
 }
 
+std::vector<Eigen::Vector2d> CornerResiduals(const SessionProblem& problem, const SessionState& state,
+                                             const CornersSeen& seen) {
+  std::vector<Eigen::Vector2d> residuals_px;
+  (void)ObserveCorners(problem, LayoutOf(problem), state, seen, {}, 1.0,
+                       [&](const CornerTerms& corner) { residuals_px.push_back(corner.r_px); });
+  return residuals_px;
+}
+
 Observation Observe(const SessionProblem&, const Layout& layout, const SessionState& state, const PlateSeen& seen,
                     const SensorNoise& noise, double weight) {
   const auto lidar = static_cast<std::size_t>(seen.sensor);

@@ -46,6 +46,9 @@ struct FieldLook {
                                                         const SessionState& state, const CornersSeen& seen,
                                                         const SensorNoise& noise, double weight,
                                                         const std::vector<int>& seen_points);
+// Predicted less seen, px, of each corner, which all can be seen by the camera.
+[[nodiscard]] std::vector<Eigen::Vector2d> CornerResiduals(const SessionProblem& problem, const SessionState& state,
+                                                           const CornersSeen& seen);
 // Without a place.
 [[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
 

@@ -92,6 +92,7 @@ struct SessionState {
 // How noisy each sensor is: of corners px, of plates a factor on range noise, of a tracker m and rad.
 struct SensorNoise {
   double sigma = 1.0, sigma_rad = 0.0;
+  double burst_share = 0.0;  // of a corner's variance: what pictures of one burst have in common
 };
 
 // Where each unknown stands in the vector of all that captures share; kNone: held. Behind the last unknown the
