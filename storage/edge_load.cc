@@ -150,6 +150,13 @@ Result<std::vector<Edge>> LoadSelection(Store& store, const std::string& subject
   return std::move(selected.edges);
 }
 
+// As json_each takes it; ids are hex digits.
+std::string ListOf(const std::vector<EdgeId>& ids) {
+  std::string list = "[";
+  for (const EdgeId& id : ids) list += (list.size() == 1 ? "\"" : ",\"") + id.str() + "\"";
+  return list + "]";
+}
+
 }  // namespace
 
 Result<std::optional<Edge>> LoadEdge(Store& store, const EdgeId& id) {
@@ -166,13 +173,24 @@ Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session) {
   return LoadSelection(store, "edges of session " + session.str(), {"e.session_id = ?", session.str()});
 }
 
-Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const RobotId& robot) {
+Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, bool blocks) {
+  return LoadSelection(store, "edges of robot " + robot.str(),
+                       {"e.number IN (SELECT edge_number FROM waiting_merge WHERE robot_id = ?)", robot.str(), blocks});
+}
+
+Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids) {
+  return LoadSelection(store, "edges by id", {"e.edge_id IN (SELECT value FROM json_each(?))", ListOf(ids)});
+}
+
+Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges) {
   using Stamps = std::map<EdgeId, Stamp>;
-  return Load<Stamps>(store, "edges of robot " + robot.str(), [&]() -> Result<Stamps> {
+  std::vector<EdgeId> ids;
+  for (const Edge& edge : edges) ids.push_back(edge.id);
+  return Load<Stamps>(store, "times of edges", [&]() -> Result<Stamps> {
     Query query(store,
                 "SELECT edge.edge_id, coalesce(session.captured_ns, edge.appended_ns) FROM edge "
-                "LEFT JOIN session USING (session_id) WHERE edge.robot_id = ?");
-    query.Bind(robot);
+                "LEFT JOIN session USING (session_id) WHERE edge.edge_id IN (SELECT value FROM json_each(?))");
+    query.Bind(ListOf(ids));
     Stamps stamps;
     while (query.Step()) stamps.emplace(query.IdAt<EdgeId>(0), query.Time(1));
     return stamps;

@@ -20,10 +20,14 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::optional<Edge>> LoadEdge(Store& store, const EdgeId& id);
 // All edges of a robot, good and failed, sorted by id. With `blocks` false the block vectors are left out.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
+// Those that are in no merged edge (merged_edges.h), likewise.
+[[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, bool blocks);
+// Those of `ids` that are there, sorted by id.
+[[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids);
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
-// When each edge of the robot was measured: its session was captured or, of one that was pushed, it was stored.
-[[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const RobotId& robot);
+// When each of the edges was measured: its session was captured or, of one that was pushed, it was stored.
+[[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges);
 // How many edges of the robot began to count up to `watermark`.
 [[nodiscard]] Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark);
 // Number of the robot's edge that began to count last; 0 if none. It grows whenever one begins to count.

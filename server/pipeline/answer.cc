@@ -119,12 +119,10 @@ Result<std::string> Revisions(const AnswerContext& context, const Parameters& pa
 
 // The revision's edges whose block vectors the store holds.
 Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::RevisionInput& document) {
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, document.robot, true));
-  std::set<EdgeId> good;
+  std::vector<EdgeId> good;
   for (const Edge& edge : document.edges)
-    if (edge.state == EdgeState::kGood) good.insert(edge.id);
-  edges.erase(std::remove_if(edges.begin(), edges.end(), [&](const Edge& edge) { return !good.contains(edge.id); }),
-              edges.end());
+    if (edge.state == EdgeState::kGood) good.push_back(edge.id);
+  RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, good));
   return graph::BlocksOf(edges);
 }
 

@@ -5,6 +5,7 @@
 #include "server/model/past.h"
 #include "server/pipeline/remounts.h"
 #include "storage/edges.h"
+#include "storage/merged_edges.h"
 #include "storage/standing.h"
 
 namespace rigcal::pipeline {
@@ -54,8 +55,16 @@ Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std
 
 }  // namespace
 
-Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, robot, blocks));
+Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
+  CurrentEdges current;
+  std::vector<Edge>& edges = current.edges;
+  RIGCAL_ASSIGN(const bool outdated, storage::IsMergeOutdated(store, robot));
+  if (outdated) {
+    RIGCAL_ASSIGN(edges, storage::LoadEdges(store, robot, blocks));
+  } else {
+    RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, blocks));
+    RIGCAL_ASSIGN(current.merged, storage::LoadMergedEdges(store, robot));
+  }
   RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(const auto retired, storage::LoadRetired(store, robot));
   for (Edge& edge : edges) {
@@ -64,7 +73,7 @@ Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId&
   }
   SupersedeWhatWasRunAgain(edges);
   RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
-  return edges;
+  return current;
 }
 
 void Retire(const Word& word, Edge& edge) {

@@ -3,16 +3,20 @@
 
 #include <vector>
 
-#include "server/model/edge.h"
+#include "server/model/merged_edge.h"
 #include "server/model/standing.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
 
-// All edges, good and failed, sorted by id. Those that were retired, those of a superseded session, and those of a
-// sensor that was remounted since are failed, with that as their only diagnosis (IsPast). Block vectors only on demand.
-// Call within one Read.
-[[nodiscard]] Result<std::vector<Edge>> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks);
+struct CurrentEdges {
+  std::vector<Edge> edges;         // that are in no merged edge, good and failed, sorted by id
+  std::vector<MergedEdge> merged;  // what the newest revision made of the others
+};
+// Edges that were retired, those of a superseded session, and those of a sensor that was remounted since are failed, with that
+// as their only diagnosis (IsPast). Where one that was merged is retired, no edge is merged. Block vectors only on demand. Call
+// within one Read.
+[[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks);
 // As it is shown where it was retired.
 void Retire(const Word& word, Edge& edge);
 

@@ -63,13 +63,12 @@ Status TakeSessions(storage::Store& store, report::ReportInput& input) {
 }
 
 Status TakeBlocks(storage::Store& store, report::ReportInput& input) {
-  std::set<EdgeId> shown;
+  std::vector<EdgeId> shown;
   for (const Edge& edge : input.revision.edges)
-    if (edge.state == EdgeState::kGood) shown.insert(edge.id);
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, input.revision.robot, true));
+    if (edge.state == EdgeState::kGood) shown.push_back(edge.id);
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, shown));
   for (Edge& edge : edges)
-    if (shown.contains(edge.id) && !edge.uncertainty.blocks.empty())
-      input.blocks.emplace(edge.id, std::move(edge.uncertainty.blocks));
+    if (!edge.uncertainty.blocks.empty()) input.blocks.emplace(edge.id, std::move(edge.uncertainty.blocks));
   return {};
 }
 

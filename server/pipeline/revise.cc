@@ -12,6 +12,7 @@
 #include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/joint_poses.h"
+#include "server/graph/merge_edges.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
@@ -20,6 +21,7 @@
 #include "server/report/edge_order.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
+#include "storage/merged_edges.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -76,12 +78,14 @@ HonestSolution SolveHonestly(const RobotGraph& loaded) {
 }
 
 // When the newest of the edges that count was measured.
-Result<std::optional<Stamp>> CalibratedAt(storage::Store& store, const formats::RevisionInput& revision) {
-  RIGCAL_ASSIGN(const auto measured_at, storage::LoadMeasuredAt(store, revision.robot));
+std::optional<Stamp> CalibratedAt(const std::vector<Edge>& edges, const std::map<EdgeId, Stamp>& measured_at,
+                                  const std::vector<MergedEdge>& merged) {
   std::optional<Stamp> newest;
-  for (const Edge& edge : revision.edges)
+  const auto take = [&](Stamp at) { newest = std::max(newest.value_or(at), at); };
+  for (const Edge& edge : edges)
     if (const auto found = measured_at.find(edge.id); edge.state == EdgeState::kGood && found != measured_at.end())
-      newest = std::max(newest.value_or(found->second), found->second);
+      take(found->second);
+  for (const MergedEdge& one : merged) take(one.newest);
   return newest;
 }
 
@@ -94,28 +98,68 @@ std::optional<storage::WorstEdge> WorstEdgeOf(const formats::RevisionInput& revi
   return std::nullopt;
 }
 
-}  // namespace
+// What of a robot counts, before it is a graph.
+struct RobotEdges {
+  CurrentEdges current;
+  std::vector<SensorId> listed;  // by its sessions
+  SensorId reference;
+  std::int64_t watermark = 0, standing_watermark = 0;
+};
 
-Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
-  RobotGraph loaded;
-  std::vector<SensorId> listed;
+Result<RobotEdges> LoadRobotEdges(storage::Store& store, const RobotId& robot, bool blocks) {
+  RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
     RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
-    RIGCAL_ASSIGN(loaded.edges, LoadCurrentEdges(store, robot, blocks));
-    RIGCAL_ASSIGN(listed, storage::LoadListedSensors(store, robot));
-    RIGCAL_ASSIGN(const SensorId reference, LoadReference(store, robot));
-    loaded.graph = graph::GraphOf(loaded.edges, reference);
-    if (!reference.empty()) loaded.graph.reference = reference;
+    RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, blocks));
+    RIGCAL_ASSIGN(loaded.listed, storage::LoadListedSensors(store, robot));
+    RIGCAL_ASSIGN(loaded.reference, LoadReference(store, robot));
     return {};
   }));
-  AddSensorsWithoutGoodEdge(loaded.edges, listed, loaded.graph);
   return loaded;
 }
 
+RobotGraph GraphOf(RobotEdges loaded, const RobotId& robot) {
+  RobotGraph result{std::move(loaded.current.edges), {}, loaded.watermark, loaded.standing_watermark};
+  for (const MergedEdge& merged : loaded.current.merged) result.edges.push_back(graph::EdgeOf(merged, robot));
+  std::sort(result.edges.begin(), result.edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
+  result.graph = graph::GraphOf(result.edges, loaded.reference);
+  if (!loaded.reference.empty()) result.graph.reference = loaded.reference;
+  AddSensorsWithoutGoodEdge(result.edges, loaded.listed, result.graph);
+  return result;
+}
+
+void Take(const graph::Merge& merge, CurrentEdges& current) {
+  const std::set<EdgeId> taken(merge.taken.begin(), merge.taken.end());
+  std::erase_if(current.edges, [&](const Edge& edge) { return taken.contains(edge.id); });
+  current.merged = merge.merged;
+}
+
+std::vector<EdgeId> IdsOf(const std::vector<Edge>& edges) {
+  std::vector<EdgeId> ids;
+  for (const Edge& edge : edges) ids.push_back(edge.id);
+  return ids;
+}
+
+}  // namespace
+
+Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
+  RIGCAL_ASSIGN(RobotEdges loaded, LoadRobotEdges(store, robot, blocks));
+  return GraphOf(std::move(loaded), robot);
+}
+
 Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock) {
-  const Stamp now = clock.Now();  // what is stored after it may be missing from the revision
-  RIGCAL_ASSIGN(RobotGraph loaded, LoadRobotGraph(store, robot, true));
+  Revision revision;
+  revision.robot = robot;
+  revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
+  RIGCAL_ASSIGN(RobotEdges current, LoadRobotEdges(store, robot, true));
+  RIGCAL_ASSIGN(const auto measured_at, storage::LoadMeasuredAt(store, current.current.edges));
+  const graph::Merge merge = graph::MergeOlderEdges(current.current.merged, current.current.edges, measured_at);
+  Take(merge, current.current);
+  revision.calibrated_at = CalibratedAt(current.current.edges, measured_at, merge.merged);
+  const std::vector<EdgeId> kept = IdsOf(current.current.edges);
+  RobotGraph loaded = GraphOf(std::move(current), robot);
+
   formats::RevisionInput input;
   input.robot = robot;
   input.reference = loaded.graph.reference;
@@ -129,10 +173,6 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   input.edges = std::move(loaded.edges);
 
   const auto worst = WorstEdgeOf(input);
-  Revision revision;
-  revision.robot = robot;
-  revision.created_at = now;
-  RIGCAL_ASSIGN(revision.calibrated_at, CalibratedAt(store, input));
   revision.verdict = input.verdict;
   revision.document = formats::WriteRevisionDocument(input);
   revision.digest = Sha256Of(revision.document);
@@ -140,8 +180,10 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.standing_watermark = loaded.standing_watermark;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
-    RIGCAL_TRY(storage::AppendRevisionPoses(store, {robot, revision.number}, poses));
-    if (worst) return storage::AppendWorstEdge(store, {robot, revision.number}, *worst);
+    const storage::RevisionKey key{robot, revision.number};
+    RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
+    RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge.merged, merge.taken, kept));
+    if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));
   return revision;

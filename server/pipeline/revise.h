@@ -11,6 +11,7 @@ namespace rigcal::pipeline {
 // What was retired, superseded or remounted since is failed there with that reason (current_edges.h) and takes no part.
 // The reference is the one that the earliest
 // captured session names (ties: smaller session id); without a session, GraphOf's own rule.
+// Edges that were merged take part as the edges that stand for them.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id
   Graph graph;
@@ -19,8 +20,9 @@ struct RobotGraph {
 // Block vectors only on demand.
 [[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks = false);
 
-// Solves, judges and commits. The same edges that count give the same document, byte for byte, whatever the order of
-// arrival.
+// Merges the older edges of pairs that were pushed often (graph/merge_edges.h), solves, judges and commits. The same edges that
+// count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
+// kEdgesKeptOfPair: the newest stay as they are.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock);
 
 }  // namespace rigcal::pipeline

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
+#include "server/model/merged_edge.h"
 #include "server/model/past.h"
 
 namespace rigcal::report {
@@ -44,12 +46,22 @@ std::vector<SensorId> Missing(const Poses& of, const Poses& in) {
   return missing;
 }
 
+using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;
+
+MeasuredPair MeasuredPairOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
+
+// Edges that became part of a merged one are not lost, and a merged one is nothing new.
 std::vector<const Edge*> MissingEdges(const formats::RevisionInput& of, const formats::RevisionInput& in) {
   std::set<EdgeId> held;
-  for (const Edge& edge : in.edges) held.insert(edge.id);
+  std::set<MeasuredPair> merged;
+  for (const Edge& edge : in.edges) {
+    held.insert(edge.id);
+    if (IsMerged(edge)) merged.insert(MeasuredPairOf(edge));
+  }
   std::vector<const Edge*> missing;
   for (const Edge& edge : of.edges)
-    if (!held.contains(edge.id)) missing.push_back(&edge);
+    if (!held.contains(edge.id) && !IsMerged(edge) && !(edge.session.empty() && merged.contains(MeasuredPairOf(edge))))
+      missing.push_back(&edge);
   return missing;
 }
 

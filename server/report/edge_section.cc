@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "server/formats/camera_fit.h"
+#include "server/model/merged_edge.h"
 #include "server/report/bars.h"
 #include "server/report/edge_axes.h"
 #include "server/report/edge_state.h"
@@ -170,6 +171,7 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 
 // People know a session by its time.
 std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
+  if (IsMerged(edge)) return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
   if (edge.session.empty()) return "Pushed as a finished result.";
   const auto facts = std::find_if(input.sessions.begin(), input.sessions.end(),
                                   [&](const SessionFacts& session) { return session.id == edge.session; });

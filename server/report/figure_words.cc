@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "server/model/merged_edge.h"
 #include "server/model/method.h"
 #include "server/report/text.h"
 
@@ -23,6 +24,7 @@ constexpr std::array kWords = {
     Word{"Captures used", Word::kOutOf, {"captures_used", "captures_total"}},
     Word{"Captures", Word::kEach, {"captures_total", ""}},
     Word{"Samples used", Word::kEach, {"samples_used", ""}},
+    Word{"Earlier edges in it", Word::kEach, {kMergedEdges, ""}},
     Word{"Captures with the board in both pictures", Word::kEach, {"captures_both", ""}},
     Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},
     Word{"Reprojection error in {a}, rms", Word::kEach, {"rms_a_px", ""}},
@@ -160,6 +162,8 @@ bool IsPolished(const Edge& edge) {
 }
 
 std::string MethodText(const Edge& edge) {
+  if (const auto merged = edge.figures.find(kMergedEdges); merged != edge.figures.end())
+    return MethodText(edge.method) + ", " + std::to_string(static_cast<int>(merged->second)) + " earlier ones as one";
   return MethodText(edge.method) + (IsPolished(edge) ? ", polished by GICP" : "");
 }
 

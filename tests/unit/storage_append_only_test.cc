@@ -5,6 +5,7 @@
 #include "storage/fleet_facts.h"
 #include "storage/standing.h"
 #include "storage/lost_blobs.h"
+#include "storage/merged_edges.h"
 #include "storage/revision_poses.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
@@ -46,6 +47,10 @@ class AppendOnlyTest : public StoreTest {
       JointPoses poses{SensorId("left"), {{SensorId("left"), {}}}, {{{SensorId("right")}, Eigen::MatrixXd::Identity(6, 6)}}};
       RIGCAL_TRY(AppendRevisionPoses(store_, {kRobot, number}, poses));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
+      MergedEdge merged;
+      merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
+      merged.constants["board"] = {Vector6d::Ones()};
+      RIGCAL_TRY(AppendMergedEdges(store_, {kRobot, number}, {merged}, {}, {}));
       SessionEstimate estimate;
       estimate.session = session;
       estimate.reference = SensorId("left");

@@ -6,6 +6,7 @@
 
 #include "storage/edges.h"
 #include "storage/jobs.h"
+#include "storage/merged_edges.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -59,6 +60,9 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
   EXPECT_TRUE(LoadStandingWatermark(store_, kRobot));
   EXPECT_TRUE(LoadEdges(store_, kRobot, true));
+  EXPECT_TRUE(LoadUnmergedEdges(store_, kRobot, true));
+  EXPECT_TRUE(LoadMergedEdges(store_, kRobot));
+  EXPECT_TRUE(IsMergeOutdated(store_, kRobot));
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }

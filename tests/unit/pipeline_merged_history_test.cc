@@ -1,0 +1,99 @@
+// A robot whose pairs were pushed week after week: its revisions hold the newest edges and what the older ones say together.
+#include "server/graph/solve.h"
+#include "server/pipeline/live_graphs.h"
+#include "server/pipeline/revise.h"
+#include "storage/merged_edges.h"
+#include "storage/revisions.h"
+#include "storage/standing.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+const RobotId kOld("r");
+const std::vector<std::pair<const char*, const char*>> kMeasured = {{"a", "b"}, {"b", "c"}, {"a", "c"}};
+
+class MergedHistoryTest : public PipelineTest {
+ protected:
+  // One edge of each pair, 0.1 mm off in turn, and a revision.
+  void Week(int week) {
+    clock_.now.ns += 7LL * 86'400 * 1'000'000'000;
+    std::vector<Edge> edges;
+    for (const auto& [a, b] : kMeasured)
+      edges.push_back(GivenEdge("r", a, b, (b[0] - a[0]) + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
+    AssignPushedIds(edges);
+    StoreEdges(edges);
+    ids_.push_back(edges.front().id);
+    auto revised = Revise(*store_, kOld, clock_);
+    ASSERT_TRUE(revised) << Sentence(revised.error());
+    newest_ = *formats::ReadRevisionDocument(revised->document);
+    EXPECT_EQ(revised->calibrated_at->ns, clock_.now.ns);
+  }
+  // Of all edges ever, but for one.
+  GraphSolution Whole(const EdgeId& without = {}) {
+    auto edges = storage::LoadEdges(*store_, kOld, true).value();
+    std::erase_if(edges, [&](const Edge& edge) { return edge.id == without; });
+    return graph::Solve(graph::GraphOf(edges, SensorId("a")));
+  }
+  static void ExpectSamePoses(const GraphSolution& x, const GraphSolution& y) {
+    ASSERT_EQ(x.poses.size(), y.poses.size());
+    for (std::size_t s = 0; s < x.poses.size(); ++s) {
+      EXPECT_LT((x.poses[s].T_ref_sensor.p_m - y.poses[s].T_ref_sensor.p_m).norm(), 1e-9);
+      EXPECT_LT((x.poses[s].covariance - y.poses[s].covariance).norm(), 1e-6 * (1e-30 + x.poses[s].covariance.norm()));
+    }
+  }
+
+  std::vector<EdgeId> ids_;
+  formats::RevisionInput newest_;
+};
+
+TEST_F(MergedHistoryTest, ARevisionHoldsAsManyEdgesHoweverManyCameBefore) {
+  for (int week = 0; week < 30; ++week) Week(week);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size());
+  int merged = 0;
+  for (const Edge& edge : newest_.edges)
+    if (IsMerged(edge)) merged += static_cast<int>(edge.figures.at(kMergedEdges));
+  EXPECT_EQ(merged, 22 * static_cast<int>(kMeasured.size()));
+  ExpectSamePoses(Whole(), newest_.solution);
+}
+
+TEST_F(MergedHistoryTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  ASSERT_TRUE(storage::RetireEdge(*store_, ids_[2], {{4}, "Ada", "typed wrong"}));
+  const auto loaded = LoadRobotGraph(*store_, kOld);
+  ASSERT_TRUE(loaded);
+  ExpectSamePoses(Whole(ids_[2]), graph::Solve(loaded->graph));
+  Week(20);
+  ExpectSamePoses(Whole(ids_[2]), newest_.solution);
+  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld));
+  for (int week = 21; week < 24; ++week) Week(week);
+  ExpectSamePoses(Whole(ids_[2]), newest_.solution);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size() + 1);  // it stays on the page, with its reason
+}
+
+TEST_F(MergedHistoryTest, TheLiveStateFollows) {
+  LiveGraph live;
+  for (int week = 0; week < 14; ++week) {
+    Week(week);
+    const auto loaded = LoadRobotGraph(*store_, kOld);
+    ASSERT_TRUE(loaded);
+    TakeNewEdges(*loaded, live);
+    EXPECT_EQ(live.solver->graph().edges.size(), loaded->graph.edges.size());
+    ExpectSamePoses(newest_.solution, graph::Solve(live.solver->graph()));
+  }
+}
+
+TEST_F(MergedHistoryTest, OneThatContradictsTheOthersIsToldForGood) {
+  for (int week = 0; week < 6; ++week) Week(week);
+  Edge wrong = GivenEdge("r", "a", "b", 1.05);
+  std::vector<Edge> edges{wrong};
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  for (int week = 6; week < 24; ++week) Week(week);
+  EXPECT_EQ(newest_.verdict.level, VerdictLevel::kFail);
+  EXPECT_TRUE(std::any_of(newest_.edges.begin(), newest_.edges.end(),
+                          [&](const Edge& edge) { return edge.id == edges.front().id; }));
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline

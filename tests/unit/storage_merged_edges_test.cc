@@ -1,0 +1,111 @@
+// Merged edges come back bit for bit, and say which edges are in none.
+#include <algorithm>
+
+#include "storage/merged_edges.h"
+#include "storage/standing.h"
+#include "tests/unit/storage_fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+MergedEdge MakeMerged(double seed) {
+  MergedEdge merged;
+  merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right");
+  merged.method = "given";
+  merged.count = 3;
+  merged.newest = {77};
+  Vector6d xi;
+  xi << 0.1, 0.2, 0.3, 0.4, 0.5, seed;
+  merged.T_a_b = Se3::Exp(xi);
+  merged.Omega = Vector6d::LinSpaced(1, 6).asDiagonal();
+  merged.Omega(0, 1) = merged.Omega(1, 0) = seed / 3;
+  merged.scatter = 2 * merged.Omega, merged.given = seed * merged.Omega;
+  merged.source = UncertaintySource::kJackknife;
+  merged.dof = 45;
+  merged.by_blocks = true;
+  merged.constants = {{"board", {xi, 2 * xi}}, {"lens", {-xi}}};
+  return merged;
+}
+
+class MergedEdgesTest : public StoreTest {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(AppendRobot(store_, kRobot, {1}));
+    for (int i = 0; i < 5; ++i) Append(MakeEdge(i));
+  }
+  void Append(const Edge& edge) {
+    ASSERT_TRUE(AppendEdge(store_, edge, {1}));
+    ids_.push_back(edge.id);
+  }
+  void Merge(const MergedEdge& merged, const std::vector<EdgeId>& taken, const std::vector<EdgeId>& kept) {
+    ASSERT_TRUE(store_.Write([&]() -> Status {
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      return AppendMergedEdges(store_, {kRobot, number}, {merged}, taken, kept);
+    }));
+  }
+  std::vector<EdgeId> Unmerged() {
+    std::vector<EdgeId> ids;
+    const auto edges = LoadUnmergedEdges(store_, kRobot, true);
+    for (const Edge& edge : *edges) ids.push_back(edge.id);
+    return ids;
+  }
+  static std::vector<EdgeId> Sorted(std::vector<EdgeId> ids) {
+    std::sort(ids.begin(), ids.end());
+    return ids;
+  }
+
+  std::vector<EdgeId> ids_;
+};
+
+TEST_F(MergedEdgesTest, ComeBackBitForBitOfTheNewestRevision) {
+  Merge(MakeMerged(0.1), {ids_[0]}, {});
+  Merge(MakeMerged(0.7), {ids_[1]}, {});
+  const auto loaded = LoadMergedEdges(store_, kRobot);
+  ASSERT_TRUE(loaded) << WordsOf(loaded);
+  ASSERT_EQ(loaded->size(), 1u);
+  const MergedEdge &stored = loaded->front(), made = MakeMerged(0.7);
+  EXPECT_EQ(stored.frame_a, made.frame_a);
+  EXPECT_EQ(stored.frame_b, made.frame_b);
+  EXPECT_EQ(stored.method, made.method);
+  EXPECT_EQ(stored.count, made.count);
+  EXPECT_EQ(stored.newest.ns, made.newest.ns);
+  EXPECT_EQ(stored.T_a_b.p_m, made.T_a_b.p_m);
+  EXPECT_EQ(stored.T_a_b.q.coeffs(), made.T_a_b.q.coeffs());
+  EXPECT_EQ(stored.Omega, made.Omega);
+  EXPECT_EQ(stored.scatter, made.scatter);
+  EXPECT_EQ(stored.given, made.given);
+  EXPECT_EQ(stored.source, made.source);
+  EXPECT_EQ(stored.dof, made.dof);
+  EXPECT_EQ(stored.by_blocks, made.by_blocks);
+  EXPECT_EQ(stored.constants, made.constants);
+}
+
+TEST_F(MergedEdgesTest, EveryEdgeThatCountsIsInNoneUntilItIsTaken) {
+  EXPECT_EQ(Unmerged(), Sorted(ids_));
+  Merge(MakeMerged(0.1), {ids_[0], ids_[3]}, {ids_[1], ids_[2], ids_[4]});
+  EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[4]}));
+  Append(MakeEdge(9));
+  EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[4], ids_[5]}));
+  EXPECT_EQ(LoadEdges(store_, kRobot, false)->size(), 6u);  // nothing is lost
+}
+
+TEST_F(MergedEdgesTest, AreOutdatedByARetiredOneUntilTheyAreMadeAnew) {
+  Merge(MakeMerged(0.1), {ids_[0], ids_[3]}, {});
+  ASSERT_TRUE(RetireEdge(store_, ids_[1], {{4}, "Ada", "typed wrong"}));
+  EXPECT_FALSE(*IsMergeOutdated(store_, kRobot));
+  ASSERT_TRUE(RetireEdge(store_, ids_[3], {{5}, "Ada", "typed wrong"}));
+  EXPECT_TRUE(*IsMergeOutdated(store_, kRobot));
+  Merge(MakeMerged(0.2), {ids_[0]}, {ids_[1], ids_[2], ids_[3], ids_[4]});
+  EXPECT_FALSE(*IsMergeOutdated(store_, kRobot));
+  EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[3], ids_[4]}));
+}
+
+TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
+  ASSERT_TRUE(AppendRobot(store_, RobotId("other"), {1}));
+  Merge(MakeMerged(0.1), {ids_[0]}, {});
+  EXPECT_TRUE(LoadMergedEdges(store_, RobotId("other"))->empty());
+  EXPECT_TRUE(LoadUnmergedEdges(store_, RobotId("other"), true)->empty());
+}
+
+}  // namespace
+}  // namespace rigcal::storage
