@@ -132,6 +132,17 @@ Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
   });
 }
 
+Result<std::optional<Stamp>> LoadUnsolvedSince(Store& store, const RobotId& robot) {
+  using Since = std::optional<Stamp>;
+  return Load<Since>(store, "edges of robot " + robot.str(), [&]() -> Result<Since> {
+    Query query(store,
+                "SELECT e.appended_ns FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND c.number > "
+                "coalesce((SELECT edge_watermark FROM revision WHERE robot_id = ?1 ORDER BY number DESC LIMIT 1), 0) "
+                "ORDER BY c.number LIMIT 1");
+    return query.Bind(robot).Step() ? Since(query.Time(0)) : std::nullopt;
+  });
+}
+
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
     Query query(store, "SELECT robot_id FROM waiting_revision ORDER BY robot_id");

@@ -24,6 +24,8 @@ namespace rigcal::storage {
 // none.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);
 [[nodiscard]] Result<bool> IsUnsolved(Store& store, const RobotId& robot);
+// When the oldest edge of the robot that is in no revision was stored; nothing: there is none.
+[[nodiscard]] Result<std::optional<Stamp>> LoadUnsolvedSince(Store& store, const RobotId& robot);
 
 struct RevisionKey {
   RobotId robot;

@@ -5,6 +5,7 @@ import pathlib
 import subprocess
 import threading
 import time
+import urllib.request
 
 from .measure import at_least, at_most, info
 from .server import ANSWERED, Server
@@ -53,8 +54,8 @@ def stamp(text):
 
 def gaps(server, robot, first_edge_at, until):
     """Seconds that new edges of the robot were in no revision, at the most."""
-    done = server.rigcal("revisions", robot, "--json")
-    revised_at = sorted(stamp(one["created_at"]) for one in json.loads(done.stdout)["revisions"]) if done.returncode in ANSWERED else []
+    with urllib.request.urlopen(server.address + "/api/v1/revisions?robot=" + robot, timeout=60) as reply:
+        revised_at = sorted(stamp(one["created_at"]) for one in json.load(reply)["revisions"])
     times = [first_edge_at] + [at for at in revised_at if at < until] + [until]
     return max(b - a for a, b in zip(times, times[1:])), len(revised_at)
 

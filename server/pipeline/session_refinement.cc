@@ -13,6 +13,7 @@
 #include "server/pipeline/remounts.h"
 #include "server/pipeline/sightings.h"
 #include "storage/edges.h"
+#include "storage/jobs.h"
 #include "storage/session_estimates.h"
 #include "storage/sessions.h"
 #include "storage/standing.h"
@@ -142,6 +143,8 @@ void LogTime(const SessionId& session, std::chrono::steady_clock::time_point beg
 Status RefineSession(storage::Store& store, const SessionId& session, calib::CameraMemory& cameras,
                      const Clock& clock) {
   const auto began = std::chrono::steady_clock::now();
+  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(store, session));
+  if (jobs.waiting > 0) return {};  // some of its pairs are not there yet
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
   RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
   if (!manifest || edges.empty() || WaitsForFiles(edges)) return {};

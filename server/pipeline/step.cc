@@ -65,6 +65,8 @@ Result<std::filesystem::path> PublishOnce(const StepContext& context, const stor
   const std::string work = storage::WorkOfReport(key);
   const std::string said = "revision " + std::to_string(key.number) + " of robot " + key.robot.str();
   std::string why_no_clouds;
+  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, key.robot));
+  if (jobs > 0) why_no_clouds = "The clouds in colour are shown when no pair waits any more to be calibrated.";
   if (before >= kAttemptsMax) {
     RIGCAL_ASSIGN(const storage::Attempts attempts, storage::LoadAttempts(context.store, work));
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
@@ -146,14 +148,25 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   return over;
 }
 
-// The live state of one robot, and its revision if its burst is over: no job of it is waiting. True if it was revised. The
-// live state of a graph that this process has solved before is told at once, and not counted.
+// Edges are in a revision at the latest after this long, whatever else the robot brings.
+constexpr std::int64_t kUnsolvedMax_ns = 45'000'000'000;
+
+// A burst is over when no job of the robot is waiting, or its first edge has waited for long.
+Result<bool> IsBurstOver(const StepContext& context, const RobotId& robot) {
+  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
+  if (jobs == 0) return true;
+  RIGCAL_ASSIGN(const auto since, storage::LoadUnsolvedSince(context.store, robot));
+  return since && context.clock.Now().ns - since->ns >= kUnsolvedMax_ns;
+}
+
+// The live state of one robot, and its revision if its burst is over. True if it was revised. The live state of a graph
+// that this process has solved before is told at once, and not counted.
 Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
   const bool known = context.live.Of(robot).solver != nullptr;
   if (known) RIGCAL_TRY(UpdateLive(context, robot));
-  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
-  if (known && jobs > 0) return false;
-  return SolveCounted(context, robot, jobs == 0);
+  RIGCAL_ASSIGN(const bool over, IsBurstOver(context, robot));
+  if (known && !over) return false;
+  return SolveCounted(context, robot, over);
 }
 
 // A robot whose work failed rests, so that it holds up no other; then it is tried again.
@@ -200,13 +213,22 @@ Status RunJob(const StepContext& context, const storage::JobRow& job) {
   return UpdateLive(context, job.robot);
 }
 
+// In turn of the robots that have any, however many one of them has.
+Result<std::optional<storage::JobRow>> NextJob(const StepContext& context) {
+  RIGCAL_ASSIGN(auto job, storage::LoadNextJob(context.store, context.claims.TakenOrServed()));
+  if (job) return job;
+  context.claims.BeginRound();
+  return storage::LoadNextJob(context.store, context.claims.Taken());
+}
+
 Result<StepResult> RunNextJob(const StepContext& context) {
   StepResult result;
-  RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, context.claims.Taken()));
+  RIGCAL_ASSIGN(const auto job, NextJob(context));
   if (!job) return result;
   result.worked = true;
   const Claim claim(context.claims, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
+  context.claims.Served(job->robot);
   std::optional<Claim> alone;
   if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
   const Status ran = Guarded([&] { return RunJob(context, *job); });
@@ -230,6 +252,23 @@ std::vector<RobotId> Claims::Taken() const {
   const std::lock_guard lock(mutex_);
   std::vector<RobotId> robots(taken_.begin(), taken_.end());
   for (const auto& [robot, until] : resting_) robots.push_back(robot);
+  return robots;
+}
+
+void Claims::Served(const RobotId& robot) {
+  const std::lock_guard lock(mutex_);
+  served_.insert(robot);
+}
+
+void Claims::BeginRound() {
+  const std::lock_guard lock(mutex_);
+  served_.clear();
+}
+
+std::vector<RobotId> Claims::TakenOrServed() const {
+  std::vector<RobotId> robots = Taken();
+  const std::lock_guard lock(mutex_);
+  robots.insert(robots.end(), served_.begin(), served_.end());
   return robots;
 }
 

@@ -24,6 +24,10 @@ class Claims {
   [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it, or it rests
   void GiveBack(const RobotId& robot);
   [[nodiscard]] std::vector<RobotId> Taken() const;  // includes those that rest
+  // Robots of which a job was begun since the round began: the others come first.
+  void Served(const RobotId& robot);
+  void BeginRound();
+  [[nodiscard]] std::vector<RobotId> TakenOrServed() const;
   // A robot whose work failed is left alone until then, so that it holds up no other.
   void Rest(const RobotId& robot, Stamp until);
   void EndRests(Stamp now);
@@ -31,7 +35,7 @@ class Claims {
 
  private:
   mutable std::mutex mutex_;
-  std::set<RobotId> taken_;
+  std::set<RobotId> taken_, served_;
   std::map<RobotId, Stamp> resting_;
 };
 
@@ -62,7 +66,8 @@ struct StepResult {
   std::optional<Stamp> wake_at;  // nothing now, but look again then (a robot that rests)
 };
 
-// In this order: publish a revision; revise a robot whose burst is over; run one edge job. What was begun before and
+// In this order: publish a revision; revise a robot whose burst is over (no job of it waits, or an edge has waited long
+// for its revision); run one edge job, of the robots that have any in turn. What was begun before and
 // not finished, by death of the process or a fault of ours, comes after its like, is begun kAttemptsMax times, and then
 // passed over: a job as a failed edge, a report without its clouds.
 [[nodiscard]] Result<StepResult> Step(const StepContext& context);

@@ -52,6 +52,7 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(CountJobs(store_, kRobot));
   EXPECT_TRUE(CountJobs(store_, session_));
   EXPECT_TRUE(IsUnsolved(store_, kRobot));
+  EXPECT_TRUE(LoadUnsolvedSince(store_, kRobot));
   EXPECT_TRUE(CountUnpublished(store_, kRobot));
   EXPECT_TRUE(LoadRevision(store_, kRobot, 0));
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 0));

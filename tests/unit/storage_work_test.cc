@@ -173,6 +173,17 @@ TEST_F(WorkTest, ARobotIsUnsolvedWhileItsNewestEdgeIsInNoRevision) {
 }
 
 // The queue of robots to solve is kept by triggers and by AppendRevision; it must always say what IsUnsolved works out.
+TEST_F(WorkTest, ARobotIsUnsolvedSinceItsFirstEdgeThatIsInNoRevision) {
+  EXPECT_FALSE(LoadUnsolvedSince(store_, kRobot).value());
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {5}));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {7}));
+  EXPECT_EQ(LoadUnsolvedSince(store_, kRobot).value()->ns, 5);
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, kRobot).value())));
+  EXPECT_FALSE(LoadUnsolvedSince(store_, kRobot).value());
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(3), {9}));
+  EXPECT_EQ(LoadUnsolvedSince(store_, kRobot).value()->ns, 9);
+}
+
 TEST_F(WorkTest, TheQueueOfRobotsIsWhatTheWatermarksSay) {
   std::mt19937 random(11);
   const auto draw = [&](int count) { return std::uniform_int_distribution<int>(0, count - 1)(random); };
