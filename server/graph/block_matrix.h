@@ -3,19 +3,22 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace rigcal::graph {
 
 struct BlockPosition {
   int row = 0, col = 0;  // row > col
-  friend auto operator<=>(const BlockPosition&, const BlockPosition&) = default;
+  friend bool operator==(const BlockPosition&, const BlockPosition&) = default;
+  friend auto operator<=>(const BlockPosition& a, const BlockPosition& b) {
+    return std::tie(a.col, a.row) <=> std::tie(b.col, b.row);
+  }
 };
 
 struct BlockPattern {
   int block_count = 0;
-  std::vector<BlockPosition> off_diagonal;  // lower triangle, unique, sorted by (col, row)
+  std::vector<BlockPosition> off_diagonal;  // lower triangle, unique, sorted
 };
 
 // The lower triangle: diagonal blocks whole, off-diagonal blocks in the order of the pattern.
@@ -55,20 +58,5 @@ constexpr std::size_t kFactorBytesMax = std::size_t{2} << 30;
 template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);
-
-// What a factor of blocks of one row would take: its entries, and floating-point operations.
-struct EliminationCost {
-  double entries = 0.0, flops = 0.0;
-};
-
-// A fill-reducing order of the vertices of a graph: position p is taken by vertex order[p]. Natural for small graphs,
-// which have no estimate of the cost either.
-struct Elimination {
-  std::vector<int> order;
-  EliminationCost cost;
-};
-[[nodiscard]] Elimination EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links);
-// The same with some vertices after all others. Links may come twice, in any order.
-[[nodiscard]] std::vector<int> ConstrainedOrder(const BlockPattern& links, const std::vector<bool>& is_last);
 
 }  // namespace rigcal::graph

@@ -21,9 +21,7 @@ BlockPattern InOrder(BlockPattern pattern, const std::vector<int>& order) {
         std::minmax(position[static_cast<std::size_t>(at.row)], position[static_cast<std::size_t>(at.col)]);
     at = {high, low};
   }
-  std::sort(links.begin(), links.end(), [](const BlockPosition& a, const BlockPosition& b) {
-    return a.col != b.col ? a.col < b.col : a.row < b.row;
-  });
+  std::sort(links.begin(), links.end());
   links.erase(std::unique(links.begin(), links.end()), links.end());
   return pattern;
 }

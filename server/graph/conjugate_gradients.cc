@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 #include <utility>
-
-#include "server/graph/cholesky_kinds.h"
 
 namespace rigcal::graph {
 namespace {
@@ -52,9 +49,8 @@ std::vector<ConjugateGradients::Block> ConjugateGradients::InverseDiagonal() {
 }
 
 bool ConjugateGradients::FactorExactly() {
-  const auto before = [](BlockPosition a, BlockPosition b) { return std::tie(a.col, a.row) < std::tie(b.col, b.row); };
-  if (!std::is_sorted(pattern_.off_diagonal.begin(), pattern_.off_diagonal.end(), before)) return false;
-  if (exact_ == nullptr) exact_ = MakeSparseCholesky<6>(pattern_);
+  if (!std::is_sorted(pattern_.off_diagonal.begin(), pattern_.off_diagonal.end())) return false;
+  if (exact_ == nullptr) exact_ = MakeCholesky<6>(pattern_, 0);
   return exact_ != nullptr && exact_->Factor(*matrix_, lambda_);
 }
 

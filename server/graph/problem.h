@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/graph/block_matrix.h"
+#include "server/graph/symbolic_cholesky.h"
 #include "server/model/graph.h"
 
 namespace rigcal::graph {

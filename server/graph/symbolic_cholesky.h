@@ -1,4 +1,5 @@
-// The shape of a supernodal Cholesky factor: which columns are kept together in one dense trapezoid, and their rows.
+// What is known of a Cholesky factor before its numbers (by CHOLMOD): a fill-reducing order, and the shape of a supernodal
+// factor: which columns are kept together in one dense trapezoid, and their rows.
 #pragma once
 
 #include <vector>
@@ -6,6 +7,22 @@
 #include "server/graph/block_matrix.h"
 
 namespace rigcal::graph {
+
+// What a factor of blocks of one row would take: its entries, and floating-point operations.
+struct EliminationCost {
+  double entries = 0.0, flops = 0.0;
+};
+
+// A fill-reducing order of the vertices of a graph: position p is taken by vertex order[p]. Natural for small graphs,
+// which have no estimate of the cost either.
+struct Elimination {
+  std::vector<int> order;
+  EliminationCost cost;
+};
+// Links may come twice, in any order.
+[[nodiscard]] Elimination EliminationOrder(const BlockPattern& links);
+// The same with some vertices after all others.
+[[nodiscard]] std::vector<int> ConstrainedOrder(const BlockPattern& links, const std::vector<bool>& is_last);
 
 // Supernode s has the columns first_col[s] .. first_col[s+1]-1 and the rows rows[row_start[s] .. row_start[s+1]-1],
 // which begin with its own columns and ascend. Its values are column-major, as many rows as it has, from
