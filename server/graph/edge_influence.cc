@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "server/graph/edge_checks.h"
-#include "server/graph/solved_poses.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

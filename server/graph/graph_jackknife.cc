@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "server/graph/jackknife_sources.h"
-#include "server/graph/solved_poses.h"
+#include "server/graph/observability.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 #include "server/math/pooled_dof.h"
 

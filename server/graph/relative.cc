@@ -1,7 +1,8 @@
 #include <algorithm>
 
+#include "server/graph/observability.h"
 #include "server/graph/solve.h"
-#include "server/graph/solved_poses.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "server/graph/chordal.h"
 #include "server/graph/optimize_graph.h"
 #include "server/graph/sensor_order.h"
-#include "server/graph/spanning_tree.h"
+#include "server/graph/start_poses.h"
 #include "server/graph/step_solver.h"
 
 namespace rigcal::graph {

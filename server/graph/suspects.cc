@@ -6,7 +6,7 @@
 #include <set>
 
 #include "server/graph/sensor_order.h"
-#include "server/graph/solved_poses.h"
+#include "server/graph/start_poses.h"
 #include "server/graph/union_find.h"
 #include "server/math/covariance.h"
 

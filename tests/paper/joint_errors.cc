@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "server/graph/jackknife_sources.h"
-#include "server/graph/spanning_tree.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
 
