@@ -27,13 +27,9 @@ struct BlockMatrix {
   using Block = Eigen::Matrix<double, B, B>;
   std::vector<Block> diagonal, off_diagonal;
 
-  void Resize(const BlockPattern& pattern) {
-    diagonal.resize(static_cast<std::size_t>(pattern.block_count));
-    off_diagonal.resize(pattern.off_diagonal.size());
-  }
-  void SetZero() {
-    for (Block& block : diagonal) block.setZero();
-    for (Block& block : off_diagonal) block.setZero();
+  void SetZero(const BlockPattern& pattern) {
+    diagonal.assign(static_cast<std::size_t>(pattern.block_count), Block::Zero());
+    off_diagonal.assign(pattern.off_diagonal.size(), Block::Zero());
   }
 };
 

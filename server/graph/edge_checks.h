@@ -1,7 +1,7 @@
 // What the other edges say of each edge, at given poses and weights: for graphs small enough for a dense inverse.
 #pragma once
 
-#include "server/graph/edge_jacobian.h"
+#include "server/graph/linearize.h"
 #include "server/graph/observability.h"
 
 namespace rigcal::graph {

@@ -1,8 +1,8 @@
 // What makes the edges of a graph err: the blocks of each session, and each other edge by itself.
 #pragma once
 
-#include "server/graph/edge_jacobian.h"
 #include "server/graph/graph_jackknife.h"
+#include "server/graph/linearize.h"
 
 namespace rigcal::graph {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/graph/edge_jacobian.h"
+#include "server/graph/linearize.h"
 #include "server/graph/live_solver.h"
 
 namespace rigcal::graph {

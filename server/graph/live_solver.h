@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "server/graph/clique_tree.h"
+#include "server/graph/gauss_newton.h"
 #include "server/graph/linearize.h"
-#include "server/graph/secant_pairs.h"
 #include "server/graph/solve.h"
 
 namespace rigcal::graph {

@@ -139,11 +139,6 @@ FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, co
   return scale.asDiagonal() * RangeOf(scaled, visible);
 }
 
-bool IsFullEverywhere(const Problem& problem) {
-  return std::all_of(problem.constraints.begin(), problem.constraints.end(),
-                     [](const Constraint& c) { return c.rank == 6; });
-}
-
 // Everything outside the reference's body, held as a whole.
 void LeaveUnjudged(const Problem& problem, const Bodies& bodies, Observability& result) {
   result.judged = false;
@@ -183,7 +178,7 @@ std::string NameDirection(const Vector6d& direction) {
 Observability Observe(const Problem& problem, const Poses& T_ref) {
   Observability result;
   result.free_of_vertex.assign(static_cast<std::size_t>(problem.vertex_count), FreeBasis(6, 0));
-  if (IsFullEverywhere(problem)) return result;
+  if (problem.HasFullRank()) return result;
   const Bodies bodies = FindBodies(problem);
   const int free_bodies = static_cast<int>(bodies.first_vertex.size()) - 1;
   if (free_bodies == 0) return result;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/graph/step_solver.h"
+#include "server/graph/conjugate_gradients.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

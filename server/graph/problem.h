@@ -2,6 +2,7 @@
 // in elimination order. Two graphs with the same edges in any order give the same Problem, bit by bit.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ struct Problem {
   std::vector<Diagnosis> diagnoses;      // sensors that are not connected, edges that cannot be used
 
   [[nodiscard]] int free_count() const { return vertex_count > 0 ? vertex_count - 1 : 0; }
+  // Whether every edge sees all six directions.
+  [[nodiscard]] bool HasFullRank() const {
+    return std::all_of(constraints.begin(), constraints.end(), [](const Constraint& c) { return c.rank == 6; });
+  }
 };
 
 // Everything of a constraint but its vertices and slot, if the edge can be used; otherwise why it cannot.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "server/graph/conjugate_gradients.h"
 #include "server/graph/optimize_graph.h"
 #include "server/graph/sensor_order.h"
 #include "server/graph/start_poses.h"
-#include "server/graph/step_solver.h"
 
 namespace rigcal::graph {
 namespace {

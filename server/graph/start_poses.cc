@@ -81,8 +81,7 @@ struct RotationSystem {
 
 RotationSystem MakeRotationSystem(const Problem& problem) {
   RotationSystem system;
-  system.matrix.Resize(problem.pattern);
-  system.matrix.SetZero();
+  system.matrix.SetZero(problem.pattern);
   system.rhs = MatrixXd::Zero(3 * problem.free_count(), 3);
   const std::vector<double> weights = Weights(problem, tangent::kRotation);
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -127,8 +126,7 @@ bool SolveRotations(const Problem& problem, Poses& T_ref) {
 // min sum w |p_j - p_i - R_i p_ij|^2.
 bool SolveTranslations(const Problem& problem, Poses& T_ref) {
   BlockMatrix<1> laplacian;
-  laplacian.Resize(problem.pattern);
-  laplacian.SetZero();
+  laplacian.SetZero(problem.pattern);
   MatrixXd p_m = MatrixXd::Zero(problem.free_count(), 3);
   const std::vector<double> weights = Weights(problem, tangent::kTranslation);
   for (std::size_t k = 0; k < weights.size(); ++k) {

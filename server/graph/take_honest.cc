@@ -1,7 +1,7 @@
 #include <Eigen/Eigenvalues>
 
-#include "server/graph/edge_jacobian.h"
 #include "server/graph/graph_jackknife.h"
+#include "server/graph/linearize.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
