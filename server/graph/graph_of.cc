@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 
 namespace rigcal::graph {

@@ -5,8 +5,6 @@
 #include <limits>
 
 #include "server/graph/conjugate_gradients.h"
-#include "server/graph/optimize_graph.h"
-#include "server/graph/sensor_order.h"
 #include "server/graph/start_poses.h"
 
 namespace rigcal::graph {

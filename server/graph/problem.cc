@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "server/graph/lane_kernels.h"
-#include "server/graph/sensor_order.h"
+#include "server/graph/solve.h"
 #include "server/graph/union_find.h"
 #include "server/math/covariance.h"
 

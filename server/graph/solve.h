@@ -30,6 +30,11 @@ struct RelativePose {
 [[nodiscard]] Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution, const SensorId& a,
                                             const SensorId& b);
 
+// Over all residuals; zero where there are none.
+[[nodiscard]] GlobalError MeanSquares(const std::vector<Vector6d>& residuals);
+
+// The order of sensors people expect: numeric names first, as numbers; then the others, letter by letter.
+[[nodiscard]] bool SensorBefore(const SensorId& a, const SensorId& b);
 // The graph of a robot's good edges. Reference: `reference` if not empty and present, else the first sensor by name
 // (numeric names in numeric order).
 [[nodiscard]] Graph GraphOf(const std::vector<Edge>& edges, const SensorId& reference);

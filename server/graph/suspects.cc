@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "server/graph/sensor_order.h"
 #include "server/graph/start_poses.h"
 #include "server/graph/union_find.h"
 #include "server/math/covariance.h"

@@ -12,7 +12,6 @@
 #include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/joint_poses.h"
-#include "server/graph/sensor_order.h"
 #include "server/graph/solve.h"
 #include "server/graph/suspects.h"
 #include "server/pipeline/current_edges.h"
