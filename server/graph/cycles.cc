@@ -1,7 +1,6 @@
 #include "server/graph/cycles.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,8 +16,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// Below this share of what independent errors would leave, shared causes cancel: the loop closes by construction there.
-constexpr double kCheckedRatio = 1e-6;
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
 
 // What one edge errs by, column by column, and which cause each part belongs to.
@@ -130,23 +127,11 @@ class Judge {
     cycle.dof = dof_sum > 0.0 ? trace * trace / dof_sum : 0.0;
     const bool shared = std::any_of(sums.begin(), sums.end(),
                                     [&](const Causes::Part& sum) { return sum.source < causes_.shared_count; });
-    if (shared) {
-      JudgeBy(C, e, cycle);
-    } else {
-      cycle.rank = 6, cycle.t_squared = e.squaredNorm();  // C is the identity
-    }
+    const CheckedDirections checked =
+        shared ? CheckWhitened(C, e) : CheckedDirections{6, e.squaredNorm()};  // else C is the identity
+    cycle.rank = checked.rank, cycle.t_squared = checked.t_squared;
     cycle.tested = cycle.rank > 0 && std::isfinite(cycle.t_squared);
     if (!cycle.tested) cycle.t_squared = cycle.dof = cycle.rank = 0;
-  }
-
-  static void JudgeBy(const Matrix6d& C, const Vector6d& e, CycleResidual& cycle) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(C));
-    const Vector6d parts = eigen.eigenvectors().transpose() * e;
-    for (int k = 0; k < 6; ++k) {
-      if (!(eigen.eigenvalues()(k) > kCheckedRatio)) continue;
-      ++cycle.rank;
-      cycle.t_squared += parts(k) * parts(k) / eigen.eigenvalues()(k);
-    }
   }
 
   JackknifeWork work_;

@@ -1,7 +1,8 @@
 // The honest covariance of a solution: a jackknife through the graph (design: correlated edges). Edges of one session
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
 // session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Weights
-// are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks and edges count in sorted order.
+// are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks and edges
+// count in sorted order.
 #pragma once
 
 #include <map>
@@ -40,7 +41,6 @@ struct GraphJackknife {
   std::vector<int> row_of_sensor;             // first row in `joint`; -1: the reference, or not known
   std::vector<bool> known;                    // the reference too
   Eigen::MatrixXd joint;                      // of all known sensors' poses, right tangents
-  std::vector<Matrix6d> analytic;             // H^-1's diagonal block, per sensor
   std::vector<double> dof;                    // behind a sensor's covariance (PooledDof); 0: nothing estimated
   std::vector<ResidualCovariance> residuals;  // in the order of GraphSolution::residuals
 };
@@ -52,11 +52,9 @@ constexpr int kJackknifeSensorsMax = 500;
 // Zero for the reference. kNotFound if the sensor is not in the graph, kInvalidInput if its pose is not known.
 [[nodiscard]] Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorId& sensor);
 // Of T_A_B with cross terms, right tangent at B, at the poses of `solution`.
-[[nodiscard]] Result<RelativePose> HonestRelative(const GraphJackknife& jackknife, const GraphSolution& solution,
-                                                  const SensorId& a, const SensorId& b);
-// Honest over analytic sigma, axis by axis; 1 where both are zero.
-[[nodiscard]] Vector6d SigmaRatio(const Matrix6d& honest, const Matrix6d& analytic);
-// Puts the honest covariances and T^2 of the residuals into the solution; the analytic ones are kept beside them.
-void TakeHonest(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution);
+[[nodiscard]] Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution,
+                                                       const SensorId& a, const SensorId& b);
+// Puts the jackknife's covariances and T^2 of the residuals into the solution; the analytic ones are kept beside them.
+void ApplyJackknifeCovariance(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution);
 
 }  // namespace rigcal::graph

@@ -20,8 +20,6 @@ struct ErrorSource {
   Eigen::Index column_count = 0;
   std::vector<ErrorPart> parts;
 };
-// By which d_i is multiplied so that the jackknife's sum over m blocks is the sum of squares.
-[[nodiscard]] double BlockScale(Eigen::Index m);
 
 struct JackknifeWork {
   const Graph& graph;
@@ -41,5 +39,13 @@ struct JackknifeWork {
 // The two kinds apart: causes that edges of a session share, and what one edge alone errs by (no columns: nothing).
 [[nodiscard]] std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work);
 [[nodiscard]] ErrorSource OwnSourceOf(const JackknifeWork& work, std::size_t constraint);
+
+// T^2 of a residual by its covariance C, both whitened by what independent errors would leave. Directions with less than
+// 1e-6 of that do not count: there nothing checks the residual, or shared causes cancel and it closes by construction.
+struct CheckedDirections {
+  int rank = 0;
+  double t_squared = 0.0;
+};
+[[nodiscard]] CheckedDirections CheckWhitened(const Matrix6d& C, const Vector6d& e);
 
 }  // namespace rigcal::graph

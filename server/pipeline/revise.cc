@@ -67,7 +67,7 @@ HonestSolution SolveHonestly(const RobotGraph& loaded) {
   GraphSolution& solution = honest.solution;
   const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
   honest.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
-  graph::TakeHonest(loaded.graph, honest.jackknife, solution);
+  graph::ApplyJackknifeCovariance(loaded.graph, honest.jackknife, solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
   solution.influences = graph::InfluenceOfEdges(loaded.graph, solution);
   solution.cycles = graph::JudgeCycles(loaded.graph, blocks);

@@ -28,7 +28,7 @@ Graph WholeGraph(const std::vector<Edge>& edges, const SessionHeader& header) {
 GraphSolution Solved(const Graph& graph, const std::vector<Edge>& edges) {
   GraphSolution solution = graph::Solve(graph);
   const graph::BlocksByEdge blocks = graph::BlocksOf(edges);
-  graph::TakeHonest(graph, graph::JackknifeGraph(graph, solution, blocks), solution);
+  graph::ApplyJackknifeCovariance(graph, graph::JackknifeGraph(graph, solution, blocks), solution);
   solution.suspects = graph::FindSuspects(graph, solution);
   solution.cycles = graph::JudgeCycles(graph, blocks);
   return solution;
