@@ -1,5 +1,3 @@
-#include "server/graph/cycles.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <tuple>
 
 #include "server/graph/cycle_walks.h"
+#include "server/graph/insight.h"
 #include "server/graph/jackknife_sources.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
@@ -17,6 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
+constexpr double kProbability = 0.999;  // that all cycles of a graph of good edges close
 
 // What one edge errs by, column by column, and which cause each part belongs to.
 struct Causes {
@@ -139,11 +139,11 @@ class Judge {
   std::vector<Matrix6d> covariance_;
 };
 
-// Per cycle, so that all of them together pass with `probability` where every edge is good.
+// Per cycle, so that all of them together pass with kProbability where every edge is good.
 class Limits {
  public:
-  Limits(std::int64_t count, double probability)
-      : each_(1.0 - (1.0 - probability) / static_cast<double>(std::max<std::int64_t>(count, 1))) {}
+  explicit Limits(std::int64_t count)
+      : each_(1.0 - (1.0 - kProbability) / static_cast<double>(std::max<std::int64_t>(count, 1))) {}
 
   double Of(const CycleResidual& cycle) {
     const int dof = cycle.dof > 0.0 ? static_cast<int>(std::min(cycle.dof, kDofMax) + kDofRounding) : -1;
@@ -168,8 +168,7 @@ bool WorseThan(const CycleResidual& a, const CycleResidual& b) {
 
 void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, Cycles& judged) {
   judged.examined = static_cast<std::int64_t>(cycles.size());
-  Limits limits(std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; }),
-                options.probability);
+  Limits limits(std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; }));
   for (CycleResidual& cycle : cycles) {
     if (cycle.tested) cycle.limit = limits.Of(cycle);
     judged.tested += cycle.limit > 0.0 ? 1 : 0;

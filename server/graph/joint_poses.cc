@@ -13,12 +13,18 @@ using Eigen::MatrixXd;
 
 constexpr int kOfReference = -1, kNone = -2;
 
+// -1: it is not there.
+int IndexOf(const std::vector<SensorId>& sensors, const SensorId& sensor) {
+  const auto found = std::find(sensors.begin(), sensors.end(), sensor);
+  return found == sensors.end() ? -1 : static_cast<int>(found - sensors.begin());
+}
+
 Result<std::size_t> FindSensor(const Graph& graph, const SensorId& sensor) {
-  const auto found = std::find(graph.sensors.begin(), graph.sensors.end(), sensor);
-  if (found == graph.sensors.end())
+  const int index = IndexOf(graph.sensors, sensor);
+  if (index < 0)
     return Fail(ErrorCode::kNotFound, "sensor " + sensor.str() + " is not in the graph",
                 "Check the name; the robot's report lists its sensors.");
-  return static_cast<std::size_t>(found - graph.sensors.begin());
+  return static_cast<std::size_t>(index);
 }
 
 Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& solution, std::size_t sensor) {
@@ -58,8 +64,8 @@ std::optional<JointCovariance> AnalyticJoint(const Graph& graph, const GraphSolu
   const Problem problem = MakeProblem(graph);
   std::vector<int> vertices;
   for (const SensorId& sensor : sensors) {
-    const auto index = FindSensor(graph, sensor);
-    vertices.push_back(index ? problem.vertex_of_sensor[*index] : -1);
+    const int index = IndexOf(graph.sensors, sensor);
+    vertices.push_back(index < 0 ? -1 : problem.vertex_of_sensor[static_cast<std::size_t>(index)]);
     if (vertices.back() <= 0) return std::nullopt;
   }
   const auto columns = InverseColumns(graph, problem, solution, vertices);
@@ -74,9 +80,8 @@ std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, c
   JointCovariance joint{sensors, MatrixXd(6 * sensors.size(), 6 * sensors.size())};
   std::vector<int> row_of;
   for (const SensorId& sensor : sensors) {
-    const auto found = std::find(jackknife.sensors.begin(), jackknife.sensors.end(), sensor);
-    row_of.push_back(found == jackknife.sensors.end() ? -1
-                                                      : jackknife.row_of_sensor[static_cast<std::size_t>(found - jackknife.sensors.begin())]);
+    const int index = IndexOf(jackknife.sensors, sensor);
+    row_of.push_back(index < 0 ? -1 : jackknife.row_of_sensor[static_cast<std::size_t>(index)]);
     if (row_of.back() < 0) return std::nullopt;
   }
   for (std::size_t i = 0; i < sensors.size(); ++i)
@@ -88,8 +93,8 @@ std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, c
 
 int RowOf(const JointPoses& poses, const JointCovariance& covariance, const SensorId& sensor) {
   if (sensor == poses.reference) return kOfReference;
-  const auto found = std::find(covariance.sensors.begin(), covariance.sensors.end(), sensor);
-  return found == covariance.sensors.end() ? kNone : 6 * static_cast<int>(found - covariance.sensors.begin());
+  const int index = IndexOf(covariance.sensors, sensor);
+  return index < 0 ? kNone : 6 * index;
 }
 
 }  // namespace

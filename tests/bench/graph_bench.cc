@@ -19,11 +19,9 @@
 #include "server/base/limits.h"
 #include "server/base/sha256.h"
 #include "server/formats/g2o.h"
-#include "server/graph/cycles.h"
-#include "server/graph/edge_influence.h"
+#include "server/graph/insight.h"
 #include "server/graph/live_solver.h"
 #include "server/graph/solve.h"
-#include "server/graph/suspects.h"
 #include "tests/bench/graph_reference.h"
 
 namespace {

@@ -5,8 +5,7 @@
 #include <set>
 
 #include "server/fleet/assess.h"
-#include "server/graph/cycles.h"
-#include "server/graph/suspects.h"
+#include "server/graph/insight.h"
 #include "tests/bench/fault_graphs.h"
 
 namespace rigcal::graph {

@@ -4,10 +4,9 @@
 
 #include "server/calib/joint/estimate_session.h"
 #include "server/fleet/assess.h"
-#include "server/graph/cycles.h"
 #include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
-#include "server/graph/suspects.h"
+#include "server/graph/insight.h"
 #include "tests/bench/joint_session.h"
 
 namespace rigcal {
