@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "server/graph/moved_between.h"
 #include "server/graph/session_fusion.h"
 #include "server/math/covariance.h"
 #include "server/math/pooled_dof.h"

@@ -7,7 +7,7 @@
 // Pushed edges are factors by their Omega. An edge of a session counts where one of its sensors is in no refinement.
 //
 // From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
-// (visit_scatter.h). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between
+// (BetweenVisits). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between
 // visits. What errs alike on every visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 

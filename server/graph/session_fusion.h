@@ -8,11 +8,28 @@
 #include <utility>
 #include <vector>
 
-#include "server/graph/visit_scatter.h"
 #include "server/model/graph.h"
 #include "server/model/session_estimate.h"
 
 namespace rigcal::graph {
+
+// How much a sensor's place scatters from visit to visit beyond what the visits themselves are uncertain by.
+// Per axis, squared; alike along all three.
+struct VisitVariance {
+  double translation_m2 = 0.0, rotation_rad2 = 0.0;
+  [[nodiscard]] Matrix6d Matrix() const;
+};
+
+// What a visit said of the sensor, less where the sensor is on the whole.
+struct VisitResidual {
+  Vector6d e;    // right tangent at the sensor
+  Matrix6d own;  // covariance of the visit by itself
+};
+
+// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation and for
+// rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
+// within their own sigmas, and where there are not more of them than means.
+[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
 
 constexpr int kFixed = -1;  // the robot's reference
 
@@ -67,5 +84,14 @@ struct LinearFactor {
 [[nodiscard]] std::optional<Eigen::MatrixXd> Settle(SessionFusion& fusion);
 // Per sensor, what each visit says of it beside the whole.
 [[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
+
+// Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest: what the
+// sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the
+// covariance S of both sides and the scatter that visits have within the sides. The step that explains it best, its gain
+// d^T S^-1 E m over six numbers, is an F where the scatter was estimated; odds are corrected for all looks. What was found
+// is taken out of the sessions before, and the next is looked for.
+// `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
+[[nodiscard]] std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
+                                                               const std::vector<SessionEstimate>& estimates);
 
 }  // namespace rigcal::graph
