@@ -27,7 +27,7 @@ double ProductsOfIteration(const Problem& problem) {
 UpdateWork LiveSolver::Add(const GraphEdge& edge) {
   graph_.edges.push_back(edge);
   const bool was_known = VertexOf(edge.frame_a) >= 0 && VertexOf(edge.frame_b) >= 0;
-  if (!was_known) InsertSensor(edge.frame_a), InsertSensor(edge.frame_b);
+  if (!was_known) AddSensor(edge.frame_a), AddSensor(edge.frame_b);
   Constraint constraint;
   if (!fast_) return Rebuild();
   if (!FillConstraint(edge, 0, constraint).empty()) return {};
@@ -39,11 +39,6 @@ UpdateWork LiveSolver::Add(const GraphEdge& edge) {
     return (deep() ? RelaxDeep(constraint, work) : Relax(constraint, work)) ? work : Rebuild(work);
   }
   return Connect(edge, constraint) ? work : Rebuild(work);
-}
-
-UpdateWork LiveSolver::AddSensor(const SensorId& sensor) {
-  InsertSensor(sensor);
-  return {};
 }
 
 GraphSolution LiveSolver::Glance() const {
@@ -187,7 +182,7 @@ int LiveSolver::AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int l
   return vertex;
 }
 
-void LiveSolver::InsertSensor(const SensorId& sensor) {
+void LiveSolver::AddSensor(const SensorId& sensor) {
   std::vector<SensorId>& sensors = graph_.sensors;
   const auto at = std::lower_bound(sensors.begin(), sensors.end(), sensor, SensorBefore);
   if (at == sensors.end() || *at != sensor) sensors.insert(at, sensor);

@@ -49,10 +49,9 @@ class LiveSolver {
   // says. An edge may bring sensors with it; one that cannot be used is kept for the diagnoses of Solution() and takes
   // no part.
   UpdateWork Add(const GraphEdge& edge);
-  UpdateWork AddSensor(const SensorId& sensor);
+  void AddSensor(const SensorId& sensor);
   // Nothing happens if there is no such edge.
   UpdateWork Remove(const EdgeId& edge);
-  UpdateWork Reweight(const EdgeId& edge, const Matrix6d& Omega, int rank);
   // The canonical batch solution of the edges as they are, whatever it takes; the state continues from it.
   UpdateWork Settle();
   // False once an update has stopped short of the optimum: Settle when there is time.
@@ -74,7 +73,6 @@ class LiveSolver {
   [[nodiscard]] bool AdoptSolution(bool stopped);
   [[nodiscard]] int VertexOf(const SensorId& sensor) const;
   int AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int level);
-  void InsertSensor(const SensorId& sensor);
   int SlotOf(int i, int j);
   void Place(const GraphEdge& edge, Constraint& constraint);
   bool Connect(const GraphEdge& edge, Constraint& constraint);
