@@ -116,7 +116,7 @@ void LiveSolver::FindHanging() {
 }
 
 // Everything anew.
-void LiveSolver::BeginDeep(UpdateWork& work) {
+bool LiveSolver::BeginDeep(UpdateWork& work) {
   tree_.Clear();
   products_counted_ = 0.0;
   columns_counted_ = 0;
@@ -129,6 +129,7 @@ void LiveSolver::BeginDeep(UpdateWork& work) {
     if (hangs_on_[v] >= 0) T_ref_[v] = Hanging(static_cast<int>(v), T_ref_);
   LinearizeGradient(*problem_, T_ref_, equations_);
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
+  return RenewDeep(work);
 }
 
 // An edge that disagrees by much may hold the poses in one basin, or pull them into another.
@@ -143,10 +144,7 @@ bool LiveSolver::Hangs(std::size_t edge) const {
 
 // Gradient and cost at the poses at hand, and the factor, after edges of the tree have changed.
 bool LiveSolver::RenewGradientDeep(UpdateWork& work) {
-  if (!tree_holds_) {
-    BeginDeep(work);
-    return RenewDeep(work);
-  }
+  if (!tree_holds_) return BeginDeep(work);
   LinearizeGradient(*problem_, T_ref_, equations_);
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
   tree_.TouchAll();
@@ -157,10 +155,7 @@ bool LiveSolver::RenewGradientDeep(UpdateWork& work) {
 bool LiveSolver::JoinDeep(const Constraint& added, UpdateWork& work) {
   if (MayLeaveBasin(added)) return false;
   problem_->constraints.push_back(added);
-  if (!tree_holds_) {
-    BeginDeep(work);
-    return RenewDeep(work);
-  }
+  if (!tree_holds_) return BeginDeep(work);
   linearized_at_.emplace_back();
   TakePart(added.i);
   TakePart(added.j);

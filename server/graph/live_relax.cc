@@ -58,16 +58,12 @@ void LiveSolver::SolveStep(Eigen::VectorXd& x, UpdateWork& work) {
   work.products += gradients.products() - before;
 }
 
-// The gradient before the edge: none at an optimum.
-void LiveSolver::BeginGradient() {
+bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
+  // The gradient before the edge: none at an optimum.
   if (large())
     equations_.g.conservativeResizeLike(Eigen::VectorXd::Zero(6 * problem_->free_count()));
   else
     equations_.g.setZero(6 * problem_->free_count());
-}
-
-bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
-  BeginGradient();
   LinearizeEdge(added, T_ref_, equations_.H, &equations_.g);
   problem_->constraints.push_back(added);
   dirty_from_ = std::min(dirty_from_, std::max(std::min(added.i, added.j) - 1, 0));
@@ -110,18 +106,17 @@ UpdateWork LiveSolver::Remove(const EdgeId& edge) {
   if (count == 0) return {};
   graph_.edges.erase(rest, graph_.edges.end());
   if (!fast_ || count > 1) return Rebuild();
-  const std::optional<std::size_t> k = ConstraintOf(edge);
-  if (!k) return {};  // it took no part
-  if (!ConnectedWithout(*k) || MayLeaveBasin(problem_->constraints[*k])) return Rebuild();
-  Forget(*k);
-  UpdateWork work;
-  return RelaxAnew(work) ? work : Rebuild(work);
-}
-
-std::optional<std::size_t> LiveSolver::ConstraintOf(const EdgeId& edge) const {
   const auto found = std::find(id_of_constraint_.begin(), id_of_constraint_.end(), edge);
-  if (found == id_of_constraint_.end()) return std::nullopt;
-  return static_cast<std::size_t>(std::distance(id_of_constraint_.begin(), found));
+  if (found == id_of_constraint_.end()) return {};  // it took no part
+  const auto k = static_cast<std::size_t>(std::distance(id_of_constraint_.begin(), found));
+  if (!ConnectedWithout(k) || MayLeaveBasin(problem_->constraints[k])) return Rebuild();
+  Forget(k);
+  stale_ = true;
+  UpdateWork work;
+  // H is made anew where it holds what is no longer so: in a tree of cliques, above what changed; else everywhere.
+  const bool relaxed =
+      deep() ? RenewGradientDeep(work) && DescendDeep(work) : FactorNow(work) && Descend(work);
+  return relaxed ? work : Rebuild(work);
 }
 
 bool LiveSolver::ConnectedWithout(std::size_t edge) const {
@@ -148,13 +143,6 @@ void LiveSolver::Forget(std::size_t edge) {
   id_of_constraint_[edge] = id_of_constraint_[last];
   constraints.pop_back();
   id_of_constraint_.pop_back();
-}
-
-// With H made anew where it holds what is no longer so: in a tree of cliques, above what changed; else everywhere.
-bool LiveSolver::RelaxAnew(UpdateWork& work) {
-  stale_ = true;
-  if (!deep()) return FactorNow(work) && Descend(work);
-  return RenewGradientDeep(work) && DescendDeep(work);
 }
 
 }  // namespace rigcal::graph

@@ -79,15 +79,12 @@ class LiveSolver {
   [[nodiscard]] bool large() const { return problem_->vertex_count > budget_.sensors_exact_max; }
   [[nodiscard]] bool deep() const;
   bool FactorNow(UpdateWork& work);
-  void BeginGradient();
   void SolveStep(Eigen::VectorXd& x, UpdateWork& work);
   bool Relax(const Constraint& added, UpdateWork& work);
-  bool RelaxAnew(UpdateWork& work);
   bool Descend(UpdateWork& work);
   void LeaveRest(double rest_ratio, UpdateWork& work);
   bool RelaxDeep(const Constraint& added, UpdateWork& work);
   bool DescendDeep(UpdateWork& work);
-  [[nodiscard]] std::optional<std::size_t> ConstraintOf(const EdgeId& edge) const;
   [[nodiscard]] bool ConnectedWithout(std::size_t edge) const;
   [[nodiscard]] bool MayLeaveBasin(const Constraint& constraint) const;
   void Forget(std::size_t edge);
@@ -97,7 +94,7 @@ class LiveSolver {
   [[nodiscard]] Se3 Hanging(int vertex, const Poses& T_ref) const;
   void TakePart(int vertex);
   void TakeEdge(std::size_t edge);
-  void BeginDeep(UpdateWork& work);
+  bool BeginDeep(UpdateWork& work);
   [[nodiscard]] bool IsBent(std::size_t edge, double part) const;
   bool Straighten(double part, UpdateWork& work);
   bool RenewDeep(UpdateWork& work);
