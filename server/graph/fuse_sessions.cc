@@ -1,4 +1,3 @@
-#include "server/graph/fuse_sessions.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

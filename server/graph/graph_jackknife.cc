@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/graph/jackknife_sources.h"
 #include "server/graph/observability.h"
 #include "server/graph/start_poses.h"
 #include "server/math/covariance.h"

@@ -1,4 +1,4 @@
-#include "server/graph/jackknife_sources.h"
+#include "server/graph/graph_jackknife.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

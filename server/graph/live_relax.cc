@@ -5,7 +5,6 @@
 #include "server/graph/conjugate_gradients.h"
 #include "server/graph/dense_cholesky.h"
 #include "server/graph/live_solver.h"
-#include "server/graph/union_find.h"
 
 namespace rigcal::graph {
 namespace {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "server/graph/union_find.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

@@ -11,7 +11,6 @@
 
 #include "server/graph/lane_kernels.h"
 #include "server/graph/solve.h"
-#include "server/graph/union_find.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/graph/symbolic_cholesky.h"
@@ -43,5 +45,27 @@ struct Problem {
 // Everything of a constraint but its vertices and slot, if the edge can be used; otherwise why it cannot.
 [[nodiscard]] std::string FillConstraint(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint);
 [[nodiscard]] Problem MakeProblem(const Graph& graph);
+
+// Disjoint sets of vertices.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  // The smallest member of the set of `member`.
+  [[nodiscard]] int Find(int member) {
+    while (At(member) != member) member = At(member) = At(At(member));
+    return member;
+  }
+  // False if both were in one set already.
+  bool Join(int a, int b) {
+    a = Find(a), b = Find(b);
+    if (a > b) std::swap(a, b);
+    At(b) = a;
+    return a != b;
+  }
+
+ private:
+  int& At(int member) { return parent_[static_cast<std::size_t>(member)]; }
+  std::vector<int> parent_;
+};
 
 }  // namespace rigcal::graph

@@ -7,7 +7,6 @@
 #include <tuple>
 #include <utility>
 
-#include "server/graph/union_find.h"
 
 namespace rigcal::graph {
 namespace {

@@ -6,7 +6,6 @@
 #include "server/graph/edge_checks.h"
 #include "server/graph/insight.h"
 #include "server/graph/start_poses.h"
-#include "server/graph/union_find.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

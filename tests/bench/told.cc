@@ -4,9 +4,9 @@
 
 #include "server/calib/joint/estimate_session.h"
 #include "server/fleet/assess.h"
-#include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/insight.h"
+#include "server/graph/session_fusion.h"
 #include "tests/bench/joint_session.h"
 
 namespace rigcal {
