@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "server/graph/block_matrix.h"
-#include "server/graph/symbolic_cholesky.h"
 #include "server/math/tangent.h"
 
 namespace rigcal::graph {

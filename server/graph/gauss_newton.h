@@ -11,6 +11,7 @@ namespace rigcal::graph {
 // A coordinate of the step that is held, because no edge says anything about it.
 struct Pin {
   int row = 0;  // of H
+  friend bool operator==(const Pin&, const Pin&) = default;
 };
 
 struct Optimum {

@@ -59,6 +59,7 @@ constexpr int kJackknifeSensorsMax = 500;
 void ApplyJackknifeCovariance(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution);
 
 // What makes the edges of a graph err: the blocks of each session, and each other edge by itself.
+
 // Changes of one constraint's residual, one column per independent cause.
 struct ErrorPart {
   std::size_t constraint = 0;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/graph/symbolic_cholesky.h"
+#include "server/graph/block_matrix.h"
 #include "server/model/graph.h"
 
 namespace rigcal::graph {

@@ -11,10 +11,6 @@
 namespace rigcal::graph {
 namespace {
 
-bool SamePins(const std::vector<Pin>& a, const std::vector<Pin>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](Pin p, Pin q) { return p.row == q.row; });
-}
-
 int DegreesOfFreedom(const Problem& problem, const Observability& observability) {
   if (!observability.judged) return 0;  // the rank of H is not known
   int rank_sum = 0;
@@ -79,7 +75,7 @@ Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cho
   constexpr int kRoundsMax = 3;
   for (int round = 0; round < kRoundsMax; ++round) {
     Observability at_optimum = Observe(problem, settled.optimum.T_ref);
-    const bool settled_down = SamePins(at_optimum.pins, settled.observability.pins);
+    const bool settled_down = at_optimum.pins == settled.observability.pins;
     settled.observability = std::move(at_optimum);
     if (settled_down) break;
     const int iterations_before = settled.optimum.iterations;

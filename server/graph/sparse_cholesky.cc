@@ -3,11 +3,22 @@
 #include <utility>
 #include <vector>
 
+#include "server/graph/block_matrix.h"
 #include "server/graph/dense_cholesky.h"
-#include "server/graph/symbolic_cholesky.h"
 
 namespace rigcal::graph {
 namespace {
+
+Supernode SupernodeOf(const Supernodes& supernodes, int col) {
+  return SliceOf(supernodes, supernodes.supernode_of_col[static_cast<std::size_t>(col)]);
+}
+
+// Where a column of the supernode has an entry, row >= col, among all values.
+std::size_t PlaceOf(const Supernode& supernode, int row, int col) {
+  const int* found = std::lower_bound(supernode.rows, supernode.rows + supernode.row_count, row);
+  return supernode.start + static_cast<std::size_t>(found - supernode.rows) +
+         static_cast<std::size_t>(col - supernode.first_col) * static_cast<std::size_t>(supernode.row_count);
+}
 
 // The entries of (L L^T)^-1 on the pattern of L (Takahashi's recursion, supernode by supernode, last to first), exact
 // up to rounding, without the inverse itself.
@@ -80,12 +91,7 @@ void SelectedInverse::GatherFrom(const Supernode& ancestor, const int* cols, int
 }
 
 double SelectedInverse::At(int row, int col) const {
-  if (row < col) std::swap(row, col);
-  const Supernode shape = SliceOf(shape_, shape_.supernode_of_col[static_cast<std::size_t>(col)]);
-  const int* found = std::lower_bound(shape.rows, shape.rows + shape.row_count, row);
-  const auto k = static_cast<std::size_t>(found - shape.rows);
-  return values_[shape.start + k +
-                 static_cast<std::size_t>(col - shape.first_col) * static_cast<std::size_t>(shape.row_count)];
+  return values_[PlaceOf(SupernodeOf(shape_, std::min(row, col)), std::max(row, col), std::min(row, col))];
 }
 
 // Supernodal Cholesky, right-looking: the shape comes from CHOLMOD, the numbers from Eigen's dense kernels on one
@@ -171,10 +177,8 @@ class SparseCholesky final : public BlockCholesky<B> {
     int col = shape_.position[B * static_cast<std::size_t>(block_col)];
     const bool transposed = row < col;
     if (transposed) std::swap(row, col);
-    const Supernode at = SliceOf(shape_, shape_.supernode_of_col[static_cast<std::size_t>(col)]);
-    const auto k = static_cast<std::size_t>(std::lower_bound(at.rows, at.rows + at.row_count, row) - at.rows);
-    return {at.start + k + static_cast<std::size_t>(col - at.first_col) * static_cast<std::size_t>(at.row_count),
-            at.row_count, transposed};
+    const Supernode at = SupernodeOf(shape_, col);
+    return {PlaceOf(at, row, col), at.row_count, transposed};
   }
 
   void Write(const Location& at, const Block& block, double diagonal_factor) {

@@ -1,4 +1,4 @@
-#include "server/graph/symbolic_cholesky.h"
+#include "server/graph/block_matrix.h"
 
 #include <cholmod.h>
 
