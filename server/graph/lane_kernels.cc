@@ -1,7 +1,5 @@
 #include "server/graph/lane_kernels.h"
 
-#include "server/graph/edge_series.h"
-
 namespace rigcal::graph {
 namespace {
 
