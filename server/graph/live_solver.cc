@@ -58,14 +58,6 @@ GraphSolution LiveSolver::Glance() const {
   return glance;
 }
 
-GraphSolution LiveSolver::Solution(const SolveOptions& options) const {
-  if (!fast_ && !options.marginals) return solution_;
-  GraphSolution start;
-  for (std::size_t v = 0; v < sensor_of_vertex_.size() && fast_; ++v)
-    start.poses.push_back({sensor_of_vertex_[v], true, T_ref_[v], Matrix6d::Zero()});
-  return Update(graph_, fast_ ? start : solution_, options);
-}
-
 std::optional<Se3> LiveSolver::PoseOf(const SensorId& sensor) const {
   if (fast_) {
     const int vertex = VertexOf(sensor);
@@ -79,7 +71,7 @@ std::optional<Se3> LiveSolver::PoseOf(const SensorId& sensor) const {
 std::vector<std::pair<SensorId, Matrix6d>> LiveSolver::Marginals() const {
   std::vector<std::pair<SensorId, Matrix6d>> marginals;
   if (!fast_) {
-    const GraphSolution solution = Solution();
+    const GraphSolution solution = Solve(graph_);
     for (const SensorPose& pose : solution.poses)
       if (pose.known) marginals.emplace_back(pose.sensor, pose.covariance);
     return marginals;

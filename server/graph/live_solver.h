@@ -46,7 +46,7 @@ class LiveSolver {
   }
 
   // After each of these the poses are the optimum of the cost to 1e-9 of it, or as near as the budget of a large graph
-  // says. An edge may bring sensors with it; one that cannot be used is kept for the diagnoses of Solution() and takes
+  // says. An edge may bring sensors with it; one that cannot be used is kept for the diagnoses of Solve and takes
   // no part.
   UpdateWork Add(const GraphEdge& edge);
   void AddSensor(const SensorId& sensor);
@@ -61,8 +61,6 @@ class LiveSolver {
   // sum e^T Omega e at the poses at hand, and these poses (none for a sensor that is not connected).
   [[nodiscard]] double Cost() const { return fast_ ? graph::Cost(*problem_, T_ref_) : solution_.cost; }
   [[nodiscard]] std::optional<Se3> PoseOf(const SensorId& sensor) const;
-  // Poses, residuals and diagnoses as Solve would give them, from the poses at hand.
-  [[nodiscard]] GraphSolution Solution(const SolveOptions& options = {}) const;
   // What can be said at once: poses, cost, degrees of freedom, mean squares before and after; no diagnoses.
   [[nodiscard]] GraphSolution Glance() const;
   // Of the sensors connected to the reference, by name (the reference's is zero). Empty where Solve gives none.

@@ -18,9 +18,6 @@ struct SolveOptions {
 // Sensors that are not connected to the reference come back with known = false and a diagnosis; nothing is invented.
 [[nodiscard]] GraphSolution Solve(const Graph& graph, const SolveOptions& options = {});
 
-// The live state: a warm re-solve from the poses of `previous` (new sensors are placed through their best edge).
-[[nodiscard]] GraphSolution Update(const Graph& graph, const GraphSolution& previous, const SolveOptions& options = {});
-
 // T_A_B with its 6x6 covariance (right tangent at B) at a solution, by solving for the two sensors' columns only.
 struct RelativePose {
   Se3 T_A_B;

@@ -94,7 +94,7 @@ TEST(GraphLive, DeficientUnusableAndSelfEdgesBehave) {
   edge.frame_b = SensorId("new");
   live.Add(edge);
   ExpectOptimum(live);
-  EXPECT_FALSE(live.Solution().poses.empty());
+  EXPECT_FALSE(live.Glance().poses.empty());
 }
 
 TEST(GraphLive, AnEmptyStateAnswers) {
@@ -237,13 +237,13 @@ TEST(GraphLive, AnEdgeThatCannotBeUsedMakesNoUpdateABatch) {
   const GraphEdge last = rig.graph.edges.back();
   rig.graph.edges.back().Omega *= -1.0;
   LiveSolver live(rig.graph);
-  EXPECT_EQ(live.Solution().diagnoses.size(), 1U);
+  EXPECT_EQ(Solve(live.graph()).diagnoses.size(), 1U);
   GraphEdge mended = last;
   mended.id = IdOf(100);
   EXPECT_FALSE(live.Add(mended).batch);
   EXPECT_EQ(live.Remove(last.id).iterations, 0);
   ExpectOptimum(live);
-  EXPECT_TRUE(live.Solution().diagnoses.empty());
+  EXPECT_TRUE(Solve(live.graph()).diagnoses.empty());
   EXPECT_FALSE(live.Remove(rig.graph.edges[20].id).batch);
   ExpectOptimum(live);
 }
