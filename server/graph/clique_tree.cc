@@ -77,10 +77,7 @@ void CliqueTree::Drop(std::size_t number, std::size_t largest) {
   edges_.resize(std::min(edges_.size(), largest));
 }
 
-void CliqueTree::Replace(std::size_t number, const Matrix6d& U_i, const Matrix6d& U_j) {
-  Edge& edge = edges_[number];
-  edge.U_i = U_i, edge.U_j = U_j;
-}
+void CliqueTree::Replace(std::size_t number, const Edge& edge) { edges_[number] = edge; }
 
 bool CliqueTree::Renew(int near_i, int near_j, double products_max) {
   if (part_.blocks.empty()) return true;

@@ -104,6 +104,7 @@ WalkStep StepFrom(const Problem& problem, std::size_t constraint, int vertex) {
   return {constraint, problem.constraints[constraint].i == vertex};
 }
 
+// Short loops first, `steps_max` steps in all.
 class Collector {
  public:
   Collector(const Problem& problem, std::size_t steps_max)
@@ -166,12 +167,6 @@ class Collector {
   std::set<std::vector<std::size_t>> seen_;
   CycleWalks found_;
 };
-
-// Short loops first, `steps_max` steps in all.
-CycleWalks WalkCycles(const Problem& problem, std::size_t steps_max) {
-  if (problem.vertex_count == 0) return {};
-  return Collector(problem, steps_max).Take();
-}
 
 // What one edge errs by, column by column, and which cause each part belongs to.
 struct Causes {
@@ -345,7 +340,8 @@ Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOp
                      std::to_string(problem.vertex_count) + ".";
     return judged;
   }
-  const CycleWalks found = WalkCycles(problem, options.steps_max);
+  const CycleWalks found =
+      problem.vertex_count == 0 ? CycleWalks() : Collector(problem, options.steps_max).Take();
   Judge judge(graph, problem, blocks);
   std::vector<CycleResidual> cycles;
   for (const Walk& walk : found.walks) cycles.push_back(judge.Residual(walk));

@@ -84,8 +84,7 @@ bool LiveSolver::RenewDeep(UpdateWork& work) {
   for (const int edge : tree_.Open()) {
     const auto k = static_cast<std::size_t>(edge);
     linearized_at_[k] = RelativePose(problem_->constraints[k]);
-    const CliqueTree::Edge linearized = Linearized(problem_->constraints[k], linearized_at_[k]);
-    tree_.Replace(k, linearized.U_i, linearized.U_j);
+    tree_.Replace(k, Linearized(problem_->constraints[k], linearized_at_[k]));
     ++work.edges_evaluated;
   }
   const Constraint& newest = problem_->constraints.back();

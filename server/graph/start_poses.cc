@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 
 namespace rigcal::graph {
@@ -52,6 +53,29 @@ TreeEdges FindTree(const Problem& problem, const std::vector<bool>& placed) {
     tree.Add(c.j, 2 * k + 1);
   }
   return tree;
+}
+
+// The tree, growing from the vertices that are placed already (`placed[v]`; vertex 0 always is). Their poses stay.
+Poses GrowTree(const Problem& problem, Poses T_ref, std::vector<bool> placed) {
+  placed[0] = true;
+  const TreeEdges tree = FindTree(problem, placed);
+  std::vector<std::size_t> queue;
+  queue.reserve(placed.size());
+  for (std::size_t v = 0; v < placed.size(); ++v)
+    if (placed[v]) queue.push_back(v);
+  for (std::size_t at = 0; at < queue.size(); ++at) {
+    const std::size_t v = queue[at];
+    for (std::size_t entry = tree.first[v]; entry != TreeEdges::kEnd; entry = tree.next[entry]) {
+      const Constraint& c = problem.constraints[entry / 2];
+      const bool forward = entry % 2 == 0;
+      const auto other = static_cast<std::size_t>(forward ? c.j : c.i);
+      if (placed[other]) continue;
+      T_ref[other] = (T_ref[v] * (forward ? c.T_i_j : c.T_j_i)).Normalized();
+      placed[other] = true;
+      queue.push_back(other);
+    }
+  }
+  return T_ref;
 }
 
 // Isotropic weight of a 3x3 information block: the harmonic mean of its eigenvalues; next to nothing for an edge with
@@ -146,28 +170,6 @@ bool SolveTranslations(const Problem& problem, Poses& T_ref) {
 }
 
 }  // namespace
-
-Poses GrowTree(const Problem& problem, Poses T_ref, std::vector<bool> placed) {
-  placed[0] = true;
-  const TreeEdges tree = FindTree(problem, placed);
-  std::vector<std::size_t> queue;
-  queue.reserve(placed.size());
-  for (std::size_t v = 0; v < placed.size(); ++v)
-    if (placed[v]) queue.push_back(v);
-  for (std::size_t at = 0; at < queue.size(); ++at) {
-    const std::size_t v = queue[at];
-    for (std::size_t entry = tree.first[v]; entry != TreeEdges::kEnd; entry = tree.next[entry]) {
-      const Constraint& c = problem.constraints[entry / 2];
-      const bool forward = entry % 2 == 0;
-      const auto other = static_cast<std::size_t>(forward ? c.j : c.i);
-      if (placed[other]) continue;
-      T_ref[other] = (T_ref[v] * (forward ? c.T_i_j : c.T_j_i)).Normalized();
-      placed[other] = true;
-      queue.push_back(other);
-    }
-  }
-  return T_ref;
-}
 
 Poses SpanningTreePoses(const Problem& problem) {
   const auto count = static_cast<std::size_t>(problem.vertex_count);

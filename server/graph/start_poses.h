@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "server/graph/linearize.h"
 
@@ -11,8 +10,6 @@ namespace rigcal::graph {
 // The start that people can follow, composed along the most certain edges: minimum spanning tree under weight
 // 1/2 log det C; rank-deficient edges last (higher rank first); ties by edge id.
 [[nodiscard]] Poses SpanningTreePoses(const Problem& problem);
-// The same, growing from the vertices that are placed already (`placed[v]`; vertex 0 always is). Their poses stay.
-[[nodiscard]] Poses GrowTree(const Problem& problem, Poses T_ref, std::vector<bool> placed);
 
 // The chordal start: all rotations at once by linear least squares on 3x3 matrices, projected onto SO(3), then all
 // translations (Martinec & Pajdla 2007; Carlone et al. 2015). It does not drift along chains as a tree does. Empty if a
