@@ -41,8 +41,11 @@ class Accumulator {
 
   [[nodiscard]] MatrixXd Joint() const { return joint_.selfadjointView<Eigen::Lower>(); }
   [[nodiscard]] const Matrix6d& C_e(std::size_t constraint) const { return C_e_[constraint]; }
+  // Welch & Satterthwaite's, behind C_e; 0: nothing estimated.
   [[nodiscard]] double Dof(std::size_t constraint) const {
-    return Satterthwaite(Trace(constraint, C_e_[constraint]), dof_sum_[constraint]);
+    const double trace = work_.problem.constraints[constraint].Omega.cwiseProduct(C_e_[constraint]).sum();
+    const double dof_sum = dof_sum_[constraint];
+    return dof_sum > 0.0 && trace > 0.0 ? trace * trace / dof_sum : 0.0;
   }
   [[nodiscard]] double PoseDof(int row) const {
     const Matrix6d lower = joint_.block<6, 6>(row, row);
@@ -50,13 +53,6 @@ class Accumulator {
   }
 
  private:
-  static double Satterthwaite(double trace, double dof_sum) {
-    return dof_sum > 0.0 && trace > 0.0 ? trace * trace / dof_sum : 0.0;
-  }
-  [[nodiscard]] double Trace(std::size_t constraint, const Matrix6d& C) const {
-    return work_.problem.constraints[constraint].Omega.cwiseProduct(C).sum();
-  }
-
   void AddBatch(const ErrorSource* begin, const ErrorSource* end, Eigen::Index column_count) {
     MatrixXd pull = MatrixXd::Zero(joint_.rows(), column_count);
     Eigen::Index at = 0;
