@@ -3,19 +3,22 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace rigcal::graph {
 
 struct BlockPosition {
   int row = 0, col = 0;  // row > col
-  friend auto operator<=>(const BlockPosition&, const BlockPosition&) = default;
+  friend bool operator==(const BlockPosition&, const BlockPosition&) = default;
+  friend auto operator<=>(const BlockPosition& a, const BlockPosition& b) {
+    return std::tie(a.col, a.row) <=> std::tie(b.col, b.row);
+  }
 };
 
 struct BlockPattern {
   int block_count = 0;
-  std::vector<BlockPosition> off_diagonal;  // lower triangle, unique, sorted by (col, row)
+  std::vector<BlockPosition> off_diagonal;  // lower triangle, unique, sorted
 };
 
 // The lower triangle: diagonal blocks whole, off-diagonal blocks in the order of the pattern.
@@ -24,13 +27,9 @@ struct BlockMatrix {
   using Block = Eigen::Matrix<double, B, B>;
   std::vector<Block> diagonal, off_diagonal;
 
-  void Resize(const BlockPattern& pattern) {
-    diagonal.resize(static_cast<std::size_t>(pattern.block_count));
-    off_diagonal.resize(pattern.off_diagonal.size());
-  }
-  void SetZero() {
-    for (Block& block : diagonal) block.setZero();
-    for (Block& block : off_diagonal) block.setZero();
+  void SetZero(const BlockPattern& pattern) {
+    diagonal.assign(static_cast<std::size_t>(pattern.block_count), Block::Zero());
+    off_diagonal.assign(pattern.off_diagonal.size(), Block::Zero());
   }
 };
 
@@ -56,6 +55,9 @@ template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);
 
+// What is known of a Cholesky factor before its numbers (by CHOLMOD): a fill-reducing order, and the shape of a supernodal
+// factor: which columns are kept together in one dense trapezoid, and their rows.
+
 // What a factor of blocks of one row would take: its entries, and floating-point operations.
 struct EliminationCost {
   double entries = 0.0, flops = 0.0;
@@ -67,8 +69,37 @@ struct Elimination {
   std::vector<int> order;
   EliminationCost cost;
 };
-[[nodiscard]] Elimination EliminationOrder(int vertex_count, const std::vector<std::pair<int, int>>& links);
-// The same with some vertices after all others. Links may come twice, in any order.
+// Links may come twice, in any order.
+[[nodiscard]] Elimination EliminationOrder(const BlockPattern& links);
+// The same with some vertices after all others.
 [[nodiscard]] std::vector<int> ConstrainedOrder(const BlockPattern& links, const std::vector<bool>& is_last);
+
+// Supernode s has the columns first_col[s] .. first_col[s+1]-1 and the rows rows[row_start[s] .. row_start[s+1]-1],
+// which begin with its own columns and ascend. Its values are column-major, as many rows as it has, from
+// value_start[s].
+struct Supernodes {
+  int size = 0;
+  std::vector<int> first_col, row_start, rows;
+  std::vector<std::size_t> value_start;  // one more than supernodes: the last is the number of values
+  std::vector<int> supernode_of_col;
+  std::vector<int> position;  // where a row or column of the matrix comes in the factor
+
+  [[nodiscard]] int count() const { return static_cast<int>(first_col.size()) - 1; }
+};
+
+// One supernode's slice.
+struct Supernode {
+  int first_col = 0, col_count = 0, row_count = 0;
+  const int* rows = nullptr;
+  std::size_t start = 0;
+
+  [[nodiscard]] int below() const { return row_count - col_count; }
+  [[nodiscard]] const int* rows_below() const { return rows + col_count; }
+};
+[[nodiscard]] Supernode SliceOf(const Supernodes& supernodes, int s);
+
+// Symbolic analysis by CHOLMOD on the pattern of blocks, then every block spread to block_size rows and columns.
+// Empty (size 0) if the factor would need more than kFactorBytesMax.
+[[nodiscard]] Supernodes AnalyzeSupernodes(const BlockPattern& pattern, int block_size);
 
 }  // namespace rigcal::graph

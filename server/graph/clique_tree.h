@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "server/graph/block_matrix.h"
-#include "server/graph/supernodes.h"
 #include "server/math/tangent.h"
 
 namespace rigcal::graph {
@@ -28,8 +27,8 @@ class CliqueTree {
   void Change(std::size_t number);
   // This edge is no more, and the one of the largest number takes its number. Its blocks keep other edges.
   void Drop(std::size_t number, std::size_t largest);
-  // Another linearisation of an edge whose part of the factor is open.
-  void Replace(std::size_t number, const Matrix6d& U_i, const Matrix6d& U_j);
+  // Another linearisation of an edge whose part of the factor is open, between the same blocks.
+  void Replace(std::size_t number, const Edge& edge);
   // Two steps bring the factor up to date. Open gives the edges whose part of the factor is made again, whatever they
   // are: to linearise them anew by Replace costs nothing more.
   [[nodiscard]] std::vector<int> Open();

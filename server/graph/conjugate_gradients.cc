@@ -1,11 +1,9 @@
 #include "server/graph/conjugate_gradients.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
-
-#include "server/graph/cholesky_kinds.h"
 
 namespace rigcal::graph {
 namespace {
@@ -18,6 +16,63 @@ double ProductsOfRound(const BlockPattern& pattern) {
   return (2.0 * pattern.block_count + 2.0 * static_cast<double>(pattern.off_diagonal.size())) / 6.0;
 }
 
+// Column by column, so that a column stays in registers.
+//
+// The lower triangle of C becomes its Cholesky factor with the *inverses* of the pivots on the diagonal; false if C is
+// not positive definite. What is above the diagonal means nothing.
+bool FactorBlock(Matrix6d& C) {
+  for (int c = 0; c < 6; ++c) {
+    Vector6d column = C.col(c);
+    for (int k = 0; k < c; ++k) column -= C.col(k) * C(c, k);
+    const double square = column(c);
+    if (!(square > 0.0) || !std::isfinite(square)) return false;
+    const double inverse = 1.0 / std::sqrt(square);
+    column *= inverse;
+    column(c) = inverse;
+    C.col(c) = column;
+  }
+  return true;
+}
+
+// C <- C * L^-T with L of FactorBlock.
+void DivideByTransposed(const Matrix6d& L, Matrix6d& C) {
+  for (int c = 0; c < 6; ++c) {
+    Vector6d column = C.col(c);
+    for (int k = 0; k < c; ++k) column -= C.col(k) * L(c, k);
+    C.col(c) = column * L(c, c);
+  }
+}
+
+// C <- C^-1; false if C is not positive definite.
+bool InvertBlock(Matrix6d& C) {
+  if (!FactorBlock(C)) return false;
+  Matrix6d rows = Matrix6d::Identity();  // L^-T
+  DivideByTransposed(C, rows);
+  C.noalias() = rows * rows.transpose();
+  return true;
+}
+
+constexpr int kLevelsMax = 12;
+constexpr double kProductsPerLevel = 20.0;  // of H with a vector, in a whole descent, by experience
+
+// Levels of a breadth-first search from the reference; kLevelsMax + 1 if there are more.
+int CountLevels(const Problem& problem) {
+  std::vector<int> level(static_cast<std::size_t>(problem.vertex_count), kLevelsMax + 1);
+  level[0] = 0;
+  for (int at = 1; at <= kLevelsMax; ++at) {
+    bool reached = false;
+    const auto reach = [&level, &reached, at](int from, int to) {
+      int& other = level[static_cast<std::size_t>(to)];
+      if (level[static_cast<std::size_t>(from)] != at - 1 || other <= at) return;
+      other = at;
+      reached = true;
+    };
+    for (const Constraint& c : problem.constraints) reach(c.i, c.j), reach(c.j, c.i);
+    if (!reached) break;
+  }
+  return *std::max_element(level.begin(), level.end());
+}
+
 }  // namespace
 
 bool ConjugateGradients::Factor(const BlockMatrix<6>& matrix, double lambda) {
@@ -27,7 +82,7 @@ bool ConjugateGradients::Factor(const BlockMatrix<6>& matrix, double lambda) {
   diagonal_ = matrix.diagonal;
   for (Block& block : diagonal_) {
     block.diagonal() *= 1.0 + lambda;
-    if (!InvertBlock<6>(block)) return false;
+    if (!InvertBlock(block)) return false;
   }
   return true;
 }
@@ -52,9 +107,8 @@ std::vector<ConjugateGradients::Block> ConjugateGradients::InverseDiagonal() {
 }
 
 bool ConjugateGradients::FactorExactly() {
-  const auto before = [](BlockPosition a, BlockPosition b) { return std::tie(a.col, a.row) < std::tie(b.col, b.row); };
-  if (!std::is_sorted(pattern_.off_diagonal.begin(), pattern_.off_diagonal.end(), before)) return false;
-  if (exact_ == nullptr) exact_ = MakeSparseCholesky<6>(pattern_);
+  if (!std::is_sorted(pattern_.off_diagonal.begin(), pattern_.off_diagonal.end())) return false;
+  if (exact_ == nullptr) exact_ = MakeCholesky<6>(pattern_, 0);
   return exact_ != nullptr && exact_->Factor(*matrix_, lambda_);
 }
 
@@ -106,6 +160,23 @@ void ConjugateGradients::Precondition(const Eigen::VectorXd& residual, Eigen::Ve
     const Vector6d part = residual.segment<6>(row);
     z.segment<6>(row).noalias() = diagonal_[v] * part;
   }
+}
+
+bool PrefersConjugateGradients(const Problem& problem) {
+  if (problem.free_count() <= kBlocksDenseMax) return false;
+  const EliminationCost& cost = problem.elimination_cost;
+  if (cost.entries * 36.0 * sizeof(double) > static_cast<double>(kFactorBytesMax)) return false;
+  const double product =
+      static_cast<double>(problem.free_count()) + 2.0 * static_cast<double>(problem.pattern.off_diagonal.size());
+  if (216.0 * cost.flops <= kProductsPerLevel * 72.0 * product) return false;
+  const int levels = CountLevels(problem);
+  return levels <= kLevelsMax && 216.0 * cost.flops > kProductsPerLevel * levels * 72.0 * product &&
+         problem.HasFullRank();
+}
+
+std::unique_ptr<BlockCholesky<6>> MakeStepSolver(const Problem& problem) {
+  if (PrefersConjugateGradients(problem)) return std::make_unique<ConjugateGradients>(problem.pattern);
+  return MakeCholesky<6>(problem.pattern);
 }
 
 }  // namespace rigcal::graph

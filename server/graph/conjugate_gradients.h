@@ -1,14 +1,12 @@
 // Conjugate gradients under the inverse of the diagonal blocks, in the place of a Cholesky factor: solutions are right
 // to kResidualRatio of the right-hand side, which is enough for the steps of a descent. Where they do not get there,
-// and for inverses, a factor is made after all.
+// and for inverses, a factor is made after all. And the choice between the two.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "server/graph/block_kernels.h"
-#include "server/graph/block_matrix.h"
-#include "server/math/tangent.h"
+#include "server/graph/problem.h"
 
 namespace rigcal::graph {
 
@@ -42,5 +40,13 @@ class ConjugateGradients final : public BlockCholesky<6> {
   Eigen::VectorXd r_, z_, p_, Hp_;
   double products_ = 0.0;
 };
+
+// True where every vertex is a few edges from the reference (then conjugate gradients need few iterations) and a factor
+// would cost far more than they do. A matter of structure alone: numbers do not enter.
+[[nodiscard]] bool PrefersConjugateGradients(const Problem& problem);
+
+// Null if a factor is needed and would be too large. What it gives for Factor() reads that matrix until the next
+// Factor(): it must stay as it is in between.
+[[nodiscard]] std::unique_ptr<BlockCholesky<6>> MakeStepSolver(const Problem& problem);
 
 }  // namespace rigcal::graph

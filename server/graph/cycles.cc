@@ -1,14 +1,12 @@
-#include "server/graph/cycles.h"
-
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 
-#include "server/graph/cycle_walks.h"
-#include "server/graph/jackknife_sources.h"
+#include "server/graph/graph_jackknife.h"
+#include "server/graph/insight.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
 
@@ -17,9 +15,158 @@ namespace {
 
 using Eigen::MatrixXd;
 
-// Below this share of what independent errors would leave, shared causes cancel: the loop closes by construction there.
-constexpr double kCheckedRatio = 1e-6;
+constexpr std::size_t kLooksPerStep = 100;  // at edges that may close a triangle: far cheaper than a step
+
 constexpr double kDofMax = 1e6, kDofRounding = 1e-6;
+constexpr double kProbability = 0.999;  // that all cycles of a graph of good edges close
+
+// Which loops of edges a graph has: the loop of every edge outside a spanning tree of fewest hops, then triangles.
+struct WalkStep {
+  std::size_t constraint = 0;
+  bool forward = true;  // from i to j
+};
+using Walk = std::vector<WalkStep>;
+
+struct CycleWalks {
+  std::vector<Walk> walks;  // no two of the same edges
+  bool complete = true;     // false: longer loops, or triangles, were left out
+};
+
+// The vertex at which a step starts, and where it ends.
+int StartOf(const Problem& problem, const WalkStep& step) {
+  const Constraint& c = problem.constraints[step.constraint];
+  return step.forward ? c.i : c.j;
+}
+
+int EndOf(const Problem& problem, const WalkStep& step) {
+  const Constraint& c = problem.constraints[step.constraint];
+  return step.forward ? c.j : c.i;
+}
+
+using ConstraintsOf = std::vector<std::vector<std::size_t>>;  // by vertex
+
+ConstraintsOf ConstraintsAt(const Problem& problem) {
+  ConstraintsOf at(static_cast<std::size_t>(problem.vertex_count));
+  for (std::size_t k = 0; k < problem.constraints.size(); ++k) {
+    at[static_cast<std::size_t>(problem.constraints[k].i)].push_back(k);
+    at[static_cast<std::size_t>(problem.constraints[k].j)].push_back(k);
+  }
+  return at;
+}
+
+struct Tree {
+  std::vector<int> depth;           // by vertex
+  std::vector<WalkStep> to_parent;  // the step from a vertex to its parent
+  std::vector<bool> in_tree;        // by constraint
+
+  [[nodiscard]] int DepthOf(int vertex) const { return depth[static_cast<std::size_t>(vertex)]; }
+};
+
+Tree GrowBreadthFirst(const Problem& problem, const ConstraintsOf& at) {
+  const auto count = static_cast<std::size_t>(problem.vertex_count);
+  Tree tree{std::vector<int>(count, -1), std::vector<WalkStep>(count),
+            std::vector<bool>(problem.constraints.size(), false)};
+  std::vector<std::size_t> queue = {0};
+  tree.depth[0] = 0;
+  for (std::size_t n = 0; n < queue.size(); ++n)
+    for (const std::size_t k : at[queue[n]]) {
+      const Constraint& c = problem.constraints[k];
+      const bool is_i = static_cast<std::size_t>(c.i) == queue[n];
+      const auto other = static_cast<std::size_t>(is_i ? c.j : c.i);
+      if (tree.depth[other] >= 0) continue;
+      tree.depth[other] = tree.depth[queue[n]] + 1;
+      tree.to_parent[other] = {k, !is_i};
+      tree.in_tree[k] = true;
+      queue.push_back(other);
+    }
+  return tree;
+}
+
+// From i over the edge to j, up to the common ancestor and down again to i.
+Walk LoopOf(const Problem& problem, const Tree& tree, std::size_t chord) {
+  Walk walk = {{chord, true}}, down;
+  int a = problem.constraints[chord].j, b = problem.constraints[chord].i;
+  while (a != b) {
+    int& deeper = tree.DepthOf(a) >= tree.DepthOf(b) ? a : b;
+    const WalkStep step = tree.to_parent[static_cast<std::size_t>(deeper)];
+    if (&deeper == &a) {
+      walk.push_back(step);
+    } else {
+      down.push_back({step.constraint, !step.forward});
+    }
+    deeper = EndOf(problem, step);
+  }
+  walk.insert(walk.end(), down.rbegin(), down.rend());
+  return walk;
+}
+
+WalkStep StepFrom(const Problem& problem, std::size_t constraint, int vertex) {
+  return {constraint, problem.constraints[constraint].i == vertex};
+}
+
+// Short loops first, `steps_max` steps in all.
+class Collector {
+ public:
+  Collector(const Problem& problem, std::size_t steps_max)
+      : problem_(problem),
+        at_(ConstraintsAt(problem)),
+        steps_left_(steps_max),
+        looks_left_(kLooksPerStep * steps_max) {}
+
+  CycleWalks Take() {
+    AddLoops();
+    for (std::size_t k = 0; k < problem_.constraints.size() && found_.complete; ++k) AddTriangles(k);
+    return std::move(found_);
+  }
+
+ private:
+  void Add(Walk walk) {
+    if (walk.size() > steps_left_) {
+      found_.complete = false;
+      return;
+    }
+    std::vector<std::size_t> key;
+    for (const WalkStep& step : walk) key.push_back(step.constraint);
+    std::sort(key.begin(), key.end());
+    if (!seen_.insert(std::move(key)).second) return;
+    steps_left_ -= walk.size();
+    found_.walks.push_back(std::move(walk));
+  }
+
+  void AddLoops() {
+    const Tree tree = GrowBreadthFirst(problem_, at_);
+    const auto climb = [&](std::size_t k) {
+      return tree.DepthOf(problem_.constraints[k].i) + tree.DepthOf(problem_.constraints[k].j);
+    };
+    std::vector<std::size_t> chords;
+    for (std::size_t k = 0; k < problem_.constraints.size(); ++k)
+      if (!tree.in_tree[k]) chords.push_back(k);
+    std::stable_sort(chords.begin(), chords.end(), [&](std::size_t a, std::size_t b) { return climb(a) < climb(b); });
+    for (std::size_t n = 0; n < chords.size() && found_.complete; ++n) Add(LoopOf(problem_, tree, chords[n]));
+  }
+
+  // Triangles whose first edge has the smallest number.
+  void AddTriangles(std::size_t first) {
+    const int i = problem_.constraints[first].i, j = problem_.constraints[first].j;
+    for (const std::size_t second : at_[static_cast<std::size_t>(j)]) {
+      const int k = EndOf(problem_, StepFrom(problem_, second, j));
+      if (second <= first || k == i || k == j) continue;
+      const auto& at_k = at_[static_cast<std::size_t>(k)];
+      if (at_k.size() > looks_left_) found_.complete = false;
+      if (!found_.complete) return;
+      looks_left_ -= at_k.size();
+      for (const std::size_t third : at_k)
+        if (third > first && third != second && EndOf(problem_, StepFrom(problem_, third, k)) == i)
+          Add({{first, true}, StepFrom(problem_, second, j), StepFrom(problem_, third, k)});
+    }
+  }
+
+  const Problem& problem_;
+  const ConstraintsOf at_;
+  std::size_t steps_left_, looks_left_;
+  std::set<std::vector<std::size_t>> seen_;
+  CycleWalks found_;
+};
 
 // What one edge errs by, column by column, and which cause each part belongs to.
 struct Causes {
@@ -130,23 +277,11 @@ class Judge {
     cycle.dof = dof_sum > 0.0 ? trace * trace / dof_sum : 0.0;
     const bool shared = std::any_of(sums.begin(), sums.end(),
                                     [&](const Causes::Part& sum) { return sum.source < causes_.shared_count; });
-    if (shared) {
-      JudgeBy(C, e, cycle);
-    } else {
-      cycle.rank = 6, cycle.t_squared = e.squaredNorm();  // C is the identity
-    }
+    const CheckedDirections checked =
+        shared ? CheckWhitened(C, e) : CheckedDirections{6, e.squaredNorm()};  // else C is the identity
+    cycle.rank = checked.rank, cycle.t_squared = checked.t_squared;
     cycle.tested = cycle.rank > 0 && std::isfinite(cycle.t_squared);
     if (!cycle.tested) cycle.t_squared = cycle.dof = cycle.rank = 0;
-  }
-
-  static void JudgeBy(const Matrix6d& C, const Vector6d& e, CycleResidual& cycle) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(C));
-    const Vector6d parts = eigen.eigenvectors().transpose() * e;
-    for (int k = 0; k < 6; ++k) {
-      if (!(eigen.eigenvalues()(k) > kCheckedRatio)) continue;
-      ++cycle.rank;
-      cycle.t_squared += parts(k) * parts(k) / eigen.eigenvalues()(k);
-    }
   }
 
   JackknifeWork work_;
@@ -154,11 +289,11 @@ class Judge {
   std::vector<Matrix6d> covariance_;
 };
 
-// Per cycle, so that all of them together pass with `probability` where every edge is good.
+// Per cycle, so that all of them together pass with kProbability where every edge is good.
 class Limits {
  public:
-  Limits(std::int64_t count, double probability)
-      : each_(1.0 - (1.0 - probability) / static_cast<double>(std::max<std::int64_t>(count, 1))) {}
+  explicit Limits(std::int64_t count)
+      : each_(1.0 - (1.0 - kProbability) / static_cast<double>(std::max<std::int64_t>(count, 1))) {}
 
   double Of(const CycleResidual& cycle) {
     const int dof = cycle.dof > 0.0 ? static_cast<int>(std::min(cycle.dof, kDofMax) + kDofRounding) : -1;
@@ -183,8 +318,7 @@ bool WorseThan(const CycleResidual& a, const CycleResidual& b) {
 
 void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, Cycles& judged) {
   judged.examined = static_cast<std::int64_t>(cycles.size());
-  Limits limits(std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; }),
-                options.probability);
+  Limits limits(std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; }));
   for (CycleResidual& cycle : cycles) {
     if (cycle.tested) cycle.limit = limits.Of(cycle);
     judged.tested += cycle.limit > 0.0 ? 1 : 0;
@@ -206,7 +340,8 @@ Cycles JudgeCycles(const Graph& graph, const BlocksByEdge& blocks, const CycleOp
                      std::to_string(problem.vertex_count) + ".";
     return judged;
   }
-  const CycleWalks found = WalkCycles(problem, options.steps_max);
+  const CycleWalks found =
+      problem.vertex_count == 0 ? CycleWalks() : Collector(problem, options.steps_max).Take();
   Judge judge(graph, problem, blocks);
   std::vector<CycleResidual> cycles;
   for (const Walk& walk : found.walks) cycles.push_back(judge.Residual(walk));

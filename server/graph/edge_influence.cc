@@ -1,12 +1,11 @@
-#include "server/graph/edge_influence.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
 
 #include "server/graph/edge_checks.h"
-#include "server/graph/solved_poses.h"
+#include "server/graph/insight.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {

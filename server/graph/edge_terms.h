@@ -2,7 +2,7 @@
 // (every edge of a sound graph). Larger rotations go through server/math; both agree to rounding.
 #pragma once
 
-#include "server/graph/edge_series.h"
+#include "server/graph/lane_kernels.h"
 #include "server/graph/problem.h"
 
 namespace rigcal::graph {

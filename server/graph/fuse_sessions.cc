@@ -1,11 +1,9 @@
-#include "server/graph/fuse_sessions.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "server/graph/moved_between.h"
 #include "server/graph/session_fusion.h"
 #include "server/math/covariance.h"
 #include "server/math/pooled_dof.h"

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "server/graph/secant_pairs.h"
-#include "server/graph/step_solver.h"
+#include "server/graph/conjugate_gradients.h"
 
 namespace rigcal::graph {
 namespace {

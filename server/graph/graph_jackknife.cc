@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/graph/jackknife_sources.h"
-#include "server/graph/solved_poses.h"
+#include "server/graph/observability.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 #include "server/math/pooled_dof.h"
 
@@ -41,8 +41,11 @@ class Accumulator {
 
   [[nodiscard]] MatrixXd Joint() const { return joint_.selfadjointView<Eigen::Lower>(); }
   [[nodiscard]] const Matrix6d& C_e(std::size_t constraint) const { return C_e_[constraint]; }
+  // Welch & Satterthwaite's, behind C_e; 0: nothing estimated.
   [[nodiscard]] double Dof(std::size_t constraint) const {
-    return Satterthwaite(Trace(constraint, C_e_[constraint]), dof_sum_[constraint]);
+    const double trace = work_.problem.constraints[constraint].Omega.cwiseProduct(C_e_[constraint]).sum();
+    const double dof_sum = dof_sum_[constraint];
+    return dof_sum > 0.0 && trace > 0.0 ? trace * trace / dof_sum : 0.0;
   }
   [[nodiscard]] double PoseDof(int row) const {
     const Matrix6d lower = joint_.block<6, 6>(row, row);
@@ -50,13 +53,6 @@ class Accumulator {
   }
 
  private:
-  static double Satterthwaite(double trace, double dof_sum) {
-    return dof_sum > 0.0 && trace > 0.0 ? trace * trace / dof_sum : 0.0;
-  }
-  [[nodiscard]] double Trace(std::size_t constraint, const Matrix6d& C) const {
-    return work_.problem.constraints[constraint].Omega.cwiseProduct(C).sum();
-  }
-
   void AddBatch(const ErrorSource* begin, const ErrorSource* end, Eigen::Index column_count) {
     MatrixXd pull = MatrixXd::Zero(joint_.rows(), column_count);
     Eigen::Index at = 0;
@@ -139,20 +135,18 @@ class Accumulator {
   std::vector<PooledDof> pose_dof_;
 };
 
-void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const std::vector<Matrix6d>& analytic,
-                 const Accumulator& accumulator, GraphJackknife& jackknife) {
+void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const Accumulator& accumulator,
+                 GraphJackknife& jackknife) {
   const std::size_t count = work.graph.sensors.size();
   jackknife.sensors = work.graph.sensors;
   jackknife.row_of_sensor.assign(count, -1);
   jackknife.known.assign(count, false);
-  jackknife.analytic.assign(count, Matrix6d::Zero());
   jackknife.dof.assign(count, 0.0);
   for (std::size_t s = 0; s < count; ++s) {
     const int vertex = work.problem.vertex_of_sensor[s];
     jackknife.known[s] = vertex >= 0 && solution.poses[s].known;
     if (!jackknife.known[s] || vertex == 0) continue;
     jackknife.row_of_sensor[s] = 6 * (vertex - 1);
-    jackknife.analytic[s] = Symmetrized(analytic[static_cast<std::size_t>(vertex - 1)]);
     jackknife.dof[s] = accumulator.PoseDof(jackknife.row_of_sensor[s]);
   }
 }
@@ -172,6 +166,15 @@ Result<std::size_t> FindKnown(const GraphJackknife& jackknife, const SensorId& s
     return Fail(ErrorCode::kInvalidInput, "the pose of sensor " + sensor.str() + " is not known in this solution",
                 "Add an edge that connects it with the reference.");
   return index;
+}
+
+void JudgeResidual(const Matrix6d& Omega, const ResidualCovariance& covariance, EdgeResidual& residual) {
+  const Matrix6d W = SquareRoot(Omega).transpose();  // W^T W = Omega: whitens by what the edge says of itself
+  const CheckedDirections checked = CheckWhitened(W * covariance.C_e * W.transpose(), W * residual.e);
+  residual.by_jackknife = true;
+  residual.t_squared = checked.t_squared;
+  residual.rank = checked.rank;
+  residual.dof = covariance.dof;
 }
 
 Matrix6d Block(const GraphJackknife& jackknife, std::size_t a, std::size_t b) {
@@ -197,7 +200,7 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
   accumulator.Add(SourcesOf(work));
   jackknife.joint = accumulator.Joint();
   if (!jackknife.joint.allFinite()) return jackknife;
-  FillSensors(work, solution, analytic, accumulator, jackknife);
+  FillSensors(work, solution, accumulator, jackknife);
   jackknife.residuals.resize(solution.residuals.size());
   for (std::size_t k = 0; k < problem.constraints.size(); ++k)
     jackknife.residuals[problem.constraints[k].edge] = {true, accumulator.C_e(k), accumulator.Dof(k)};
@@ -210,7 +213,7 @@ Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorI
   return Symmetrized(Block(jackknife, index, index));
 }
 
-Result<RelativePose> HonestRelative(const GraphJackknife& jackknife, const GraphSolution& solution, const SensorId& a,
+Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution, const SensorId& a,
                                     const SensorId& b) {
   RIGCAL_ASSIGN(const std::size_t index_a, FindKnown(jackknife, a));
   RIGCAL_ASSIGN(const std::size_t index_b, FindKnown(jackknife, b));
@@ -222,11 +225,22 @@ Result<RelativePose> HonestRelative(const GraphJackknife& jackknife, const Graph
   return relative;
 }
 
-Vector6d SigmaRatio(const Matrix6d& honest, const Matrix6d& analytic) {
-  Vector6d ratio = Vector6d::Ones();
-  for (int axis = 0; axis < 6; ++axis)
-    if (analytic(axis, axis) > 0.0) ratio(axis) = std::sqrt(std::max(0.0, honest(axis, axis)) / analytic(axis, axis));
-  return ratio;
+void ApplyJackknifeCovariance(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution) {
+  if (!jackknife.available) return;
+  for (std::size_t s = 0; s < solution.poses.size(); ++s) {
+    SensorPose& pose = solution.poses[s];
+    const auto honest = SensorCovariance(jackknife, pose.sensor);
+    if (!honest || pose.sensor == graph.reference) continue;
+    pose.covariance_analytic = pose.covariance;
+    pose.covariance = *honest;
+    pose.by_jackknife = true;
+    pose.dof = jackknife.dof[s];
+  }
+  std::map<EdgeId, const GraphEdge*> by_id;
+  for (const GraphEdge& edge : graph.edges) by_id.emplace(edge.id, &edge);
+  for (std::size_t k = 0; k < solution.residuals.size(); ++k)
+    if (jackknife.residuals[k].in_solution)
+      JudgeResidual(by_id.at(solution.residuals[k].edge)->Omega, jackknife.residuals[k], solution.residuals[k]);
 }
 
 }  // namespace rigcal::graph

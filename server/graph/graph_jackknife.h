@@ -1,11 +1,13 @@
 // The honest covariance of a solution: a jackknife through the graph (design: correlated edges). Edges of one session
 // share captures, so their errors are not independent and H^-1 is too small. Block i is taken out of every edge of its
 // session at once (T_(i) = T Exp(d_i)); the optimum follows to first order, dx = K d, K = -H^-1 J^T Omega dr/dd. Weights
-// are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks and edges count in sorted order.
+// are held: they hardly depend on the blocks (math/shrunk_scatter.h). Pure and deterministic: sessions, blocks and edges
+// count in sorted order.
 #pragma once
 
 #include <map>
 
+#include "server/graph/linearize.h"
 #include "server/graph/solve.h"
 #include "server/model/edge.h"
 
@@ -40,7 +42,6 @@ struct GraphJackknife {
   std::vector<int> row_of_sensor;             // first row in `joint`; -1: the reference, or not known
   std::vector<bool> known;                    // the reference too
   Eigen::MatrixXd joint;                      // of all known sensors' poses, right tangents
-  std::vector<Matrix6d> analytic;             // H^-1's diagonal block, per sensor
   std::vector<double> dof;                    // behind a sensor's covariance (PooledDof); 0: nothing estimated
   std::vector<ResidualCovariance> residuals;  // in the order of GraphSolution::residuals
 };
@@ -52,11 +53,53 @@ constexpr int kJackknifeSensorsMax = 500;
 // Zero for the reference. kNotFound if the sensor is not in the graph, kInvalidInput if its pose is not known.
 [[nodiscard]] Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorId& sensor);
 // Of T_A_B with cross terms, right tangent at B, at the poses of `solution`.
-[[nodiscard]] Result<RelativePose> HonestRelative(const GraphJackknife& jackknife, const GraphSolution& solution,
-                                                  const SensorId& a, const SensorId& b);
-// Honest over analytic sigma, axis by axis; 1 where both are zero.
-[[nodiscard]] Vector6d SigmaRatio(const Matrix6d& honest, const Matrix6d& analytic);
-// Puts the honest covariances and T^2 of the residuals into the solution; the analytic ones are kept beside them.
-void TakeHonest(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution);
+[[nodiscard]] Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution,
+                                                       const SensorId& a, const SensorId& b);
+// Puts the jackknife's covariances and T^2 of the residuals into the solution; the analytic ones are kept beside them.
+void ApplyJackknifeCovariance(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution);
+
+// What makes the edges of a graph err: the blocks of each session, and each other edge by itself.
+
+// Changes of one constraint's residual, one column per independent cause.
+struct ErrorPart {
+  std::size_t constraint = 0;
+  Eigen::MatrixXd de;
+};
+
+// Causes that are estimated together: the blocks of a session, or one edge's own error. C of it is
+// (columns)(columns)^T.
+struct ErrorSource {
+  int dof = 0;             // 0: known
+  bool of_blocks = false;  // a column per block
+  Eigen::Index column_count = 0;
+  std::vector<ErrorPart> parts;
+};
+
+struct JackknifeWork {
+  const Graph& graph;
+  const Problem& problem;
+  const BlocksByEdge& blocks;
+  std::vector<EdgeJacobian> jacobians;  // by constraint
+
+  [[nodiscard]] const GraphEdge& EdgeOf(std::size_t constraint) const {
+    return graph.edges[problem.edges_by_id[problem.constraints[constraint].edge]];
+  }
+};
+
+// Whether any edge that takes part has blocks enough.
+[[nodiscard]] bool AnySession(const JackknifeWork& work);
+// Sessions by id, then edges by id.
+[[nodiscard]] std::vector<ErrorSource> SourcesOf(const JackknifeWork& work);
+// The two kinds apart: causes that edges of a session share, and what one edge alone errs by (no columns: nothing).
+[[nodiscard]] std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work);
+[[nodiscard]] ErrorSource OwnSourceOf(const JackknifeWork& work, std::size_t constraint);
+
+// T^2 of a residual by its covariance C, both whitened by what independent errors would leave. Directions with less than
+// 1e-6 of that do not count: there nothing checks the residual, or shared causes cancel and it closes by construction.
+struct CheckedDirections {
+  int rank = 0;
+  double t_squared = 0.0;
+};
+[[nodiscard]] CheckedDirections CheckWhitened(const Matrix6d& C, const Vector6d& e);
 
 }  // namespace rigcal::graph

@@ -1,5 +1,6 @@
-#include "server/graph/jackknife_sources.h"
+#include "server/graph/graph_jackknife.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -25,6 +26,9 @@ const EdgeBlocks* FindBlocks(const BlocksByEdge& blocks, const EdgeId& edge) {
 Eigen::Index PlaceOf(const std::string& id, const std::vector<std::string>& ids) {
   return std::lower_bound(ids.begin(), ids.end(), id) - ids.begin();
 }
+
+// By which d_i is multiplied so that the jackknife's sum over m blocks is the sum of squares.
+double BlockScale(Eigen::Index m) { return std::sqrt(1.0 - 1.0 / static_cast<double>(m)); }
 
 // d of every block of the session, centred and scaled so that columns * columns^T is the jackknife's sum. A block that
 // an edge does not have changes nothing in it.
@@ -100,8 +104,6 @@ bool SpeakForTheirEdge(const Uncertainty& uncertainty) {
 
 }  // namespace
 
-double BlockScale(Eigen::Index m) { return std::sqrt(1.0 - 1.0 / static_cast<double>(m)); }
-
 BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
   BlocksByEdge blocks;
   for (const Edge& edge : edges) {
@@ -157,6 +159,19 @@ bool AnySession(const JackknifeWork& work) {
   for (std::size_t k = 0; k < constraints.size(); ++k)
     if (FindBlocks(work.blocks, work.EdgeOf(k).id) != nullptr) return true;
   return false;
+}
+
+CheckedDirections CheckWhitened(const Matrix6d& C, const Vector6d& e) {
+  constexpr double kCheckedRatio = 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(Symmetrized(C));
+  const Vector6d parts = eigen.eigenvectors().transpose() * e;
+  CheckedDirections checked;
+  for (int k = 0; k < 6; ++k) {
+    if (!(eigen.eigenvalues()(k) > kCheckedRatio)) continue;
+    ++checked.rank;
+    checked.t_squared += parts(k) * parts(k) / eigen.eigenvalues()(k);
+  }
+  return checked;
 }
 
 }  // namespace rigcal::graph

@@ -2,44 +2,86 @@
 
 #include <algorithm>
 
-#include "server/graph/solved_poses.h"
+#include "server/graph/observability.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
 namespace {
 
+using Eigen::MatrixXd;
+
 constexpr int kOfReference = -1, kNone = -2;
+
+// -1: it is not there.
+int IndexOf(const std::vector<SensorId>& sensors, const SensorId& sensor) {
+  const auto found = std::find(sensors.begin(), sensors.end(), sensor);
+  return found == sensors.end() ? -1 : static_cast<int>(found - sensors.begin());
+}
+
+Result<std::size_t> FindSensor(const Graph& graph, const SensorId& sensor) {
+  const int index = IndexOf(graph.sensors, sensor);
+  if (index < 0)
+    return Fail(ErrorCode::kNotFound, "sensor " + sensor.str() + " is not in the graph",
+                "Check the name; the robot's report lists its sensors.");
+  return static_cast<std::size_t>(index);
+}
+
+Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& solution, std::size_t sensor) {
+  const SensorId& id = graph.sensors[sensor];
+  const auto pose = std::find_if(solution.poses.begin(), solution.poses.end(),
+                                 [&id](const SensorPose& candidate) { return candidate.sensor == id; });
+  if (pose != solution.poses.end() && pose->known) return &*pose;
+  const std::string prefix = "sensor " + id.str() + " ";
+  const auto why = std::find_if(solution.diagnoses.begin(), solution.diagnoses.end(),
+                                [&prefix](const Diagnosis& d) { return d.what.find(prefix) != std::string::npos; });
+  if (why != solution.diagnoses.end()) return Fail(ErrorCode::kInvalidInput, why->what, why->cure);
+  return Fail(ErrorCode::kInvalidInput, "the pose of sensor " + id.str() + " is not known in this solution",
+              "Add an edge that connects it with " + graph.reference.str() + ".");
+}
+
+// Columns of H^-1 at a solution, six per vertex; the reference's are zero. Nothing where H cannot be factored.
+std::optional<MatrixXd> InverseColumns(const Graph& graph, const Problem& problem, const GraphSolution& solution,
+                                       const std::vector<int>& vertices) {
+  const auto cholesky = FactorAt(problem, SolvedPoses(graph, problem, solution));
+  if (cholesky == nullptr) return std::nullopt;
+  MatrixXd columns = MatrixXd::Zero(6 * problem.free_count(), static_cast<Eigen::Index>(6 * vertices.size()));
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    if (vertices[k] > 0) columns.block<6, 6>(6 * (vertices[k] - 1), static_cast<Eigen::Index>(6 * k)).setIdentity();
+  cholesky->SolveInPlace(columns);
+  return columns;
+}
+
+RelativePose RelativeBetween(const Se3& T_ref_A, const Se3& T_ref_B, const Matrix6d& C_AA, const Matrix6d& C_BB,
+                             const Matrix6d& C_AB) {
+  const Se3 T_A_B = (T_ref_A.Inverse() * T_ref_B).Normalized();
+  return {T_A_B, RelativeCovariance(T_A_B, C_AA, C_BB, C_AB)};
+}
 
 // Edges taken as independent: H^-1, of the known sensors in the order of `sensors`.
 std::optional<JointCovariance> AnalyticJoint(const Graph& graph, const GraphSolution& solution,
                                              const std::vector<SensorId>& sensors) {
   const Problem problem = MakeProblem(graph);
-  const auto cholesky = FactorAt(problem, SolvedPoses(graph, problem, solution));
-  if (cholesky == nullptr) return std::nullopt;
-  const auto rows = static_cast<Eigen::Index>(6 * sensors.size());
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(6 * problem.free_count(), rows);
-  std::vector<Eigen::Index> row_of;
+  std::vector<int> vertices;
   for (const SensorId& sensor : sensors) {
-    const auto found = std::find(graph.sensors.begin(), graph.sensors.end(), sensor);
-    const int vertex = found == graph.sensors.end() ? -1 : problem.vertex_of_sensor[static_cast<std::size_t>(found - graph.sensors.begin())];
-    if (vertex <= 0) return std::nullopt;
-    columns.block<6, 6>(6 * (vertex - 1), static_cast<Eigen::Index>(6 * row_of.size())).setIdentity();
-    row_of.push_back(6 * (vertex - 1));
+    const int index = IndexOf(graph.sensors, sensor);
+    vertices.push_back(index < 0 ? -1 : problem.vertex_of_sensor[static_cast<std::size_t>(index)]);
+    if (vertices.back() <= 0) return std::nullopt;
   }
-  cholesky->SolveInPlace(columns);
-  JointCovariance joint{sensors, Eigen::MatrixXd(rows, rows)};
+  const auto columns = InverseColumns(graph, problem, solution, vertices);
+  if (!columns) return std::nullopt;
+  JointCovariance joint{sensors, MatrixXd(columns->cols(), columns->cols())};
   for (std::size_t k = 0; k < sensors.size(); ++k)
-    joint.matrix.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = columns.middleRows<6>(row_of[k]);
+    joint.matrix.middleRows<6>(static_cast<Eigen::Index>(6 * k)) = columns->middleRows<6>(6 * (vertices[k] - 1));
   return joint.matrix.allFinite() ? std::optional(std::move(joint)) : std::nullopt;
 }
 
 std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, const std::vector<SensorId>& sensors) {
-  JointCovariance joint{sensors, Eigen::MatrixXd(6 * sensors.size(), 6 * sensors.size())};
+  JointCovariance joint{sensors, MatrixXd(6 * sensors.size(), 6 * sensors.size())};
   std::vector<int> row_of;
   for (const SensorId& sensor : sensors) {
-    const auto found = std::find(jackknife.sensors.begin(), jackknife.sensors.end(), sensor);
-    row_of.push_back(found == jackknife.sensors.end() ? -1
-                                                      : jackknife.row_of_sensor[static_cast<std::size_t>(found - jackknife.sensors.begin())]);
+    const int index = IndexOf(jackknife.sensors, sensor);
+    row_of.push_back(index < 0 ? -1 : jackknife.row_of_sensor[static_cast<std::size_t>(index)]);
     if (row_of.back() < 0) return std::nullopt;
   }
   for (std::size_t i = 0; i < sensors.size(); ++i)
@@ -51,11 +93,36 @@ std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, c
 
 int RowOf(const JointPoses& poses, const JointCovariance& covariance, const SensorId& sensor) {
   if (sensor == poses.reference) return kOfReference;
-  const auto found = std::find(covariance.sensors.begin(), covariance.sensors.end(), sensor);
-  return found == covariance.sensors.end() ? kNone : 6 * static_cast<int>(found - covariance.sensors.begin());
+  const int index = IndexOf(covariance.sensors, sensor);
+  return index < 0 ? kNone : 6 * index;
 }
 
 }  // namespace
+
+Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution, const SensorId& a, const SensorId& b) {
+  RIGCAL_ASSIGN(const std::size_t sensor_a, FindSensor(graph, a));
+  RIGCAL_ASSIGN(const std::size_t sensor_b, FindSensor(graph, b));
+  RIGCAL_ASSIGN(const SensorPose* pose_a, FindKnown(graph, solution, sensor_a));
+  RIGCAL_ASSIGN(const SensorPose* pose_b, FindKnown(graph, solution, sensor_b));
+  if (a == b) return RelativePose{};
+  const Problem problem = MakeProblem(graph);
+  const int vertex_a = problem.vertex_of_sensor[sensor_a], vertex_b = problem.vertex_of_sensor[sensor_b];
+  if (vertex_a < 0 || vertex_b < 0)
+    return Fail(ErrorCode::kInvalidInput, "sensors " + a.str() + " and " + b.str() + " are not connected in this graph",
+                "Solve the graph again with the edges that it has now.");
+  const auto columns = InverseColumns(graph, problem, solution, {vertex_a, vertex_b});
+  if (!columns)
+    return Fail(
+        ErrorCode::kInvalidInput,
+        "the uncertainty between these sensors cannot be computed: the graph is too large, or the information of "
+        "its edges spans too many orders of magnitude",
+        "Check the information matrices of the edges for wrong units (metres and radians).");
+  const auto block = [&columns](int vertex, int of) -> Matrix6d {
+    return vertex > 0 ? Matrix6d(columns->block<6, 6>(6 * (vertex - 1), 6 * of)) : Matrix6d(Matrix6d::Zero());
+  };
+  return RelativeBetween(pose_a->T_ref_sensor, pose_b->T_ref_sensor, block(vertex_a, 0), block(vertex_b, 1),
+                         block(vertex_a, 1));
+}
 
 JointPoses FusedPosesOf(const GraphSolution& solution, const SensorId& reference) {
   JointPoses joint{reference, {}, {}};
@@ -87,10 +154,7 @@ std::optional<RelativePose> RelativeOf(const JointPoses& poses, const SensorId& 
     const auto block = [&](int row, int column) -> Matrix6d {
       return row < 0 || column < 0 ? Matrix6d(Matrix6d::Zero()) : Matrix6d(covariance.matrix.block<6, 6>(row, column));
     };
-    RelativePose relative;
-    relative.T_A_B = (of_a->second.Inverse() * of_b->second).Normalized();
-    relative.covariance = RelativeCovariance(relative.T_A_B, block(row_a, row_a), block(row_b, row_b), block(row_a, row_b));
-    return relative;
+    return RelativeBetween(of_a->second, of_b->second, block(row_a, row_a), block(row_b, row_b), block(row_a, row_b));
   }
   return std::nullopt;
 }

@@ -1,19 +1,15 @@
 #include "server/graph/lane_kernels.h"
 
-#include "server/graph/edge_series.h"
-
 namespace rigcal::graph {
 namespace {
 
 constexpr double kFinite = __DBL_MAX__;
 
-// The first of the files serves the others.
+// The first of the files serves the other.
 // clang-format off
 namespace portable {
-#include "server/graph/lanes.inc"
-#include "server/graph/edge_lanes.inc"
-#include "server/graph/information_lanes.inc"
 #include "server/graph/triangle_lanes.inc"
+#include "server/graph/edge_lanes.inc"
 }  // namespace portable
 
 #ifdef __clang__
@@ -23,10 +19,8 @@ namespace portable {
 #pragma GCC target("avx")
 #endif
 namespace avx {
-#include "server/graph/lanes.inc"
-#include "server/graph/edge_lanes.inc"
-#include "server/graph/information_lanes.inc"
 #include "server/graph/triangle_lanes.inc"
+#include "server/graph/edge_lanes.inc"
 }  // namespace avx
 // clang-format on
 #ifdef __clang__

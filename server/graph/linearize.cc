@@ -158,8 +158,7 @@ double Cost(const Problem& problem, const std::vector<Vector6d>& residuals) {
 
 void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
   Clear(problem, equations);
-  equations.H.Resize(problem.pattern);
-  equations.H.SetZero();
+  equations.H.SetZero(problem.pattern);
   BlockSums sums(equations.H);
   for (const Constraint& constraint : problem.constraints)
     AddHessian(constraint, AddGradient(constraint, T_ref, equations), sums);
@@ -168,8 +167,7 @@ void Linearize(const Problem& problem, const Poses& T_ref, NormalEquations& equa
 
 void LinearizeRoughly(const Problem& problem, const Poses& T_ref, NormalEquations& equations) {
   LinearizeGradient(problem, T_ref, equations);
-  equations.H.Resize(problem.pattern);
-  equations.H.SetZero();
+  equations.H.SetZero(problem.pattern);
   BlockSums sums(equations.H);
   for (const Constraint& constraint : problem.constraints) sums.Add(constraint, constraint.Omega, constraint.T_i_j);
   sums.Finish();
@@ -203,6 +201,31 @@ void Retract(const Poses& T_ref, const Eigen::VectorXd& step, Poses& result) {
   result[0] = T_ref[0];
   for (std::size_t v = 1; v < T_ref.size(); ++v)
     result[v] = (T_ref[v] * Se3::Exp(step.segment<6>(6 * (static_cast<Eigen::Index>(v) - 1)))).Normalized();
+}
+
+EdgeJacobian JacobianOf(const Constraint& constraint, const Poses& T_ref) {
+  EdgeJacobian jacobian;
+  jacobian.e = Residual(constraint, T_ref);
+  jacobian.J_j = RightJacobianInverse(jacobian.e);
+  jacobian.J_i = -jacobian.J_j * Adjoint(T_ref[static_cast<std::size_t>(constraint.j)].Inverse() *
+                                         T_ref[static_cast<std::size_t>(constraint.i)]);
+  jacobian.D = -RightJacobianInverse(-jacobian.e);
+  return jacobian;
+}
+
+void AddToGradient(const Constraint& constraint, const EdgeJacobian& jacobian, const Eigen::MatrixXd& de,
+                   Eigen::Ref<Eigen::MatrixXd> columns) {
+  const Eigen::MatrixXd weighted = constraint.Omega * de;
+  if (constraint.i > 0) columns.middleRows<6>(6 * (constraint.i - 1)) += jacobian.J_i.transpose() * weighted;
+  if (constraint.j > 0) columns.middleRows<6>(6 * (constraint.j - 1)) += jacobian.J_j.transpose() * weighted;
+}
+
+Eigen::MatrixXd ResidualChange(const Constraint& constraint, const EdgeJacobian& jacobian,
+                               const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(6, columns.cols());
+  if (constraint.i > 0) change += jacobian.J_i * columns.middleRows<6>(6 * (constraint.i - 1));
+  if (constraint.j > 0) change += jacobian.J_j * columns.middleRows<6>(6 * (constraint.j - 1));
+  return change;
 }
 
 }  // namespace rigcal::graph

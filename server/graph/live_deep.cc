@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/graph/edge_jacobian.h"
+#include "server/graph/linearize.h"
 #include "server/graph/live_solver.h"
 
 namespace rigcal::graph {
@@ -84,8 +84,7 @@ bool LiveSolver::RenewDeep(UpdateWork& work) {
   for (const int edge : tree_.Open()) {
     const auto k = static_cast<std::size_t>(edge);
     linearized_at_[k] = RelativePose(problem_->constraints[k]);
-    const CliqueTree::Edge linearized = Linearized(problem_->constraints[k], linearized_at_[k]);
-    tree_.Replace(k, linearized.U_i, linearized.U_j);
+    tree_.Replace(k, Linearized(problem_->constraints[k], linearized_at_[k]));
     ++work.edges_evaluated;
   }
   const Constraint& newest = problem_->constraints.back();
@@ -116,7 +115,7 @@ void LiveSolver::FindHanging() {
 }
 
 // Everything anew.
-void LiveSolver::BeginDeep(UpdateWork& work) {
+bool LiveSolver::BeginDeep(UpdateWork& work) {
   tree_.Clear();
   products_counted_ = 0.0;
   columns_counted_ = 0;
@@ -129,6 +128,7 @@ void LiveSolver::BeginDeep(UpdateWork& work) {
     if (hangs_on_[v] >= 0) T_ref_[v] = Hanging(static_cast<int>(v), T_ref_);
   LinearizeGradient(*problem_, T_ref_, equations_);
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
+  return RenewDeep(work);
 }
 
 // An edge that disagrees by much may hold the poses in one basin, or pull them into another.
@@ -143,10 +143,7 @@ bool LiveSolver::Hangs(std::size_t edge) const {
 
 // Gradient and cost at the poses at hand, and the factor, after edges of the tree have changed.
 bool LiveSolver::RenewGradientDeep(UpdateWork& work) {
-  if (!tree_holds_) {
-    BeginDeep(work);
-    return RenewDeep(work);
-  }
+  if (!tree_holds_) return BeginDeep(work);
   LinearizeGradient(*problem_, T_ref_, equations_);
   work.edges_evaluated += static_cast<int>(problem_->constraints.size());
   tree_.TouchAll();
@@ -157,10 +154,7 @@ bool LiveSolver::RenewGradientDeep(UpdateWork& work) {
 bool LiveSolver::JoinDeep(const Constraint& added, UpdateWork& work) {
   if (MayLeaveBasin(added)) return false;
   problem_->constraints.push_back(added);
-  if (!tree_holds_) {
-    BeginDeep(work);
-    return RenewDeep(work);
-  }
+  if (!tree_holds_) return BeginDeep(work);
   linearized_at_.emplace_back();
   TakePart(added.i);
   TakePart(added.j);

@@ -57,16 +57,12 @@ void LiveSolver::SolveStep(Eigen::VectorXd& x, UpdateWork& work) {
   work.products += gradients.products() - before;
 }
 
-// The gradient before the edge: none at an optimum.
-void LiveSolver::BeginGradient() {
+bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
+  // The gradient before the edge: none at an optimum.
   if (large())
     equations_.g.conservativeResizeLike(Eigen::VectorXd::Zero(6 * problem_->free_count()));
   else
     equations_.g.setZero(6 * problem_->free_count());
-}
-
-bool LiveSolver::Relax(const Constraint& added, UpdateWork& work) {
-  BeginGradient();
   LinearizeEdge(added, T_ref_, equations_.H, &equations_.g);
   problem_->constraints.push_back(added);
   dirty_from_ = std::min(dirty_from_, std::max(std::min(added.i, added.j) - 1, 0));
@@ -98,6 +94,54 @@ bool LiveSolver::Descend(UpdateWork& work) {
   if (problem_->vertex_count >= budget_.sensors_exact_max) LinearizeGradient(*problem_, T_ref_, equations_);
   LeaveRest(large() ? enough : 0.0, work);
   return work.iterations <= kStepsMax;
+}
+
+// H loses what an edge that leaves brought, and the descent goes on from the poses at hand: the same cliques change as
+// when the edge came.
+UpdateWork LiveSolver::Remove(const EdgeId& edge) {
+  const auto rest = std::remove_if(graph_.edges.begin(), graph_.edges.end(),
+                                   [&edge](const GraphEdge& candidate) { return candidate.id == edge; });
+  const auto count = std::distance(rest, graph_.edges.end());
+  if (count == 0) return {};
+  graph_.edges.erase(rest, graph_.edges.end());
+  if (!fast_ || count > 1) return Rebuild();
+  const auto found = std::find(id_of_constraint_.begin(), id_of_constraint_.end(), edge);
+  if (found == id_of_constraint_.end()) return {};  // it took no part
+  const auto k = static_cast<std::size_t>(std::distance(id_of_constraint_.begin(), found));
+  if (!ConnectedWithout(k) || MayLeaveBasin(problem_->constraints[k])) return Rebuild();
+  Forget(k);
+  stale_ = true;
+  UpdateWork work;
+  // H is made anew where it holds what is no longer so: in a tree of cliques, above what changed; else everywhere.
+  const bool relaxed =
+      deep() ? RenewGradientDeep(work) && DescendDeep(work) : FactorNow(work) && Descend(work);
+  return relaxed ? work : Rebuild(work);
+}
+
+bool LiveSolver::ConnectedWithout(std::size_t edge) const {
+  UnionFind sets(static_cast<std::size_t>(problem_->vertex_count));
+  int parts = problem_->vertex_count;
+  for (std::size_t k = 0; k < problem_->constraints.size(); ++k)
+    if (k != edge && sets.Join(problem_->constraints[k].i, problem_->constraints[k].j)) --parts;
+  return parts == 1;
+}
+
+// The last constraint takes the place of this one.
+void LiveSolver::Forget(std::size_t edge) {
+  std::vector<Constraint>& constraints = problem_->constraints;
+  const std::size_t last = constraints.size() - 1;
+  if (tree_holds_) {
+    tree_.Drop(edge, last);
+    for (const int vertex : {constraints[last].i, constraints[last].j})
+      if (int& at = hangs_on_[static_cast<std::size_t>(vertex)]; at == static_cast<int>(last))
+        at = static_cast<int>(edge);
+    linearized_at_[edge] = linearized_at_[last];
+    linearized_at_.pop_back();
+  }
+  constraints[edge] = constraints[last];
+  id_of_constraint_[edge] = id_of_constraint_[last];
+  constraints.pop_back();
+  id_of_constraint_.pop_back();
 }
 
 }  // namespace rigcal::graph

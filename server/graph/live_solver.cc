@@ -4,10 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "server/graph/optimize_graph.h"
-#include "server/graph/sensor_order.h"
-#include "server/graph/spanning_tree.h"
-#include "server/graph/step_solver.h"
+#include "server/graph/conjugate_gradients.h"
+#include "server/graph/start_poses.h"
 
 namespace rigcal::graph {
 namespace {
@@ -29,7 +27,7 @@ double ProductsOfIteration(const Problem& problem) {
 UpdateWork LiveSolver::Add(const GraphEdge& edge) {
   graph_.edges.push_back(edge);
   const bool was_known = VertexOf(edge.frame_a) >= 0 && VertexOf(edge.frame_b) >= 0;
-  if (!was_known) InsertSensor(edge.frame_a), InsertSensor(edge.frame_b);
+  if (!was_known) AddSensor(edge.frame_a), AddSensor(edge.frame_b);
   Constraint constraint;
   if (!fast_) return Rebuild();
   if (!FillConstraint(edge, 0, constraint).empty()) return {};
@@ -41,11 +39,6 @@ UpdateWork LiveSolver::Add(const GraphEdge& edge) {
     return (deep() ? RelaxDeep(constraint, work) : Relax(constraint, work)) ? work : Rebuild(work);
   }
   return Connect(edge, constraint) ? work : Rebuild(work);
-}
-
-UpdateWork LiveSolver::AddSensor(const SensorId& sensor) {
-  InsertSensor(sensor);
-  return {};
 }
 
 GraphSolution LiveSolver::Glance() const {
@@ -65,14 +58,6 @@ GraphSolution LiveSolver::Glance() const {
   return glance;
 }
 
-GraphSolution LiveSolver::Solution(const SolveOptions& options) const {
-  if (!fast_ && !options.marginals) return solution_;
-  GraphSolution start;
-  for (std::size_t v = 0; v < sensor_of_vertex_.size() && fast_; ++v)
-    start.poses.push_back({sensor_of_vertex_[v], true, T_ref_[v], Matrix6d::Zero()});
-  return Update(graph_, fast_ ? start : solution_, options);
-}
-
 std::optional<Se3> LiveSolver::PoseOf(const SensorId& sensor) const {
   if (fast_) {
     const int vertex = VertexOf(sensor);
@@ -86,7 +71,7 @@ std::optional<Se3> LiveSolver::PoseOf(const SensorId& sensor) const {
 std::vector<std::pair<SensorId, Matrix6d>> LiveSolver::Marginals() const {
   std::vector<std::pair<SensorId, Matrix6d>> marginals;
   if (!fast_) {
-    const GraphSolution solution = Solution();
+    const GraphSolution solution = Solve(graph_);
     for (const SensorPose& pose : solution.poses)
       if (pose.known) marginals.emplace_back(pose.sensor, pose.covariance);
     return marginals;
@@ -189,7 +174,7 @@ int LiveSolver::AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int l
   return vertex;
 }
 
-void LiveSolver::InsertSensor(const SensorId& sensor) {
+void LiveSolver::AddSensor(const SensorId& sensor) {
   std::vector<SensorId>& sensors = graph_.sensors;
   const auto at = std::lower_bound(sensors.begin(), sensors.end(), sensor, SensorBefore);
   if (at == sensors.end() || *at != sensor) sensors.insert(at, sensor);

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "server/graph/clique_tree.h"
+#include "server/graph/gauss_newton.h"
 #include "server/graph/linearize.h"
-#include "server/graph/secant_pairs.h"
 #include "server/graph/solve.h"
 
 namespace rigcal::graph {
@@ -46,13 +46,12 @@ class LiveSolver {
   }
 
   // After each of these the poses are the optimum of the cost to 1e-9 of it, or as near as the budget of a large graph
-  // says. An edge may bring sensors with it; one that cannot be used is kept for the diagnoses of Solution() and takes
+  // says. An edge may bring sensors with it; one that cannot be used is kept for the diagnoses of Solve and takes
   // no part.
   UpdateWork Add(const GraphEdge& edge);
-  UpdateWork AddSensor(const SensorId& sensor);
+  void AddSensor(const SensorId& sensor);
   // Nothing happens if there is no such edge.
   UpdateWork Remove(const EdgeId& edge);
-  UpdateWork Reweight(const EdgeId& edge, const Matrix6d& Omega, int rank);
   // The canonical batch solution of the edges as they are, whatever it takes; the state continues from it.
   UpdateWork Settle();
   // False once an update has stopped short of the optimum: Settle when there is time.
@@ -62,8 +61,6 @@ class LiveSolver {
   // sum e^T Omega e at the poses at hand, and these poses (none for a sensor that is not connected).
   [[nodiscard]] double Cost() const { return fast_ ? graph::Cost(*problem_, T_ref_) : solution_.cost; }
   [[nodiscard]] std::optional<Se3> PoseOf(const SensorId& sensor) const;
-  // Poses, residuals and diagnoses as Solve would give them, from the poses at hand.
-  [[nodiscard]] GraphSolution Solution(const SolveOptions& options = {}) const;
   // What can be said at once: poses, cost, degrees of freedom, mean squares before and after; no diagnoses.
   [[nodiscard]] GraphSolution Glance() const;
   // Of the sensors connected to the reference, by name (the reference's is zero). Empty where Solve gives none.
@@ -74,22 +71,18 @@ class LiveSolver {
   [[nodiscard]] bool AdoptSolution(bool stopped);
   [[nodiscard]] int VertexOf(const SensorId& sensor) const;
   int AddVertex(const SensorId& sensor, const Se3& T_ref_sensor, int level);
-  void InsertSensor(const SensorId& sensor);
   int SlotOf(int i, int j);
   void Place(const GraphEdge& edge, Constraint& constraint);
   bool Connect(const GraphEdge& edge, Constraint& constraint);
   [[nodiscard]] bool large() const { return problem_->vertex_count > budget_.sensors_exact_max; }
   [[nodiscard]] bool deep() const;
   bool FactorNow(UpdateWork& work);
-  void BeginGradient();
   void SolveStep(Eigen::VectorXd& x, UpdateWork& work);
   bool Relax(const Constraint& added, UpdateWork& work);
-  bool RelaxAnew(UpdateWork& work);
   bool Descend(UpdateWork& work);
   void LeaveRest(double rest_ratio, UpdateWork& work);
   bool RelaxDeep(const Constraint& added, UpdateWork& work);
   bool DescendDeep(UpdateWork& work);
-  [[nodiscard]] std::optional<std::size_t> ConstraintOf(const EdgeId& edge) const;
   [[nodiscard]] bool ConnectedWithout(std::size_t edge) const;
   [[nodiscard]] bool MayLeaveBasin(const Constraint& constraint) const;
   void Forget(std::size_t edge);
@@ -99,7 +92,7 @@ class LiveSolver {
   [[nodiscard]] Se3 Hanging(int vertex, const Poses& T_ref) const;
   void TakePart(int vertex);
   void TakeEdge(std::size_t edge);
-  void BeginDeep(UpdateWork& work);
+  bool BeginDeep(UpdateWork& work);
   [[nodiscard]] bool IsBent(std::size_t edge, double part) const;
   bool Straighten(double part, UpdateWork& work);
   bool RenewDeep(UpdateWork& work);

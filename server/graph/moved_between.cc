@@ -1,9 +1,8 @@
-#include "server/graph/moved_between.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "server/graph/session_fusion.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
 
@@ -14,6 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMovesMax = 4, kScatterRounds = 10;
+constexpr std::size_t kVisitsCompared = 8;
 
 // Sessions on one side of a change, fused.
 struct Side {

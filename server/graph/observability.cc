@@ -4,9 +4,10 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
-#include "server/graph/union_find.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
@@ -137,11 +138,6 @@ FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, co
   return scale.asDiagonal() * RangeOf(scaled, visible);
 }
 
-bool IsFullEverywhere(const Problem& problem) {
-  return std::all_of(problem.constraints.begin(), problem.constraints.end(),
-                     [](const Constraint& c) { return c.rank == 6; });
-}
-
 // Everything outside the reference's body, held as a whole.
 void LeaveUnjudged(const Problem& problem, const Bodies& bodies, Observability& result) {
   result.judged = false;
@@ -152,12 +148,36 @@ void LeaveUnjudged(const Problem& problem, const Bodies& bodies, Observability& 
       result.free_of_vertex[static_cast<std::size_t>(v)] = Matrix6d::Identity();
 }
 
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+// "z", or "(0.71, 0.71, 0.00)" if it is no axis.
+std::string NameAxis(const Eigen::Vector3d& direction) {
+  Eigen::Vector3d unit = direction.normalized();
+  Eigen::Index largest = 0;
+  unit.cwiseAbs().maxCoeff(&largest);
+  constexpr double kAlongAxis = 0.9998;  // within a degree
+  if (std::abs(unit(largest)) > kAlongAxis) return kAxes[static_cast<std::size_t>(largest)];
+  if (unit(largest) < 0.0) unit = -unit;
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "(%.2f, %.2f, %.2f)", unit.x() + 0.0, unit.y() + 0.0, unit.z() + 0.0);
+  return text.data();
+}
+
+std::string NameDirection(const Vector6d& direction) {
+  const Eigen::Vector3d translation = direction.head<3>(), rotation = direction.tail<3>();
+  constexpr double kNothing = 1e-3;
+  if (rotation.norm() < kNothing) return "translation along " + NameAxis(translation);
+  std::string text = "rotation about " + NameAxis(rotation);
+  if (translation.norm() >= kNothing) text += " coupled with translation along " + NameAxis(translation);
+  return text;
+}
+
 }  // namespace
 
 Observability Observe(const Problem& problem, const Poses& T_ref) {
   Observability result;
   result.free_of_vertex.assign(static_cast<std::size_t>(problem.vertex_count), FreeBasis(6, 0));
-  if (IsFullEverywhere(problem)) return result;
+  if (problem.HasFullRank()) return result;
   const Bodies bodies = FindBodies(problem);
   const int free_bodies = static_cast<int>(bodies.first_vertex.size()) - 1;
   if (free_bodies == 0) return result;
@@ -176,6 +196,49 @@ Observability Observe(const Problem& problem, const Poses& T_ref) {
         FreeDirections(null_vectors.middleRows(6 * (body - 1), 6), T_ref[v].Inverse() * T_ref_body, scale, tolerance);
   }
   return result;
+}
+
+std::unique_ptr<BlockCholesky<6>> FactorAt(const Problem& problem, const Poses& T_ref) {
+  NormalEquations equations;
+  Linearize(problem, T_ref, equations);
+  AddPins(Observe(problem, T_ref).pins, equations.H);
+  auto cholesky = MakeCholesky<6>(problem.pattern);
+  return cholesky != nullptr && cholesky->Factor(equations.H, 0.0) ? std::move(cholesky) : nullptr;
+}
+
+// Reduced column echelon form: every column gets a coordinate of its own, so that pure axes show as such. Rotations are
+// eliminated first: what remains are pure translations.
+FreeBasis Reduced(FreeBasis basis) {
+  std::array<bool, 6> used{};
+  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
+    Eigen::Index row = -1, column = c;
+    for (const auto& [start, count] : {std::pair(3, 3), std::pair(0, 3)}) {
+      double best = 1e-3;
+      for (Eigen::Index k = c; k < basis.cols(); ++k)
+        for (Eigen::Index r = start; r < start + count; ++r)
+          if (!used[static_cast<std::size_t>(r)] && std::abs(basis(r, k)) > best)
+            best = std::abs(basis(r, k)), row = r, column = k;
+      if (row >= 0) break;
+    }
+    if (row < 0) break;
+    used[static_cast<std::size_t>(row)] = true;
+    basis.col(c).swap(basis.col(column));
+    basis.col(c) /= basis(row, c);
+    for (Eigen::Index k = 0; k < basis.cols(); ++k)
+      if (k != c) basis.col(k) -= basis(row, k) * basis.col(c);
+  }
+  constexpr double kRounding = 1e-9;
+  return (basis.array().abs() < kRounding).select(0.0, basis);
+}
+
+std::string NameDirections(const FreeBasis& basis) {
+  const FreeBasis reduced = Reduced(basis);
+  std::string text;
+  for (Eigen::Index c = 0; c < reduced.cols(); ++c) {
+    if (c > 0) text += c + 1 == reduced.cols() ? " and " : ", ";
+    text += NameDirection(reduced.col(c));
+  }
+  return text;
 }
 
 }  // namespace rigcal::graph

@@ -22,7 +22,11 @@ struct Observability {
 // against each other count as free (three times the residual rotation is the measure).
 [[nodiscard]] Observability Observe(const Problem& problem, const Poses& T_ref);
 
-// The same directions, each with a coordinate of its own that is 1 in it and 0 in the others; rotations first.
+// H at these poses, the directions that edges leave open held, factored; null where it is not positive definite or would
+// fill in.
+[[nodiscard]] std::unique_ptr<BlockCholesky<6>> FactorAt(const Problem& problem, const Poses& T_ref);
+
+// Free directions, each with a coordinate of its own that is 1 in it and 0 in the others; rotations first.
 [[nodiscard]] FreeBasis Reduced(FreeBasis basis);
 // "translation along z", "rotation about (0.71, 0.71, 0.00)", ...; in the sensor's own axes.
 [[nodiscard]] std::string NameDirections(const FreeBasis& basis);

@@ -10,8 +10,7 @@
 #include <tuple>
 
 #include "server/graph/lane_kernels.h"
-#include "server/graph/sensor_order.h"
-#include "server/graph/union_find.h"
+#include "server/graph/solve.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
@@ -217,13 +216,13 @@ std::vector<int> NumberVertices(const Ranked& ranked, const std::vector<int>& co
   std::vector<int> member(ranked.sensor_of_rank.size(), -1);
   for (std::size_t k = 0; k < component.size(); ++k)
     member[static_cast<std::size_t>(component[k])] = static_cast<int>(k);
-  std::vector<std::pair<int, int>> links;
-  links.reserve(problem.constraints.size());
+  BlockPattern links{static_cast<int>(component.size()) - 1, {}};
+  links.off_diagonal.reserve(problem.constraints.size());
   for (const Constraint& c : problem.constraints) {
     const int a = member[static_cast<std::size_t>(c.i)], b = member[static_cast<std::size_t>(c.j)];
-    if (a > 0 && b > 0) links.emplace_back(a - 1, b - 1);
+    if (a > 0 && b > 0) links.off_diagonal.push_back({std::max(a, b) - 1, std::min(a, b) - 1});
   }
-  const Elimination elimination = EliminationOrder(static_cast<int>(component.size()) - 1, links);
+  const Elimination elimination = EliminationOrder(links);
   const std::vector<int>& order = elimination.order;
   problem.elimination_cost = elimination.cost;
   std::vector<int> vertex_of_rank(ranked.sensor_of_rank.size(), -1);
@@ -239,16 +238,13 @@ void AssignSlots(Problem& problem) {
   const auto position = [](const Constraint& c) {
     return BlockPosition{std::max(c.i, c.j) - 1, std::min(c.i, c.j) - 1};
   };
-  const auto before = [](const BlockPosition& a, const BlockPosition& b) {
-    return std::tie(a.col, a.row) < std::tie(b.col, b.row);
-  };
   for (const Constraint& c : problem.constraints)
     if (c.i > 0 && c.j > 0) blocks.push_back(position(c));
-  std::sort(blocks.begin(), blocks.end(), before);
+  std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   for (Constraint& c : problem.constraints) {
     if (c.i == 0 || c.j == 0) continue;
-    c.slot = static_cast<int>(std::lower_bound(blocks.begin(), blocks.end(), position(c), before) - blocks.begin());
+    c.slot = static_cast<int>(std::lower_bound(blocks.begin(), blocks.end(), position(c)) - blocks.begin());
   }
 }
 

@@ -2,7 +2,10 @@
 // in elimination order. Two graphs with the same edges in any order give the same Problem, bit by bit.
 #pragma once
 
+#include <algorithm>
+#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/graph/block_matrix.h"
@@ -33,10 +36,36 @@ struct Problem {
   std::vector<Diagnosis> diagnoses;      // sensors that are not connected, edges that cannot be used
 
   [[nodiscard]] int free_count() const { return vertex_count > 0 ? vertex_count - 1 : 0; }
+  // Whether every edge sees all six directions.
+  [[nodiscard]] bool HasFullRank() const {
+    return std::all_of(constraints.begin(), constraints.end(), [](const Constraint& c) { return c.rank == 6; });
+  }
 };
 
 // Everything of a constraint but its vertices and slot, if the edge can be used; otherwise why it cannot.
 [[nodiscard]] std::string FillConstraint(const GraphEdge& edge, std::size_t edge_idx, Constraint& constraint);
 [[nodiscard]] Problem MakeProblem(const Graph& graph);
+
+// Disjoint sets of vertices.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  // The smallest member of the set of `member`.
+  [[nodiscard]] int Find(int member) {
+    while (At(member) != member) member = At(member) = At(At(member));
+    return member;
+  }
+  // False if both were in one set already.
+  bool Join(int a, int b) {
+    a = Find(a), b = Find(b);
+    if (a > b) std::swap(a, b);
+    At(b) = a;
+    return a != b;
+  }
+
+ private:
+  int& At(int member) { return parent_[static_cast<std::size_t>(member)]; }
+  std::vector<int> parent_;
+};
 
 }  // namespace rigcal::graph

@@ -1,5 +1,14 @@
-// The least-squares problem over poses that sessions' joint refinements and pushed edges make (fuse_sessions.h has the
-// model): as a value, and its optimum.
+// The poses of a numbered revision: what the joint refinements of the robot's sessions say, fused with edges that no raw
+// data stand behind. The graph of pairs stays beside it, as the paper has it: start, check and fallback.
+//
+// A session is one factor over the sensors that it still says something of: their poses T_k,s in the frame X_k of its
+// reference, e_s = Log(T_k,s^-1 X_k^-1 T_ref,s) for all of them together with their joint covariance. Where its own
+// reference does not count any more (it was remounted since), X_k is free, and what is left are the poses among the rest.
+// Pushed edges are factors by their Omega. An edge of a session counts where one of its sensors is in no refinement.
+//
+// From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
+// (BetweenVisits). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between
+// visits. What errs alike on every visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,11 +17,37 @@
 #include <utility>
 #include <vector>
 
-#include "server/graph/visit_scatter.h"
 #include "server/model/graph.h"
 #include "server/model/session_estimate.h"
 
 namespace rigcal::graph {
+
+// Puts fused poses, covariances and degrees of freedom into the known poses of `solution`, those of the graph beside them
+// (SensorPose::fused). `edges` as they stand. Without a session that was refined and of which no edge was retired, nothing
+// changes. At most kFusedSensorsMax known sensors.
+void FuseSessions(const std::vector<Edge>& edges, const SensorId& reference,
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution);
+constexpr std::size_t kFusedSensorsMax = 200;
+
+// The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
+// optimum.
+// How much a sensor's place scatters from visit to visit beyond what the visits themselves are uncertain by.
+// Per axis, squared; alike along all three.
+struct VisitVariance {
+  double translation_m2 = 0.0, rotation_rad2 = 0.0;
+  [[nodiscard]] Matrix6d Matrix() const;
+};
+
+// What a visit said of the sensor, less where the sensor is on the whole.
+struct VisitResidual {
+  Vector6d e;    // right tangent at the sensor
+  Matrix6d own;  // covariance of the visit by itself
+};
+
+// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation and for
+// rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
+// within their own sigmas, and where there are not more of them than means.
+[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
 
 constexpr int kFixed = -1;  // the robot's reference
 
@@ -67,5 +102,14 @@ struct LinearFactor {
 [[nodiscard]] std::optional<Eigen::MatrixXd> Settle(SessionFusion& fusion);
 // Per sensor, what each visit says of it beside the whole.
 [[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
+
+// Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest: what the
+// sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the
+// covariance S of both sides and the scatter that visits have within the sides. The step that explains it best, its gain
+// d^T S^-1 E m over six numbers, is an F where the scatter was estimated; odds are corrected for all looks. What was found
+// is taken out of the sessions before, and the next is looked for.
+// `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
+[[nodiscard]] std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
+                                                               const std::vector<SessionEstimate>& estimates);
 
 }  // namespace rigcal::graph

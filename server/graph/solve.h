@@ -18,9 +18,6 @@ struct SolveOptions {
 // Sensors that are not connected to the reference come back with known = false and a diagnosis; nothing is invented.
 [[nodiscard]] GraphSolution Solve(const Graph& graph, const SolveOptions& options = {});
 
-// The live state: a warm re-solve from the poses of `previous` (new sensors are placed through their best edge).
-[[nodiscard]] GraphSolution Update(const Graph& graph, const GraphSolution& previous, const SolveOptions& options = {});
-
 // T_A_B with its 6x6 covariance (right tangent at B) at a solution, by solving for the two sensors' columns only.
 struct RelativePose {
   Se3 T_A_B;
@@ -30,6 +27,11 @@ struct RelativePose {
 [[nodiscard]] Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution, const SensorId& a,
                                             const SensorId& b);
 
+// Over all residuals; zero where there are none.
+[[nodiscard]] GlobalError MeanSquares(const std::vector<Vector6d>& residuals);
+
+// The order of sensors people expect: numeric names first, as numbers; then the others, letter by letter.
+[[nodiscard]] bool SensorBefore(const SensorId& a, const SensorId& b);
 // The graph of a robot's good edges. Reference: `reference` if not empty and present, else the first sensor by name
 // (numeric names in numeric order).
 [[nodiscard]] Graph GraphOf(const std::vector<Edge>& edges, const SensorId& reference);

@@ -1,13 +1,11 @@
-#include "server/graph/suspects.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "server/graph/sensor_order.h"
-#include "server/graph/solved_poses.h"
-#include "server/graph/union_find.h"
+#include "server/graph/edge_checks.h"
+#include "server/graph/insight.h"
+#include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
@@ -178,8 +176,7 @@ SuspectEdge DescribeEdge(const Split& split, std::size_t k) {
   return suspect;
 }
 
-}  // namespace
-
+// The split of a robust optimum into suspects.
 Suspects SuspectsOf(const Graph& graph, const Problem& problem, const RobustOptimum& robust) {
   Suspects suspects;
   suspects.judged = robust.available;
@@ -197,14 +194,14 @@ Suspects SuspectsOf(const Graph& graph, const Problem& problem, const RobustOpti
   return suspects;
 }
 
-Suspects FindSuspects(const Graph& graph, const GraphSolution& solution, const SuspectOptions& options) {
+}  // namespace
+
+Suspects FindSuspects(const Graph& graph, const GraphSolution& solution) {
   if (solution.dof <= 0 || solution.poses.size() != graph.sensors.size()) return {};
   const Problem problem = MakeProblem(graph);
   std::vector<int> dof;
   for (const Constraint& c : problem.constraints) dof.push_back(graph.edges[problem.edges_by_id[c.edge]].dof);
-  const RobustOptimum robust =
-      OptimizeRobustly(problem, SolvedPoses(graph, problem, solution), dof, options.probability);
-  return SuspectsOf(graph, problem, robust);
+  return SuspectsOf(graph, problem, OptimizeRobustly(problem, SolvedPoses(graph, problem, solution), dof));
 }
 
 }  // namespace rigcal::graph

@@ -33,7 +33,7 @@ struct Graph {
   std::vector<GraphEdge> edges;    // any order; Solve sorts by id
 };
 
-// What the joint refinements of sessions made of a pose that the graph of pairs gave (graph/fuse_sessions.h).
+// What the joint refinements of sessions made of a pose that the graph of pairs gave (graph/session_fusion.h).
 struct FusedPose {
   Se3 T_ref_sensor_by_pairs;
   Matrix6d covariance_by_pairs = Matrix6d::Zero();  // right tangent at the sensor

@@ -145,7 +145,7 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
     jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
   }
   if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
-  return jackknife.available ? graph::HonestRelative(jackknife, document.solution, a, b) : analytic;
+  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b) : analytic;
 }
 
 // What the newest revision says: an edge that arrived since plays no part.

@@ -7,15 +7,12 @@
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
 #include "server/formats/documents.h"
-#include "server/graph/cycles.h"
-#include "server/graph/edge_influence.h"
-#include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
+#include "server/graph/insight.h"
 #include "server/graph/joint_poses.h"
 #include "server/graph/merge_edges.h"
-#include "server/graph/sensor_order.h"
+#include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"
-#include "server/graph/suspects.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
@@ -70,7 +67,7 @@ HonestSolution SolveHonestly(const RobotGraph& loaded) {
   GraphSolution& solution = honest.solution;
   const graph::BlocksByEdge blocks = graph::BlocksOf(loaded.edges);
   honest.jackknife = graph::JackknifeGraph(loaded.graph, solution, blocks);
-  graph::TakeHonest(loaded.graph, honest.jackknife, solution);
+  graph::ApplyJackknifeCovariance(loaded.graph, honest.jackknife, solution);
   solution.suspects = graph::FindSuspects(loaded.graph, solution);
   solution.influences = graph::InfluenceOfEdges(loaded.graph, solution);
   solution.cycles = graph::JudgeCycles(loaded.graph, blocks);

@@ -173,7 +173,7 @@ std::vector<Edge> EdgesOf(const FeatureSession& session) {
 GraphSolution SolveRig(const std::vector<Edge>& edges, const SensorId& reference) {
   const Graph graph = graph::GraphOf(edges, reference);
   GraphSolution solution = graph::Solve(graph);
-  graph::TakeHonest(graph, graph::JackknifeGraph(graph, solution, graph::BlocksOf(edges)), solution);
+  graph::ApplyJackknifeCovariance(graph, graph::JackknifeGraph(graph, solution, graph::BlocksOf(edges)), solution);
   return solution;
 }
 

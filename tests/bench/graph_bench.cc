@@ -19,11 +19,9 @@
 #include "server/base/limits.h"
 #include "server/base/sha256.h"
 #include "server/formats/g2o.h"
-#include "server/graph/cycles.h"
-#include "server/graph/edge_influence.h"
+#include "server/graph/insight.h"
 #include "server/graph/live_solver.h"
 #include "server/graph/solve.h"
-#include "server/graph/suspects.h"
 #include "tests/bench/graph_reference.h"
 
 namespace {
@@ -125,7 +123,7 @@ void Finish(graph::LiveSolver& live, Run& run) {
   run.settle_us = Now_us() - begin_us;
   graph::SolveOptions options;
   options.marginals = false;
-  run.solution = live.Solution(options);
+  run.solution = graph::Solve(live.graph(), options);
   run.solution.cost = live.Cost();  // of the live poses as they are, not of the solution made from them
   for (SensorPose& pose : run.solution.poses)
     if (const std::optional<Se3> T = live.PoseOf(pose.sensor)) pose.T_ref_sensor = *T;
@@ -157,7 +155,7 @@ Run RunRemovals(const Graph& graph) {
 Run RunMarginals(const Graph& graph, const Arguments& arguments) {
   Run run;
   graph::LiveSolver live(graph);
-  run.solution = live.Solution();
+  run.solution = graph::Solve(graph);
   const double start_us = Now_us();
   const auto enough = [&] {
     if (arguments.repeat > 0) return static_cast<int>(run.times_us.size()) >= arguments.repeat;

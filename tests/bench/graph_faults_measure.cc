@@ -5,8 +5,7 @@
 #include <set>
 
 #include "server/fleet/assess.h"
-#include "server/graph/cycles.h"
-#include "server/graph/suspects.h"
+#include "server/graph/insight.h"
 #include "tests/bench/fault_graphs.h"
 
 namespace rigcal::graph {
@@ -127,7 +126,7 @@ struct Judgement {
 
 Judgement Judge(const FaultGraph& made) {
   GraphSolution solution = Solve(made.rig.graph);
-  TakeHonest(made.rig.graph, JackknifeGraph(made.rig.graph, solution, made.blocks), solution);
+  ApplyJackknifeCovariance(made.rig.graph, JackknifeGraph(made.rig.graph, solution, made.blocks), solution);
   solution.suspects = FindSuspects(made.rig.graph, solution);
   solution.cycles = JudgeCycles(made.rig.graph, made.blocks);
   return {fleet::Assess(EdgesOf(made.rig.graph), solution).level == VerdictLevel::kFail, solution.cycles.failing > 0};

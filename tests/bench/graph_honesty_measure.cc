@@ -173,7 +173,7 @@ Regions MeasureRegions(int m, int seeds) {
   for (int seed = 0; seed < seeds; ++seed) {
     const Session session = SimulateSession(m, 9000 + static_cast<unsigned>(seed));
     GraphSolution solution = Solve(session.rig.graph);
-    TakeHonest(session.rig.graph, JackknifeGraph(session.rig.graph, solution, session.blocks), solution);
+    ApplyJackknifeCovariance(session.rig.graph, JackknifeGraph(session.rig.graph, solution, session.blocks), solution);
     for (std::size_t v = 1; v < kCameras; ++v, ++poses) {
       const SensorPose& pose = solution.poses[v];
       const Vector6d error = (session.rig.truth[v].Inverse() * pose.T_ref_sensor).Log();

@@ -155,7 +155,7 @@ std::vector<Edge> RigEdges(const Experiment& experiment, const Observations& see
 SolvedRig SolveRig(const Experiment& experiment, const std::vector<Edge>& edges) {
   SolvedRig solved{graph::GraphOf(edges, experiment.declared.reference), {}};
   solved.solution = graph::Solve(solved.graph);
-  TakeHonest(solved.graph, graph::JackknifeGraph(solved.graph, solved.solution, graph::BlocksOf(edges)),
+  ApplyJackknifeCovariance(solved.graph, graph::JackknifeGraph(solved.graph, solved.solution, graph::BlocksOf(edges)),
              solved.solution);
   return solved;
 }

@@ -4,10 +4,9 @@
 
 #include "server/calib/joint/estimate_session.h"
 #include "server/fleet/assess.h"
-#include "server/graph/cycles.h"
-#include "server/graph/fuse_sessions.h"
 #include "server/graph/graph_jackknife.h"
-#include "server/graph/suspects.h"
+#include "server/graph/insight.h"
+#include "server/graph/session_fusion.h"
 #include "tests/bench/joint_session.h"
 
 namespace rigcal {
@@ -28,7 +27,7 @@ Graph WholeGraph(const std::vector<Edge>& edges, const SessionHeader& header) {
 GraphSolution Solved(const Graph& graph, const std::vector<Edge>& edges) {
   GraphSolution solution = graph::Solve(graph);
   const graph::BlocksByEdge blocks = graph::BlocksOf(edges);
-  graph::TakeHonest(graph, graph::JackknifeGraph(graph, solution, blocks), solution);
+  graph::ApplyJackknifeCovariance(graph, graph::JackknifeGraph(graph, solution, blocks), solution);
   solution.suspects = graph::FindSuspects(graph, solution);
   solution.cycles = graph::JudgeCycles(graph, blocks);
   return solution;

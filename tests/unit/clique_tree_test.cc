@@ -57,7 +57,7 @@ class Twin {
     for (const int number : open) {
       CliqueTree::Edge& edge = edges_[static_cast<std::size_t>(number)];
       edge = Random(edge.i, edge.j);
-      tree.Replace(static_cast<std::size_t>(number), edge.U_i, edge.U_j);
+      tree.Replace(static_cast<std::size_t>(number), edge);
     }
     ASSERT_TRUE(tree.Renew(near_i, near_j, kAll));
   }

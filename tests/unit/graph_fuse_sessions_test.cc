@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "server/graph/fuse_sessions.h"
+#include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"

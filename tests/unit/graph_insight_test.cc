@@ -2,8 +2,7 @@
 
 #include <set>
 
-#include "server/graph/cycles.h"
-#include "server/graph/edge_influence.h"
+#include "server/graph/insight.h"
 #include "server/math/jackknife.h"
 #include "server/math/statistics.h"
 #include "server/model/unchecked.h"

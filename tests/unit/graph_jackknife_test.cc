@@ -90,7 +90,7 @@ TEST(GraphJackknife, AgreesWithFullResolves) {
     ASSERT_TRUE(C.has_value());
     EXPECT_LT(WorstRatio(*C, expected.block<6, 6>(6 * v, 6 * v)), 0.02) << v;
   }
-  const auto relative = HonestRelative(jackknife, solution, Name(2), Name(5));
+  const auto relative = RelativeByJackknife(jackknife, solution, Name(2), Name(5));
   ASSERT_TRUE(relative.has_value());
   Eigen::MatrixXd M(6, expected.cols());
   M.setZero();
@@ -170,7 +170,7 @@ TEST(GraphJackknife, DegreesOfFreedomAreThoseOfTheSessions) {
     EXPECT_GT(two_sessions.dof[v], kBlocks - 1) << v;
     EXPECT_LE(two_sessions.dof[v], 2 * (kBlocks - 1) + 1e-9) << v;
   }
-  TakeHonest(rig.graph, one_session, solution);
+  ApplyJackknifeCovariance(rig.graph, one_session, solution);
   EXPECT_EQ(solution.poses[3].dof, one_session.dof[3]);
 }
 
@@ -191,11 +191,11 @@ TEST(GraphJackknife, IsAnalyticWhereBlocksSayWhatOmegaSays) {
   for (std::size_t v = 1; v < 5; ++v) {
     EXPECT_LT(WorstRatio(*SensorCovariance(jackknife, Name(v)), solution.poses[v].covariance), 2e-3) << v;
     const auto analytic = Relative(rig.graph, solution, Name(v), Name(v % 4 + 1));
-    const auto honest = HonestRelative(jackknife, solution, Name(v), Name(v % 4 + 1));
+    const auto honest = RelativeByJackknife(jackknife, solution, Name(v), Name(v % 4 + 1));
     EXPECT_LT(WorstRatio(honest->covariance, analytic->covariance), 2e-3) << v;
   }
   const GraphSolution before = solution;
-  TakeHonest(rig.graph, jackknife, solution);
+  ApplyJackknifeCovariance(rig.graph, jackknife, solution);
   EXPECT_FALSE(solution.poses[0].by_jackknife);
   EXPECT_TRUE(solution.poses[0].covariance.isZero(0.0));
   for (std::size_t v = 1; v < 5; ++v) {
@@ -211,8 +211,8 @@ TEST(GraphJackknife, OrderOfEdgesDoesNotMatter) {
   Graph shuffled = rig.graph;
   std::reverse(shuffled.edges.begin(), shuffled.edges.end());
   GraphSolution a = Solve(rig.graph), b = Solve(shuffled);
-  TakeHonest(rig.graph, JackknifeGraph(rig.graph, a, blocks), a);
-  TakeHonest(shuffled, JackknifeGraph(shuffled, b, blocks), b);
+  ApplyJackknifeCovariance(rig.graph, JackknifeGraph(rig.graph, a, blocks), a);
+  ApplyJackknifeCovariance(shuffled, JackknifeGraph(shuffled, b, blocks), b);
   EXPECT_TRUE(a.poses[1].by_jackknife);
   EXPECT_TRUE(SameBytes(a, b));
   for (std::size_t k = 0; k < a.residuals.size(); ++k) EXPECT_EQ(a.residuals[k].t_squared, b.residuals[k].t_squared);
@@ -286,7 +286,7 @@ TEST(GraphJackknife, OddGraphs) {
   ASSERT_TRUE(jackknife.available);
   EXPECT_EQ(SensorCovariance(jackknife, Name(9)).error().code, ErrorCode::kInvalidInput);
   EXPECT_EQ(SensorCovariance(jackknife, Name(77)).error().code, ErrorCode::kNotFound);
-  EXPECT_FALSE(HonestRelative(jackknife, solution, Name(1), Name(9)).has_value());
+  EXPECT_FALSE(RelativeByJackknife(jackknife, solution, Name(1), Name(9)).has_value());
   EXPECT_TRUE(SensorCovariance(jackknife, Name(0))->isZero(0.0));
 }
 

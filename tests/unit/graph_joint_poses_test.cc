@@ -38,7 +38,8 @@ TEST(JointPoses, OfAGraphWithBlocksAreTheJackknifes) {
   const JointPoses poses = JointPosesOf(rig.graph, solution, jackknife);
   for (const SensorId& a : rig.graph.sensors)
     for (const SensorId& b : rig.graph.sensors)
-      ExpectSame(RelativeOf(poses, a, b).value(), HonestRelative(jackknife, solution, a, b).value(), a.str() + " " + b.str());
+      ExpectSame(RelativeOf(poses, a, b).value(), RelativeByJackknife(jackknife, solution, a, b).value(),
+                 a.str() + " " + b.str());
 }
 
 // The fused sessions' covariance comes first; a sensor that they do not have is told by the graph's.

@@ -10,7 +10,6 @@
 #include <random>
 
 #include "server/graph/block_matrix.h"
-#include "server/graph/edge_jacobian.h"
 #include "server/graph/lane_kernels.h"
 #include "server/graph/linearize.h"
 #include "server/math/se3.h"
@@ -110,7 +109,7 @@ void ExpectSolvedDense(int count) {
   BlockPattern pattern{count, {}};
   for (int c = 0; c + 1 < count; ++c) pattern.off_diagonal.push_back({c + 1, c});
   BlockMatrix<B> matrix;
-  matrix.Resize(pattern);
+  matrix.SetZero(pattern);
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(B * count, B * count);
   for (int c = 0; c < count; ++c) {
     const auto k = static_cast<std::size_t>(c);

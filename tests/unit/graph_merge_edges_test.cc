@@ -76,10 +76,10 @@ Answer AnswerOf(const std::vector<Edge>& edges) {
   const Graph graph = GraphOf(edges, SensorId("a"));
   Answer answer{Solve(graph), {}};
   const GraphJackknife jackknife = JackknifeGraph(graph, answer.solution, BlocksOf(edges));
-  TakeHonest(graph, jackknife, answer.solution);
+  ApplyJackknifeCovariance(graph, jackknife, answer.solution);
   if (!jackknife.available) return answer;
   for (const auto& [a, b] : {std::pair("b", "c"), std::pair("b", "d")})
-    answer.relative[{a, b}] = HonestRelative(jackknife, answer.solution, SensorId(a), SensorId(b))->covariance;
+    answer.relative[{a, b}] = RelativeByJackknife(jackknife, answer.solution, SensorId(a), SensorId(b))->covariance;
   return answer;
 }
 

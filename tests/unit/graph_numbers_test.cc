@@ -4,9 +4,8 @@
 
 #include <Eigen/LU>
 
-#include "server/graph/chordal.h"
 #include "server/graph/gauss_newton.h"
-#include "server/graph/spanning_tree.h"
+#include "server/graph/start_poses.h"
 #include "tests/unit/graph_ceres.h"
 #include "tests/unit/graph_fixture.h"
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "server/graph/observability.h"
-#include "server/graph/spanning_tree.h"
+#include "server/graph/start_poses.h"
 #include "tests/unit/graph_fixture.h"
 
 namespace rigcal::graph {

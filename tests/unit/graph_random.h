@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -86,6 +88,14 @@ inline RandomRig FullRig(std::size_t count, unsigned seed) {
       rig.graph.edges.push_back(MakeEdge(k++, a, b, T, Omega));
     }
   return rig;
+}
+
+// Honest over analytic sigma, axis by axis; 1 where both are zero.
+inline Vector6d SigmaRatio(const Matrix6d& honest, const Matrix6d& analytic) {
+  Vector6d ratio = Vector6d::Ones();
+  for (int axis = 0; axis < 6; ++axis)
+    if (analytic(axis, axis) > 0.0) ratio(axis) = std::sqrt(std::max(0.0, honest(axis, axis)) / analytic(axis, axis));
+  return ratio;
 }
 
 }  // namespace rigcal::graph

@@ -230,19 +230,5 @@ TEST(GraphSolve, HalfTurnResidualsNeitherCrashNorGiveNaN) {
   }
 }
 
-TEST(GraphSolve, AStartFarOffConverges) {
-  const RandomRig rig = MakeRig(12, 59, 16);
-  const GraphSolution batch = Solve(rig.graph);
-  GraphSolution far = batch;
-  std::mt19937 random(17);
-  for (std::size_t v = 1; v < far.poses.size(); ++v) {
-    const Vector6d direction = RandomVector(random, 1.0, 1.0);
-    Vector6d offset;
-    offset << direction.head<3>().normalized(), direction.tail<3>().normalized() * M_PI / 3;
-    far.poses[v].T_ref_sensor = far.poses[v].T_ref_sensor * Se3::Exp(offset);
-  }
-  EXPECT_NEAR(Update(rig.graph, far).cost, batch.cost, 1e-9 * batch.cost);
-}
-
 }  // namespace
 }  // namespace rigcal::graph

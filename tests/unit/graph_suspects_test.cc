@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "server/graph/suspects.h"
+#include "server/graph/insight.h"
 #include "tests/unit/graph_fixture.h"
 
 namespace rigcal::graph {

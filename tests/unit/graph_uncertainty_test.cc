@@ -110,36 +110,5 @@ TEST(GraphRelative, RefusesUnknownAndUnconnectedSensorsByName) {
   EXPECT_THAT(loose.error().what, testing::HasSubstr("sensor loose is not connected to reference 0"));
 }
 
-TEST(GraphUpdate, EqualsTheBatchOptimumAfterEveryEdge) {
-  const RandomRig rig = MakeRig(15, 50, 46);
-  Graph graph{Name(0), {Name(0)}, {}};
-  GraphSolution state = Solve(graph);
-  for (const GraphEdge& edge : rig.graph.edges) {
-    graph.edges.push_back(edge);
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (std::find(graph.sensors.begin(), graph.sensors.end(), sensor) == graph.sensors.end())
-        graph.sensors.push_back(sensor);
-    state = Update(graph, state);
-    const GraphSolution batch = Solve(graph);
-    EXPECT_NEAR(state.cost, batch.cost, 1e-9 * batch.cost + 1e-12);
-    EXPECT_EQ(state.before.total, batch.before.total);
-    for (std::size_t v = 0; v < graph.sensors.size(); ++v) {
-      EXPECT_EQ(state.poses[v].known, batch.poses[v].known);
-      EXPECT_LT(Distance(state.poses[v].T_ref_sensor, batch.poses[v].T_ref_sensor), 1e-8) << graph.edges.size();
-    }
-  }
-}
-
-TEST(GraphUpdate, FollowsAChangeOfReferenceAndARemovedEdge) {
-  RandomRig rig = MakeRig(8, 20, 47);
-  const GraphSolution before = Solve(rig.graph);
-  rig.graph.reference = Name(5);
-  rig.graph.edges.pop_back();
-  const GraphSolution updated = Update(rig.graph, before), batch = Solve(rig.graph);
-  EXPECT_NEAR(updated.cost, batch.cost, 1e-9 * batch.cost);
-  for (std::size_t v = 0; v < 8; ++v)
-    EXPECT_LT(Distance(updated.poses[v].T_ref_sensor, batch.poses[v].T_ref_sensor), 1e-8) << v;
-}
-
 }  // namespace
 }  // namespace rigcal::graph

@@ -70,7 +70,7 @@ double MeanSquare(unsigned visits, double too_sure) {
     const Visit visit = VisitOf(100 + seed, too_sure);
     const Graph graph = GraphOf(visit.edges, Name(0));
     GraphSolution solution = Solve(graph);
-    TakeHonest(graph, JackknifeGraph(graph, solution, BlocksOf(visit.edges)), solution);
+    ApplyJackknifeCovariance(graph, JackknifeGraph(graph, solution, BlocksOf(visit.edges)), solution);
     for (std::size_t v = 1; v < kSensors; ++v) {
       const Vector6d error = (solution.poses[v].T_ref_sensor.Inverse() * visit.rig.truth[v]).Log();
       squares +=
