@@ -124,6 +124,7 @@ def settled(server, data, week, figures):
     figures["show_s"] = statistics.median(timed(server, "show", "growing")[0] for _ in range(5))
     figures["document_bytes"] = len(server.rigcal("show", "growing", "--json").stdout)
     figures["report_bytes"] = folder_bytes(newest_report(data))
+    figures["reports_kept"] = len([path for path in (data / "reports" / "growing").iterdir() if path.name.isdigit()])
     figures["peak_rss_mib"] = server.peak_rss_mib()
     return figures
 
@@ -152,6 +153,7 @@ def run(context):
     for key in ("push_to_revision_s", "cold_lookup_s"):
         first, last = (statistics.median(one[key] for one in part) for part in (visits[1:6], visits[-5:]))
         yield at_most("%s_median_of_5_to_week_%d_over_weeks_2_to_6" % (key, week), last / first, 1.2)
+    yield at_most("reports_kept_week_%d" % week, late["reports_kept"], 21)  # those of one month: 20 and the one in use
     yield at_most("show_week_%d" % week, 1e3 * late["show_s"], 50.0, "ms")
     yield at_most("cold_lookup_week_%d" % week, 1e3 * late["cold_lookup_s"], 30.0, "ms")
     yield at_most("warm_lookup_week_%d" % week, 1e3 * late["warm_lookup_s"], 30.0, "ms")

@@ -20,6 +20,7 @@ constexpr std::array kSettings = {
     Setting{"image_pixels", &Limits::image_pixels, 1, 1'000'000'000},
     Setting{"decoded_bytes", &Limits::decoded_bytes, 16 * kMiB, 1024 * 1024 * kMiB},
     Setting{"http_connections", &Limits::http_connections, 2, 1024},
+    Setting{"reports_of_robot", &Limits::reports_of_robot, 1, 100'000},
 };
 
 Limits& Stored() {

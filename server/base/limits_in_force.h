@@ -21,6 +21,7 @@ struct Limits {
   std::int64_t image_pixels = kImagePixelsMax;
   std::int64_t decoded_bytes = kDecodedBytes;
   std::int64_t http_connections = kHttpConnectionsMax;
+  std::int64_t reports_of_robot = kReportsOfRobot;
 
   friend bool operator==(const Limits&, const Limits&) = default;
 };

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/formats/answers.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/publish.h"
+#include "server/pipeline/retention.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/run_edge_job.h"
@@ -75,6 +77,18 @@ Result<std::filesystem::path> PublishOnce(const StepContext& context, const stor
                    before % kAttemptsMax, [&] { return Publish(context.store, key, context.clock, why_no_clouds); });
 }
 
+// When a robot has a new one; an older one that somebody asked for stays until then.
+void RemoveOld(const StepContext& context, const storage::RevisionKey& published) {
+  const RobotId& robot = published.robot;
+  const auto newest = storage::LoadRevisionSummary(context.store, robot, 0);
+  if (!newest || !*newest || (*newest)->number != published.number) return;
+  const auto freed = RemoveOldReports(context.store, robot, limits::InForce().reports_of_robot);
+  if (!freed) return LogError(freed.error());
+  if (freed->reports > 0)
+    LogInfo("robot " + robot.str() + ": " + std::to_string(freed->reports) + " older reports removed, " +
+            std::to_string(freed->bytes / 1024) + " KiB freed; they are drawn again when they are asked for");
+}
+
 // A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
 // worked. Those that were begun before come when there is nothing else to do.
 Result<bool> PublishNext(const StepContext& context, bool begun_before) {
@@ -97,6 +111,7 @@ Result<bool> PublishNext(const StepContext& context, bool begun_before) {
     const std::string path = "/robots/" + key.robot.str() + "/revisions/" + std::to_string(key.number) + "/";
     context.announcer.event(key.robot, "published", std::to_string(key.number),
                             formats::WritePublishedEvent(key.robot, key.number, path));
+    RemoveOld(context, key);
     return true;
   }
   if (problem) return Fail(*problem);

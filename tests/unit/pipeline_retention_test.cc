@@ -1,0 +1,72 @@
+// Old reports are removed from disk, and drawn again with the same bytes when they are asked for.
+#include "server/pipeline/missing_report.h"
+#include "server/pipeline/retention.h"
+#include "storage/revisions.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+
+class PipelineRetentionTest : public PipelineTest {
+ protected:
+  // A revision with its report, at so many days from the first of a month on.
+  void Revision(double days) {
+    clock_.now.ns = 1'798'761'600'000'000'000 + static_cast<std::int64_t>(days * static_cast<double>(kDay_ns));  // 2027-01-01
+    auto edges = Triangle("r");
+    for (Edge& edge : edges) edge.T_a_b.p_m.y() += 1e-5 * ++made_;
+    AssignPushedIds(edges);
+    StoreEdges(edges);
+    StepAll();
+  }
+  std::filesystem::path Report(int number) { return store_->ReportFolder() / "r" / std::to_string(number); }
+  std::vector<int> Kept() {
+    std::vector<int> kept;
+    for (int number = 1; number <= made_ / 3; ++number)
+      if (std::filesystem::exists(Report(number))) kept.push_back(number);
+    return kept;
+  }
+  static std::string TextOf(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  int made_ = 0;
+};
+
+TEST_F(PipelineRetentionTest, TheNewestStayAndOneOfEachMonth) {
+  for (const double days : {1, 2, 3, 35, 36, 63, 64, 65}) Revision(days);  // January, February, March
+  const auto freed = RemoveOldReports(*store_, RobotId("r"), 2);
+  ASSERT_TRUE(freed) << Sentence(freed.error());
+  EXPECT_EQ(Kept(), (std::vector<int>{3, 5, 7, 8}));
+  EXPECT_EQ(freed->reports, 4);
+  EXPECT_GT(freed->bytes, 4000);
+  EXPECT_EQ(RemoveOldReports(*store_, RobotId("r"), 2)->reports, 0);
+}
+
+TEST_F(PipelineRetentionTest, ARobotKeepsSoManyReportsHoweverOftenItIsRevised) {
+  for (int i = 0; i < 25; ++i) Revision(0.1 * i);
+  EXPECT_LE(Kept().size(), 21u);
+  EXPECT_EQ(Kept().back(), 25);
+}
+
+TEST_F(PipelineRetentionTest, OneThatIsAskedForIsDrawnAgainWithTheSameBytes) {
+  for (const double days : {1, 2, 3, 4}) Revision(days);
+  const std::string before = TextOf(Report(1) / "index.html");
+  ASSERT_FALSE(before.empty());
+  ASSERT_EQ(RemoveOldReports(*store_, RobotId("r"), 2)->reports, 2);
+  UndrawnReports undrawn;
+  bool woken = false;
+  const Error why = WhyMissing(*store_, undrawn, {RobotId("r"), 1}, "index.html", [&] { woken = true; });
+  EXPECT_EQ(why.code, ErrorCode::kBusy);
+  EXPECT_TRUE(woken);
+  clock_.now.ns += kDay_ns;
+  StepAll();
+  EXPECT_EQ(TextOf(Report(1) / "index.html"), before);
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
