@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/model/merged_edge.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -10,7 +11,9 @@ namespace {
 
 std::string InUnit(double value, int axis) { return axis < tangent::kRotation ? SigmaMm(value) : SigmaDeg(value); }
 
-std::string SourceText(const Uncertainty& uncertainty) {
+std::string SourceText(const Edge& edge) {
+  const Uncertainty& uncertainty = edge.uncertainty;
+  if (IsMerged(edge)) return "\xCF\x83 from those of its edges.";
   switch (uncertainty.source) {
     case UncertaintySource::kJackknife:
       return "\xCF\x83 from leaving out one of " + std::to_string(uncertainty.dof + 1UL) +
@@ -76,13 +79,14 @@ std::string LargestSigma(const Uncertainty& uncertainty, int first_axis, const s
   return InUnit(largest, first_axis) + unit + (free.empty() ? "" : ", free: " + free);
 }
 
-std::string ObservabilityText(const Uncertainty& uncertainty) {
+std::string ObservabilityText(const Edge& edge) {
+  const Uncertainty& uncertainty = edge.uncertainty;
   const auto& basis = uncertainty.unobservable_basis;
-  if (uncertainty.rank >= 6) return "All 6 directions are observed. " + SourceText(uncertainty);
+  if (uncertainty.rank >= 6) return "All 6 directions are observed. " + SourceText(edge);
   std::string text = std::to_string(uncertainty.rank) + " of 6 directions are observed";
   for (Eigen::Index column = 0; column < basis.cols(); ++column)
     text += (column == 0 ? "; free: " : ", ") + DirectionText(basis.col(column));
-  return text + ". " + SourceText(uncertainty);
+  return text + ". " + SourceText(edge);
 }
 
 }  // namespace rigcal::report

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "server/model/uncertainty.h"
+#include "server/model/edge.h"
 
 namespace rigcal::report {
 
@@ -16,6 +16,6 @@ namespace rigcal::report {
 // The largest known of them, in mm or deg as a plain number to sort by; empty if all are free.
 [[nodiscard]] std::string SigmaKey(const Uncertainty& uncertainty, int first_axis);
 // "All 6 directions are observed, ..." or what is free; and where sigma comes from.
-[[nodiscard]] std::string ObservabilityText(const Uncertainty& uncertainty);
+[[nodiscard]] std::string ObservabilityText(const Edge& edge);
 
 }  // namespace rigcal::report

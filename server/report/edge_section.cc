@@ -31,7 +31,7 @@ void FillPose(Dictionary& section, const Edge& edge) {
   Dictionary* pose = section.AddSectionDictionary("POSE");
   pose->SetValue("FROM", edge.frame_a.str());
   pose->SetValue("TO", edge.frame_b.str());
-  pose->SetValue("OBSERVABLE", ObservabilityText(edge.uncertainty));
+  pose->SetValue("OBSERVABLE", ObservabilityText(edge));
   const RollPitchYaw angles = RollPitchYawOf(edge.T_a_b.q);
   const std::array<double, 3> rotation = {angles.roll, angles.pitch, angles.yaw};
   const std::array<const char*, 3> names = {"x, roll", "y, pitch", "z, yaw"};

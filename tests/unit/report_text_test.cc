@@ -66,12 +66,14 @@ TEST(ReportText, FreeAxisIsNamedAtItsPlace) {
   for (int axis = 0; axis < 6; ++axis) {
     Matrix6d Omega = Matrix6d::Identity() * 1e6;
     Omega(axis, axis) = 0.0;
-    const Uncertainty uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
+    Edge edge;
+    edge.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
+    const Uncertainty& uncertainty = edge.uncertainty;
     const std::string name(tangent::kNames[static_cast<std::size_t>(axis)]);
     for (int other = 0; other < 6; ++other) EXPECT_EQ(AxisSigmaText(uncertainty, other) == "free", other == axis);
     const std::string here = LargestSigma(uncertainty, axis < 3 ? 0 : 3, axis < 3 ? " mm" : " deg");
     EXPECT_EQ(here, std::string(axis < 3 ? "1.0 mm" : "0.057 deg") + ", free: " + name);
-    EXPECT_NE(ObservabilityText(uncertainty).find("free: " + name + "."), std::string::npos);
+    EXPECT_NE(ObservabilityText(edge).find("free: " + name + "."), std::string::npos);
   }
 }
 
