@@ -1,9 +1,12 @@
 #include "server/calib/camera/camera_diagnoses.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "server/calib/camera/given_intrinsics.h"
+#include "server/calib/core/diagnoses.h"
 
 namespace rigcal::calib {
 namespace {
@@ -21,16 +24,14 @@ std::string NameOfIntrinsic(CameraModel model, int idx) {
   return idx < 4 ? kFirst[idx] : DistortionNames(model)[static_cast<std::size_t>(idx) - 4];
 }
 
-}  // namespace
-
-namespace {
-
 // "in only 2 of 9 captures"; nothing is only of nothing.
 std::string SeenText(std::size_t usable, std::size_t views) {
   if (views == 0) return "in no capture: none has a usable picture of it";
   if (usable == 0) return "in none of " + std::to_string(views) + (views == 1 ? " capture" : " captures");
   return "in only " + std::to_string(usable) + " of " + std::to_string(views) + (views == 1 ? " capture" : " captures");
 }
+
+constexpr const char* kLayoutCode = "board_layout";
 
 }  // namespace
 
@@ -82,6 +83,22 @@ std::optional<Diagnosis> WhyGivenDisagree(const Sensor& camera, const CameraIntr
 
 Diagnosis CameraError(const SensorId& camera, const std::string& code, const Error& error) {
   return {code, camera.str() + ": " + error.what + ".", error.cure};
+}
+
+Diagnosis OtherLayout(const SensorId& camera, const Target& board, const std::vector<CaptureId>& captures) {
+  return {kLayoutCode,
+          "In " + std::to_string(captures.size()) + (captures.size() == 1 ? " capture of " : " captures of ") +
+              camera.str() + " (" + NamesOf(captures) + ") the markers of target '" + board.id.str() +
+              "' lie as in the layout " +
+              (board.legacy_layout ? "of OpenCV 4.6 and later" : "before OpenCV 4.6 (legacy)") +
+              ", which is not the one of its description; these pictures take no part.",
+          std::string("Set legacy_layout: ") + (board.legacy_layout ? "false" : "true") + " for target '" +
+              board.id.str() + "' in session.yaml, and push the session again."};
+}
+
+void PutLayoutFirst(std::vector<Diagnosis>& diagnoses) {
+  std::stable_partition(diagnoses.begin(), diagnoses.end(),
+                        [](const Diagnosis& diagnosis) { return diagnosis.code == kLayoutCode; });
 }
 
 }  // namespace rigcal::calib

@@ -11,7 +11,7 @@
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/selection.h"
-#include "server/calib/planes/pose_choice.h"
+#include "server/calib/planes/planar_pose.h"
 #include "server/calib/stereo/observability.h"
 
 namespace rigcal::calib {

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "server/calib/camera/layout_diagnosis.h"
+#include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/selection.h"
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "server/calib/core/costs/reference_view.h"
-#include "server/calib/core/costs/second_view.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
 #include "server/math/covariance.h"
 

@@ -8,11 +8,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/calib/core/costs/given_intrinsics.h"
-#include "server/calib/core/costs/reference_view.h"
-#include "server/calib/core/costs/second_view.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
-#include "server/calib/core/se3_manifold.h"
 
 namespace rigcal::calib {
 namespace {

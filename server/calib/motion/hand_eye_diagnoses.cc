@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "server/calib/camera/layout_diagnosis.h"
+#include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"

@@ -2,9 +2,9 @@
 #include <set>
 
 #include "server/base/out_of_memory.h"
+#include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_fit.h"
-#include "server/calib/camera/layout_diagnosis.h"
-#include "server/calib/core/pair_captures.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/motion/hand_eye.h"
 #include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"

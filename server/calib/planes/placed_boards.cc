@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/calib/planes/pose_choice.h"
+#include "server/calib/planes/planar_pose.h"
 
 namespace rigcal::calib {
 

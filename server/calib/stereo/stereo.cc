@@ -9,8 +9,6 @@
 #include "server/calib/core/selection.h"
 #include "server/calib/stereo/observability.h"
 #include "server/calib/stereo/pair_start.h"
-#include "server/calib/stereo/stereo_estimation.h"
-#include "server/calib/stereo/stereo_start.h"
 #include "server/calib/stereo/stereo_work.h"
 
 namespace rigcal::calib {
@@ -181,8 +179,8 @@ OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const StereoW
 
 }  // namespace
 
-tl::expected<StereoEstimate, Diagnosis> EstimateOrDiagnose(const StereoProblem& problem, const StereoEstimate* start,
-                                                           std::vector<Diagnosis>* notes) {
+OrDiagnosis<StereoEstimate> EstimateOrDiagnose(const StereoProblem& problem, const StereoEstimate* start,
+                                               std::vector<Diagnosis>* notes) {
   std::vector<Diagnosis> ignored;
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
   const auto work = start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept);

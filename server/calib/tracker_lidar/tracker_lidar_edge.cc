@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "server/base/out_of_memory.h"
-#include "server/calib/core/pair_captures.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/tracker_lidar/tracker_lidar.h"
 #include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
