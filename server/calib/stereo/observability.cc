@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "server/calib/camera/camera_diagnoses.h"
+#include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/given_intrinsics.h"
-#include "server/calib/camera/seen_reach.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/selection.h"
