@@ -20,7 +20,6 @@ namespace rigcal::calib {
 [[nodiscard]] Diagnosis CameraIllConditioned(const SensorId& camera, const std::string& why);
 // The distortion of an estimated camera is not told by its views. `name` as in DistortionNames().
 [[nodiscard]] Diagnosis DistortionOpen(const SensorId& camera, CameraModel model, const std::string& name);
-[[nodiscard]] Diagnosis CameraError(const SensorId& camera, const std::string& code, const Error& error);
 
 // A note on a good edge: the views put refined intrinsics further than six sigmas from where they were given.
 [[nodiscard]] std::optional<Diagnosis> WhyGivenDisagree(const Sensor& camera, const CameraIntrinsics& refined);

@@ -30,8 +30,8 @@ struct CameraViews {
 // makes of the views where boards reproject better with it.
 [[nodiscard]] Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views);
 
-// How far from the axis the outermost corner is, as the distortion's series takes it: the radius at depth 1 (pinhole) or
-// the angle in radians (fisheye). Corners that the lens cannot see do not count.
+// How far from the axis the outermost corner is, as the distortion's series takes it: the radius at depth 1 (pinhole)
+// or the angle in radians (fisheye). Corners that the lens cannot see do not count.
 [[nodiscard]] double SeenReach(CameraModel model, const IntrinsicsVector& intrinsics, const CameraViews& views);
 
 }  // namespace rigcal::calib

@@ -10,6 +10,7 @@
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
+#include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/planes/planar_pose.h"
 #include "server/calib/stereo/observability.h"
@@ -17,11 +18,6 @@
 namespace rigcal::calib {
 namespace {
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
-// As for a pair: only gross contradictions count while the intrinsics are rough.
-constexpr double kContradictingRatio = 6.0, kContradictingWidthRatio = 0.02;
 // Another sensor will judge, so more poses are kept than the corners alone leave open (16): ten sigma.
 constexpr double kAlternativeCost = 100.0;
 constexpr int kPoseRoundsMax = 4;
@@ -90,7 +86,7 @@ OrDiagnosis<IntrinsicsVector> StartOf(const CameraProblem& problem, const Camera
   if (problem.camera.intrinsics) return VectorOf(*problem.camera.intrinsics);
   if (auto no_tilt = WhyNoTilt(camera, views)) return tl::unexpected(std::move(*no_tilt));
   const auto start = StartIntrinsics(views);
-  if (!start) return tl::unexpected(CameraError(camera, "no_intrinsics", start.error()));
+  if (!start) return tl::unexpected(AsDiagnosis(camera.str(), "no_intrinsics", start.error()));
   return *start;
 }
 
@@ -107,10 +103,7 @@ void PlaceBoards(Work& work) {
     work.state.T_a_board[k] = ChoosePose(work.joint, work.state, k, allowed).T_a_board;
     rms_px.push_back(allowed.empty() ? std::numeric_limits<double>::infinity() : RmsOf(work, k));
   }
-  std::vector<double> sorted = rms_px;
-  std::sort(sorted.begin(), sorted.end());
-  const double limit_px =
-      std::max(kContradictingRatio * sorted[sorted.size() / 2], kContradictingWidthRatio * work.views.width_px);
+  const double limit_px = ContradictingRms_px(rms_px, work.views.width_px);
   for (std::size_t k = work.captures.size(); k-- > 0;)
     if (!(rms_px[k] <= limit_px && std::isfinite(rms_px[k]))) work.Drop(k, "no pose of the board explains its corners");
 }
@@ -125,15 +118,17 @@ double VarianceOf(const Work& work) {
   return SumOfSquaresOf(work) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
 }
 
-OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
-  if (problem.camera.intrinsics) {
-    for (std::size_t k = 0; k < work.captures.size(); ++k)
-      work.state.T_a_board[k] = SolveBoardPose(work.joint, work.state, k, work.state.T_a_board[k]);
-    return {};
-  }
+OrDiagnosis<void> Solve(const CameraProblem& problem, Work& work) {
   auto solution = SolveJoint(work.joint, work.state);
-  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
+  if (!solution) return tl::unexpected(AsDiagnosis(problem.camera.id.str(), "no_convergence", solution.error()));
   work.state = std::move(solution->state);
+  return {};
+}
+
+OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
+  if (!problem.camera.intrinsics) return Solve(problem, work);
+  for (std::size_t k = 0; k < work.captures.size(); ++k)
+    work.state.T_a_board[k] = SolveBoardPose(work.joint, work.state, k, work.state.T_a_board[k]);
   return {};
 }
 
@@ -142,10 +137,7 @@ OrDiagnosis<void> RefineWithin(const CameraProblem& problem, double corner_sigma
   work.joint.estimate_a = true;
   work.joint.held_a = HeldOf(problem.camera);
   work.joint.pull_a = PullOf(problem.camera, corner_sigma_px);
-  auto solution = SolveJoint(work.joint, work.state);
-  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
-  work.state = std::move(solution->state);
-  return {};
+  return Solve(problem, work);
 }
 
 // One look at every board's other pose: kept as an alternative, or taken. Returns whether anything changed.
@@ -270,7 +262,7 @@ OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const Camera
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};
-    return tl::unexpected(CameraError(problem.camera.id, "internal", error));
+    return tl::unexpected(AsDiagnosis(problem.camera.id.str(), "internal", error));
   }
 }
 

@@ -19,8 +19,8 @@ std::string IdOf(const std::vector<CaptureId>& all, std::size_t first, std::size
 
 using InOrder = std::set<CaptureId, TakenBefore>;
 
-// `count` of them, or all: one of each of so many stretches. The place in the stretch moves on by the golden ratio, so that
-// captures that alternate between two places are all drawn from.
+// `count` of them, or all: one of each of so many stretches. The place in the stretch moves on by the golden ratio, so
+// that captures that alternate between two places are all drawn from.
 template <typename Each>
 void ForSpread(const InOrder& captures, std::size_t count, const Each& each) {
   constexpr double kGolden = 0.6180339887498949;
@@ -86,8 +86,9 @@ PairCaptures ChooseCaptures(const std::vector<CaptureId>& session, const std::se
 void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge) {
   std::size_t left_out = 0;
   for (const CaptureId& capture : chosen.left_out) left_out += of_pair.contains(capture) ? 1 : 0;
-  const std::string why = std::string(kLeftToRefinement) + ": the pair uses " + std::to_string(of_pair.size() - left_out) + " of its " +
-                          std::to_string(of_pair.size()) + " captures, spread over the session";
+  const std::string why = std::string(kLeftToRefinement) + ": the pair uses " +
+                          std::to_string(of_pair.size() - left_out) + " of its " + std::to_string(of_pair.size()) +
+                          " captures, spread over the session";
   for (const CaptureId& capture : chosen.left_out)
     if (of_pair.contains(capture)) edge.captures.push_back({capture, 0.0, false, why});
   std::stable_sort(edge.captures.begin(), edge.captures.end(),

@@ -18,7 +18,7 @@ struct TakenBefore {
 };
 
 struct CaptureBlock {
-  std::string id;                // the capture's, or "FIRST-LAST" of captures that follow one another; up to 64 characters
+  std::string id;  // the capture's, or "FIRST-LAST" of captures that follow one another; up to 64 characters
   std::set<CaptureId> captures;  // those of it that were used; never empty
 };
 // Of all captures of the session (where they are not told, of those used), kBlocksMax groups of nearly equal size that
@@ -37,18 +37,20 @@ struct PairCaptures {
   std::set<CaptureId> used, left_out;  // of `session`
 };
 
-// Spread over the session in the order in which captures were taken, one of each of kPairCapturesMax stretches, at a place
-// in it that does not repeat from stretch to stretch; a session that is not told, or has no more captures, is used whole.
-[[nodiscard]] PairCaptures ChooseCaptures(const std::vector<CaptureId>& session, const std::set<CaptureId>& seen_by_both);
+// Spread over the session in the order in which captures were taken, one of each of kPairCapturesMax stretches, at a
+// place in it that does not repeat from stretch to stretch; a session that is not told, or has no more captures, is
+// used whole.
+[[nodiscard]] PairCaptures ChooseCaptures(const std::vector<CaptureId>& session,
+                                          const std::set<CaptureId>& seen_by_both);
 
 // Tells each of the pair's own captures that was left out, with the reason.
 void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge);
 
-// The edge of the captures chosen; where that is none, or leaves a direction open, the edge of all. `drop(problem, left_out)`
-// takes captures out of a problem; `of_pair` are those that it has files of.
+// The edge of the captures chosen; where that is none, or leaves a direction open, the edge of all. `drop(problem,
+// left_out)` takes captures out of a problem; `of_pair` are those that it has files of.
 template <typename Problem, typename Drop, typename Estimate>
-Edge EstimateOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair, const std::set<CaptureId>& seen_by_both,
-                      const Drop& drop, const Estimate& estimate) {
+Edge EstimateOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair,
+                      const std::set<CaptureId>& seen_by_both, const Drop& drop, const Estimate& estimate) {
   const PairCaptures chosen = ChooseCaptures(problem.session_captures, seen_by_both);
   if (chosen.left_out.empty()) return estimate(problem);
   Problem fewer = problem;

@@ -33,15 +33,16 @@ int DofOf(std::size_t carrying) { return carrying > 2 ? static_cast<int>(carryin
 
 }  // namespace
 
-Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const WithoutBlock& without) {
-  std::vector<std::optional<Result<Vector6d>>> vectors(block_ids.size());
-  ParallelFor(vectors.size(), [&](std::size_t i) { vectors[i] = without(i); });
+Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const Se3& T_a_b,
+                                             const WithoutBlock& without) {
+  std::vector<std::optional<Result<Se3>>> poses(block_ids.size());
+  ParallelFor(poses.size(), [&](std::size_t i) { poses[i] = without(i); });
   std::vector<BlockVector> blocks;
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    if (!*vectors[i])
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!*poses[i])
       return Fail(ErrorCode::kInvalidInput, "without capture " + block_ids[i] + " the pair cannot be solved",
                   "Take more captures like it, so that the result does not hang on a single one.");
-    blocks.push_back({block_ids[i], **vectors[i]});
+    blocks.push_back({block_ids[i], (T_a_b.Inverse() * **poses[i]).Log()});
   }
   return blocks;
 }
@@ -70,9 +71,9 @@ Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVect
   return uncertainty;
 }
 
-Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
-                                     const Eigen::MatrixXd& C_model_along, std::vector<BlockVector> blocks,
-                                     std::vector<Contribution> contributions, std::size_t carrying) {
+Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::MatrixXd& C_model_along,
+                                     std::vector<BlockVector> blocks, std::vector<Contribution> contributions,
+                                     std::size_t carrying) {
   const Matrix6d onto = free * free.transpose(), C_model = free * C_model_along * free.transpose();
   for (BlockVector& block : blocks) block.d = onto * block.d;
   for (Contribution& contribution : contributions) {
@@ -89,7 +90,8 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
                 "Take more captures from different places.");
   const Eigen::MatrixXd information = llt.solve(Eigen::MatrixXd::Identity(free.cols(), free.cols()));
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
-  Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
+  Uncertainty uncertainty =
+      FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
   return uncertainty;

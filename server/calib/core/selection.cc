@@ -106,6 +106,13 @@ bool BothSee(const StereoCapture& capture, const Target& board) {
   return Sees(capture.a, board) && Sees(capture.b, board);
 }
 
+CameraProblem CameraOf(const StereoProblem& problem, View StereoCapture::*camera) {
+  CameraProblem one{camera == &StereoCapture::a ? problem.camera_a : problem.camera_b, problem.board, {}};
+  for (const StereoCapture& capture : problem.captures)
+    if (capture.*camera) one.views.emplace_back(capture.capture, *(capture.*camera));
+  return one;
+}
+
 std::vector<CaptureId> MissedBy(const StereoProblem& problem, View StereoCapture::*camera) {
   std::vector<CaptureId> missed;
   for (const StereoCapture& capture : problem.captures)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/calib/camera/camera_start.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/core/joint_problem.h"
 #include "server/calib/stereo/stereo.h"
 
@@ -26,6 +27,8 @@ struct Selection {
 // Found, with enough points of this board: see WhyUnusable.
 [[nodiscard]] bool Sees(const std::optional<BoardView>& view, const Target& board);
 [[nodiscard]] bool BothSee(const StereoCapture& capture, const Target& board);
+// One camera of a pair (&StereoCapture::a or b) by itself.
+[[nodiscard]] CameraProblem CameraOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
 // Captures in which a camera (&StereoCapture::a or b) does not see the board.
 [[nodiscard]] std::vector<CaptureId> MissedBy(const StereoProblem& problem,
                                               std::optional<BoardView> StereoCapture::*camera);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/plane_problem.h"
 
@@ -49,5 +50,30 @@ struct NormalSpread {
   Eigen::Vector3d axis_cam = Eigen::Vector3d::UnitZ();  // that direction
 };
 [[nodiscard]] NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes);
+
+// The problem with one thing changed, solved again from an estimate of the whole.
+//
+// Of the captures that carry the answer: those of both, and every picture unless intrinsics are held.
+[[nodiscard]] std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem,
+                                                 const LidarCameraEstimate& estimate);
+// Those of them with a capture of both.
+[[nodiscard]] std::size_t CarryingBlocks(const std::vector<CaptureBlock>& blocks, const LidarCameraEstimate& estimate);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem,
+                                                      const LidarCameraEstimate& start);
+// Everything estimated anew, intrinsics too unless they are held.
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem,
+                                                        const LidarCameraEstimate& estimate,
+                                                        const std::set<CaptureId>& captures);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithCamera(const LidarCameraProblem& problem,
+                                                           const LidarCameraEstimate& estimate, CameraEstimate camera);
+// What the corners' errors do to intrinsics: independent changes of one sigma each; none where they are held.
+[[nodiscard]] std::vector<IntrinsicsVector> ChangesOfIntrinsics(const LidarCameraProblem& problem,
+                                                                const LidarCameraEstimate& estimate);
+
+// Of the groups of beams (range_constants.h): which took a point of a board; all of one with longer ranges.
+[[nodiscard]] std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& problem,
+                                                               const LidarCameraEstimate& estimate, std::size_t group,
+                                                               double longer_m);
 
 }  // namespace rigcal::calib

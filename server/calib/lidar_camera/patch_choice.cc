@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/core/robust.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -19,10 +21,6 @@ constexpr double kOtherAngle_rad = 0.3, kOtherShift_m = 0.5;
 constexpr int kRivalTries = 20;
 constexpr double kNominalAngle_rad = 0.785, kNominalShift_m = 1.0;
 constexpr double kAlmostAsManyRatio = 0.8;
-
-double AngleBetween_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 // Squared, in units of the tolerances.
 double Disagreement(const BoardPlane& camera, const BoardPlane& lidar, const Se3& T_cam_lidar) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "server/base/parallel_for.h"
+#include "server/calib/camera/intrinsics_variants.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
-#include "server/calib/lidar_camera/lidar_camera_variants.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 
 namespace rigcal::calib {
@@ -135,9 +135,9 @@ Result<Pair> VarianceOf(const Nearby& nearby, std::size_t causes, const Solve& s
 }
 
 Result<Pair> IntrinsicsVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  const std::vector<std::size_t> uncertain = UncertainIntrinsics(problem);
+  const std::vector<int> uncertain = RefinedOf(problem.camera);
   return VarianceOf({problem, estimate.board_scale_ratio}, uncertain.size(), [&](std::size_t i, double sigmas) {
-    return SolvedWithIntrinsic(problem, estimate, uncertain[i], sigmas);
+    return SolvedWithCamera(problem, estimate, WithGiven(estimate.camera, uncertain[i], sigmas));
   });
 }
 
@@ -146,7 +146,7 @@ Result<Pair> ModelVariance(const LidarCameraProblem& problem, const LidarCameraE
   const std::vector<IntrinsicsVector> changes = ChangesOfIntrinsics(problem, estimate);
   RIGCAL_ASSIGN(Pair variance,
                 VarianceOf({problem, estimate.board_scale_ratio}, changes.size(), [&](std::size_t i, double sigmas) {
-                  return SolvedWithChange(problem, estimate, sigmas * changes[i]);
+                  return SolvedWithCamera(problem, estimate, WithIntrinsicsMoved(estimate.camera, sigmas * changes[i]));
                 }));
   variance += Pair(estimate.range_bias_sigma_m, estimate.board_scale_sigma_ratio).cwiseAbs2();
   return variance;

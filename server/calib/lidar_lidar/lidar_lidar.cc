@@ -11,9 +11,6 @@
 namespace rigcal::calib {
 namespace {
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
 constexpr int kLockingsMax = 2;
 constexpr double kAgreeingMin_ratio = 0.3;  // of the starts; fewer: the answer is a matter of luck
 constexpr double kSamePose_rad = 0.03, kSamePoseVoxels = 0.25;

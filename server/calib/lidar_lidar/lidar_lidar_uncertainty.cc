@@ -2,16 +2,15 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "server/base/parallel_for.h"
-#include "server/calib/core/beam_groups.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/leave_one_out.h"
+#include "server/calib/core/range_constants.h"
 #include "server/math/jackknife.h"
 
 namespace rigcal::calib {
@@ -70,8 +69,8 @@ Sums SumsOfCapture(const LidarLidarProblem& problem, const LidarLidarWork& work,
 }
 
 // How T_map_moving (right tangent) changes per metre that the ranges of each group of beams are longer, one column per
-// group (beam_groups.h): of the lidar that makes the map, of the one that moves. Linear at the pose: a group more is
-// one more right side, not one more registration. Zero along `unknown`.
+// group (range_constants.h): of the lidar that makes the map, of the one that moves. Linear at the pose: a group more
+// is one more right side, not one more registration. Zero along `unknown`.
 struct BeamShifts {
   Directions of_map, of_moving;
 };
@@ -84,14 +83,6 @@ BeamShifts ShiftsByBeams(const LidarLidarProblem& problem, const LidarLidarWork&
   for (const Sums& one : captures) all.H += one.H, all.gradients += one.gradients;
   const Directions steps = StepsTo(all.H, all.gradients, unknown);
   return {steps.leftCols(kBeamGroups), steps.rightCols(kBeamGroups)};
-}
-
-// Columns that span what is known.
-Directions Known(const Directions& unknown) {
-  if (unknown.cols() == 0) return Matrix6d::Identity();
-  const Eigen::HouseholderQR<Directions> qr(unknown);
-  const Matrix6d Q = qr.householderQ();
-  return Q.rightCols(6 - unknown.cols());
 }
 
 // What the two methods disagree by is one draw of an error that all captures share, so that neither the jackknife nor
@@ -110,13 +101,12 @@ Result<std::vector<Contribution>> RangeContributions(const LidarLidarProblem& pr
                                                      const Directions& unknown) {
   std::vector<GivenConstant> constants;
   const auto add = [&](const Sensor& lidar, double RangeShift::*shift_m) {
-    const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
-    if (!(sigma_m > 0)) return;
-    constants.push_back({"range bias of " + lidar.id.str(), [&, shift_m, sigma_m](double steps) -> Result<Se3> {
-                           RangeShift shift;
-                           shift.*shift_m = steps * sigma_m;
-                           return FitFrom(WorkOf(problem, shift), T_map_moving, kNdtLevels - 1, unknown).T;
-                         }});
+    const auto with_bias = [&, shift_m](double longer_m) -> Result<Se3> {
+      RangeShift shift;
+      shift.*shift_m = longer_m;
+      return FitFrom(WorkOf(problem, shift), T_map_moving, kNdtLevels - 1, unknown).T;
+    };
+    AddRangeBias(lidar.id, lidar.range_bias_sigma_m.value_or(0.0), with_bias, constants);
   };
   add(problem.lidar_a, &RangeShift::a_m);
   add(problem.lidar_b, &RangeShift::b_m);
@@ -174,7 +164,7 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
                                           const std::vector<SurfacePairs>& pairs, const std::vector<Vector6d>& d) {
   const Se3& T_map_moving = pose.T;
   const PairInformation model = InformationOf(pairs, T_map_moving, unknown, work.voxel_m);
-  const Directions B = Known(unknown);
+  const Directions B = SplitBy(unknown).across;
   const auto failed = [] {
     return Fail(ErrorCode::kInvalidInput, "the common surroundings fix the pose too weakly",
                 "Take captures where both see walls or objects facing three different ways.");

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "server/calib/lidar_lidar/lidar_clouds.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
-#include "server/calib/lidar_lidar/surface_pairs.h"
 
 namespace rigcal::calib {
 

@@ -143,7 +143,7 @@ NdtScore RightScore(const LeftSums& sums, const Se3& T_a_b) {
 
 // Left, of all causes, for one point and the voxels about it.
 void AddMoves(const NdtMap& map, const NdtMoves& moves, std::size_t point, const NdtPoint& moving, const Se3& T_a_b,
-              Eigen::Matrix<double, 6, Eigen::Dynamic>& left) {
+              Directions& left) {
   const double per_m = 1 / map.voxel_m, d2 = ExponentOf(map.voxel_m);
   const Eigen::Vector3d q = T_a_b * moving.p_m;
   if (!(q.cwiseAbs().maxCoeff() * per_m < kCellsMax - 4)) return;
@@ -223,9 +223,8 @@ NdtScore ScoreOf(const std::vector<NdtTerm>& terms, const Se3& T_a_b) {
   return RightScore(sums, T_a_b);
 }
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes,
-                                                         const Se3& T_a_b) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> left(6, static_cast<Eigen::Index>(causes));
+Directions GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes, const Se3& T_a_b) {
+  Directions left(6, static_cast<Eigen::Index>(causes));
   left.setZero();
   for (std::size_t i = 0; i < term.points->size(); ++i) AddMoves(*term.map, moves, i, (*term.points)[i], T_a_b, left);
   return Adjoint(T_a_b).transpose() * left;

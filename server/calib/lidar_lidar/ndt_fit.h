@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "server/calib/core/directions.h"
 #include "server/calib/lidar_lidar/moment_grid.h"
 #include "server/math/se3.h"
 
@@ -67,8 +68,8 @@ struct NdtMoves {
   std::vector<std::vector<NdtMove>> of_points, of_voxels;  // side by side with the term's
 };
 // What one unit of each cause does to the gradient, a column each; Gauss-Newton as the information.
-[[nodiscard]] Eigen::Matrix<double, 6, Eigen::Dynamic> GradientByMoves(const NdtTerm& term, const NdtMoves& moves,
-                                                                       std::size_t causes, const Se3& T_a_b);
+[[nodiscard]] Directions GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes,
+                                         const Se3& T_a_b);
 
 struct NdtFit {
   Se3 T_a_b;
@@ -81,7 +82,6 @@ constexpr double kNdtStepMax = 1e-4;  // of a converged fit's last step
 
 // Minimum from a start. `locked`: orthonormal directions (columns, in the right tangent at b) in which the pose stays.
 // Bit for bit the same on any number of threads.
-using Directions = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 [[nodiscard]] NdtFit FitNdt(const std::vector<NdtTerm>& terms, const Se3& start, double step_max,
                             const Directions& locked = Directions(6, 0));
 

@@ -12,7 +12,7 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr std::size_t kChunk = 512;  // cells; fixed, so that sums do not depend on threads
+constexpr std::size_t kChunk = 512;                // cells; fixed, so that sums do not depend on threads
 constexpr std::size_t kMeans = 10, kMeansMin = 5;  // that make a normal
 constexpr int kBucketCells = 4;                    // a normal's means lie within so many cells
 

@@ -1,5 +1,5 @@
-// The polish after NDT: generalised ICP (Segal et al. 2009) of two clouds' pieces of surface, with a robust kernel. Every
-// cell of a cloud counts once, so that dense rows of points do not decide a normal.
+// The polish after NDT: generalised ICP (Segal et al. 2009) of two clouds' pieces of surface, with a robust kernel.
+// Every cell of a cloud counts once, so that dense rows of points do not decide a normal.
 #pragma once
 
 #include <vector>

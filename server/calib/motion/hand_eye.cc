@@ -11,9 +11,6 @@
 namespace rigcal::calib {
 namespace {
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
 // What a stream's poses are taken to be good for until their residuals say.
 constexpr double kStreamSigma_m = 0.005, kStreamSigma_rad = 0.005;
 constexpr double kCorrelationLeast_ratio = 0.3;

@@ -10,9 +10,6 @@
 namespace rigcal::calib {
 namespace {
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
 // What a tracker or a robot is taken to be good for until its residuals say.
 constexpr double kTrackerSigma_m = 0.001, kTrackerSigma_rad = 0.001;
 // Poses of the body that are as near as this are one pose.

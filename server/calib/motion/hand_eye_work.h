@@ -41,11 +41,11 @@ struct HandEyeWork {
 };
 
 // The captures in which both sides have a pose. `unused` says why the others have none.
-[[nodiscard]] tl::expected<HandEyeWork, Diagnosis> CollectMotion(const HandEyeProblem& problem);
+[[nodiscard]] OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem);
 // Sets the shared parameters of both sides, from all captures but those.
 void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, MotionProblem& problem);
 // Chooses, solves, finds the noise and what contradicts, until nothing changes. Poses that contradict are not used.
-[[nodiscard]] tl::expected<void, Diagnosis> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
+[[nodiscard]] OrDiagnosis<void> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
 [[nodiscard]] MotionNoise NoiseOf(const MotionProblem& problem);
 
 struct MotionUncertainty {

@@ -12,7 +12,7 @@ constexpr double kReachNoises = 3.0;
 
 struct PlaneReach {
   // Orthonormal columns, right tangent at the lidar: what is open, and what is not.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> open, free;
+  Directions open, free;
   double weakest_noises = 0.0;  // of the direction that is told least: its change over what noise makes
 };
 // `problem`: captures with the noise of their poses; its `free` is not used.

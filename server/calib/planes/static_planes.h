@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/calib/core/directions.h"
 #include "server/calib/planes/plane_moments.h"
 #include "server/math/se3.h"
 
@@ -31,7 +32,7 @@ struct StaticProblem {
   std::vector<StaticCapture> captures;
   double range_bias_m = 0.0;  // ranges are too short by this much
   // Orthonormal columns: directions of T_body_lidar (right tangent at the lidar) along which it is estimated.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> free = Matrix6d::Identity();
+  Directions free = Matrix6d::Identity();
 };
 
 struct StaticState {

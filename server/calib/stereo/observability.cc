@@ -94,7 +94,10 @@ CameraModel OutlookModel(CameraModel model) {
   return model == CameraModel::kPinholeRational ? CameraModel::kPinholeRadtan : model;
 }
 
-}  // namespace
+struct FocalOutlook {
+  double sigma_ratio = 0;  // predicted sigma of the focal length over the focal length; infinite: not observable
+  double spread_deg = 0;   // largest angle between the normals of two boards
+};
 
 FocalOutlook PredictFocal(const CameraViews& views) {
   const CameraModel model = OutlookModel(views.model);
@@ -117,6 +120,8 @@ FocalOutlook PredictFocal(const CameraViews& views) {
   }
   return outlook;
 }
+
+}  // namespace
 
 std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views) {
   const FocalOutlook outlook = PredictFocal(views);

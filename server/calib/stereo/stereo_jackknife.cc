@@ -9,7 +9,7 @@
 namespace rigcal::calib {
 namespace {
 
-Result<Vector6d> WithoutBlockOf(const StereoProblem& problem, const StereoWork& solved, const CaptureBlock& block) {
+Result<Se3> WithoutBlockOf(const StereoProblem& problem, const StereoWork& solved, const CaptureBlock& block) {
   JointProblem joint = solved.joint;
   JointState state = solved.state;
   joint.captures.clear();
@@ -20,7 +20,7 @@ Result<Vector6d> WithoutBlockOf(const StereoProblem& problem, const StereoWork& 
     state.T_a_board.push_back(solved.state.T_a_board[k]);
   }
   RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(joint, state));
-  return Vector6d((solved.state.T_a_b.Inverse() * solution.state.T_a_b).Log());
+  return solution.state.T_a_b;
 }
 
 StereoWork WithSquare(const StereoWork& solved, double scale) {
@@ -79,7 +79,7 @@ Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate
   std::vector<BlockVector> blocks;
   if (carrying >= kCapturesForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, solved, left_out[k]); };
-    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), estimate.T_a_b, without));
   }
   return UncertaintyOf(estimate.C_model, std::move(blocks), contributions, carrying);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/calib/core/diagnoses.h"
+#include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/planes/planar_pose.h"
 #include "server/calib/stereo/pair_start.h"
@@ -39,9 +40,6 @@ std::vector<PoseCandidates> CandidatesOf(const StereoProblem& problem, const Ste
   return candidates;
 }
 
-// At the start T_a_b is still rough, so only gross contradictions count: swapped or unsynchronized pictures.
-constexpr double kContradictingRatio = 6.0;        // times the median rms of the captures
-constexpr double kContradictingWidthRatio = 0.02;  // and this part of the picture's width
 // Two minima of a board's pose whose weighted costs differ by less than four sigma squared cannot be told apart.
 constexpr double kAmbiguousCost = 16.0;
 constexpr int kPoseRoundsMax = 4;
@@ -170,10 +168,7 @@ std::vector<CaptureId> PlaceBoards(const StereoProblem& problem, double width_px
     const JointCapture& capture = work.joint.captures[k];
     rms_px.push_back(std::sqrt(choice.ssr_px2 / static_cast<double>(capture.a.size() + capture.b.size())));
   }
-  std::vector<double> sorted = rms_px;
-  std::sort(sorted.begin(), sorted.end());
-  const double limit_px =
-      std::max(kContradictingRatio * sorted[sorted.size() / 2], kContradictingWidthRatio * width_px);
+  const double limit_px = ContradictingRms_px(rms_px, width_px);
   std::vector<CaptureId> contradicting;
   for (std::size_t k = work.used.size(); k-- > 0;) {
     if (rms_px[k] <= limit_px && std::isfinite(rms_px[k])) continue;

@@ -3,16 +3,13 @@
 
 #include <map>
 #include <string>
-#include <tl/expected.hpp>
 #include <vector>
 
 #include "server/calib/core/joint_problem.h"
+#include "server/calib/core/wording.h"
 #include "server/calib/stereo/stereo.h"
 
 namespace rigcal::calib {
-
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
 
 // Captures, views, turns and board poses side by side.
 struct StereoWork {

@@ -22,6 +22,5 @@ namespace rigcal::calib {
                                                     const TrackerLidarEstimate& estimate);
 // "cloud_unreadable", "board_not_found_in_cloud".
 [[nodiscard]] std::vector<Diagnosis> MissedClouds(const TrackerLidarProblem& problem);
-[[nodiscard]] Diagnosis RangesTakenAsExact(const TrackerLidarProblem& problem);  // a note
 
 }  // namespace rigcal::calib

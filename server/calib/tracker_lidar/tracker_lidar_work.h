@@ -38,13 +38,14 @@ struct TrackerLidarWork {
 // Patches of a capture that may be boards; one seen under two plates' names counts once.
 [[nodiscard]] std::vector<const PlanePatch*> PatchesOf(const TrackerLidarCapture& capture);
 // Captures with a pose and a patch, each once; which patches are boards. Leaves the start in `state`.
-[[nodiscard]] tl::expected<TrackerLidarWork, Diagnosis> CollectPatches(const TrackerLidarProblem& problem);
+[[nodiscard]] OrDiagnosis<TrackerLidarWork> CollectPatches(const TrackerLidarProblem& problem);
 // Solves, finds the tracker's noise, what contradicts and what is open, until nothing changes.
-[[nodiscard]] tl::expected<void, Diagnosis> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
+[[nodiscard]] OrDiagnosis<void> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
 [[nodiscard]] TrackerLidarCheck CheckOf(const TrackerLidarWork& work, std::size_t position);
 // The refinement's problem with the ranges of one group of beams longer.
 [[nodiscard]] StaticProblem ProblemWithBeamsMoved(const TrackerLidarWork& work, std::size_t group, double longer_m);
-// Uncertainty of the edge's T_a_b.
+// T_a_b of the edge, and its uncertainty.
+[[nodiscard]] Se3 EdgePose(const TrackerLidarProblem& problem, const Se3& T_body_lidar);
 [[nodiscard]] Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem,
                                                         const TrackerLidarWork& work);
 [[nodiscard]] Matrix6d ModelInformation(const TrackerLidarWork& work);
