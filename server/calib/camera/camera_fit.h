@@ -2,8 +2,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
-#include <vector>
 
 #include "server/calib/camera/intrinsics.h"
 #include "server/model/camera_fit.h"

@@ -1,6 +1,5 @@
 #include "server/calib/lidar_camera/lidar_camera.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "server/base/parallel_for.h"

@@ -1,7 +1,6 @@
 // The sentences of hand-eye calibration. Each names the sensors and captures it is about, and what to do.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "server/calib/motion/hand_eye.h"

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <set>
 
 #include "server/calib/core/diagnoses.h"

@@ -1,6 +1,5 @@
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
