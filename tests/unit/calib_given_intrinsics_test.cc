@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "server/calib/camera/intrinsics_variants.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/core/costs.h"
 #include "server/calib/motion/hand_eye.h"
 #include "server/math/statistics.h"

@@ -21,9 +21,9 @@ CameraViews Spread(const CameraViews& views, std::size_t count_max) {
 JointProblem OneCamera(const CameraViews& views, bool estimate) {
   JointProblem joint;
   joint.corners_board = views.corners_board;
-  joint.model_a = views.model;
-  joint.estimate_a = estimate;
-  joint.estimate_b = false;
+  joint.a.model = views.model;
+  joint.a.estimate = estimate;
+  joint.b.estimate = false;
   for (const SeenCorners& seen : views.seen) joint.captures.push_back({seen, {}});
   return joint;
 }
@@ -230,7 +230,7 @@ std::optional<IntrinsicsVector> RationalLike(const IntrinsicsVector& fisheye, do
 Result<IntrinsicsVector> StartAs(CameraModel model, CameraViews spread) {
   spread.model = model;
   PlacedBoards placed = PlaceBoards(spread, RoughIntrinsics(spread));
-  if (model == CameraModel::kPinholeRadtan) placed.joint.held_a = kTangentialAndThird;
+  if (model == CameraModel::kPinholeRadtan) placed.joint.a.held = kTangentialAndThird;
   const auto refined = SolveJoint(placed.joint, placed.state);
   if (!refined || !CanBe(refined->state.intrinsics_a, spread)) return NoIntrinsics();
   return refined->state.intrinsics_a;

@@ -134,9 +134,9 @@ OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
 
 // Frees intrinsics that were given with sigmas. What the corners are good for is known once they fit.
 OrDiagnosis<void> RefineWithin(const CameraProblem& problem, double corner_sigma_px, Work& work) {
-  work.joint.estimate_a = true;
-  work.joint.held_a = HeldOf(problem.camera);
-  work.joint.pull_a = PullOf(problem.camera, corner_sigma_px);
+  work.joint.a.estimate = true;
+  work.joint.a.held = HeldOf(problem.camera);
+  work.joint.a.pull = PullOf(problem.camera, corner_sigma_px);
   return Solve(problem, work);
 }
 
@@ -212,14 +212,14 @@ OrDiagnosis<void> CheckConditioning(const CameraProblem& problem, const Work& wo
   if (!covariance) return tl::unexpected(CameraIllConditioned(problem.camera.id, covariance.error().what));
   const Eigen::VectorXd variances = covariance->captures.diagonal().segment<kIntrinsicsMax>(kIntrinsicsAStart);
   if (auto open =
-          WhyDistortionOpen(problem.camera.id, work.joint.model_a, variances, work.views, work.state.intrinsics_a))
+          WhyDistortionOpen(problem.camera.id, work.joint.a.model, variances, work.views, work.state.intrinsics_a))
     return tl::unexpected(std::move(*open));
   return {};
 }
 
 void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) {
-  if (!work.joint.estimate_a) return;
-  if (const auto moments = MomentsAt(work.joint.model_a, work.state.intrinsics_a, work.joint.corners_board,
+  if (!work.joint.a.estimate) return;
+  if (const auto moments = MomentsAt(work.joint.a.model, work.state.intrinsics_a, work.joint.corners_board,
                                      work.joint.captures[k].a, work.state.T_a_board[k]))
     estimate.of_intrinsics.emplace(work.captures[k], Eliminated(*moments));
 }
@@ -227,10 +227,10 @@ void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) 
 OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& work) {
   if (auto conditioned = CheckConditioning(problem, work); !conditioned) return tl::unexpected(conditioned.error());
   CameraEstimate estimate;
-  estimate.intrinsics = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
+  estimate.intrinsics = IntrinsicsOf(work.joint.a.model, work.state.intrinsics_a);
   estimate.unused = work.unused;
   estimate.variance_px2 = VarianceOf(work);
-  estimate.pull = work.joint.pull_a;
+  estimate.pull = work.joint.a.pull;
   for (std::size_t k = 0; k < work.captures.size(); ++k) {
     const CaptureId& capture = work.captures[k];
     const auto information = BoardInformation(work.joint, work.state, k);

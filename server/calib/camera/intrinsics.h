@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,5 +52,16 @@ using CameraSolver = std::function<OrDiagnosis<CameraEstimate>(const CameraProbl
 [[nodiscard]] OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem,
                                                          const CameraEstimate* start = nullptr);
 [[nodiscard]] OrDiagnosis<CameraEstimate> EstimateCameraBy(const CameraSolver& solver, const CameraProblem& problem);
+
+// intrinsics_variants.cc: a camera whose intrinsics were given with sigmas, with one thing changed. Intrinsics and
+// board poses follow to first order, as changes are small against what the sigmas allow.
+//
+// `estimate.pull` pulls. The view's own pose is gone too.
+[[nodiscard]] CameraEstimate WithoutViews(const CameraEstimate& estimate, const std::set<CaptureId>& captures);
+// What the errors of the corners do to refined or estimated intrinsics: independent changes of one sigma each.
+[[nodiscard]] std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate);
+[[nodiscard]] CameraEstimate WithIntrinsicsMoved(const CameraEstimate& estimate, const IntrinsicsVector& change);
+// The intrinsic with that index given larger by so many of its sigmas.
+[[nodiscard]] CameraEstimate WithGiven(const CameraEstimate& estimate, int idx, double sigmas);
 
 }  // namespace rigcal::calib

@@ -38,7 +38,7 @@ Diagnosis NoCommonView(const StereoProblem& problem) {
 }
 
 std::vector<Diagnosis> Missed(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera) {
-  const SensorId& id = camera == &StereoCapture::a ? problem.camera_a.id : problem.camera_b.id;
+  const SensorId& id = SensorOf(problem, camera).id;
   const Target& board = problem.board;
   MissedCaptures unreadable, other_layout, without_board;
   for (const StereoCapture& capture : problem.captures) {

@@ -9,7 +9,6 @@
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 #include "server/calib/lidar_camera/patch_choice.h"
-#include "server/calib/lidar_camera/systematics.h"
 
 namespace rigcal::calib {
 namespace {

@@ -5,7 +5,7 @@
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
-#include "server/calib/lidar_camera/systematics.h"
+#include "server/calib/lidar_camera/lidar_camera_work.h"
 
 namespace rigcal::calib {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/camera/intrinsics_variants.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/core/range_constants.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/calib/camera/intrinsics_variants.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/core/range_constants.h"
 #include "server/calib/core/robust.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"

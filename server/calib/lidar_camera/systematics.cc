@@ -1,5 +1,3 @@
-#include "server/calib/lidar_camera/systematics.h"
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,7 +6,7 @@
 #include <vector>
 
 #include "server/base/parallel_for.h"
-#include "server/calib/camera/intrinsics_variants.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 
@@ -88,22 +86,26 @@ Fit FitBoardScale(const LidarCameraProblem& problem, LidarCameraWork work) {
 // (range bias in metres, board scale ratio)
 using Pair = Eigen::Vector2d;
 
-// Of estimates near to one whose boards came out so much larger.
-struct Nearby {
-  const LidarCameraProblem& problem;
-  double board_scale_ratio;
+// Of an estimate solved again, with its weights: one step from a known scale. NaN: it cannot tell.
+Pair SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const auto with_bias = SolvePlanes(work.planes, work.StateOf(), true);
+  Scale(board_scale_ratio, work);
+  const auto step = StepOfScale(work);
+  return {with_bias ? with_bias->state.range_bias_m : kUnknown,
+          step ? (1 + board_scale_ratio) * (1 + step->ratio) - 1 : kUnknown};
+}
 
-  [[nodiscard]] Result<Pair> PairOf(const Result<LidarCameraEstimate>& solved) const {
-    if (!solved) return Fail(solved.error());
-    const Systematics systematics = SystematicsNear(WorkOf(problem, *solved), board_scale_ratio);
-    return Pair(systematics.range_bias_m, systematics.board_scale_ratio);
-  }
-};
-
+// Of estimates near to `estimate`: what `solve(i)` gives.
 template <typename Solve>
-Result<std::vector<Pair>> PairsOf(const Nearby& nearby, std::size_t count, const Solve& solve) {
+Result<std::vector<Pair>> PairsOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                  std::size_t count, const Solve& solve) {
   std::vector<Result<Pair>> solved(count);
-  ParallelFor(count, [&](std::size_t i) { solved[i] = nearby.PairOf(solve(i)); });
+  ParallelFor(count, [&](std::size_t i) {
+    solved[i] = solve(i).map([&](const LidarCameraEstimate& one) {
+      return SystematicsNear(WorkOf(problem, one), estimate.board_scale_ratio);
+    });
+  });
   std::vector<Pair> pairs;
   for (const Result<Pair>& one : solved) {
     if (!one) return Fail(one.error());
@@ -114,9 +116,9 @@ Result<std::vector<Pair>> PairsOf(const Nearby& nearby, std::size_t count, const
 
 Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
                                const std::vector<CaptureBlock>& blocks) {
-  RIGCAL_ASSIGN(const std::vector<Pair> pairs,
-                PairsOf({problem, estimate.board_scale_ratio}, blocks.size(),
-                        [&](std::size_t i) { return SolvedWithout(problem, estimate, blocks[i].captures); }));
+  RIGCAL_ASSIGN(const std::vector<Pair> pairs, PairsOf(problem, estimate, blocks.size(), [&](std::size_t i) {
+                  return SolvedWithout(problem, estimate, blocks[i].captures);
+                }));
   const auto m = static_cast<double>(pairs.size());
   Pair mean = Pair::Zero(), variance = Pair::Zero();
   for (const Pair& pair : pairs) mean += pair / m;
@@ -126,9 +128,10 @@ Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCam
 
 // Of independent causes: `solve` with the i-th lower and larger by its sigma.
 template <typename Solve>
-Result<Pair> VarianceOf(const Nearby& nearby, std::size_t causes, const Solve& solve) {
+Result<Pair> VarianceOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, std::size_t causes,
+                        const Solve& solve) {
   const auto moved = [&](std::size_t i) { return solve(i / 2, i % 2 == 0 ? -1.0 : 1.0); };
-  RIGCAL_ASSIGN(const std::vector<Pair> pairs, PairsOf(nearby, 2 * causes, moved));
+  RIGCAL_ASSIGN(const std::vector<Pair> pairs, PairsOf(problem, estimate, 2 * causes, moved));
   Pair variance = Pair::Zero();
   for (std::size_t i = 0; i < causes; ++i) variance += (0.5 * (pairs[2 * i + 1] - pairs[2 * i])).cwiseAbs2();
   return variance;
@@ -136,7 +139,7 @@ Result<Pair> VarianceOf(const Nearby& nearby, std::size_t causes, const Solve& s
 
 Result<Pair> IntrinsicsVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const std::vector<int> uncertain = RefinedOf(problem.camera);
-  return VarianceOf({problem, estimate.board_scale_ratio}, uncertain.size(), [&](std::size_t i, double sigmas) {
+  return VarianceOf(problem, estimate, uncertain.size(), [&](std::size_t i, double sigmas) {
     return SolvedWithCamera(problem, estimate, WithGiven(estimate.camera, uncertain[i], sigmas));
   });
 }
@@ -144,8 +147,7 @@ Result<Pair> IntrinsicsVariance(const LidarCameraProblem& problem, const LidarCa
 // Of the planes' points, which the estimate knows, and of the corners by way of refined intrinsics.
 Result<Pair> ModelVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const std::vector<IntrinsicsVector> changes = ChangesOfIntrinsics(problem, estimate);
-  RIGCAL_ASSIGN(Pair variance,
-                VarianceOf({problem, estimate.board_scale_ratio}, changes.size(), [&](std::size_t i, double sigmas) {
+  RIGCAL_ASSIGN(Pair variance, VarianceOf(problem, estimate, changes.size(), [&](std::size_t i, double sigmas) {
                   return SolvedWithCamera(problem, estimate, WithIntrinsicsMoved(estimate.camera, sigmas * changes[i]));
                 }));
   variance += Pair(estimate.range_bias_sigma_m, estimate.board_scale_sigma_ratio).cwiseAbs2();
@@ -163,15 +165,6 @@ void Forget(LidarCameraEstimate& estimate) {
 }
 
 }  // namespace
-
-Systematics SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const auto with_bias = SolvePlanes(work.planes, work.StateOf(), true);
-  Scale(board_scale_ratio, work);
-  const auto step = StepOfScale(work);
-  return {with_bias ? with_bias->state.range_bias_m : kUnknown,
-          step ? (1 + board_scale_ratio) * (1 + step->ratio) - 1 : kUnknown};
-}
 
 void EstimateSystematics(const LidarCameraProblem& problem, const LidarCameraWork& work,
                          LidarCameraEstimate& estimate) {

@@ -38,18 +38,13 @@ constexpr double kModelFactor = 3.0;  // variance over the blocks' own, from sim
 const NdtVoxel* NearestFlat(const NdtMap& map, const Eigen::Vector3d& q_m) {
   const Eigen::Vector3d scaled = q_m / map.voxel_m;
   if (!(scaled.cwiseAbs().maxCoeff() < kCellsMax - 4)) return nullptr;
-  const Eigen::Vector3i cell = scaled.array().floor().cast<int>();
   const NdtVoxel* nearest = nullptr;
   double best_m2 = std::numeric_limits<double>::infinity();
-  for (int dx = -1; dx <= 1; ++dx)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dz = -1; dz <= 1; ++dz) {
-        const int number = map.index.Find(CellKeyOf(cell.x() + dx, cell.y() + dy, cell.z() + dz));
-        if (number < 0) continue;
-        const NdtVoxel& voxel = map.voxels[static_cast<std::size_t>(number)];
-        const double distance_m2 = (voxel.mean_m - q_m).squaredNorm();
-        if (distance_m2 < best_m2) best_m2 = distance_m2, nearest = &voxel;
-      }
+  ForCellsAround(map.index, scaled.array().floor().cast<int>(), 1, [&](std::size_t number) {
+    const NdtVoxel& voxel = map.voxels[number];
+    const double distance_m2 = (voxel.mean_m - q_m).squaredNorm();
+    if (distance_m2 < best_m2) best_m2 = distance_m2, nearest = &voxel;
+  });
   return nearest;
 }
 

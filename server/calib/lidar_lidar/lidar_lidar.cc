@@ -5,7 +5,6 @@
 #include <map>
 
 #include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
-#include "server/calib/lidar_lidar/lidar_lidar_uncertainty.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"
 
 namespace rigcal::calib {

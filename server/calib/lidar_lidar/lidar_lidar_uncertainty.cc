@@ -1,5 +1,3 @@
-#include "server/calib/lidar_lidar/lidar_lidar_uncertainty.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/range_constants.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "server/math/jackknife.h"
 
 namespace rigcal::calib {

@@ -62,4 +62,17 @@ struct LidarLidarBlocks {
 };
 [[nodiscard]] LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const Directions& locked);
 
+// lidar_lidar_uncertainty.cc: how sure the pose is.
+constexpr std::size_t kCloudsForJackknife = 5;  // captures; fewer: the model's
+constexpr std::size_t kCloudsEnough = 8;        // fewer: a note says that sigma is rough
+
+// Of T_a_b. `d`: block vectors of T_map_moving from LeaveBlocksOut(). The jackknife over captures shrunk towards the
+// model; with few captures the model: the information of the surfaces with the scatter between blocks of voxels. What
+// NDT and its polish disagree by, and ranges that are all off together, are contributions. No information along
+// `unknown`.
+[[nodiscard]] Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
+                                                        const LidarLidarPose& pose, const Directions& unknown,
+                                                        const std::vector<SurfacePairs>& pairs,
+                                                        const std::vector<Vector6d>& d);
+
 }  // namespace rigcal::calib

@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "server/base/parallel_for.h"
-
 namespace rigcal::calib {
 namespace {
 
@@ -207,17 +205,9 @@ std::vector<NdtPoint> NdtPointsOf(const MomentGrid& grid) {
 }
 
 NdtScore ScoreOf(const std::vector<NdtTerm>& terms, const Se3& T_a_b) {
-  struct Chunk {
-    const NdtTerm* term;
-    std::size_t begin, end;
-  };
-  std::vector<Chunk> chunks;
-  for (const NdtTerm& term : terms)
-    for (std::size_t begin = 0; begin < term.points->size(); begin += kChunk)
-      chunks.push_back({&term, begin, std::min(begin + kChunk, term.points->size())});
-  std::vector<LeftSums> parts(chunks.size());
-  ParallelFor(chunks.size(),
-              [&](std::size_t i) { parts[i] = SumsOf(*chunks[i].term, chunks[i].begin, chunks[i].end, T_a_b); });
+  const auto parts = SumsOfChunks<LeftSums>(
+      terms, kChunk, [](const NdtTerm& term) { return term.points->size(); },
+      [&](const NdtTerm& term, std::size_t begin, std::size_t end) { return SumsOf(term, begin, end, T_a_b); });
   LeftSums sums;
   for (const LeftSums& part : parts) sums.Add(part);
   return RightScore(sums, T_a_b);

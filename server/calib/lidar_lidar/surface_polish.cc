@@ -15,15 +15,6 @@ constexpr std::size_t kChunk = 512;                // cells; fixed, so that sums
 constexpr std::size_t kMeans = 10, kMeansMin = 5;  // that make a normal
 constexpr int kBucketCells = 4;                    // a normal's means lie within so many cells
 
-template <typename Body>
-void ForCellsAround(const CellIndex& index, const Eigen::Vector3i& cell, int reach, const Body& body) {
-  for (int dx = -reach; dx <= reach; ++dx)
-    for (int dy = -reach; dy <= reach; ++dy)
-      for (int dz = -reach; dz <= reach; ++dz)
-        if (const int number = index.Find(CellKeyOf(cell.x() + dx, cell.y() + dy, cell.z() + dz)); number >= 0)
-          body(static_cast<std::size_t>(number));
-}
-
 struct Near {
   double distance_m2;
   std::size_t number;
@@ -127,22 +118,11 @@ NormalSums SumOf(const PolishTerm& term, std::size_t begin, std::size_t end, con
 }
 
 NormalSums SumOf(const std::vector<PolishTerm>& terms, const Se3& T_a_b) {
-  struct Chunk {
-    const PolishTerm* term;
-    std::size_t begin, end;
-  };
-  std::vector<Chunk> chunks;
-  for (const PolishTerm& term : terms)
-    for (std::size_t begin = 0; begin < term.b->cells.size(); begin += kChunk)
-      chunks.push_back({&term, begin, std::min(begin + kChunk, term.b->cells.size())});
-  std::vector<NormalSums> parts(chunks.size());
-  ParallelFor(chunks.size(),
-              [&](std::size_t i) { parts[i] = SumOf(*chunks[i].term, chunks[i].begin, chunks[i].end, T_a_b); });
+  const auto sums = SumsOfChunks<NormalSums>(
+      terms, kChunk, [](const PolishTerm& term) { return term.b->cells.size(); },
+      [&](const PolishTerm& term, std::size_t begin, std::size_t end) { return SumOf(term, begin, end, T_a_b); });
   NormalSums sum;
-  for (const NormalSums& part : parts) {
-    sum.H += part.H;
-    sum.g += part.g;
-  }
+  for (const NormalSums& part : sums) sum.H += part.H, sum.g += part.g;
   return sum;
 }
 

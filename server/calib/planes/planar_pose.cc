@@ -100,9 +100,9 @@ std::vector<Se3> PlanarPoses(CameraModel model, const IntrinsicsVector& intrinsi
 std::vector<Se3> AllowedPoses(const JointProblem& problem, const JointState& state, std::size_t capture_idx) {
   const JointCapture& capture = problem.captures[capture_idx];
   std::vector<Se3> allowed;
-  if (!capture.a.empty()) allowed = PlanarPoses(problem.model_a, state.intrinsics_a, problem.corners_board, capture.a);
+  if (!capture.a.empty()) allowed = PlanarPoses(problem.a.model, state.intrinsics_a, problem.corners_board, capture.a);
   if (capture.b.empty()) return allowed;
-  for (const Se3& T_b_board : PlanarPoses(problem.model_b, state.intrinsics_b, problem.corners_board, capture.b))
+  for (const Se3& T_b_board : PlanarPoses(problem.b.model, state.intrinsics_b, problem.corners_board, capture.b))
     allowed.push_back(state.T_a_b * T_b_board);
   return allowed;
 }

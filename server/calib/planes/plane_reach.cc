@@ -1,11 +1,10 @@
-#include "server/calib/planes/plane_reach.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/planes/static_planes.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::calib {

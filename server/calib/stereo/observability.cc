@@ -46,10 +46,9 @@ std::vector<CaptureId> ResizedIn(const StereoProblem& problem, View StereoCaptur
 
 std::vector<Diagnosis> CheckSizes(const StereoProblem& problem) {
   std::vector<Diagnosis> diagnoses;
-  if (const auto resized = ResizedIn(problem, &StereoCapture::a); !resized.empty())
-    diagnoses.push_back(ImageSizeChanged(problem.camera_a.id, resized));
-  if (const auto resized = ResizedIn(problem, &StereoCapture::b); !resized.empty())
-    diagnoses.push_back(ImageSizeChanged(problem.camera_b.id, resized));
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
+    if (const auto resized = ResizedIn(problem, camera); !resized.empty())
+      diagnoses.push_back(ImageSizeChanged(SensorOf(problem, camera).id, resized));
   return diagnoses;
 }
 
@@ -68,9 +67,12 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
   return diagnoses;
 }
 
-void CheckTilt(const Sensor& camera, const CameraViews& views, std::vector<Diagnosis>& diagnoses) {
-  if (camera.intrinsics) return;
-  if (auto no_tilt = WhyNoTilt(camera.id, views)) diagnoses.push_back(std::move(*no_tilt));
+void CheckTilt(const StereoProblem& problem, const std::vector<std::size_t>& used, std::vector<Diagnosis>& diagnoses) {
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b}) {
+    const Sensor& sensor = SensorOf(problem, camera);
+    if (sensor.intrinsics) continue;
+    if (auto no_tilt = WhyNoTilt(sensor.id, ViewsOf(problem, used, camera))) diagnoses.push_back(std::move(*no_tilt));
+  }
 }
 
 // Of the radius or angle, by which the coefficient's effect grows against the undistorted lens.
@@ -149,8 +151,7 @@ std::vector<Diagnosis> Observability(const StereoProblem& problem) {
   const Selection selection = Select(problem);
   const std::size_t both = CountBoth(problem, selection.used);
   if (both < kCapturesMin) return ExplainTooFew(problem, selection, both);
-  CheckTilt(problem.camera_a, ViewsOfA(problem, selection.used), diagnoses);
-  CheckTilt(problem.camera_b, ViewsOfB(problem, selection.used), diagnoses);
+  CheckTilt(problem, selection.used, diagnoses);
   return diagnoses;
 }
 

@@ -29,10 +29,10 @@ std::vector<PoseCandidates> CandidatesOf(const StereoProblem& problem, const Ste
     const JointCapture& capture = joint.captures[k];
     if (capture.a.empty() || capture.b.empty()) continue;
     PoseCandidates poses;
-    poses.T_a_board = PlanarPoses(joint.model_a, work.state.intrinsics_a, joint.corners_board, capture.a);
+    poses.T_a_board = PlanarPoses(joint.a.model, work.state.intrinsics_a, joint.corners_board, capture.a);
     for (int turn = 0; turn < SymmetryOf(problem.board); ++turn) {
       const SeenCorners turned = SeenIn(*problem.captures[work.used[k]].b, problem.board, turn);
-      for (const Se3& T_b_board : PlanarPoses(joint.model_b, work.state.intrinsics_b, joint.corners_board, turned))
+      for (const Se3& T_b_board : PlanarPoses(joint.b.model, work.state.intrinsics_b, joint.corners_board, turned))
         poses.T_b_board.push_back(T_b_board);
     }
     candidates.push_back(std::move(poses));
@@ -94,7 +94,8 @@ OrDiagnosis<StereoStart> ColdStart(const StereoProblem& problem) {
   if (CountBoth(problem, work.used) < kCapturesMin)
     return tl::unexpected(TooFewCaptures(problem, CountBoth(problem, work.used)));
   work.joint = JointOf(problem, work.used);
-  const CameraViews views_a = ViewsOfA(problem, work.used), views_b = ViewsOfB(problem, work.used);
+  const CameraViews views_a = ViewsOf(problem, work.used, &StereoCapture::a),
+                    views_b = ViewsOf(problem, work.used, &StereoCapture::b);
   const auto intrinsics_a = StartOf(problem, problem.camera_a, views_a);
   if (!intrinsics_a) return tl::unexpected(intrinsics_a.error());
   const auto intrinsics_b = StartOf(problem, problem.camera_b, views_b);
@@ -188,7 +189,7 @@ OrDiagnosis<void> Refine(const StereoProblem& problem, StereoWork& work) {
 
 // What the corners are good for is known once they fit, and they fit a little better once it is known.
 OrDiagnosis<void> RefineAgainstGiven(const StereoProblem& problem, StereoWork& work) {
-  const bool pulled = work.joint.pull_a.Pulls() || work.joint.pull_b.Pulls();
+  const bool pulled = work.joint.a.pull.Pulls() || work.joint.b.pull.Pulls();
   for (int round = 1; pulled && round < kPulledRounds; ++round) {
     SetCornerSigma(problem, std::sqrt(work.Variance_px2()), work.joint);
     if (auto refined = Refine(problem, work); !refined) return refined;

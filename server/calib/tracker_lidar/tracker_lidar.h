@@ -11,7 +11,7 @@
 #include "server/calib/core/wording.h"
 #include "server/calib/motion/motion_observability.h"
 #include "server/calib/planes/plane_moments.h"
-#include "server/calib/planes/plane_reach.h"
+#include "server/calib/planes/static_planes.h"
 #include "server/model/edge.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
