@@ -8,6 +8,7 @@
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/lens_choice.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/robust.h"
@@ -35,10 +36,7 @@ struct Work {
 
   void Drop(std::size_t k, const std::string& why) {
     unused[captures[k]] = why;
-    const auto at = static_cast<std::ptrdiff_t>(k);
-    captures.erase(captures.begin() + at);
-    joint.captures.erase(joint.captures.begin() + at);
-    state.T_a_board.erase(state.T_a_board.begin() + at);
+    EraseAt(k, captures, joint.captures, state.T_a_board);
   }
 };
 

@@ -68,6 +68,18 @@ std::set<CaptureId> CapturesOf(const Problem& problem) {
   for (const auto& capture : problem.captures) captures.insert(capture.capture);
   return captures;
 }
+// Those at these of its indices.
+template <typename Problem>
+std::set<CaptureId> CapturesAt(const Problem& problem, const std::vector<std::size_t>& indices) {
+  std::set<CaptureId> captures;
+  for (const std::size_t idx : indices) captures.insert(problem.captures[idx].capture);
+  return captures;
+}
+// From vectors that run side by side.
+template <typename... Vectors>
+void EraseAt(std::size_t position, Vectors&... vectors) {
+  (vectors.erase(vectors.begin() + static_cast<std::ptrdiff_t>(position)), ...);
+}
 template <typename Problem>
 void DropCaptures(Problem& problem, const std::set<CaptureId>& left_out) {
   std::erase_if(problem.captures, [&](const auto& capture) { return left_out.contains(capture.capture); });

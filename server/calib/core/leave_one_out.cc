@@ -19,11 +19,7 @@ Result<Vector6d> ShiftOf(const GivenConstant& constant) {
 Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
                       const std::vector<Contribution>& contributions) {
   Matrix6d C = C_model;
-  if (!blocks.empty()) {
-    std::vector<Vector6d> d;
-    for (const BlockVector& block : blocks) d.push_back(block.d);
-    C = JackknifeOrModel(d, C_model);
-  }
+  if (!blocks.empty()) C = JackknifeOrModel(VectorsOf(blocks), C_model);
   for (const Contribution& contribution : contributions) C += contribution.covariance;
   return C;
 }
@@ -45,6 +41,12 @@ Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& blo
     blocks.push_back({block_ids[i], (T_a_b.Inverse() * **poses[i]).Log()});
   }
   return blocks;
+}
+
+std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : blocks) d.push_back(block.d);
+  return d;
 }
 
 Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants) {

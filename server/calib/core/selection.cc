@@ -102,11 +102,11 @@ CameraProblem CameraOf(const StereoProblem& problem, View StereoCapture::*camera
   return one;
 }
 
-std::vector<CaptureId> MissedBy(const StereoProblem& problem, View StereoCapture::*camera) {
-  std::vector<CaptureId> missed;
+std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
+  std::set<CaptureId> both;
   for (const StereoCapture& capture : problem.captures)
-    if (!Sees(capture.*camera, problem.board)) missed.push_back(capture.capture);
-  return missed;
+    if (BothSee(capture, problem.board)) both.insert(capture.capture);
+  return both;
 }
 
 Selection Select(const StereoProblem& problem) {

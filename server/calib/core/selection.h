@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,7 @@ struct Selection {
 // One camera of a pair (&StereoCapture::a or b), and with its views by itself.
 [[nodiscard]] const Sensor& SensorOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
 [[nodiscard]] CameraProblem CameraOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
-// Captures in which a camera (&StereoCapture::a or b) does not see the board.
-[[nodiscard]] std::vector<CaptureId> MissedBy(const StereoProblem& problem,
-                                              std::optional<BoardView> StereoCapture::*camera);
+[[nodiscard]] std::set<CaptureId> SeenByBoth(const StereoProblem& problem);
 [[nodiscard]] Selection Select(const StereoProblem& problem);
 
 [[nodiscard]] std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_t>& used);

@@ -66,11 +66,8 @@ PlaneState LidarCameraWork::StateOf() const {
 
 void LidarCameraWork::Drop(std::size_t position, const std::string& why) {
   unused[used[position].capture_idx] = why;
-  const auto at = static_cast<std::ptrdiff_t>(position);
-  used.erase(used.begin() + at);
-  planes.erase(planes.begin() + at);
-  if (position < solution.state.T_cam_board.size())
-    solution.state.T_cam_board.erase(solution.state.T_cam_board.begin() + at);
+  EraseAt(position, used, planes);
+  if (position < solution.state.T_cam_board.size()) EraseAt(position, solution.state.T_cam_board);
 }
 
 std::string WhyUseless(const LidarCameraProblem& problem, const CameraEstimate& camera, std::size_t capture_idx) {

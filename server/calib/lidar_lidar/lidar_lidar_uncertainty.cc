@@ -149,12 +149,6 @@ std::vector<BlockVector> BlockVectors(const LidarLidarProblem& problem, const Li
   return blocks;
 }
 
-std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : blocks) d.push_back(block.d);
-  return d;
-}
-
 }  // namespace
 
 Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,

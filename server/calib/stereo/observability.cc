@@ -53,10 +53,12 @@ std::vector<Diagnosis> CheckSizes(const StereoProblem& problem) {
 }
 
 std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selection& selection, std::size_t both) {
-  const auto missed_a = MissedBy(problem, &StereoCapture::a), missed_b = MissedBy(problem, &StereoCapture::b);
-  const std::size_t total = problem.captures.size();
+  const auto sees = [&](View StereoCapture::*camera) {
+    return std::any_of(problem.captures.begin(), problem.captures.end(),
+                       [&](const StereoCapture& capture) { return Sees(capture.*camera, problem.board); });
+  };
   std::vector<Diagnosis> diagnoses;
-  if (both == 0 && missed_a.size() < total && missed_b.size() < total)
+  if (both == 0 && sees(&StereoCapture::a) && sees(&StereoCapture::b))
     diagnoses.push_back(NoCommonView(problem));
   else
     diagnoses.push_back(TooFewCaptures(problem, both));

@@ -5,6 +5,7 @@
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/stereo/stereo.h"
@@ -118,8 +119,7 @@ void AddFigures(const StereoEstimate& estimate, std::size_t both, Edge& edge) {
   edge.figures["iterations"] = estimate.iterations;
   AddIntrinsicsFigures(estimate.intrinsics_a, "_a", edge);
   AddIntrinsicsFigures(estimate.intrinsics_b, "_b", edge);
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : edge.uncertainty.blocks) d.push_back(block.d);
+  const std::vector<Vector6d> d = VectorsOf(edge.uncertainty.blocks);
   if (!d.empty()) edge.figures["model_sigma_ratio"] = SigmaRatio(JackknifeCovariance(d), estimate.C_model);
 }
 
@@ -177,13 +177,6 @@ bool ShowsOtherBoard(const StereoProblem& problem) {
         ++contradicting;
     }
   return contradicting > seeing;
-}
-
-std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
-  std::set<CaptureId> both;
-  for (const StereoCapture& capture : problem.captures)
-    if (BothSee(capture, problem.board)) both.insert(capture.capture);
-  return both;
 }
 
 }  // namespace

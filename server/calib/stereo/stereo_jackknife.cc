@@ -54,26 +54,13 @@ std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const Stere
   return constants;
 }
 
-std::vector<CaptureBlock> BlocksOf(const StereoProblem& problem, const StereoWork& solved) {
-  std::set<CaptureId> used;
-  for (const std::size_t idx : solved.used) used.insert(problem.captures[idx].capture);
-  return CaptureBlocks(problem.session_captures, used);
-}
-
-// Single views are left out too, but are no degrees of freedom of the pair.
-std::set<CaptureId> SeenByBoth(const StereoProblem& problem, const StereoWork& solved) {
-  std::set<CaptureId> both;
-  for (const std::size_t idx : solved.used)
-    if (CountBoth(problem, {idx}) > 0) both.insert(problem.captures[idx].capture);
-  return both;
-}
-
 }  // namespace
 
 Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate) {
   const StereoWork solved = WarmStart(problem, estimate);
-  const std::vector<CaptureBlock> left_out = BlocksOf(problem, solved);
-  const std::size_t carrying = CountWith(left_out, SeenByBoth(problem, solved));
+  const std::vector<CaptureBlock> left_out = CaptureBlocks(problem.session_captures, CapturesAt(problem, solved.used));
+  // Single views are left out too, but are no degrees of freedom of the pair.
+  const std::size_t carrying = CountWith(left_out, SeenByBoth(problem));
   RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate, solved)));
   std::vector<BlockVector> blocks;
   if (carrying >= kCapturesForJackknife) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
@@ -141,11 +142,7 @@ StereoWork WarmStart(const StereoProblem& problem, const StereoEstimate& start) 
 
 void StereoWork::Drop(std::size_t position, const std::string& why) {
   unused[used[position]] = why;
-  const auto at = static_cast<std::ptrdiff_t>(position);
-  used.erase(used.begin() + at);
-  turns_b.erase(turns_b.begin() + at);
-  joint.captures.erase(joint.captures.begin() + at);
-  state.T_a_board.erase(state.T_a_board.begin() + at);
+  EraseAt(position, used, turns_b, joint.captures, state.T_a_board);
 }
 
 double StereoWork::SumOfSquares_px2() const {

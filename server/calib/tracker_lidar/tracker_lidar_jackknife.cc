@@ -21,16 +21,9 @@ Result<Se3> WithoutBlockOf(const TrackerLidarProblem& problem, const TrackerLida
   StaticState start = work.state;
   for (std::size_t k = work.captures.size(); k-- > 0;) {
     if (!block.captures.contains(problem.captures[work.captures[k]].capture)) continue;
-    without.captures.erase(without.captures.begin() + static_cast<std::ptrdiff_t>(k));
-    start.T_world_body.erase(start.T_world_body.begin() + static_cast<std::ptrdiff_t>(k));
+    EraseAt(k, without.captures, start.T_world_body);
   }
   return PoseFrom(problem, without, start);
-}
-
-std::vector<CaptureBlock> BlocksOf(const TrackerLidarProblem& problem, const TrackerLidarWork& work) {
-  std::set<CaptureId> used;
-  for (const std::size_t idx : work.captures) used.insert(problem.captures[idx].capture);
-  return CaptureBlocks(problem.session_captures, used);
 }
 
 std::vector<char> BeamsSeen(const TrackerLidarWork& work) {
@@ -86,7 +79,8 @@ Matrix6d ModelInformation(const TrackerLidarWork& work) {
 Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem, const TrackerLidarWork& work) {
   RIGCAL_ASSIGN(std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, work)));
   std::vector<BlockVector> blocks;
-  const std::vector<CaptureBlock> left_out = BlocksOf(problem, work);
+  const std::vector<CaptureBlock> left_out =
+      CaptureBlocks(problem.session_captures, CapturesAt(problem, work.captures));
   if (left_out.size() >= kTrackerLidarForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, work, left_out[k]); };
     RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), EdgePose(problem, work.state.T_body_lidar), without));

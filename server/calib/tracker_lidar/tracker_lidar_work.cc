@@ -194,11 +194,7 @@ OrDiagnosis<void> Settle(const TrackerLidarProblem& problem, TrackerLidarWork& w
 void Drop(TrackerLidarWork& work, std::size_t position, const std::string& why) {
   work.unused[work.captures[position]] = why;
   work.contradicting.push_back(work.captures[position]);
-  const auto at = static_cast<std::ptrdiff_t>(position);
-  work.captures.erase(work.captures.begin() + at);
-  work.patches.erase(work.patches.begin() + at);
-  work.problem.captures.erase(work.problem.captures.begin() + at);
-  work.state.T_world_body.erase(work.state.T_world_body.begin() + at);
+  EraseAt(position, work.captures, work.patches, work.problem.captures, work.state.T_world_body);
 }
 
 TrackerLidarCheck CheckOfPatch(const TrackerLidarWork& work, std::size_t position, std::size_t i) {
@@ -226,7 +222,7 @@ bool DropContradicting(TrackerLidarWork& work) {
     for (std::size_t i = work.patches[k].size(); i-- > 0;) {
       --at;
       if (gate.Passes(distances_m[at], angles_rad[at])) continue;
-      work.patches[k].erase(work.patches[k].begin() + static_cast<std::ptrdiff_t>(i));
+      EraseAt(i, work.patches[k]);
       any = true;
     }
     if (work.patches[k].empty()) Drop(work, k, "its boards are not where the other captures have them");
