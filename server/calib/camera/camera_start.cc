@@ -6,15 +6,14 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
+#include "server/calib/core/robust.h"
 #include "server/calib/planes/planar_pose.h"
 
 namespace rigcal::calib {
 
 CameraViews Spread(const CameraViews& views, std::size_t count_max) {
   CameraViews spread = views;
-  const std::size_t total = views.seen.size(), count = std::min(total, count_max);
-  spread.seen.clear();
-  for (std::size_t i = 0; i < count; ++i) spread.seen.push_back(views.seen[i * total / count]);
+  spread.seen = SpreadOver(views.seen, count_max);
   return spread;
 }
 

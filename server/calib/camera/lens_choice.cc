@@ -7,6 +7,7 @@
 
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/diagnoses.h"
+#include "server/calib/core/robust.h"
 
 namespace rigcal::calib {
 namespace {
@@ -21,11 +22,10 @@ constexpr std::array kLensCodes = {"high_residual", "ill_conditioned", "no_conve
 std::string PixelsText(double value_px) { return Formatted("%.2f px", value_px); }
 
 CameraProblem SomeViews(const CameraProblem& problem) {
-  CameraProblem usable{problem.camera, problem.board, {}}, some = usable;
+  CameraProblem some{problem.camera, problem.board, {}};
   for (const auto& view : problem.views)
-    if (WhyUnusable(view.second, problem.board).empty()) usable.views.push_back(view);
-  const std::size_t total = usable.views.size(), count = std::min(total, kViewsTried);
-  for (std::size_t i = 0; i < count; ++i) some.views.push_back(usable.views[i * total / count]);
+    if (WhyUnusable(view.second, problem.board).empty()) some.views.push_back(view);
+  some.views = SpreadOver(some.views, kViewsTried);
   return some;
 }
 

@@ -61,12 +61,17 @@ Edge EstimateOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair
   return edge;
 }
 
-// Of a problem with a list of `captures`.
+// Of a problem with a list of `captures`: all, or those of which `is_so`.
+template <typename Problem, typename IsSo>
+std::set<CaptureId> CapturesOf(const Problem& problem, const IsSo& is_so) {
+  std::set<CaptureId> captures;
+  for (const auto& capture : problem.captures)
+    if (is_so(capture)) captures.insert(capture.capture);
+  return captures;
+}
 template <typename Problem>
 std::set<CaptureId> CapturesOf(const Problem& problem) {
-  std::set<CaptureId> captures;
-  for (const auto& capture : problem.captures) captures.insert(capture.capture);
-  return captures;
+  return CapturesOf(problem, [](const auto&) { return true; });
 }
 // Those at these of its indices.
 template <typename Problem>

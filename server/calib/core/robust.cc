@@ -1,7 +1,6 @@
 #include "server/calib/core/robust.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 namespace rigcal::calib {

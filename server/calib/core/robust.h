@@ -1,7 +1,8 @@
-// Middles that a few wrong captures do not move, and what is too far from them.
+// Middles that a few wrong captures do not move, what is too far from them, and some of many.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 namespace rigcal::calib {
@@ -24,5 +25,14 @@ struct BoardGate {
 // While intrinsics and T_a_b are rough only gross contradictions count, of swapped or unsynchronized pictures: an rms
 // beyond six times the captures' median, and beyond a part of the picture's width.
 [[nodiscard]] double ContradictingRms_px(const std::vector<double>& rms_px, double width_px);
+
+// At most so many, evenly spread.
+template <typename T>
+[[nodiscard]] std::vector<T> SpreadOver(const std::vector<T>& all, std::size_t count_max) {
+  const std::size_t count = std::min(all.size(), count_max);
+  std::vector<T> spread;
+  for (std::size_t i = 0; i < count; ++i) spread.push_back(all[i * all.size() / count]);
+  return spread;
+}
 
 }  // namespace rigcal::calib

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/calib/core/capture_blocks.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -103,10 +105,7 @@ CameraProblem CameraOf(const StereoProblem& problem, View StereoCapture::*camera
 }
 
 std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
-  std::set<CaptureId> both;
-  for (const StereoCapture& capture : problem.captures)
-    if (BothSee(capture, problem.board)) both.insert(capture.capture);
-  return both;
+  return CapturesOf(problem, [&](const StereoCapture& capture) { return BothSee(capture, problem.board); });
 }
 
 Selection Select(const StereoProblem& problem) {

@@ -143,10 +143,9 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
 }
 
 std::set<CaptureId> SeenByBoth(const LidarCameraProblem& problem) {
-  std::set<CaptureId> both;
-  for (const LidarCameraCapture& capture : problem.captures)
-    if (capture.view && capture.view->found && capture.cloud && capture.cloud->found) both.insert(capture.capture);
-  return both;
+  return CapturesOf(problem, [](const LidarCameraCapture& capture) {
+    return capture.view && capture.view->found && capture.cloud && capture.cloud->found;
+  });
 }
 
 }  // namespace

@@ -181,10 +181,10 @@ Directions Unknown(const std::vector<SurfacePairs>& captures, const Se3& T_map_m
 PairInformation InformationOf(const std::vector<SurfacePairs>& captures, const Se3& T_map_moving,
                               const Directions& unknown, double voxel_m) {
   PairInformation information;
-  information.distance_sigma_m = DistanceSigma_m(captures);
+  const double distance_sigma_m = DistanceSigma_m(captures);
   BlockSums sums;
   for (const SurfacePairs& capture : captures)
-    AddCapture(capture, T_map_moving.R(), information.distance_sigma_m, kBlockVoxels * voxel_m, sums);
+    AddCapture(capture, T_map_moving.R(), distance_sigma_m, kBlockVoxels * voxel_m, sums);
   information.blocks = sums.blocks;
   const Directions B = SplitBy(unknown).across;
   const auto rank = static_cast<double>(B.cols()), blocks = static_cast<double>(sums.blocks);

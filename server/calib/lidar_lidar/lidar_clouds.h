@@ -55,7 +55,6 @@ struct SurfacePairs {
 struct PairInformation {
   Matrix6d Omega = Matrix6d::Zero();
   std::size_t blocks = 0;
-  double distance_sigma_m = 0;
 };
 [[nodiscard]] PairInformation InformationOf(const std::vector<SurfacePairs>& captures, const Se3& T_map_moving,
                                             const Directions& unknown, double voxel_m);

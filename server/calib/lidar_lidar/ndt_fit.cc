@@ -186,7 +186,7 @@ Vector6d StepOf(const NdtScore& score, double damping, const Directions& locked)
 }  // namespace
 
 NdtMap NdtMapOf(const MomentGrid& grid, NdtKind kind) {
-  NdtMap map{grid.cell_m, kind, CellIndex(grid.cells.size() / 2), {}};
+  NdtMap map{grid.cell_m, CellIndex(grid.cells.size() / 2), {}};
   for (std::size_t i = 0; i < grid.cells.size(); ++i) {
     if (grid.cells[i].count < kNdtPointsMin) continue;
     NdtVoxel voxel = VoxelOf(grid.cells[i], kind);

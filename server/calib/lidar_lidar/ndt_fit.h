@@ -27,7 +27,6 @@ struct NdtVoxel {
 
 struct NdtMap {
   double voxel_m = 1;
-  NdtKind kind = NdtKind::kDistributions;
   CellIndex index;
   std::vector<NdtVoxel> voxels;  // by the index's numbers; voxels of too few points are not there
 };

@@ -190,13 +190,6 @@ Se3 StartAt(int i) {
   return start.Normalized();
 }
 
-std::vector<PlacedPatches> SpreadOf(const std::vector<PlacedPatches>& captures, std::size_t count_max) {
-  const std::size_t count = std::min(captures.size(), count_max);
-  std::vector<PlacedPatches> spread;
-  for (std::size_t i = 0; i < count; ++i) spread.push_back(captures[i * captures.size() / count]);
-  return spread;
-}
-
 bool IsAnother(const Se3& T, const Se3& S) {
   const Vector6d apart = (T.Inverse() * S).Log();
   return apart.tail<3>().norm() > kOtherAngle_rad || apart.head<3>().norm() > kOtherShift_m;
@@ -205,7 +198,7 @@ bool IsAnother(const Se3& T, const Se3& S) {
 // From rotations all round: scouted on a few captures, the best refined on more.
 std::vector<Attempt> AttemptsAllRound(const std::vector<PlacedPatches>& captures, std::size_t captures_min) {
   const Prior anywhere{Eigen::Vector3d::Zero(), kAnywhereSigma_m};
-  const std::vector<PlacedPatches> scouts = SpreadOf(captures, kScoutsMax);
+  const std::vector<PlacedPatches> scouts = SpreadOver(captures, kScoutsMax);
   const std::size_t scouts_min = std::max(kScoutsAgreeMin, captures_min * scouts.size() / captures.size());
   std::vector<Attempt> scouted(kStarts);
   ParallelFor(scouted.size(), [&](std::size_t i) {
@@ -261,7 +254,7 @@ PlaneConsensus ConsensusOf(const std::vector<PlacedPatches>& captures, const Att
 
 std::optional<PlaneConsensus> FindStaticBoards(const std::vector<PlacedPatches>& captures,
                                                const std::optional<Se3>& nominal, std::size_t captures_min) {
-  const std::vector<PlacedPatches> spread = SpreadOf(captures, kProposersMax);
+  const std::vector<PlacedPatches> spread = SpreadOver(captures, kProposersMax);
   std::optional<Attempt> best;
   if (nominal) {
     best = AttemptFrom(spread, *nominal, {nominal->p_m, kNominalSigma_m}, kWidthsNearNominal, captures_min);

@@ -62,10 +62,7 @@ std::vector<Hypotheses> Voters(const std::vector<PoseCandidates>& captures) {
   std::vector<Hypotheses> all;
   for (const PoseCandidates& capture : captures)
     if (Hypotheses hypotheses = HypothesesOf(capture); !hypotheses.empty()) all.push_back(std::move(hypotheses));
-  if (all.size() <= kVotersMax) return all;
-  std::vector<Hypotheses> spread;
-  for (std::size_t i = 0; i < kVotersMax; ++i) spread.push_back(all[i * all.size() / kVotersMax]);
-  return spread;
+  return SpreadOver(all, kVotersMax);
 }
 
 // Median per tangent axis of what lies near T.

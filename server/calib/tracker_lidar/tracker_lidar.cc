@@ -106,10 +106,8 @@ Edge Solved(const TrackerLidarProblem& problem) {
 }
 
 std::set<CaptureId> SeenByBoth(const TrackerLidarProblem& problem) {
-  std::set<CaptureId> both;
-  for (const TrackerLidarCapture& capture : problem.captures)
-    if (capture.T_world_body && !PatchesOf(capture).empty()) both.insert(capture.capture);
-  return both;
+  return CapturesOf(
+      problem, [](const TrackerLidarCapture& capture) { return capture.T_world_body && !PatchesOf(capture).empty(); });
 }
 
 }  // namespace
