@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"
 
 namespace rigcal::calib {

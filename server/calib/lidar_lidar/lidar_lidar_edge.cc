@@ -1,6 +1,6 @@
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
-#include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 
 namespace rigcal::calib {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "server/calib/camera/camera_diagnoses.h"
-#include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"
 #include "server/calib/motion/stream_motion.h"
 

@@ -1,4 +1,4 @@
-#include "server/calib/motion/hand_eye_diagnoses.h"
+#include "server/calib/motion/hand_eye_work.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/wording.h"
-#include "server/calib/motion/hand_eye_work.h"
 #include "server/calib/motion/stream_motion.h"
 
 namespace rigcal::calib {

@@ -3,7 +3,6 @@
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/motion/hand_eye.h"
-#include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"
 
 namespace rigcal::calib {

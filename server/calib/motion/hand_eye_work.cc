@@ -5,7 +5,6 @@
 #include <set>
 
 #include "server/calib/core/selection.h"
-#include "server/calib/motion/hand_eye_diagnoses.h"
 
 namespace rigcal::calib {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
-#include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
 namespace rigcal::calib {

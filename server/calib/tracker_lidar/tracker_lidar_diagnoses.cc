@@ -1,9 +1,8 @@
-#include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
+#include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
 #include <cmath>
 
 #include "server/calib/core/wording.h"
-#include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
 namespace rigcal::calib {
 namespace {

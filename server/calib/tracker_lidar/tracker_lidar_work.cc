@@ -5,7 +5,6 @@
 
 #include "server/calib/core/range_constants.h"
 #include "server/calib/core/robust.h"
-#include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
 
 namespace rigcal::calib {
 namespace {
