@@ -5,10 +5,8 @@
 #include <Eigen/Eigenvalues>
 
 #include "server/calib/camera/projection.h"
-#include "server/calib/core/costs/reference_view.h"
-#include "server/calib/core/costs/second_view.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
-#include "server/calib/core/se3_manifold.h"
 
 namespace rigcal::calib {
 namespace {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "server/calib/camera/camera_fit.h"
 #include "server/calib/camera/lens_choice.h"
+#include "server/calib/core/selection.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {

@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "server/calib/camera/intrinsics_variants.h"
-#include "server/calib/core/costs/given_intrinsics.h"
+#include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/motion/hand_eye.h"
 #include "server/math/statistics.h"
 #include "tests/unit/calib_virtual_motion.h"

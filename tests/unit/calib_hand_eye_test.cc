@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"
 #include "server/calib/motion/motion_start.h"
 #include "server/calib/motion/stream_motion.h"

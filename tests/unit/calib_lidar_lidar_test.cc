@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "server/calib/lidar_lidar/lidar_lidar.h"
-#include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "server/calib/lidar_lidar/ndt_fit.h"
 #include "tests/unit/calib_virtual_room.h"
 

@@ -1,7 +1,7 @@
 // A session with very many captures: what each pair uses of it.
 #include <gtest/gtest.h>
 
-#include "server/calib/core/pair_captures.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/stereo/stereo.h"
 #include "tests/unit/calib_virtual_pair.h"
 

@@ -4,7 +4,6 @@
 #include <opencv2/calib3d.hpp>
 #include <random>
 
-#include "server/calib/camera/monotonic.h"
 #include "server/calib/camera/projection.h"
 
 namespace rigcal::calib {

@@ -196,4 +196,8 @@ CameraFit SeenBy(const CameraProblem& problem) {
   return fit;
 }
 
+CameraFit FitOrSeen(const CameraProblem& problem, const CameraEstimate* camera) {
+  return camera != nullptr ? FitOf(problem, camera->intrinsics, camera->T_cam_board) : SeenBy(problem);
+}
+
 }  // namespace rigcal::calib

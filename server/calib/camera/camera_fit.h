@@ -2,19 +2,11 @@
 #pragma once
 
 #include <map>
-#include <optional>
-#include <vector>
 
 #include "server/calib/camera/intrinsics.h"
 #include "server/model/camera_fit.h"
 
 namespace rigcal::calib {
-
-struct StereoCapture;
-struct StereoProblem;
-struct StereoEstimate;
-struct LidarCameraProblem;
-struct HandEyeProblem;
 
 // Views of a camera with the board where an estimate puts it. `turns`: how the corners of a view are renumbered, as
 // StereoEstimate::turn_b. Views without a pose are left out. Estimated intrinsics get a sigma by a jackknife over the
@@ -25,12 +17,7 @@ struct HandEyeProblem;
 // Where the board was found, of a camera that was not solved.
 [[nodiscard]] CameraFit SeenBy(const CameraProblem& problem);
 
-// One camera of a pair (&StereoCapture::a or b) by itself.
-[[nodiscard]] CameraProblem CameraOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
-// Every camera of the pair. Without an estimate: what was seen.
-[[nodiscard]] std::vector<CameraFit> FitsOf(const StereoProblem& problem, const StereoEstimate* estimate);
-[[nodiscard]] std::vector<CameraFit> FitsOf(const LidarCameraProblem& problem, const CameraEstimate* camera);
-[[nodiscard]] std::vector<CameraFit> FitsOf(const HandEyeProblem& problem, const CameraEstimate* camera_a,
-                                            const CameraEstimate* camera_b);
+// The former of an estimate; without: the latter.
+[[nodiscard]] CameraFit FitOrSeen(const CameraProblem& problem, const CameraEstimate* camera);
 
 }  // namespace rigcal::calib

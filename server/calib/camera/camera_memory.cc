@@ -31,7 +31,7 @@ void CameraMemory::Keep(Entry entry) {
   }
 }
 
-tl::expected<CameraEstimate, Diagnosis> CameraMemory::Estimate(const CameraProblem& problem) {
+OrDiagnosis<CameraEstimate> CameraMemory::Estimate(const CameraProblem& problem) {
   if (const auto known = Find(problem)) return *known;
   auto answer = std::make_shared<const Answer>(EstimateCameraBy(solver_, problem));
   if (*answer || answer->error().code != "internal") Keep({problem, answer});

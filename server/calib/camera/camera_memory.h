@@ -15,10 +15,10 @@ namespace rigcal::calib {
 class CameraMemory {
  public:
   explicit CameraMemory(CameraSolver solver = {}) : solver_(std::move(solver)) {}
-  [[nodiscard]] tl::expected<CameraEstimate, Diagnosis> Estimate(const CameraProblem& problem);
+  [[nodiscard]] OrDiagnosis<CameraEstimate> Estimate(const CameraProblem& problem);
 
  private:
-  using Answer = tl::expected<CameraEstimate, Diagnosis>;
+  using Answer = OrDiagnosis<CameraEstimate>;
   struct Entry {
     CameraProblem problem;
     std::shared_ptr<const Answer> answer;

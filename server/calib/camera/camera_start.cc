@@ -1,15 +1,44 @@
 #include "server/calib/camera/camera_start.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "server/calib/camera/fisheye_start.h"
-#include "server/calib/camera/rational_start.h"
-#include "server/calib/camera/seen_reach.h"
-#include "server/calib/planes/placed_boards.h"
+#include "server/calib/core/robust.h"
+#include "server/calib/planes/planar_pose.h"
 
 namespace rigcal::calib {
+
+CameraViews Spread(const CameraViews& views, std::size_t count_max) {
+  CameraViews spread = views;
+  spread.seen = SpreadOver(views.seen, count_max);
+  return spread;
+}
+
+JointProblem OneCamera(const CameraViews& views, bool estimate) {
+  JointProblem joint;
+  joint.corners_board = views.corners_board;
+  joint.a.model = views.model;
+  joint.a.estimate = estimate;
+  joint.b.estimate = false;
+  for (const SeenCorners& seen : views.seen) joint.captures.push_back({seen, {}});
+  return joint;
+}
+
+double SeenReach(CameraModel model, const IntrinsicsVector& intrinsics, const CameraViews& views) {
+  double reach = 0;
+  for (const SeenCorners& seen : views.seen)
+    for (const Eigen::Vector2d& uv_px : seen.uv_px) {
+      const auto ray = Unproject(model, intrinsics, uv_px);
+      if (!ray) continue;
+      const double r = ray->head<2>().norm();
+      reach = std::max(reach, model == CameraModel::kFisheyeKb4 ? std::atan2(r, ray->z()) : r / ray->z());
+    }
+  return reach;
+}
+
 namespace {
 
 // Enough for a start, and the cost of OpenCV's solver grows with the cube of the number of views.
@@ -71,25 +100,56 @@ IntrinsicsVector WithoutFold(const CameraViews& views, IntrinsicsVector intrinsi
   return intrinsics;
 }
 
+struct PlacedBoards {
+  JointProblem joint;  // with the intrinsics to be estimated
+  JointState state;
+  double cost_px2 = 0;
+};
+
+// The poses of all boards, refined with the intrinsics held. A view that no pose explains leaves the problem.
+PlacedBoards PlaceBoards(const CameraViews& views, const IntrinsicsVector& intrinsics) {
+  const JointProblem all = OneCamera(views, true);
+  PlacedBoards placed{all, {}, 0};
+  placed.joint.captures.clear();
+  JointState state;
+  state.intrinsics_a = placed.state.intrinsics_a = intrinsics;
+  state.T_a_board.resize(all.captures.size());
+  // No view counts more than one that is off by a tenth of the picture.
+  const double worst_px = 0.1 * std::max(views.width_px, views.height_px);
+  for (std::size_t k = 0; k < all.captures.size(); ++k) {
+    const PoseChoice choice = ChoosePose(all, state, k, AllowedPoses(all, state, k));
+    const double limit_px2 = worst_px * worst_px * static_cast<double>(all.captures[k].a.size());
+    placed.cost_px2 += std::min(choice.ssr_px2, limit_px2);
+    if (!(choice.ssr_px2 < limit_px2)) continue;
+    placed.joint.captures.push_back(all.captures[k]);
+    placed.state.T_a_board.push_back(choice.T_a_board);
+  }
+  return placed;
+}
+
+// Of the longer side.
+constexpr std::array<double, 9> kFields_deg = {50, 65, 85, 105, 125, 150, 175, 200, 230};
+constexpr std::size_t kViewsTried = 12;
+
+IntrinsicsVector Equidistant(const CameraViews& views, double field_deg) {
+  IntrinsicsVector intrinsics = IntrinsicsVector::Zero();
+  const double focal_px = std::max(views.width_px, views.height_px) / (field_deg * M_PI / 180);
+  intrinsics.head<4>() << focal_px, focal_px, 0.5 * (views.width_px - 1), 0.5 * (views.height_px - 1);
+  return intrinsics;
+}
+
+// The equidistant lens (f = longer side / field of view, principal point in the middle) whose board poses reproject
+// best.
+IntrinsicsVector RoughFisheye(const CameraViews& views) {
+  const CameraViews tried = Spread(views, kViewsTried);
+  std::array<double, kFields_deg.size()> costs_px2{};
+  for (std::size_t i = 0; i < kFields_deg.size(); ++i)
+    costs_px2[i] = PlaceBoards(tried, Equidistant(tried, kFields_deg[i])).cost_px2;
+  const auto best = std::min_element(costs_px2.begin(), costs_px2.end()) - costs_px2.begin();
+  return Equidistant(views, kFields_deg[static_cast<std::size_t>(best)]);
+}
+
 }  // namespace
-
-CameraViews Spread(const CameraViews& views, std::size_t count_max) {
-  CameraViews spread = views;
-  const std::size_t total = views.seen.size(), count = std::min(total, count_max);
-  spread.seen.clear();
-  for (std::size_t i = 0; i < count; ++i) spread.seen.push_back(views.seen[i * total / count]);
-  return spread;
-}
-
-JointProblem OneCamera(const CameraViews& views, bool estimate) {
-  JointProblem joint;
-  joint.corners_board = views.corners_board;
-  joint.model_a = views.model;
-  joint.estimate_a = estimate;
-  joint.estimate_b = false;
-  for (const SeenCorners& seen : views.seen) joint.captures.push_back({seen, {}});
-  return joint;
-}
 
 IntrinsicsVector RoughIntrinsics(const CameraViews& views) {
   if (views.model == CameraModel::kFisheyeKb4) return RoughFisheye(views);
@@ -111,10 +171,65 @@ IntrinsicsVector RoughIntrinsics(const CameraViews& views) {
 
 namespace {
 
+constexpr double kReachMax_rad = 80 * M_PI / 180;
+constexpr int kSamples = 100;
+constexpr int kTerms = 6;  // k1 k2 k3, then k4 k5 k6
+// Of the equations' mean diagonal: the two halves nearly cancel, and of all that bend alike the smallest will do.
+constexpr double kDamping = 1e-9;
+constexpr double kOffMax_ratio = 0.01;  // of the focal length: a start may be off by so much
+
+// Where the fisheye has a ray, in focal lengths from the principal point.
+double Bent(const IntrinsicsVector& fisheye, double angle_rad) {
+  const double s = angle_rad * angle_rad;
+  return angle_rad * (1 + s * (fisheye[4] + s * (fisheye[5] + s * (fisheye[6] + s * fisheye[7]))));
+}
+
+struct Equations {
+  Eigen::Matrix<double, kSamples, kTerms> by_terms;
+  Eigen::Matrix<double, kSamples, 1> wanted;
+};
+
+// q (1 + k4 s + k5 s^2 + k6 s^3) = 1 + k1 s + k2 s^2 + k3 s^3 with q the fisheye's radius over the undistorted one,
+// times the latter, at angles up to the reach; s in units of its largest value.
+Equations EquationsOf(const IntrinsicsVector& fisheye, double reach_rad) {
+  Equations equations;
+  for (int i = 0; i < kSamples; ++i) {
+    const double angle_rad = reach_rad * (i + 1) / kSamples, r = std::tan(angle_rad);
+    const double quotient = Bent(fisheye, angle_rad) / r, s = std::pow(r / std::tan(reach_rad), 2);
+    const Eigen::RowVector3d powers(s, s * s, s * s * s);
+    equations.by_terms.row(i) << r * powers, -r * quotient * powers;
+    equations.wanted[i] = r * (quotient - 1);
+  }
+  return equations;
+}
+
+// The rational lens that bends as the fisheye does up to `reach_rad` from the axis, focal lengths and principal point
+// as they are. Nothing where a pinhole does not see as far, or no quotient bends so.
+std::optional<IntrinsicsVector> RationalLike(const IntrinsicsVector& fisheye, double reach_rad) {
+  if (!(reach_rad > 0 && reach_rad < kReachMax_rad)) return std::nullopt;
+  const Equations equations = EquationsOf(fisheye, reach_rad);
+  Eigen::Matrix<double, kTerms, kTerms> normal = equations.by_terms.transpose() * equations.by_terms;
+  normal.diagonal().array() += kDamping * normal.trace() / kTerms;
+  const Eigen::Matrix<double, kTerms, 1> k = normal.ldlt().solve(equations.by_terms.transpose() * equations.wanted);
+  const double s = std::pow(std::tan(reach_rad), 2);
+  IntrinsicsVector rational = IntrinsicsVector::Zero();
+  rational.head<4>() = fisheye.head<4>();
+  rational.tail<8>() << k[0] / s, k[1] / (s * s), 0, 0, k[2] / (s * s * s), k[3] / s, k[4] / (s * s),
+      k[5] / (s * s * s);
+  for (const double part : {0.25, 0.5, 0.75, 1.0}) {
+    const double angle_rad = part * reach_rad;
+    const Projection at =
+        Project(CameraModel::kPinholeRational, rational, {std::sin(angle_rad), 0, std::cos(angle_rad)});
+    const double off_px = at.uv_px.x() - rational[2] - rational[0] * Bent(fisheye, angle_rad);
+    if (!at.in_front || !(std::abs(off_px) < kOffMax_ratio * rational[0])) return std::nullopt;
+  }
+  return rational;
+}
+
 Result<IntrinsicsVector> StartAs(CameraModel model, CameraViews spread) {
   spread.model = model;
   PlacedBoards placed = PlaceBoards(spread, RoughIntrinsics(spread));
-  if (model == CameraModel::kPinholeRadtan) placed.joint.held_a = kTangentialAndThird;
+  if (model == CameraModel::kPinholeRadtan) placed.joint.a.held = kTangentialAndThird;
   const auto refined = SolveJoint(placed.joint, placed.state);
   if (!refined || !CanBe(refined->state.intrinsics_a, spread)) return NoIntrinsics();
   return refined->state.intrinsics_a;

@@ -23,11 +23,15 @@ struct CameraViews {
 [[nodiscard]] JointProblem OneCamera(const CameraViews& views, bool estimate);
 
 // Without distortion, principal point in the middle. Pinhole: focal lengths from vanishing points; where the views do
-// not tell them (no tilt), the picture's longer side. Fisheye: as RoughFisheye. Always usable.
+// not tell them (no tilt), the picture's longer side. Fisheye: fields of view are tried. Always usable.
 [[nodiscard]] IntrinsicsVector RoughIntrinsics(const CameraViews& views);
 // The rough intrinsics refined together with the board poses, a pinhole with two radial terms (Zhang 2000), on at most
 // some tens of the views, evenly spread; every corner of the views can be seen. Rational: those, or what a fisheye
 // makes of the views where boards reproject better with it.
 [[nodiscard]] Result<IntrinsicsVector> StartIntrinsics(const CameraViews& views);
+
+// How far from the axis the outermost corner is, as the distortion's series takes it: the radius at depth 1 (pinhole)
+// or the angle in radians (fisheye). Corners that the lens cannot see do not count.
+[[nodiscard]] double SeenReach(CameraModel model, const IntrinsicsVector& intrinsics, const CameraViews& views);
 
 }  // namespace rigcal::calib

@@ -8,20 +8,17 @@
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/lens_choice.h"
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
+#include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
-#include "server/calib/planes/pose_choice.h"
+#include "server/calib/planes/planar_pose.h"
 #include "server/calib/stereo/observability.h"
 
 namespace rigcal::calib {
 namespace {
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
-// As for a pair: only gross contradictions count while the intrinsics are rough.
-constexpr double kContradictingRatio = 6.0, kContradictingWidthRatio = 0.02;
 // Another sensor will judge, so more poses are kept than the corners alone leave open (16): ten sigma.
 constexpr double kAlternativeCost = 100.0;
 constexpr int kPoseRoundsMax = 4;
@@ -39,10 +36,7 @@ struct Work {
 
   void Drop(std::size_t k, const std::string& why) {
     unused[captures[k]] = why;
-    const auto at = static_cast<std::ptrdiff_t>(k);
-    captures.erase(captures.begin() + at);
-    joint.captures.erase(joint.captures.begin() + at);
-    state.T_a_board.erase(state.T_a_board.begin() + at);
+    EraseAt(k, captures, joint.captures, state.T_a_board);
   }
 };
 
@@ -90,7 +84,7 @@ OrDiagnosis<IntrinsicsVector> StartOf(const CameraProblem& problem, const Camera
   if (problem.camera.intrinsics) return VectorOf(*problem.camera.intrinsics);
   if (auto no_tilt = WhyNoTilt(camera, views)) return tl::unexpected(std::move(*no_tilt));
   const auto start = StartIntrinsics(views);
-  if (!start) return tl::unexpected(CameraError(camera, "no_intrinsics", start.error()));
+  if (!start) return tl::unexpected(AsDiagnosis(camera.str(), "no_intrinsics", start.error()));
   return *start;
 }
 
@@ -107,10 +101,7 @@ void PlaceBoards(Work& work) {
     work.state.T_a_board[k] = ChoosePose(work.joint, work.state, k, allowed).T_a_board;
     rms_px.push_back(allowed.empty() ? std::numeric_limits<double>::infinity() : RmsOf(work, k));
   }
-  std::vector<double> sorted = rms_px;
-  std::sort(sorted.begin(), sorted.end());
-  const double limit_px =
-      std::max(kContradictingRatio * sorted[sorted.size() / 2], kContradictingWidthRatio * work.views.width_px);
+  const double limit_px = ContradictingRms_px(rms_px, work.views.width_px);
   for (std::size_t k = work.captures.size(); k-- > 0;)
     if (!(rms_px[k] <= limit_px && std::isfinite(rms_px[k]))) work.Drop(k, "no pose of the board explains its corners");
 }
@@ -125,27 +116,26 @@ double VarianceOf(const Work& work) {
   return SumOfSquaresOf(work) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
 }
 
-OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
-  if (problem.camera.intrinsics) {
-    for (std::size_t k = 0; k < work.captures.size(); ++k)
-      work.state.T_a_board[k] = SolveBoardPose(work.joint, work.state, k, work.state.T_a_board[k]);
-    return {};
-  }
+OrDiagnosis<void> Solve(const CameraProblem& problem, Work& work) {
   auto solution = SolveJoint(work.joint, work.state);
-  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
+  if (!solution) return tl::unexpected(AsDiagnosis(problem.camera.id.str(), "no_convergence", solution.error()));
   work.state = std::move(solution->state);
+  return {};
+}
+
+OrDiagnosis<void> Refine(const CameraProblem& problem, Work& work) {
+  if (!problem.camera.intrinsics) return Solve(problem, work);
+  for (std::size_t k = 0; k < work.captures.size(); ++k)
+    work.state.T_a_board[k] = SolveBoardPose(work.joint, work.state, k, work.state.T_a_board[k]);
   return {};
 }
 
 // Frees intrinsics that were given with sigmas. What the corners are good for is known once they fit.
 OrDiagnosis<void> RefineWithin(const CameraProblem& problem, double corner_sigma_px, Work& work) {
-  work.joint.estimate_a = true;
-  work.joint.held_a = HeldOf(problem.camera);
-  work.joint.pull_a = PullOf(problem.camera, corner_sigma_px);
-  auto solution = SolveJoint(work.joint, work.state);
-  if (!solution) return tl::unexpected(CameraError(problem.camera.id, "no_convergence", solution.error()));
-  work.state = std::move(solution->state);
-  return {};
+  work.joint.a.estimate = true;
+  work.joint.a.held = HeldOf(problem.camera);
+  work.joint.a.pull = PullOf(problem.camera, corner_sigma_px);
+  return Solve(problem, work);
 }
 
 // One look at every board's other pose: kept as an alternative, or taken. Returns whether anything changed.
@@ -220,14 +210,14 @@ OrDiagnosis<void> CheckConditioning(const CameraProblem& problem, const Work& wo
   if (!covariance) return tl::unexpected(CameraIllConditioned(problem.camera.id, covariance.error().what));
   const Eigen::VectorXd variances = covariance->captures.diagonal().segment<kIntrinsicsMax>(kIntrinsicsAStart);
   if (auto open =
-          WhyDistortionOpen(problem.camera.id, work.joint.model_a, variances, work.views, work.state.intrinsics_a))
+          WhyDistortionOpen(problem.camera.id, work.joint.a.model, variances, work.views, work.state.intrinsics_a))
     return tl::unexpected(std::move(*open));
   return {};
 }
 
 void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) {
-  if (!work.joint.estimate_a) return;
-  if (const auto moments = MomentsAt(work.joint.model_a, work.state.intrinsics_a, work.joint.corners_board,
+  if (!work.joint.a.estimate) return;
+  if (const auto moments = MomentsAt(work.joint.a.model, work.state.intrinsics_a, work.joint.corners_board,
                                      work.joint.captures[k].a, work.state.T_a_board[k]))
     estimate.of_intrinsics.emplace(work.captures[k], Eliminated(*moments));
 }
@@ -235,10 +225,10 @@ void AddOfIntrinsics(const Work& work, std::size_t k, CameraEstimate& estimate) 
 OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& work) {
   if (auto conditioned = CheckConditioning(problem, work); !conditioned) return tl::unexpected(conditioned.error());
   CameraEstimate estimate;
-  estimate.intrinsics = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
+  estimate.intrinsics = IntrinsicsOf(work.joint.a.model, work.state.intrinsics_a);
   estimate.unused = work.unused;
   estimate.variance_px2 = VarianceOf(work);
-  estimate.pull = work.joint.pull_a;
+  estimate.pull = work.joint.a.pull;
   for (std::size_t k = 0; k < work.captures.size(); ++k) {
     const CaptureId& capture = work.captures[k];
     const auto information = BoardInformation(work.joint, work.state, k);
@@ -270,7 +260,7 @@ OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const Camera
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};
-    return tl::unexpected(CameraError(problem.camera.id, "internal", error));
+    return tl::unexpected(AsDiagnosis(problem.camera.id.str(), "internal", error));
   }
 }
 

@@ -3,13 +3,14 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
-#include <tl/expected.hpp>
 #include <utility>
 #include <vector>
 
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/view_moments.h"
+#include "server/calib/core/wording.h"
 #include "server/model/diagnosis.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
@@ -42,15 +43,25 @@ struct CameraEstimate {
 
 // EstimateCamera without a start, or something that remembers what it said (and then must outlive the problem it is put
 // into); empty: EstimateCamera.
-using CameraSolver = std::function<tl::expected<CameraEstimate, Diagnosis>(const CameraProblem&)>;
+using CameraSolver = std::function<OrDiagnosis<CameraEstimate>(const CameraProblem&)>;
 
 // Pure and deterministic. Given intrinsics without sigmas stay as given: poses only, one view is enough. With sigmas
 // all views refine them within those, and one view is enough too. Estimated ones need 3 views with tilted boards. With
 // `start`, from its intrinsics and poses: the captures it has, with their alternatives kept as they are, unrefined
 // (leave-one-out). Throws where there is no memory, else never.
-[[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCamera(const CameraProblem& problem,
-                                                                     const CameraEstimate* start = nullptr);
-[[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCameraBy(const CameraSolver& solver,
-                                                                       const CameraProblem& problem);
+[[nodiscard]] OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem,
+                                                         const CameraEstimate* start = nullptr);
+[[nodiscard]] OrDiagnosis<CameraEstimate> EstimateCameraBy(const CameraSolver& solver, const CameraProblem& problem);
+
+// intrinsics_variants.cc: a camera whose intrinsics were given with sigmas, with one thing changed. Intrinsics and
+// board poses follow to first order, as changes are small against what the sigmas allow.
+//
+// `estimate.pull` pulls. The view's own pose is gone too.
+[[nodiscard]] CameraEstimate WithoutViews(const CameraEstimate& estimate, const std::set<CaptureId>& captures);
+// What the errors of the corners do to refined or estimated intrinsics: independent changes of one sigma each.
+[[nodiscard]] std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate);
+[[nodiscard]] CameraEstimate WithIntrinsicsMoved(const CameraEstimate& estimate, const IntrinsicsVector& change);
+// The intrinsic with that index given larger by so many of its sigmas.
+[[nodiscard]] CameraEstimate WithGiven(const CameraEstimate& estimate, int idx, double sigmas);
 
 }  // namespace rigcal::calib

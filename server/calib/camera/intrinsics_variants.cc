@@ -1,9 +1,9 @@
-#include "server/calib/camera/intrinsics_variants.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "server/calib/camera/intrinsics.h"
 
 namespace rigcal::calib {
 namespace {

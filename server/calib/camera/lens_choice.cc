@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/diagnoses.h"
+#include "server/calib/core/robust.h"
 
 namespace rigcal::calib {
 namespace {
@@ -19,18 +19,13 @@ constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFishe
 constexpr std::array kLensCodes = {"high_residual", "ill_conditioned", "no_convergence", "no_intrinsics",
                                    "distortion_not_observable"};
 
-std::string PixelsText(double value_px) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f px", value_px);
-  return text;
-}
+std::string PixelsText(double value_px) { return Formatted("%.2f px", value_px); }
 
 CameraProblem SomeViews(const CameraProblem& problem) {
-  CameraProblem usable{problem.camera, problem.board, {}}, some = usable;
+  CameraProblem some{problem.camera, problem.board, {}};
   for (const auto& view : problem.views)
-    if (WhyUnusable(view.second, problem.board).empty()) usable.views.push_back(view);
-  const std::size_t total = usable.views.size(), count = std::min(total, kViewsTried);
-  for (std::size_t i = 0; i < count; ++i) some.views.push_back(usable.views[i * total / count]);
+    if (WhyUnusable(view.second, problem.board).empty()) some.views.push_back(view);
+  some.views = SpreadOver(some.views, kViewsTried);
   return some;
 }
 
@@ -41,9 +36,9 @@ double RmsOf_px(const CameraProblem& problem, CameraModel model) {
 }
 
 std::string CureOf(const BetterLens& lens) {
-  return "Give " + lens.camera.str() + " 'model: " + NameOf(lens.model) +
-         "' in session.yaml: by itself it fits its corners to " + PixelsText(lens.rms_px) + " rms with it" +
-         (std::isfinite(lens.own_rms_px) ? ", not to " + PixelsText(lens.own_rms_px) + "." : ".");
+  return Worded("Give {} 'model: {}' in session.yaml: by itself it fits its corners to {} rms with it{}.",
+                {lens.camera, NameOf(lens.model), PixelsText(lens.rms_px),
+                 std::isfinite(lens.own_rms_px) ? ", not to " + PixelsText(lens.own_rms_px) : ""});
 }
 
 bool AddsTermsTo(CameraModel own, CameraModel model) {
@@ -91,8 +86,8 @@ Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::vector<CameraProblem>& 
 
 Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens) {
   return {"lens_model_suspected",
-          problem.camera.id.str() + " fits its corners to " + PixelsText(rms_px) + " rms with the lens model " +
-              NameOf(problem.camera.camera_model) + "; another one fits them better.",
+          Worded("{} fits its corners to {} rms with the lens model {}; another one fits them better.",
+                 {problem.camera.id, PixelsText(rms_px), NameOf(problem.camera.camera_model)}),
           CureOf(lens)};
 }
 

@@ -10,7 +10,7 @@
 namespace rigcal::calib {
 
 // The same views with intrinsics of `model`, from scratch.
-[[nodiscard]] tl::expected<CameraEstimate, Diagnosis> EstimateCameraAs(const CameraProblem& problem, CameraModel model);
+[[nodiscard]] OrDiagnosis<CameraEstimate> EstimateCameraAs(const CameraProblem& problem, CameraModel model);
 
 // To which they then fit, refused or not; infinite where no minimum is reached.
 [[nodiscard]] double FitRms_px(const CameraProblem& problem, CameraModel model);

@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include "server/calib/core/costs/reference_view.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
 
 namespace rigcal::calib {

@@ -1,7 +1,10 @@
 #include "server/calib/core/capture_blocks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <string>
+#include <vector>
 
 namespace rigcal::calib {
 namespace {
@@ -12,6 +15,22 @@ std::string IdOf(const std::vector<CaptureId>& all, std::size_t first, std::size
   if (end - first == 1) return all[first].str();
   std::string id = all[first].str() + "-" + all[end - 1].str();
   return id.size() <= kIdMax ? id : "group " + std::to_string(group + 1) + " of " + std::to_string(kBlocksMax);
+}
+
+using InOrder = std::set<CaptureId, TakenBefore>;
+
+// `count` of them, or all: one of each of so many stretches. The place in the stretch moves on by the golden ratio, so
+// that captures that alternate between two places are all drawn from.
+template <typename Each>
+void ForSpread(const InOrder& captures, std::size_t count, const Each& each) {
+  constexpr double kGolden = 0.6180339887498949;
+  const std::vector<CaptureId> all(captures.begin(), captures.end());
+  count = std::min(count, all.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t first = k * all.size() / count, size = (k + 1) * all.size() / count - first;
+    const double place = std::fmod(static_cast<double>(k) * kGolden, 1.0);
+    each(all[first + static_cast<std::size_t>(place * static_cast<double>(size))]);
+  }
 }
 
 }  // namespace
@@ -47,6 +66,34 @@ std::size_t CountWith(const std::vector<CaptureBlock>& blocks, const std::set<Ca
     return std::any_of(block.captures.begin(), block.captures.end(),
                        [&](const CaptureId& capture) { return captures.contains(capture); });
   }));
+}
+
+PairCaptures ChooseCaptures(const std::vector<CaptureId>& session, const std::set<CaptureId>& seen_by_both) {
+  const InOrder all(session.begin(), session.end());
+  PairCaptures chosen;
+  const auto use = [&](const CaptureId& capture) { chosen.used.insert(capture); };
+  ForSpread(all, all.size() <= kPairCapturesMax ? all.size() : kPairCapturesMax, use);
+  InOrder more;
+  for (const CaptureId& capture : seen_by_both)
+    if (all.contains(capture) && !chosen.used.contains(capture)) more.insert(capture);
+  const std::size_t used_by_both = seen_by_both.size() - more.size();
+  if (used_by_both < kSeenByBothMin) ForSpread(more, kSeenByBothMin - used_by_both, use);
+  for (const CaptureId& capture : all)
+    if (!chosen.used.contains(capture)) chosen.left_out.insert(capture);
+  return chosen;
+}
+
+void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge) {
+  std::size_t left_out = 0;
+  for (const CaptureId& capture : chosen.left_out) left_out += of_pair.contains(capture) ? 1 : 0;
+  const std::string why = std::string(kLeftToRefinement) + ": the pair uses " +
+                          std::to_string(of_pair.size() - left_out) + " of its " + std::to_string(of_pair.size()) +
+                          " captures, spread over the session";
+  for (const CaptureId& capture : chosen.left_out)
+    if (of_pair.contains(capture)) edge.captures.push_back({capture, 0.0, false, why});
+  std::stable_sort(edge.captures.begin(), edge.captures.end(),
+                   [](const CaptureResidual& a, const CaptureResidual& b) { return a.capture < b.capture; });
+  edge.figures["captures_total"] = static_cast<double>(of_pair.size());
 }
 
 }  // namespace rigcal::calib

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "server/calib/core/costs/reference_view.h"
-#include "server/calib/core/costs/second_view.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
 #include "server/math/covariance.h"
 
@@ -54,17 +53,17 @@ std::vector<RowMajor> BlockJacobians(const ceres::CostFunction& cost, const std:
   return jacobians;
 }
 
-void HoldColumns(bool estimate, const std::vector<int>& held, RowMajor& d_intrinsics) {
-  if (!estimate) d_intrinsics.setZero();
-  for (const int i : held) d_intrinsics.col(i).setZero();
+void HoldColumns(const JointCamera& camera, RowMajor& d_intrinsics) {
+  if (!camera.estimate) d_intrinsics.setZero();
+  for (const int i : camera.held) d_intrinsics.col(i).setZero();
 }
 
 bool AddReferenceView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
   const PoseBlock T_a_board = BlockOf(state.T_a_board[k]);
-  auto jacobians = BlockJacobians(*MakeReferenceViewCost(problem.model_a, problem.corners_board, problem.captures[k].a),
+  auto jacobians = BlockJacobians(*MakeReferenceViewCost(problem.a.model, problem.corners_board, problem.captures[k].a),
                                   {state.intrinsics_a.data(), T_a_board.data()});
   if (jacobians.empty()) return false;
-  HoldColumns(problem.estimate_a, problem.held_a, jacobians[0]);
+  HoldColumns(problem.a, jacobians[0]);
   jacobians[1] = jacobians[1] * PlusJacobian(state.T_a_board[k]);
   normal.Add({kIntrinsicsAStart}, jacobians);
   return true;
@@ -72,10 +71,10 @@ bool AddReferenceView(const JointProblem& problem, const JointState& state, std:
 
 bool AddSecondView(const JointProblem& problem, const JointState& state, std::size_t k, CaptureNormal& normal) {
   const PoseBlock T_a_b = BlockOf(state.T_a_b), T_a_board = BlockOf(state.T_a_board[k]);
-  auto jacobians = BlockJacobians(*MakeSecondViewCost(problem.model_b, problem.corners_board, problem.captures[k].b),
+  auto jacobians = BlockJacobians(*MakeSecondViewCost(problem.b.model, problem.corners_board, problem.captures[k].b),
                                   {state.intrinsics_b.data(), T_a_b.data(), T_a_board.data()});
   if (jacobians.empty()) return false;
-  HoldColumns(problem.estimate_b, problem.held_b, jacobians[0]);
+  HoldColumns(problem.b, jacobians[0]);
   jacobians[1] = jacobians[1] * PlusJacobian(state.T_a_b);
   jacobians[2] = jacobians[2] * PlusJacobian(state.T_a_board[k]);
   normal.Add({kIntrinsicsBStart, kPairStart}, jacobians);
@@ -97,8 +96,8 @@ Eigen::MatrixXd ScaledInverse(const Eigen::MatrixXd& matrix) {
 ReducedMatrix PullsOf(const JointProblem& problem) {
   ReducedMatrix pulls = ReducedMatrix::Zero();
   for (int i = 0; i < kIntrinsicsMax; ++i) {
-    if (problem.estimate_a) pulls(kIntrinsicsAStart + i, kIntrinsicsAStart + i) = std::pow(problem.pull_a.Weight(i), 2);
-    if (problem.estimate_b) pulls(kIntrinsicsBStart + i, kIntrinsicsBStart + i) = std::pow(problem.pull_b.Weight(i), 2);
+    if (problem.a.estimate) pulls(kIntrinsicsAStart + i, kIntrinsicsAStart + i) = std::pow(problem.a.pull.Weight(i), 2);
+    if (problem.b.estimate) pulls(kIntrinsicsBStart + i, kIntrinsicsBStart + i) = std::pow(problem.b.pull.Weight(i), 2);
   }
   return pulls;
 }
@@ -164,8 +163,8 @@ Result<JointCovariance> ModelCovariance(const JointProblem& problem, const Joint
     ssr_px2 += error.a_px2 + error.b_px2;
   }
   return JointCovariance{ssr_px2 / dof * (inverse - inverse * pulls * inverse),
-                         ShiftsOf(inverse, kIntrinsicsAStart, problem.pull_a),
-                         ShiftsOf(inverse, kIntrinsicsBStart, problem.pull_b)};
+                         ShiftsOf(inverse, kIntrinsicsAStart, problem.a.pull),
+                         ShiftsOf(inverse, kIntrinsicsBStart, problem.b.pull)};
 }
 
 }  // namespace rigcal::calib

@@ -8,11 +8,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/calib/core/costs/given_intrinsics.h"
-#include "server/calib/core/costs/reference_view.h"
-#include "server/calib/core/costs/second_view.h"
+#include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
-#include "server/calib/core/se3_manifold.h"
 
 namespace rigcal::calib {
 namespace {
@@ -53,10 +50,10 @@ void AddViews(const JointProblem& problem, std::size_t k, double* board, Paramet
               ceres::Problem& ceres_problem) {
   const JointCapture& capture = problem.captures[k];
   if (!capture.a.empty())
-    ceres_problem.AddResidualBlock(MakeReferenceViewCost(problem.model_a, problem.corners_board, capture.a).release(),
+    ceres_problem.AddResidualBlock(MakeReferenceViewCost(problem.a.model, problem.corners_board, capture.a).release(),
                                    nullptr, parameters.a(), board);
   if (!capture.b.empty())
-    ceres_problem.AddResidualBlock(MakeSecondViewCost(problem.model_b, problem.corners_board, capture.b).release(),
+    ceres_problem.AddResidualBlock(MakeSecondViewCost(problem.b.model, problem.corners_board, capture.b).release(),
                                    nullptr, parameters.b(), parameters.pair(), board);
   ceres_problem.SetManifold(board, MakeSe3Manifold().release());
 }
@@ -72,12 +69,12 @@ void HoldSome(ceres::Problem& ceres_problem, double* block, const std::vector<in
 }
 
 // Intrinsics that are held, held in part, or pulled to where they were given.
-void SetIntrinsics(ceres::Problem& ceres_problem, double* block, CameraModel model, bool estimate,
-                   const std::vector<int>& held, const IntrinsicsPull& pull) {
+void SetIntrinsics(ceres::Problem& ceres_problem, double* block, const JointCamera& camera) {
   if (!ceres_problem.HasParameterBlock(block)) return;
-  if (!estimate) return Hold(ceres_problem, block);
-  HoldSome(ceres_problem, block, held);
-  if (pull.Pulls()) ceres_problem.AddResidualBlock(MakeGivenIntrinsicsCost(model, pull).release(), nullptr, block);
+  if (!camera.estimate) return Hold(ceres_problem, block);
+  HoldSome(ceres_problem, block, camera.held);
+  if (camera.pull.Pulls())
+    ceres_problem.AddResidualBlock(MakeGivenIntrinsicsCost(camera.model, camera.pull).release(), nullptr, block);
 }
 
 ceres::Solver::Options Options() {
@@ -96,8 +93,10 @@ ceres::Solver::Options Options() {
 
 // A pull, however weak, closes the valley of the rational model's two halves.
 bool EstimatesRational(const JointProblem& problem) {
-  return (problem.estimate_a && !problem.pull_a.Pulls() && problem.model_a == CameraModel::kPinholeRational) ||
-         (problem.estimate_b && !problem.pull_b.Pulls() && problem.model_b == CameraModel::kPinholeRational);
+  const auto rational = [](const JointCamera& one) {
+    return one.IsFree() && one.model == CameraModel::kPinholeRational;
+  };
+  return rational(problem.a) || rational(problem.b);
 }
 
 tl::unexpected<Error> NotConverged(const JointProblem& problem) {
@@ -143,8 +142,8 @@ Result<JointSolution> SolveJoint(const JointProblem& problem, const JointState& 
   for (std::size_t k = 0; k < boards; ++k) AddViews(problem, k, parameters.board(k), parameters, ceres_problem);
   if (ceres_problem.HasParameterBlock(parameters.pair()))
     ceres_problem.SetManifold(parameters.pair(), MakeSe3Manifold().release());
-  SetIntrinsics(ceres_problem, parameters.a(), problem.model_a, problem.estimate_a, problem.held_a, problem.pull_a);
-  SetIntrinsics(ceres_problem, parameters.b(), problem.model_b, problem.estimate_b, problem.held_b, problem.pull_b);
+  SetIntrinsics(ceres_problem, parameters.a(), problem.a);
+  SetIntrinsics(ceres_problem, parameters.b(), problem.b);
 
   ceres::Solver::Options options = Options();
   AllowForValley(problem, options);
@@ -173,10 +172,10 @@ CaptureError ErrorOf(const JointProblem& problem, const JointState& state, std::
   const PoseBlock T_a_b = BlockOf(state.T_a_b), T_a_board = BlockOf(state.T_a_board[capture_idx]);
   CaptureError error;
   if (!capture.a.empty())
-    error.a_px2 = SumOfSquares(*MakeReferenceViewCost(problem.model_a, problem.corners_board, capture.a),
+    error.a_px2 = SumOfSquares(*MakeReferenceViewCost(problem.a.model, problem.corners_board, capture.a),
                                {state.intrinsics_a.data(), T_a_board.data()});
   if (!capture.b.empty())
-    error.b_px2 = SumOfSquares(*MakeSecondViewCost(problem.model_b, problem.corners_board, capture.b),
+    error.b_px2 = SumOfSquares(*MakeSecondViewCost(problem.b.model, problem.corners_board, capture.b),
                                {state.intrinsics_b.data(), T_a_b.data(), T_a_board.data()});
   return error;
 }
@@ -188,8 +187,8 @@ int ResidualCount(const JointProblem& problem) {
 }
 
 int ParameterCount(const JointProblem& problem) {
-  const int a = problem.estimate_a && !problem.pull_a.Pulls() ? IntrinsicsCount(problem.model_a) : 0;
-  const int b = problem.estimate_b && !problem.pull_b.Pulls() ? IntrinsicsCount(problem.model_b) : 0;
+  const int a = problem.a.IsFree() ? IntrinsicsCount(problem.a.model) : 0;
+  const int b = problem.b.IsFree() ? IntrinsicsCount(problem.b.model) : 0;
   const bool pair = std::any_of(problem.captures.begin(), problem.captures.end(),
                                 [](const JointCapture& capture) { return !capture.b.empty(); });
   return (pair ? 6 : 0) + a + b + 6 * static_cast<int>(problem.captures.size());

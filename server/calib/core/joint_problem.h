@@ -18,13 +18,18 @@ struct JointCapture {
   SeenCorners a, b;
 };
 
+struct JointCamera {
+  CameraModel model = CameraModel::kPinholeRadtan;
+  bool estimate = true;   // intrinsics; otherwise they stay as the state gives them
+  std::vector<int> held;  // of the estimated intrinsics, by index: stay as the state gives them
+  IntrinsicsPull pull;    // of the estimated intrinsics: what is known of them beforehand
+  [[nodiscard]] bool IsFree() const { return estimate && !pull.Pulls(); }
+};
+
 struct JointProblem {
   std::vector<Eigen::Vector3d> corners_board;
   std::vector<JointCapture> captures;
-  CameraModel model_a = CameraModel::kPinholeRadtan, model_b = CameraModel::kPinholeRadtan;
-  bool estimate_a = true, estimate_b = true;  // intrinsics; otherwise they stay as the state gives them
-  std::vector<int> held_a, held_b;            // of the estimated intrinsics, by index: stay as the state gives them
-  IntrinsicsPull pull_a, pull_b;              // of the estimated intrinsics: what is known of them beforehand
+  JointCamera a, b;
 };
 
 struct JointState {

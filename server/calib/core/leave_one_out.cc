@@ -19,11 +19,7 @@ Result<Vector6d> ShiftOf(const GivenConstant& constant) {
 Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& blocks,
                       const std::vector<Contribution>& contributions) {
   Matrix6d C = C_model;
-  if (!blocks.empty()) {
-    std::vector<Vector6d> d;
-    for (const BlockVector& block : blocks) d.push_back(block.d);
-    C = JackknifeOrModel(d, C_model);
-  }
+  if (!blocks.empty()) C = JackknifeOrModel(VectorsOf(blocks), C_model);
   for (const Contribution& contribution : contributions) C += contribution.covariance;
   return C;
 }
@@ -33,17 +29,24 @@ int DofOf(std::size_t carrying) { return carrying > 2 ? static_cast<int>(carryin
 
 }  // namespace
 
-Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const WithoutBlock& without) {
-  std::vector<std::optional<Result<Vector6d>>> vectors(block_ids.size());
-  ParallelFor(vectors.size(), [&](std::size_t i) { vectors[i] = without(i); });
+Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const Se3& T_a_b,
+                                             const WithoutBlock& without) {
+  std::vector<std::optional<Result<Se3>>> poses(block_ids.size());
+  ParallelFor(poses.size(), [&](std::size_t i) { poses[i] = without(i); });
   std::vector<BlockVector> blocks;
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    if (!*vectors[i])
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!*poses[i])
       return Fail(ErrorCode::kInvalidInput, "without capture " + block_ids[i] + " the pair cannot be solved",
                   "Take more captures like it, so that the result does not hang on a single one.");
-    blocks.push_back({block_ids[i], **vectors[i]});
+    blocks.push_back({block_ids[i], (T_a_b.Inverse() * **poses[i]).Log()});
   }
   return blocks;
+}
+
+std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : blocks) d.push_back(block.d);
+  return d;
 }
 
 Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants) {
@@ -70,9 +73,9 @@ Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVect
   return uncertainty;
 }
 
-Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
-                                     const Eigen::MatrixXd& C_model_along, std::vector<BlockVector> blocks,
-                                     std::vector<Contribution> contributions, std::size_t carrying) {
+Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::MatrixXd& C_model_along,
+                                     std::vector<BlockVector> blocks, std::vector<Contribution> contributions,
+                                     std::size_t carrying) {
   const Matrix6d onto = free * free.transpose(), C_model = free * C_model_along * free.transpose();
   for (BlockVector& block : blocks) block.d = onto * block.d;
   for (Contribution& contribution : contributions) {
@@ -89,7 +92,8 @@ Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynam
                 "Take more captures from different places.");
   const Eigen::MatrixXd information = llt.solve(Eigen::MatrixXd::Identity(free.cols(), free.cols()));
   const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
-  Uncertainty uncertainty = FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
+  Uncertainty uncertainty =
+      FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
   uncertainty.blocks = std::move(blocks);
   uncertainty.contributions = std::move(contributions);
   return uncertainty;

@@ -7,15 +7,19 @@
 #include <vector>
 
 #include "server/calib/core/capture_blocks.h"
+#include "server/calib/core/directions.h"
 #include "server/model/uncertainty.h"
 
 namespace rigcal::calib {
 
-// d = Log(T^-1 T_(i)) of the answer without block i.
-using WithoutBlock = std::function<Result<Vector6d>(std::size_t block_idx)>;
-// Of every block, in parallel; in the order of the names. The error names the block without which there is no answer.
-[[nodiscard]] Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids,
+// The answer without block i.
+using WithoutBlock = std::function<Result<Se3>(std::size_t block_idx)>;
+// d = Log(T^-1 T_(i)) of every block, in parallel; in the order of the names. The error names the block without which
+// there is no answer.
+[[nodiscard]] Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const Se3& T_a_b,
                                                            const WithoutBlock& without);
+
+[[nodiscard]] std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks);
 
 // A constant that was given with a sigma.
 struct GivenConstant {
@@ -33,8 +37,7 @@ struct GivenConstant {
 
 // The same where the answer is estimated along some directions only (orthonormal columns, right tangent at b): the rest
 // carries no information.
-[[nodiscard]] Result<Uncertainty> UncertaintyAlong(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free,
-                                                   const Eigen::MatrixXd& C_model_along,
+[[nodiscard]] Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::MatrixXd& C_model_along,
                                                    std::vector<BlockVector> blocks,
                                                    std::vector<Contribution> contributions, std::size_t carrying);
 

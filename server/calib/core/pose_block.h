@@ -1,9 +1,14 @@
-// A pose as an optimiser's block of seven numbers [p, q_xyzw], and its derivatives.
+// A pose as an optimiser's block of seven numbers [p, q_xyzw], its derivatives, and SE(3) for Ceres on it.
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "server/math/se3.h"
+
+namespace ceres {
+class Manifold;
+}
 
 namespace rigcal::calib {
 
@@ -21,5 +26,8 @@ using QuaternionJacobian = Eigen::Matrix<double, 3, 4>;
 // d (T Exp(xi)) / d xi at xi = 0, and the derivative of xi = Log(T^-1 S) by the block of S at S = T.
 [[nodiscard]] Eigen::Matrix<double, kPoseSize, 6> PlusJacobian(const Se3& T);
 [[nodiscard]] Eigen::Matrix<double, 6, kPoseSize> MinusJacobian(const Se3& T);
+
+// Tangent [translation, rotation], Plus(T, xi) = T * Exp(xi).
+[[nodiscard]] std::unique_ptr<ceres::Manifold> MakeSe3Manifold();
 
 }  // namespace rigcal::calib

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/calib/core/capture_blocks.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -70,21 +72,6 @@ std::string WhyUseless(const StereoProblem& problem, const StereoCapture& captur
   return informs_intrinsics ? std::string() : missing;
 }
 
-CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used, View StereoCapture::*camera,
-                    const Sensor& sensor) {
-  CameraViews views;
-  views.model = ModelOf(sensor);
-  views.corners_board = TargetPoints(problem.board);
-  for (const std::size_t idx : used) {
-    const View& view = problem.captures[idx].*camera;
-    if (!Sees(view, problem.board)) continue;
-    views.width_px = view->image_width_px;
-    views.height_px = view->image_height_px;
-    views.seen.push_back(SeenIn(*view, problem.board));
-  }
-  return views;
-}
-
 int TurnOf(const CaptureId& capture, const std::map<CaptureId, int>& turns) {
   const auto turn = turns.find(capture);
   return turn == turns.end() ? 0 : turn->second;
@@ -106,11 +93,19 @@ bool BothSee(const StereoCapture& capture, const Target& board) {
   return Sees(capture.a, board) && Sees(capture.b, board);
 }
 
-std::vector<CaptureId> MissedBy(const StereoProblem& problem, View StereoCapture::*camera) {
-  std::vector<CaptureId> missed;
+const Sensor& SensorOf(const StereoProblem& problem, View StereoCapture::*camera) {
+  return camera == &StereoCapture::a ? problem.camera_a : problem.camera_b;
+}
+
+CameraProblem CameraOf(const StereoProblem& problem, View StereoCapture::*camera) {
+  CameraProblem one{SensorOf(problem, camera), problem.board, {}};
   for (const StereoCapture& capture : problem.captures)
-    if (!Sees(capture.*camera, problem.board)) missed.push_back(capture.capture);
-  return missed;
+    if (capture.*camera) one.views.emplace_back(capture.capture, *(capture.*camera));
+  return one;
+}
+
+std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
+  return CapturesOf(problem, [&](const StereoCapture& capture) { return BothSee(capture, problem.board); });
 }
 
 Selection Select(const StereoProblem& problem) {
@@ -149,12 +144,8 @@ JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t
                      const std::map<CaptureId, int>& turn_b) {
   JointProblem joint;
   joint.corners_board = TargetPoints(problem.board);
-  joint.model_a = ModelOf(problem.camera_a);
-  joint.model_b = ModelOf(problem.camera_b);
-  joint.estimate_a = !HoldsIntrinsics(problem.camera_a);
-  joint.estimate_b = !HoldsIntrinsics(problem.camera_b);
-  joint.held_a = HeldOf(problem.camera_a);
-  joint.held_b = HeldOf(problem.camera_b);
+  joint.a = {ModelOf(problem.camera_a), !HoldsIntrinsics(problem.camera_a), HeldOf(problem.camera_a), {}};
+  joint.b = {ModelOf(problem.camera_b), !HoldsIntrinsics(problem.camera_b), HeldOf(problem.camera_b), {}};
   SetCornerSigma(problem, kTypicalCornerSigma_px, joint);
   for (const std::size_t idx : used) {
     const StereoCapture& capture = problem.captures[idx];
@@ -168,16 +159,22 @@ JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t
 }
 
 void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointProblem& joint) {
-  joint.pull_a = PullOf(problem.camera_a, corner_sigma_px);
-  joint.pull_b = PullOf(problem.camera_b, corner_sigma_px);
+  joint.a.pull = PullOf(problem.camera_a, corner_sigma_px);
+  joint.b.pull = PullOf(problem.camera_b, corner_sigma_px);
 }
 
-CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used) {
-  return ViewsOf(problem, used, &StereoCapture::a, problem.camera_a);
-}
-
-CameraViews ViewsOfB(const StereoProblem& problem, const std::vector<std::size_t>& used) {
-  return ViewsOf(problem, used, &StereoCapture::b, problem.camera_b);
+CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used, View StereoCapture::*camera) {
+  CameraViews views;
+  views.model = ModelOf(SensorOf(problem, camera));
+  views.corners_board = TargetPoints(problem.board);
+  for (const std::size_t idx : used) {
+    const View& view = problem.captures[idx].*camera;
+    if (!Sees(view, problem.board)) continue;
+    views.width_px = view->image_width_px;
+    views.height_px = view->image_height_px;
+    views.seen.push_back(SeenIn(*view, problem.board));
+  }
+  return views;
 }
 
 }  // namespace rigcal::calib

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "server/calib/camera/camera_start.h"
+#include "server/calib/camera/intrinsics.h"
 #include "server/calib/core/joint_problem.h"
 #include "server/calib/stereo/stereo.h"
 
@@ -26,9 +28,10 @@ struct Selection {
 // Found, with enough points of this board: see WhyUnusable.
 [[nodiscard]] bool Sees(const std::optional<BoardView>& view, const Target& board);
 [[nodiscard]] bool BothSee(const StereoCapture& capture, const Target& board);
-// Captures in which a camera (&StereoCapture::a or b) does not see the board.
-[[nodiscard]] std::vector<CaptureId> MissedBy(const StereoProblem& problem,
-                                              std::optional<BoardView> StereoCapture::*camera);
+// One camera of a pair (&StereoCapture::a or b), and with its views by itself.
+[[nodiscard]] const Sensor& SensorOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
+[[nodiscard]] CameraProblem CameraOf(const StereoProblem& problem, std::optional<BoardView> StereoCapture::*camera);
+[[nodiscard]] std::set<CaptureId> SeenByBoth(const StereoProblem& problem);
 [[nodiscard]] Selection Select(const StereoProblem& problem);
 
 [[nodiscard]] std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_t>& used);
@@ -37,8 +40,8 @@ struct Selection {
                                    const std::map<CaptureId, int>& turn_b = {});
 // What corners count against intrinsics that were given with sigmas.
 void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointProblem& joint);
-[[nodiscard]] CameraViews ViewsOfA(const StereoProblem& problem, const std::vector<std::size_t>& used);
-[[nodiscard]] CameraViews ViewsOfB(const StereoProblem& problem, const std::vector<std::size_t>& used);
+[[nodiscard]] CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used,
+                                  std::optional<BoardView> StereoCapture::*camera);
 
 // The points that both show are at the same places (0.5 px rms), in one of the orientations in which the board looks
 // alike.

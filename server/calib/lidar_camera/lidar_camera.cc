@@ -1,33 +1,20 @@
 #include "server/calib/lidar_camera/lidar_camera.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 #include "server/calib/lidar_camera/patch_choice.h"
-#include "server/calib/lidar_camera/systematics.h"
 
 namespace rigcal::calib {
 namespace {
 
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
-
-constexpr double kContradictingRatio = 5.0;  // times the typical size of the captures' residuals
-constexpr double kContradictingMin_m = 0.03, kContradictingMin_rad = 0.05;
 constexpr int kChoicesMax = 4, kRejectionsMax = 5, kReweighingsMax = 3;
 constexpr double kOtherSupportRatio = 0.8;
-constexpr double kMadSigma = 1.4826;  // of a normal distribution
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::vector<Se3> PosesOf(const CameraEstimate& camera, const CaptureId& capture) {
   std::vector<Se3> poses;
@@ -49,14 +36,6 @@ PlaneCandidates CandidatesOf(const LidarCameraProblem& problem, const CameraEsti
 // Makes the pose that stands at `idx` of PosesOf() the capture's; the former one becomes an alternative.
 void TakePose(CameraEstimate& camera, const CaptureId& capture, std::size_t idx) {
   if (idx > 0) std::swap(camera.T_cam_board.at(capture), camera.alternatives.at(capture)[idx - 1]);
-}
-
-// Every picture, also one without the board: so it is the same problem as that of the camera's other pairs.
-OrDiagnosis<CameraEstimate> CameraOf(const LidarCameraProblem& problem) {
-  CameraProblem camera{problem.camera, problem.board, {}};
-  for (const LidarCameraCapture& capture : problem.captures)
-    if (capture.view) camera.views.emplace_back(capture.capture, *capture.view);
-  return EstimateCameraBy(problem.solve_camera, camera);
 }
 
 // A board that was left standing, or a file that was copied, is no second measurement. Empty: it is none.
@@ -139,11 +118,10 @@ bool DropContradicting(const LidarCameraProblem& problem, LidarCameraWork& work,
     distances_m.push_back(std::abs(check.distance_m));
     angles_rad.push_back(check.angle_rad);
   }
-  const double distance_max_m = std::max(kContradictingMin_m, kContradictingRatio * kMadSigma * MedianOf(distances_m));
-  const double angle_max_rad = std::max(kContradictingMin_rad, kContradictingRatio * MedianOf(angles_rad));
+  const BoardGate gate(distances_m, angles_rad);
   bool any = false;
   for (std::size_t k = work.used.size(); k-- > 0;) {
-    if (distances_m[k] <= distance_max_m && angles_rad[k] <= angle_max_rad) continue;
+    if (gate.Passes(distances_m[k], angles_rad[k])) continue;
     dropped.push_back(problem.captures[work.used[k].capture_idx].capture);
     work.Drop(k, "its cloud contradicts its picture by " + MillimetresText(distances_m[k]) + " and " +
                      DegreesText(angles_rad[k]));
@@ -248,6 +226,13 @@ LidarCameraEstimate Finished(const LidarCameraProblem& problem, const LidarCamer
 
 }  // namespace
 
+CameraProblem CameraOf(const LidarCameraProblem& problem) {
+  CameraProblem camera{problem.camera, problem.board, {}};
+  for (const LidarCameraCapture& capture : problem.captures)
+    if (capture.view) camera.views.emplace_back(capture.capture, *capture.view);
+  return camera;
+}
+
 bool LidarCameraEstimate::SuspectsBoardSize() const {
   return scale_fits_better && std::abs(board_scale_ratio) > kScaleMin_ratio &&
          std::abs(board_scale_ratio) > kBiasSigmas * board_scale_sigma_ratio;
@@ -266,7 +251,7 @@ OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& p
     if (auto solved = Solve(problem, work); !solved) return tl::unexpected(solved.error());
     return Finished(problem, work);
   }
-  auto camera = CameraOf(problem);
+  auto camera = EstimateCameraBy(problem.solve_camera, CameraOf(problem));
   if (!camera) return tl::unexpected(camera.error());
   if (!problem.camera.intrinsics && camera->T_cam_board.size() < kLidarViewsForIntrinsics)
     return tl::unexpected(TooFewForIntrinsics(problem, camera->T_cam_board.size()));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/wording.h"
 #include "server/calib/lidar_camera/plane_problem.h"
 #include "server/math/se3.h"
 #include "server/model/camera_fit.h"
@@ -67,12 +68,15 @@ struct LidarCameraEstimate {
   [[nodiscard]] bool SuspectsRangeBias() const;  // it is large and beyond its own uncertainty
 };
 
+// The camera alone, with every picture, also one without the board: so it is the same problem as that of the camera's
+// other pairs.
+[[nodiscard]] CameraProblem CameraOf(const LidarCameraProblem& problem);
 // Pure; deterministic. A diagnosis says why there is no answer. What was left out on the way has its reason in
 // `residuals`, and its diagnosis in `notes` if that is not null. `start` keeps choices (patches, captures) and
 // warm-starts the rest.
-[[nodiscard]] tl::expected<LidarCameraEstimate, Diagnosis> EstimateLidarCamera(const LidarCameraProblem& problem,
-                                                                               const LidarCameraEstimate* start,
-                                                                               std::vector<Diagnosis>* notes);
+[[nodiscard]] OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& problem,
+                                                                   const LidarCameraEstimate* start,
+                                                                   std::vector<Diagnosis>* notes);
 // T_a_b of the edge and its uncertainty: leave one capture out; contributions of the board's size, given intrinsics and
 // the range bias.
 [[nodiscard]] Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem,

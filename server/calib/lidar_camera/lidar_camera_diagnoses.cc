@@ -1,8 +1,6 @@
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 
-#include <cstdio>
-
-#include "server/calib/core/diagnoses.h"
+#include <cmath>
 
 namespace rigcal::calib {
 namespace {
@@ -15,140 +13,87 @@ std::string PairOf(const LidarCameraProblem& problem) {
   return problem.camera.id.str() + " and " + problem.lidar.id.str();
 }
 
-std::string BoardOf(const LidarCameraProblem& problem) { return "target '" + problem.board.id.str() + "'"; }
-
-std::string CapturesText(std::size_t count) { return std::to_string(count) + (count == 1 ? " capture" : " captures"); }
-std::string OnlyCapturesText(std::size_t count) { return count == 0 ? "no capture" : "only " + CapturesText(count); }
-
-std::string Formatted(const char* format, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-template <typename WhyNot>
-std::string FirstReason(const LidarCameraProblem& problem, const CaptureId& first, const WhyNot& why_not) {
-  for (const LidarCameraCapture& capture : problem.captures)
-    if (capture.capture == first)
-      if (const std::string why = why_not(capture); !why.empty())
-        return " The first of them: " + why + (why.back() == '.' ? "" : ".");
-  return {};
-}
-
-std::string SpreadText(double cone_deg, double sigma_m) {
-  return "the boards' normals differ by at most " + Formatted("%.0f", cone_deg) +
-         " degrees or lie in one plane: with planes known to 10 mm the translation would be uncertain by " +
-         (sigma_m < 10 ? MillimetresText(sigma_m) : std::string("metres"));
+std::string SpreadText(const LidarCameraProblem& problem, double cone_deg, double sigma_m) {
+  return Worded(
+      "{}: the boards' normals differ by at most {} degrees or lie in one plane: with planes known to 10 mm "
+      "the translation would be uncertain by {}.",
+      {PairOf(problem), Formatted("%.0f", cone_deg), sigma_m < 10 ? MillimetresText(sigma_m) : "metres"});
 }
 
 }  // namespace
 
-std::string MillimetresText(double value_m) { return Formatted("%.0f mm", 1e3 * value_m); }
-std::string DegreesText(double value_rad) { return Formatted("%.1f deg", value_rad * 180 / M_PI); }
+std::string BoardOf(const LidarCameraProblem& problem) { return "target '" + problem.board.id.str() + "'"; }
 
 Diagnosis TooFewLidarCaptures(const LidarCameraProblem& problem, std::size_t both) {
   return {"too_few_captures",
-          PairOf(problem) + " see " + BoardOf(problem) + " together in " + OnlyCapturesText(both) + "; at least " +
-              std::to_string(kLidarCapturesMin) + " are needed.",
+          Worded("{} see {} together in {}; at least {} are needed.",
+                 {PairOf(problem), BoardOf(problem), OnlyCapturesText(both), kLidarCapturesMin}),
           kTakeMore};
 }
 
 Diagnosis FewLidarCaptures(const LidarCameraProblem& problem, std::size_t used) {
   return {"few_captures",
-          PairOf(problem) + " see " + BoardOf(problem) + " together in only " + CapturesText(used) +
-              "; with fewer than " + std::to_string(kLidarCapturesEnough) + " the uncertainty itself is rough.",
+          Worded("{} see {} together in only {}; with fewer than {} the uncertainty itself is rough.",
+                 {PairOf(problem), BoardOf(problem), CountText(used), kLidarCapturesEnough}),
           kTakeMore};
 }
 
-Diagnosis BoardNotInPictures(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
-  return {"board_not_found",
-          problem.camera.id.str() + " does not show " + BoardOf(problem) + " in " + CapturesText(captures.size()) +
-              ": " + NamesOf(captures) + "." +
-              FirstReason(problem, captures.front(),
-                          [](const LidarCameraCapture& capture) {
-                            return capture.view ? capture.view->why_not : std::string("there is no picture");
-                          }),
-          "Show the whole board, sharp and evenly lit, and check its description in session.yaml."};
-}
-
-Diagnosis BoardNotInClouds(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
+Diagnosis BoardNotInClouds(const LidarCameraProblem& problem, const MissedCaptures& missed) {
   return {
       "board_not_found_in_cloud",
-      problem.lidar.id.str() + " does not show " + BoardOf(problem) + " in " + CapturesText(captures.size()) + ": " +
-          NamesOf(captures) + "." +
-          FirstReason(problem, captures.front(),
-                      [](const LidarCameraCapture& capture) {
-                        return capture.cloud ? capture.cloud->why_not : std::string("there is no cloud");
-                      }),
+      Worded("{} does not show {} in {}: {}.{}", {problem.lidar.id, BoardOf(problem), CountText(missed.captures.size()),
+                                                  NamesOf(missed.captures), missed.first_reason}),
       "Hold the board free of walls and furniture, near enough for several beams to cross it, and check plate_size_m "
       "in session.yaml."};
-}
-
-Diagnosis PicturesUnreadable(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
-  return Unreadable(problem.camera.id, captures,
-                    FirstReason(problem, captures.front(), [](const auto& capture) { return capture.view->why_not; }));
-}
-
-Diagnosis CloudsUnreadable(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
-  return {"cloud_unreadable",
-          std::to_string(captures.size()) + (captures.size() == 1 ? " cloud of " : " clouds of ") +
-              problem.lidar.id.str() + " cannot be read and take no part: " + NamesOf(captures) + "." +
-              FirstReason(problem, captures.front(), [](const auto& capture) { return capture.cloud->why_not; }),
-          "Copy the files again from where they were recorded, or take those captures again."};
 }
 
 Diagnosis NoAgreement(const LidarCameraProblem& problem, std::size_t both, std::size_t supporters) {
   return {
       "no_agreement",
-      "no pose of " + problem.lidar.id.str() + " puts a patch of the cloud where " + problem.camera.id.str() +
-          " sees " + BoardOf(problem) + " in more than " + std::to_string(supporters) + " of " + CapturesText(both) +
-          ".",
+      Worded("no pose of {} puts a patch of the cloud where {} sees {} in more than {} of {}.",
+             {problem.lidar.id, problem.camera.id, BoardOf(problem), supporters, CountText(both)}),
       "Check plate_size_m and square_size_m, that pictures and clouds of one name were taken together, and that the "
       "board stood still."};
 }
 
 Diagnosis AmbiguousBoard(const LidarCameraProblem& problem, std::size_t supporters, std::size_t others) {
   return {"ambiguous_board",
-          BoardOf(problem) + " could be two different things in the clouds of " + problem.lidar.id.str() +
-              ": one pose agrees with " + CapturesText(supporters) + ", another with " + std::to_string(others) + ".",
+          Worded("{} could be two different things in the clouds of {}: one pose agrees with {}, another with {}.",
+                 {BoardOf(problem), problem.lidar.id, CountText(supporters), others}),
           "Give nominal poses of both sensors in session.yaml, or take captures in more places and tilts."};
 }
 
 Diagnosis NoNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m) {
-  return {"no_normal_spread", PairOf(problem) + ": " + SpreadText(cone_deg, sigma_m) + ".",
+  return {"no_normal_spread", SpreadText(problem, cone_deg, sigma_m),
           "Tilt the board by 20 to 45 degrees, to the left and right as well as up and down, and take more captures."};
 }
 
 Diagnosis NormalsInOnePlane(const LidarCameraProblem& problem, const Eigen::Vector3d& axis_cam) {
-  Eigen::Index largest = 0;
-  axis_cam.cwiseAbs().maxCoeff(&largest);
-  const Eigen::Vector3d axis = axis_cam[largest] < 0 ? Eigen::Vector3d(-axis_cam) : axis_cam;
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", axis.x() + 0.0, axis.y() + 0.0, axis.z() + 0.0);
   return {"normals_in_one_plane",
-          PairOf(problem) + ": the normals of all boards lie in one plane or nearly so, so that nothing tells where " +
-              problem.lidar.id.str() + " is along " + text + " in the frame of " + problem.camera.id.str() +
-              ". It is near where the nominal poses or the boards' middles have it, and nothing is claimed there.",
+          Worded("{}: the normals of all boards lie in one plane or nearly so, so that nothing tells where {} is along "
+                 "{} in the frame of {}. It is near where the nominal poses or the boards' middles have it, and "
+                 "nothing is claimed there.",
+                 {PairOf(problem), problem.lidar.id, LineText(axis_cam), problem.camera.id}),
           "Tilt the board by 20 to 45 degrees up and down as well, or tilt the robot, and take more captures."};
 }
 
 Diagnosis WeakNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m) {
-  return {"weak_normal_spread", PairOf(problem) + ": " + SpreadText(cone_deg, sigma_m) + ".",
+  return {"weak_normal_spread", SpreadText(problem, cone_deg, sigma_m),
           "Add captures with the board tilted by 20 to 45 degrees, to the left and right as well as up and down."};
 }
 
 Diagnosis ContradictingClouds(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
   return {"inconsistent_captures",
-          PairOf(problem) + ": picture and cloud of " + CapturesText(captures.size()) +
-              " contradict the others and were left out: " + NamesOf(captures) + ".",
+          Worded("{}: picture and cloud of {} contradict the others and were left out: {}.",
+                 {PairOf(problem), CountText(captures.size()), NamesOf(captures)}),
           "Check that the board stood still and that pictures and clouds of one name were taken together."};
 }
 
 Diagnosis HighLidarResidual(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   return {"high_residual",
-          PairOf(problem) + ": the boards in picture and cloud are apart by " + MillimetresText(estimate.rms_m) +
-              " and " + DegreesText(estimate.rms_rad) + " (rms), more than " + MillimetresText(kHighRms_m) + " or " +
-              DegreesText(kHighRms_rad) + ".",
+          Worded("{}: the boards in picture and cloud are apart by {} and {} (rms), more than {} or {}.",
+                 {PairOf(problem), MillimetresText(estimate.rms_m), DegreesText(estimate.rms_rad),
+                  MillimetresText(kHighRms_m), DegreesText(kHighRms_rad)}),
           "Check the board's size in session.yaml and the camera's intrinsics, and that the board is flat and stood "
           "still."};
 }
@@ -156,62 +101,52 @@ Diagnosis HighLidarResidual(const LidarCameraProblem& problem, const LidarCamera
 Diagnosis RangeBiasSuspected(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const double bias_m = estimate.range_bias_m;
   return {"range_bias_suspected",
-          problem.lidar.id.str() + " seems to measure all distances " + MillimetresText(std::abs(bias_m)) +
-              (bias_m > 0 ? " too short" : " too long") + " (+- " + MillimetresText(estimate.range_bias_sigma_m) +
-              "). It is not corrected; what it would change is part of the uncertainty.",
+          Worded("{} seems to measure all distances {} too {} (+- {}). It is not corrected; what it would change is "
+                 "part of the uncertainty.",
+                 {problem.lidar.id, MillimetresText(std::abs(bias_m)), bias_m > 0 ? "short" : "long",
+                  MillimetresText(estimate.range_bias_sigma_m)}),
           "Check square_size_m, then compare the lidar with a tape measure against a flat wall, and correct its ranges "
           "in its driver."};
 }
 
-Diagnosis RangeTakenAsExact(const LidarCameraProblem& problem) {
-  return {"range_taken_as_exact",
-          "The ranges of " + problem.lidar.id.str() + " are taken as free of an error that all of them share.",
-          "Give range_bias_sigma_m in session.yaml, such as the range accuracy of its data sheet, and it becomes part "
-          "of the "
-          "uncertainty."};
-}
-
 Diagnosis TooFewForIntrinsics(const LidarCameraProblem& problem, std::size_t views) {
   return {"too_few_captures",
-          problem.camera.id.str() + " has no given intrinsics and shows " + BoardOf(problem) + " in only " +
-              CapturesText(views) + "; at least " + std::to_string(kLidarViewsForIntrinsics) +
-              " are needed to estimate them beside the lidar's pose.",
+          Worded("{} has no given intrinsics and shows {} in only {}; at least {} are needed to estimate them beside "
+                 "the lidar's pose.",
+                 {problem.camera.id, BoardOf(problem), CountText(views), kLidarViewsForIntrinsics}),
           "Take more captures, or give the camera's intrinsics in session.yaml."};
 }
 
 Diagnosis CapturesDisagree(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures) {
   return {"captures_disagree",
-          "The picture of " + problem.camera.id.str() + " and the cloud of " + problem.lidar.id.str() +
-              " do not show the board in the same place in " + CapturesText(captures.size()) + ": " +
-              NamesOf(captures) + ".",
+          Worded("The picture of {} and the cloud of {} do not show the board in the same place in {}: {}.",
+                 {problem.camera.id, problem.lidar.id, CountText(captures.size()), NamesOf(captures)}),
           "Check that the names of these files were not exchanged, and that the board stood still and free."};
 }
 
 Diagnosis BoardSizeSuspected(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   const double fitted_m = problem.board.square_m * (1 + estimate.board_scale_ratio);
   return {"board_size_suspected",
-          "The size of " + BoardOf(problem) + " seems to be " +
-              Formatted("%.2f", 100 * std::abs(estimate.board_scale_ratio)) + " % " +
-              (estimate.board_scale_ratio > 0 ? "larger" : "smaller") + " than given: picture and cloud agree with " +
-              Formatted("%.2f", 1e3 * fitted_m) + " mm (+- " +
-              Formatted("%.2f", 1e3 * problem.board.square_m * estimate.board_scale_sigma_ratio) + ") instead of " +
-              Formatted("%.2f", 1e3 * problem.board.square_m) + " mm.",
+          Worded("The size of {} seems to be {} % {} than given: picture and cloud agree with {} mm (+- {}) instead of "
+                 "{} mm.",
+                 {BoardOf(problem), Formatted("%.2f", 100 * std::abs(estimate.board_scale_ratio)),
+                  estimate.board_scale_ratio > 0 ? "larger" : "smaller", Formatted("%.2f", 1e3 * fitted_m),
+                  Formatted("%.2f", 1e3 * problem.board.square_m * estimate.board_scale_sigma_ratio),
+                  Formatted("%.2f", 1e3 * problem.board.square_m)}),
           "Measure the board across many squares and correct its size in session.yaml; if it is right, the camera's "
-          "focal length or "
-          "the lidar's scale is wrong."};
+          "focal length or the lidar's scale is wrong."};
 }
 
 Diagnosis BoardSizeTakenAsExact(const LidarCameraProblem& problem) {
-  return {"board_size_taken_as_exact", "The size of " + BoardOf(problem) + " is taken as exact.",
+  return {"board_size_taken_as_exact", Worded("The size of {} is taken as exact.", {BoardOf(problem)}),
           "Give its standard deviation in session.yaml (square_size_sigma_m or tag_size_sigma_m): 0.3 % move a lidar "
-          "at 4 m by a "
-          "centimetre."};
+          "at 4 m by a centimetre."};
 }
 
 Diagnosis NotSolvable(const LidarCameraProblem& problem, const Error& error) {
-  const std::string pair = PairOf(problem) + ": ";
-  const bool names_it = error.what.starts_with(pair);  // of a solve without a capture, say: a diagnosis of its own
-  return {"ill_conditioned", names_it ? error.what : pair + error.what + ".", error.cure};
+  const bool names_it = error.what.starts_with(PairOf(problem) + ": ");  // of a solve without a capture, say
+  return names_it ? Diagnosis{"ill_conditioned", error.what, error.cure}
+                  : AsDiagnosis(PairOf(problem), "ill_conditioned", error);
 }
 
 }  // namespace rigcal::calib

@@ -1,9 +1,7 @@
 // The sentences of lidar-camera calibration. Each names the sensors and captures it is about, and what to do.
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "server/calib/core/wording.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 
 namespace rigcal::calib {
@@ -21,16 +19,11 @@ constexpr double kBiasSigmas = 3.0, kBiasMin_m = 0.005;
 // A board of another size likewise; beyond the last two nothing is good any more.
 constexpr double kScaleMin_ratio = 0.002, kScaleMax_ratio = 0.02, kBiasMax_m = 0.1;
 
-[[nodiscard]] std::string MillimetresText(double value_m);  // "12 mm"
-[[nodiscard]] std::string DegreesText(double value_rad);    // "1.2 deg"
+[[nodiscard]] std::string BoardOf(const LidarCameraProblem& problem);  // "target 'calib'"
 
 [[nodiscard]] Diagnosis TooFewLidarCaptures(const LidarCameraProblem& problem, std::size_t both);
 [[nodiscard]] Diagnosis FewLidarCaptures(const LidarCameraProblem& problem, std::size_t used);  // a note
-[[nodiscard]] Diagnosis BoardNotInPictures(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
-[[nodiscard]] Diagnosis BoardNotInClouds(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
-// "picture_unreadable", "cloud_unreadable": a board was not even looked for.
-[[nodiscard]] Diagnosis PicturesUnreadable(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
-[[nodiscard]] Diagnosis CloudsUnreadable(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis BoardNotInClouds(const LidarCameraProblem& problem, const MissedCaptures& missed);
 [[nodiscard]] Diagnosis NoAgreement(const LidarCameraProblem& problem, std::size_t both, std::size_t supporters);
 [[nodiscard]] Diagnosis AmbiguousBoard(const LidarCameraProblem& problem, std::size_t supporters, std::size_t others);
 [[nodiscard]] Diagnosis NoNormalSpread(const LidarCameraProblem& problem, double cone_deg, double sigma_m);
@@ -41,7 +34,6 @@ constexpr double kScaleMin_ratio = 0.002, kScaleMax_ratio = 0.02, kBiasMax_m = 0
 [[nodiscard]] Diagnosis HighLidarResidual(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
 [[nodiscard]] Diagnosis RangeBiasSuspected(const LidarCameraProblem& problem,
                                            const LidarCameraEstimate& estimate);  // a note
-[[nodiscard]] Diagnosis RangeTakenAsExact(const LidarCameraProblem& problem);     // a note
 [[nodiscard]] Diagnosis TooFewForIntrinsics(const LidarCameraProblem& problem, std::size_t views);
 [[nodiscard]] Diagnosis CapturesDisagree(const LidarCameraProblem& problem, const std::vector<CaptureId>& captures);
 [[nodiscard]] Diagnosis BoardSizeSuspected(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);

@@ -1,20 +1,14 @@
 #include <cmath>
 
-#include "server/base/out_of_memory.h"
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_fit.h"
-#include "server/calib/camera/layout_diagnosis.h"
-#include "server/calib/core/diagnoses.h"
-#include "server/calib/core/pair_captures.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
-#include "server/calib/lidar_camera/systematics.h"
-#include "server/model/method.h"
+#include "server/calib/lidar_camera/lidar_camera_work.h"
 
 namespace rigcal::calib {
 namespace {
-
-using Missing = bool (*)(const LidarCameraCapture&);
 
 // A picture of 0 x 0 and a cloud of no points could not be read: the board was not even looked for.
 bool NoPicture(const LidarCameraCapture& capture) {
@@ -23,61 +17,45 @@ bool NoPicture(const LidarCameraCapture& capture) {
 bool NoCloud(const LidarCameraCapture& capture) {
   return capture.cloud && !capture.cloud->found && capture.cloud->points == 0;
 }
-bool OtherLayoutInPicture(const LidarCameraCapture& capture) { return capture.view && ShowsOtherLayout(*capture.view); }
-bool NotInPicture(const LidarCameraCapture& capture) {
-  return !NoPicture(capture) && !OtherLayoutInPicture(capture) && !(capture.view && capture.view->found);
-}
-bool NotInCloud(const LidarCameraCapture& capture) {
-  return !NoCloud(capture) && !(capture.cloud && capture.cloud->found);
-}
-
-std::vector<CaptureId> Where(const LidarCameraProblem& problem, Missing missing) {
-  std::vector<CaptureId> captures;
-  for (const LidarCameraCapture& capture : problem.captures)
-    if (missing(capture)) captures.push_back(capture.capture);
-  return captures;
-}
 
 void AddMissing(const LidarCameraProblem& problem, std::vector<Diagnosis>& diagnoses) {
-  if (const auto captures = Where(problem, OtherLayoutInPicture); !captures.empty())
-    diagnoses.push_back(OtherLayout(problem.camera.id, problem.board, captures));
-  if (const auto captures = Where(problem, NoPicture); !captures.empty())
-    diagnoses.push_back(PicturesUnreadable(problem, captures));
-  if (const auto captures = Where(problem, NoCloud); !captures.empty())
-    diagnoses.push_back(CloudsUnreadable(problem, captures));
-  if (const auto captures = Where(problem, NotInPicture); !captures.empty())
-    diagnoses.push_back(BoardNotInPictures(problem, captures));
-  if (const auto captures = Where(problem, NotInCloud); !captures.empty())
-    diagnoses.push_back(BoardNotInClouds(problem, captures));
+  MissedCaptures other_layout, no_picture, no_cloud, not_in_picture, not_in_cloud;
+  for (const LidarCameraCapture& capture : problem.captures) {
+    const CaptureId& id = capture.capture;
+    const std::string why = capture.view ? capture.view->why_not : "there is no picture";
+    const std::string why_no_cloud = capture.cloud ? capture.cloud->why_not : "there is no cloud";
+    const bool misdescribed = capture.view && ShowsOtherLayout(*capture.view);
+    if (misdescribed) other_layout.Add(id, why);
+    if (NoPicture(capture)) no_picture.Add(id, why);
+    if (NoCloud(capture)) no_cloud.Add(id, why_no_cloud);
+    if (!NoPicture(capture) && !misdescribed && !(capture.view && capture.view->found)) not_in_picture.Add(id, why);
+    if (!NoCloud(capture) && !(capture.cloud && capture.cloud->found)) not_in_cloud.Add(id, why_no_cloud);
+  }
+  const SensorId &camera = problem.camera.id, &lidar = problem.lidar.id;
+  if (!other_layout.captures.empty()) diagnoses.push_back(OtherLayout(camera, problem.board, other_layout.captures));
+  if (!no_picture.captures.empty()) diagnoses.push_back(Unreadable(camera, no_picture));
+  if (!no_cloud.captures.empty()) diagnoses.push_back(CloudsUnreadable(lidar, no_cloud));
+  if (!not_in_picture.captures.empty()) diagnoses.push_back(BoardNotFound(camera, BoardOf(problem), not_in_picture));
+  if (!not_in_cloud.captures.empty()) diagnoses.push_back(BoardNotInClouds(problem, not_in_cloud));
 }
 
 Edge EdgeOf(const LidarCameraProblem& problem) {
-  Edge edge;
-  edge.frame_a = problem.camera_is_a ? problem.camera.id : problem.lidar.id;
-  edge.frame_b = problem.camera_is_a ? problem.lidar.id : problem.camera.id;
-  edge.method = NameOf(Method::kLidarCamera);
-  edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
-  return edge;
+  const SensorId &camera = problem.camera.id, &lidar = problem.lidar.id;
+  return UnsolvedEdge(problem.camera_is_a ? camera : lidar, problem.camera_is_a ? lidar : camera, Method::kLidarCamera,
+                      problem.captures.size());
 }
 
 Edge FailedEdge(const LidarCameraProblem& problem, std::vector<Diagnosis> diagnoses) {
   Edge edge = EdgeOf(problem);
-  edge.state = EdgeState::kFailed;
-  edge.diagnoses = std::move(diagnoses);
-  AddMissing(problem, edge.diagnoses);
-  PutLayoutFirst(edge.diagnoses);
   for (const LidarCameraCapture& capture : problem.captures)
     edge.captures.push_back({capture.capture, 0.0, false, "the pair was not solved"});
-  return edge;
+  AddMissing(problem, diagnoses);
+  return FailedFor(std::move(diagnoses), std::move(edge));
 }
 
-void AddIntrinsicsFigures(const CameraIntrinsics& intrinsics, Edge& edge) {
-  edge.figures["fx_px"] = intrinsics.fx_px;
-  edge.figures["fy_px"] = intrinsics.fy_px;
-  edge.figures["cx_px"] = intrinsics.cx_px;
-  edge.figures["cy_px"] = intrinsics.cy_px;
-  const std::vector<std::string>& names = DistortionNames(intrinsics.model);
-  for (std::size_t i = 0; i < names.size(); ++i) edge.figures[names[i] + "_ratio"] = intrinsics.distortion[i];
+// Of the camera. Without an estimate: what was seen.
+std::vector<CameraFit> FitsOf(const LidarCameraProblem& problem, const CameraEstimate* camera) {
+  return {FitOrSeen(CameraOf(problem), camera)};
 }
 
 void AddSystematics(const LidarCameraEstimate& estimate, Edge& edge) {
@@ -92,11 +70,8 @@ void AddSystematics(const LidarCameraEstimate& estimate, Edge& edge) {
 void AddAxis(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
   if (!estimate.held) return;
   const Eigen::Vector3d& axis_cam = estimate.held->axis_cam;
-  const Eigen::Vector3d axis_a =
-      problem.camera_is_a ? axis_cam : Eigen::Vector3d(estimate.T_cam_lidar.R().transpose() * axis_cam);
-  edge.figures["axis_a_x_ratio"] = axis_a.x();
-  edge.figures["axis_a_y_ratio"] = axis_a.y();
-  edge.figures["axis_a_z_ratio"] = axis_a.z();
+  AddAxisFigures(problem.camera_is_a ? axis_cam : Eigen::Vector3d(estimate.T_cam_lidar.R().transpose() * axis_cam),
+                 edge);
 }
 
 void AddFigures(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
@@ -111,7 +86,7 @@ void AddFigures(const LidarCameraProblem& problem, const LidarCameraEstimate& es
   edge.figures["range_sigma_m"] = estimate.range_sigma_m;
   edge.figures["capture_sigma_m"] = estimate.capture_sigma_m;
   edge.figures["rms_px"] = estimate.camera.rms_px;
-  AddIntrinsicsFigures(estimate.camera.intrinsics, edge);
+  AddIntrinsicsFigures(estimate.camera.intrinsics, "", edge);
 }
 
 void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, std::vector<Diagnosis>& notes) {
@@ -131,7 +106,7 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
   if (estimate.SuspectsRangeBias())
     notes.push_back(RangeBiasSuspected(problem, estimate));
   else if (!problem.lidar.range_bias_sigma_m)
-    notes.push_back(RangeTakenAsExact(problem));
+    notes.push_back(RangeTakenAsExact(problem.lidar.id));
   if (problem.camera.intrinsics && !problem.camera.intrinsics_sigma)
     notes.push_back(IntrinsicsTakenAsExact(problem.camera.id));
   if (auto why = WhyGivenDisagree(problem.camera, estimate.camera.intrinsics)) notes.push_back(std::move(*why));
@@ -159,36 +134,30 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   }
   auto uncertainty = JackknifeLidarCamera(problem, *estimate);
   if (!uncertainty) return FailedEdge(problem, {NotSolvable(problem, uncertainty.error())});
-  Edge edge = EdgeOf(problem);
-  edge.state = EdgeState::kGood;
-  edge.T_a_b = problem.camera_is_a ? estimate->T_cam_lidar : estimate->T_cam_lidar.Inverse();
-  edge.uncertainty = std::move(*uncertainty);
+  Edge edge = Good(problem.camera_is_a ? estimate->T_cam_lidar : estimate->T_cam_lidar.Inverse(),
+                   std::move(*uncertainty), std::move(notes), EdgeOf(problem));
   edge.captures = estimate->residuals;
-  edge.diagnoses = std::move(notes);
   AddNotes(problem, *estimate, edge.diagnoses);
   AddFigures(problem, *estimate, edge);
   return edge;
 }
 
 std::set<CaptureId> SeenByBoth(const LidarCameraProblem& problem) {
-  std::set<CaptureId> both;
-  for (const LidarCameraCapture& capture : problem.captures)
-    if (capture.view && capture.view->found && capture.cloud && capture.cloud->found) both.insert(capture.capture);
-  return both;
+  return CapturesOf(problem, [](const LidarCameraCapture& capture) {
+    return capture.view && capture.view->found && capture.cloud && capture.cloud->found;
+  });
 }
 
 }  // namespace
 
 Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
-  try {
-    return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<LidarCameraProblem>,
-                            [&](const LidarCameraProblem& chosen) { return Solved(chosen, fits); });
-  } catch (const std::exception& exception) {
-    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
-    return FailedEdge(
-        problem,
-        {NotSolvable(problem, {ErrorCode::kInternal, exception.what(), "Report this with the session's id."})});
-  }
+  const auto estimate = [&](const LidarCameraProblem& chosen) { return Solved(chosen, fits); };
+  return Guarded(
+      [&] {
+        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<LidarCameraProblem>,
+                                estimate);
+      },
+      [&](const Error& error) { return FailedEdge(problem, {NotSolvable(problem, error)}); });
 }
 
 }  // namespace rigcal::calib

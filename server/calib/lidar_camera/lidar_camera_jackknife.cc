@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/core/leave_one_out.h"
+#include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/range_constants.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
-#include "server/calib/lidar_camera/lidar_camera_variants.h"
+#include "server/calib/lidar_camera/lidar_camera_work.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::calib {
@@ -15,16 +16,9 @@ Se3 EdgePose(const LidarCameraProblem& problem, const Se3& T_cam_lidar) {
   return problem.camera_is_a ? T_cam_lidar : T_cam_lidar.Inverse();
 }
 
-Result<Se3> PoseFrom(const LidarCameraProblem& problem, const LidarCameraEstimate& start) {
-  RIGCAL_ASSIGN(const LidarCameraEstimate estimate, SolvedAgain(problem, start));
-  return EdgePose(problem, estimate.T_cam_lidar);
-}
-
-Result<Vector6d> WithoutBlockOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
-                                const CaptureBlock& block) {
-  RIGCAL_ASSIGN(const LidarCameraEstimate without, SolvedWithout(problem, estimate, block.captures));
-  const Se3 T_a_b = EdgePose(problem, estimate.T_cam_lidar);
-  return Vector6d((T_a_b.Inverse() * EdgePose(problem, without.T_cam_lidar)).Log());
+Result<Se3> PoseOf(const LidarCameraProblem& problem, const Result<LidarCameraEstimate>& solved) {
+  if (!solved) return Fail(solved.error());
+  return EdgePose(problem, solved->T_cam_lidar);
 }
 
 void AddBoardSize(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
@@ -36,18 +30,17 @@ void AddBoardSize(const LidarCameraProblem& problem, const LidarCameraEstimate& 
                          LidarCameraEstimate start = estimate;
                          for (auto& [capture, T_cam_board] : start.camera.T_cam_board)
                            T_cam_board.p_m *= 1 + steps * ratio;
-                         return PoseFrom(problem, start);
+                         return PoseOf(problem, SolvedAgain(problem, start));
                        }});
 }
 
 void AddIntrinsics(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
                    std::vector<GivenConstant>& constants) {
-  for (const std::size_t i : UncertainIntrinsics(problem))
-    constants.push_back(
-        {"intrinsics of " + problem.camera.id.str(), [&problem, &estimate, i](double sigmas) -> Result<Se3> {
-           RIGCAL_ASSIGN(const LidarCameraEstimate moved, SolvedWithIntrinsic(problem, estimate, i, sigmas));
-           return EdgePose(problem, moved.T_cam_lidar);
-         }});
+  for (const int i : RefinedOf(problem.camera))
+    constants.push_back({"intrinsics of " + problem.camera.id.str(), [&problem, &estimate, i](double sigmas) {
+                           return PoseOf(problem,
+                                         SolvedWithCamera(problem, estimate, WithGiven(estimate.camera, i, sigmas)));
+                         }});
 }
 
 // The part of the model that comes from the corners by way of the intrinsics: the planes take those as known.
@@ -55,10 +48,9 @@ Result<Matrix6d> CornersPart(const LidarCameraProblem& problem, const LidarCamer
   Matrix6d part = Matrix6d::Zero();
   std::vector<GivenConstant> changes;
   for (const IntrinsicsVector& change : ChangesOfIntrinsics(problem, estimate))
-    changes.push_back({"corners", [&problem, &estimate, change](double steps) -> Result<Se3> {
-                         RIGCAL_ASSIGN(const LidarCameraEstimate moved,
-                                       SolvedWithChange(problem, estimate, steps * change));
-                         return EdgePose(problem, moved.T_cam_lidar);
+    changes.push_back({"corners", [&problem, &estimate, change](double steps) {
+                         return PoseOf(problem, SolvedWithCamera(problem, estimate,
+                                                                 WithIntrinsicsMoved(estimate.camera, steps * change)));
                        }});
   RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(changes));
   for (const Contribution& contribution : contributions) part += contribution.covariance;
@@ -71,40 +63,25 @@ double RangeBiasSigma_m(const LidarCameraProblem& problem, const LidarCameraEsti
   return std::max(shown_m, problem.lidar.range_bias_sigma_m.value_or(0.0));
 }
 
-// Every group of beams errs by the given sigma alone as well; one constant per group, so that edges of a lidar share
-// them by their order.
-void AddBeams(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
-              std::vector<GivenConstant>& constants) {
-  const double sigma_m = problem.lidar.range_bias_sigma_m.value_or(0.0);
-  if (!(sigma_m > 0)) return;
-  const std::vector<char> seen = BeamsSeen(problem, estimate);
-  for (std::size_t group = 0; group < seen.size(); ++group)
-    constants.push_back({SingleBeamsOf(problem.lidar.id),
-                         [&problem, &estimate, sigma_m, group, is_seen = seen[group]](double steps) -> Result<Se3> {
-                           if (is_seen == 0) return EdgePose(problem, estimate.T_cam_lidar);
-                           RIGCAL_ASSIGN(const LidarCameraEstimate moved,
-                                         SolvedWithBeamsMoved(problem, estimate, group, steps * sigma_m));
-                           return EdgePose(problem, moved.T_cam_lidar);
-                         }});
-}
-
 std::vector<GivenConstant> ConstantsOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   std::vector<GivenConstant> constants;
   AddBoardSize(problem, estimate, constants);
   AddIntrinsics(problem, estimate, constants);
-  if (const double sigma_m = RangeBiasSigma_m(problem, estimate); sigma_m > 0)
-    constants.push_back({"range bias of " + problem.lidar.id.str(), [&problem, &estimate, sigma_m](double steps) {
-                           LidarCameraProblem moved = problem;
-                           moved.range_bias_m += steps * sigma_m;
-                           return PoseFrom(moved, estimate);
-                         }});
-  AddBeams(problem, estimate, constants);
+  const auto with_bias = [&problem, &estimate](double longer_m) {
+    LidarCameraProblem moved = problem;
+    moved.range_bias_m += longer_m;
+    return PoseOf(moved, SolvedAgain(moved, estimate));
+  };
+  const auto with_beams = [&problem, &estimate](std::size_t group, double longer_m) {
+    return PoseOf(problem, SolvedWithBeamsMoved(problem, estimate, group, longer_m));
+  };
+  AddRangeBias(problem.lidar.id, RangeBiasSigma_m(problem, estimate), with_bias, constants);
+  AddBeams(problem.lidar, BeamsSeen(problem, estimate), EdgePose(problem, estimate.T_cam_lidar), with_beams, constants);
   return constants;
 }
 
 // Columns: the directions of the edge's pose, right tangent at its b, that the boards tell.
-Eigen::Matrix<double, 6, Eigen::Dynamic> ToldBy(const LidarCameraProblem& problem,
-                                                const LidarCameraEstimate& estimate) {
+Directions ToldBy(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
   if (!estimate.held) return Matrix6d::Identity();
   const Vector6d untold =
       problem.camera_is_a ? estimate.untold : Vector6d(Adjoint(estimate.T_cam_lidar) * estimate.untold);
@@ -125,8 +102,10 @@ Result<Uncertainty> JackknifeLidarCamera(const LidarCameraProblem& problem, cons
   const std::vector<CaptureBlock> left_out = BlocksOf(problem, estimate);
   const std::size_t carrying = CarryingBlocks(left_out, estimate);
   if (carrying >= kLidarCapturesForJackknife) {
-    const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, estimate, left_out[k]); };
-    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
+    const auto without = [&](std::size_t k) {
+      return PoseOf(problem, SolvedWithout(problem, estimate, left_out[k].captures));
+    };
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), EdgePose(problem, estimate.T_cam_lidar), without));
   }
   const auto told = ToldBy(problem, estimate);
   return UncertaintyAlong(told, told.transpose() * C_model * told, std::move(blocks), std::move(contributions),

@@ -5,19 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/range_constants.h"
+#include "server/calib/core/robust.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 
 namespace rigcal::calib {
 namespace {
 
 constexpr double kSmallestVariance_px2 = 1e-4;  // of perfect data: weights stay finite
-constexpr double kMadSigma = 1.4826;            // of a normal distribution
 constexpr double kTypicalPlaneSigma_m = 0.01;
 constexpr double kFewCapturesSigma_m = 0.003;  // flatness, scene and beam errors of real lidars
-
-double AngleBetween_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 PlaneCapture PlaneOf(const CameraEstimate& camera, const CaptureId& capture, const PlaneMoments& moments) {
   PlaneCapture plane;
@@ -25,12 +23,6 @@ PlaneCapture PlaneOf(const CameraEstimate& camera, const CaptureId& capture, con
   plane.camera_information = camera.information.at(capture) / std::max(camera.variance_px2, kSmallestVariance_px2);
   plane.moments = moments;
   return plane;
-}
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The sigma that, added to each capture's own, makes the residuals as large as they are in the middle; 0 if they are no
@@ -51,6 +43,19 @@ double ExtraSigma(const std::vector<double>& residuals, const std::vector<double
   return high;
 }
 
+Error Reason(const Diagnosis& diagnosis) { return {ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure}; }
+
+// Poses of the boards and intrinsics from the other pictures.
+OrDiagnosis<CameraEstimate> CameraWithout(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                          const std::set<CaptureId>& without) {
+  CameraProblem camera{problem.camera, problem.board, {}};
+  for (const LidarCameraCapture& capture : problem.captures) {
+    if (!estimate.camera.T_cam_board.contains(capture.capture)) continue;
+    if (!without.contains(capture.capture)) camera.views.emplace_back(capture.capture, *capture.view);
+  }
+  return EstimateCamera(camera, &estimate.camera);
+}
+
 }  // namespace
 
 PlaneState LidarCameraWork::StateOf() const {
@@ -61,11 +66,8 @@ PlaneState LidarCameraWork::StateOf() const {
 
 void LidarCameraWork::Drop(std::size_t position, const std::string& why) {
   unused[used[position].capture_idx] = why;
-  const auto at = static_cast<std::ptrdiff_t>(position);
-  used.erase(used.begin() + at);
-  planes.erase(planes.begin() + at);
-  if (position < solution.state.T_cam_board.size())
-    solution.state.T_cam_board.erase(solution.state.T_cam_board.begin() + at);
+  EraseAt(position, used, planes);
+  if (position < solution.state.T_cam_board.size()) EraseAt(position, solution.state.T_cam_board);
 }
 
 std::string WhyUseless(const LidarCameraProblem& problem, const CameraEstimate& camera, std::size_t capture_idx) {
@@ -155,6 +157,73 @@ NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes) {
                               : std::numeric_limits<double>::infinity();
   };
   return {cone_rad * 180 / M_PI, sigma_m(0), sigma_m(1), solver.eigenvectors().col(0)};
+}
+
+std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  std::set<CaptureId> used;
+  for (const auto& [capture, patch] : estimate.patch_idx) used.insert(capture);
+  if (!HoldsIntrinsics(problem.camera))
+    for (const auto& [capture, pose] : estimate.camera.T_cam_board) used.insert(capture);
+  return CaptureBlocks(problem.session_captures, used);
+}
+
+std::size_t CarryingBlocks(const std::vector<CaptureBlock>& blocks, const LidarCameraEstimate& estimate) {
+  std::set<CaptureId> both;
+  for (const auto& [capture, patch] : estimate.patch_idx) both.insert(capture);
+  return CountWith(blocks, both);
+}
+
+Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem, const LidarCameraEstimate& start) {
+  auto estimate = EstimateLidarCamera(problem, &start, nullptr);
+  if (!estimate) return Fail(Reason(estimate.error()));
+  return std::move(*estimate);
+}
+
+Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                          const std::set<CaptureId>& captures) {
+  LidarCameraEstimate start = estimate;
+  for (const CaptureId& capture : captures) start.patch_idx.erase(capture);
+  if (RefinesIntrinsics(problem.camera)) {
+    start.camera = WithoutViews(estimate.camera, captures);
+  } else if (!problem.camera.intrinsics) {
+    auto camera = CameraWithout(problem, estimate, captures);
+    if (!camera) return Fail(Reason(camera.error()));
+    start.camera = std::move(*camera);
+  }
+  return SolvedAgain(problem, start);
+}
+
+Result<LidarCameraEstimate> SolvedWithCamera(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                             CameraEstimate camera) {
+  LidarCameraEstimate start = estimate;
+  start.camera = std::move(camera);
+  return SolvedAgain(problem, start);
+}
+
+std::vector<IntrinsicsVector> ChangesOfIntrinsics(const LidarCameraProblem& problem,
+                                                  const LidarCameraEstimate& estimate) {
+  if (HoldsIntrinsics(problem.camera)) return {};
+  return ChangesByCorners(estimate.camera);
+}
+
+std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  std::vector<char> seen(kBeamGroups, 0);
+  for (const LidarCameraCapture& capture : problem.captures)
+    if (const auto used = estimate.patch_idx.find(capture.capture); used != estimate.patch_idx.end())
+      MarkBeams(capture.cloud->candidates[used->second], seen);
+  return seen;
+}
+
+Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                                 std::size_t group, double longer_m) {
+  LidarCameraEstimate start = estimate;
+  for (const LidarCameraCapture& capture : problem.captures) {
+    const auto used = estimate.patch_idx.find(capture.capture);
+    if (used == estimate.patch_idx.end()) continue;
+    const PlanePatch patch = WithBeamsMoved(capture.cloud->candidates[used->second], group, longer_m);
+    start.moments[capture.capture] = MomentsOf(patch, estimate.range_sigma_m);
+  }
+  return SolvedAgain(problem, start);
 }
 
 }  // namespace rigcal::calib

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/calib/core/capture_blocks.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/plane_problem.h"
 
@@ -49,5 +50,42 @@ struct NormalSpread {
   Eigen::Vector3d axis_cam = Eigen::Vector3d::UnitZ();  // that direction
 };
 [[nodiscard]] NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes);
+
+// The problem with one thing changed, solved again from an estimate of the whole.
+//
+// Of the captures that carry the answer: those of both, and every picture unless intrinsics are held.
+[[nodiscard]] std::vector<CaptureBlock> BlocksOf(const LidarCameraProblem& problem,
+                                                 const LidarCameraEstimate& estimate);
+// Those of them with a capture of both.
+[[nodiscard]] std::size_t CarryingBlocks(const std::vector<CaptureBlock>& blocks, const LidarCameraEstimate& estimate);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedAgain(const LidarCameraProblem& problem,
+                                                      const LidarCameraEstimate& start);
+// Everything estimated anew, intrinsics too unless they are held.
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithout(const LidarCameraProblem& problem,
+                                                        const LidarCameraEstimate& estimate,
+                                                        const std::set<CaptureId>& captures);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithCamera(const LidarCameraProblem& problem,
+                                                           const LidarCameraEstimate& estimate, CameraEstimate camera);
+// What the corners' errors do to intrinsics: independent changes of one sigma each; none where they are held.
+[[nodiscard]] std::vector<IntrinsicsVector> ChangesOfIntrinsics(const LidarCameraProblem& problem,
+                                                                const LidarCameraEstimate& estimate);
+
+// Of the groups of beams (range_constants.h): which took a point of a board; all of one with longer ranges.
+[[nodiscard]] std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
+[[nodiscard]] Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& problem,
+                                                               const LidarCameraEstimate& estimate, std::size_t group,
+                                                               double longer_m);
+
+// systematics.cc: what the captures say about errors that all of them share, a bias of the lidar's ranges and a board
+// of another size.
+//
+// Fills range_bias_*, board_scale_* and scale_fits_better. Each is fitted beside the pose with weights of its own, so
+// that the misfit of the other explanation does not hide it.
+void EstimateSystematics(const LidarCameraProblem& problem, const LidarCameraWork& work, LidarCameraEstimate& estimate);
+// Widens their sigmas, which so far are those of the points alone, by what the corners do to them by way of the
+// intrinsics, by leaving captures out (if there are enough) and by the given intrinsics' own sigmas; forgets both where
+// one of those cannot be told: poses of the boards err alike in all captures, and small tilts turn a tenth of a
+// millimetre of that into centimetres of bias.
+[[nodiscard]] Status WidenSystematics(const LidarCameraProblem& problem, LidarCameraEstimate& estimate);
 
 }  // namespace rigcal::calib

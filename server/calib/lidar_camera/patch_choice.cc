@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/core/robust.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -19,10 +21,6 @@ constexpr double kOtherAngle_rad = 0.3, kOtherShift_m = 0.5;
 constexpr int kRivalTries = 20;
 constexpr double kNominalAngle_rad = 0.785, kNominalShift_m = 1.0;
 constexpr double kAlmostAsManyRatio = 0.8;
-
-double AngleBetween_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 // Squared, in units of the tolerances.
 double Disagreement(const BoardPlane& camera, const BoardPlane& lidar, const Se3& T_cam_lidar) {
@@ -93,11 +91,10 @@ bool Consistent(const Correspondence& i, const Correspondence& j) {
 std::vector<std::pair<std::size_t, Correspondence>> SpreadCorrespondences(
     const std::vector<PlaneCandidates>& captures) {
   std::vector<std::pair<std::size_t, Correspondence>> all;
-  const std::size_t count = std::min(captures.size(), kProposersMax);
-  for (std::size_t i = 0; i < count; ++i) {
-    const PlaneCandidates& capture = captures[i * captures.size() / count];
-    for (const BoardPlane& camera : capture.camera)
-      for (const BoardPlane& lidar : capture.lidar) all.push_back({i, {camera, lidar}});
+  const std::vector<PlaneCandidates> proposers = SpreadOver(captures, kProposersMax);
+  for (std::size_t i = 0; i < proposers.size(); ++i) {
+    for (const BoardPlane& camera : proposers[i].camera)
+      for (const BoardPlane& lidar : proposers[i].lidar) all.push_back({i, {camera, lidar}});
   }
   return all;
 }
@@ -110,10 +107,7 @@ std::vector<Se3> Hypotheses(const std::vector<PlaneCandidates>& captures) {
       if (all[i].first == all[j].first || !Consistent(all[i].second, all[j].second)) continue;
       if (const auto T = Procrustes({all[i].second, all[j].second})) hypotheses.push_back(*T);
     }
-  if (hypotheses.size() <= kHypothesesMax) return hypotheses;
-  std::vector<Se3> spread;
-  for (std::size_t i = 0; i < kHypothesesMax; ++i) spread.push_back(hypotheses[i * hypotheses.size() / kHypothesesMax]);
-  return spread;
+  return SpreadOver(hypotheses, kHypothesesMax);
 }
 
 PatchChoice ChoiceAt(const std::vector<PlaneCandidates>& captures, const Se3& T_cam_lidar) {

@@ -1,10 +1,14 @@
-#include "server/calib/lidar_camera/systematics.h"
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
+
+#include "server/base/parallel_for.h"
+#include "server/calib/camera/intrinsics.h"
+#include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
+#include "server/calib/lidar_camera/lidar_camera_work.h"
 
 namespace rigcal::calib {
 namespace {
@@ -79,9 +83,11 @@ Fit FitBoardScale(const LidarCameraProblem& problem, LidarCameraWork work) {
   return fit;
 }
 
-}  // namespace
+// (range bias in metres, board scale ratio)
+using Pair = Eigen::Vector2d;
 
-Systematics SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
+// Of an estimate solved again, with its weights: one step from a known scale. NaN: it cannot tell.
+Pair SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const auto with_bias = SolvePlanes(work.planes, work.StateOf(), true);
   Scale(board_scale_ratio, work);
@@ -89,6 +95,76 @@ Systematics SystematicsNear(LidarCameraWork work, double board_scale_ratio) {
   return {with_bias ? with_bias->state.range_bias_m : kUnknown,
           step ? (1 + board_scale_ratio) * (1 + step->ratio) - 1 : kUnknown};
 }
+
+// Of estimates near to `estimate`: what `solve(i)` gives.
+template <typename Solve>
+Result<std::vector<Pair>> PairsOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                                  std::size_t count, const Solve& solve) {
+  std::vector<Result<Pair>> solved(count);
+  ParallelFor(count, [&](std::size_t i) {
+    solved[i] = solve(i).map([&](const LidarCameraEstimate& one) {
+      return SystematicsNear(WorkOf(problem, one), estimate.board_scale_ratio);
+    });
+  });
+  std::vector<Pair> pairs;
+  for (const Result<Pair>& one : solved) {
+    if (!one) return Fail(one.error());
+    pairs.push_back(*one);
+  }
+  return pairs;
+}
+
+Result<Pair> JackknifeVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
+                               const std::vector<CaptureBlock>& blocks) {
+  RIGCAL_ASSIGN(const std::vector<Pair> pairs, PairsOf(problem, estimate, blocks.size(), [&](std::size_t i) {
+                  return SolvedWithout(problem, estimate, blocks[i].captures);
+                }));
+  const auto m = static_cast<double>(pairs.size());
+  Pair mean = Pair::Zero(), variance = Pair::Zero();
+  for (const Pair& pair : pairs) mean += pair / m;
+  for (const Pair& pair : pairs) variance += (m - 1) / m * (pair - mean).cwiseAbs2();
+  return variance;
+}
+
+// Of independent causes: `solve` with the i-th lower and larger by its sigma.
+template <typename Solve>
+Result<Pair> VarianceOf(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, std::size_t causes,
+                        const Solve& solve) {
+  const auto moved = [&](std::size_t i) { return solve(i / 2, i % 2 == 0 ? -1.0 : 1.0); };
+  RIGCAL_ASSIGN(const std::vector<Pair> pairs, PairsOf(problem, estimate, 2 * causes, moved));
+  Pair variance = Pair::Zero();
+  for (std::size_t i = 0; i < causes; ++i) variance += (0.5 * (pairs[2 * i + 1] - pairs[2 * i])).cwiseAbs2();
+  return variance;
+}
+
+Result<Pair> IntrinsicsVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  const std::vector<int> uncertain = RefinedOf(problem.camera);
+  return VarianceOf(problem, estimate, uncertain.size(), [&](std::size_t i, double sigmas) {
+    return SolvedWithCamera(problem, estimate, WithGiven(estimate.camera, uncertain[i], sigmas));
+  });
+}
+
+// Of the planes' points, which the estimate knows, and of the corners by way of refined intrinsics.
+Result<Pair> ModelVariance(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
+  const std::vector<IntrinsicsVector> changes = ChangesOfIntrinsics(problem, estimate);
+  RIGCAL_ASSIGN(Pair variance, VarianceOf(problem, estimate, changes.size(), [&](std::size_t i, double sigmas) {
+                  return SolvedWithCamera(problem, estimate, WithIntrinsicsMoved(estimate.camera, sigmas * changes[i]));
+                }));
+  variance += Pair(estimate.range_bias_sigma_m, estimate.board_scale_sigma_ratio).cwiseAbs2();
+  return variance;
+}
+
+// NaN if one of them is.
+double Larger(double a, double b) { return std::isnan(a + b) ? a + b : std::max(a, b); }
+
+// Neither is known: with one of them left open the other would be blamed for both.
+void Forget(LidarCameraEstimate& estimate) {
+  estimate.range_bias_m = estimate.range_bias_sigma_m = 0;
+  estimate.board_scale_ratio = estimate.board_scale_sigma_ratio = 0;
+  estimate.scale_fits_better = false;
+}
+
+}  // namespace
 
 void EstimateSystematics(const LidarCameraProblem& problem, const LidarCameraWork& work,
                          LidarCameraEstimate& estimate) {
@@ -98,6 +174,24 @@ void EstimateSystematics(const LidarCameraProblem& problem, const LidarCameraWor
   estimate.board_scale_ratio = scale.value;
   estimate.board_scale_sigma_ratio = scale.sigma;
   estimate.scale_fits_better = scale.sigma > 0 && scale.rms_m < bias.rms_m;
+}
+
+Status WidenSystematics(const LidarCameraProblem& problem, LidarCameraEstimate& estimate) {
+  RIGCAL_ASSIGN(Pair variance, ModelVariance(problem, estimate));
+  const std::vector<CaptureBlock> blocks = BlocksOf(problem, estimate);
+  if (CarryingBlocks(blocks, estimate) >= kLidarCapturesForJackknife) {
+    RIGCAL_ASSIGN(const Pair shown, JackknifeVariance(problem, estimate, blocks));
+    variance = variance.binaryExpr(shown, &Larger);
+  }
+  RIGCAL_ASSIGN(const Pair given, IntrinsicsVariance(problem, estimate));
+  variance += given;
+  if (!variance.allFinite() || !estimate.KnowsSystematics()) {
+    Forget(estimate);
+    return {};
+  }
+  estimate.range_bias_sigma_m = std::sqrt(variance[0]);
+  estimate.board_scale_sigma_ratio = std::sqrt(variance[1]);
+  return {};
 }
 
 }  // namespace rigcal::calib

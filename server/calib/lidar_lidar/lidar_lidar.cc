@@ -4,15 +4,10 @@
 #include <cmath>
 #include <map>
 
-#include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
-#include "server/calib/lidar_lidar/lidar_lidar_uncertainty.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"
 
 namespace rigcal::calib {
 namespace {
-
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
 
 constexpr int kLockingsMax = 2;
 constexpr double kAgreeingMin_ratio = 0.3;  // of the starts; fewer: the answer is a matter of luck

@@ -5,9 +5,9 @@
 #pragma once
 
 #include <optional>
-#include <tl/expected.hpp>
 #include <vector>
 
+#include "server/calib/core/wording.h"
 #include "server/model/edge.h"
 #include "server/model/session.h"
 
@@ -24,7 +24,7 @@ struct LidarLidarProblem {
   Sensor lidar_a, lidar_b;
   std::optional<Se3> T_a_b_nominal;  // no search without it
   std::vector<LidarLidarCapture> captures;
-  bool polish = false;  // the answer is the polished pose, not NDT's
+  bool polish = false;                           // the answer is the polished pose, not NDT's
   std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
@@ -56,8 +56,8 @@ struct LidarLidarEstimate {
 
 // Pure; the same bits for any number of threads. A diagnosis says why there is no answer; `notes`, if not null, what a
 // reader should know of a good one.
-[[nodiscard]] tl::expected<LidarLidarEstimate, Diagnosis> EstimateLidarLidar(const LidarLidarProblem& problem,
-                                                                             std::vector<Diagnosis>* notes);
+[[nodiscard]] OrDiagnosis<LidarLidarEstimate> EstimateLidarLidar(const LidarLidarProblem& problem,
+                                                                 std::vector<Diagnosis>* notes);
 // The same as the finished edge (method "lidar_lidar"); a failed one carries the diagnosis.
 [[nodiscard]] Edge EstimateLidarLidarEdge(const LidarLidarProblem& problem);
 

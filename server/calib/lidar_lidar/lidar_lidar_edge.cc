@@ -1,27 +1,20 @@
-#include "server/base/out_of_memory.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
-#include "server/calib/lidar_lidar/lidar_lidar_diagnoses.h"
-#include "server/model/method.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 
 namespace rigcal::calib {
 namespace {
 
 Edge EdgeOf(const LidarLidarProblem& problem) {
-  Edge edge;
-  edge.frame_a = problem.lidar_a.id;
-  edge.frame_b = problem.lidar_b.id;
-  edge.method = NameOf(Method::kLidarLidar);
-  edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
-  return edge;
+  return UnsolvedEdge(problem.lidar_a.id, problem.lidar_b.id, Method::kLidarLidar, problem.captures.size());
 }
 
 Edge FailedEdge(const LidarLidarProblem& problem, const Diagnosis& diagnosis) {
   Edge edge = EdgeOf(problem);
-  edge.diagnoses = {diagnosis};
   for (const LidarLidarCapture& capture : problem.captures)
     edge.captures.push_back(
         {capture.capture, 0.0, false, capture.why_not.empty() ? "the pair was not solved" : capture.why_not});
-  return edge;
+  return FailedFor({diagnosis}, std::move(edge));
 }
 
 Vector6d MovedByPolish(const LidarLidarEstimate& estimate) {
@@ -61,12 +54,8 @@ Edge Solved(const LidarLidarProblem& problem) {
   std::vector<Diagnosis> notes;
   auto estimate = EstimateLidarLidar(problem, &notes);
   if (!estimate) return FailedEdge(problem, estimate.error());
-  Edge edge = EdgeOf(problem);
-  edge.state = EdgeState::kGood;
-  edge.T_a_b = estimate->T_a_b;
-  edge.uncertainty = std::move(estimate->uncertainty);
+  Edge edge = Good(estimate->T_a_b, std::move(estimate->uncertainty), std::move(notes), EdgeOf(problem));
   edge.captures = estimate->residuals;
-  edge.diagnoses = std::move(notes);
   if (estimate->polished) edge.diagnoses.push_back(PolishedPose(problem, MovedByPolish(*estimate)));
   AddFigures(*estimate, edge);
   return edge;
@@ -75,13 +64,8 @@ Edge Solved(const LidarLidarProblem& problem) {
 }  // namespace
 
 Edge EstimateLidarLidarEdge(const LidarLidarProblem& problem) {
-  try {
-    return Solved(problem);
-  } catch (const std::exception& exception) {
-    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
-    return FailedEdge(problem, LidarLidarError(problem, {ErrorCode::kInternal, exception.what(),
-                                                         "Report this with the session's id."}));
-  }
+  return Guarded([&] { return Solved(problem); },
+                 [&](const Error& error) { return FailedEdge(problem, LidarLidarError(problem, error)); });
 }
 
 }  // namespace rigcal::calib

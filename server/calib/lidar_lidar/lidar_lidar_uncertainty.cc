@@ -1,27 +1,86 @@
-#include "server/calib/lidar_lidar/lidar_lidar_uncertainty.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <map>
 #include <set>
 
-#include "server/calib/core/beam_groups.h"
+#include "server/base/parallel_for.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/leave_one_out.h"
-#include "server/calib/lidar_lidar/lidar_lidar_beams.h"
+#include "server/calib/core/range_constants.h"
+#include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "server/math/jackknife.h"
 
 namespace rigcal::calib {
 namespace {
 
-// Columns that span what is known.
-Directions Known(const Directions& unknown) {
-  if (unknown.cols() == 0) return Matrix6d::Identity();
-  const Eigen::HouseholderQR<Directions> qr(unknown);
-  const Matrix6d Q = qr.householderQ();
-  return Q.rightCols(6 - unknown.cols());
+// Causes: the groups of the map's lidar, then those of the moving one.
+constexpr std::size_t kCauses = 2 * kBeamGroups;
+
+// A voxel's mean moves by the share of it that the group's points are.
+void AddPoint(const Eigen::Vector3f& p_m, double count, std::vector<NdtMove>& moves) {
+  const std::size_t group = BeamGroupOf(p_m);
+  const Eigen::Vector3d share = p_m.cast<double>().normalized() / count;
+  for (NdtMove& move : moves)
+    if (move.cause == group) {
+      move.by_m += share;
+      return;
+    }
+  moves.push_back({group, share});
+}
+
+std::vector<std::vector<NdtMove>> MovesOfVoxels(const NdtMap& map, const std::vector<Eigen::Vector3f>& points_m) {
+  std::vector<std::vector<NdtMove>> moves(map.voxels.size());
+  for (const Eigen::Vector3f& p : points_m) {
+    const Eigen::Vector3d scaled = p.cast<double>() / map.voxel_m;
+    if (!(scaled.cwiseAbs().maxCoeff() < kCellsMax - 4)) continue;
+    const Eigen::Vector3i at = scaled.array().floor().cast<int>();
+    const int number = map.index.Find(CellKeyOf(at.x(), at.y(), at.z()));
+    if (number < 0) continue;
+    const auto voxel = static_cast<std::size_t>(number);
+    AddPoint(p, map.voxels[voxel].count, moves[voxel]);
+  }
+  return moves;
+}
+
+// A cell is a quarter of a voxel wide: it counts as of one group.
+std::vector<std::vector<NdtMove>> MovesOfPoints(const std::vector<NdtPoint>& points) {
+  std::vector<std::vector<NdtMove>> moves;
+  moves.reserve(points.size());
+  for (const NdtPoint& point : points)
+    moves.push_back({{kBeamGroups + BeamGroupOf(point.p_m.cast<float>()), point.p_m.normalized()}});
+  return moves;
+}
+
+struct Sums {
+  Matrix6d H = Matrix6d::Zero();
+  Directions gradients = Directions::Zero(6, kCauses);
+};
+
+Sums SumsOfCapture(const LidarLidarProblem& problem, const LidarLidarWork& work, std::size_t k, const Se3& T) {
+  const LidarLidarCapture& capture = problem.captures[work.used[k]];
+  const LidarClouds& clouds = work.clouds[k];
+  const NdtTerm term{&clouds.surfaces, &clouds.points.back()};
+  const NdtMoves moves{MovesOfPoints(clouds.points.back()),
+                       MovesOfVoxels(clouds.surfaces, work.a_is_map ? capture.a_m : capture.b_m)};
+  return {ScoreOf({term}, T).information, GradientByMoves(term, moves, kCauses, T)};
+}
+
+// How T_map_moving (right tangent) changes per metre that the ranges of each group of beams are longer, one column per
+// group (range_constants.h): of the lidar that makes the map, of the one that moves. Linear at the pose: a group more
+// is one more right side, not one more registration. Zero along `unknown`.
+struct BeamShifts {
+  Directions of_map, of_moving;
+};
+
+BeamShifts ShiftsByBeams(const LidarLidarProblem& problem, const LidarLidarWork& work, const Se3& T_map_moving,
+                         const Directions& unknown) {
+  std::vector<Sums> captures(work.clouds.size());
+  ParallelFor(captures.size(), [&](std::size_t k) { captures[k] = SumsOfCapture(problem, work, k, T_map_moving); });
+  Sums all;
+  for (const Sums& one : captures) all.H += one.H, all.gradients += one.gradients;
+  const Directions steps = StepsTo(all.H, all.gradients, unknown);
+  return {steps.leftCols(kBeamGroups), steps.rightCols(kBeamGroups)};
 }
 
 // What the two methods disagree by is one draw of an error that all captures share, so that neither the jackknife nor
@@ -40,13 +99,12 @@ Result<std::vector<Contribution>> RangeContributions(const LidarLidarProblem& pr
                                                      const Directions& unknown) {
   std::vector<GivenConstant> constants;
   const auto add = [&](const Sensor& lidar, double RangeShift::*shift_m) {
-    const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
-    if (!(sigma_m > 0)) return;
-    constants.push_back({"range bias of " + lidar.id.str(), [&, shift_m, sigma_m](double steps) -> Result<Se3> {
-                           RangeShift shift;
-                           shift.*shift_m = steps * sigma_m;
-                           return FitFrom(WorkOf(problem, shift), T_map_moving, kNdtLevels - 1, unknown).T;
-                         }});
+    const auto with_bias = [&, shift_m](double longer_m) -> Result<Se3> {
+      RangeShift shift;
+      shift.*shift_m = longer_m;
+      return FitFrom(WorkOf(problem, shift), T_map_moving, kNdtLevels - 1, unknown).T;
+    };
+    AddRangeBias(lidar.id, lidar.range_bias_sigma_m.value_or(0.0), with_bias, constants);
   };
   add(problem.lidar_a, &RangeShift::a_m);
   add(problem.lidar_b, &RangeShift::b_m);
@@ -91,12 +149,6 @@ std::vector<BlockVector> BlockVectors(const LidarLidarProblem& problem, const Li
   return blocks;
 }
 
-std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : blocks) d.push_back(block.d);
-  return d;
-}
-
 }  // namespace
 
 Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
@@ -104,7 +156,7 @@ Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, cons
                                           const std::vector<SurfacePairs>& pairs, const std::vector<Vector6d>& d) {
   const Se3& T_map_moving = pose.T;
   const PairInformation model = InformationOf(pairs, T_map_moving, unknown, work.voxel_m);
-  const Directions B = Known(unknown);
+  const Directions B = SplitBy(unknown).across;
   const auto failed = [] {
     return Fail(ErrorCode::kInvalidInput, "the common surroundings fix the pose too weakly",
                 "Take captures where both see walls or objects facing three different ways.");

@@ -5,8 +5,9 @@
 
 #include <vector>
 
+#include "server/calib/lidar_lidar/lidar_clouds.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
-#include "server/calib/lidar_lidar/surface_pairs.h"
+#include "server/calib/lidar_lidar/ndt_fit.h"
 
 namespace rigcal::calib {
 
@@ -61,5 +62,44 @@ struct LidarLidarBlocks {
   std::vector<SurfacePairs> pairs;  // of the block left out, by the pose without it
 };
 [[nodiscard]] LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const Directions& locked);
+
+// lidar_lidar_uncertainty.cc: how sure the pose is.
+constexpr std::size_t kCloudsForJackknife = 5;  // captures; fewer: the model's
+constexpr std::size_t kCloudsEnough = 8;        // fewer: a note says that sigma is rough
+
+// Of T_a_b. `d`: block vectors of T_map_moving from LeaveBlocksOut(). The jackknife over captures shrunk towards the
+// model; with few captures the model: the information of the surfaces with the scatter between blocks of voxels. What
+// NDT and its polish disagree by, and ranges that are all off together, are contributions. No information along
+// `unknown`.
+[[nodiscard]] Result<Uncertainty> LidarLidarUncertainty(const LidarLidarProblem& problem, const LidarLidarWork& work,
+                                                        const LidarLidarPose& pose, const Directions& unknown,
+                                                        const std::vector<SurfacePairs>& pairs,
+                                                        const std::vector<Vector6d>& d);
+
+constexpr double kOverlapMin_ratio = 0.25;  // of the moving cloud; less: they do not see the same place
+constexpr double kMatchMin_ratio = 0.4;     // of the flat voxels with a counterpart near; less: the wrong pose
+constexpr std::size_t kPairsMin = 40;
+
+// lidar_lidar_diagnoses.cc: the sentences. Each names the sensors and captures it is about, and what to do.
+//
+// Why there is no answer.
+[[nodiscard]] Diagnosis NoNominalPose(const LidarLidarProblem& problem);
+[[nodiscard]] Diagnosis NoCommonClouds(const LidarLidarProblem& problem);
+[[nodiscard]] Diagnosis LowOverlap(const LidarLidarProblem& problem, double overlap_ratio, std::size_t pairs);
+[[nodiscard]] Diagnosis PoorFit(const LidarLidarProblem& problem, double match_ratio);
+[[nodiscard]] Diagnosis StartsDisagree(const LidarLidarProblem& problem, double other_m, double other_rad);
+[[nodiscard]] Diagnosis StartsScatter(const LidarLidarProblem& problem, double agreeing_ratio);
+[[nodiscard]] Diagnosis NotConverged(const LidarLidarProblem& problem, double last_step);
+[[nodiscard]] Diagnosis NoStructure(const LidarLidarProblem& problem);
+[[nodiscard]] Diagnosis LidarLidarError(const LidarLidarProblem& problem, const Error& error);
+
+// Notes on a good edge. `unknown`: orthonormal, right tangent at b.
+[[nodiscard]] Diagnosis DirectionsUnknown(const LidarLidarProblem& problem, const Directions& unknown);
+[[nodiscard]] Diagnosis SingleCapture(const LidarLidarProblem& problem);
+[[nodiscard]] Diagnosis FewClouds(const LidarLidarProblem& problem, std::size_t used);
+[[nodiscard]] Diagnosis CloudsLeftOut(const LidarLidarProblem& problem, const std::vector<CaptureId>& captures);
+// `moved`: the logarithm of the polished pose in NDT's.
+[[nodiscard]] Diagnosis PolishedPose(const LidarLidarProblem& problem, const Vector6d& moved);
+[[nodiscard]] Diagnosis RangesTakenAsExact(const LidarLidarProblem& problem);
 
 }  // namespace rigcal::calib

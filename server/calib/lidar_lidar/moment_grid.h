@@ -3,8 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
+
+#include "server/base/parallel_for.h"
 
 namespace rigcal::calib {
 
@@ -48,6 +51,34 @@ class CellIndex {
   std::size_t mask_ = 0;
   int shift_ = 32;
 };
+
+// `body(number)` of every cell of the index within `reach` of this one.
+template <typename Body>
+void ForCellsAround(const CellIndex& index, const Eigen::Vector3i& cell, int reach, const Body& body) {
+  for (int dx = -reach; dx <= reach; ++dx)
+    for (int dy = -reach; dy <= reach; ++dy)
+      for (int dz = -reach; dz <= reach; ++dz)
+        if (const int number = index.Find(CellKeyOf(cell.x() + dx, cell.y() + dy, cell.z() + dz)); number >= 0)
+          body(static_cast<std::size_t>(number));
+}
+
+// Of chunks of every term, in their order: the same on any number of threads.
+template <typename Sums, typename Term, typename SizeOf, typename SumsOf>
+std::vector<Sums> SumsOfChunks(const std::vector<Term>& terms, std::size_t chunk, const SizeOf& size_of,
+                               const SumsOf& sums_of) {
+  struct Chunk {
+    const Term* term;
+    std::size_t begin, end;
+  };
+  std::vector<Chunk> chunks;
+  for (const Term& term : terms)
+    for (std::size_t begin = 0; begin < size_of(term); begin += chunk)
+      chunks.push_back({&term, begin, std::min(begin + chunk, size_of(term))});
+  std::vector<Sums> sums(chunks.size());
+  ParallelFor(chunks.size(),
+              [&](std::size_t i) { sums[i] = sums_of(*chunks[i].term, chunks[i].begin, chunks[i].end); });
+  return sums;
+}
 
 struct Moments {
   double count = 0;

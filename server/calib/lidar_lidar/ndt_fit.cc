@@ -1,13 +1,48 @@
 #include "server/calib/lidar_lidar/ndt_fit.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "server/base/parallel_for.h"
-
 namespace rigcal::calib {
 namespace {
+
+constexpr double kThinnestRatio = 0.01;  // of the largest variance: no Gaussian is thinner (Magnusson)
+constexpr double kFlatRatio = 0.06;      // of the middle variance: a surface is thinner than this,
+constexpr double kLineRatio = 0.04;      // and its middle variance more than this part of the largest: one row is none
+constexpr double kSurfaceMin_m = 0.01;   // no surface is known better than this
+
+void FillDistribution(const Eigen::Vector3d& variances, const Eigen::Matrix3d& axes, NdtVoxel& voxel) {
+  const Eigen::Vector3d clamped = variances.cwiseMax(std::max(kThinnestRatio * variances[2], 1e-6));
+  voxel.information = axes * clamped.cwiseInverse().asDiagonal() * axes.transpose();
+}
+
+void FillSurface(NdtVoxel& voxel) {
+  if (!voxel.flat) return;
+  const double variance = voxel.across_m * voxel.across_m + kSurfaceMin_m * kSurfaceMin_m;
+  voxel.information = voxel.normal * voxel.normal.transpose() / variance;
+}
+
+NdtVoxel VoxelOf(const Moments& moments, NdtKind kind) {
+  NdtVoxel voxel;
+  voxel.count = moments.count;
+  voxel.mean_m = moments.Mean();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
+  spread.computeDirect(moments.Covariance());
+  const Eigen::Vector3d variances = spread.eigenvalues().cwiseMax(0.0);
+  voxel.normal = spread.eigenvectors().col(0);
+  if (voxel.normal.dot(voxel.mean_m) > 0) voxel.normal = -voxel.normal;
+  voxel.across_m = std::sqrt(variances[0]);
+  voxel.flat = variances[0] < kFlatRatio * variances[1] && variances[1] > kLineRatio * variances[2];
+  if (voxel.flat) voxel.normal_variance_rad2 = variances[0] / (variances[1] * voxel.count);
+  if (kind == NdtKind::kDistributions)
+    FillDistribution(variances, spread.eigenvectors(), voxel);
+  else
+    FillSurface(voxel);
+  return voxel;
+}
 
 constexpr std::size_t kChunk = 1024;  // points; fixed, so that sums do not depend on threads
 constexpr int kIterationsMax = 40;
@@ -106,7 +141,7 @@ NdtScore RightScore(const LeftSums& sums, const Se3& T_a_b) {
 
 // Left, of all causes, for one point and the voxels about it.
 void AddMoves(const NdtMap& map, const NdtMoves& moves, std::size_t point, const NdtPoint& moving, const Se3& T_a_b,
-              Eigen::Matrix<double, 6, Eigen::Dynamic>& left) {
+              Directions& left) {
   const double per_m = 1 / map.voxel_m, d2 = ExponentOf(map.voxel_m);
   const Eigen::Vector3d q = T_a_b * moving.p_m;
   if (!(q.cwiseAbs().maxCoeff() * per_m < kCellsMax - 4)) return;
@@ -150,6 +185,18 @@ Vector6d StepOf(const NdtScore& score, double damping, const Directions& locked)
 
 }  // namespace
 
+NdtMap NdtMapOf(const MomentGrid& grid, NdtKind kind) {
+  NdtMap map{grid.cell_m, CellIndex(grid.cells.size() / 2), {}};
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    if (grid.cells[i].count < kNdtPointsMin) continue;
+    NdtVoxel voxel = VoxelOf(grid.cells[i], kind);
+    if (kind == NdtKind::kSurfaces && !voxel.flat) continue;
+    map.index.Add(grid.index.keys()[i]);
+    map.voxels.push_back(std::move(voxel));
+  }
+  return map;
+}
+
 std::vector<NdtPoint> NdtPointsOf(const MomentGrid& grid) {
   std::vector<NdtPoint> points;
   points.reserve(grid.cells.size());
@@ -158,25 +205,16 @@ std::vector<NdtPoint> NdtPointsOf(const MomentGrid& grid) {
 }
 
 NdtScore ScoreOf(const std::vector<NdtTerm>& terms, const Se3& T_a_b) {
-  struct Chunk {
-    const NdtTerm* term;
-    std::size_t begin, end;
-  };
-  std::vector<Chunk> chunks;
-  for (const NdtTerm& term : terms)
-    for (std::size_t begin = 0; begin < term.points->size(); begin += kChunk)
-      chunks.push_back({&term, begin, std::min(begin + kChunk, term.points->size())});
-  std::vector<LeftSums> parts(chunks.size());
-  ParallelFor(chunks.size(),
-              [&](std::size_t i) { parts[i] = SumsOf(*chunks[i].term, chunks[i].begin, chunks[i].end, T_a_b); });
+  const auto parts = SumsOfChunks<LeftSums>(
+      terms, kChunk, [](const NdtTerm& term) { return term.points->size(); },
+      [&](const NdtTerm& term, std::size_t begin, std::size_t end) { return SumsOf(term, begin, end, T_a_b); });
   LeftSums sums;
   for (const LeftSums& part : parts) sums.Add(part);
   return RightScore(sums, T_a_b);
 }
 
-Eigen::Matrix<double, 6, Eigen::Dynamic> GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes,
-                                                         const Se3& T_a_b) {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> left(6, static_cast<Eigen::Index>(causes));
+Directions GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes, const Se3& T_a_b) {
+  Directions left(6, static_cast<Eigen::Index>(causes));
   left.setZero();
   for (std::size_t i = 0; i < term.points->size(); ++i) AddMoves(*term.map, moves, i, (*term.points)[i], T_a_b, left);
   return Adjoint(T_a_b).transpose() * left;

@@ -1,12 +1,39 @@
-// NDT: the pose that puts one cloud where another cloud's Gaussians expect points. Own Newton iteration, converged.
+// NDT: a Gaussian for every occupied voxel of one cloud (Biber & Strasser 2003; Magnusson 2009), and the pose that puts
+// another cloud where these expect points. Own Newton iteration, converged.
 #pragma once
 
 #include <vector>
 
-#include "server/calib/lidar_lidar/ndt_map.h"
+#include "server/calib/core/directions.h"
+#include "server/calib/lidar_lidar/moment_grid.h"
 #include "server/math/se3.h"
 
 namespace rigcal::calib {
+
+enum class NdtKind {
+  kDistributions,  // the whole Gaussian: wide basin, but pulls along a surface towards the middle of a voxel
+  kSurfaces,       // flat voxels only, and only across their surface: what the final pose is made of
+};
+
+struct NdtVoxel {
+  Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  // 1/m^2; zero: nothing to hold a point against
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();      // direction of least spread, towards the sensor
+  double across_m = 0;                                    // standard deviation along the normal
+  double normal_variance_rad2 = 0;                        // of the normal, from its points' noise
+  double count = 0;
+  bool flat = false;
+};
+
+struct NdtMap {
+  double voxel_m = 1;
+  CellIndex index;
+  std::vector<NdtVoxel> voxels;  // by the index's numbers; voxels of too few points are not there
+};
+
+constexpr double kNdtPointsMin = 6;  // of a voxel that has a Gaussian
+
+[[nodiscard]] NdtMap NdtMapOf(const MomentGrid& grid, NdtKind kind);
 
 // A point of the moving cloud: the mean of a cell, as many points as `weight` says.
 struct NdtPoint {
@@ -40,8 +67,8 @@ struct NdtMoves {
   std::vector<std::vector<NdtMove>> of_points, of_voxels;  // side by side with the term's
 };
 // What one unit of each cause does to the gradient, a column each; Gauss-Newton as the information.
-[[nodiscard]] Eigen::Matrix<double, 6, Eigen::Dynamic> GradientByMoves(const NdtTerm& term, const NdtMoves& moves,
-                                                                       std::size_t causes, const Se3& T_a_b);
+[[nodiscard]] Directions GradientByMoves(const NdtTerm& term, const NdtMoves& moves, std::size_t causes,
+                                         const Se3& T_a_b);
 
 struct NdtFit {
   Se3 T_a_b;
@@ -54,7 +81,6 @@ constexpr double kNdtStepMax = 1e-4;  // of a converged fit's last step
 
 // Minimum from a start. `locked`: orthonormal directions (columns, in the right tangent at b) in which the pose stays.
 // Bit for bit the same on any number of threads.
-using Directions = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 [[nodiscard]] NdtFit FitNdt(const std::vector<NdtTerm>& terms, const Se3& start, double step_max,
                             const Directions& locked = Directions(6, 0));
 

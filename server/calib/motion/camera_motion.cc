@@ -41,7 +41,7 @@ double VarianceOf(const CameraMotion& motion) { return std::max(motion.camera.va
 
 }  // namespace
 
-tl::expected<CameraMotion, Diagnosis> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver) {
+OrDiagnosis<CameraMotion> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver) {
   auto camera = EstimateCameraBy(solver, problem);
   if (!camera) return tl::unexpected(camera.error());
   CameraMotion motion;

@@ -24,8 +24,7 @@ struct CameraMotion {
   Eigen::Vector3d centre_board_m = Eigen::Vector3d::Zero();  // about which it is turned
 };
 
-[[nodiscard]] tl::expected<CameraMotion, Diagnosis> CameraMotionOf(const CameraProblem& problem,
-                                                                   const CameraSolver& solver);
+[[nodiscard]] OrDiagnosis<CameraMotion> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver);
 
 // The pose and what the intrinsics do to it. `turn`: the board taken as turned by that many of its symmetric turns.
 [[nodiscard]] SidePose PoseOf(const CameraMotion& motion, const ViewMoments& view, int turn);

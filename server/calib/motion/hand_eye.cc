@@ -4,15 +4,11 @@
 #include <cmath>
 
 #include "server/calib/camera/camera_diagnoses.h"
-#include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"
 #include "server/calib/motion/stream_motion.h"
 
 namespace rigcal::calib {
 namespace {
-
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
 
 // What a stream's poses are taken to be good for until their residuals say.
 constexpr double kStreamSigma_m = 0.005, kStreamSigma_rad = 0.005;

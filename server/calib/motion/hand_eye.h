@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/calib/camera/intrinsics.h"
+#include "server/calib/core/wording.h"
 #include "server/calib/motion/motion_observability.h"
 #include "server/model/camera_fit.h"
 #include "server/model/edge.h"
@@ -58,7 +59,7 @@ struct HandEyeResult {
 };
 
 // Pure; deterministic. A diagnosis says why there is no answer.
-[[nodiscard]] tl::expected<HandEyeResult, Diagnosis> EstimateHandEye(const HandEyeProblem& problem);
+[[nodiscard]] OrDiagnosis<HandEyeResult> EstimateHandEye(const HandEyeProblem& problem);
 // The finished edge; a failed one carries the diagnoses. Throws where there is no memory, else
 // never. `fits`, if not null, becomes what it says of the cameras (camera_fit.h).
 [[nodiscard]] Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits = nullptr);

@@ -1,14 +1,12 @@
-#include "server/calib/motion/hand_eye_diagnoses.h"
+#include "server/calib/motion/hand_eye_work.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "server/calib/camera/layout_diagnosis.h"
+#include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/seen_corners.h"
-#include "server/calib/core/diagnoses.h"
-#include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
-#include "server/calib/motion/hand_eye_work.h"
+#include "server/calib/core/wording.h"
 #include "server/calib/motion/stream_motion.h"
 
 namespace rigcal::calib {
@@ -21,20 +19,8 @@ std::string PairOf(const HandEyeProblem& problem) {
   return problem.a.sensor.id.str() + " and " + problem.b.sensor.id.str();
 }
 
-std::string CountText(std::size_t count) { return std::to_string(count) + (count == 1 ? " capture" : " captures"); }
-std::string OnlyCountText(std::size_t count) { return count == 0 ? "no capture" : "only " + CountText(count); }
-
-std::string DegreesOf(double value_rad) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f deg", value_rad * 180 / M_PI);
-  return text;
-}
-
-std::string SecondsText(double value_s) {
-  char text[32];
-  std::snprintf(text, sizeof text, value_s < 100 ? "%.1f s" : "%.0f s", value_s);
-  return text;
-}
+std::string DegreesOf(double value_rad) { return Formatted("%.2f deg", value_rad * 180 / M_PI); }
+std::string SecondsText(double value_s) { return Formatted(value_s < 100 ? "%.1f s" : "%.0f s", value_s); }
 
 bool OfStreams(const HandEyeProblem& problem) { return problem.method == Method::kPoseStreams; }
 
@@ -47,40 +33,40 @@ std::string AxisText(const Eigen::Vector3d& axis) {
 }  // namespace
 
 Diagnosis TooFewMotions(const HandEyeProblem& problem, std::size_t both, std::size_t repeated) {
-  const std::string needed = "; at least " + std::to_string(kHandEyeMin);
   if (repeated > 0)
     return {"too_few_captures",
-            PairOf(problem) + " have a pose each in " + CountText(both + repeated) + ", but " +
-                std::to_string(repeated) + " of them repeat" + (repeated == 1 ? "s" : "") + " the pose of another" +
-                needed + " different ones are needed.",
+            Worded("{} have a pose each in {}, but {} of them repeat{} the pose of another; at least {} different ones "
+                   "are needed.",
+                   {PairOf(problem), CountText(both + repeated), repeated, repeated == 1 ? "s" : "", kHandEyeMin}),
             "Move and turn the robot between captures."};
-  return {"too_few_captures", PairOf(problem) + " have a pose each in " + OnlyCountText(both) + needed + " are needed.",
+  return {"too_few_captures",
+          Worded("{} have a pose each in {}; at least {} are needed.",
+                 {PairOf(problem), OnlyCapturesText(both), kHandEyeMin}),
           "Take 20 to 40 captures from different places, turned differently, with each sensor's board in view."};
 }
 
 Diagnosis TooFewSamples(const HandEyeProblem& problem, std::size_t samples, std::size_t needed, double common_s) {
-  const std::string cure = common_s < kRecordingEnough_s
-                               ? std::string(kRecordLonger)
-                               : "Record ten or more poses a second of each, without gaps of more than " +
-                                     SecondsText(kStreamGapMax_s) + ", while the robot drives and turns.";
-  return {"too_few_poses",
-          PairOf(problem) + " have poses of the same time at only " + std::to_string(samples) +
-              (samples == 1 ? " place" : " places") + " of their path, in the " + SecondsText(common_s) +
-              " that both recorded; at least " + std::to_string(needed) + " are needed.",
-          cure};
+  return {
+      "too_few_poses",
+      Worded("{} have poses of the same time at only {} of their path, in the {} that both recorded; at least {} "
+             "are needed.",
+             {PairOf(problem), CountText(samples, "place"), SecondsText(common_s), needed}),
+      common_s < kRecordingEnough_s
+          ? kRecordLonger
+          : Worded("Record ten or more poses a second of each, without gaps of more than {}, while the robot drives "
+                   "and turns.",
+                   {SecondsText(kStreamGapMax_s)})};
 }
 
 Diagnosis FewMotions(const HandEyeProblem& problem, std::size_t used) {
   return {"few_captures",
-          PairOf(problem) + " have a pose each in only " + CountText(used) + "; with fewer than " +
-              std::to_string(kHandEyeEnough) +
-              (used < kHandEyeForJackknife ? " the uncertainty comes from the model alone and is probably too small."
-                                           : " the uncertainty is itself uncertain."),
+          Worded("{} have a pose each in only {}; with fewer than {}{}",
+                 {PairOf(problem), CountText(used), kHandEyeEnough, FewMeanText(used, kHandEyeForJackknife)}),
           "Take 20 to 40 captures from different places, turned differently."};
 }
 
 Diagnosis CameraFailed(const HandEyeProblem& problem, const HandEyeSide& side, const Diagnosis& why) {
-  return {why.code, PairOf(problem) + ": " + side.sensor.id.str() + " gives no poses: " + why.what, why.cure};
+  return {why.code, Worded("{}: {} gives no poses: {}", {PairOf(problem), side.sensor.id, why.what}), why.cure};
 }
 
 Diagnosis MotionsContradict(const HandEyeProblem& problem, std::size_t captures) {
@@ -96,18 +82,18 @@ Diagnosis MotionsContradict(const HandEyeProblem& problem, std::size_t captures)
 
 Diagnosis CapturesContradict(const HandEyeProblem& problem, const std::vector<CaptureId>& captures) {
   return {"inconsistent_captures",
-          PairOf(problem) + ": " + NamesOf(captures) + " contradict the other captures; they are not used.",
+          Worded("{}: {} contradict the other captures; they are not used.", {PairOf(problem), NamesOf(captures)}),
           "Check that the board did not move, and that their names were not swapped."};
 }
 
 Diagnosis MotionNotSolvable(const HandEyeProblem& problem, const Error& error) {
-  return {"ill_conditioned", PairOf(problem) + ": " + error.what + ".", error.cure};
+  return AsDiagnosis(PairOf(problem), "ill_conditioned", error);
 }
 
 Diagnosis HighMotionResidual(const HandEyeProblem& problem, const HandEyeEstimate& estimate) {
   return {"high_residual",
-          PairOf(problem) + " disagree about their motion by " + MillimetresText(estimate.rms_m) + " and " +
-              DegreesOf(estimate.rms_rad) + " rms.",
+          Worded("{} disagree about their motion by {} and {} rms.",
+                 {PairOf(problem), MillimetresText(estimate.rms_m), DegreesOf(estimate.rms_rad)}),
           "Check that boards and tracker stood still, the boards' sizes, and that given intrinsics belong to these "
           "cameras."};
 }
@@ -115,68 +101,46 @@ Diagnosis HighMotionResidual(const HandEyeProblem& problem, const HandEyeEstimat
 Diagnosis NoMotion(const HandEyeProblem& problem) {
   const bool streams = OfStreams(problem);
   return {"no_motion",
-          PairOf(problem) + " did not move " + (streams ? "while both recorded" : "between the captures") +
-              " by more than the noise.",
-          std::string("Move and turn the robot ") + (streams ? "while both record." : "between captures.")};
+          Worded("{} did not move {} by more than the noise.",
+                 {PairOf(problem), streams ? "while both recorded" : "between the captures"}),
+          Worded("Move and turn the robot {}", {streams ? "while both record." : "between captures."})};
 }
 
 std::vector<Diagnosis> OpenDirections(const HandEyeProblem& problem, const MotionReach& reach) {
-  const std::string a = problem.a.sensor.id.str(), b = problem.b.sensor.id.str();
-  const std::string axis = AxisText(reach.axis_a) + " in the frame of " + a;
-  const std::string tilt =
-      "to within " + DegreesOf(reach.tilt_rad) + " (noise " + DegreesOf(reach.tilt_noise_rad) + ")";
-  switch (reach.kind) {
-    case MotionKind::kOneAxis:
-      return {{"planar_motion",
-               PairOf(problem) + " were turned about one axis only, " + axis + ", " + tilt + ": how far " + b +
-                   " is from " + a + " along this axis is not known.",
-               kTurnMore}};
-    case MotionKind::kOnTheSpot:
-      return {{"turning_on_the_spot",
-               PairOf(problem) + " were turned about one fixed line only, along " + axis + ", " + tilt + ": where " +
-                   b + " is along this line, and how it is turned about it, is not known.",
-               "Drive the robot to different places between captures. " + std::string(kTurnMore)}};
-    case MotionKind::kNoRotation:
-      return {{"pure_translation",
-               PairOf(problem) + " were moved but not turned: how " + b + " is turned is known, where it is from " + a +
-                   " is not.",
-               kTurnMore}};
-    case MotionKind::kOneLine:
-      return {{"straight_line",
-               PairOf(problem) + " were moved along one line only, " + axis + ", and not turned: where " + b +
-                   " is from " + a + " is not known, nor how it is turned about this line.",
-               kTurnMore}};
-    case MotionKind::kGeneral:
-    case MotionKind::kStill:
-      break;
-  }
-  return {};
+  const SensorId &a = problem.a.sensor.id, &b = problem.b.sensor.id;
+  const MotionWords words =
+      WordsOf(reach.kind, AxisText(reach.axis_a) + " in the frame of " + a.str(),
+              Worded("to within {} (noise {})", {DegreesOf(reach.tilt_rad), DegreesOf(reach.tilt_noise_rad)}));
+  if (words.code.empty()) return {};
+  const char* const unknown = reach.kind == MotionKind::kOneAxis ? "how far {} is from {} along this axis is not known."
+                              : reach.kind == MotionKind::kOnTheSpot
+                                  ? "where {} is along this line, and how it is turned about it, is not known."
+                              : reach.kind == MotionKind::kNoRotation
+                                  ? "how {} is turned is known, where it is from {} is not."
+                                  : "where {} is from {} is not known, nor how it is turned about this line.";
+  const std::string cure = (reach.kind == MotionKind::kOnTheSpot ? kDriveElsewhere : "") + std::string(kTurnMore);
+  return {{words.code, Worded("{} were {}: ", {PairOf(problem), words.moved}) + Worded(unknown, {b, a}), cure}};
 }
 
 std::vector<Diagnosis> MissedViews(const HandEyeProblem& problem) {
   std::vector<Diagnosis> diagnoses;
   for (const HandEyeSide* side : {&problem.a, &problem.b}) {
     if (!side->board) continue;
-    std::vector<CaptureId> unreadable, other_layout, without;
+    MissedCaptures unreadable, other_layout, without;
     std::string first;
     for (const auto& [capture, view] : side->views) {
       const std::string why = WhyUnusable(view, *side->board);
       if (why.empty()) continue;
-      if (ShowsOtherLayout(view)) {
-        other_layout.push_back(capture);
-        continue;
-      }
       const bool readable = view.found || view.image_width_px > 0;
-      if (first.empty()) first = " The first of them: " + why + (why.back() == '.' ? "" : ".");
-      (readable ? without : unreadable).push_back(capture);
+      (ShowsOtherLayout(view) ? other_layout : readable ? without : unreadable).Add(capture, "");
+      if (!ShowsOtherLayout(view) && first.empty()) first = FirstReason(why);
     }
-    if (!other_layout.empty()) diagnoses.push_back(OtherLayout(side->sensor.id, *side->board, other_layout));
-    if (!unreadable.empty()) diagnoses.push_back(Unreadable(side->sensor.id, unreadable, ""));
-    if (!without.empty())
-      diagnoses.push_back({"board_not_found",
-                           side->sensor.id.str() + " does not show target '" + side->board->id.str() + "' in " +
-                               CountText(without.size()) + ": " + NamesOf(without) + "." + first,
-                           "Show the whole board, sharp and evenly lit, and check its description in session.yaml."});
+    without.first_reason = first;
+    const SensorId& camera = side->sensor.id;
+    if (!other_layout.captures.empty()) diagnoses.push_back(OtherLayout(camera, *side->board, other_layout.captures));
+    if (!unreadable.captures.empty()) diagnoses.push_back(Unreadable(camera, unreadable));
+    if (!without.captures.empty())
+      diagnoses.push_back(BoardNotFound(camera, "target '" + side->board->id.str() + "'", without));
   }
   return diagnoses;
 }
@@ -188,28 +152,28 @@ std::vector<Diagnosis> TakenAsExact(const HandEyeProblem& problem) {
     if (side->sensor.intrinsics && !side->sensor.intrinsics_sigma)
       notes.push_back(IntrinsicsTakenAsExact(side->sensor.id));
     if (!(side->board->square_sigma_m > 0))
-      notes.push_back({"board_size_taken_as_exact",
-                       "The size of target '" + side->board->id.str() +
-                           "' is given without an uncertainty and taken as "
-                           "exact.",
-                       "Give 'square_size_sigma_m' in session.yaml."});
+      notes.push_back(
+          {"board_size_taken_as_exact",
+           Worded("The size of target '{}' is given without an uncertainty and taken as exact.", {side->board->id}),
+           "Give 'square_size_sigma_m' in session.yaml."});
   }
   return notes;
 }
 
 Diagnosis NoCommonTime(const HandEyeProblem& problem, double correlation_ratio) {
   const StreamSpan a = SpanOf(problem.a.poses), b = SpanOf(problem.b.poses);
-  char text[160];
-  std::snprintf(text, sizeof text, "best correlation %.2f; %s and %s long, turned by up to %.0f and %.0f deg",
-                correlation_ratio, SecondsText(a.seconds).c_str(), SecondsText(b.seconds).c_str(),
-                a.turn_rad * 180 / M_PI, b.turn_rad * 180 / M_PI);
+  const auto whole_degrees = [](double angle_rad) { return Formatted("%.0f", angle_rad * 180 / M_PI); };
   const std::string cure =
       std::min(a.seconds, b.seconds) < kRecordingEnough_s ? std::string(kRecordLonger) + " Turn the robot to and fro."
       : std::min(a.turn_rad, b.turn_rad) < kTurnEnough_rad
           ? "Turn the robot to and fro, by 20 degrees and more, while both record."
           : "Check that both are of the same drive and their stamps in nanoseconds, and turn the robot to and fro at "
             "changing speed while both record.";
-  return {"no_common_time", PairOf(problem) + ": no offset of their clocks makes their turning agree (" + text + ").",
+  return {"no_common_time",
+          Worded("{}: no offset of their clocks makes their turning agree (best correlation {}; {} and {} long, turned "
+                 "by up to {} and {} deg).",
+                 {PairOf(problem), Formatted("%.2f", correlation_ratio), SecondsText(a.seconds), SecondsText(b.seconds),
+                  whole_degrees(a.turn_rad), whole_degrees(b.turn_rad)}),
           cure};
 }
 

@@ -1,12 +1,8 @@
-#include <cmath>
 #include <set>
 
-#include "server/base/out_of_memory.h"
 #include "server/calib/camera/camera_fit.h"
-#include "server/calib/camera/layout_diagnosis.h"
-#include "server/calib/core/pair_captures.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/motion/hand_eye.h"
-#include "server/calib/motion/hand_eye_diagnoses.h"
 #include "server/calib/motion/hand_eye_work.h"
 
 namespace rigcal::calib {
@@ -26,39 +22,23 @@ std::set<CaptureId> AllCaptures(const HandEyeProblem& problem) {
 }
 
 Edge EdgeOf(const HandEyeProblem& problem) {
-  Edge edge;
-  edge.frame_a = problem.a.sensor.id;
-  edge.frame_b = problem.b.sensor.id;
-  edge.method = NameOf(problem.method);
-  if (problem.method != Method::kPoseStreams)
-    edge.figures["captures_total"] = static_cast<double>(AllCaptures(problem).size());
+  Edge edge = UnsolvedEdge(problem.a.sensor.id, problem.b.sensor.id, problem.method, AllCaptures(problem).size());
+  if (problem.method == Method::kPoseStreams) edge.figures.clear();
   return edge;
 }
 
 Edge FailedEdge(const HandEyeProblem& problem, const Diagnosis& diagnosis) {
   Edge edge = EdgeOf(problem);
-  edge.state = EdgeState::kFailed;
-  edge.diagnoses = {diagnosis};
-  for (Diagnosis& missed : MissedViews(problem)) edge.diagnoses.push_back(std::move(missed));
-  PutLayoutFirst(edge.diagnoses);
   for (const CaptureId& capture : AllCaptures(problem))
     edge.captures.push_back({capture, 0.0, false, "the pair was not solved"});
-  return edge;
+  std::vector<Diagnosis> diagnoses = {diagnosis};
+  Append(MissedViews(problem), diagnoses);
+  return FailedFor(std::move(diagnoses), std::move(edge));
 }
 
 void AddNoise(const std::string& side, const SideNoise& noise, Edge& edge) {
   edge.figures["noise_" + side + "_m"] = noise.translation_m;
   edge.figures["noise_" + side + "_rad"] = noise.rotation_rad;
-}
-
-void AddReach(const MotionReach& reach, Edge& edge) {
-  edge.figures["tilt_rad"] = reach.tilt_rad;
-  edge.figures["tilt_noise_rad"] = reach.tilt_noise_rad;
-  edge.figures["turn_rad"] = reach.turn_rad;
-  if (reach.open.cols() == 0) return;
-  edge.figures["axis_a_x_ratio"] = reach.axis_a.x();
-  edge.figures["axis_a_y_ratio"] = reach.axis_a.y();
-  edge.figures["axis_a_z_ratio"] = reach.axis_a.z();
 }
 
 void AddFigures(const HandEyeEstimate& estimate, Edge& edge) {
@@ -67,7 +47,8 @@ void AddFigures(const HandEyeEstimate& estimate, Edge& edge) {
   edge.figures["motion_rms_rad"] = estimate.rms_rad;
   AddNoise("a", estimate.noise_a, edge);
   AddNoise("b", estimate.noise_b, edge);
-  AddReach(estimate.reach, edge);
+  AddMotionFigures(estimate.reach, edge);
+  if (estimate.reach.open.cols() > 0) AddAxisFigures(estimate.reach.axis_a, edge);
   if (estimate.offset_s) edge.figures["clock_offset_s"] = *estimate.offset_s;
   if (estimate.offset_sigma_s) edge.figures["clock_offset_sigma_s"] = *estimate.offset_sigma_s;
 }
@@ -83,28 +64,35 @@ void AddCaptures(const HandEyeProblem& problem, const HandEyeEstimate& estimate,
   }
 }
 
-const CameraEstimate* PointerTo(const std::optional<CameraEstimate>& camera) { return camera ? &*camera : nullptr; }
+// Of the sides that are cameras. Without a result: what was seen.
+std::vector<CameraFit> FitsOf(const HandEyeProblem& problem, const HandEyeResult* result) {
+  std::vector<CameraFit> fits;
+  const auto add = [&](const HandEyeSide& side, std::optional<CameraEstimate> HandEyeResult::*camera) {
+    if (side.sensor.kind != SensorKind::kCamera || !side.board) return;
+    const bool solved = result != nullptr && result->*camera;
+    fits.push_back(FitOrSeen({side.sensor, *side.board, side.views}, solved ? &*(result->*camera) : nullptr));
+  };
+  add(problem.a, &HandEyeResult::camera_a);
+  add(problem.b, &HandEyeResult::camera_b);
+  return fits;
+}
 
 Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
-  if (fits) *fits = FitsOf(problem, nullptr, nullptr);
+  if (fits) *fits = FitsOf(problem, nullptr);
   auto result = EstimateHandEye(problem);
   if (!result) return FailedEdge(problem, result.error());
-  if (fits) *fits = FitsOf(problem, PointerTo(result->camera_a), PointerTo(result->camera_b));
+  if (fits) *fits = FitsOf(problem, &*result);
   const HandEyeEstimate& estimate = result->estimate;
   if (!(estimate.rms_m <= kHighRms_m && estimate.rms_rad <= kHighRms_rad)) {
     Edge edge = FailedEdge(problem, HighMotionResidual(problem, estimate));
     AddFigures(estimate, edge);
     return edge;
   }
-  Edge edge = EdgeOf(problem);
-  edge.state = EdgeState::kGood;
-  edge.T_a_b = estimate.T_a_b;
-  edge.uncertainty = std::move(result->uncertainty);
-  edge.diagnoses = std::move(result->notes);
+  Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), EdgeOf(problem));
   if (!estimate.offset_s && estimate.captures < kHandEyeEnough)
     edge.diagnoses.push_back(FewMotions(problem, estimate.captures));
-  for (Diagnosis& note : TakenAsExact(problem)) edge.diagnoses.push_back(std::move(note));
-  for (Diagnosis& missed : MissedViews(problem)) edge.diagnoses.push_back(std::move(missed));
+  Append(TakenAsExact(problem), edge.diagnoses);
+  Append(MissedViews(problem), edge.diagnoses);
   AddCaptures(problem, estimate, edge);
   AddFigures(estimate, edge);
   return edge;
@@ -136,15 +124,13 @@ void Drop(HandEyeProblem& problem, const std::set<CaptureId>& left_out) {
 }  // namespace
 
 Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
-  try {
-    if (problem.method == Method::kPoseStreams) return Solved(problem, fits);
-    return EstimateOfChosen(problem, AllCaptures(problem), SeenByBoth(problem), Drop,
-                            [&](const HandEyeProblem& chosen) { return Solved(chosen, fits); });
-  } catch (const std::exception& exception) {
-    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
-    return FailedEdge(problem, MotionNotSolvable(problem, {ErrorCode::kInternal, exception.what(),
-                                                           "Report this with the session's id."}));
-  }
+  const auto estimate = [&](const HandEyeProblem& chosen) { return Solved(chosen, fits); };
+  return Guarded(
+      [&] {
+        if (problem.method == Method::kPoseStreams) return estimate(problem);
+        return EstimateOfChosen(problem, AllCaptures(problem), SeenByBoth(problem), Drop, estimate);
+      },
+      [&](const Error& error) { return FailedEdge(problem, MotionNotSolvable(problem, error)); });
 }
 
 }  // namespace rigcal::calib

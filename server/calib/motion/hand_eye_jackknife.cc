@@ -62,13 +62,13 @@ Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
 }
 
 // `offset_s`: where the offset of the clocks comes to lie, if one is estimated.
-Result<Vector6d> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& offset_s) {
+Result<Se3> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& offset_s) {
   MotionProblem problem = work.problem;
   for (const std::size_t k : block.poses) problem.used[k] = 0;
   if (!block.captures.empty()) SetShared(work, block.captures, problem);
   RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state));
   if (work.estimates_offset) offset_s = solution.state.shared_b[kStreamOffset];
-  return Vector6d((work.state.X.Inverse() * solution.state.X).Log());
+  return solution.state.X;
 }
 
 // The jackknife's, or the model's where it is larger.
@@ -138,7 +138,7 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
     for (const Block& block : blocks) ids.push_back(block.id);
     offsets_s.resize(blocks.size());
     const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], offsets_s[i]); };
-    RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, without));
+    RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, work.state.X, without));
   }
   MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
   RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, CapturesPart(problem, work, contributions),

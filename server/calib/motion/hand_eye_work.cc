@@ -5,13 +5,9 @@
 #include <set>
 
 #include "server/calib/core/selection.h"
-#include "server/calib/motion/hand_eye_diagnoses.h"
 
 namespace rigcal::calib {
 namespace {
-
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
 
 // What a tracker or a robot is taken to be good for until its residuals say.
 constexpr double kTrackerSigma_m = 0.001, kTrackerSigma_rad = 0.001;

@@ -41,11 +41,11 @@ struct HandEyeWork {
 };
 
 // The captures in which both sides have a pose. `unused` says why the others have none.
-[[nodiscard]] tl::expected<HandEyeWork, Diagnosis> CollectMotion(const HandEyeProblem& problem);
+[[nodiscard]] OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem);
 // Sets the shared parameters of both sides, from all captures but those.
 void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, MotionProblem& problem);
 // Chooses, solves, finds the noise and what contradicts, until nothing changes. Poses that contradict are not used.
-[[nodiscard]] tl::expected<void, Diagnosis> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
+[[nodiscard]] OrDiagnosis<void> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
 [[nodiscard]] MotionNoise NoiseOf(const MotionProblem& problem);
 
 struct MotionUncertainty {
@@ -55,5 +55,30 @@ struct MotionUncertainty {
 // `block_of_pose`: which poses are left out together, ascending; empty: each by itself.
 [[nodiscard]] Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
                                                         const std::vector<std::size_t>& block_of_pose);
+
+// hand_eye_diagnoses.cc: the sentences. Each names the sensors and captures it is about, and what to do.
+//
+// `both`: captures with a pose each, those that repeat another left out; `repeated`: how many those are.
+[[nodiscard]] Diagnosis TooFewMotions(const HandEyeProblem& problem, std::size_t both, std::size_t repeated);
+// Of pose streams: places of the path at which both have a pose, in the time that both recorded.
+[[nodiscard]] Diagnosis TooFewSamples(const HandEyeProblem& problem, std::size_t samples, std::size_t needed,
+                                      double common_s);
+[[nodiscard]] Diagnosis FewMotions(const HandEyeProblem& problem, std::size_t used);  // a note
+// A camera that gives no poses: its own diagnosis, and for which pair.
+[[nodiscard]] Diagnosis CameraFailed(const HandEyeProblem& problem, const HandEyeSide& side, const Diagnosis& why);
+[[nodiscard]] Diagnosis MotionsContradict(const HandEyeProblem& problem, std::size_t captures);
+[[nodiscard]] Diagnosis CapturesContradict(const HandEyeProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis MotionNotSolvable(const HandEyeProblem& problem, const Error& error);
+[[nodiscard]] Diagnosis HighMotionResidual(const HandEyeProblem& problem, const HandEyeEstimate& estimate);
+[[nodiscard]] Diagnosis NoMotion(const HandEyeProblem& problem);
+// Codes "planar_motion", "turning_on_the_spot", "pure_translation", "straight_line": notes on a good edge that say
+// which direction is not known. Nothing where all are.
+[[nodiscard]] std::vector<Diagnosis> OpenDirections(const HandEyeProblem& problem, const MotionReach& reach);
+// "board_layout", "picture_unreadable", "board_not_found": of the cameras.
+[[nodiscard]] std::vector<Diagnosis> MissedViews(const HandEyeProblem& problem);
+// Constants that were given without a sigma: notes on a good edge.
+[[nodiscard]] std::vector<Diagnosis> TakenAsExact(const HandEyeProblem& problem);
+// Two pose streams whose turns have nothing in common: too short, too still, or not of the same time.
+[[nodiscard]] Diagnosis NoCommonTime(const HandEyeProblem& problem, double correlation_ratio);
 
 }  // namespace rigcal::calib

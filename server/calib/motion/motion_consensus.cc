@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "server/calib/core/robust.h"
 #include "server/calib/motion/motion_start.h"
 
 namespace rigcal::calib {
@@ -18,12 +19,6 @@ constexpr std::size_t kKept = 3;                      // partners of a sample, a
 constexpr double kGoodMedian = 9.0;                   // of squares with six degrees of freedom: noise explains it
 constexpr double kAngle_rad = 0.01, kPitch_m = 0.02;  // how well a sample's screws should agree
 constexpr double kInlierMedians = 6.0, kInlierLeast = 20.0;
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Choices of capture `k` under X and Z; stops looking where a residual is plainly large.
 MotionChoice BestChoice(const MotionCandidates& capture, const Se3& X, const Se3& Z, const Matrix6d& M) {

@@ -1,6 +1,6 @@
 #include "server/calib/motion/motion_observability.h"
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,6 @@ namespace rigcal::calib {
 namespace {
 
 constexpr double kNumerical_rad = 1e-9, kNumerical_m = 1e-9;
-
-using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 // Turning about a line through `point` along `axis`, moving along it: of frame a, as a change of X on the left.
 Vector6d TurnAbout(const Eigen::Vector3d& axis, const Eigen::Vector3d& point) {
@@ -30,10 +28,9 @@ void SetOpen(const std::vector<Vector6d>& twists_a, const Se3& X, MotionReach& r
   reach.open.resize(6, count);
   for (Eigen::Index i = 0; i < count; ++i)
     reach.open.col(i) = Adjoint(X.Inverse()) * twists_a[static_cast<std::size_t>(i)];
-  const Matrix6d Q =
-      count == 0 ? Matrix6d::Identity() : Matrix6d(Eigen::HouseholderQR<Columns>(reach.open).householderQ());
-  reach.open = Q.leftCols(count);
-  reach.free = Q.rightCols(6 - count);
+  const SplitDirections split = SplitBy(reach.open);
+  reach.open = split.within;
+  reach.free = split.across;
 }
 
 Eigen::Matrix3d MeanRotation(const std::vector<Se3>& poses) {
@@ -122,6 +119,23 @@ MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const Motio
   }
   SetOpen(open, X, reach);
   return reach;
+}
+
+MotionWords WordsOf(MotionKind kind, const std::string& axis, const std::string& tilt) {
+  switch (kind) {
+    case MotionKind::kOneAxis:
+      return {"planar_motion", "turned about one axis only, " + axis + ", " + tilt, 1};
+    case MotionKind::kOnTheSpot:
+      return {"turning_on_the_spot", "turned about one fixed line only, along " + axis + ", " + tilt, 2};
+    case MotionKind::kNoRotation:
+      return {"pure_translation", "moved but not turned", 3};
+    case MotionKind::kOneLine:
+      return {"straight_line", "moved along one line only, " + axis + ", and not turned", 4};
+    case MotionKind::kGeneral:
+    case MotionKind::kStill:
+      break;
+  }
+  return {};
 }
 
 }  // namespace rigcal::calib

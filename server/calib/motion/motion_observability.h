@@ -2,8 +2,10 @@
 // noise: singular values alone would take noise for information.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "server/calib/core/directions.h"
 #include "server/math/se3.h"
 
 namespace rigcal::calib {
@@ -31,10 +33,18 @@ struct MotionReach {
   double turn_rad = 0.0;  // rms rotation about it
   double travel_m = 0.0;  // rms way of the point of the body that moves least across the axis
   // Orthonormal columns, right tangent at b: what is open, and what is not.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> open, free;
+  Directions open, free;
 };
 
 // `T_world_a`: poses of the body; X = T_a_b.
 [[nodiscard]] MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise);
+
+// Of a motion that leaves directions open by itself: "planar_motion", "turning_on_the_spot", "pure_translation" or
+// "straight_line"; after "was" or "were"; how many directions. Else no code. `axis`, `tilt`: in words.
+struct MotionWords {
+  std::string code, moved;
+  std::size_t open = 0;
+};
+[[nodiscard]] MotionWords WordsOf(MotionKind kind, const std::string& axis, const std::string& tilt);
 
 }  // namespace rigcal::calib

@@ -226,25 +226,23 @@ Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionSta
 
 namespace {
 
-// Adds the squares of one side's residual and what is expected of them.
-void AddFit(const SideRow& row, const BodyNormal& n, const GlobalMatrix& C, SideFit& fit) {
+// Adds the squares of one side's residual and what is expected of them. Of a side whose translation and rotation are
+// not apart (not `split`) all of it is booked as translation.
+void AddFit(const SideRow& row, const BodyNormal& n, const GlobalMatrix& C, bool split, SideFit& fit) {
   // d e / d global after the body's pose has followed, and what is left of the body's own freedom.
   const GlobalRows total = row.global - row.body * n.inverse * n.mixed;
   const Matrix6d C_e = total * C * total.transpose() + row.body * n.inverse * row.body.transpose();
+  if (!split) {
+    fit.squares[0] += row.e.dot(row.weight * row.e);
+    fit.redundancy[0] += 6 - (row.weight * C_e).trace();
+    return;
+  }
   for (int part : {0, 1}) {
     const Eigen::Matrix3d weight = row.weight.block<3, 3>(3 * part, 3 * part);
     const Eigen::Vector3d e = row.e.segment<3>(3 * part);
     fit.squares[part] += e.dot(weight * e);
     fit.redundancy[part] += 3 - (weight * C_e.block<3, 3>(3 * part, 3 * part)).trace();
   }
-}
-
-// The same of a side whose translation and rotation are not apart: all of it is booked as translation.
-void AddWholeFit(const SideRow& row, const BodyNormal& n, const GlobalMatrix& C, SideFit& fit) {
-  const GlobalRows total = row.global - row.body * n.inverse * n.mixed;
-  const Matrix6d C_e = total * C * total.transpose() + row.body * n.inverse * row.body.transpose();
-  fit.squares[0] += row.e.dot(row.weight * row.e);
-  fit.redundancy[0] += 6 - (row.weight * C_e).trace();
 }
 
 bool IsSplit(const MotionSide& side) {
@@ -272,8 +270,8 @@ Result<MotionFit> FitOf(const MotionProblem& problem, const MotionState& state) 
   if (problem.b.SharedCount() > 0) fit.offset_sigma_s = std::sqrt(C(at.size - 1, at.size - 1));
   const bool split_a = IsSplit(problem.a), split_b = IsSplit(problem.b);
   for (const BodyNormal& n : reduced.bodies) {
-    split_a ? AddFit(n.a, n, C, fit.a) : AddWholeFit(n.a, n, C, fit.a);
-    split_b ? AddFit(n.b, n, C, fit.b) : AddWholeFit(n.b, n, C, fit.b);
+    AddFit(n.a, n, C, split_a, fit.a);
+    AddFit(n.b, n, C, split_b, fit.b);
   }
   return fit;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/calib/core/directions.h"
 #include "server/math/se3.h"
 
 namespace rigcal::calib {
@@ -36,7 +37,7 @@ struct MotionProblem {
   std::vector<char> used;  // a pose that is not used has no weight
   // Columns: directions of X (right tangent at b) along which it is estimated. All six unless the motion leaves some
   // open.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> free = Matrix6d::Identity();
+  Directions free = Matrix6d::Identity();
   [[nodiscard]] std::size_t UsedCount() const;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "server/base/parallel_for.h"
+#include "server/calib/core/robust.h"
 
 namespace rigcal::calib {
 namespace {
@@ -21,10 +22,6 @@ constexpr std::size_t kProposersMax = 40, kScoutsMax = 12, kBoardsMax = 12, kSco
 constexpr int kStarts = 240, kRefinedMax = 8;
 constexpr double kConvincingRatio = 0.7;  // of the captures, and of a patch's agreement
 constexpr double kOtherAngle_rad = 0.3, kOtherShift_m = 0.5;
-
-double AngleBetween_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 // Squared, in units of the tolerances.
 double Disagreement(const BoardPlane& patch, const BoardPlane& board) {
@@ -193,13 +190,6 @@ Se3 StartAt(int i) {
   return start.Normalized();
 }
 
-std::vector<PlacedPatches> SpreadOf(const std::vector<PlacedPatches>& captures, std::size_t count_max) {
-  const std::size_t count = std::min(captures.size(), count_max);
-  std::vector<PlacedPatches> spread;
-  for (std::size_t i = 0; i < count; ++i) spread.push_back(captures[i * captures.size() / count]);
-  return spread;
-}
-
 bool IsAnother(const Se3& T, const Se3& S) {
   const Vector6d apart = (T.Inverse() * S).Log();
   return apart.tail<3>().norm() > kOtherAngle_rad || apart.head<3>().norm() > kOtherShift_m;
@@ -208,7 +198,7 @@ bool IsAnother(const Se3& T, const Se3& S) {
 // From rotations all round: scouted on a few captures, the best refined on more.
 std::vector<Attempt> AttemptsAllRound(const std::vector<PlacedPatches>& captures, std::size_t captures_min) {
   const Prior anywhere{Eigen::Vector3d::Zero(), kAnywhereSigma_m};
-  const std::vector<PlacedPatches> scouts = SpreadOf(captures, kScoutsMax);
+  const std::vector<PlacedPatches> scouts = SpreadOver(captures, kScoutsMax);
   const std::size_t scouts_min = std::max(kScoutsAgreeMin, captures_min * scouts.size() / captures.size());
   std::vector<Attempt> scouted(kStarts);
   ParallelFor(scouted.size(), [&](std::size_t i) {
@@ -227,22 +217,8 @@ std::vector<Attempt> AttemptsAllRound(const std::vector<PlacedPatches>& captures
   return refined;
 }
 
-PlaneConsensus ConsensusOf(const std::vector<PlacedPatches>& captures, const Attempt& attempt) {
-  PlaneConsensus consensus;
-  consensus.T_body_lidar = attempt.T_body_lidar;
-  consensus.boards = attempt.boards;
-  consensus.score = attempt.score;
-  for (const PlacedPatches& capture : captures) {
-    consensus.board_of_patch.push_back(BoardsOf(capture, attempt.T_body_lidar, attempt.boards));
-    const auto& boards = consensus.board_of_patch.back();
-    if (std::any_of(boards.begin(), boards.end(), [](const auto& board) { return board.has_value(); }))
-      ++consensus.supporters;
-  }
-  return consensus;
-}
-
-}  // namespace
-
+// The boards' patches under a pose, boards where `boards` are. Of a capture's patches that could be the same board the
+// one that agrees best is.
 std::vector<std::optional<std::size_t>> BoardsOf(const PlacedPatches& capture, const Se3& T_body_lidar,
                                                  const std::vector<BoardPlane>& boards) {
   const Se3 T_world_lidar = capture.T_world_body * T_body_lidar;
@@ -260,9 +236,25 @@ std::vector<std::optional<std::size_t>> BoardsOf(const PlacedPatches& capture, c
   return board_of;
 }
 
+PlaneConsensus ConsensusOf(const std::vector<PlacedPatches>& captures, const Attempt& attempt) {
+  PlaneConsensus consensus;
+  consensus.T_body_lidar = attempt.T_body_lidar;
+  consensus.boards = attempt.boards;
+  consensus.score = attempt.score;
+  for (const PlacedPatches& capture : captures) {
+    consensus.board_of_patch.push_back(BoardsOf(capture, attempt.T_body_lidar, attempt.boards));
+    const auto& boards = consensus.board_of_patch.back();
+    if (std::any_of(boards.begin(), boards.end(), [](const auto& board) { return board.has_value(); }))
+      ++consensus.supporters;
+  }
+  return consensus;
+}
+
+}  // namespace
+
 std::optional<PlaneConsensus> FindStaticBoards(const std::vector<PlacedPatches>& captures,
                                                const std::optional<Se3>& nominal, std::size_t captures_min) {
-  const std::vector<PlacedPatches> spread = SpreadOf(captures, kProposersMax);
+  const std::vector<PlacedPatches> spread = SpreadOver(captures, kProposersMax);
   std::optional<Attempt> best;
   if (nominal) {
     best = AttemptFrom(spread, *nominal, {nominal->p_m, kNominalSigma_m}, kWidthsNearNominal, captures_min);

@@ -33,9 +33,5 @@ struct PlaneConsensus {
 [[nodiscard]] std::optional<PlaneConsensus> FindStaticBoards(const std::vector<PlacedPatches>& captures,
                                                              const std::optional<Se3>& nominal,
                                                              std::size_t captures_min);
-// The boards' patches under a pose: as above, boards where `boards` are. Of a capture's patches that could be the same
-// board the one that agrees best is.
-[[nodiscard]] std::vector<std::optional<std::size_t>> BoardsOf(const PlacedPatches& capture, const Se3& T_body_lidar,
-                                                               const std::vector<BoardPlane>& boards);
 
 }  // namespace rigcal::calib

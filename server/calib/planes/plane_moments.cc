@@ -49,7 +49,6 @@ PlaneMoments MomentsOf(const PlanePatch& patch, double range_sigma_m) {
         weight_per_m2 * range_sigma_m * range_sigma_m * row.segment<3>(3) * row.segment<3>(3).transpose();
     moments.weight_per_m2 += weight_per_m2;
   }
-  moments.points = static_cast<int>(patch.points_m.size());
   return moments;
 }
 

@@ -19,7 +19,6 @@ struct PlaneMoments {
   // less its mean, so that its least value is not drawn towards planes that the rays meet at a grazing angle.
   Matrix7d sum = Matrix7d::Zero();
   double weight_per_m2 = 0.0;  // sum of 1 / variance of the distance
-  int points = 0;
 };
 
 // Distance noise of a point is that of its range times the cosine of incidence (at least 0.3: at a grazing angle the

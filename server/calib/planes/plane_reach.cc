@@ -1,19 +1,16 @@
-#include "server/calib/planes/plane_reach.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/planes/static_planes.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::calib {
 namespace {
 
 using Eigen::MatrixXd;
-using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 constexpr double kNoNoise_m = 1e-8, kNoNoise_rad = 1e-8;  // of perfect poses: rounding of the points
 constexpr double kNoTurn_ratio = 0.1;
@@ -112,11 +109,9 @@ PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state) {
   reach.weakest_noises = std::sqrt(std::max(0.0, (1 - worst) / worst - 1));
   Eigen::Index open = 0;
   while (open < 6 && shares.eigenvalues()[5 - open] > open_from) ++open;
-  const Columns directions = scale.asDiagonal() * shares.eigenvectors().rightCols(open);
-  const Matrix6d Q =
-      open == 0 ? Matrix6d::Identity() : Matrix6d(Eigen::HouseholderQR<Columns>(directions).householderQ());
-  reach.open = Q.leftCols(open);
-  reach.free = Q.rightCols(6 - open);
+  const SplitDirections split = SplitBy(scale.asDiagonal() * shares.eigenvectors().rightCols(open));
+  reach.open = split.within;
+  reach.free = split.across;
   return reach;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/calib/core/directions.h"
 #include "server/calib/planes/plane_moments.h"
 #include "server/math/se3.h"
 
@@ -31,7 +32,7 @@ struct StaticProblem {
   std::vector<StaticCapture> captures;
   double range_bias_m = 0.0;  // ranges are too short by this much
   // Orthonormal columns: directions of T_body_lidar (right tangent at the lidar) along which it is estimated.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> free = Matrix6d::Identity();
+  Directions free = Matrix6d::Identity();
 };
 
 struct StaticState {
@@ -89,5 +90,27 @@ struct StaticFit {
 };
 // Fails where a free direction is not observable.
 [[nodiscard]] Result<StaticFit> FitOf(const StaticProblem& problem, const StaticState& state);
+
+// plane_reach.cc: which directions of T_body_lidar a motion before static planes tells. What the poses' own noise would
+// tell by itself does not count: from noisy poses information comes even where true ones give none. A pose that many
+// sightings correct is less noisy than the tracker's.
+//
+// A direction counts if the change of the sightings that tells it is so many times what noise of the poses makes.
+constexpr double kReachNoises = 3.0;
+
+struct PlaneReach {
+  // Orthonormal columns, right tangent at the lidar: what is open, and what is not.
+  Directions open, free;
+  double weakest_noises = 0.0;  // of the direction that is told least: its change over what noise makes
+};
+// `problem`: captures with the noise of their poses; its `free` is not used.
+[[nodiscard]] PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state);
+
+// The open directions in words' terms, frame of the body: along which the position is not known whatever the rotation,
+// and about which the rotation is not known.
+struct OpenAxes {
+  std::vector<Eigen::Vector3d> positions, turns;  // unit
+};
+[[nodiscard]] OpenAxes AxesOf(const PlaneReach& reach, const Se3& T_body_lidar);
 
 }  // namespace rigcal::calib

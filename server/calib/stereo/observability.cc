@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "server/calib/camera/camera_diagnoses.h"
+#include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/given_intrinsics.h"
-#include "server/calib/camera/seen_reach.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/selection.h"
@@ -46,18 +46,19 @@ std::vector<CaptureId> ResizedIn(const StereoProblem& problem, View StereoCaptur
 
 std::vector<Diagnosis> CheckSizes(const StereoProblem& problem) {
   std::vector<Diagnosis> diagnoses;
-  if (const auto resized = ResizedIn(problem, &StereoCapture::a); !resized.empty())
-    diagnoses.push_back(ImageSizeChanged(problem.camera_a.id, resized));
-  if (const auto resized = ResizedIn(problem, &StereoCapture::b); !resized.empty())
-    diagnoses.push_back(ImageSizeChanged(problem.camera_b.id, resized));
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
+    if (const auto resized = ResizedIn(problem, camera); !resized.empty())
+      diagnoses.push_back(ImageSizeChanged(SensorOf(problem, camera).id, resized));
   return diagnoses;
 }
 
 std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selection& selection, std::size_t both) {
-  const auto missed_a = MissedBy(problem, &StereoCapture::a), missed_b = MissedBy(problem, &StereoCapture::b);
-  const std::size_t total = problem.captures.size();
+  const auto sees = [&](View StereoCapture::*camera) {
+    return std::any_of(problem.captures.begin(), problem.captures.end(),
+                       [&](const StereoCapture& capture) { return Sees(capture.*camera, problem.board); });
+  };
   std::vector<Diagnosis> diagnoses;
-  if (both == 0 && missed_a.size() < total && missed_b.size() < total)
+  if (both == 0 && sees(&StereoCapture::a) && sees(&StereoCapture::b))
     diagnoses.push_back(NoCommonView(problem));
   else
     diagnoses.push_back(TooFewCaptures(problem, both));
@@ -68,9 +69,12 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
   return diagnoses;
 }
 
-void CheckTilt(const Sensor& camera, const CameraViews& views, std::vector<Diagnosis>& diagnoses) {
-  if (camera.intrinsics) return;
-  if (auto no_tilt = WhyNoTilt(camera.id, views)) diagnoses.push_back(std::move(*no_tilt));
+void CheckTilt(const StereoProblem& problem, const std::vector<std::size_t>& used, std::vector<Diagnosis>& diagnoses) {
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b}) {
+    const Sensor& sensor = SensorOf(problem, camera);
+    if (sensor.intrinsics) continue;
+    if (auto no_tilt = WhyNoTilt(sensor.id, ViewsOf(problem, used, camera))) diagnoses.push_back(std::move(*no_tilt));
+  }
 }
 
 // Of the radius or angle, by which the coefficient's effect grows against the undistorted lens.
@@ -94,7 +98,10 @@ CameraModel OutlookModel(CameraModel model) {
   return model == CameraModel::kPinholeRational ? CameraModel::kPinholeRadtan : model;
 }
 
-}  // namespace
+struct FocalOutlook {
+  double sigma_ratio = 0;  // predicted sigma of the focal length over the focal length; infinite: not observable
+  double spread_deg = 0;   // largest angle between the normals of two boards
+};
 
 FocalOutlook PredictFocal(const CameraViews& views) {
   const CameraModel model = OutlookModel(views.model);
@@ -117,6 +124,8 @@ FocalOutlook PredictFocal(const CameraViews& views) {
   }
   return outlook;
 }
+
+}  // namespace
 
 std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views) {
   const FocalOutlook outlook = PredictFocal(views);
@@ -144,8 +153,7 @@ std::vector<Diagnosis> Observability(const StereoProblem& problem) {
   const Selection selection = Select(problem);
   const std::size_t both = CountBoth(problem, selection.used);
   if (both < kCapturesMin) return ExplainTooFew(problem, selection, both);
-  CheckTilt(problem.camera_a, ViewsOfA(problem, selection.used), diagnoses);
-  CheckTilt(problem.camera_b, ViewsOfB(problem, selection.used), diagnoses);
+  CheckTilt(problem, selection.used, diagnoses);
   return diagnoses;
 }
 

@@ -9,11 +9,6 @@
 
 namespace rigcal::calib {
 
-struct FocalOutlook {
-  double sigma_ratio = 0;  // predicted sigma of the focal length over the focal length; infinite: not observable
-  double spread_deg = 0;   // largest angle between the normals of two boards
-};
-[[nodiscard]] FocalOutlook PredictFocal(const CameraViews& views);
 // The diagnosis if the focal length would be too uncertain.
 [[nodiscard]] std::optional<Diagnosis> WhyNoTilt(const SensorId& camera, const CameraViews& views);
 

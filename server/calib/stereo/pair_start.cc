@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "server/calib/core/robust.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -23,12 +25,6 @@ Hypotheses HypothesesOf(const PoseCandidates& capture) {
   for (const Se3& T_a_board : capture.T_a_board)
     for (const Se3& T_b_board : capture.T_b_board) hypotheses.push_back(T_a_board * T_b_board.Inverse());
   return hypotheses;
-}
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double SquaredDiscrepancy(const Se3& T, const Se3& S, double distance_m) {
@@ -66,10 +62,7 @@ std::vector<Hypotheses> Voters(const std::vector<PoseCandidates>& captures) {
   std::vector<Hypotheses> all;
   for (const PoseCandidates& capture : captures)
     if (Hypotheses hypotheses = HypothesesOf(capture); !hypotheses.empty()) all.push_back(std::move(hypotheses));
-  if (all.size() <= kVotersMax) return all;
-  std::vector<Hypotheses> spread;
-  for (std::size_t i = 0; i < kVotersMax; ++i) spread.push_back(all[i * all.size() / kVotersMax]);
-  return spread;
+  return SpreadOver(all, kVotersMax);
 }
 
 // Median per tangent axis of what lies near T.

@@ -9,8 +9,6 @@
 #include "server/calib/core/selection.h"
 #include "server/calib/stereo/observability.h"
 #include "server/calib/stereo/pair_start.h"
-#include "server/calib/stereo/stereo_estimation.h"
-#include "server/calib/stereo/stereo_start.h"
 #include "server/calib/stereo/stereo_work.h"
 
 namespace rigcal::calib {
@@ -146,14 +144,14 @@ std::optional<Diagnosis> WhyDistortionOpen(const StereoProblem& problem, const S
                                            const JointCovariance& covariance) {
   const Eigen::VectorXd variances = covariance.captures.diagonal();
   std::optional<Diagnosis> why;
-  if (work.joint.estimate_a && !work.joint.pull_a.Pulls())
+  if (work.joint.a.IsFree())
     why =
-        WhyDistortionOpen(problem.camera_a.id, work.joint.model_a, variances.segment<kIntrinsicsMax>(kIntrinsicsAStart),
-                          ViewsOfA(problem, work.used), work.state.intrinsics_a);
-  if (!why && work.joint.estimate_b && !work.joint.pull_b.Pulls())
+        WhyDistortionOpen(problem.camera_a.id, work.joint.a.model, variances.segment<kIntrinsicsMax>(kIntrinsicsAStart),
+                          ViewsOf(problem, work.used, &StereoCapture::a), work.state.intrinsics_a);
+  if (!why && work.joint.b.IsFree())
     why =
-        WhyDistortionOpen(problem.camera_b.id, work.joint.model_b, variances.segment<kIntrinsicsMax>(kIntrinsicsBStart),
-                          ViewsOfB(problem, work.used), work.state.intrinsics_b);
+        WhyDistortionOpen(problem.camera_b.id, work.joint.b.model, variances.segment<kIntrinsicsMax>(kIntrinsicsBStart),
+                          ViewsOf(problem, work.used, &StereoCapture::b), work.state.intrinsics_b);
   return why;
 }
 
@@ -165,9 +163,9 @@ OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const StereoW
   estimate.C_model = covariance->captures.block<6, 6>(kPairStart, kPairStart);
   estimate.shifts_a = covariance->shifts_a;
   estimate.shifts_b = covariance->shifts_b;
-  estimate.corner_sigma_px = std::max(work.joint.pull_a.corner_sigma_px, work.joint.pull_b.corner_sigma_px);
-  estimate.intrinsics_a = IntrinsicsOf(work.joint.model_a, work.state.intrinsics_a);
-  estimate.intrinsics_b = IntrinsicsOf(work.joint.model_b, work.state.intrinsics_b);
+  estimate.corner_sigma_px = std::max(work.joint.a.pull.corner_sigma_px, work.joint.b.pull.corner_sigma_px);
+  estimate.intrinsics_a = IntrinsicsOf(work.joint.a.model, work.state.intrinsics_a);
+  estimate.intrinsics_b = IntrinsicsOf(work.joint.b.model, work.state.intrinsics_b);
   estimate.T_a_b = work.state.T_a_b;
   estimate.iterations = work.iterations;
   for (std::size_t k = 0; k < work.used.size(); ++k) {
@@ -181,8 +179,8 @@ OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const StereoW
 
 }  // namespace
 
-tl::expected<StereoEstimate, Diagnosis> EstimateOrDiagnose(const StereoProblem& problem, const StereoEstimate* start,
-                                                           std::vector<Diagnosis>* notes) {
+OrDiagnosis<StereoEstimate> EstimateOrDiagnose(const StereoProblem& problem, const StereoEstimate* start,
+                                               std::vector<Diagnosis>* notes) {
   std::vector<Diagnosis> ignored;
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
   const auto work = start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept);

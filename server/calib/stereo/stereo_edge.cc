@@ -1,18 +1,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/base/out_of_memory.h"
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_fit.h"
-#include "server/calib/camera/layout_diagnosis.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"
-#include "server/calib/core/pair_captures.h"
+#include "server/calib/core/leave_one_out.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/stereo/stereo.h"
-#include "server/calib/stereo/stereo_estimation.h"
+#include "server/calib/stereo/stereo_work.h"
 #include "server/math/jackknife.h"
-#include "server/model/method.h"
 
 namespace rigcal::calib {
 namespace {
@@ -21,28 +19,38 @@ constexpr std::size_t kWorstShown = 3;
 constexpr double kSuspiciousRatio = 0.5;  // of the residual that is refused
 
 void AddMissed(const StereoProblem& problem, std::vector<Diagnosis>& diagnoses) {
-  for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
-    for (Diagnosis& missed : Missed(problem, camera)) diagnoses.push_back(std::move(missed));
+  for (const auto camera : {&StereoCapture::a, &StereoCapture::b}) Append(Missed(problem, camera), diagnoses);
+}
+
+Edge EdgeOf(const StereoProblem& problem) {
+  return UnsolvedEdge(problem.camera_a.id, problem.camera_b.id, Method::kStereo, problem.captures.size());
 }
 
 Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) {
-  Edge edge;
-  edge.frame_a = problem.camera_a.id;
-  edge.frame_b = problem.camera_b.id;
-  edge.method = NameOf(Method::kStereo);
-  edge.state = EdgeState::kFailed;
-  edge.diagnoses = std::move(diagnoses);
-  AddMissed(problem, edge.diagnoses);
-  PutLayoutFirst(edge.diagnoses);
+  Edge edge = EdgeOf(problem);
   const Selection selection = Select(problem);
   for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
     const auto why = selection.unused.find(idx);
     edge.captures.push_back({problem.captures[idx].capture, 0.0, false,
                              why == selection.unused.end() ? "the pair was not solved" : why->second});
   }
-  edge.figures["captures_total"] = static_cast<double>(problem.captures.size());
   edge.figures["captures_both"] = static_cast<double>(CountBoth(problem, selection.used));
-  return edge;
+  AddMissed(problem, diagnoses);
+  return FailedFor(std::move(diagnoses), std::move(edge));
+}
+
+std::map<CaptureId, Se3> BoardsOfB(const StereoEstimate& estimate) {
+  std::map<CaptureId, Se3> T_b_board;
+  for (const auto& [capture, T_a_board] : estimate.T_a_board) T_b_board[capture] = estimate.T_a_b.Inverse() * T_a_board;
+  return T_b_board;
+}
+
+// Of both cameras. Without an estimate: what was seen.
+std::vector<CameraFit> FitsOf(const StereoProblem& problem, const StereoEstimate* estimate) {
+  const CameraProblem a = CameraOf(problem, &StereoCapture::a), b = CameraOf(problem, &StereoCapture::b);
+  if (estimate == nullptr) return {SeenBy(a), SeenBy(b)};
+  return {FitOf(a, estimate->intrinsics_a, estimate->T_a_board),
+          FitOf(b, estimate->intrinsics_b, BoardsOfB(*estimate), estimate->turn_b)};
 }
 
 double HighestRms_px(const StereoProblem& problem) {
@@ -93,16 +101,6 @@ void AddDisagreement(const Sensor& camera, const CameraIntrinsics& refined, std:
   if (auto why = WhyGivenDisagree(camera, refined)) notes.push_back(std::move(*why));
 }
 
-void AddIntrinsicsFigures(const std::string& camera, const CameraIntrinsics& intrinsics, Edge& edge) {
-  edge.figures["fx_" + camera + "_px"] = intrinsics.fx_px;
-  edge.figures["fy_" + camera + "_px"] = intrinsics.fy_px;
-  edge.figures["cx_" + camera + "_px"] = intrinsics.cx_px;
-  edge.figures["cy_" + camera + "_px"] = intrinsics.cy_px;
-  const std::vector<std::string>& names = DistortionNames(intrinsics.model);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    edge.figures[names[i] + "_" + camera + "_ratio"] = intrinsics.distortion[i];
-}
-
 // Jackknife sigma over model sigma, mean over the directions in which the model has unit sigma. 1: the model's noise
 // explains the scatter between captures.
 double SigmaRatio(const Matrix6d& C_jack, const Matrix6d& C_model) {
@@ -119,10 +117,9 @@ void AddFigures(const StereoEstimate& estimate, std::size_t both, Edge& edge) {
   edge.figures["captures_both"] = static_cast<double>(both);
   edge.figures["captures_total"] = static_cast<double>(estimate.residuals.size());
   edge.figures["iterations"] = estimate.iterations;
-  AddIntrinsicsFigures("a", estimate.intrinsics_a, edge);
-  AddIntrinsicsFigures("b", estimate.intrinsics_b, edge);
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : edge.uncertainty.blocks) d.push_back(block.d);
+  AddIntrinsicsFigures(estimate.intrinsics_a, "_a", edge);
+  AddIntrinsicsFigures(estimate.intrinsics_b, "_b", edge);
+  const std::vector<Vector6d> d = VectorsOf(edge.uncertainty.blocks);
   if (!d.empty()) edge.figures["model_sigma_ratio"] = SigmaRatio(JackknifeCovariance(d), estimate.C_model);
 }
 
@@ -135,15 +132,8 @@ std::size_t CountBoth(const StereoProblem& problem, const StereoEstimate& estima
 
 Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Uncertainty uncertainty,
               std::vector<Diagnosis> notes) {
-  Edge edge;
-  edge.frame_a = problem.camera_a.id;
-  edge.frame_b = problem.camera_b.id;
-  edge.method = NameOf(Method::kStereo);
-  edge.state = EdgeState::kGood;
-  edge.T_a_b = estimate.T_a_b;
-  edge.uncertainty = std::move(uncertainty);
+  Edge edge = Good(estimate.T_a_b, std::move(uncertainty), std::move(notes), EdgeOf(problem));
   edge.captures = estimate.residuals;
-  edge.diagnoses = std::move(notes);
   const std::size_t both = CountBoth(problem, estimate);
   AddNotes(problem, both, edge.diagnoses);
   AddLensSuspicions(problem, estimate, edge.diagnoses);
@@ -189,27 +179,18 @@ bool ShowsOtherBoard(const StereoProblem& problem) {
   return contradicting > seeing;
 }
 
-std::set<CaptureId> SeenByBoth(const StereoProblem& problem) {
-  std::set<CaptureId> both;
-  for (const StereoCapture& capture : problem.captures)
-    if (BothSee(capture, problem.board)) both.insert(capture.capture);
-  return both;
-}
-
 }  // namespace
 
 Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
-  try {
-    const auto estimate = [&](const StereoProblem& chosen) {
-      return ShowsOtherBoard(chosen) ? FailedEdge(chosen, {}) : Solved(chosen, fits);
-    };
-    return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>, estimate);
-  } catch (const std::exception& exception) {
-    if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
-    return FailedEdge(problem,
-                      {FromError(problem, "internal",
-                                 {ErrorCode::kInternal, exception.what(), "Report this with the session's id."})});
-  }
+  const auto estimate = [&](const StereoProblem& chosen) {
+    return ShowsOtherBoard(chosen) ? FailedEdge(chosen, {}) : Solved(chosen, fits);
+  };
+  return Guarded(
+      [&] {
+        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>,
+                                estimate);
+      },
+      [&](const Error& error) { return FailedEdge(problem, {FromError(problem, "internal", error)}); });
 }
 
 }  // namespace rigcal::calib

@@ -1,39 +1,14 @@
-#include <algorithm>
 #include <set>
 
 #include "server/calib/core/diagnoses.h"
-#include "server/calib/core/joint_problem.h"
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/selection.h"
-#include "server/calib/stereo/stereo.h"
+#include "server/calib/stereo/stereo_work.h"
 
 namespace rigcal::calib {
 namespace {
 
-// The solved problem, ready to be solved again with something changed.
-struct Solved {
-  std::vector<std::size_t> used;
-  JointProblem joint;
-  JointState state;
-};
-
-Solved SolvedOf(const StereoProblem& problem, const StereoEstimate& estimate) {
-  Solved solved;
-  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
-    const auto board = estimate.T_a_board.find(problem.captures[idx].capture);
-    if (board == estimate.T_a_board.end()) continue;
-    solved.used.push_back(idx);
-    solved.state.T_a_board.push_back(board->second);
-  }
-  solved.joint = JointOf(problem, solved.used, estimate.turn_b);
-  SetCornerSigma(problem, estimate.corner_sigma_px, solved.joint);
-  solved.state.intrinsics_a = VectorOf(estimate.intrinsics_a);
-  solved.state.intrinsics_b = VectorOf(estimate.intrinsics_b);
-  solved.state.T_a_b = estimate.T_a_b;
-  return solved;
-}
-
-Result<Vector6d> WithoutBlockOf(const StereoProblem& problem, const Solved& solved, const CaptureBlock& block) {
+Result<Se3> WithoutBlockOf(const StereoProblem& problem, const StereoWork& solved, const CaptureBlock& block) {
   JointProblem joint = solved.joint;
   JointState state = solved.state;
   joint.captures.clear();
@@ -44,18 +19,18 @@ Result<Vector6d> WithoutBlockOf(const StereoProblem& problem, const Solved& solv
     state.T_a_board.push_back(solved.state.T_a_board[k]);
   }
   RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(joint, state));
-  return Vector6d((solved.state.T_a_b.Inverse() * solution.state.T_a_b).Log());
+  return solution.state.T_a_b;
 }
 
-Solved WithSquare(const Solved& solved, double scale) {
-  Solved moved = solved;
+StereoWork WithSquare(const StereoWork& solved, double scale) {
+  StereoWork moved = solved;
   for (Eigen::Vector3d& corner : moved.joint.corners_board) corner *= scale;
   for (Se3& T_a_board : moved.state.T_a_board) T_a_board.p_m *= scale;
   moved.state.T_a_b.p_m *= scale;
   return moved;
 }
 
-Result<Se3> PoseOf(const Solved& solved) {
+Result<Se3> PoseOf(const StereoWork& solved) {
   RIGCAL_ASSIGN(const JointSolution solution, SolveJoint(solved.joint, solved.state));
   return solution.state.T_a_b;
 }
@@ -68,7 +43,7 @@ void AddIntrinsics(const Sensor& camera, const std::vector<Vector6d>& shifts, co
 }
 
 std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const StereoEstimate& estimate,
-                                       const Solved& solved) {
+                                       const StereoWork& solved) {
   std::vector<GivenConstant> constants;
   const double ratio = problem.board.square_sigma_m / problem.board.square_m;
   if (ratio > 0)
@@ -79,31 +54,18 @@ std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const Stere
   return constants;
 }
 
-std::vector<CaptureBlock> BlocksOf(const StereoProblem& problem, const Solved& solved) {
-  std::set<CaptureId> used;
-  for (const std::size_t idx : solved.used) used.insert(problem.captures[idx].capture);
-  return CaptureBlocks(problem.session_captures, used);
-}
-
-// Single views are left out too, but are no degrees of freedom of the pair.
-std::set<CaptureId> SeenByBoth(const StereoProblem& problem, const Solved& solved) {
-  std::set<CaptureId> both;
-  for (const std::size_t idx : solved.used)
-    if (CountBoth(problem, {idx}) > 0) both.insert(problem.captures[idx].capture);
-  return both;
-}
-
 }  // namespace
 
 Result<Uncertainty> Jackknife(const StereoProblem& problem, const StereoEstimate& estimate) {
-  const Solved solved = SolvedOf(problem, estimate);
-  const std::vector<CaptureBlock> left_out = BlocksOf(problem, solved);
-  const std::size_t carrying = CountWith(left_out, SeenByBoth(problem, solved));
+  const StereoWork solved = WarmStart(problem, estimate);
+  const std::vector<CaptureBlock> left_out = CaptureBlocks(problem.session_captures, CapturesAt(problem, solved.used));
+  // Single views are left out too, but are no degrees of freedom of the pair.
+  const std::size_t carrying = CountWith(left_out, SeenByBoth(problem));
   RIGCAL_ASSIGN(const std::vector<Contribution> contributions, ContributionsOf(ConstantsOf(problem, estimate, solved)));
   std::vector<BlockVector> blocks;
   if (carrying >= kCapturesForJackknife) {
     const auto without = [&](std::size_t k) { return WithoutBlockOf(problem, solved, left_out[k]); };
-    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), without));
+    RIGCAL_ASSIGN(blocks, LeaveOneOut(IdsOf(left_out), estimate.T_a_b, without));
   }
   return UncertaintyOf(estimate.C_model, std::move(blocks), contributions, carrying);
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
+#include "server/calib/core/pair_edge.h"
+#include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
 namespace rigcal::calib {
@@ -41,9 +42,76 @@ TrackerLidarEstimate EstimateOf(const TrackerLidarProblem& problem, const Tracke
   return estimate;
 }
 
+Edge EdgeOf(const TrackerLidarProblem& problem) {
+  const SensorId &tracker = problem.tracker.id, &lidar = problem.lidar.id;
+  return UnsolvedEdge(problem.tracker_is_a ? tracker : lidar, problem.tracker_is_a ? lidar : tracker,
+                      Method::kTrackerLidar, problem.captures.size());
+}
+
+Edge FailedEdge(const TrackerLidarProblem& problem, const Diagnosis& diagnosis) {
+  Edge edge = EdgeOf(problem);
+  for (const TrackerLidarCapture& capture : problem.captures)
+    edge.captures.push_back({capture.capture, 0.0, false, "the pair was not solved"});
+  std::vector<Diagnosis> diagnoses = {diagnosis};
+  Append(MissedClouds(problem), diagnoses);
+  return FailedFor(std::move(diagnoses), std::move(edge));
+}
+
+void AddFigures(const TrackerLidarEstimate& estimate, Edge& edge) {
+  std::size_t points = 0, patches = 0;
+  for (const auto& [capture, check] : estimate.checks) points += check.points, patches += check.boards;
+  edge.figures["captures_used"] = static_cast<double>(estimate.checks.size());
+  edge.figures["planes_used"] = static_cast<double>(estimate.boards.size());
+  edge.figures["patches_used"] = static_cast<double>(patches);
+  edge.figures["points_used"] = static_cast<double>(points);
+  edge.figures["plane_distance_rms_m"] = estimate.rms_m;
+  edge.figures["plane_angle_rms_rad"] = estimate.rms_rad;
+  edge.figures["range_sigma_m"] = estimate.range_sigma_m;
+  edge.figures["tracker_sigma_m"] = estimate.noise_m;
+  edge.figures["tracker_sigma_rad"] = estimate.noise_rad;
+  AddMotionFigures(estimate.motion, edge);
+  edge.figures["weakest_over_noise_ratio"] = estimate.reach.weakest_noises;
+}
+
+void AddCaptures(const TrackerLidarProblem& problem, const TrackerLidarEstimate& estimate, Edge& edge) {
+  for (const TrackerLidarCapture& capture : problem.captures) {
+    const auto check = estimate.checks.find(capture.capture);
+    const auto why = estimate.unused.find(capture.capture);
+    if (check != estimate.checks.end())
+      edge.captures.push_back({capture.capture, check->second.distance_m, true, {}});
+    else
+      edge.captures.push_back({capture.capture, 0.0, false, why == estimate.unused.end() ? "not used" : why->second});
+  }
+}
+
+Edge Solved(const TrackerLidarProblem& problem) {
+  auto result = EstimateTrackerLidar(problem);
+  if (!result) return FailedEdge(problem, result.error());
+  const TrackerLidarEstimate& estimate = result->estimate;
+  if (!(estimate.rms_m <= kHighRms_m && estimate.rms_rad <= kHighRms_rad)) {
+    Edge edge = FailedEdge(problem, HighPlaneResidual(problem, estimate));
+    AddFigures(estimate, edge);
+    return edge;
+  }
+  Edge edge = Good(EdgePose(problem, estimate.T_body_lidar), std::move(result->uncertainty), std::move(result->notes),
+                   EdgeOf(problem));
+  if (estimate.checks.size() < kTrackerLidarEnough)
+    edge.diagnoses.push_back(FewPlaced(problem, estimate.checks.size()));
+  if (!problem.lidar.range_bias_sigma_m) edge.diagnoses.push_back(RangeTakenAsExact(problem.lidar.id));
+  Append(MissedClouds(problem), edge.diagnoses);
+  AddCaptures(problem, estimate, edge);
+  AddFigures(estimate, edge);
+  return edge;
+}
+
+std::set<CaptureId> SeenByBoth(const TrackerLidarProblem& problem) {
+  return CapturesOf(
+      problem, [](const TrackerLidarCapture& capture) { return capture.T_world_body && !PatchesOf(capture).empty(); });
+}
+
 }  // namespace
 
-tl::expected<TrackerLidarResult, Diagnosis> EstimateTrackerLidar(const TrackerLidarProblem& problem) {
+OrDiagnosis<TrackerLidarResult> EstimateTrackerLidar(const TrackerLidarProblem& problem) {
   auto work = CollectPatches(problem);
   if (!work) return tl::unexpected(work.error());
   if (auto fitted = FitPatches(problem, *work); !fitted) return tl::unexpected(fitted.error());
@@ -56,6 +124,15 @@ tl::expected<TrackerLidarResult, Diagnosis> EstimateTrackerLidar(const TrackerLi
   std::sort(contradicting.begin(), contradicting.end());
   if (!contradicting.empty()) result.notes.push_back(PlacedContradict(problem, contradicting));
   return result;
+}
+
+Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem) {
+  return Guarded(
+      [&] {
+        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<TrackerLidarProblem>,
+                                Solved);
+      },
+      [&](const Error& error) { return FailedEdge(problem, TrackerLidarNotSolvable(problem, error)); });
 }
 
 }  // namespace rigcal::calib

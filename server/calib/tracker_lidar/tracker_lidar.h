@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "server/calib/core/wording.h"
 #include "server/calib/motion/motion_observability.h"
 #include "server/calib/planes/plane_moments.h"
-#include "server/calib/planes/plane_reach.h"
+#include "server/calib/planes/static_planes.h"
 #include "server/model/edge.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
@@ -28,9 +29,9 @@ struct TrackerLidarProblem {
   Sensor tracker, lidar;
   std::vector<Target> boards;  // those the lidar may see, of different plates
   std::vector<TrackerLidarCapture> captures;
-  bool tracker_is_a = false;                // the edge's frame_a is the tracker's
-  double range_bias_m = 0.0;                // known: ranges are too short by this much
-  std::optional<Se3> T_body_lidar_nominal;  // the first start, and the value of what the motion leaves open
+  bool tracker_is_a = false;                     // the edge's frame_a is the tracker's
+  double range_bias_m = 0.0;                     // known: ranges are too short by this much
+  std::optional<Se3> T_body_lidar_nominal;       // the first start, and the value of what the motion leaves open
   std::vector<CaptureId> session_captures = {};  // all of the session: what is left out at once (CaptureBlocks)
 };
 
@@ -61,7 +62,7 @@ struct TrackerLidarResult {
 };
 
 // Pure; deterministic. A diagnosis says why there is no answer.
-[[nodiscard]] tl::expected<TrackerLidarResult, Diagnosis> EstimateTrackerLidar(const TrackerLidarProblem& problem);
+[[nodiscard]] OrDiagnosis<TrackerLidarResult> EstimateTrackerLidar(const TrackerLidarProblem& problem);
 // The finished edge (method "tracker_lidar"); a failed one carries the diagnoses. Throws where there is no memory,
 // else never.
 [[nodiscard]] Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem);

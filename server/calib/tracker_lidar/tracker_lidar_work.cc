@@ -1,17 +1,13 @@
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/core/beam_groups.h"
-#include "server/calib/tracker_lidar/tracker_lidar_diagnoses.h"
+#include "server/calib/core/range_constants.h"
+#include "server/calib/core/robust.h"
 
 namespace rigcal::calib {
 namespace {
-
-template <typename T>
-using OrDiagnosis = tl::expected<T, Diagnosis>;
 
 // What a tracker is taken to be good for until its residuals say.
 constexpr double kTrackerSigma_m = 0.001, kTrackerSigma_rad = 0.001;
@@ -21,22 +17,10 @@ constexpr double kFlatness_m = 0.001;  // no board is flatter, however exact the
 constexpr double kSamePatch_m = 0.15, kSamePatchCosine = 0.97;
 constexpr std::size_t kCapturesPerBoardPart = 5;  // a board is seen in a fifth of the captures, or it is no board
 constexpr double kOtherRatio = 0.8;
-constexpr double kContradictingRatio = 5.0, kMadSigma = 1.4826;
-constexpr double kContradictingMin_m = 0.03, kContradictingMin_rad = 0.05;
 constexpr int kRoundsMax = 40, kRejectionsMax = 6, kIterationsOnTheWay = 5;
 constexpr double kSame_ratio = 0.01;   // of a factor from round to round
 constexpr double kPriorSquares = 0.5;  // that the expected noise counts as
 constexpr double kFactorMin = 1e-8;
-
-double AngleBetween_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Their order must not show.
 std::vector<std::size_t> ById(const TrackerLidarProblem& problem) {
@@ -142,6 +126,9 @@ OrDiagnosis<void> Solve(const TrackerLidarProblem& problem, TrackerLidarWork& wo
   auto solution = SolveStatic(work.problem, work.state, iterations_max);
   if (!solution) return tl::unexpected(TrackerLidarNotSolvable(problem, solution.error()));
   work.state = std::move(solution->state);
+  auto fit = FitOf(work.problem, work.state);
+  if (!fit) return tl::unexpected(TrackerLidarNotSolvable(problem, fit.error()));
+  work.fit = std::move(*fit);
   return {};
 }
 
@@ -196,28 +183,17 @@ OrDiagnosis<void> Settle(const TrackerLidarProblem& problem, TrackerLidarWork& w
   for (int round = 0; round < kRoundsMax; ++round) {
     FindReach(problem, work);
     if (auto solved = Solve(problem, work, kIterationsOnTheWay); !solved) return solved;
-    auto fit = FitOf(work.problem, work.state);
-    if (!fit) return tl::unexpected(TrackerLidarNotSolvable(problem, fit.error()));
-    work.fit = std::move(*fit);
     if (!UpdateNoise(work)) break;
   }
   if (work.reach.free.cols() == 0) return tl::unexpected(NothingTold(problem));
-  if (auto solved = Solve(problem, work, kStaticIterationsMax); !solved) return solved;
-  auto fit = FitOf(work.problem, work.state);
-  if (!fit) return tl::unexpected(TrackerLidarNotSolvable(problem, fit.error()));
-  work.fit = std::move(*fit);
-  return {};
+  return Solve(problem, work, kStaticIterationsMax);
 }
 
 // Where most of a capture's boards are apart from where the others' say: the body, or a board, was elsewhere.
 void Drop(TrackerLidarWork& work, std::size_t position, const std::string& why) {
   work.unused[work.captures[position]] = why;
   work.contradicting.push_back(work.captures[position]);
-  const auto at = static_cast<std::ptrdiff_t>(position);
-  work.captures.erase(work.captures.begin() + at);
-  work.patches.erase(work.patches.begin() + at);
-  work.problem.captures.erase(work.problem.captures.begin() + at);
-  work.state.T_world_body.erase(work.state.T_world_body.begin() + at);
+  EraseAt(position, work.captures, work.patches, work.problem.captures, work.state.T_world_body);
 }
 
 TrackerLidarCheck CheckOfPatch(const TrackerLidarWork& work, std::size_t position, std::size_t i) {
@@ -238,15 +214,14 @@ bool DropContradicting(TrackerLidarWork& work) {
       distances_m.push_back(std::abs(check.distance_m));
       angles_rad.push_back(check.angle_rad);
     }
-  const double distance_max_m = std::max(kContradictingMin_m, kContradictingRatio * kMadSigma * MedianOf(distances_m));
-  const double angle_max_rad = std::max(kContradictingMin_rad, kContradictingRatio * MedianOf(angles_rad));
+  const BoardGate gate(distances_m, angles_rad);
   bool any = false;
   std::size_t at = distances_m.size();
   for (std::size_t k = work.captures.size(); k-- > 0;) {
     for (std::size_t i = work.patches[k].size(); i-- > 0;) {
       --at;
-      if (distances_m[at] <= distance_max_m && angles_rad[at] <= angle_max_rad) continue;
-      work.patches[k].erase(work.patches[k].begin() + static_cast<std::ptrdiff_t>(i));
+      if (gate.Passes(distances_m[at], angles_rad[at])) continue;
+      EraseAt(i, work.patches[k]);
       any = true;
     }
     if (work.patches[k].empty()) Drop(work, k, "its boards are not where the other captures have them");

@@ -38,15 +38,34 @@ struct TrackerLidarWork {
 // Patches of a capture that may be boards; one seen under two plates' names counts once.
 [[nodiscard]] std::vector<const PlanePatch*> PatchesOf(const TrackerLidarCapture& capture);
 // Captures with a pose and a patch, each once; which patches are boards. Leaves the start in `state`.
-[[nodiscard]] tl::expected<TrackerLidarWork, Diagnosis> CollectPatches(const TrackerLidarProblem& problem);
+[[nodiscard]] OrDiagnosis<TrackerLidarWork> CollectPatches(const TrackerLidarProblem& problem);
 // Solves, finds the tracker's noise, what contradicts and what is open, until nothing changes.
-[[nodiscard]] tl::expected<void, Diagnosis> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
+[[nodiscard]] OrDiagnosis<void> FitPatches(const TrackerLidarProblem& problem, TrackerLidarWork& work);
 [[nodiscard]] TrackerLidarCheck CheckOf(const TrackerLidarWork& work, std::size_t position);
 // The refinement's problem with the ranges of one group of beams longer.
 [[nodiscard]] StaticProblem ProblemWithBeamsMoved(const TrackerLidarWork& work, std::size_t group, double longer_m);
-// Uncertainty of the edge's T_a_b.
+// T_a_b of the edge, and its uncertainty.
+[[nodiscard]] Se3 EdgePose(const TrackerLidarProblem& problem, const Se3& T_body_lidar);
 [[nodiscard]] Result<Uncertainty> JackknifeTrackerLidar(const TrackerLidarProblem& problem,
                                                         const TrackerLidarWork& work);
 [[nodiscard]] Matrix6d ModelInformation(const TrackerLidarWork& work);
+
+// tracker_lidar_diagnoses.cc: the sentences. Each names the sensors and captures it is about, and what to do.
+//
+[[nodiscard]] Diagnosis TooFewPlaced(const TrackerLidarProblem& problem, std::size_t both);
+[[nodiscard]] Diagnosis FewPlaced(const TrackerLidarProblem& problem, std::size_t used);  // a note
+[[nodiscard]] Diagnosis NoStaticBoard(const TrackerLidarProblem& problem, std::size_t both, std::size_t supporters);
+[[nodiscard]] Diagnosis AmbiguousPlaces(const TrackerLidarProblem& problem);
+// The body did not move, or in a way that tells nothing with these boards.
+[[nodiscard]] Diagnosis NothingTold(const TrackerLidarProblem& problem);
+[[nodiscard]] Diagnosis PlacedContradict(const TrackerLidarProblem& problem, const std::vector<CaptureId>& captures);
+[[nodiscard]] Diagnosis HighPlaneResidual(const TrackerLidarProblem& problem, const TrackerLidarEstimate& estimate);
+[[nodiscard]] Diagnosis TrackerLidarNotSolvable(const TrackerLidarProblem& problem, const Error& error);
+// Codes "planar_motion", "turning_on_the_spot", "pure_translation", "straight_line", "few_planes": notes on a good edge
+// that say which direction is not known, and whether motion or boards are to blame. Nothing where all are.
+[[nodiscard]] std::vector<Diagnosis> OpenDirections(const TrackerLidarProblem& problem,
+                                                    const TrackerLidarEstimate& estimate);
+// "cloud_unreadable", "board_not_found_in_cloud".
+[[nodiscard]] std::vector<Diagnosis> MissedClouds(const TrackerLidarProblem& problem);
 
 }  // namespace rigcal::calib

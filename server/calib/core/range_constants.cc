@@ -1,4 +1,4 @@
-#include "server/calib/core/beam_groups.h"
+#include "server/calib/core/range_constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +26,22 @@ PlanePatch WithBeamsMoved(PlanePatch patch, std::size_t group, double longer_m) 
   for (Eigen::Vector3f& p : patch.points_m)
     if (BeamGroupOf(p) == group) p += static_cast<float>(longer_m) * p.normalized();
   return patch;
+}
+
+void AddRangeBias(const SensorId& lidar, double sigma_m, const WithRanges& solved,
+                  std::vector<GivenConstant>& constants) {
+  if (!(sigma_m > 0)) return;
+  constants.push_back({"range bias of " + lidar.str(), [=](double steps) { return solved(steps * sigma_m); }});
+}
+
+void AddBeams(const Sensor& lidar, const std::vector<char>& seen, const Se3& T_a_b, const WithBeams& solved,
+              std::vector<GivenConstant>& constants) {
+  const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
+  if (!(sigma_m > 0)) return;
+  for (std::size_t group = 0; group < seen.size(); ++group)
+    constants.push_back({SingleBeamsOf(lidar.id), [=, is_seen = seen[group]](double steps) -> Result<Se3> {
+                           return is_seen == 0 ? T_a_b : solved(group, steps * sigma_m);
+                         }});
 }
 
 }  // namespace rigcal::calib

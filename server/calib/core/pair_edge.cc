@@ -1,0 +1,56 @@
+#include "server/calib/core/pair_edge.h"
+
+#include "server/calib/camera/camera_diagnoses.h"
+
+namespace rigcal::calib {
+
+Edge UnsolvedEdge(const SensorId& a, const SensorId& b, Method method, std::size_t captures) {
+  Edge edge;
+  edge.frame_a = a;
+  edge.frame_b = b;
+  edge.method = NameOf(method);
+  edge.figures["captures_total"] = static_cast<double>(captures);
+  return edge;
+}
+
+Edge FailedFor(std::vector<Diagnosis> diagnoses, Edge edge) {
+  PutLayoutFirst(diagnoses);
+  edge.state = EdgeState::kFailed;
+  edge.diagnoses = std::move(diagnoses);
+  return edge;
+}
+
+Edge Good(const Se3& T_a_b, Uncertainty uncertainty, std::vector<Diagnosis> notes, Edge edge) {
+  edge.state = EdgeState::kGood;
+  edge.T_a_b = T_a_b;
+  edge.uncertainty = std::move(uncertainty);
+  edge.diagnoses = std::move(notes);
+  return edge;
+}
+
+void Append(std::vector<Diagnosis> more, std::vector<Diagnosis>& diagnoses) {
+  for (Diagnosis& diagnosis : more) diagnoses.push_back(std::move(diagnosis));
+}
+
+void AddIntrinsicsFigures(const CameraIntrinsics& intrinsics, const std::string& camera, Edge& edge) {
+  edge.figures["fx" + camera + "_px"] = intrinsics.fx_px;
+  edge.figures["fy" + camera + "_px"] = intrinsics.fy_px;
+  edge.figures["cx" + camera + "_px"] = intrinsics.cx_px;
+  edge.figures["cy" + camera + "_px"] = intrinsics.cy_px;
+  const std::vector<std::string>& names = DistortionNames(intrinsics.model);
+  for (std::size_t i = 0; i < names.size(); ++i) edge.figures[names[i] + camera + "_ratio"] = intrinsics.distortion[i];
+}
+
+void AddAxisFigures(const Eigen::Vector3d& axis_a, Edge& edge) {
+  edge.figures["axis_a_x_ratio"] = axis_a.x();
+  edge.figures["axis_a_y_ratio"] = axis_a.y();
+  edge.figures["axis_a_z_ratio"] = axis_a.z();
+}
+
+void AddMotionFigures(const MotionReach& motion, Edge& edge) {
+  edge.figures["tilt_rad"] = motion.tilt_rad;
+  edge.figures["tilt_noise_rad"] = motion.tilt_noise_rad;
+  edge.figures["turn_rad"] = motion.turn_rad;
+}
+
+}  // namespace rigcal::calib
