@@ -19,6 +19,13 @@ bool HoldsAll(const Document& revision, const std::set<std::string>& wanted) {
   return missing.empty();
 }
 
+// Then what is stored and not there by itself is in a merged one, once no edge waits for its revision.
+bool HoldsMerged(const Document& revision) {
+  for (const Document& edge : revision["edges"].Items())
+    if (!edge["figures"]["merged_edges"].IsNull()) return true;
+  return false;
+}
+
 }  // namespace
 
 struct ResultWatch::State {
@@ -112,9 +119,13 @@ Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   RIGCAL_ASSIGN(state.result.show, Document::Parse(state.result.show_text, "the server's answer to 'show'"));
   state.looked_at_revision = newest;
   state.looked_for = state.place.edges.size();
+  const Document revision = state.result.show["document"];
+  const bool merged = state.place.session.empty() && HoldsMerged(revision);
+  const bool all_revised = merged && !state.result.show["calculating"].Flag();
   state.result.has_revision = state.finished =
-      HoldsAll(state.result.show["document"], state.place.edges) &&
+      (all_revised || HoldsAll(revision, state.place.edges)) &&
       state.result.show["standing"].Integer().value_or(0) >= state.place.standing;
+  if (merged && !state.finished) state.looked_at_revision = 0;  // look again: the same revision may come to hold all
   return {};
 }
 

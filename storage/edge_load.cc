@@ -150,13 +150,6 @@ Result<std::vector<Edge>> LoadSelection(Store& store, const std::string& subject
   return std::move(selected.edges);
 }
 
-// As json_each takes it; ids are hex digits.
-std::string ListOf(const std::vector<EdgeId>& ids) {
-  std::string list = "[";
-  for (const EdgeId& id : ids) list += (list.size() == 1 ? "\"" : ",\"") + id.str() + "\"";
-  return list + "]";
-}
-
 }  // namespace
 
 Result<std::optional<Edge>> LoadEdge(Store& store, const EdgeId& id) {

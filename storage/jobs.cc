@@ -1,6 +1,6 @@
 #include "storage/jobs.h"
 
-#include <algorithm>
+#include <set>
 
 #include "storage/query.h"
 
@@ -28,21 +28,27 @@ constexpr const char* kBegunBefore =
     "CROSS JOIN job j ON j.number = w.job_number CROSS JOIN session s ON s.number = j.session_number "
     "WHERE substr(t.work, 1, 4) = 'job ' ORDER BY t.attempts, w.job_number";
 
-std::optional<JobRow> FirstOf(Store& store, const char* sql, const std::vector<RobotId>& busy_robots) {
+// The first of a robot that is not served, or the first at all of one that is not busy.
+std::optional<JobRow> FirstOf(Store& store, const char* sql, const std::set<RobotId>& busy, const std::set<RobotId>& served) {
   Query query(store, sql);
+  std::optional<JobRow> of_served;
   while (query.Step()) {
-    JobRow row = JobRowOf(query);
-    if (std::find(busy_robots.begin(), busy_robots.end(), row.robot) == busy_robots.end()) return row;
+    const RobotId robot = query.IdAt<RobotId>(1);
+    if (busy.contains(robot)) continue;
+    if (!served.contains(robot)) return JobRowOf(query);
+    if (!of_served) of_served = JobRowOf(query);
   }
-  return std::nullopt;
+  return of_served;
 }
 
 }  // namespace
 
-Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots) {
+Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots,
+                                          const std::vector<RobotId>& served_robots) {
+  const std::set<RobotId> busy(busy_robots.begin(), busy_robots.end()), served(served_robots.begin(), served_robots.end());
   return Load<std::optional<JobRow>>(store, "next job", [&]() -> Result<std::optional<JobRow>> {
-    if (auto job = FirstOf(store, kNeverBegun, busy_robots)) return job;
-    return FirstOf(store, kBegunBefore, busy_robots);
+    if (auto job = FirstOf(store, kNeverBegun, busy, served)) return job;
+    return FirstOf(store, kBegunBefore, busy, {});
   });
 }
 

@@ -17,9 +17,10 @@ struct JobRow {
   int attempts = 0;  // that count (attempts.h)
 };
 
-// The oldest unfinished job of a robot that is not in `busy_robots` (one writer per robot at a time); what was begun
-// before and not finished comes after all others, the least often begun first.
-[[nodiscard]] Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots);
+// The oldest unfinished job of a robot that is not in `busy_robots` (one writer per robot at a time), of those not in
+// `served_robots` first; what was begun before and not finished comes after all others, the least often begun first.
+[[nodiscard]] Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotId>& busy_robots,
+                                                        const std::vector<RobotId>& served_robots = {});
 [[nodiscard]] Result<std::int64_t> CountJobs(Store& store, const RobotId& robot);
 // Unfinished and all jobs of one session.
 struct JobCount {

@@ -44,25 +44,25 @@ Result<MergedEdge> MergedAt(const Query& row) {
   return merged;
 }
 
-// Of the newest revision of the robot.
-const std::string kOfNewest = " WHERE robot_id = ?1 AND revision_number = (SELECT max(number) FROM revision WHERE robot_id = ?1)";
+const std::string kOfRevision =
+    " WHERE robot_id = ?1 AND revision_number = CASE ?2 WHEN 0 THEN (SELECT max(number) FROM revision WHERE robot_id = ?1) ELSE ?2 END";
 
 }  // namespace
 
-Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot) {
+Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number) {
   using Edges = std::vector<MergedEdge>;
   return Load<Edges>(store, Subject(robot), [&]() -> Result<Edges> {
     std::map<std::tuple<SensorId, SensorId, std::string>, MergedEdge> merged;
     Query rows(store,
                "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, "
-               "T_a_b_qw, source, dof, by_blocks, information, scatter, given FROM merged_edge" + kOfNewest);
-    rows.Bind(robot);
+               "T_a_b_qw, source, dof, by_blocks, information, scatter, given FROM merged_edge" + kOfRevision);
+    rows.Bind(robot, number);
     while (rows.Step()) {
       RIGCAL_ASSIGN(MergedEdge one, MergedAt(rows));
       merged[{one.frame_a, one.frame_b, one.method}] = std::move(one);
     }
-    Query constants(store, "SELECT frame_a, frame_b, method, name, scores FROM merged_edge_constant" + kOfNewest);
-    constants.Bind(robot);
+    Query constants(store, "SELECT frame_a, frame_b, method, name, scores FROM merged_edge_constant" + kOfRevision);
+    constants.Bind(robot, number);
     while (constants.Step()) {
       auto& scores =
           merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2)}].constants[constants.Text(3)];
@@ -85,15 +85,19 @@ Result<bool> IsMergeOutdated(Store& store, const RobotId& robot) {
 }
 
 Status AppendMergedEdges(Store& store, const RevisionKey& key, const std::vector<MergedEdge>& merged,
-                         const std::vector<EdgeId>& taken, const std::vector<EdgeId>& kept) {
+                         const std::vector<EdgeId>& taken, const std::vector<EdgeId>& back) {
   return store.connection().Append(Subject(key.robot), [&]() -> Status {
     for (const MergedEdge& one : merged) Insert(store, key, one);
-    for (const EdgeId& id : taken)
-      Query(store, "DELETE FROM waiting_merge WHERE robot_id = ? AND edge_number = (SELECT number FROM edge WHERE edge_id = ?)")
-          .Bind(key.robot, id)
+    if (!back.empty())
+      Query(store, "INSERT OR IGNORE INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?))")
+          .Bind(key.robot, ListOf(back))
           .Run();
-    for (const EdgeId& id : kept)
-      Query(store, "INSERT OR IGNORE INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id = ?").Bind(key.robot, id).Run();
+    if (!taken.empty())
+      Query(store,
+            "DELETE FROM waiting_merge WHERE robot_id = ? AND edge_number IN "
+            "(SELECT number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)))")
+          .Bind(key.robot, ListOf(taken))
+          .Run();
     return {};
   });
 }

@@ -8,13 +8,13 @@
 
 namespace rigcal::storage {
 
-// Of the robot's newest revision; by frames and method.
-[[nodiscard]] Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot);
+// Of a revision, or of the newest (`number` 0); by frames and method.
+[[nodiscard]] Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number = 0);
 // True: an edge was retired that is in a merged edge. Then the merged edges hold no more, and all edges of the robot count as
 // they are until the next revision merges anew.
 [[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot);
-// Call inside the Write that appends the revision. `taken` are in merged edges from now on, `kept` are in none.
+// Call inside the Write that appends the revision. `taken` are in merged edges from now on; `back` were, and are in none.
 [[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const std::vector<MergedEdge>& merged,
-                                       const std::vector<EdgeId>& taken, const std::vector<EdgeId>& kept);
+                                       const std::vector<EdgeId>& taken, const std::vector<EdgeId>& back);
 
 }  // namespace rigcal::storage

@@ -89,6 +89,14 @@ class Query {
 };
 
 // NULL for an empty id.
+// As json_each takes it; ids hold no character that JSON escapes.
+template <typename Tag>
+[[nodiscard]] std::string ListOf(const std::vector<Id<Tag>>& ids) {
+  std::string list = "[";
+  for (const Id<Tag>& id : ids) list += (list.size() == 1 ? "\"" : ",\"") + id.str() + "\"";
+  return list + "]";
+}
+
 template <typename Tag>
 [[nodiscard]] std::optional<Id<Tag>> NullIfEmpty(const Id<Tag>& id) {
   return id.empty() ? std::nullopt : std::optional(id);

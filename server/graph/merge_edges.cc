@@ -25,12 +25,32 @@ Matrix6d AsPose(const Matrix6d& Omega, const Matrix6d& S) {
   return Symmetrized(C * S * C);
 }
 
-bool Contradicts(const MergedEdge& merged, const Edge& edge) {
-  if (merged.count == 0) return false;
-  const Matrix6d C = AsPose(merged.Omega, merged.scatter) + Observable(edge.uncertainty.Omega).covariance;
-  const ObservableSubspace both = Observable(C);
-  const Vector6d e = (merged.T_a_b.Inverse() * edge.T_a_b).Log();
-  return ChiSquareTail(e.dot(both.covariance * e), std::max(1, both.rank)) < kContradicts;
+// Two poses of one pair with their information, along the directions that both see: (A^-1 + B^-1)^-1 = A (A + B)^+ B.
+bool Agree(const Se3& T_x, const Matrix6d& A, const Se3& T_y, const Matrix6d& B) {
+  const Matrix6d W = Symmetrized(A * Observable(A + B).covariance * B);
+  const int rank = Observable(W).rank;
+  const Vector6d e = (T_x.Inverse() * T_y).Log();
+  return rank == 0 || ChiSquareTail(e.dot(W * e), rank) >= kContradicts;
+}
+
+bool Agree(const Edge& x, const Edge& y) { return Agree(x.T_a_b, x.uncertainty.Omega, y.T_a_b, y.uncertainty.Omega); }
+
+bool Agree(const MergedEdge& merged, const Edge& edge) {
+  const Matrix6d by_blocks = Observable(AsPose(merged.Omega, merged.scatter)).covariance;
+  return Agree(merged.T_a_b, by_blocks, edge.T_a_b, edge.uncertainty.Omega);
+}
+
+// In time, by id where that is the same.
+using Timed = std::pair<Stamp, const Edge*>;
+
+// Where merging begins: the first of `older` that at least half of the others agree with, so that it is no wrong one.
+std::size_t FirstOf(const std::vector<Timed>& all, std::size_t older) {
+  for (std::size_t i = 0; i < older; ++i) {
+    std::size_t agreeing = 0;
+    for (const Timed& other : all) agreeing += Agree(*all[i].second, *other.second) ? 1 : 0;
+    if (2 * agreeing >= all.size() + 1) return i;
+  }
+  return older;
 }
 
 Matrix6d ScatterOf(const EdgeBlocks& known) {
@@ -74,6 +94,21 @@ void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged) {
   AddError(edge, merged);
 }
 
+void MergeOldest(const std::vector<Timed>& all, std::size_t older, MergedEdge& merged, std::vector<EdgeId>& taken) {
+  const auto take = [&](const Timed& one) {
+    Add(*one.second, one.first, merged);
+    taken.push_back(one.second->id);
+  };
+  std::size_t first = all.size();
+  if (merged.count == 0) {
+    first = FirstOf(all, older);
+    if (first == older) return;
+    take(all[first]);
+  }
+  for (std::size_t i = 0; i < older; ++i)
+    if (i != first && Agree(merged, *all[i].second)) take(all[i]);
+}
+
 // Twelve block vectors, two of each direction, whose jackknife is C.
 std::vector<BlockVector> BlocksThatScatter(const Matrix6d& C) {
   const Matrix6d root = std::sqrt(12.0 / 22.0) * SquareRoot(C);
@@ -107,7 +142,7 @@ Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<E
                       const std::map<EdgeId, Stamp>& measured_at, std::size_t kept) {
   std::map<PairKey, MergedEdge> merged;
   for (const MergedEdge& one : before) merged.emplace(PairKey{one.frame_a, one.frame_b, one.method}, one);
-  std::map<PairKey, std::vector<std::pair<Stamp, const Edge*>>> of_pair;
+  std::map<PairKey, std::vector<Timed>> of_pair;
   for (const Edge& edge : edges)
     if (const auto at = measured_at.find(edge.id); edge.state == EdgeState::kGood && edge.session.empty() &&
                                                    !IsMerged(edge) && at != measured_at.end())
@@ -117,14 +152,10 @@ Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<E
     std::sort(all.begin(), all.end(), [](const auto& x, const auto& y) {
       return std::tie(x.first, x.second->id) < std::tie(y.first, y.second->id);
     });
-    for (std::size_t i = 0; i + kept < all.size(); ++i) {
-      MergedEdge& one = merged[key];
-      if (Contradicts(one, *all[i].second)) continue;
-      Add(*all[i].second, all[i].first, one);
-      result.taken.push_back(all[i].second->id);
-    }
+    if (all.size() > kept) MergeOldest(all, all.size() - kept, merged[key], result.taken);
   }
-  for (auto& [key, one] : merged) result.merged.push_back(std::move(one));
+  for (auto& [key, one] : merged)
+    if (one.count > 0) result.merged.push_back(std::move(one));
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/graph/joint_poses.h"
+#include "server/graph/merge_edges.h"
 #include "server/graph/solve.h"
 #include "server/model/past.h"
 #include "server/pipeline/live.h"
@@ -18,6 +19,7 @@
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/lost_blobs.h"
+#include "storage/merged_edges.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -117,12 +119,14 @@ Result<std::string> Revisions(const AnswerContext& context, const Parameters& pa
   return formats::WriteRevisions(robot, revisions, context.clock.Now());
 }
 
-// The revision's edges whose block vectors the store holds.
-Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::RevisionInput& document) {
+// Of the revision's edges, merged ones too.
+Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::RevisionInput& document, int number) {
   std::vector<EdgeId> good;
   for (const Edge& edge : document.edges)
     if (edge.state == EdgeState::kGood) good.push_back(edge.id);
-  RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, good));
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, good));
+  RIGCAL_ASSIGN(const auto merged, storage::LoadMergedEdges(store, document.robot, number));
+  for (const MergedEdge& one : merged) edges.push_back(graph::EdgeOf(one, document.robot));
   return graph::BlocksOf(edges);
 }
 
@@ -141,7 +145,7 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
   const auto& poses = document.solution.poses;
   graph::GraphJackknife jackknife;
   if (std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; })) {
-    RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, LoadBlocks(context.store, document));
+    RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, LoadBlocks(context.store, document, number));
     jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
   }
   if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;

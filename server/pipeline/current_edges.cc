@@ -58,8 +58,8 @@ Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std
 Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
   CurrentEdges current;
   std::vector<Edge>& edges = current.edges;
-  RIGCAL_ASSIGN(const bool outdated, storage::IsMergeOutdated(store, robot));
-  if (outdated) {
+  RIGCAL_ASSIGN(current.all, storage::IsMergeOutdated(store, robot));
+  if (current.all) {
     RIGCAL_ASSIGN(edges, storage::LoadEdges(store, robot, blocks));
   } else {
     RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, blocks));

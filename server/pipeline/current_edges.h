@@ -12,6 +12,7 @@ namespace rigcal::pipeline {
 struct CurrentEdges {
   std::vector<Edge> edges;         // that are in no merged edge, good and failed, sorted by id
   std::vector<MergedEdge> merged;  // what the newest revision made of the others
+  bool all = false;                // what it made of them holds no more: `edges` are all
 };
 // Edges that were retired, those of a superseded session, and those of a sensor that was remounted since are failed, with that
 // as their only diagnosis (IsPast). Where one that was merged is retired, no edge is merged. Block vectors only on demand. Call

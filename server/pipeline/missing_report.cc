@@ -11,6 +11,7 @@
 namespace rigcal::pipeline {
 namespace {
 
+constexpr std::int64_t kQueuedOfRobotMax = 3;  // whoever walks through all old reports has them one after the other
 constexpr const char* kSoon = "Ask for it again in a few seconds.";
 
 std::string ReportOf(const storage::RevisionKey& key) {
@@ -33,7 +34,7 @@ Result<bool> Queue(storage::Store& store, const storage::RevisionKey& key) {
   RIGCAL_ASSIGN(const bool is_queued, IsQueued(store, key));
   if (is_queued) return false;
   RIGCAL_TRY(storage::QueuePublication(store, key));
-  LogWarn(ReportOf(key) + " is gone from " + store.ReportFolder().string() + ": it is drawn again");
+  LogInfo(ReportOf(key) + " is not in " + store.ReportFolder().string() + " any more: it is drawn again");
   return true;
 }
 
@@ -83,6 +84,9 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
   if (const auto why = undrawn.Find(key))
     return {ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + why->what, why->cure};
   if (const auto given_up = GivenUp(store, key)) return *given_up;
+  const auto queued = storage::CountUnpublished(store, key.robot);
+  if (!queued) return queued.error();
+  if (*queued >= kQueuedOfRobotMax) return Being(key, "drawn after others of this robot");
   const auto is_new = Queue(store, key);
   if (!is_new) return is_new.error();
   if (*is_new && drawn_soon) drawn_soon();

@@ -26,6 +26,13 @@ std::vector<int> NumbersIn(const fs::path& folder) {
   return numbers;
 }
 
+// Of a removal that was cut off.
+void RemoveLeftOvers(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->path().filename().string().starts_with(".old-")) fs::remove_all(at->path(), error);
+}
+
 std::string MonthOf(Stamp stamp) { return ToIso(stamp).substr(0, 7); }
 
 // `revisions` newest first.
@@ -53,6 +60,7 @@ std::int64_t OwnBytesOf(const fs::path& folder) {
 Result<Freed> RemoveOldReports(storage::Store& store, const RobotId& robot, std::int64_t kept) {
   const fs::path folder = store.ReportFolder() / robot.str();
   const std::vector<int> numbers = NumbersIn(folder);
+  RemoveLeftOvers(folder);
   if (static_cast<std::int64_t>(numbers.size()) <= kept) return Freed{};
   RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(store, robot));
   RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, 0));
@@ -63,8 +71,10 @@ Result<Freed> RemoveOldReports(storage::Store& store, const RobotId& robot, std:
     if (stay.contains(numbers[i])) continue;
     const fs::path report = folder / std::to_string(numbers[i]);
     const std::int64_t bytes = OwnBytesOf(report);
+    const fs::path aside = folder / (".old-" + std::to_string(numbers[i]));
     std::error_code error;
-    fs::remove_all(report, error);
+    fs::rename(report, aside, error);  // at once, for whoever reads
+    if (!error) fs::remove_all(aside, error);
     if (error)
       return Fail(ErrorCode::kStorage, "the old report " + report.string() + " cannot be removed: " + error.message(),
                   "Check the permissions of the data folder.");

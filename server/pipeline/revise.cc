@@ -74,6 +74,17 @@ HonestSolution SolveHonestly(const RobotGraph& loaded) {
   return honest;
 }
 
+constexpr const char* kWaitForPairs = "Wait until they are calibrated: the next revision is judged.";
+
+// Half of a session's pairs tell nothing of what the others will contradict.
+Verdict NotJudged(std::int64_t pairs_waiting) {
+  return {VerdictLevel::kUnknown,
+          pairs_waiting == 1 ? "One pair of sensors is still to be calibrated, so this result is not judged."
+                             : std::to_string(pairs_waiting) +
+                                   " pairs of sensors are still to be calibrated, so this result is not judged.",
+          kWaitForPairs};
+}
+
 // When the newest of the edges that count was measured.
 std::optional<Stamp> CalibratedAt(const std::vector<Edge>& edges, const std::map<EdgeId, Stamp>& measured_at,
                                   const std::vector<MergedEdge>& merged) {
@@ -145,7 +156,9 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, b
   return GraphOf(std::move(loaded), robot);
 }
 
-Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock) {
+bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }
+
+Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting) {
   Revision revision;
   revision.robot = robot;
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
@@ -154,7 +167,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   const graph::Merge merge = graph::MergeOlderEdges(current.current.merged, current.current.edges, measured_at);
   Take(merge, current.current);
   revision.calibrated_at = CalibratedAt(current.current.edges, measured_at, merge.merged);
-  const std::vector<EdgeId> kept = IdsOf(current.current.edges);
+  const std::vector<EdgeId> back = current.current.all ? IdsOf(current.current.edges) : std::vector<EdgeId>();
   RobotGraph loaded = GraphOf(std::move(current), robot);
 
   formats::RevisionInput input;
@@ -166,7 +179,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot, loaded.edges));
   graph::FuseSessions(loaded.edges, input.reference, estimates, input.solution);
   const JointPoses poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
-  input.verdict = fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
+  input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
+                                    : fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
   input.edges = std::move(loaded.edges);
 
   const auto worst = WorstEdgeOf(input);
@@ -179,7 +193,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
-    RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge.merged, merge.taken, kept));
+    RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge.merged, merge.taken, back));
     if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));

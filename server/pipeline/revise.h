@@ -23,6 +23,9 @@ struct RobotGraph {
 // Merges the older edges of pairs that were pushed often (graph/merge_edges.h), solves, judges and commits. The same edges that
 // count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
 // kEdgesKeptOfPair: the newest stay as they are.
-[[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock);
+// With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by nobody.
+[[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock,
+                                      std::int64_t pairs_waiting = 0);
+[[nodiscard]] bool IsJudged(const Revision& revision);
 
 }  // namespace rigcal::pipeline

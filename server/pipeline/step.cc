@@ -67,8 +67,8 @@ Result<std::filesystem::path> PublishOnce(const StepContext& context, const stor
   const std::string work = storage::WorkOfReport(key);
   const std::string said = "revision " + std::to_string(key.number) + " of robot " + key.robot.str();
   std::string why_no_clouds;
-  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, key.robot));
-  if (jobs > 0) why_no_clouds = "The clouds in colour are shown when no pair waits any more to be calibrated.";
+  RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(context.store, key.robot, key.number));
+  if (revision && !IsJudged(*revision)) why_no_clouds = "The clouds in colour are shown when all pairs are calibrated.";
   if (before >= kAttemptsMax) {
     RIGCAL_ASSIGN(const storage::Attempts attempts, storage::LoadAttempts(context.store, work));
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
@@ -89,16 +89,24 @@ void RemoveOld(const StepContext& context, const storage::RevisionKey& published
             std::to_string(freed->bytes / 1024) + " KiB freed; they are drawn again when they are asked for");
 }
 
+// An older report that somebody asked for, as it is kept no more.
+Result<bool> IsOlderAgain(const StepContext& context, const storage::RevisionKey& key) {
+  RIGCAL_ASSIGN(const bool published, storage::IsPublished(context.store, key));
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, key.robot, 0));
+  return published && newest && newest->number != key.number;
+}
+
 // A revision that cannot be published holds up no other: it is passed over, and its error is the result if nothing
-// worked. Those that were begun before come when there is nothing else to do.
-Result<bool> PublishNext(const StepContext& context, bool begun_before) {
+// worked. `last`: those that were begun before, and older ones again, when there is nothing else to do.
+Result<bool> PublishNext(const StepContext& context, bool last) {
   RIGCAL_ASSIGN(const auto unpublished, storage::LoadUnpublished(context.store));
   if (unpublished.empty()) return false;
   RIGCAL_ASSIGN(const auto attempts, storage::LoadAttemptCounts(context.store));
   std::optional<Error> problem;
   for (const storage::RevisionKey& key : unpublished) {
     const int before = CountOf(attempts, storage::WorkOfReport(key));
-    if ((before > 0) != begun_before || before >= kPublishAttemptsMax) continue;
+    RIGCAL_ASSIGN(const bool again, IsOlderAgain(context, key));
+    if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
     const Claim claim(context.claims, key.robot);
     if (!claim.taken()) continue;
     const auto folder = PublishOnce(context, key, before);
@@ -123,12 +131,15 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
   return alone.taken() ? PublishNext(context, true) : Result<bool>(false);
 }
 
-Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
-  // Without it the revision is what the edges say, as it is of a session that cannot be refined.
-  if (const Status refined = Guarded([&] { return RefineSessions(context.store, robot, context.cameras, context.clock); });
-      !refined)
-    LogError(refined.error());
-  RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock));
+// Without its refinement a session is what its edges say, as is one that cannot be refined.
+void Refine(const StepContext& context, const RobotId& robot) {
+  const Status refined = Guarded([&] { return RefineSessions(context.store, robot, context.cameras, context.clock); });
+  if (!refined) LogError(refined.error());
+}
+
+Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs) {
+  if (jobs == 0) Refine(context, robot);
+  RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
                           formats::WriteRevisionEvent(revision, usable));
@@ -139,16 +150,16 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot) {
   return {};
 }
 
-Status SolveBurst(const StepContext& context, const RobotId& robot, bool over) {
+Status SolveBurst(const StepContext& context, const RobotId& robot, bool due, std::int64_t jobs) {
   RIGCAL_TRY(UpdateLive(context, robot));
-  if (!over) return {};
-  RIGCAL_TRY(ReviseAndTell(context, robot));
+  if (!due) return {};
+  RIGCAL_TRY(ReviseAndTell(context, robot, jobs));
   SettleLive(context, robot);
   return {};
 }
 
 // A graph that ended the process so often is left as it is until another edge or session of the robot counts.
-Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool over) {
+Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool due, std::int64_t jobs) {
   RIGCAL_ASSIGN(const std::int64_t edges, storage::LoadEdgeWatermark(context.store, robot));
   RIGCAL_ASSIGN(const std::int64_t standing, storage::LoadStandingWatermark(context.store, robot));
   const std::string work = storage::WorkOfRevision(robot, edges, standing);
@@ -156,32 +167,33 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
   const auto body = [&]() -> Status {
-    RIGCAL_TRY(SolveBurst(context, robot, over));
+    RIGCAL_TRY(SolveBurst(context, robot, due, jobs));
     return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
   };
   RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));
-  return over;
+  return due;
 }
 
 // Edges are in a revision at the latest after this long, whatever else the robot brings.
 constexpr std::int64_t kUnsolvedMax_ns = 45'000'000'000;
 
-// A burst is over when no job of the robot is waiting, or its first edge has waited for long.
-Result<bool> IsBurstOver(const StepContext& context, const RobotId& robot) {
-  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
+// A robot is revised when no job of it is waiting, or its first new edge has waited for long.
+Result<bool> IsRevisionDue(const StepContext& context, const RobotId& robot, std::int64_t jobs) {
   if (jobs == 0) return true;
   RIGCAL_ASSIGN(const auto since, storage::LoadUnsolvedSince(context.store, robot));
-  return since && context.clock.Now().ns - since->ns >= kUnsolvedMax_ns;
+  const std::int64_t waited_ns = since ? context.clock.Now().ns - since->ns : 0;
+  return waited_ns >= kUnsolvedMax_ns || waited_ns < 0;  // the clock was set back
 }
 
-// The live state of one robot, and its revision if its burst is over. True if it was revised. The live state of a graph
+// The live state of one robot, and its revision if one is due. True if it was revised. The live state of a graph
 // that this process has solved before is told at once, and not counted.
 Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
   const bool known = context.live.Of(robot).solver != nullptr;
   if (known) RIGCAL_TRY(UpdateLive(context, robot));
-  RIGCAL_ASSIGN(const bool over, IsBurstOver(context, robot));
-  if (known && !over) return false;
-  return SolveCounted(context, robot, over);
+  RIGCAL_ASSIGN(const std::int64_t jobs, storage::CountJobs(context.store, robot));
+  RIGCAL_ASSIGN(const bool due, IsRevisionDue(context, robot, jobs));
+  if (known && !due) return false;
+  return SolveCounted(context, robot, due, jobs);
 }
 
 // A robot whose work failed rests, so that it holds up no other; then it is tried again.
@@ -228,22 +240,14 @@ Status RunJob(const StepContext& context, const storage::JobRow& job) {
   return UpdateLive(context, job.robot);
 }
 
-// In turn of the robots that have any, however many one of them has.
-Result<std::optional<storage::JobRow>> NextJob(const StepContext& context) {
-  RIGCAL_ASSIGN(auto job, storage::LoadNextJob(context.store, context.claims.TakenOrServed()));
-  if (job) return job;
-  context.claims.BeginRound();
-  return storage::LoadNextJob(context.store, context.claims.Taken());
-}
-
 Result<StepResult> RunNextJob(const StepContext& context) {
   StepResult result;
-  RIGCAL_ASSIGN(const auto job, NextJob(context));
+  RIGCAL_ASSIGN(const auto job, storage::LoadNextJob(context.store, context.claims.Taken(), context.claims.Served()));
   if (!job) return result;
   result.worked = true;
   const Claim claim(context.claims, job->robot);
   if (!claim.taken()) return result;  // another thread was faster: look again
-  context.claims.Served(job->robot);
+  context.claims.Serve(job->robot);
   std::optional<Claim> alone;
   if (job->attempts > 0 && !alone.emplace(context.claims, kBegunBefore).taken()) return StepResult{};
   const Status ran = Guarded([&] { return RunJob(context, *job); });
@@ -270,21 +274,15 @@ std::vector<RobotId> Claims::Taken() const {
   return robots;
 }
 
-void Claims::Served(const RobotId& robot) {
+void Claims::Serve(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
-  served_.insert(robot);
+  if (served_.insert(robot).second) return;
+  served_ = {robot};
 }
 
-void Claims::BeginRound() {
+std::vector<RobotId> Claims::Served() const {
   const std::lock_guard lock(mutex_);
-  served_.clear();
-}
-
-std::vector<RobotId> Claims::TakenOrServed() const {
-  std::vector<RobotId> robots = Taken();
-  const std::lock_guard lock(mutex_);
-  robots.insert(robots.end(), served_.begin(), served_.end());
-  return robots;
+  return {served_.begin(), served_.end()};
 }
 
 void Claims::Rest(const RobotId& robot, Stamp until) {

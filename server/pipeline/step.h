@@ -24,10 +24,9 @@ class Claims {
   [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it, or it rests
   void GiveBack(const RobotId& robot);
   [[nodiscard]] std::vector<RobotId> Taken() const;  // includes those that rest
-  // Robots of which a job was begun since the round began: the others come first.
-  void Served(const RobotId& robot);
-  void BeginRound();
-  [[nodiscard]] std::vector<RobotId> TakenOrServed() const;
+  // Robots of which a job was begun in this round: the others come first. A round is over when one comes again.
+  void Serve(const RobotId& robot);
+  [[nodiscard]] std::vector<RobotId> Served() const;
   // A robot whose work failed is left alone until then, so that it holds up no other.
   void Rest(const RobotId& robot, Stamp until);
   void EndRests(Stamp now);

@@ -50,19 +50,24 @@ using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;
 
 MeasuredPair MeasuredPairOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
 
-// Edges that became part of a merged one are not lost, and a merged one is nothing new.
+// A merged edge is nothing new, and nothing lost.
 std::vector<const Edge*> MissingEdges(const formats::RevisionInput& of, const formats::RevisionInput& in) {
   std::set<EdgeId> held;
-  std::set<MeasuredPair> merged;
-  for (const Edge& edge : in.edges) {
-    held.insert(edge.id);
-    if (IsMerged(edge)) merged.insert(MeasuredPairOf(edge));
-  }
+  for (const Edge& edge : in.edges) held.insert(edge.id);
   std::vector<const Edge*> missing;
   for (const Edge& edge : of.edges)
-    if (!held.contains(edge.id) && !IsMerged(edge) && !(edge.session.empty() && merged.contains(MeasuredPairOf(edge))))
-      missing.push_back(&edge);
+    if (!held.contains(edge.id) && !IsMerged(edge)) missing.push_back(&edge);
   return missing;
+}
+
+// Edges that became part of a merged one are not lost.
+std::vector<const Edge*> LostEdges(const formats::RevisionInput& before, const formats::RevisionInput& now) {
+  std::set<MeasuredPair> merged;
+  for (const Edge& edge : now.edges)
+    if (IsMerged(edge)) merged.insert(MeasuredPairOf(edge));
+  std::vector<const Edge*> lost = MissingEdges(before, now);
+  std::erase_if(lost, [&](const Edge* edge) { return edge->session.empty() && merged.contains(MeasuredPairOf(*edge)); });
+  return lost;
 }
 
 std::vector<const Edge*> NowPast(const formats::RevisionInput& before, const formats::RevisionInput& now) {
@@ -94,7 +99,7 @@ Changes Compare(const formats::RevisionInput& before, const formats::RevisionInp
   Changes changes;
   CompareSensors(before, now, changes);
   changes.edges_gained = MissingEdges(now, before);
-  changes.edges_lost = MissingEdges(before, now);
+  changes.edges_lost = LostEdges(before, now);
   changes.edges_past = NowPast(before, now);
   return changes;
 }

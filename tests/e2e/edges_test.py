@@ -56,6 +56,20 @@ def g2o_round_trip(flow):
     flow.rigcal("export", "ring", "--out", flow.folder / "ring.urdf", exit_code=4)
 
 
+def many_of_one_pair(flow):
+    """Older edges of a pair are merged: whoever pushed them gets the result all the same, the first time and again."""
+    path = flow.folder / "many.json"
+    triangle_of = lambda k: [edge("a", "b", 1.0 + 1e-6 * k), edge("b", "c", 1.0 - 1e-6 * k), edge("a", "c", 2.0 + 1e-6 * k)]
+    path.write_text(json.dumps({"format": 1, "edges": [one for k in range(12) for one in triangle_of(k)]}))
+    for held_before in (0, 36):
+        pushed = json.loads(flow.rigcal("push-edges", path, "--robot", "many", "--json").stdout)
+        check(pushed["held_before"] == held_before, "held before: %r" % pushed)
+    shown = json.loads(flow.rigcal("show", "many", "--json").stdout)
+    merged = [one["figures"]["merged_edges"] for one in shown["document"]["edges"] if "merged_edges" in one["figures"]]
+    check(shown["revision"] == 1 and merged == [4, 4, 4] and len(shown["document"]["edges"]) == 27, "4 of 12 are merged: %r" % merged)
+    check(len(json.loads(flow.rigcal("edges", "many", "--json").stdout)["edges"]) == 36, "all edges are listed")
+
+
 def main():
     with Flow() as flow, Flow() as other:
         path = triangle(flow.folder)
@@ -75,6 +89,7 @@ def main():
         check(newest(flow)["revision"] == shown["revision"], "pushing again makes no revision")
 
         g2o_round_trip(flow)
+        many_of_one_pair(flow)
         flow.kill_and_restart()
         check(newest(flow) ["document"] == shown["document"], "the revision survives kill -9")
         check(json.loads(flow.get("/api/v1/show?robot=rig"))["digest"] == shown["digest"], "HTTP gives the same document")

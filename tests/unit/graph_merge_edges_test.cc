@@ -171,6 +171,35 @@ TEST(MergeEdges, OneThatContradictsStaysAndIsTold) {
   EXPECT_EQ(merge.merged[0].count, 3);
 }
 
+TEST(MergeEdges, DoNotBeginWithAWrongOne) {
+  Weeks weeks(2e-4, Kind::kBlocks);
+  History history;
+  for (int week = 0; week < 12; ++week) weeks.Add(week, history);
+  Edge& wrong = history.edges[0];
+  wrong.T_a_b = wrong.T_a_b * Se3::Exp(Vector6d::Constant(0.01));
+  const Merge merge = MergeOlderEdges({}, history.edges, history.measured_at);
+  EXPECT_EQ(merge.taken.size(), kPairs.size() * 4 - 1);
+  EXPECT_EQ(std::find(merge.taken.begin(), merge.taken.end(), wrong.id), merge.taken.end());
+  EXPECT_EQ(merge.merged[0].count, 3);
+}
+
+// What an edge says along a direction that it does not see is nothing, and contradicts nobody.
+TEST(MergeEdges, WholeEdgesAgreeWithThoseThatLeaveADirectionOpen) {
+  Weeks weeks(2e-4, Kind::kPlain);
+  History history;
+  for (int week = 0; week < 12; ++week) weeks.Add(week, history);
+  for (std::size_t k = 0; k < history.edges.size(); k += 2) {
+    Edge& edge = history.edges[k];
+    Matrix6d Omega = edge.uncertainty.Omega;
+    Omega.row(2).setZero(), Omega.col(2).setZero();
+    edge.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
+    Vector6d away = Vector6d::Zero();
+    away[2] = 0.3;
+    edge.T_a_b = edge.T_a_b * Se3::Exp(away);
+  }
+  EXPECT_EQ(MergeOlderEdges({}, history.edges, history.measured_at).taken.size(), kPairs.size() * 4);
+}
+
 TEST(MergeEdges, WhatFailedOrBelongsToASessionStays) {
   Weeks weeks(2e-4, Kind::kPlain);
   History history;

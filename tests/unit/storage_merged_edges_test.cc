@@ -82,7 +82,7 @@ TEST_F(MergedEdgesTest, ComeBackBitForBitOfTheNewestRevision) {
 
 TEST_F(MergedEdgesTest, EveryEdgeThatCountsIsInNoneUntilItIsTaken) {
   EXPECT_EQ(Unmerged(), Sorted(ids_));
-  Merge(MakeMerged(0.1), {ids_[0], ids_[3]}, {ids_[1], ids_[2], ids_[4]});
+  Merge(MakeMerged(0.1), {ids_[0], ids_[3]}, {});
   EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[4]}));
   Append(MakeEdge(9));
   EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[4], ids_[5]}));
@@ -100,10 +100,17 @@ TEST_F(MergedEdgesTest, AreOutdatedByARetiredOneUntilTheyAreMadeAnew) {
   EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[3], ids_[4]}));
 }
 
+TEST_F(MergedEdgesTest, OfAnEarlierRevisionComeBackToo) {
+  Merge(MakeMerged(0.1), {ids_[0]}, {});
+  Merge(MakeMerged(0.7), {ids_[1]}, {});
+  EXPECT_EQ(LoadMergedEdges(store_, kRobot, 1)->front().Omega, MakeMerged(0.1).Omega);
+  EXPECT_EQ(LoadMergedEdges(store_, kRobot, 2)->front().Omega, MakeMerged(0.7).Omega);
+}
+
 TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
   ASSERT_TRUE(AppendRobot(store_, RobotId("other"), {1}));
   Merge(MakeMerged(0.1), {ids_[0]}, {});
-  EXPECT_TRUE(LoadMergedEdges(store_, RobotId("other"))->empty());
+  EXPECT_TRUE(LoadMergedEdges(store_, RobotId("other"), 0)->empty());
   EXPECT_TRUE(LoadUnmergedEdges(store_, RobotId("other"), true)->empty());
 }
 

@@ -10,6 +10,7 @@ struct CaptureGroups {
   std::vector<int> burst_of_place;  // ascending from 0
   std::vector<int> group_of_place;  // whole bursts, contiguous in time; ascending from 0
 
+  friend bool operator==(const CaptureGroups&, const CaptureGroups&) = default;
   [[nodiscard]] int groups() const { return group_of_place.empty() ? 0 : group_of_place.back() + 1; }
 };
 

@@ -111,6 +111,11 @@ SessionEstimate Estimate(const SessionViews& views) {
   if (!start) return Refused(views, NameOf(start.error().code), start.error());
   auto first = Explain(*start, GroupsOf(start->problem, start->state));
   if (!first) return Refused(views, kRefinementFailed, first.error());
+  // A single view tells a place worse than a burst is wide; all views together do not.
+  if (const CaptureGroups groups = GroupsOf(first->start.problem, first->refined.state); groups != first->refined.groups) {
+    first = Explain(std::move(first->start), groups);
+    if (!first) return Refused(views, kRefinementFailed, first.error());
+  }
   SessionEstimate estimate;
   estimate.reference = views.reference;
   const Explained last = ExplainAll(std::move(*first), estimate);

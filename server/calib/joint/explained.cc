@@ -106,22 +106,23 @@ std::optional<Explained> WithMisfitsHeld(Explained now) {
 
 // Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
 // the noise that it leaves; with what its fields and its moves had to choose from (Schwarz 1978).
-double LeftOver(const Explained& explained) {
+// `in_burst`: of looks of corners, the same for all explanations that are compared.
+double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
   const SessionProblem& problem = explained.start.problem;
   const SessionFit& fit = explained.refined.at_optimum.fit;
   double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
-  const auto add = [&](const LookFit& look, double weight, double in_burst, const SensorNoise& noise) {
-    left += in_burst * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
+  const auto add = [&](const LookFit& look, double weight, double share, const SensorNoise& noise) {
+    left += share * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
     if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(noise.sigma_rad);
   };
   const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights,
-                           const auto& in_burst) {
+                           const auto& share) {
     for (std::size_t i = 0; i < looks.size(); ++i)
-      add(fits[i], weights[i], in_burst(i), explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)]);
+      add(fits[i], weights[i], share(i), explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)]);
   };
   const LookWeights& weights = explained.refined.weights;
   const auto alone = [](std::size_t) { return 1.0; };
-  add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return weights.in_burst[i]; });
+  add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return in_burst[i]; });
   add_all(problem.plates, fit.plates, weights.plates, alone);
   add_all(problem.poses, fit.poses, weights.poses, alone);
   const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
@@ -185,7 +186,8 @@ Next NextOf(const Explained& now, bool may_move) {
   if (!bent) return by_move;
   Next by_field{WithMisfitsHeld(now), std::nullopt};
   if (!by_field.explained) return by_move;
-  if (by_move.explained && LeftOver(*by_move.explained) < LeftOver(*by_field.explained)) return by_move;
+  if (by_move.explained && LeftOver(*by_move.explained, now.refined.weights.in_burst) <
+                               LeftOver(*by_field.explained, now.refined.weights.in_burst)) return by_move;
   return by_field;
 }
 

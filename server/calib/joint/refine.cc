@@ -11,7 +11,7 @@ namespace {
 constexpr int kIterationsMax = 12, kRoundsMax = 40, kRejectedMax = 10;
 constexpr double kSettled = 1e-8, kRounding = 1e-4;  // expected gain of a step, in squared sigmas
 constexpr double kSameNoise = 0.003;     // ratio, from round to round
-constexpr double kSameWeight = 0.01, kSameShare = 0.01;
+constexpr double kSameWeight = 0.01;
 
 Error NotSolvable(const std::string& why) {
   return {ErrorCode::kInvalidInput, "the joint refinement " + why,
@@ -103,8 +103,7 @@ class Approach {
 bool Same(const std::vector<SensorNoise>& x, const std::vector<SensorNoise>& y) {
   const auto close = [](double a, double b) { return std::abs(a - b) <= kSameNoise * std::max(a, b); };
   for (std::size_t s = 0; s < x.size(); ++s)
-    if (!close(x[s].sigma, y[s].sigma) || !close(x[s].sigma_rad, y[s].sigma_rad) ||
-        std::abs(x[s].burst_share - y[s].burst_share) > kSameShare)
+    if (!close(x[s].sigma, y[s].sigma) || !close(x[s].sigma_rad, y[s].sigma_rad))
       return false;
   return true;
 }
@@ -138,7 +137,7 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     plates.Go(refined.weights.plates, weights.plates);
     poses.Go(refined.weights.poses, weights.poses);
     const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
-                      Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
+                      Same(weights.in_burst, refined.weights.in_burst) && Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
     if (same && minimum.settled) return refined;
     refined.noise = updated;
     refined.weights = weights;
