@@ -159,11 +159,14 @@ TEST(MergeEdges, WeekByWeekAndAllAtOnceAreTheSame) {
   for (std::size_t k = 0; k < merged.size(); ++k) EXPECT_EQ(EdgeOf(at_once.merged[k], kRobot).id, EdgeOf(merged[k], kRobot).id);
 }
 
-TEST(MergeEdges, OneThatContradictsStaysAndIsTold) {
+class WrongEdge : public testing::TestWithParam<std::size_t> {};
+
+// The oldest too: merging does not begin with it.
+TEST_P(WrongEdge, ContradictsStaysAndIsTold) {
   Weeks weeks(2e-4, Kind::kBlocks);
   History history;
   for (int week = 0; week < 12; ++week) weeks.Add(week, history);
-  Edge& wrong = history.edges[2 * kPairs.size()];  // the third week's
+  Edge& wrong = history.edges[GetParam() * kPairs.size()];
   wrong.T_a_b = wrong.T_a_b * Se3::Exp(Vector6d::Constant(0.01));
   const Merge merge = MergeOlderEdges({}, history.edges, history.measured_at);
   EXPECT_EQ(merge.taken.size(), kPairs.size() * 4 - 1);
@@ -171,17 +174,7 @@ TEST(MergeEdges, OneThatContradictsStaysAndIsTold) {
   EXPECT_EQ(merge.merged[0].count, 3);
 }
 
-TEST(MergeEdges, DoNotBeginWithAWrongOne) {
-  Weeks weeks(2e-4, Kind::kBlocks);
-  History history;
-  for (int week = 0; week < 12; ++week) weeks.Add(week, history);
-  Edge& wrong = history.edges[0];
-  wrong.T_a_b = wrong.T_a_b * Se3::Exp(Vector6d::Constant(0.01));
-  const Merge merge = MergeOlderEdges({}, history.edges, history.measured_at);
-  EXPECT_EQ(merge.taken.size(), kPairs.size() * 4 - 1);
-  EXPECT_EQ(std::find(merge.taken.begin(), merge.taken.end(), wrong.id), merge.taken.end());
-  EXPECT_EQ(merge.merged[0].count, 3);
-}
+INSTANTIATE_TEST_SUITE_P(Weeks, WrongEdge, testing::Values(0, 2));
 
 // What an edge says along a direction that it does not see is nothing, and contradicts nobody.
 TEST(MergeEdges, WholeEdgesAgreeWithThoseThatLeaveADirectionOpen) {
