@@ -11,7 +11,7 @@
 namespace rigcal::pipeline {
 namespace {
 
-constexpr std::int64_t kQueuedOfRobotMax = 3;  // whoever walks through all old reports has them one after the other
+constexpr std::ptrdiff_t kQueuedOfRobotMax = 3;  // whoever walks through all old reports has them one after the other
 constexpr const char* kSoon = "Ask for it again in a few seconds.";
 
 std::string ReportOf(const storage::RevisionKey& key) {
@@ -27,6 +27,16 @@ Result<bool> IsQueued(storage::Store& store, const storage::RevisionKey& key) {
   RIGCAL_ASSIGN(const auto queued, storage::LoadUnpublished(store));
   return std::any_of(queued.begin(), queued.end(),
                      [&](const auto& one) { return one.robot == key.robot && one.number == key.number; });
+}
+
+// Reports of the robot that are still to be drawn, but for those that were given up.
+Result<std::ptrdiff_t> QueuedOf(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto queued, storage::LoadUnpublished(store));
+  RIGCAL_ASSIGN(const auto attempts, storage::LoadAttemptCounts(store));
+  return std::count_if(queued.begin(), queued.end(), [&](const storage::RevisionKey& one) {
+    const auto count = attempts.find(storage::WorkOfReport(one));
+    return one.robot == robot && (count == attempts.end() || count->second < kPublishAttemptsMax);
+  });
 }
 
 // True if it was not to be drawn before.
@@ -84,7 +94,7 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
   if (const auto why = undrawn.Find(key))
     return {ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + why->what, why->cure};
   if (const auto given_up = GivenUp(store, key)) return *given_up;
-  const auto queued = storage::CountUnpublished(store, key.robot);
+  const auto queued = QueuedOf(store, key.robot);
   if (!queued) return queued.error();
   if (*queued >= kQueuedOfRobotMax) return Being(key, "drawn after others of this robot");
   const auto is_new = Queue(store, key);

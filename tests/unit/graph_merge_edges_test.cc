@@ -94,6 +94,16 @@ void Take(const Merge& merge, std::vector<Edge>& edges) {
   });
 }
 
+// One week more, of which `window` keeps the newest.
+void Visit(int week, Weeks& weeks, History& history, std::vector<MergedEdge>& merged, std::vector<Edge>& window) {
+  const std::size_t before = history.edges.size();
+  weeks.Add(week, history);
+  window.insert(window.end(), history.edges.begin() + static_cast<std::ptrdiff_t>(before), history.edges.end());
+  const Merge merge = MergeOlderEdges(merged, window, history.measured_at);
+  merged = merge.merged;
+  Take(merge, window);
+}
+
 // Largest difference of poses, in sigmas, and of covariances, relative to their largest entry.
 void ExpectSame(const Answer& whole, const Answer& window, double sigmas, double ratio) {
   ASSERT_EQ(whole.solution.poses.size(), window.solution.poses.size());
@@ -127,12 +137,7 @@ TEST_P(MergedHistory, OfTenYearsIsWithinAHundredthOfASigma) {
   std::vector<Edge> window;
   std::vector<MergedEdge> merged;
   for (int week = 0; week < 520; ++week) {
-    const std::size_t before = history.edges.size();
-    weeks.Add(week, history);
-    window.insert(window.end(), history.edges.begin() + static_cast<std::ptrdiff_t>(before), history.edges.end());
-    const Merge merge = MergeOlderEdges(merged, window, history.measured_at);
-    merged = merge.merged;
-    Take(merge, window);
+    Visit(week, weeks, history, merged, window);
     ASSERT_LE(window.size(), kPairs.size() * kEdgesKeptOfPair);
   }
   ExpectSame(AnswerOf(history.edges), AnswerOf(WithMerged(merged, window)), 0.01, 0.02);
@@ -145,14 +150,7 @@ TEST(MergeEdges, WeekByWeekAndAllAtOnceAreTheSame) {
   History history;
   std::vector<MergedEdge> merged;
   std::vector<Edge> window;
-  for (int week = 0; week < 30; ++week) {
-    const std::size_t before = history.edges.size();
-    weeks.Add(week, history);
-    window.insert(window.end(), history.edges.begin() + static_cast<std::ptrdiff_t>(before), history.edges.end());
-    const Merge merge = MergeOlderEdges(merged, window, history.measured_at);
-    merged = merge.merged;
-    Take(merge, window);
-  }
+  for (int week = 0; week < 30; ++week) Visit(week, weeks, history, merged, window);
   std::vector<Edge> reversed(history.edges.rbegin(), history.edges.rend());
   const Merge at_once = MergeOlderEdges({}, reversed, history.measured_at);
   ASSERT_EQ(at_once.merged.size(), merged.size());

@@ -1,4 +1,5 @@
 // Old reports are removed from disk, and drawn again with the same bytes when they are asked for.
+#include "server/pipeline/attempt.h"
 #include "server/pipeline/missing_report.h"
 #include "server/pipeline/retention.h"
 #include "storage/revisions.h"
@@ -66,6 +67,25 @@ TEST_F(PipelineRetentionTest, OneThatIsAskedForIsDrawnAgainWithTheSameBytes) {
   clock_.now.ns += kDay_ns;
   StepAll();
   EXPECT_EQ(TextOf(Report(1) / "index.html"), before);
+}
+
+TEST_F(PipelineRetentionTest, ThoseThatCannotBeDrawnHoldUpNoOther) {
+  for (const double days : {1, 2, 3, 4, 5, 6}) Revision(days);
+  ASSERT_EQ(RemoveOldReports(*store_, RobotId("r"), 1)->reports, 5);
+  for (const int number : {1, 2, 3}) {
+    ASSERT_TRUE(storage::QueuePublication(*store_, {RobotId("r"), number}));
+    const std::string work = storage::WorkOfReport({RobotId("r"), number});
+    for (int attempt = 0; attempt < kPublishAttemptsMax; ++attempt) {
+      ASSERT_TRUE(storage::BeginAttempt(*store_, work, clock_.now));
+      ASSERT_TRUE(storage::EndAttempt(*store_, work, storage::AttemptEnd::kFailed, "no memory", clock_.now));
+    }
+  }
+  UndrawnReports undrawn;
+  bool woken = false;
+  (void)WhyMissing(*store_, undrawn, {RobotId("r"), 4}, "index.html", [&] { woken = true; });
+  EXPECT_TRUE(woken);
+  StepAll();
+  EXPECT_TRUE(std::filesystem::exists(Report(4) / "index.html"));
 }
 
 }  // namespace

@@ -103,8 +103,7 @@ class Approach {
 bool Same(const std::vector<SensorNoise>& x, const std::vector<SensorNoise>& y) {
   const auto close = [](double a, double b) { return std::abs(a - b) <= kSameNoise * std::max(a, b); };
   for (std::size_t s = 0; s < x.size(); ++s)
-    if (!close(x[s].sigma, y[s].sigma) || !close(x[s].sigma_rad, y[s].sigma_rad))
-      return false;
+    if (!close(x[s].sigma, y[s].sigma) || !close(x[s].sigma_rad, y[s].sigma_rad)) return false;
   return true;
 }
 
@@ -137,7 +136,8 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     plates.Go(refined.weights.plates, weights.plates);
     poses.Go(refined.weights.poses, weights.poses);
     const bool same = Same(updated, refined.noise) && Same(weights.corners, refined.weights.corners) &&
-                      Same(weights.in_burst, refined.weights.in_burst) && Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
+                      Same(weights.in_burst, refined.weights.in_burst) &&
+                      Same(weights.plates, refined.weights.plates) && Same(weights.poses, refined.weights.poses);
     if (same && minimum.settled) return refined;
     refined.noise = updated;
     refined.weights = weights;

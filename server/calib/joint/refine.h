@@ -17,7 +17,7 @@ struct Refined {
   Eigen::MatrixXd covariance;      // H^-1 of the unknowns of the layout
 };
 
-// `start` must be feasible: every camera sees the corners that it saw. 
+// `start` must be feasible: every camera sees the corners that it saw.
 // Fails with a sentence where the start is not feasible, the observations leave an unknown open, or no minimum is reached.
 [[nodiscard]] Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
                                      const std::vector<SensorNoise>& noise, const CaptureGroups& groups);
