@@ -1,9 +1,14 @@
-"""One robot, week after week: what a visit and a question cost must not depend on how many visits came before."""
+"""One robot, week after week: what a visit and a question cost must not depend on how many visits came before. Once with finished edges, once with
+capture sessions of a small rig."""
+import datetime
 import json
 import math
 import pathlib
 import random
+import re
+import shutil
 import statistics
+import subprocess
 import time
 
 from .measure import Measure, at_most, info
@@ -11,7 +16,8 @@ from .server import ANSWERED, Server
 
 SENSORS, PAIRS, BLOCKS = 12, 59, 40
 SIGMA = (2e-4,) * 3 + (1e-4,) * 3  # of an edge, m and rad
-EARLY_WEEK = 2
+CAMERAS = ("front_left", "front_right", "left_front", "left_back")  # of the sessions' rig, beside the tracker's body
+EARLY_WEEK, WINDOW_WEEK = 2, 10  # the first that has one before it; the first in which visits have been merged
 PUSH_MAX_S = 120.0  # beyond it the weeks that are left would take days
 
 
@@ -70,9 +76,65 @@ class Rig:
         return {"format": 1, "edges": [self.edge(pair, draw) for pair in self.pairs]}
 
 
-def timed(server, *arguments):
+def read_pose(text):
+    """Of "{p_m: [x, y, z], q_xyzw: [x, y, z, w]}"."""
+    numbers = [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", text.replace("p_m", "").replace("q_xyzw", ""))]
+    return numbers[:3], numbers[3:7]
+
+
+class EdgeVisits:
+    """Every week the edges of all pairs, as another tool found them."""
+    prefix, robot, ends = "", "growing", ("s00", "s11")
+    reports_max = 21  # those of one month: 20 and the one in use
+
+    def __init__(self, context, folder):
+        self.folder, self.rig = folder, Rig()
+
+    def prepare(self, week):
+        (self.folder / "week.json").write_text(json.dumps(self.rig.week(week)))
+
+    def push(self, server):
+        return server.rigcal("push-edges", self.folder / "week.json", "--robot", self.robot, "--json")
+
+    def truth(self):
+        return composed(inverse(self.rig.poses[0]), self.rig.poses[11])
+
+
+class SessionVisits:
+    """Every week a session of four small cameras and a tracker's body."""
+    prefix, robot, ends = "sessions_", "mars-mapper", ("front_left", "left_back")
+    reports_max = 21
+
+    def __init__(self, context, folder):
+        self.rigcal, self.folder, self.session = str(context.bin / "rigcal"), folder, folder / "session"
+        whole = self.run("simulate", "--print-rig", "mars-mapper")
+        begin, end = whole.index("sensors:\n") + len("sensors:\n"), whole.index("# The upright lidar")
+        sensors = [one for one in re.split(r"(?m)^(?=  \w+:)", whole[begin:end]) if one.strip().split(":")[0] in CAMERAS + ("body",)]
+        (folder / "rig.yaml").write_text(whole[:begin] + "".join(sensors))
+
+    def run(self, *arguments):
+        done = subprocess.run([self.rigcal, *map(str, arguments)], capture_output=True, text=True)
+        if done.returncode != 0:
+            raise RuntimeError("rigcal %s: %s" % (arguments[0], done.stderr.strip()[-200:]))
+        return done.stdout
+
+    def prepare(self, week):
+        shutil.rmtree(self.session, ignore_errors=True)
+        at = datetime.datetime(2016, 1, 4) + datetime.timedelta(weeks=week)
+        self.run("simulate", self.folder / "rig.yaml", "--out", self.session, "--captures", 12, "--scale", 0.25, "--seed", week,
+                 "--captured-at", at.strftime("%Y-%m-%dT%H:%M:%SZ"))
+
+    def push(self, server):
+        return server.rigcal("push", self.session, "--json")
+
+    def truth(self):
+        told = (self.session / "truth.yaml").read_text()
+        return read_pose(re.search(r"  left_back:\n    type: camera\n    T_ref_sensor: (\{.*\})", told).group(1))
+
+
+def timed(ask):
     began = time.monotonic()
-    done = server.rigcal(*arguments, timeout=600)
+    done = ask()
     return time.monotonic() - began, done
 
 
@@ -86,74 +148,83 @@ def newest_report(data):
     return max(folders, key=lambda path: path.stat().st_mtime)
 
 
-def wait_published(server, number):
+def wait_published(server, robot, number):
     """Asks until the revision has a report; a question takes its time, so that nothing else need be waited for."""
     asked_until = time.monotonic() + PUSH_MAX_S
     while time.monotonic() < asked_until:
-        shown = json.loads(server.rigcal("show", "growing", "--json").stdout)
+        shown = json.loads(server.rigcal("show", robot, "--json").stdout)
         if shown["published"] and shown["revision"] >= number:
             return
     raise RuntimeError("revision %d was not published" % number)
 
 
-def is_right(answer, rig, week):
+def is_right(answer, truth, week):
     """Of the newest revision, the pose within 4 of its sigmas of the truth."""
-    p, q = composed(inverse(rig.poses[0]), rig.poses[11])
+    p, q = truth
     apart_m = [a - b for a, b in zip(answer["T_a_b"]["p_m"], p)]
     length_m, sigma_m = math.sqrt(sum(x * x for x in apart_m)), math.sqrt(sum(answer["covariance"][i][i] for i in range(3)))
     return answer["revision"] == week and 0 < sigma_m < 1e-2 and length_m < 4 * sigma_m
 
 
-def visit(server, rig, folder, week):
+def visit(server, visits, week):
     """Figures of one weekly visit."""
-    path = folder / "week.json"
-    path.write_text(json.dumps(rig.week(week)))
-    push_s, pushed = timed(server, "push-edges", path, "--robot", "growing", "--json")
+    visits.prepare(week)
+    push_s, pushed = timed(lambda: visits.push(server))
     if pushed.returncode not in ANSWERED:
-        raise RuntimeError("week %d: push-edges: exit %d: %s" % (week, pushed.returncode, pushed.stderr.strip()[-200:]))
+        raise RuntimeError("week %d: push: exit %d: %s" % (week, pushed.returncode, pushed.stderr.strip()[-200:]))
     figures = {"push_to_revision_s": push_s}
-    figures["cold_lookup_s"], looked = timed(server, "lookup", "growing", "s00", "s11", "--json")
-    figures["lookup_answered"] = looked.returncode in ANSWERED and is_right(json.loads(looked.stdout), rig, week)
+    figures["cold_lookup_s"], looked = timed(lambda: server.rigcal("lookup", visits.robot, *visits.ends, "--json"))
+    figures["lookup_answered"] = looked.returncode in ANSWERED and is_right(json.loads(looked.stdout), visits.truth(), week)
     return figures
 
 
-def settled(server, data, week, figures):
+def settled(server, data, visits, week, figures):
     """What is only taken of the weeks that are compared."""
-    wait_published(server, week)
-    figures["warm_lookup_s"] = statistics.median(timed(server, "lookup", "growing", "s00", "s11")[0] for _ in range(5))
-    figures["show_s"] = statistics.median(timed(server, "show", "growing")[0] for _ in range(5))
-    figures["document_bytes"] = len(server.rigcal("show", "growing", "--json").stdout)
+    wait_published(server, visits.robot, week)
+    figures["warm_lookup_s"] = statistics.median(timed(lambda: server.rigcal("lookup", visits.robot, *visits.ends))[0] for _ in range(5))
+    figures["show_s"] = statistics.median(timed(lambda: server.rigcal("show", visits.robot))[0] for _ in range(5))
+    figures["document_bytes"] = len(server.rigcal("show", visits.robot, "--json").stdout)
     figures["report_bytes"] = folder_bytes(newest_report(data))
-    figures["reports_kept"] = len([path for path in (data / "reports" / "growing").iterdir() if path.name.isdigit()])
+    figures["reports_kept"] = len([path for path in (data / "reports" / visits.robot).iterdir() if path.name.isdigit()])
     figures["peak_rss_mib"] = server.peak_rss_mib()
     return figures
 
 
-def run(context):
-    weeks = 520 if context.full else 26
-    early, late, answered, rig, visits = {}, {}, 0, Rig(), []
+def push_weeks(context, kind, weeks):
+    """Figures of every week pushed; of those that are compared more of them."""
+    all_of_them = []
     with context.folder() as name:
         folder = pathlib.Path(name)
+        visits = kind(context, folder)
         with Server(context, folder / "data") as server:
             for week in range(1, weeks + 1):
-                late = visit(server, rig, folder, week)
-                answered += late["lookup_answered"]
-                visits.append(late)
-                if week == EARLY_WEEK:
-                    early = settled(server, folder / "data", week, late)
-                if late["push_to_revision_s"] > PUSH_MAX_S:
-                    break
-            late = settled(server, folder / "data", week, late)
-    yield Measure("weeks_pushed", str(week), "==%d" % weeks, "ok" if week == weeks else "SHORT")
-    yield Measure("cold_lookups_answered", "%d_of_%d" % (answered, week), "all", "ok" if answered == week else "SHORT")
-    for key, limit in (("push_to_revision_s", 1.2), ("cold_lookup_s", 1.2), ("warm_lookup_s", 1.2), ("show_s", 1.2), ("document_bytes", 1.2),
-                       ("report_bytes", 1.2), ("peak_rss_mib", 1.2)):
-        yield at_most("%s_week_%d_over_week_%d" % (key, week, EARLY_WEEK), late[key] / early[key], limit)
-        yield info("%s_week_%d" % (key, week), float(late[key]))
+                all_of_them.append(visit(server, visits, week))
+                last = week == weeks or all_of_them[-1]["push_to_revision_s"] > PUSH_MAX_S
+                if last or week in (EARLY_WEEK, WINDOW_WEEK):
+                    settled(server, folder / "data", visits, week, all_of_them[-1])
+                if last:
+                    return all_of_them
+
+
+def rows(kind, weeks, figures):
+    week, late, answered = len(figures), figures[-1], sum(one["lookup_answered"] for one in figures)
+    yield Measure(kind.prefix + "weeks_pushed", str(week), "==%d" % weeks, "ok" if week == weeks else "SHORT")
+    yield Measure(kind.prefix + "cold_lookups_answered", "%d_of_%d" % (answered, week), "all", "ok" if answered == week else "SHORT")
+    for key in ("push_to_revision_s", "cold_lookup_s", "warm_lookup_s", "show_s", "document_bytes", "report_bytes", "peak_rss_mib"):
+        for early in (EARLY_WEEK, WINDOW_WEEK):
+            if early < week:
+                yield at_most(kind.prefix + "%s_week_%d_over_week_%d" % (key, week, early), late[key] / figures[early - 1][key], 1.2)
+        yield info(kind.prefix + "%s_week_%d" % (key, week), float(late[key]))
     for key in ("push_to_revision_s", "cold_lookup_s"):
-        first, last = (statistics.median(one[key] for one in part) for part in (visits[1:6], visits[-5:]))
-        yield at_most("%s_median_of_5_to_week_%d_over_weeks_2_to_6" % (key, week), last / first, 1.2)
-    yield at_most("reports_kept_week_%d" % week, late["reports_kept"], 21)  # those of one month: 20 and the one in use
-    yield at_most("show_week_%d" % week, 1e3 * late["show_s"], 50.0, "ms")
-    yield at_most("cold_lookup_week_%d" % week, 1e3 * late["cold_lookup_s"], 30.0, "ms")
-    yield at_most("warm_lookup_week_%d" % week, 1e3 * late["warm_lookup_s"], 30.0, "ms")
+        first, last = (statistics.median(one[key] for one in part) for part in (figures[1:6], figures[-5:]))
+        yield at_most(kind.prefix + "%s_median_of_5_to_week_%d_over_weeks_2_to_6" % (key, week), last / first, 1.2)
+    yield at_most(kind.prefix + "reports_kept_week_%d" % week, late["reports_kept"], kind.reports_max)
+    yield at_most(kind.prefix + "show_week_%d" % week, 1e3 * late["show_s"], 50.0, "ms")
+    yield at_most(kind.prefix + "cold_lookup_week_%d" % week, 1e3 * late["cold_lookup_s"], 30.0, "ms")
+    yield at_most(kind.prefix + "warm_lookup_week_%d" % week, 1e3 * late["warm_lookup_s"], 30.0, "ms")
+
+
+def run(context):
+    weeks = 520 if context.full else 26
+    for kind in (EdgeVisits, SessionVisits):
+        yield from rows(kind, weeks, push_weeks(context, kind, weeks))
