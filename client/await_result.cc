@@ -22,8 +22,13 @@ bool HoldsAll(const Document& revision, const std::set<std::string>& wanted) {
 // Then what is stored and not there by itself is in a merged one, once no edge waits for its revision.
 bool HoldsMerged(const Document& revision) {
   for (const Document& edge : revision["edges"].Items())
-    if (!edge["figures"]["merged_edges"].IsNull()) return true;
+    if (!edge["figures"]["merged_edges"].IsNull() || !edge["figures"]["merged_sessions"].IsNull()) return true;
   return false;
+}
+
+bool HoldsAny(const Document& revision, const std::set<std::string>& wanted) {
+  const auto edges = revision["edges"].Items();
+  return std::any_of(edges.begin(), edges.end(), [&](const Document& edge) { return wanted.count(edge["id"].Text()) > 0; });
 }
 
 }  // namespace
@@ -120,7 +125,8 @@ Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   state.looked_at_revision = newest;
   state.looked_for = state.place.edges.size();
   const Document revision = state.result.show["document"];
-  const bool merged = state.place.session.empty() && HoldsMerged(revision);
+  const bool of_edges = state.place.session.empty();  // a session is merged as a whole
+  const bool merged = HoldsMerged(revision) && (of_edges || !HoldsAny(revision, state.place.edges));
   const bool all_revised = merged && !state.result.show["calculating"].Flag();
   state.result.has_revision = state.finished =
       (all_revised || HoldsAll(revision, state.place.edges)) &&

@@ -46,22 +46,25 @@ std::string SentenceOf(const Document& diagnosis) {
 
 std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
 
-// What a reader of good edges should know: each sentence once, with the pairs that it is about.
+std::string Listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+// What a reader of good edges should know: each sentence once, with the pairs that it is about, each of these once.
 void PrintNotes(const std::vector<Document>& edges, std::ostream& out) {
-  std::vector<std::pair<std::string, std::string>> notes;  // sentence, pairs; in the order of the edges
+  std::vector<std::pair<std::string, std::vector<std::string>>> notes;  // sentence, pairs; in the order of the edges
   for (const Document& edge : edges) {
     if (edge["state"].Text() == "failed") continue;
     for (const Document& item : edge["diagnoses"].Items()) {
-      const std::string sentence = SentenceOf(item);
-      const auto known =
-          std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
-      if (known == notes.end())
-        notes.emplace_back(sentence, PairOf(edge));
-      else
-        known->second += ", " + PairOf(edge);
+      const std::string sentence = SentenceOf(item), pair = PairOf(edge);
+      auto known = std::find_if(notes.begin(), notes.end(), [&](const auto& note) { return note.first == sentence; });
+      if (known == notes.end()) known = notes.insert(notes.end(), {sentence, {}});
+      if (std::find(known->second.begin(), known->second.end(), pair) == known->second.end()) known->second.push_back(pair);
     }
   }
-  for (const auto& [sentence, pairs] : notes) out << Plain(pairs) << ":\n  " << Plain(sentence) << '\n';
+  for (const auto& [sentence, pairs] : notes) out << Plain(Listed(pairs)) << ":\n  " << Plain(sentence) << '\n';
 }
 
 void PrintPast(const std::vector<Document>& edges, std::ostream& out) {

@@ -171,6 +171,12 @@ Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, 
                        {"e.number IN (SELECT edge_number FROM waiting_merge WHERE robot_id = ?)", robot.str(), blocks});
 }
 
+Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions) {
+  return Load<std::vector<Edge>>(store, "edges of sessions", [&]() -> Result<std::vector<Edge>> {
+    return LoadRows(store, {"e.session_id IN (SELECT value FROM json_each(?))", ListOf(sessions)}).edges;
+  });
+}
+
 Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids) {
   return LoadSelection(store, "edges by id", {"e.edge_id IN (SELECT value FROM json_each(?))", ListOf(ids)});
 }

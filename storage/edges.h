@@ -26,6 +26,8 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids);
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
+// Those of the sessions, sorted by id: ids, ends, pose and uncertainty, and nothing else of them.
+[[nodiscard]] Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions);
 // When each of the edges was measured: its session was captured or, of one that was pushed, it was stored.
 [[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges);
 // How many edges of the robot began to count up to `watermark`.

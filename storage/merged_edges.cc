@@ -3,7 +3,9 @@
 #include <map>
 #include <tuple>
 
+#include "server/base/sha256.h"
 #include "storage/query.h"
+#include "storage/standing.h"
 
 namespace rigcal::storage {
 namespace {
@@ -17,16 +19,25 @@ Blob BlobOfVectors(const std::vector<Vector6d>& vectors) {
 }
 
 void Insert(Store& store, const RevisionKey& key, const MergedEdge& merged) {
-  Query insert(store, "INSERT INTO merged_edge VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.count, merged.newest);
-  insert.Bind(merged.T_a_b.p_m.x(), merged.T_a_b.p_m.y(), merged.T_a_b.p_m.z());
+  Query insert(store, "INSERT INTO merged_edge VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions);
+  insert.Bind(merged.count, merged.newest, merged.T_a_b.p_m.x(), merged.T_a_b.p_m.y(), merged.T_a_b.p_m.z());
   insert.Bind(merged.T_a_b.q.x(), merged.T_a_b.q.y(), merged.T_a_b.q.z(), merged.T_a_b.q.w());
   insert.Bind(NameOf(merged.source), merged.dof, merged.by_blocks);
   insert.Bind(BlobOf(merged.Omega), BlobOf(merged.scatter), BlobOf(merged.given)).Run();
   for (const auto& [name, scores] : merged.constants)
-    Query(store, "INSERT INTO merged_edge_constant VALUES (?, ?, ?, ?, ?, ?, ?)")
-        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, name, BlobOfVectors(scores))
+    Query(store, "INSERT INTO merged_edge_constant VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions, name, BlobOfVectors(scores))
         .Run();
+}
+
+void ReplaceScores(Store& store, const RobotId& robot, const std::vector<MergedEdge>& merged) {
+  Query(store, "DELETE FROM merge_state_scores WHERE robot_id = ?").Bind(robot).Run();
+  for (const MergedEdge& one : merged)
+    if (one.of_sessions)
+      Query(store, "INSERT INTO merge_state_scores VALUES (?, ?, ?, ?, ?)")
+          .Bind(robot, one.frame_a, one.frame_b, one.method, BlobOf(one.scores.data(), static_cast<std::size_t>(one.scores.size())))
+          .Run();
 }
 
 Result<MergedEdge> MergedAt(const Query& row) {
@@ -40,6 +51,7 @@ Result<MergedEdge> MergedAt(const Query& row) {
   RIGCAL_ASSIGN(merged.source, UncertaintySourceOf(row.Text(12)));
   merged.dof = static_cast<int>(row.Int(13));
   merged.by_blocks = row.Int(14) != 0;
+  merged.of_sessions = row.Int(18) != 0;
   merged.Omega = row.MatrixAt(15), merged.scatter = row.MatrixAt(16), merged.given = row.MatrixAt(17);
   return merged;
 }
@@ -47,57 +59,132 @@ Result<MergedEdge> MergedAt(const Query& row) {
 const std::string kOfRevision =
     " WHERE robot_id = ?1 AND revision_number = CASE ?2 WHEN 0 THEN (SELECT max(number) FROM revision WHERE robot_id = ?1) ELSE ?2 END";
 
+using Merged = std::map<std::tuple<SensorId, SensorId, std::string, bool>, MergedEdge>;
+
+void LoadConstants(Store& store, const RobotId& robot, int number, Merged& merged) {
+  Query constants(store, "SELECT frame_a, frame_b, method, of_sessions, name, scores FROM merged_edge_constant" + kOfRevision);
+  constants.Bind(robot, number);
+  while (constants.Step()) {
+    auto& scores = merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2), constants.Int(3) != 0}]
+                       .constants[constants.Text(4)];
+    const std::vector<double> values = constants.Doubles(5);
+    for (std::size_t i = 0; i + 6 <= values.size(); i += 6) scores.emplace_back(values.data() + i);
+  }
+}
+
+bool IsNewest(Store& store, const RobotId& robot, int number) {
+  Query query(store, "SELECT max(number) FROM revision WHERE robot_id = ?");
+  return number == 0 || (query.Bind(robot).Step() && query.Int(0) == number);
+}
+
+void LoadScores(Store& store, const RobotId& robot, Merged& merged) {
+  Query rows(store, "SELECT frame_a, frame_b, method, scores FROM merge_state_scores WHERE robot_id = ?");
+  rows.Bind(robot);
+  while (rows.Step()) {
+    const auto found = merged.find({rows.IdAt<SensorId>(0), rows.IdAt<SensorId>(1), rows.Text(2), true});
+    if (found == merged.end()) continue;
+    const std::vector<double> values = rows.Doubles(3);
+    found->second.scores =
+        Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>(values.data(), 6, static_cast<Eigen::Index>(values.size() / 6));
+  }
+}
+
+// Of `ids`, those that an edge has which is in no window; `column` is the edge's.
+std::string OutsideOf(Store& store, const RobotId& robot, const std::string& column, const std::string& ids) {
+  Query query(store,
+              "SELECT value FROM json_each(?) WHERE EXISTS (SELECT 1 FROM edge e JOIN counted_edge c ON c.edge_number = e.number "
+              "WHERE e." + column + " = value AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ? "
+              "AND w.edge_number = e.number)) ORDER BY value");
+  query.Bind(ids, robot);
+  std::string outside;
+  while (query.Step()) outside += query.Text(0) + "\n";
+  return outside;
+}
+
+template <typename Map>
+std::string KeysOf(const Map& map) {
+  std::vector<typename Map::key_type> keys;
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return ListOf(keys);
+}
+
+// Of what people said, what concerns edges that are in no window. Empty where nothing does.
+std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts, bool any_of_sessions) {
+  std::string basis = OutsideOf(store, robot, "session_id", KeysOf(counts.superseded)) +
+                      OutsideOf(store, robot, "edge_id", KeysOf(counts.retired));
+  if (any_of_sessions)
+    for (const Remount& remount : counts.remounts) basis += remount.session.str() + " " + remount.sensor.str() + "\n";
+  return basis.empty() ? "" : Sha256Of(basis).str();
+}
+
+std::string StoredBasis(Store& store, const RobotId& robot) {
+  Query query(store, "SELECT digest FROM merge_basis WHERE robot_id = ? ORDER BY revision_number DESC LIMIT 1");
+  return query.Bind(robot).Step() ? query.Text(0) : std::string();
+}
+
+bool AnyOfSessions(Store& store, const RobotId& robot) {
+  return Query(store, "SELECT 1 FROM merge_state_scores WHERE robot_id = ? LIMIT 1").Bind(robot).Step();
+}
+
+void PutBack(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
+  Query(store, "INSERT OR IGNORE INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?))")
+      .Bind(robot, ListOf(edges))
+      .Run();
+}
+
+void TakeOut(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
+  Query(store,
+        "DELETE FROM waiting_merge WHERE robot_id = ? AND edge_number IN "
+        "(SELECT number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)))")
+      .Bind(robot, ListOf(edges))
+      .Run();
+}
+
 }  // namespace
 
 Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number) {
   using Edges = std::vector<MergedEdge>;
   return Load<Edges>(store, Subject(robot), [&]() -> Result<Edges> {
-    std::map<std::tuple<SensorId, SensorId, std::string>, MergedEdge> merged;
+    Merged merged;
     Query rows(store,
                "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, "
-               "T_a_b_qw, source, dof, by_blocks, information, scatter, given FROM merged_edge" + kOfRevision);
+               "T_a_b_qw, source, dof, by_blocks, information, scatter, given, of_sessions FROM merged_edge" + kOfRevision);
     rows.Bind(robot, number);
     while (rows.Step()) {
       RIGCAL_ASSIGN(MergedEdge one, MergedAt(rows));
-      merged[{one.frame_a, one.frame_b, one.method}] = std::move(one);
+      merged[{one.frame_a, one.frame_b, one.method, one.of_sessions}] = std::move(one);
     }
-    Query constants(store, "SELECT frame_a, frame_b, method, name, scores FROM merged_edge_constant" + kOfRevision);
-    constants.Bind(robot, number);
-    while (constants.Step()) {
-      auto& scores =
-          merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2)}].constants[constants.Text(3)];
-      const std::vector<double> values = constants.Doubles(4);
-      for (std::size_t i = 0; i + 6 <= values.size(); i += 6) scores.emplace_back(values.data() + i);
-    }
+    LoadConstants(store, robot, number, merged);
+    if (IsNewest(store, robot, number)) LoadScores(store, robot, merged);
     Edges all;
     for (auto& [key, one] : merged) all.push_back(std::move(one));
     return all;
   });
 }
 
-Result<bool> IsMergeOutdated(Store& store, const RobotId& robot) {
+Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
+  WhatCounts counts;
+  RIGCAL_ASSIGN(counts.superseded, LoadSuperseded(store, robot));
+  RIGCAL_ASSIGN(counts.retired, LoadRetired(store, robot));
+  RIGCAL_ASSIGN(counts.remounts, LoadRemounts(store, robot));
+  return counts;
+}
+
+Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts) {
   return Load<bool>(store, Subject(robot), [&]() -> Result<bool> {
-    Query query(store,
-                "SELECT 1 FROM standing t JOIN counted_edge c ON c.edge_number = t.edge_number WHERE t.robot_id = ? AND NOT EXISTS "
-                "(SELECT 1 FROM waiting_merge w WHERE w.robot_id = t.robot_id AND w.edge_number = t.edge_number) LIMIT 1");
-    return query.Bind(robot).Step();
+    return BasisOf(store, robot, counts, AnyOfSessions(store, robot)) != StoredBasis(store, robot);
   });
 }
 
-Status AppendMergedEdges(Store& store, const RevisionKey& key, const std::vector<MergedEdge>& merged,
-                         const std::vector<EdgeId>& taken, const std::vector<EdgeId>& back) {
+Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts) {
   return store.connection().Append(Subject(key.robot), [&]() -> Status {
-    for (const MergedEdge& one : merged) Insert(store, key, one);
-    if (!back.empty())
-      Query(store, "INSERT OR IGNORE INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?))")
-          .Bind(key.robot, ListOf(back))
-          .Run();
-    if (!taken.empty())
-      Query(store,
-            "DELETE FROM waiting_merge WHERE robot_id = ? AND edge_number IN "
-            "(SELECT number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)))")
-          .Bind(key.robot, ListOf(taken))
-          .Run();
+    for (const MergedEdge& one : step.merged) Insert(store, key, one);
+    ReplaceScores(store, key.robot, step.merged);
+    if (!step.back.empty()) PutBack(store, key.robot, step.back);
+    if (!step.taken.empty()) TakeOut(store, key.robot, step.taken);
+    const std::string basis = BasisOf(store, key.robot, counts, AnyOfSessions(store, key.robot));
+    if (basis != StoredBasis(store, key.robot))
+      Query(store, "INSERT INTO merge_basis VALUES (?, ?, ?)").Bind(key.robot, key.number, basis).Run();
     return {};
   });
 }

@@ -1,20 +1,36 @@
 // Which edges of a robot its revisions take as they are, and the merged edges that stand for the others (model/merged_edge.h).
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "server/model/merged_edge.h"
+#include "server/model/standing.h"
 #include "storage/revisions.h"
+#include "storage/sessions.h"
 
 namespace rigcal::storage {
 
-// Of a revision, or of the newest (`number` 0); by frames and method.
+// Of a revision, or of the newest (`number` 0), by frames and method; scores of sessions only with those of the newest.
 [[nodiscard]] Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number = 0);
-// True: an edge was retired that is in a merged edge. Then the merged edges hold no more, and all edges of the robot count as
-// they are until the next revision merges anew.
-[[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot);
-// Call inside the Write that appends the revision. `taken` are in merged edges from now on; `back` were, and are in none.
-[[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const std::vector<MergedEdge>& merged,
-                                       const std::vector<EdgeId>& taken, const std::vector<EdgeId>& back);
+
+// What people said of a robot's edges that matters for what was merged.
+struct WhatCounts {
+  std::map<SessionId, Superseding> superseded;
+  std::map<EdgeId, Standing> retired;
+  std::vector<Remount> remounts;
+};
+[[nodiscard]] Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot);
+// True: of what has left the window an edge was retired, a session superseded or restored, or a sensor remounted, after the newest
+// revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.
+[[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts);
+
+struct MergeStep {
+  std::vector<MergedEdge> merged;
+  std::vector<EdgeId> taken;  // are in merged edges from now on, or past
+  std::vector<EdgeId> back;   // were, and are in none: all edges that there are, where merging began anew
+};
+// Call inside the Write that appends the revision. `counts`: as the revision saw it.
+[[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts);
 
 }  // namespace rigcal::storage

@@ -55,12 +55,36 @@ bool InsertSession(Store& store, const SessionId& id, const std::string& manifes
   return insert.BindNoCopy(manifest_json).Run() > 0;
 }
 
-void InsertPayloads(Store& store, const std::vector<Payload>& payloads) {
-  const std::int64_t session_number = store.database().getLastInsertRowid();
+void InsertPayloads(Store& store, std::int64_t session_number, const std::vector<Payload>& payloads) {
   for (std::size_t i = 0; i < payloads.size(); ++i)
     Query(store, "INSERT INTO payload VALUES (?, ?, ?, ?, ?)")
         .Bind(session_number, i, payloads[i].path, payloads[i].digest, payloads[i].size_bytes)
         .Run();
+}
+
+// Which earlier sessions of its robot hold half or more of what they hold in common with the one that was opened last.
+void InsertRepeats(Store& store, std::int64_t session_number) {
+  Query(store,
+        "INSERT INTO session_repeat SELECT old.robot_id, old.number, later.number FROM session later "
+        "CROSS JOIN payload again ON again.session_number = later.number "
+        "CROSS JOIN payload ON payload.digest = again.digest AND payload.session_number < later.number "
+        "CROSS JOIN session old ON old.number = payload.session_number AND old.robot_id = later.robot_id "
+        "WHERE later.number = ? GROUP BY old.number HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count")
+      .Bind(session_number)
+      .Run();
+}
+
+void InsertListed(Store& store, std::int64_t session_number) {
+  Query(store,
+        "INSERT OR IGNORE INTO listed_sensor SELECT robot_id, json_extract(sensor.value, '$.id') FROM session, "
+        "json_each(session.manifest, '$.sensors') AS sensor WHERE number = ?")
+      .Bind(session_number)
+      .Run();
+  Query(store,
+        "INSERT OR IGNORE INTO session_remount SELECT robot_id, number, sensor.value FROM session, "
+        "json_each(session.manifest, '$.remounted') AS sensor WHERE number = ?")
+      .Bind(session_number)
+      .Run();
 }
 
 void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {
@@ -87,6 +111,7 @@ Status Close(Store& store, const SessionRow& row, const std::vector<SensorPair>&
                 "Send the missing ones: push the folder again.");
   Query(store, "INSERT INTO session_closed SELECT number, ? FROM session WHERE session_id = ?").Bind(now, row.id).Run();
   const std::int64_t session_number = store.database().getLastInsertRowid();
+  InsertListed(store, session_number);
   for (const SensorPair& pair : Distinct(pairs)) QueueJob(store, session_number, row.robot, pair, now);
   return AppendPushed(store, row.robot, row.id, now);
 }
@@ -97,7 +122,10 @@ Status AppendSession(Store& store, const SessionId& id, const std::string& manif
                      Stamp now) {
   return store.connection().Append(Subject(id), [&]() -> Status {
     RIGCAL_TRY(AppendRobot(store, manifest.header.robot, now));
-    if (InsertSession(store, id, manifest_json, manifest, now)) InsertPayloads(store, manifest.payloads);
+    if (!InsertSession(store, id, manifest_json, manifest, now)) return {};
+    const std::int64_t session_number = store.database().getLastInsertRowid();
+    InsertPayloads(store, session_number, manifest.payloads);
+    InsertRepeats(store, session_number);
     return {};
   });
 }
@@ -143,6 +171,27 @@ Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& ro
   });
 }
 
+Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& robot) {
+  using Stamps = std::map<SessionId, Stamp>;
+  return Load<Stamps>(store, Subject(robot), [&]() -> Result<Stamps> {
+    Query query(store, "SELECT session_id, captured_ns FROM session WHERE robot_id = ?");
+    query.Bind(robot);
+    Stamps stamps;
+    while (query.Step()) stamps.emplace(query.IdAt<SessionId>(0), query.Time(1));
+    return stamps;
+  });
+}
+
+Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot) {
+  return Load<std::optional<SessionId>>(store, Subject(robot), [&]() -> Result<std::optional<SessionId>> {
+    Query query(store,
+                "SELECT session_id FROM session JOIN session_closed ON session_number = number WHERE robot_id = ? "
+                "ORDER BY captured_ns, session_id LIMIT 1");
+    if (!query.Bind(robot).Step()) return std::nullopt;
+    return query.IdAt<SessionId>(0);
+  });
+}
+
 Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now) {
   return store.connection().Append(Subject(id), [&]() -> Status {
     RIGCAL_ASSIGN(const std::optional<SessionRow> row, LoadSession(store, id));
@@ -153,15 +202,12 @@ Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorP
 
 namespace {
 
-// Few manifests have the word; only those are parsed.
 Result<std::vector<Remount>> LoadNamedRemounts(Store& store, const RobotId& robot) {
   return Load<std::vector<Remount>>(store, Subject(robot), [&]() -> Result<std::vector<Remount>> {
     Query query(store,
-                "SELECT sensor.value, session.session_id, session.captured_ns FROM session "
-                "JOIN session_closed ON session_closed.session_number = session.number, "
-                "json_each(CASE WHEN instr(session.manifest, '\"remounted\"') > 0 THEN session.manifest ELSE '{}' END, "
-                "'$.remounted') AS sensor WHERE robot_id = ? "
-                "ORDER BY session.captured_ns, session.session_id, sensor.value");
+                "SELECT r.sensor_id, session.session_id, session.captured_ns FROM session_remount r "
+                "JOIN session ON session.number = r.session_number WHERE r.robot_id = ? "
+                "ORDER BY session.captured_ns, session.session_id, r.sensor_id");
     query.Bind(robot);
     std::vector<Remount> remounts;
     while (query.Step()) remounts.push_back({query.IdAt<SensorId>(0), query.IdAt<SessionId>(1), query.Time(2)});
@@ -181,10 +227,7 @@ Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot) {
 
 Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot) {
   return Load<std::vector<SensorId>>(store, Subject(robot), [&]() -> Result<std::vector<SensorId>> {
-    Query query(store,
-                "SELECT DISTINCT json_extract(sensor.value, '$.id') AS id FROM session "
-                "JOIN session_closed ON session_closed.session_number = session.number, "
-                "json_each(session.manifest, '$.sensors') AS sensor WHERE robot_id = ? ORDER BY id");
+    Query query(store, "SELECT sensor_id FROM listed_sensor WHERE robot_id = ? ORDER BY sensor_id");
     query.Bind(robot);
     std::vector<SensorId> sensors;
     while (query.Step()) sensors.push_back(query.IdAt<SensorId>(0));

@@ -1,6 +1,7 @@
 // Sessions, their payloads, and the receipts given for them.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ struct SessionRow {
 [[nodiscard]] Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id);
 // All of one robot, or of all robots if `robot` is empty; newest captured_at first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
+[[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& robot);
+// Of the closed ones that which was captured first; of several the smallest id.
+[[nodiscard]] Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot);
 // Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot);
 

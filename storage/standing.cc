@@ -32,14 +32,15 @@ struct CurrentRow {
   Standing standing;
 };
 
-// The newest standing of each closed session, by the session's row number.
+// The newest standing of each closed session that repeats another or is repeated, by the session's row number.
 std::map<std::int64_t, CurrentRow> LoadCurrent(Store& store, const RobotId& robot) {
+  const std::string of_robot = robot.empty() ? "" : " WHERE robot_id = ?1";
   Query query(
       store,
       "SELECT s.number, s.session_id, s.captured_ns, s.operator_name, t.number, t.how, t.at_ns, t.who, t.reason "
-      "FROM session s JOIN standing t ON t.number = "
-      "(SELECT max(number) FROM standing x WHERE x.session_number = s.number)" +
-          std::string(robot.empty() ? "" : " WHERE s.robot_id = ?"));
+      "FROM (SELECT earlier_number AS number FROM session_repeat" + of_robot + " UNION SELECT later_number FROM session_repeat" +
+          of_robot + ") r JOIN session s ON s.number = r.number JOIN standing t ON t.number = "
+      "(SELECT max(number) FROM standing x WHERE x.session_number = s.number)");
   if (!robot.empty()) query.Bind(robot);
   std::map<std::int64_t, CurrentRow> rows;
   while (query.Step())
@@ -53,11 +54,8 @@ struct Repeat {
 
 std::vector<Repeat> LoadRepeats(Store& store, const RobotId& robot) {
   Query query(store,
-              "SELECT old.number, later.number FROM session old JOIN payload ON payload.session_number = old.number "
-              "JOIN payload again ON again.digest = payload.digest AND again.session_number > old.number "
-              "JOIN session later ON later.number = again.session_number AND later.robot_id = old.robot_id " +
-                  std::string(robot.empty() ? "" : "WHERE old.robot_id = ? ") +
-                  "GROUP BY old.number, later.number HAVING 2 * count(DISTINCT payload.idx) >= old.payload_count");
+              "SELECT earlier_number, later_number FROM session_repeat" +
+                  std::string(robot.empty() ? "" : " WHERE robot_id = ?"));
   if (!robot.empty()) query.Bind(robot);
   std::vector<Repeat> repeats;
   while (query.Step()) repeats.push_back({query.Int(0), query.Int(1)});

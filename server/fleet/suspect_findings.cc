@@ -4,6 +4,7 @@
 
 #include "server/fleet/findings.h"
 #include "server/fleet/wording.h"
+#include "server/model/merged_edge.h"
 #include "server/model/method.h"
 
 namespace rigcal::fleet {
@@ -101,7 +102,9 @@ std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates
 
 GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                                   const std::vector<SessionEstimate>& estimates) {
-  const std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
+  std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
+  for (const Edge& edge : edges)
+    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty()) refined.insert(edge.id);
   if (refined.empty()) return solution;
   const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
   const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {

@@ -140,13 +140,13 @@ std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimat
 
 }  // namespace
 
-void FuseSessions(const std::vector<Edge>& edges, const SensorId& reference,
+void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
                   const std::vector<SessionEstimate>& estimates, GraphSolution& solution) {
-  SessionFusion fusion = FusionOf({edges, reference, solution}, estimates, true);
+  SessionFusion fusion = FusionOf({edges, within, reference, solution}, estimates, true);
   if (fusion.factors.empty() || fusion.sensors.size() > kFusedSensorsMax) return;
   const auto inverse = SettleWithScatter(fusion);
   if (!inverse) return;
-  solution.fused.moved = FindMovesBetween({edges, reference, solution}, estimates);
+  solution.fused.moved = FindMovesBetween({edges, within, reference, solution}, estimates);
   const Told told = ToldOf(fusion, *inverse);
   TakePoses(fusion, told, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);

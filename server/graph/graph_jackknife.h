@@ -28,6 +28,10 @@ constexpr std::size_t kJackknifeBlocksMin = 8;
 using BlocksByEdge = std::map<EdgeId, EdgeBlocks>;
 [[nodiscard]] BlocksByEdge BlocksOf(const std::vector<Edge>& edges);
 
+// d of every block of a session (`ids`, sorted; the edge's own are among them), centred and scaled so that columns * columns^T
+// is the jackknife's sum. A block that the edge does not have changes nothing in it.
+[[nodiscard]] Eigen::MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<std::string>& ids);
+
 struct ResidualCovariance {
   bool in_solution = false;
   Matrix6d C_e = Matrix6d::Zero();

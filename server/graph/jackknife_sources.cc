@@ -30,16 +30,6 @@ Eigen::Index PlaceOf(const std::string& id, const std::vector<std::string>& ids)
 // By which d_i is multiplied so that the jackknife's sum over m blocks is the sum of squares.
 double BlockScale(Eigen::Index m) { return std::sqrt(1.0 - 1.0 / static_cast<double>(m)); }
 
-// d of every block of the session, centred and scaled so that columns * columns^T is the jackknife's sum. A block that
-// an edge does not have changes nothing in it.
-MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<std::string>& ids) {
-  const auto count = static_cast<Eigen::Index>(ids.size());
-  MatrixXd d = MatrixXd::Zero(6, count);
-  for (const BlockVector& block : own) d.col(PlaceOf(block.block_id, ids)) = block.d;
-  const Vector6d mean = d.rowwise().mean();
-  return BlockScale(count) * (d.colwise() - mean);
-}
-
 ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size_t>& members) {
   std::set<std::string> unique;
   int dof = 0;
@@ -103,6 +93,14 @@ bool SpeakForTheirEdge(const Uncertainty& uncertainty) {
 }
 
 }  // namespace
+
+MatrixXd CentredBlocks(const std::vector<BlockVector>& own, const std::vector<std::string>& ids) {
+  const auto count = static_cast<Eigen::Index>(ids.size());
+  MatrixXd d = MatrixXd::Zero(6, count);
+  for (const BlockVector& block : own) d.col(PlaceOf(block.block_id, ids)) = block.d;
+  const Vector6d mean = d.rowwise().mean();
+  return BlockScale(count) * (d.colwise() - mean);
+}
 
 BlocksByEdge BlocksOf(const std::vector<Edge>& edges) {
   BlocksByEdge blocks;

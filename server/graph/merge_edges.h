@@ -1,4 +1,4 @@
-// A window over the edges of a robot: of each pair and method the newest stay as they are, the older ones become one edge.
+// A window over the edges of a robot: the newest stay as they are, the older ones of a pair and method become one edge.
 // Parallel edges are what a quadratic cost adds up exactly: poses, covariances and the jackknife through the graph stay
 // what they are with all of them, but for the curvature of SE(3) over the edges' errors.
 #pragma once
@@ -12,17 +12,22 @@ namespace rigcal::graph {
 
 struct Merge {
   std::vector<MergedEdge> merged;  // by frames and method
-  std::vector<EdgeId> taken;       // edges that are in them now, and were not before
+  std::vector<EdgeId> taken;       // edges that count in them now or are past, and were in the window before
 };
-constexpr std::size_t kEdgesKeptOfPair = 8;
-// Takes good edges that belong to no session into `before`, the oldest first, and leaves the newest `kept` of each pair and
-// method. One that contradicts what it would become part of stays, so that it is told for as long as nobody settles it; merging
-// begins with one that half of its pair's edges agree with.
+
+// Edges that were pushed as finished results. Takes good ones into `before`, the oldest first, and leaves the newest `kept` of
+// each pair and method. One that contradicts what it would become part of stays, so that it is told for as long as nobody
+// settles it; merging begins with one that half of its pair's edges agree with.
 // `measured_at` of each edge of `edges`; merged edges among these are passed over. Deterministic for any order of `edges`.
+constexpr std::size_t kEdgesKeptOfPair = 8;
 [[nodiscard]] Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                     const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kEdgesKeptOfPair);
 
-// As an edge of the graph: blocks that scatter as theirs do, contributions of the given constants. Its id is that of its content.
-[[nodiscard]] Edge EdgeOf(const MergedEdge& merged, const RobotId& robot);
+// Edges of sessions, a session at a time, as its pairs share captures: likewise takes all that were captured before the newest
+// `kept` with a good edge. One of which any edge contradicts what it would become part of stays whole. What failed in a session
+// that is taken, or is past, leaves the window with it.
+constexpr std::size_t kSessionsKept = 8;
+[[nodiscard]] Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
+                                       const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kSessionsKept);
 
 }  // namespace rigcal::graph

@@ -160,7 +160,7 @@ std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
                                                  const std::vector<SessionEstimate>& estimates) {
   std::vector<SessionEstimate> oldest_first;
   for (const SessionEstimate& estimate : estimates)
-    if (oldest_first.size() < kVisitsCompared && IsFused(estimate, input.edges)) oldest_first.push_back(estimate);
+    if (oldest_first.size() < kVisitsCompared && IsFused(estimate, input)) oldest_first.push_back(estimate);
   std::reverse(oldest_first.begin(), oldest_first.end());
   std::vector<SensorMovedBetween> moves;
   SensorsOfSessions left_out;

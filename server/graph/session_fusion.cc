@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/model/merged_edge.h"
 #include "server/model/past.h"
 
 namespace rigcal::graph {
@@ -15,11 +16,20 @@ using Eigen::VectorXd;
 constexpr int kIterationsMax = 30;
 constexpr double kSettled = 1e-12;  // squared step in sigmas
 
-std::set<SensorId> SensorsThatCount(const SessionId& session, const std::vector<Edge>& edges) {
+std::set<SensorId> SensorsThatCount(const SessionId& session, const FusionInput& input) {
   std::set<SensorId> counting;
-  for (const Edge& edge : edges)
-    if (edge.session == session && edge.state == EdgeState::kGood) counting.insert({edge.frame_a, edge.frame_b});
+  for (const std::vector<Edge>* edges : {&input.edges, &input.within})
+    for (const Edge& edge : *edges)
+      if (edge.session == session && edge.state == EdgeState::kGood) counting.insert({edge.frame_a, edge.frame_b});
   return counting;
+}
+
+bool IsOfSession(const Edge& edge) { return !edge.session.empty() || IsMergedOfSessions(edge); }
+
+bool HasRetired(const SessionId& session, const std::vector<Edge>& edges) {
+  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return edge.session == session && IsPast(edge) && edge.diagnoses.front().code == kRetiredCode;
+  });
 }
 
 MatrixXd Selected(const MatrixXd& C, const std::vector<int>& first_rows) {
@@ -39,7 +49,7 @@ class Builder {
   SessionFusion Build(const std::vector<SessionEstimate>& estimates, bool with_edges) {
     std::vector<std::pair<const SessionEstimate*, std::set<SensorId>>> taken;
     for (const SessionEstimate& estimate : estimates) {
-      if (!IsFused(estimate, input_.edges)) continue;
+      if (!IsFused(estimate, input_)) continue;
       const std::set<SensorId> counting = CountingIn(estimate);
       if (counting.size() < 2) continue;  // tells no pose against another
       refined_.insert(counting.begin(), counting.end());
@@ -57,7 +67,7 @@ class Builder {
 
  private:
   [[nodiscard]] std::set<SensorId> CountingIn(const SessionEstimate& estimate) const {
-    std::set<SensorId> counting = SensorsThatCount(estimate.session, input_.edges), refined;
+    std::set<SensorId> counting = SensorsThatCount(estimate.session, input_), refined;
     for (const RefinedPose& pose : estimate.poses)
       if (counting.contains(pose.sensor) && start_.contains(pose.sensor) &&
           !left_out_.contains({estimate.session, pose.sensor}))
@@ -69,7 +79,7 @@ class Builder {
     std::vector<const Edge*> beside;
     for (const Edge& edge : input_.edges) {
       if (edge.state != EdgeState::kGood || !start_.contains(edge.frame_a) || !start_.contains(edge.frame_b)) continue;
-      if (edge.session.empty() || !refined_.contains(edge.frame_a) || !refined_.contains(edge.frame_b))
+      if (!IsOfSession(edge) || !refined_.contains(edge.frame_a) || !refined_.contains(edge.frame_b))
         beside.push_back(&edge);
     }
     return beside;
@@ -185,10 +195,8 @@ double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means)
 
 }  // namespace
 
-bool IsFused(const SessionEstimate& estimate, const std::vector<Edge>& edges) {
-  return estimate.why_not.empty() && std::none_of(edges.begin(), edges.end(), [&](const Edge& edge) {
-    return edge.session == estimate.session && IsPast(edge) && edge.diagnoses.front().code == kRetiredCode;
-  });
+bool IsFused(const SessionEstimate& estimate, const FusionInput& input) {
+  return estimate.why_not.empty() && !HasRetired(estimate.session, input.edges) && !HasRetired(estimate.session, input.within);
 }
 
 SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates, bool with_edges,

@@ -23,9 +23,9 @@
 namespace rigcal::graph {
 
 // Puts fused poses, covariances and degrees of freedom into the known poses of `solution`, those of the graph beside them
-// (SensorPose::fused). `edges` as they stand. Without a session that was refined and of which no edge was retired, nothing
-// changes. At most kFusedSensorsMax known sensors.
-void FuseSessions(const std::vector<Edge>& edges, const SensorId& reference,
+// (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them. Without a
+// session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known sensors.
+void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
                   const std::vector<SessionEstimate>& estimates, GraphSolution& solution);
 constexpr std::size_t kFusedSensorsMax = 200;
 
@@ -80,13 +80,14 @@ struct SessionFusion {
 };
 
 struct FusionInput {
-  const std::vector<Edge>& edges;  // as they stand: they say what of a session counts
+  const std::vector<Edge>& edges;   // as they stand: they say what of a session counts
+  const std::vector<Edge>& within;  // likewise, of sessions that are in merged edges: ends, state and diagnoses
   const SensorId& reference;
-  const GraphSolution& start;      // its known poses
+  const GraphSolution& start;       // its known poses
 };
 using SensorsOfSessions = std::set<std::pair<SessionId, SensorId>>;
 // A session with an estimate none of whose edges was retired: that is in the estimate all the same.
-[[nodiscard]] bool IsFused(const SessionEstimate& estimate, const std::vector<Edge>& edges);
+[[nodiscard]] bool IsFused(const SessionEstimate& estimate, const FusionInput& input);
 // Of the sessions of `estimates` that are fused, without `left_out`; `with_edges`: pushed edges, and those of sessions one
 // of whose sensors is in no estimate.
 [[nodiscard]] SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates,

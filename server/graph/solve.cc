@@ -7,6 +7,7 @@
 #include "server/graph/observability.h"
 #include "server/graph/start_poses.h"
 #include "server/math/covariance.h"
+#include "server/model/merged_edge.h"
 
 namespace rigcal::graph {
 namespace {
@@ -211,6 +212,9 @@ std::string_view WithoutLeadingZeros(std::string_view digits) {
   return first == std::string_view::npos ? std::string_view() : digits.substr(first);
 }
 
+// What merged edges of sessions share: no session has this id.
+const SessionId kMergedHistory("merged");
+
 GraphEdge MeasurementOf(const Edge& edge) {
   return {edge.id,
           edge.frame_a,
@@ -219,7 +223,7 @@ GraphEdge MeasurementOf(const Edge& edge) {
           edge.uncertainty.Omega,
           edge.uncertainty.rank,
           edge.uncertainty.dof,
-          edge.session};
+          IsMergedOfSessions(edge) ? kMergedHistory : edge.session};
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace rigcal {
 struct MergedEdge {
   SensorId frame_a, frame_b;
   std::string method;
+  bool of_sessions = false;              // or pushed as finished results
   int count = 0;
   Stamp newest;                          // when the newest of them was measured
   Se3 T_a_b;                             // their optimum
@@ -26,10 +27,15 @@ struct MergedEdge {
   Matrix6d scatter = Matrix6d::Zero();   // sum Omega_i C_i Omega_i, C_i of its blocks; Omega_i of one that has none
   Matrix6d given = Matrix6d::Zero();     // likewise, of given constants of its own
   std::map<std::string, std::vector<Vector6d>> constants;  // by name, per constant: sum Omega_i times its shift
+  // Of sessions: a column per independent cause, the same ones in all merged edges of a robot's sessions, as pairs of a session
+  // share captures; scores scores^T is `scatter`, and scores_x scores_y^T what two pairs have in common. Kept of a robot's newest
+  // revision only: no columns elsewhere.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> scores;
 };
 
-// Figure of an edge that stands for as many.
-inline constexpr const char* kMergedEdges = "merged_edges";
-[[nodiscard]] inline bool IsMerged(const Edge& edge) { return edge.figures.contains(kMergedEdges); }
+// Figure of an edge that stands for as many that were pushed as finished results, or one of each of so many sessions.
+inline constexpr const char *kMergedEdges = "merged_edges", *kMergedSessions = "merged_sessions";
+[[nodiscard]] inline bool IsMergedOfSessions(const Edge& edge) { return edge.figures.contains(kMergedSessions); }
+[[nodiscard]] inline bool IsMerged(const Edge& edge) { return edge.figures.contains(kMergedEdges) || IsMergedOfSessions(edge); }
 
 }  // namespace rigcal

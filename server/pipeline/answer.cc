@@ -9,7 +9,7 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/graph/joint_poses.h"
-#include "server/graph/merge_edges.h"
+#include "server/graph/merged_edge.h"
 #include "server/graph/solve.h"
 #include "server/model/past.h"
 #include "server/pipeline/live.h"

@@ -6,7 +6,6 @@
 #include "server/pipeline/remounts.h"
 #include "storage/edges.h"
 #include "storage/merged_edges.h"
-#include "storage/standing.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -44,8 +43,9 @@ void MakePast(const storage::Remount& remount, Edge& edge) {
            "Where no later session measured this pair, measure it anew; where one did, that one counts.", edge);
 }
 
-Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
+Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, const std::vector<storage::Remount>& all,
+                                std::vector<Edge>& edges) {
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot, all));
   for (Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
@@ -53,27 +53,40 @@ Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, std
   return {};
 }
 
+Status MakePast(storage::Store& store, const RobotId& robot, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
+  for (Edge& edge : edges) {
+    if (const auto found = counts.superseded.find(edge.session); found != counts.superseded.end()) Supersede(found->second, edge);
+    if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) Retire(found->second.word, edge);
+  }
+  SupersedeWhatWasRunAgain(edges);
+  return MakePastWhatWasRemounted(store, robot, counts.remounts, edges);
+}
+
 }  // namespace
 
 Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
   CurrentEdges current;
   std::vector<Edge>& edges = current.edges;
-  RIGCAL_ASSIGN(current.all, storage::IsMergeOutdated(store, robot));
+  RIGCAL_ASSIGN(current.counts, storage::LoadWhatCounts(store, robot));
+  RIGCAL_ASSIGN(current.all, storage::IsMergeOutdated(store, robot, current.counts));
   if (current.all) {
     RIGCAL_ASSIGN(edges, storage::LoadEdges(store, robot, blocks));
   } else {
     RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, blocks));
     RIGCAL_ASSIGN(current.merged, storage::LoadMergedEdges(store, robot));
   }
-  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
-  RIGCAL_ASSIGN(const auto retired, storage::LoadRetired(store, robot));
-  for (Edge& edge : edges) {
-    if (const auto found = superseded.find(edge.session); found != superseded.end()) Supersede(found->second, edge);
-    if (const auto found = retired.find(edge.id); found != retired.end()) Retire(found->second.word, edge);
-  }
-  SupersedeWhatWasRunAgain(edges);
-  RIGCAL_TRY(MakePastWhatWasRemounted(store, robot, edges));
+  RIGCAL_TRY(MakePast(store, robot, current.counts, edges));
   return current;
+}
+
+Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const RobotId& robot, const CurrentEdges& current,
+                                          const std::vector<SessionId>& sessions) {
+  std::set<SessionId> wanted(sessions.begin(), sessions.end());
+  for (const Edge& edge : current.edges) wanted.erase(edge.session);
+  if (wanted.empty()) return std::vector<Edge>();
+  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdgeRows(store, {wanted.begin(), wanted.end()}));
+  RIGCAL_TRY(MakePast(store, robot, current.counts, edges));
+  return edges;
 }
 
 void Retire(const Word& word, Edge& edge) {

@@ -5,6 +5,7 @@
 
 #include "server/model/merged_edge.h"
 #include "server/model/standing.h"
+#include "storage/merged_edges.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -13,11 +14,15 @@ struct CurrentEdges {
   std::vector<Edge> edges;         // that are in no merged edge, good and failed, sorted by id
   std::vector<MergedEdge> merged;  // what the newest revision made of the others
   bool all = false;                // what it made of them holds no more: `edges` are all
+  storage::WhatCounts counts;      // by which edges are past
 };
 // Edges that were retired, those of a superseded session, and those of a sensor that was remounted since are failed, with that
-// as their only diagnosis (IsPast). Where one that was merged is retired, no edge is merged. Block vectors only on demand. Call
+// as their only diagnosis (IsPast). Where that changes for edges that were merged, no edge is merged. Block vectors only on demand. Call
 // within one Read.
 [[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks);
+// Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason. Call within one Read.
+[[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const RobotId& robot, const CurrentEdges& current,
+                                                        const std::vector<SessionId>& sessions);
 // As it is shown where it was retired.
 void Retire(const Word& word, Edge& edge);
 

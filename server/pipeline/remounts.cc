@@ -5,11 +5,15 @@
 namespace rigcal::pipeline {
 
 Result<Remounts> Remounts::Load(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto remounts, storage::LoadRemounts(store, robot));
+  return Load(store, robot, remounts);
+}
+
+Result<Remounts> Remounts::Load(storage::Store& store, const RobotId& robot, const std::vector<storage::Remount>& remounts) {
   Remounts loaded;
-  RIGCAL_ASSIGN(loaded.remounts_, storage::LoadRemounts(store, robot));
-  if (loaded.remounts_.empty()) return loaded;
-  RIGCAL_ASSIGN(const auto rows, storage::LoadSessions(store, robot));
-  for (const storage::SessionRow& row : rows) loaded.captured_at_.emplace(row.id, row.captured_at);
+  loaded.remounts_ = remounts;
+  if (remounts.empty()) return loaded;
+  RIGCAL_ASSIGN(loaded.captured_at_, storage::LoadCapturedAt(store, robot));
   return loaded;
 }
 

@@ -11,6 +11,8 @@ namespace rigcal::pipeline {
 class Remounts {
  public:
   [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const RobotId& robot);
+  // With those that were loaded.
+  [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const RobotId& robot, const std::vector<storage::Remount>& remounts);
   // The earliest remount of the sensor after this session was captured; null: none. What has no session has no date.
   [[nodiscard]] const storage::Remount* After(const SessionId& session, const SensorId& sensor) const;
 

@@ -11,6 +11,7 @@
 #include "server/graph/insight.h"
 #include "server/graph/joint_poses.h"
 #include "server/graph/merge_edges.h"
+#include "server/graph/merged_edge.h"
 #include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"
 #include "server/pipeline/current_edges.h"
@@ -28,21 +29,10 @@ namespace rigcal::pipeline {
 namespace {
 
 Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(std::vector<storage::SessionRow> rows, storage::LoadSessions(store, robot));
-  rows.erase(std::remove_if(rows.begin(), rows.end(), [](const auto& row) { return !row.closed; }), rows.end());
-  if (rows.empty()) return SensorId();
-  const auto first = std::min_element(rows.begin(), rows.end(), [](const auto& x, const auto& y) {
-    return std::tie(x.captured_at, x.id) < std::tie(y.captured_at, y.id);
-  });
-  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, first->id));
+  RIGCAL_ASSIGN(const auto first, storage::LoadEarliestClosed(store, robot));
+  if (!first) return SensorId();
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, *first));
   return manifest ? manifest->header.reference : SensorId();
-}
-
-Result<std::map<SessionId, Stamp>> CapturedAt(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto rows, storage::LoadSessions(store, robot));
-  std::map<SessionId, Stamp> captured_at;
-  for (const storage::SessionRow& row : rows) captured_at.emplace(row.id, row.captured_at);
-  return captured_at;
 }
 
 void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector<SensorId>& listed, Graph& graph) {
@@ -109,26 +99,37 @@ std::optional<storage::WorstEdge> WorstEdgeOf(const formats::RevisionInput& revi
 // What of a robot counts, before it is a graph.
 struct RobotEdges {
   CurrentEdges current;
+  std::map<EdgeId, Stamp> measured_at;
+  CurrentEstimates refined;
+  fleet::SessionTimes captured_at;
   std::vector<SensorId> listed;  // by its sessions
   SensorId reference;
   std::int64_t watermark = 0, standing_watermark = 0;
 };
 
-Result<RobotEdges> LoadRobotEdges(storage::Store& store, const RobotId& robot, bool blocks) {
+Status LoadForGraph(storage::Store& store, const RobotId& robot, bool blocks, RobotEdges& loaded) {
+  RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
+  RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
+  RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, blocks));
+  RIGCAL_ASSIGN(loaded.listed, storage::LoadListedSensors(store, robot));
+  RIGCAL_ASSIGN(loaded.reference, LoadReference(store, robot));
+  return {};
+}
+
+Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
-    RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
-    RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, blocks));
-    RIGCAL_ASSIGN(loaded.listed, storage::LoadListedSensors(store, robot));
-    RIGCAL_ASSIGN(loaded.reference, LoadReference(store, robot));
+    RIGCAL_TRY(LoadForGraph(store, robot, true, loaded));
+    RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
+    RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current));
+    RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
     return {};
   }));
   return loaded;
 }
 
-RobotGraph GraphOf(RobotEdges loaded, const RobotId& robot) {
-  RobotGraph result{std::move(loaded.current.edges), {}, loaded.watermark, loaded.standing_watermark};
+RobotGraph GraphOf(const RobotEdges& loaded, const RobotId& robot) {
+  RobotGraph result{loaded.current.edges, {}, loaded.watermark, loaded.standing_watermark};
   for (const MergedEdge& merged : loaded.current.merged) result.edges.push_back(graph::EdgeOf(merged, robot));
   std::sort(result.edges.begin(), result.edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
   result.graph = graph::GraphOf(result.edges, loaded.reference);
@@ -137,10 +138,9 @@ RobotGraph GraphOf(RobotEdges loaded, const RobotId& robot) {
   return result;
 }
 
-void Take(const graph::Merge& merge, CurrentEdges& current) {
-  const std::set<EdgeId> taken(merge.taken.begin(), merge.taken.end());
-  std::erase_if(current.edges, [&](const Edge& edge) { return taken.contains(edge.id); });
-  current.merged = merge.merged;
+void Append(graph::Merge merge, storage::MergeStep& step) {
+  std::move(merge.merged.begin(), merge.merged.end(), std::back_inserter(step.merged));
+  std::move(merge.taken.begin(), merge.taken.end(), std::back_inserter(step.taken));
 }
 
 std::vector<EdgeId> IdsOf(const std::vector<Edge>& edges) {
@@ -149,11 +149,44 @@ std::vector<EdgeId> IdsOf(const std::vector<Edge>& edges) {
   return ids;
 }
 
+// Edges leave the window for merged ones. A session of which pairs are still to come stays as it is: they share its captures.
+storage::MergeStep MergeOlder(std::int64_t pairs_waiting, RobotEdges& loaded) {
+  CurrentEdges& current = loaded.current;
+  storage::MergeStep step;
+  if (current.all) step.back = IdsOf(current.edges);
+  Append(graph::MergeOlderEdges(current.merged, current.edges, loaded.measured_at), step);
+  const std::size_t kept = pairs_waiting > 0 ? current.edges.size() : graph::kSessionsKept;
+  Append(graph::MergeOlderSessions(current.merged, current.edges, loaded.measured_at, kept), step);
+  const std::set<EdgeId> taken(step.taken.begin(), step.taken.end());
+  for (const Edge& edge : current.edges)
+    if (taken.contains(edge.id)) loaded.refined.within.push_back(edge);
+  std::erase_if(current.edges, [&](const Edge& edge) { return taken.contains(edge.id); });
+  current.merged = step.merged;
+  return step;
+}
+
+// What is told of the graph and judged.
+formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting, JointPoses& poses) {
+  RobotGraph loaded = GraphOf(edges, robot);
+  formats::RevisionInput input;
+  input.robot = robot;
+  input.reference = loaded.graph.reference;
+  HonestSolution honest = SolveHonestly(loaded);
+  input.solution = std::move(honest.solution);
+  graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
+  poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
+  input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
+                                    : fleet::Assess(loaded.edges, input.solution, {}, edges.captured_at, edges.refined.estimates);
+  input.edges = std::move(loaded.edges);
+  return input;
+}
+
 }  // namespace
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
-  RIGCAL_ASSIGN(RobotEdges loaded, LoadRobotEdges(store, robot, blocks));
-  return GraphOf(std::move(loaded), robot);
+  RobotEdges loaded;
+  RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, blocks, loaded); }));
+  return GraphOf(loaded, robot);
 }
 
 bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }
@@ -162,26 +195,11 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   Revision revision;
   revision.robot = robot;
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
-  RIGCAL_ASSIGN(RobotEdges current, LoadRobotEdges(store, robot, true));
-  RIGCAL_ASSIGN(const auto measured_at, storage::LoadMeasuredAt(store, current.current.edges));
-  const graph::Merge merge = graph::MergeOlderEdges(current.current.merged, current.current.edges, measured_at);
-  Take(merge, current.current);
-  revision.calibrated_at = CalibratedAt(current.current.edges, measured_at, merge.merged);
-  const std::vector<EdgeId> back = current.current.all ? IdsOf(current.current.edges) : std::vector<EdgeId>();
-  RobotGraph loaded = GraphOf(std::move(current), robot);
-
-  formats::RevisionInput input;
-  input.robot = robot;
-  input.reference = loaded.graph.reference;
-  HonestSolution honest = SolveHonestly(loaded);
-  input.solution = std::move(honest.solution);
-  RIGCAL_ASSIGN(const fleet::SessionTimes captured_at, CapturedAt(store, robot));
-  RIGCAL_ASSIGN(const std::vector<SessionEstimate> estimates, LoadCurrentEstimates(store, robot, loaded.edges));
-  graph::FuseSessions(loaded.edges, input.reference, estimates, input.solution);
-  const JointPoses poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
-  input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
-                                    : fleet::Assess(loaded.edges, input.solution, {}, captured_at, estimates);
-  input.edges = std::move(loaded.edges);
+  RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot));
+  const storage::MergeStep merge = MergeOlder(pairs_waiting, loaded);
+  revision.calibrated_at = CalibratedAt(loaded.current.edges, loaded.measured_at, merge.merged);
+  JointPoses poses;
+  const formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
 
   const auto worst = WorstEdgeOf(input);
   revision.verdict = input.verdict;
@@ -193,7 +211,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
-    RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge.merged, merge.taken, back));
+    RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
     if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));

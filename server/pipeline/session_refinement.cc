@@ -16,7 +16,6 @@
 #include "storage/jobs.h"
 #include "storage/session_estimates.h"
 #include "storage/sessions.h"
-#include "storage/standing.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -161,12 +160,21 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
   return {};
 }
 
-// Whether an edge of the session still says something of the sensor.
-bool Counts(const SessionId& session, const SensorId& sensor, const std::vector<Edge>& edges) {
-  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
-    return edge.state == EdgeState::kGood && edge.session == session &&
-           (edge.frame_a == sensor || edge.frame_b == sensor);
-  });
+// Sensors of which an edge of the session still says something.
+using Counting = std::set<std::pair<SessionId, SensorId>>;
+Counting CountingOf(const std::vector<Edge>& current, const std::vector<Edge>& within) {
+  Counting counting;
+  for (const std::vector<Edge>* edges : {&current, &within})
+    for (const Edge& edge : *edges)
+      if (edge.state == EdgeState::kGood)
+        for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) counting.emplace(edge.session, sensor);
+  return counting;
+}
+
+std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates) {
+  std::vector<SessionId> sessions;
+  for (const SessionEstimate& estimate : estimates) sessions.push_back(estimate.session);
+  return sessions;
 }
 
 }  // namespace
@@ -179,23 +187,22 @@ Status RefineSessions(storage::Store& store, const RobotId& robot, calib::Camera
   return {};
 }
 
-Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
-                                                          const std::vector<Edge>& edges) {
+Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current) {
   RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused));
-  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot));
-  std::vector<SessionEstimate> current;
-  for (storage::SessionEstimateRow& row : rows) {
-    if (!row.estimate || superseded.contains(row.session)) continue;
-    std::erase_if(row.estimate->moved, [&](const SensorMovedWithin& moved) {
-      return remounts.After(row.session, moved.sensor) != nullptr || !Counts(row.session, moved.sensor, edges);
+  CurrentEstimates result;
+  for (storage::SessionEstimateRow& row : rows)
+    if (row.estimate && !current.counts.superseded.contains(row.session)) result.estimates.push_back(std::move(*row.estimate));
+  RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, robot, current, SessionsOf(result.estimates)));
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot, current.counts.remounts));
+  const Counting counting = CountingOf(current.edges, result.within);
+  for (SessionEstimate& estimate : result.estimates) {
+    const SessionId& session = estimate.session;
+    std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
+      return remounts.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
     });
-    std::erase_if(row.estimate->misfits, [&](const LensMisfit& misfit) {
-      return !Counts(row.session, misfit.camera, edges);
-    });
-    current.push_back(std::move(*row.estimate));
+    std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
   }
-  return current;
+  return result;
 }
 
 }  // namespace rigcal::pipeline

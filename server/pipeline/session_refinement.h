@@ -5,6 +5,7 @@
 #include "server/calib/camera/camera_memory.h"
 #include "server/model/edge.h"
 #include "server/model/session_estimate.h"
+#include "server/pipeline/current_edges.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -24,8 +25,11 @@ inline constexpr const char* kSessionEstimator = "joint/5";
                                     const Clock& clock);
 
 // Of sessions that count (not superseded), the newest captured first. Moves of sensors that were remounted since, or of
-// which no edge of the session counts any more (`edges` are the robot's, as they stand), are left out.
-[[nodiscard]] Result<std::vector<SessionEstimate>> LoadCurrentEstimates(storage::Store& store, const RobotId& robot,
-                                                                        const std::vector<Edge>& edges);
+// which no edge of the session counts any more, are left out. Call within one Read, with `current`.
+struct CurrentEstimates {
+  std::vector<SessionEstimate> estimates;
+  std::vector<Edge> within;  // what of their edges is in merged ones (current_edges.h)
+};
+[[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current);
 
 }  // namespace rigcal::pipeline

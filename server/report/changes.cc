@@ -62,11 +62,14 @@ std::vector<const Edge*> MissingEdges(const formats::RevisionInput& of, const fo
 
 // Edges that became part of a merged one are not lost.
 std::vector<const Edge*> LostEdges(const formats::RevisionInput& before, const formats::RevisionInput& now) {
-  std::set<MeasuredPair> merged;
+  std::set<MeasuredPair> merged, merged_of_sessions;
   for (const Edge& edge : now.edges)
-    if (IsMerged(edge)) merged.insert(MeasuredPairOf(edge));
+    if (IsMerged(edge)) (IsMergedOfSessions(edge) ? merged_of_sessions : merged).insert(MeasuredPairOf(edge));
   std::vector<const Edge*> lost = MissingEdges(before, now);
-  std::erase_if(lost, [&](const Edge* edge) { return edge->session.empty() && merged.contains(MeasuredPairOf(*edge)); });
+  std::erase_if(lost, [&](const Edge* edge) {
+    if (edge->session.empty()) return merged.contains(MeasuredPairOf(*edge));
+    return edge->state != EdgeState::kGood || merged_of_sessions.contains(MeasuredPairOf(*edge));
+  });
   return lost;
 }
 

@@ -171,6 +171,7 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 
 // People know a session by its time.
 std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
+  if (IsMergedOfSessions(edge)) return "Of this pair, what the sessions before the newest ones say together.";
   if (IsMerged(edge)) return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
   if (edge.session.empty()) return "Pushed as a finished result.";
   const auto facts = std::find_if(input.sessions.begin(), input.sessions.end(),

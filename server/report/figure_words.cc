@@ -25,6 +25,7 @@ constexpr std::array kWords = {
     Word{"Captures", Word::kEach, {"captures_total", ""}},
     Word{"Samples used", Word::kEach, {"samples_used", ""}},
     Word{"Earlier edges in it", Word::kEach, {kMergedEdges, ""}},
+    Word{"Earlier sessions in it", Word::kEach, {kMergedSessions, ""}},
     Word{"Captures with the board in both pictures", Word::kEach, {"captures_both", ""}},
     Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},
     Word{"Reprojection error in {a}, rms", Word::kEach, {"rms_a_px", ""}},
@@ -162,8 +163,9 @@ bool IsPolished(const Edge& edge) {
 }
 
 std::string MethodText(const Edge& edge) {
-  if (const auto merged = edge.figures.find(kMergedEdges); merged != edge.figures.end())
-    return MethodText(edge.method) + ", " + std::to_string(static_cast<int>(merged->second)) + " earlier ones as one";
+  for (const char* kind : {kMergedEdges, kMergedSessions})
+    if (const auto merged = edge.figures.find(kind); merged != edge.figures.end())
+      return MethodText(edge.method) + ", " + std::to_string(static_cast<int>(merged->second)) + " earlier ones as one";
   return MethodText(edge.method) + (IsPolished(edge) ? ", polished by GICP" : "");
 }
 

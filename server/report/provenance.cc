@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include "server/model/merged_edge.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 
@@ -29,13 +30,18 @@ void FillFacts(Dictionary& row, const ReportInput& input, const SessionId& sessi
 void FillProvenance(Dictionary& page, const ReportInput& input) {
   constexpr std::size_t kSessionsMax = 100;
   std::map<SessionId, std::size_t> sessions;
-  for (const Edge& edge : input.revision.edges) ++sessions[edge.session];
+  for (const Edge& edge : input.revision.edges)
+    if (!IsMergedOfSessions(edge)) ++sessions[edge.session];
   page.SetValue("SOFTWARE", input.software_version);
   page.SetValue("DIGEST", input.digest.str());
   if (const auto pushed = sessions.find(SessionId()); pushed != sessions.end()) {
     ShowValue(page, "PUSHED", "COUNT", Count(pushed->second, "edge", "edges"));
     sessions.erase(pushed);
   }
+  int earlier = 0;  // of the pair that most of them saw
+  for (const Edge& edge : input.revision.edges)
+    if (IsMergedOfSessions(edge)) earlier = std::max(earlier, static_cast<int>(edge.figures.at(kMergedSessions)));
+  if (earlier > 0) ShowValue(page, "EARLIER", "COUNT", Count(static_cast<std::size_t>(earlier), "session", "sessions"));
   std::size_t shown = 0;
   for (const auto& [session, count] : sessions) {
     if (shown++ == kSessionsMax) break;

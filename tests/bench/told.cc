@@ -72,7 +72,7 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   }
   const SessionHeader& header = visits.front().header;
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
-  graph::FuseSessions(edges, header.reference, estimates, solution);
+  graph::FuseSessions(edges, {}, header.reference, estimates, solution);
   Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates), {}, 0};
   told.said = SaidOf(told.verdict, edges);
   for (const FusedSessions::HeldBack& look : solution.fused.held_back)  // as the report has it

@@ -100,7 +100,7 @@ struct Robot {
   }
   [[nodiscard]] GraphSolution Fused() const {
     GraphSolution solution = Solve(GraphOf(edges, kBase));
-    FuseSessions(edges, kBase, estimates, solution);
+    FuseSessions(edges, {}, kBase, estimates, solution);
     return solution;
   }
 };

@@ -6,6 +6,7 @@
 
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/merge_edges.h"
+#include "server/graph/merged_edge.h"
 
 namespace rigcal::graph {
 namespace {

@@ -65,7 +65,7 @@ TEST_F(MergedHistoryTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
   ExpectSamePoses(Whole(ids_[2]), graph::Solve(loaded->graph));
   Week(20);
   ExpectSamePoses(Whole(ids_[2]), newest_.solution);
-  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld));
+  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld, *storage::LoadWhatCounts(*store_, kOld)));
   for (int week = 21; week < 24; ++week) Week(week);
   ExpectSamePoses(Whole(ids_[2]), newest_.solution);
   EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size() + 1);  // it stays on the page, with its reason

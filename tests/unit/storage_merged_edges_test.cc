@@ -40,7 +40,7 @@ class MergedEdgesTest : public StoreTest {
   void Merge(const MergedEdge& merged, const std::vector<EdgeId>& taken, const std::vector<EdgeId>& kept) {
     ASSERT_TRUE(store_.Write([&]() -> Status {
       RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
-      return AppendMergedEdges(store_, {kRobot, number}, {merged}, taken, kept);
+      return AppendMergedEdges(store_, {kRobot, number}, {{merged}, taken, kept}, *LoadWhatCounts(store_, kRobot));
     }));
   }
   std::vector<EdgeId> Unmerged() {
@@ -92,11 +92,11 @@ TEST_F(MergedEdgesTest, EveryEdgeThatCountsIsInNoneUntilItIsTaken) {
 TEST_F(MergedEdgesTest, AreOutdatedByARetiredOneUntilTheyAreMadeAnew) {
   Merge(MakeMerged(0.1), {ids_[0], ids_[3]}, {});
   ASSERT_TRUE(RetireEdge(store_, ids_[1], {{4}, "Ada", "typed wrong"}));
-  EXPECT_FALSE(*IsMergeOutdated(store_, kRobot));
+  EXPECT_FALSE(*IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   ASSERT_TRUE(RetireEdge(store_, ids_[3], {{5}, "Ada", "typed wrong"}));
-  EXPECT_TRUE(*IsMergeOutdated(store_, kRobot));
+  EXPECT_TRUE(*IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   Merge(MakeMerged(0.2), {ids_[0]}, {ids_[1], ids_[2], ids_[3], ids_[4]});
-  EXPECT_FALSE(*IsMergeOutdated(store_, kRobot));
+  EXPECT_FALSE(*IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   EXPECT_EQ(Unmerged(), Sorted({ids_[1], ids_[2], ids_[3], ids_[4]}));
 }
 
@@ -105,6 +105,27 @@ TEST_F(MergedEdgesTest, OfAnEarlierRevisionComeBackToo) {
   Merge(MakeMerged(0.7), {ids_[1]}, {});
   EXPECT_EQ(LoadMergedEdges(store_, kRobot, 1)->front().Omega, MakeMerged(0.1).Omega);
   EXPECT_EQ(LoadMergedEdges(store_, kRobot, 2)->front().Omega, MakeMerged(0.7).Omega);
+}
+
+TEST_F(MergedEdgesTest, OfSessionsComeBackWithTheirScoresOfTheNewestRevision) {
+  MergedEdge of_sessions = MakeMerged(0.3);
+  of_sessions.of_sessions = true;
+  of_sessions.scores = Eigen::Matrix<double, 6, Eigen::Dynamic>::NullaryExpr(6, 7, [](Eigen::Index i, Eigen::Index j) { return 0.1 * static_cast<double>(i) - 1.0 / (3.0 + static_cast<double>(j)); });
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+    return AppendMergedEdges(store_, {kRobot, number}, {{MakeMerged(0.1), of_sessions}, {}, {}}, {});
+  }));
+  const auto newest = LoadMergedEdges(store_, kRobot);
+  ASSERT_TRUE(newest);
+  ASSERT_EQ(newest->size(), 2u);  // of one pair and method
+  EXPECT_FALSE((*newest)[0].of_sessions);
+  EXPECT_EQ((*newest)[0].scores.cols(), 0);
+  EXPECT_TRUE((*newest)[1].of_sessions);
+  EXPECT_EQ((*newest)[1].scores, of_sessions.scores);
+  EXPECT_EQ((*newest)[1].constants, of_sessions.constants);
+  Merge(MakeMerged(0.7), {}, {});
+  EXPECT_EQ((*LoadMergedEdges(store_, kRobot, 1))[1].scores.cols(), 0);
+  EXPECT_EQ((*LoadMergedEdges(store_, kRobot, 1))[1].Omega, of_sessions.Omega);
 }
 
 TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {

@@ -63,7 +63,10 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadEdges(store_, kRobot, true));
   EXPECT_TRUE(LoadUnmergedEdges(store_, kRobot, true));
   EXPECT_TRUE(LoadMergedEdges(store_, kRobot));
-  EXPECT_TRUE(IsMergeOutdated(store_, kRobot));
+  EXPECT_TRUE(IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
+  EXPECT_TRUE(LoadListedSensors(store_, kRobot));
+  EXPECT_TRUE(LoadCapturedAt(store_, kRobot));
+  EXPECT_TRUE(LoadEarliestClosed(store_, kRobot));
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }

@@ -143,7 +143,7 @@
 <dt>Solved</dt><dd>{{TIME}}</dd>
 <dt>Software</dt><dd>rigcald <bdi>{{SOFTWARE}}</bdi></dd>
 <dt>Document</dt><dd><a href="revision.json">revision.json</a> <code>sha256 {{DIGEST}}</code></dd>
-<dt>Sessions</dt><dd>{{#SESSION}}<div class="session"><a href="../../sessions/{{ID}}/">{{#FACTS}}Captured {{CAPTURED}}{{/FACTS}}{{#NO_FACTS}}Session{{/NO_FACTS}}</a>{{#FACTS}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{/FACTS}}, {{EDGES}}<br><code>{{ID}}</code>{{#FACTS}}{{#BOARDS}}<ul>{{#BOARD}}<li><bdi>{{NAME}}</bdi></li>{{/BOARD}}</ul>{{/BOARDS}}{{/FACTS}}</div>{{/SESSION}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
+<dt>Sessions</dt><dd>{{#SESSION}}<div class="session"><a href="../../sessions/{{ID}}/">{{#FACTS}}Captured {{CAPTURED}}{{/FACTS}}{{#NO_FACTS}}Session{{/NO_FACTS}}</a>{{#FACTS}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{/FACTS}}, {{EDGES}}<br><code>{{ID}}</code>{{#FACTS}}{{#BOARDS}}<ul>{{#BOARD}}<li><bdi>{{NAME}}</bdi></li>{{/BOARD}}</ul>{{/BOARDS}}{{/FACTS}}</div>{{/SESSION}}{{#EARLIER}}<div class="session">and {{COUNT}} before these, merged: what they said of each pair is one edge</div>{{/EARLIER}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
 </dl>
 <p class="downloads"><a class="button" href="revision.json" download>Everything as JSON</a> <a class="button" href="edges.csv" download>Edges as CSV</a></p>
 <p class="hint">The whole report as one file: <code>rigcal report {{ROBOT}} --out report.zip</code></p>

@@ -1,0 +1,145 @@
+// A robot whose sessions came week after week: its revisions hold the newest, and what the older ones say together.
+#include "server/graph/solve.h"
+#include "server/pipeline/revise.h"
+#include "storage/merged_edges.h"
+#include "storage/revisions.h"
+#include "storage/standing.h"
+#include "tests/unit/pipeline_fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+const RobotId kWeekly("r");
+struct Seen {
+  const char *a, *b;
+  double x_m;
+};
+const std::vector<Seen> kSeen = {{"left", "right", 1.0}, {"right", "top", 1.0}, {"left", "top", 2.0}};
+
+class MergedSessionsTest : public PipelineTest {
+ protected:
+  // A session with an edge of each pair, 0.1 mm off in turn, and one that failed; and a revision. `of` week's pictures.
+  void Week(int week, int of, const std::vector<SensorId>& remounted = {}) {
+    clock_.now.ns += 7LL * 86'400 * 1'000'000'000;
+    const std::string bytes = "pictures of week " + std::to_string(of);
+    const SessionId session = StoreSession("r", {{"left/1.jpg", bytes + " left"}, {"right/1.jpg", bytes + " right"}}, remounted);
+    sessions_.push_back(session);
+    std::vector<Edge> edges;
+    for (const auto& [a, b, x_m] : kSeen) edges.push_back(GivenEdge("r", a, b, x_m + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
+    edges.emplace_back();
+    edges.back().robot = kWeekly, edges.back().frame_a = SensorId("left"), edges.back().frame_b = SensorId("back");
+    edges.back().diagnoses = {{"no_view", "seen by neither", "Show it."}};
+    for (Edge& edge : edges) {
+      edge.method = "stereo";
+      edge.session = session;
+      edge.id = EstimatedEdgeId(kWeekly, session, edge.method, edge.frame_a, edge.frame_b);
+    }
+    StoreEdges(edges);
+    ids_.push_back(edges.front().id);
+    Revised();
+  }
+  void Revised() {
+    auto revised = Revise(*store_, kWeekly, clock_);
+    ASSERT_TRUE(revised) << Sentence(revised.error());
+    newest_ = *formats::ReadRevisionDocument(revised->document);
+  }
+  void Weeks(int from, int to) {
+    for (int week = from; week < to; ++week) Week(week, week);
+  }
+  template <typename Excluded>
+  GraphSolution WholeBut(const Excluded& excluded) {
+    auto edges = storage::LoadEdges(*store_, kWeekly, true).value();
+    std::erase_if(edges, excluded);
+    return graph::Solve(graph::GraphOf(edges, SensorId("left")));
+  }
+  [[nodiscard]] bool IsOutdated() { return *storage::IsMergeOutdated(*store_, kWeekly, *storage::LoadWhatCounts(*store_, kWeekly)); }
+  [[nodiscard]] std::size_t Good() const {
+    return static_cast<std::size_t>(
+        std::count_if(newest_.edges.begin(), newest_.edges.end(), [](const Edge& edge) { return edge.state == EdgeState::kGood; }));
+  }
+  // As the newest revision has them, and as the live state would begin.
+  void ExpectPoses(const GraphSolution& wanted) {
+    ExpectSame(wanted, newest_.solution);
+    const auto loaded = LoadRobotGraph(*store_, kWeekly);
+    ASSERT_TRUE(loaded);
+    ExpectSame(wanted, graph::Solve(loaded->graph));
+  }
+  static void ExpectSame(const GraphSolution& x, const GraphSolution& y) {
+    for (const SensorPose& pose : x.poses) {
+      const auto other = std::find_if(y.poses.begin(), y.poses.end(), [&](const SensorPose& one) { return one.sensor == pose.sensor; });
+      ASSERT_NE(other, y.poses.end());
+      EXPECT_LT((pose.T_ref_sensor.p_m - other->T_ref_sensor.p_m).norm(), 1e-9) << pose.sensor.str();
+      EXPECT_LT((pose.covariance - other->covariance).norm(), 1e-6 * (1e-30 + pose.covariance.norm()));
+    }
+  }
+
+  std::vector<SessionId> sessions_;
+  std::vector<EdgeId> ids_;  // of the first pair, by week
+  formats::RevisionInput newest_;
+};
+
+TEST_F(MergedSessionsTest, ARevisionHoldsAsManyEdgesHoweverManySessionsCameBefore) {
+  Weeks(0, 30);
+  EXPECT_EQ(newest_.edges.size(), 8 * 4 + kSeen.size());  // what failed in older ones is on their own pages
+  EXPECT_EQ(Good(), 9 * kSeen.size());
+  for (const Edge& edge : newest_.edges)
+    if (IsMerged(edge)) {
+      EXPECT_EQ(edge.figures.at(kMergedSessions), 22);
+    }
+  ExpectPoses(WholeBut([](const Edge&) { return false; }));
+  EXPECT_FALSE(IsOutdated());
+}
+
+TEST_F(MergedSessionsTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
+  Weeks(0, 20);
+  ASSERT_TRUE(storage::RetireEdge(*store_, ids_[2], {{4}, "Ada", "typed wrong"}));
+  EXPECT_TRUE(IsOutdated());
+  const auto but_one = [&](const Edge& edge) { return edge.id == ids_[2]; };
+  Revised();
+  ExpectPoses(WholeBut(but_one));
+  EXPECT_FALSE(IsOutdated());
+  Weeks(20, 23);
+  ExpectPoses(WholeBut(but_one));
+  EXPECT_EQ(Good(), 9 * kSeen.size());
+}
+
+TEST_F(MergedSessionsTest, ARemountReachesBackToMergedSessions) {
+  Weeks(0, 20);
+  Week(20, 20, {SensorId("right")});
+  const auto before = [&](const Edge& edge) {
+    return edge.session != sessions_[20] && (edge.frame_a == SensorId("right") || edge.frame_b == SensorId("right"));
+  };
+  ExpectPoses(WholeBut(before));
+  for (const Edge& edge : newest_.edges)
+    if (IsMerged(edge)) {
+      EXPECT_EQ(edge.frame_b, SensorId("top"));
+    }
+  EXPECT_FALSE(IsOutdated());
+  Week(21, 21);
+  ExpectPoses(WholeBut([&](const Edge& edge) { return before(edge) && edge.session != sessions_[21]; }));
+}
+
+TEST_F(MergedSessionsTest, ASessionOfLongAgoThatIsPushedAgainAndRestoredCountsOnce) {
+  Weeks(0, 20);
+  clock_.now.ns -= 18LL * 7 * 86'400 * 1'000'000'000 + 1;  // captured then
+  Week(20, 2);
+  clock_.now.ns += 18LL * 7 * 86'400 * 1'000'000'000;
+  ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[2]; }));
+  EXPECT_FALSE(IsOutdated());
+  ASSERT_TRUE(*storage::MakeCurrent(*store_, sessions_[2], storage::MadeCurrent::kRestored, {clock_.now, "Ada", "was right"}));
+  EXPECT_TRUE(IsOutdated());
+  Revised();
+  ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[20]; }));
+}
+
+TEST_F(MergedSessionsTest, NothingIsMergedWhilePairsAreStillToCome) {
+  Weeks(0, 8);
+  clock_.now.ns += 1;
+  const SessionId session = StoreSession("r", {{"left/1.jpg", "late"}});
+  const auto revised = Revise(*store_, kWeekly, clock_, 3);
+  ASSERT_TRUE(revised);
+  EXPECT_TRUE(storage::LoadMergedEdges(*store_, kWeekly)->empty());
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline
