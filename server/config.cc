@@ -38,6 +38,7 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
   app.add_option("--domain", config.participant.domain, "DDS domain")->capture_default_str()->check(CLI::Range(0, 230));
   app.add_option("--tag", config.participant.tag, "DDS discovery tag: only peers with the same tag meet");
+  app.add_flag("--worker", config.worker)->group("");  // a server starts its own
   app.add_flag("--standby", config.standby,
                "While another rigcald serves on the domain and tag, wait, and take over when it is gone");
   app.add_option("--threads", config.threads, "Threads that calibrate")

@@ -19,6 +19,7 @@
 #include "server/pipeline/orders.h"
 #include "server/pipeline/runner.h"
 #include "server/pipeline/startup.h"
+#include "server/pipeline/worker.h"
 #include "server/standby.h"
 #include "storage/folder_lock.h"
 #include "storage/room.h"
@@ -117,7 +118,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
-      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn}, announcer));
+      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, config.worker_command}, announcer));
   relay.Set(&runner);
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
@@ -127,6 +128,14 @@ Status Serve(const Config& config, const sigset_t& signals) {
   LeaveSoon();
   relay.Set(nullptr);
   return ended;
+}
+
+// Who started it leaves it alone with SIGINT and SIGTERM, which come to all processes of a terminal or a service.
+int WorkFor(const Config& config) {
+  const Status limited = EnforceLimits(config);
+  if (limited) return pipeline::Work(config.data, SystemClock());
+  LogError(limited.error());
+  return 1;
 }
 
 }  // namespace
@@ -146,6 +155,11 @@ int main(int argc, char** argv) {
   // What the command line says goes before the environment.
   if (app.count("--domain") > 0) setenv("RIGCAL_DOMAIN", std::to_string(config.participant.domain).c_str(), 1);
   rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
+
+  if (config.worker) return rigcal::WorkFor(config);
+  config.worker_command.assign(argv + 1, argv + argc);
+  config.worker_command.insert(config.worker_command.begin(), "rigcal-worker");
+  config.worker_command.emplace_back("--worker");
 
   sigset_t signals;
   sigemptyset(&signals);

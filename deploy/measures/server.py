@@ -1,4 +1,5 @@
 """A real rigcald in a process of its own, apart from every other by its discovery tag."""
+import contextlib
 import os
 import pathlib
 import signal
@@ -58,11 +59,21 @@ class Server:
             self.log.close()
             self.process = None
 
+    def processes(self):
+        """The server's and those that work for it."""
+        pids = [self.process.pid]
+        for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+            with contextlib.suppress(OSError):  # it ended meanwhile
+                if int(stat.read_text().rsplit(") ", 1)[1].split()[1]) == self.process.pid:
+                    pids.append(int(stat.parent.name))
+        return pids
+
     def peak_rss_mib(self):
-        for line in open("/proc/%d/status" % self.process.pid):
-            if line.startswith("VmHWM"):
-                return int(line.split()[1]) / 1024
-        raise RuntimeError("no VmHWM")
+        """Of all its processes together, as they are now."""
+        peaks = [int(line.split()[1]) / 1024 for pid in self.processes() for line in open("/proc/%d/status" % pid) if line.startswith("VmHWM")]
+        if not peaks:
+            raise RuntimeError("no VmHWM")
+        return sum(peaks)
 
     def client(self, *arguments):
         return [str(self.context.bin / "rigcal"), *map(str, arguments)]

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "server/base/limits_in_force.h"
 
@@ -62,28 +61,29 @@ std::int64_t AddressSpaceToUse() {
 
 }  // namespace
 
-MemoryBudget::Share::Share(Share&& other) noexcept
-    : budget_(std::exchange(other.budget_, nullptr)), bytes_(other.bytes_) {}
-
 MemoryBudget::Share::~Share() {
-  if (budget_ == nullptr) return;
+  if (give_back_) give_back_();
+}
+
+void MemoryBudget::Return(std::int64_t bytes) {
   {
-    const std::lock_guard lock(budget_->mutex_);
-    budget_->taken_bytes_ -= bytes_;
+    const std::lock_guard lock(mutex_);
+    taken_bytes_ -= bytes;
   }
-  budget_->given_back_.notify_all();
+  given_back_.notify_all();
 }
 
 std::optional<MemoryBudget::Share> MemoryBudget::Take(std::int64_t bytes) {
-  std::unique_lock lock(mutex_);
   if (bytes > *bytes_max_) return std::nullopt;
+  if (ask_) return Share(ask_(bytes));
+  std::unique_lock lock(mutex_);
   const std::uint64_t number = next_number_++;
   given_back_.wait(lock, [&] { return turn_ == number && taken_bytes_ + bytes <= *bytes_max_; });
   ++turn_;
   taken_bytes_ += bytes;
   lock.unlock();
   given_back_.notify_all();  // the next in turn may fit beside
-  return Share(this, bytes);
+  return Share([this, bytes] { Return(bytes); });
 }
 
 MemoryBudget& DecodingBudget() {

@@ -3,8 +3,10 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 namespace rigcal {
 
@@ -13,23 +15,30 @@ class MemoryBudget {
   // The limit stays where it is: it may be set until the first share is taken.
   explicit MemoryBudget(const std::int64_t* bytes_max) : bytes_max_(bytes_max) {}
 
+  using GiveBack = std::function<void()>;
   // Gives its bytes back when it goes.
   class Share {
    public:
-    Share(MemoryBudget* budget, std::int64_t bytes) : budget_(budget), bytes_(bytes) {}
+    explicit Share(GiveBack give_back) : give_back_(std::move(give_back)) {}
     ~Share();
-    Share(Share&& other) noexcept;
+    Share(Share&& other) noexcept : give_back_(std::exchange(other.give_back_, nullptr)) {}
     Share& operator=(Share&&) = delete;
 
    private:
-    MemoryBudget* budget_;
-    std::int64_t bytes_;
+    GiveBack give_back_;
   };
   // Waits; first come, first served. Nothing if it is more than there ever is. A thread takes all that a piece of work
   // needs in one go: one that holds a share and waits for another may wait for ever.
   [[nodiscard]] std::optional<Share> Take(std::int64_t bytes);
 
+  // From here on another process keeps the account: `ask` waits until it has set so many bytes aside. Before any thread takes.
+  using Ask = std::function<GiveBack(std::int64_t bytes)>;
+  void AskElsewhere(Ask ask) { ask_ = std::move(ask); }
+
  private:
+  void Return(std::int64_t bytes);
+
+  Ask ask_;
   const std::int64_t* bytes_max_;
   std::mutex mutex_;
   std::condition_variable given_back_;

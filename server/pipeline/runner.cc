@@ -33,6 +33,7 @@ struct Runner::Impl {
   LiveGraphs live;
   Claims claims;
   calib::CameraMemory cameras;
+  std::optional<WorkerPool> workers;
   std::vector<storage::Store> stores;
   std::optional<storage::Store> own_store;
   std::mutex mutex;
@@ -46,7 +47,7 @@ struct Runner::Impl {
     std::uint64_t seen = 0;
     while (Seen(seen)) {
       part.Turn();
-      const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn});
+      const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn, workers ? &*workers : nullptr});
       if (!result) LogError(result.error());
       if (result && result->worked) {
         Signal();  // its robot may be free for another thread now
@@ -109,6 +110,7 @@ Result<Runner> Runner::Start(const Options& options, Announcer announcer) {
   RIGCAL_ASSIGN(impl->own_store, storage::Store::Open(options.folder));
   RIGCAL_TRY(NoteCutOffWork(*impl->own_store, *options.clock, EndOfLastRun(options.folder)));
   BeginRun(options.folder);
+  if (!options.worker.empty()) impl->workers.emplace(WorkerPool::Options{options.worker}).Warm();
   for (int i = 0; i < options.threads; ++i) {
     RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
     impl->stores.push_back(std::move(store));

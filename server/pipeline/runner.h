@@ -17,6 +17,7 @@ class Runner {
     int threads = 2;
     Vitals* vitals = nullptr;           // told how the threads are; none: nobody asks
     UndrawnReports* undrawn = nullptr;  // likewise
+    std::vector<std::string> worker;    // program and arguments that Work(); none: the threads do all work themselves
   };
   [[nodiscard]] static Result<Runner> Start(const Options& options, Announcer announcer);
   ~Runner();  // finishes the step at hand, then joins; unfinished work is found again at the next start

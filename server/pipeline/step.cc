@@ -13,6 +13,7 @@
 #include "server/pipeline/run_edge_job.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/pipeline/validity.h"
+#include "server/pipeline/worker.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
@@ -63,7 +64,16 @@ int CountOf(const std::map<std::string, int>& attempts, const std::string& work)
   return found == attempts.end() ? 0 : found->second;
 }
 
-Result<std::filesystem::path> PublishOnce(const StepContext& context, const storage::RevisionKey& key, int before) {
+Status PublishBy(const StepContext& context, const storage::RevisionKey& key, const std::string& why_no_clouds) {
+  if (context.workers != nullptr) {
+    const auto outcome = context.workers->Run(PublishOrder(key, why_no_clouds));
+    return outcome.said ? Status{} : Fail(outcome.said.error());
+  }
+  RIGCAL_TRY(Publish(context.store, key, context.clock, why_no_clouds));
+  return {};
+}
+
+Status PublishOnce(const StepContext& context, const storage::RevisionKey& key, int before) {
   const std::string work = storage::WorkOfReport(key);
   const std::string said = "revision " + std::to_string(key.number) + " of robot " + key.robot.str();
   std::string why_no_clouds;
@@ -74,7 +84,7 @@ Result<std::filesystem::path> PublishOnce(const StepContext& context, const stor
     why_no_clouds = "The clouds in colour are not shown: " + WhyGivenUp(attempts, "made this report") + ".";
   }
   return Attempted(context.store, context.clock, work, said + (why_no_clouds.empty() ? "" : " without its clouds"),
-                   before % kAttemptsMax, [&] { return Publish(context.store, key, context.clock, why_no_clouds); });
+                   before % kAttemptsMax, [&] { return PublishBy(context, key, why_no_clouds); });
 }
 
 // When a robot has a new one; an older one that somebody asked for stays until then.
@@ -109,9 +119,8 @@ Result<bool> PublishNext(const StepContext& context, bool last) {
     if ((before > 0 || again) != last || before >= kPublishAttemptsMax) continue;
     const Claim claim(context.claims, key.robot);
     if (!claim.taken()) continue;
-    const auto folder = PublishOnce(context, key, before);
-    if (!folder) {
-      problem = folder.error();
+    if (const Status published = PublishOnce(context, key, before); !published) {
+      problem = published.error();
       if (context.undrawn != nullptr) context.undrawn->Note(key, *problem);
       continue;
     }
@@ -133,7 +142,11 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
 
 // Without its refinement a session is what its edges say, as is one that cannot be refined.
 void Refine(const StepContext& context, const RobotId& robot) {
-  const Status refined = Guarded([&] { return RefineSessions(context.store, robot, context.cameras, context.clock); });
+  const Status refined = Guarded([&]() -> Status {
+    if (context.workers == nullptr) return RefineSessions(context.store, robot, context.cameras, context.clock);
+    const auto outcome = context.workers->Run(RefineOrder(robot));
+    return outcome.said ? Status{} : Fail(outcome.said.error());
+  });
   if (!refined) LogError(refined.error());
 }
 
@@ -231,9 +244,22 @@ Status TellOfSession(const StepContext& context, const storage::JobRow& job) {
   return {};
 }
 
+// Where the process that does it ends, the attempt has failed; what was begun too often is only noted as such.
+Result<Edge> EdgeOfJob(const StepContext& context, const storage::JobRow& job) {
+  if (context.workers == nullptr || job.attempts >= kAttemptsMax)
+    return RunEdgeJob(context.store, job, context.clock, context.cameras);
+  const WorkerPool::Outcome outcome = context.workers->Run(JobOrder(job));
+  if (outcome.died) EndAttempt(context.store, context.clock, storage::WorkOfJob(job.number), outcome.said.error());
+  if (!outcome.said) return Fail(outcome.said.error());
+  RIGCAL_ASSIGN(auto edge, storage::LoadEdge(context.store, EdgeId(*outcome.said)));
+  if (edge) return std::move(*edge);
+  return Fail(ErrorCode::kInternal, "the edge of job " + std::to_string(job.number) + " is not in the store",
+              "Report this with the log of the server.");
+}
+
 Status RunJob(const StepContext& context, const storage::JobRow& job) {
   RIGCAL_TRY(TellOfSession(context, job));
-  RIGCAL_ASSIGN(const Edge edge, RunEdgeJob(context.store, job, context.clock, context.cameras));
+  RIGCAL_ASSIGN(const Edge edge, EdgeOfJob(context, job));
   RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(context.store, job.session));
   context.announcer.event(job.robot, "edge", edge.id.str(), formats::WriteEdgeEvent(edge, jobs.waiting, jobs.total));
   if (context.live.Of(job.robot).solver == nullptr) return {};  // WorkOn makes it next, and counts the attempt

@@ -14,6 +14,7 @@
 #include "server/model/graph.h"
 #include "server/pipeline/live_graphs.h"
 #include "server/pipeline/missing_report.h"
+#include "server/pipeline/worker_pool.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
@@ -58,6 +59,7 @@ struct StepContext {
   const Announcer& announcer;
   calib::CameraMemory& cameras;
   UndrawnReports* undrawn = nullptr;  // none: nobody asks why
+  WorkerPool* workers = nullptr;      // none: jobs, refinements and reports are done by the calling thread
 };
 
 struct StepResult {

@@ -2,6 +2,7 @@
 as a failed edge that says why, the server serves on, and nobody else waits."""
 import contextlib
 import json
+import os
 import pathlib
 import re
 import resource
@@ -127,10 +128,54 @@ def crashed_thrice(session):
         print("crashed thrice: %s" % said[:200])
 
 
+def workers_of(flow):
+    """Processes that work for the server."""
+    pids = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):  # it ended meanwhile
+            if int(stat.read_text().rsplit(") ", 1)[1].split()[1]) == flow.server.process.pid:
+                pids.append(int(stat.parent.name))
+    return pids
+
+
+def busiest(pids):
+    """The one that has used most processor time: that which is at the poison."""
+    def ticks(pid):
+        fields = pathlib.Path("/proc/%d/stat" % pid).read_text().rsplit(") ", 1)[1].split()
+        return int(fields[11]) + int(fields[12])
+    return max(pids, key=ticks)
+
+
+def worker_died(session):
+    """What ends the process that works costs that work, and not the server."""
+    with Flow() as flow:
+        first = flow.server.process.pid
+        flow.rigcal("push", session, "--no-wait")
+        for attempt in (1, 2, 3):
+            wait_for(flow, "attempt %d" % attempt, lambda: begun(flow, attempt, 1))
+            os.kill(busiest(workers_of(flow)), signal.SIGSEGV)
+            push_good(flow, "beside-%d" % attempt)
+        said = failed_edge(flow)
+        check("it failed 3 times when it calibrated left and right of robot poison" in said and "signal 11 (Segmentation fault)" in said, "the reason: " + said)
+        os.kill(busiest(workers_of(flow)), signal.SIGKILL)  # an idle one: nobody sees it
+        push_good(flow, "after")
+        check(flow.server.process.pid == first and "stopped in the middle" not in log_of(flow), "the server never died")
+        pids = workers_of(flow)
+        flow.server.process.send_signal(signal.SIGKILL)
+        flow.server.process.wait()
+        ends = time.monotonic() + 10
+        while any(pathlib.Path("/proc/%d" % pid).exists() for pid in pids):
+            check(time.monotonic() < ends, "those that work end with their server")
+        flow.server.start()
+        flow.address = flow.ready()
+        push_good(flow, "again")
+        print("worker died: %s" % said[:300])
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix="rigcal-poison-") as folder:
         session = poison_session(pathlib.Path(folder) / "poison")
-        for part in (little_memory, crashed_thrice):
+        for part in (little_memory, worker_died, crashed_thrice):
             if not sys.argv[1:] or part.__name__ in sys.argv[1:]:
                 part(session)
     print("poison: good")

@@ -1,0 +1,258 @@
+#include "server/pipeline/worker_pool.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <thread>
+
+#include "server/base/log.h"
+#include "server/base/memory_budget.h"
+#include "server/pipeline/worker.h"
+
+extern char** environ;
+
+namespace rigcal::pipeline {
+
+// Closed when it goes.
+class PipeEnd {
+ public:
+  PipeEnd() = default;
+  explicit PipeEnd(int fd) : fd_(fd) {}
+  ~PipeEnd() {
+    if (fd_ >= 0) close(fd_);
+  }
+  PipeEnd(PipeEnd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  PipeEnd& operator=(PipeEnd&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  [[nodiscard]] int get() const { return fd_; }
+
+ private:
+  int fd_ = -1;
+};
+
+namespace {
+
+using std::chrono::steady_clock;
+
+// One that holds more than this after an order is ended, and so is one that has carried out as many orders.
+constexpr std::int64_t kIdleBytesMax = 512LL << 20;
+constexpr int kOrdersMax = 500;
+
+struct Pipe {
+  PipeEnd read, write;
+};
+std::optional<Pipe> OpenPipe() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+  return Pipe{PipeEnd(ends[0]), PipeEnd(ends[1])};
+}
+
+Error CannotStart(int code) {
+  return {ErrorCode::kStorage, std::string("no process to work in could be started: ") + std::strerror(code),
+          "Look at the limits of the server: processes, handles and memory."};
+}
+
+std::string HowItEnded(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    const std::string name = "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")";
+    return signal == SIGKILL ? name + ": somebody killed it, or the system did for want of memory" : name;
+  }
+  return "exit code " + std::to_string(WEXITSTATUS(status));
+}
+
+}  // namespace
+
+class Worker {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<Worker>> Start(const WorkerPool::Options& options);
+  ~Worker() {
+    {
+      const std::lock_guard lock(saying_);
+      orders_ = PipeEnd();  // it ends with its input
+    }
+    if (pid_ > 0) {
+      if (broken_) kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    JoinAsking();
+  }
+
+  // False: it had ended before.
+  [[nodiscard]] bool Tell(const std::string& order) {
+    ++told_;
+    Say(order);
+    const auto line = NextLine(steady_clock::now() + std::chrono::minutes(5));
+    broken_ = !line || *line != "begun";
+    return !broken_;
+  }
+
+  [[nodiscard]] WorkerPool::Outcome Await(steady_clock::time_point until) {
+    while (const auto line = NextLine(until)) {
+      const std::vector<std::string> fields = WorkerFields(*line);
+      if (fields[0] == "take" && fields.size() == 3) TakeMemory(fields[1], std::stoll(fields[2]));
+      if (fields[0] == "give" && fields.size() == 2) GiveMemory(fields[1]);
+      if (fields[0] != "done" && fields[0] != "failed") continue;
+      JoinAsking();
+      if (fields[0] == "done" && fields.size() == 2) return {fields[1]};
+      if (fields[0] == "failed" && fields.size() == 4)
+        return {Fail(static_cast<ErrorCode>(std::stoi(fields[1])), fields[2], fields[3])};
+      break;
+    }
+    broken_ = true;
+    return {Fail(ErrorCode::kInternal, "the process that did the work ended: " + End(until),
+                 "Nothing, if it is done at the next attempt; else report it with the log of the server."),
+            true};
+  }
+
+  [[nodiscard]] bool IsWorthKeeping() const {
+    if (broken_ || told_ >= kOrdersMax) return false;
+    std::int64_t pages = 0, resident = 0;
+    std::ifstream("/proc/" + std::to_string(pid_) + "/statm") >> pages >> resident;
+    return resident * sysconf(_SC_PAGESIZE) <= kIdleBytesMax;
+  }
+
+ private:
+  Worker(pid_t pid, PipeEnd orders, PipeEnd answers) : pid_(pid), orders_(std::move(orders)), answers_(std::move(answers)) {}
+
+  void Say(const std::string& text) {
+    const std::string line = text + "\n";
+    const std::lock_guard lock(saying_);
+    for (std::size_t at = 0; at < line.size();) {
+      const ssize_t written = write(orders_.get(), line.data() + at, line.size() - at);
+      if (written < 0 && errno != EINTR) return;  // its answers end too
+      at += written > 0 ? static_cast<std::size_t>(written) : 0;
+    }
+  }
+
+  // Nothing when its answers end, or at that time.
+  std::optional<std::string> NextLine(steady_clock::time_point until) {
+    while (true) {
+      if (const std::size_t end = read_.find('\n'); end != std::string::npos) {
+        std::string line = read_.substr(0, end);
+        read_.erase(0, end + 1);
+        return line;
+      }
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - steady_clock::now()).count();
+      pollfd ready{answers_.get(), POLLIN, 0};
+      const int polled = poll(&ready, 1, static_cast<int>(std::max<std::int64_t>(0, std::min<std::int64_t>(left, 3'600'000))));
+      if (polled < 0 && errno != EINTR) return std::nullopt;
+      if (polled == 0 && steady_clock::now() >= until) return std::nullopt;
+      if (polled <= 0) continue;
+      char bytes[4096];
+      const ssize_t count = read(answers_.get(), bytes, sizeof bytes);
+      if (count == 0 || (count < 0 && errno != EINTR)) return std::nullopt;
+      if (count > 0) read_.append(bytes, static_cast<std::size_t>(count));
+    }
+  }
+
+  // Another thread waits, as what this process gives back must be read meanwhile.
+  void TakeMemory(const std::string& id, std::int64_t bytes) {
+    asking_.emplace_back([this, id, bytes] {
+      auto share = DecodingBudget().Take(bytes);
+      {
+        const std::lock_guard lock(taking_);
+        if (share && !broken_) shares_.emplace(id, std::move(*share));
+      }
+      Say("granted\t" + id);
+    });
+  }
+  // Who waits for memory on its behalf gets it in the end, and gives it back at once where it is not needed any more.
+  void JoinAsking() {
+    for (std::thread& thread : asking_) thread.join();
+    asking_.clear();
+  }
+  void GiveMemory(const std::string& id) {
+    const std::lock_guard lock(taking_);
+    shares_.erase(id);
+  }
+
+  std::string End(steady_clock::time_point until) {
+    const bool late = steady_clock::now() >= until;
+    kill(pid_, SIGKILL);  // nothing, where it has ended
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = -1;
+    {
+      const std::lock_guard lock(taking_);
+      shares_.clear();
+    }
+    return late ? "it took longer than work may" : HowItEnded(status);
+  }
+
+  pid_t pid_;
+  PipeEnd orders_, answers_;
+  std::string read_;
+  std::atomic<bool> broken_ = false;
+  int told_ = 0;
+  std::mutex saying_, taking_;
+  std::map<std::string, MemoryBudget::Share> shares_;  // guarded by taking_
+  std::vector<std::thread> asking_;
+};
+
+Result<std::unique_ptr<Worker>> Worker::Start(const WorkerPool::Options& options) {
+  auto orders = OpenPipe(), answers = OpenPipe();
+  if (!orders || !answers) return Fail(CannotStart(errno));
+  std::vector<char*> arguments;
+  for (const std::string& argument : options.command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, orders->read.get(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, answers->write.get(), STDOUT_FILENO);
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);  // no socket, no lock of the server's
+  pid_t pid = -1;
+  const int failed = posix_spawn(&pid, options.program.c_str(), &files, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (failed != 0) return Fail(CannotStart(failed));
+  return std::unique_ptr<Worker>(new Worker(pid, std::move(orders->write), std::move(answers->read)));
+}
+
+WorkerPool::WorkerPool(Options options) : options_(std::move(options)) {}
+WorkerPool::~WorkerPool() = default;
+
+std::unique_ptr<Worker> WorkerPool::TakeWarmest() {
+  const std::lock_guard lock(mutex_);
+  if (idle_.empty()) return nullptr;
+  std::unique_ptr<Worker> worker = std::move(idle_.back());
+  idle_.pop_back();
+  return worker;
+}
+
+void WorkerPool::Warm() {
+  auto started = Worker::Start(options_);
+  if (!started) return LogError(started.error());
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(*started));
+}
+
+WorkerPool::Outcome WorkerPool::Run(const std::string& order) {
+  std::unique_ptr<Worker> worker = TakeWarmest();
+  while (worker != nullptr && !worker->Tell(order)) worker = TakeWarmest();  // it ended while it was idle
+  if (worker == nullptr) {
+    auto started = Worker::Start(options_);
+    if (!started) return {Fail(started.error())};
+    worker = std::move(*started);
+    if (!worker->Tell(order))
+      return {Fail(ErrorCode::kStorage, "a process to work in ended at its start", "Look at the log of the server.")};
+  }
+  Outcome outcome = worker->Await(steady_clock::now() + options_.order_max);
+  if (!worker->IsWorthKeeping()) return outcome;
+  const std::lock_guard lock(mutex_);
+  idle_.push_back(std::move(worker));
+  return outcome;
+}
+
+}  // namespace rigcal::pipeline
