@@ -51,6 +51,12 @@ Error UnreachableError(const std::string& where, milliseconds waited) {
           "Start it with `rigcald --data DIR`, or run `rigcal doctor` to see what is in the way"};
 }
 
+Error BusyError(const std::string& where, milliseconds waited) {
+  return {ErrorCode::kUnreachable,
+          "the rigcald on " + where + " is there, but did not answer within " + Fixed(static_cast<double>(waited.count()) * 1e-3, 1) + " s",
+          "It is busy: ask again, or wait longer with --timeout"};
+}
+
 Connection::Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<rigcal_wire_Reply> replies,
                        wire::WaitSet waitset, OneServer one_server, std::string where)
     : requests_(std::move(requests)),
@@ -124,7 +130,7 @@ Result<std::string> Connection::Ask(const std::string& verb, const std::string& 
       if (auto error = formats::ReadError(*whole)) return Fail(std::move(*error));
       return std::move(*whole);
     }
-    if (Left(deadline).count() == 0) return Unreachable(timeout);
+    if (Left(deadline).count() == 0) return requests_.MatchedReaders() > 0 ? Fail(BusyError(where_, timeout)) : Unreachable(timeout);
   }
 }
 

@@ -48,5 +48,7 @@ class Connection {
 // "DDS domain 3, tag 'bench'": where these options, and the environment that overrides them, look for a server.
 [[nodiscard]] std::string WhereText(const wire::ParticipantOptions& options);
 [[nodiscard]] Error UnreachableError(const std::string& where, std::chrono::milliseconds waited);
+// One that was met and does not answer: not the same as none.
+[[nodiscard]] Error BusyError(const std::string& where, std::chrono::milliseconds waited);
 
 }  // namespace rigcal::client

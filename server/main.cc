@@ -80,7 +80,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
-  RIGCAL_ASSIGN(storage::Store query_store, storage::Store::Open(config.data));
+  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));  // migrated before anybody is served
   if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
   pipeline::RevisionCache revisions;
@@ -99,8 +99,8 @@ Status Serve(const Config& config, const sigset_t& signals) {
   address_promise.set_value(address);
 
   dds::Callbacks callbacks;
-  callbacks.answer = [&](const std::string& verb, const std::string& json) {
-    return pipeline::Answer(context_of(query_store), verb, json);
+  callbacks.answer = [&](storage::Store& store, const std::string& verb, const std::string& json) {
+    return pipeline::Answer(context_of(store), verb, json);
   };
   callbacks.is_order = pipeline::IsOrder;
   callbacks.carry_out = [](storage::Store& store, const std::string& verb, const std::string& json) {
@@ -113,7 +113,6 @@ Status Serve(const Config& config, const sigset_t& signals) {
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
-  RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));
   RIGCAL_TRY(pipeline::AnnounceStored(start_store, announcer));
   if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kTakenAtOnce = 16;  // the others stay with DDS, which bounds them
 constexpr std::size_t kPendingMax = 256;
-constexpr std::chrono::seconds kPendingFor{5};
-constexpr std::chrono::seconds kOrderedFor{60};  // the disk may be busy
+constexpr std::chrono::seconds kPendingFor{5};   // once it is known
+constexpr std::chrono::seconds kAnswerFor{60};  // a slow question; an order, while the disk is busy
 constexpr std::chrono::milliseconds kBusyAgain{20};
 constexpr std::chrono::milliseconds kRequestIdle{1000};
 
@@ -60,7 +60,8 @@ Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Reque
       part_(part) {}
 
 Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Callbacks& callbacks,
-                                                 Inbox& inbox, LastQuestion& asked, Part& part) {
+                                                 Inbox& inbox, LastQuestion& asked, Part& part,
+                                                 std::vector<Answerers::Place> places) {
   RIGCAL_ASSIGN(auto participant, OpenApart(options));
   RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
                                  participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
@@ -69,6 +70,15 @@ Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions&
   std::unique_ptr<Requests> made(
       new Requests(std::move(participant), std::move(reader), std::move(waitset), callbacks, inbox, asked, part));
   RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
+  const auto work = [&callbacks](storage::Store& store, const std::string& verb, const std::string& json) -> std::string {
+    try {
+      return DocumentOfAnswer(callbacks.answer(store, verb, json));
+    } catch (const std::exception& thrown) {  // no memory, say
+      return formats::WriteError({ErrorCode::kInternal, "the answer to '" + verb + "' broke off: " + thrown.what(),
+                                  "Ask again; if that does not help, report it with the log of the server."});
+    }
+  };
+  made->answerers_ = std::make_unique<Answerers>(std::move(places), work, [raw = made.get()] { raw->waitset_.Wake(); });
   return made;
 }
 
@@ -77,21 +87,20 @@ void Requests::Stop() {
   waitset_.Wake();
 }
 
-std::string Requests::DocumentOf(const Question& question) const {
+std::optional<Error> Requests::Refused(const Question& question) const {
   if (question.json.size() > limits::kRequestBytesMax)
-    return formats::WriteError({ErrorCode::kInvalidInput,
-                                "a request of " + std::to_string(question.json.size()) + " bytes",
-                                "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"});
-  if (callbacks_.is_order(question.verb))
-    return formats::WriteError({ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
-                                "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."});
-  return DocumentOfAnswer(callbacks_.answer(question.verb, question.json));
+    return Error{ErrorCode::kInvalidInput, "a request of " + std::to_string(question.json.size()) + " bytes",
+                 "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"};
+  if (callbacks_.is_order(question.verb) && question.partition != wire::kOperatorPartition)
+    return Error{ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
+                 "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."};
+  return std::nullopt;
 }
 
 // Thread W answers from its own thread; this one is woken to send it.
-std::future<std::string> Requests::GiveOrder(const Question& question) {
+std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
   auto document = std::make_shared<std::promise<std::string>>();
-  auto future = document->get_future();
+  std::shared_future<std::string> future = document->get_future().share();
   const auto answer = [this, document](Result<std::string> done) {
     document->set_value(DocumentOfAnswer(std::move(done)));
     waitset_.Wake();
@@ -104,9 +113,11 @@ std::future<std::string> Requests::GiveOrder(const Question& question) {
 
 bool Requests::Send(Pending& pending) {
   pending.busy = false;
-  if (pending.ordered.valid()) {
-    if (pending.ordered.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    pending.parts = Split(pending.ordered.get());
+  if (pending.parts.empty()) {
+    if (pending.answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    pending.parts = Split(pending.answer.get());
+    pending.expires = std::chrono::steady_clock::now() + kPendingFor;
+    asked_.Note();  // an answer may take longer than what is kept clear after a question
   }
   while (pending.next_idx < pending.parts.size()) {
     rigcal_wire_Reply part{};
@@ -126,16 +137,20 @@ bool Requests::Send(Pending& pending) {
   return true;
 }
 
+std::shared_future<std::string> Requests::AnswerTo(const Question& question) {
+  if (const auto refused = Refused(question)) {
+    std::promise<std::string> said;
+    said.set_value(formats::WriteError(*refused));
+    return said.get_future().share();
+  }
+  return callbacks_.is_order(question.verb) ? GiveOrder(question) : answerers_->Ask(question.participant, question.verb, question.json);
+}
+
 void Requests::Add(Question question) {
   Pending pending;
-  const bool is_order = question.json.size() <= limits::kRequestBytesMax && callbacks_.is_order(question.verb) &&
-                        question.partition == wire::kOperatorPartition;
-  if (is_order)
-    pending.ordered = GiveOrder(question);
-  else
-    pending.parts = Split(DocumentOf(question));
+  pending.answer = AnswerTo(question);
   pending.question = std::move(question);
-  pending.expires = std::chrono::steady_clock::now() + (is_order ? kOrderedFor : kPendingFor);
+  pending.expires = std::chrono::steady_clock::now() + kAnswerFor;
   if (Send(pending)) return;
   if (pending_.size() >= kPendingMax) pending_.pop_front();
   pending_.push_back(std::move(pending));
@@ -170,7 +185,6 @@ Status Requests::Round() {
     if (retry_.Stopped()) return {};
     asked_.Note();
     Add(std::move(question));
-    asked_.Note();  // an answer may take longer than what is kept clear after a question
     if (!pending_.empty()) SendPending();
   }
   if (!pending_.empty()) SendPending();

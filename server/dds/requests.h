@@ -1,4 +1,4 @@
-// Thread Q: takes requests and answers them, or hands an order to thread W and passes its answer on. It has a participant
+// Thread Q: takes requests, hands each to a thread that answers or, an order, to thread W, and passes answers on. It has a participant
 // of its own: its sockets and the threads of DDS behind them are not those that sessions come in by. A request may come
 // before the server's reply writer has met the reader of the client that asked; a volatile reply would be lost, so it
 // waits here until they have met, bounded in number and time.
@@ -8,10 +8,12 @@
 #include <future>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "server/base/vitals.h"
+#include "server/dds/answerers.h"
 #include "server/dds/inbox.h"
 #include "server/dds/last_question.h"
 #include "server/dds/reply_writers.h"
@@ -32,7 +34,8 @@ class Requests {
   // every failure, outlive it.
   [[nodiscard]] static Result<std::unique_ptr<Requests>> Open(const wire::ParticipantOptions& options,
                                                               const Callbacks& callbacks, Inbox& inbox,
-                                                              LastQuestion& asked, Part& part);
+                                                              LastQuestion& asked, Part& part,
+                                                              std::vector<Answerers::Place> places);
   void Run();   // until Stop
   void Stop();  // any thread
 
@@ -40,7 +43,7 @@ class Requests {
   using Time = std::chrono::steady_clock::time_point;
   struct Pending {
     Question question;
-    std::future<std::string> ordered;  // of an order: its document, once it is carried out
+    std::shared_future<std::string> answer;  // of an order once it is carried out
     std::vector<std::string> parts;
     std::size_t next_idx = 0;
     Time expires;
@@ -50,8 +53,9 @@ class Requests {
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
            const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part);
 
-  [[nodiscard]] std::string DocumentOf(const Question& question) const;
-  [[nodiscard]] std::future<std::string> GiveOrder(const Question& question);
+  [[nodiscard]] std::optional<Error> Refused(const Question& question) const;
+  [[nodiscard]] std::shared_future<std::string> GiveOrder(const Question& question);
+  [[nodiscard]] std::shared_future<std::string> AnswerTo(const Question& question);
   void Add(Question question);
   // True if there is nothing left to do for it.
   [[nodiscard]] bool Send(Pending& pending);
@@ -70,6 +74,7 @@ class Requests {
   std::list<Pending> pending_;
   Part& part_;
   Retry retry_;
+  std::unique_ptr<Answerers> answerers_;  // ends before what it wakes
 };
 
 }  // namespace rigcal::dds

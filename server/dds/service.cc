@@ -16,6 +16,8 @@ constexpr std::size_t kInboxItemsMax = 200'000;
 constexpr std::chrono::seconds kTurnWithin{
     30};  // each goes round once per second at least, unless the disk holds it up
 
+constexpr int kAnsweringThreads = 4;
+
 std::uint64_t NewIncarnation() {
   std::random_device random;
   return (std::uint64_t{random()} << 32) | random();
@@ -47,8 +49,13 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
   for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
   Vitals& vitals = options.vitals == nullptr ? alone : *options.vitals;
+  std::vector<Answerers::Place> places;
+  for (int i = 1; i <= kAnsweringThreads; ++i) {
+    RIGCAL_ASSIGN(storage::Store own, storage::Store::Open(options.folder));
+    places.push_back({std::move(own), &vitals.Expect("answers " + std::to_string(i), kTurnWithin)});
+  }
   RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
-                                         vitals.Expect("questions", kTurnWithin)));
+                                         vitals.Expect("questions", kTurnWithin), std::move(places)));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
   recorder =

@@ -1,6 +1,7 @@
 // The whole DDS edge of rigcald: readers, recorder, requests, writers. Owns its threads:
 //   D takes everything at once (a reader that stops taking stalls every topic of the process) and never waits;
-//   W records: files, one transaction per batch, then receipts; carries out orders;   Q answers requests.
+//   W records: files, one transaction per batch, then receipts; carries out orders;   Q takes requests and sends the
+//   answers that others work out.
 #pragma once
 
 #include <filesystem>
@@ -26,8 +27,8 @@ struct Options {
 };
 
 struct Callbacks {
-  // Answers one request with the /api/v1 document of (verb, json). Called from thread Q.
-  std::function<Result<std::string>(const std::string& verb, const std::string& json)> answer;
+  // Answers one request with the /api/v1 document of (verb, json). Called from several threads, each with a store of its own.
+  std::function<Result<std::string>(storage::Store& store, const std::string& verb, const std::string& json)> answer;
   // Verbs that change something. They are asked in the partition of people only, and carried out by thread W alone, on
   // its own connection to the store; what `carry_out` returns is durable.
   std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };

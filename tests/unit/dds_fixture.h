@@ -236,7 +236,7 @@ class ServiceTest : public testing::Test {
   }
   void StartServer() {
     Callbacks callbacks;
-    callbacks.answer = [this](const std::string& verb, const std::string& json) { return answer_(verb, json); };
+    callbacks.answer = [this](storage::Store&, const std::string& verb, const std::string& json) { return answer_(verb, json); };
     callbacks.is_order = [](const std::string& verb) { return verb == "restore"; };
     callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json) {
       return carry_out_(verb, json);

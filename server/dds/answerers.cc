@@ -1,0 +1,77 @@
+#include "server/dds/answerers.h"
+
+#include <algorithm>
+
+#include "server/base/thread_rank.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr int kOfOneClientMax = 2;
+
+}  // namespace
+
+Answerers::Answerers(std::vector<Place> places, Work work, std::function<void()> done)
+    : places_(std::move(places)), work_(std::move(work)), done_(std::move(done)) {
+  for (Place& place : places_) threads_.emplace_back([this, &place] { Run(place); });
+}
+
+Answerers::~Answerers() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+std::shared_future<Answerers::Document> Answerers::Ask(std::uint64_t client, const std::string& verb, const std::string& json) {
+  const Key key{client, verb, json};
+  std::shared_future<Document> document;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = open_.find(key); found != open_.end()) return found->second->document;
+    auto task = std::make_shared<Task>();
+    document = task->document = task->promise.get_future().share();
+    open_.emplace(key, std::move(task));
+    waiting_.push_back(key);
+  }
+  changed_.notify_one();
+  return document;
+}
+
+std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
+  return std::find_if(waiting_.begin(), waiting_.end(), [&](const Key& key) {
+    const auto busy = of_client_.find(std::get<0>(key));
+    return busy == of_client_.end() || busy->second < kOfOneClientMax;
+  });
+}
+
+void Answerers::Run(Place& place) {
+  SetThreadRank(ThreadRank::kAnswers);
+  std::unique_lock lock(mutex_);
+  while (true) {
+    if (place.part != nullptr) place.part->Rest();
+    changed_.wait(lock, [&] { return stopping_ || NextAllowed() != waiting_.end(); });
+    if (stopping_) return;
+    const auto next = NextAllowed();
+    const Key key = *next;
+    waiting_.erase(next);
+    const std::shared_ptr<Task> task = open_.at(key);
+    const std::uint64_t client = std::get<0>(key);
+    ++of_client_[client];
+    lock.unlock();
+    if (place.part != nullptr) place.part->Turn();
+    Document document = work_(place.store, std::get<1>(key), std::get<2>(key));
+    lock.lock();
+    open_.erase(key);  // from here on it is another question
+    if (--of_client_[client] == 0) of_client_.erase(client);
+    lock.unlock();
+    task->promise.set_value(std::move(document));
+    changed_.notify_all();
+    done_();
+    lock.lock();
+  }
+}
+
+}  // namespace rigcal::dds

@@ -1,0 +1,60 @@
+// The threads that work answers out, each with a store of its own, so that a slow question holds up no other. One client has at
+// most two at a time; the same question of the same client, asked again while it is being answered, is answered by that.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "server/base/vitals.h"
+#include "storage/store.h"
+
+namespace rigcal::dds {
+
+class Answerers {
+ public:
+  using Document = std::string;
+  using Work = std::function<Document(storage::Store& store, const std::string& verb, const std::string& json)>;
+  // A thread per store, told of by the part beside it. `done` is called from these threads after each answer; must not block.
+  struct Place {
+    storage::Store store;
+    Part* part = nullptr;
+  };
+  Answerers(std::vector<Place> places, Work work, std::function<void()> done);
+  ~Answerers();  // what is being answered is finished; what waits gets no answer
+  Answerers(const Answerers&) = delete;
+  Answerers& operator=(const Answerers&) = delete;
+
+  // `client`: any number that is alike for all questions of one. Never blocks.
+  [[nodiscard]] std::shared_future<Document> Ask(std::uint64_t client, const std::string& verb, const std::string& json);
+
+ private:
+  using Key = std::tuple<std::uint64_t, std::string, std::string>;
+  struct Task {
+    std::promise<Document> promise;
+    std::shared_future<Document> document;
+  };
+  void Run(Place& place);
+  [[nodiscard]] std::deque<Key>::iterator NextAllowed();  // call with mutex_
+
+  std::vector<Place> places_;
+  const Work work_;
+  const std::function<void()> done_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;                     // guarded by mutex_, as are the next three
+  std::map<Key, std::shared_ptr<Task>> open_;
+  std::deque<Key> waiting_;                   // of `open_`, first come, first served
+  std::map<std::uint64_t, int> of_client_;    // being answered
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace rigcal::dds
