@@ -1,8 +1,6 @@
 """A session of pictures that take more memory than the server has, beside another robot's work and questions."""
-import contextlib
 import json
 import pathlib
-import resource
 import statistics
 import sys
 import time
@@ -11,19 +9,8 @@ from .measure import at_most, equal, info, skip
 from .server import ANSWERED, Server
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"))
-ADDRESS_SPACE_BYTES, PICTURES, RUNS, QUESTIONS = 2_000_000 << 10, 12, 5, 400
+PICTURES, RUNS, QUESTIONS = 12, 5, 400
 PATIENCE_S = 240
-
-
-@contextlib.contextmanager
-def address_space(limit_bytes):
-    """What is started meanwhile has no more of it."""
-    before = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (limit_bytes, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def p99_ms(context, server):
@@ -40,7 +27,7 @@ def edges(server, robot):
 def run(context):
     from bad_inputs import GOOD, write
     from bad_session import YAML
-    from poison_test import black_pngs
+    from poison_test import ADDRESS_SPACE_BYTES, address_space, black_pngs
     path = context.data / "posegraph_synthetic" / "rig_12_59.g2o"
     if not path.exists():
         yield skip("rig_12_59", "no data")

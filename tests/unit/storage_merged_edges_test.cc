@@ -1,6 +1,10 @@
 // Merged edges come back bit for bit, and say which edges are in none.
-#include <algorithm>
+#include <SQLiteCpp/SQLiteCpp.h>
 
+#include <algorithm>
+#include <filesystem>
+
+#include "server/base/durable_file.h"
 #include "storage/merged_edges.h"
 #include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
@@ -133,6 +137,49 @@ TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
   Merge(MakeMerged(0.1), {ids_[0]}, {});
   EXPECT_TRUE(LoadMergedEdges(store_, RobotId("other"), 0)->empty());
   EXPECT_TRUE(LoadUnmergedEdges(store_, RobotId("other"), true)->empty());
+}
+
+// Version 14, which knew no sessions in merged edges and found repeats, remounts and listed sensors in the manifests.
+std::string StoreOfVersion14() {
+  std::string sql;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (std::size_t i = 0; i < 14; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  const std::string digest(64, 'd'), other(64, 'e'), matrix = "zeroblob(288)";
+  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 14; INSERT INTO robot VALUES ('r', 1);"
+         "INSERT INTO revision VALUES ('r', 7, 1, 2, 'pass', '', '', '', '{}');"
+         "INSERT INTO merged_edge VALUES ('r', 7, 'a', 'b', 'given', 5, 77, 1.5, 0, 0, 0, 0, 0, 1, 'given', 0, 1, " + matrix + ", " + matrix + ", " + matrix + ");"
+         "INSERT INTO merged_edge_constant VALUES ('r', 7, 'a', 'b', 'given', 'board', zeroblob(48));";
+  const std::string listed = "\"sensors\":[{\"id\":\"left\"},{\"id\":\"right\"}]";
+  sql += "INSERT INTO session VALUES (1, 's1', 'r', 10, 1, '', 1, 5, '{" + listed + "}'),"
+         "(2, 's2', 'r', 20, 2, '', 2, 5, '{\"remounted\":[\"left\"]," + listed + "}'), (3, 's3', 'r', 30, 3, '', 1, 5, '{\"sensors\":[{\"id\":\"never\"}]}');"
+         "INSERT INTO payload VALUES (1, 0, 'x', '" + digest + "', 5), (2, 0, 'x', '" + digest + "', 5), (2, 1, 'y', '" + other + "', 5), (3, 0, 'z', '" + other + "', 5);"
+         "INSERT INTO session_closed VALUES (1, 5), (2, 6);"
+         "INSERT INTO standing (robot_id, at_ns, how, session_number, who, reason) VALUES ('r', 5, 'pushed', 1, 'r', ''), ('r', 6, 'pushed', 2, 'r', '');";
+  return sql;
+}
+
+TEST(MergedEdgesMigration, KeepsWhatVersion14Knew) {
+  const TempFolder folder;
+  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(StoreOfVersion14()); }
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  const RobotId robot("r");
+  const auto merged = LoadMergedEdges(*store, robot);
+  ASSERT_TRUE(merged && merged->size() == 1);
+  EXPECT_FALSE(merged->front().of_sessions);
+  EXPECT_EQ(merged->front().count, 5);
+  EXPECT_EQ(merged->front().T_a_b.p_m.x(), 1.5);
+  EXPECT_EQ(merged->front().constants.at("board").size(), 1u);
+  const auto counts = LoadWhatCounts(*store, robot);
+  ASSERT_TRUE(counts);
+  EXPECT_EQ(counts->superseded.at(SessionId("s1")).by, SessionId("s2"));
+  EXPECT_FALSE(counts->superseded.contains(SessionId("s2")));  // by one that did not come whole
+  ASSERT_EQ(counts->remounts.size(), 1u);
+  EXPECT_EQ(counts->remounts[0].session, SessionId("s2"));
+  EXPECT_EQ(*LoadListedSensors(*store, robot), (std::vector<SensorId>{SensorId("left"), SensorId("right")}));
+  EXPECT_FALSE(*IsMergeOutdated(*store, robot, *counts));
 }
 
 }  // namespace
