@@ -125,8 +125,9 @@ Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   state.looked_at_revision = newest;
   state.looked_for = state.place.edges.size();
   const Document revision = state.result.show["document"];
-  const bool of_edges = state.place.session.empty();  // a session is merged as a whole
-  const bool merged = HoldsMerged(revision) && (of_edges || !HoldsAny(revision, state.place.edges));
+  // A session that is older than those that stand by themselves is merged as a whole, and what failed in it does not stand there.
+  const bool of_edges = state.place.session.empty();
+  const bool merged = of_edges ? HoldsMerged(revision) : !HoldsAny(revision, state.place.edges);
   const bool all_revised = merged && !state.result.show["calculating"].Flag();
   state.result.has_revision = state.finished =
       (all_revised || HoldsAll(revision, state.place.edges)) &&

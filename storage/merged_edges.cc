@@ -108,11 +108,21 @@ std::string KeysOf(const Map& map) {
   return ListOf(keys);
 }
 
+// Of sessions, whether an edge is in no window.
+bool AnyOfSessionsOutside(Store& store, const RobotId& robot) {
+  return Query(store,
+               "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
+               "e.session_id IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+               "w.edge_number = c.edge_number) LIMIT 1")
+      .Bind(robot)
+      .Step();
+}
+
 // Of what people said, what concerns edges that are in no window. Empty where nothing does.
-std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts, bool any_of_sessions) {
+std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts) {
   std::string basis = OutsideOf(store, robot, "session_id", KeysOf(counts.superseded)) +
                       OutsideOf(store, robot, "edge_id", KeysOf(counts.retired));
-  if (any_of_sessions)
+  if (!counts.remounts.empty() && AnyOfSessionsOutside(store, robot))
     for (const Remount& remount : counts.remounts) basis += remount.session.str() + " " + remount.sensor.str() + "\n";
   return basis.empty() ? "" : Sha256Of(basis).str();
 }
@@ -120,10 +130,6 @@ std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts
 std::string StoredBasis(Store& store, const RobotId& robot) {
   Query query(store, "SELECT digest FROM merge_basis WHERE robot_id = ? ORDER BY revision_number DESC LIMIT 1");
   return query.Bind(robot).Step() ? query.Text(0) : std::string();
-}
-
-bool AnyOfSessions(Store& store, const RobotId& robot) {
-  return Query(store, "SELECT 1 FROM merge_state_scores WHERE robot_id = ? LIMIT 1").Bind(robot).Step();
 }
 
 void PutBack(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
@@ -172,7 +178,7 @@ Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
 
 Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts) {
   return Load<bool>(store, Subject(robot), [&]() -> Result<bool> {
-    return BasisOf(store, robot, counts, AnyOfSessions(store, robot)) != StoredBasis(store, robot);
+    return BasisOf(store, robot, counts) != StoredBasis(store, robot);
   });
 }
 
@@ -182,7 +188,7 @@ Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& 
     ReplaceScores(store, key.robot, step.merged);
     if (!step.back.empty()) PutBack(store, key.robot, step.back);
     if (!step.taken.empty()) TakeOut(store, key.robot, step.taken);
-    const std::string basis = BasisOf(store, key.robot, counts, AnyOfSessions(store, key.robot));
+    const std::string basis = BasisOf(store, key.robot, counts);
     if (basis != StoredBasis(store, key.robot))
       Query(store, "INSERT INTO merge_basis VALUES (?, ?, ?)").Bind(key.robot, key.number, basis).Run();
     return {};

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "server/model/merged_edge.h"
 #include "server/fleet/bridges.h"
 #include "server/fleet/wording.h"
 #include "server/math/statistics.h"
@@ -38,7 +39,10 @@ bool CostIsChiSquare(const std::vector<Edge>& edges) {
 std::string CureOfLoop(const CycleResidual& loop, const std::vector<Edge>& edges) {
   std::set<SessionId> sessions;
   for (const Edge& edge : edges)
-    if (std::find(loop.edges.begin(), loop.edges.end(), edge.id) != loop.edges.end()) sessions.insert(edge.session);
+    if (std::find(loop.edges.begin(), loop.edges.end(), edge.id) != loop.edges.end()) {
+      sessions.insert(edge.session);
+      if (IsMergedOfSessions(edge)) sessions.insert(kMergedHistory);  // many
+    }
   const std::string repeat = "Repeat the sessions of its edges, the one first that the failing loops have in common";
   if (sessions.size() < 2) return repeat;
   return repeat + "; if a sensor was moved between them, push the later one again with --remounted and its name";

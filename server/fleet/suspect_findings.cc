@@ -46,7 +46,8 @@ Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
 std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
   std::set<SessionId> sessions;
   for (const EdgeId& id : ids)
-    if (const auto edge = by_id.find(id); edge != by_id.end()) sessions.insert(edge->second->session);
+    if (const auto edge = by_id.find(id); edge != by_id.end())
+      sessions.insert(IsMergedOfSessions(*edge->second) ? kMergedHistory : edge->second->session);
   return sessions;
 }
 
@@ -73,10 +74,13 @@ std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, con
   const std::set<SessionId> sessions = SessionsOf(ids, by_id);
   if (sessions.empty() || sessions.contains(SessionId())) return "edges " + List(NamesOf(ids, by_id));
   std::vector<std::string> names;
-  for (const SessionId& session : sessions) names.push_back(NameOfSession(session, captured_at));
+  for (const SessionId& session : sessions)
+    if (session != kMergedHistory) names.push_back(NameOfSession(session, captured_at));
   std::sort(names.begin(), names.end());
-  return std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ") +
-         (names.size() == 1 ? "session " : "sessions ") + List(names);
+  const std::string edges = std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ");
+  const std::string earlier = sessions.contains(kMergedHistory) ? "the sessions before the newest ones" : "";
+  if (names.empty()) return edges + earlier;
+  return edges + (earlier.empty() ? "" : earlier + " and of ") + (names.size() == 1 ? "session " : "sessions ") + List(names);
 }
 
 std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vector<Edge>& edges) {
@@ -103,8 +107,16 @@ std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates
 GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                                   const std::vector<SessionEstimate>& estimates) {
   std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
+  const auto is_fused = [&](const SensorId& sensor) {
+    const std::vector<SensorId>& fused = solution.fused.sensors;
+    return std::find(fused.begin(), fused.end(), sensor) != fused.end() ||
+           std::any_of(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) {
+             return pose.sensor == sensor && pose.known && pose.covariance.isZero(0.0);  // the reference
+           });
+  };
   for (const Edge& edge : edges)
-    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty()) refined.insert(edge.id);
+    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) && is_fused(edge.frame_b))
+      refined.insert(edge.id);
   if (refined.empty()) return solution;
   const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
   const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {

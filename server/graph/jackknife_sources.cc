@@ -7,6 +7,7 @@
 
 #include "server/math/covariance.h"
 #include "server/math/jackknife.h"
+#include "server/model/merged_edge.h"
 
 namespace rigcal::graph {
 namespace {
@@ -49,6 +50,13 @@ ErrorSource SessionSource(const JackknifeWork& work, const std::vector<std::size
     source.parts.push_back({k, work.jacobians[k].D * d});
   }
   return source;
+}
+
+// Its columns are sums over many sessions, not blocks: as sure as the pair that most sessions saw.
+void TakeAsHistory(const JackknifeWork& work, const std::vector<std::size_t>& members, ErrorSource& source) {
+  source.of_blocks = false;
+  source.dof = 0;
+  for (const std::size_t k : members) source.dof = std::max(source.dof, FindBlocks(work.blocks, work.EdgeOf(k).id)->dof);
 }
 
 // The given constants of one name, which every edge that knows them errs by at once: it is the same board, lens or
@@ -126,7 +134,10 @@ std::vector<ErrorSource> SharedSourcesOf(const JackknifeWork& work) {
     AddGiven(work, k, *blocks, given);
   }
   std::vector<ErrorSource> sources;
-  for (const auto& [key, members] : sessions) sources.push_back(SessionSource(work, members));
+  for (const auto& [key, members] : sessions) {
+    sources.push_back(SessionSource(work, members));
+    if (key == kMergedHistory.str()) TakeAsHistory(work, members, sources.back());
+  }
   for (auto& [key, source] : given) {
     for (ErrorPart& part : source.parts) Widen(source.column_count, part);
     sources.push_back(std::move(source));

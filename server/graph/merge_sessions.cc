@@ -6,6 +6,7 @@
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/merge_edges.h"
 #include "server/graph/merged_edge.h"
+#include "server/graph/session_fusion.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::graph {
@@ -45,22 +46,73 @@ std::vector<SessionEdges> OldestFirst(const std::vector<Edge>& edges, const std:
   return sessions;
 }
 
-// How many of `sessions` come before the newest `kept` that have a good edge.
-std::size_t CountOlder(const std::vector<SessionEdges>& sessions, std::size_t kept) {
-  std::size_t older = sessions.size();
-  for (std::size_t counting = 0; older > 0 && counting < kept;)
-    if (!sessions[--older].good.empty()) ++counting;
+// Those that come before the newest `kept` with a good edge, and those without one before the newest `kept`; the oldest first.
+std::vector<const SessionEdges*> OlderOf(const std::vector<SessionEdges>& sessions, std::size_t kept) {
+  std::vector<const SessionEdges*> older;
+  std::size_t newer = 0, newer_good = 0;
+  for (auto session = sessions.rbegin(); session != sessions.rend(); ++session) {
+    if (newer_good >= kept || (session->good.empty() && newer >= kept)) older.push_back(&*session);
+    ++newer;
+    if (!session->good.empty()) ++newer_good;
+  }
+  std::reverse(older.begin(), older.end());
   return older;
 }
 
+// Good edges of each pair and method, as they are now.
+using EdgesOfPairs = std::map<PairKey, std::vector<const Edge*>>;
+EdgesOfPairs ByPair(const std::vector<SessionEdges>& sessions) {
+  EdgesOfPairs pairs;
+  for (const SessionEdges& session : sessions)
+    for (const Edge* edge : session.good) pairs[PairOf(*edge)].push_back(edge);
+  return pairs;
+}
+
+// How the other edges of its pair scatter from visit to visit beyond their own uncertainty (BetweenVisits). Without the edge
+// itself: one that is wrong must not excuse itself. Edges that leave a direction open tell nothing of it and are left out.
+Matrix6d ScatterOfOthers(const Edge& edge, const std::vector<const Edge*>& of_pair) {
+  Matrix6d Omega = Matrix6d::Zero();
+  Vector6d pull = Vector6d::Zero();
+  std::vector<const Edge*> others;
+  for (const Edge* other : of_pair)
+    if (other != &edge && other->uncertainty.rank == 6) others.push_back(other);
+  if (others.size() < 3) return Matrix6d::Zero();
+  const Se3& T = others.front()->T_a_b;
+  for (const Edge* other : others) {
+    Omega += other->uncertainty.Omega;
+    pull += other->uncertainty.Omega * (T.Inverse() * other->T_a_b).Log();
+  }
+  const Se3 mean = T * Se3::Exp(Observable(Omega).covariance * pull);
+  std::vector<VisitResidual> visits;
+  for (const Edge* other : others)
+    visits.push_back({(mean.Inverse() * other->T_a_b).Log(), Observable(other->uncertainty.Omega).covariance});
+  return BetweenVisits(visits).Matrix();
+}
+
 // Where nothing was merged yet of the pair, half of its edges must agree with the one that merging begins with.
-bool Fits(const Edge& edge, const MergedPairs& merged, const std::vector<SessionEdges>& window) {
-  if (const auto found = merged.find(PairOf(edge)); found != merged.end()) return Agree(found->second, edge);
-  std::size_t all = 0, agreeing = 0;
-  for (const SessionEdges& session : window)
-    for (const Edge* other : session.good)
-      if (PairOf(*other) == PairOf(edge)) ++all, agreeing += Agree(edge, *other) ? 1 : 0;
-  return 2 * agreeing >= all + 1;
+bool Fits(const Edge& edge, const MergedPairs& merged, const EdgesOfPairs& window) {
+  const std::vector<const Edge*>& of_pair = window.at(PairOf(edge));
+  const Matrix6d between = ScatterOfOthers(edge, of_pair);
+  if (const auto found = merged.find(PairOf(edge)); found != merged.end()) return Agree(found->second, edge, between);
+  std::size_t agreeing = 0;
+  for (const Edge* other : of_pair) agreeing += Agree(edge, *other, between) ? 1 : 0;
+  return 2 * agreeing >= of_pair.size() + 1;
+}
+
+// What of a pair that no edge tells any more is said by its newest that failed or is past: that stays.
+using Frames = std::pair<SensorId, SensorId>;
+std::set<EdgeId> LastWordsOf(const std::vector<SessionEdges>& sessions, const MergedPairs& merged) {
+  std::set<Frames> told;
+  for (const auto& [pair, one] : merged) told.insert({one.frame_a, one.frame_b});
+  for (const SessionEdges& session : sessions)
+    for (const Edge* edge : session.good) told.insert({edge->frame_a, edge->frame_b});
+  std::map<Frames, EdgeId> last;
+  for (const SessionEdges& session : sessions)
+    for (const Edge* edge : session.rest)
+      if (!told.contains({edge->frame_a, edge->frame_b})) last[{edge->frame_a, edge->frame_b}] = edge->id;
+  std::set<EdgeId> ids;
+  for (const auto& [frames, id] : last) ids.insert(id);
+  return ids;
 }
 
 Index ColumnsOf(const MergedPairs& merged) {
@@ -90,7 +142,19 @@ MatrixXd ScoresOf(const Edge& edge, const BlocksByEdge& blocks, const std::vecto
   return edge.uncertainty.Omega * CentredBlocks(own->second.blocks, ids);
 }
 
-void AddSession(const SessionEdges& session, MergedPairs& merged) {
+// Beyond so many pairs what they have in common is let go: it would be a matrix of as many rows and columns, times six.
+constexpr std::size_t kPairsTogetherMax = 200;
+
+void AddApart(const SessionEdges& session, MergedPairs& merged) {
+  for (auto& [pair, one] : merged) one.scores.resize(Eigen::NoChange, 0);  // `scatter` has each pair's own
+  for (const Edge* edge : session.good) {
+    MergedEdge& one = merged[PairOf(*edge)];
+    one.of_sessions = true;
+    Add(*edge, session.captured_at, one);
+  }
+}
+
+void AddTogether(const SessionEdges& session, MergedPairs& merged) {
   std::vector<Edge> good;
   for (const Edge* edge : session.good) good.push_back(*edge);
   const BlocksByEdge blocks = BlocksOf(good);
@@ -114,6 +178,8 @@ void AddSession(const SessionEdges& session, MergedPairs& merged) {
 // As few columns as pairs have directions, with the same products among all pairs: R of S^T = Q R, as S S^T = R^T R.
 void Compress(MergedPairs& merged) {
   const Index rows = 6 * static_cast<Index>(merged.size()), columns = ColumnsOf(merged);
+  if (columns == 0) return;
+  for (auto& [pair, one] : merged) one.scatter = one.scores * one.scores.transpose();
   if (columns > rows) {
     MatrixXd transposed(columns, rows);
     Index at = 0;
@@ -123,7 +189,6 @@ void Compress(MergedPairs& merged) {
     at = 0;
     for (auto& [pair, one] : merged) one.scores = R.middleCols<6>(at).transpose(), at += 6;
   }
-  for (auto& [pair, one] : merged) one.scatter = one.scores * one.scores.transpose();
 }
 
 void Take(const std::vector<const Edge*>& edges, std::vector<EdgeId>& taken) {
@@ -138,16 +203,22 @@ Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vecto
   for (const MergedEdge& one : before)
     if (one.of_sessions) merged.emplace(PairKey{one.frame_a, one.frame_b, one.method}, one);
   const std::vector<SessionEdges> sessions = OldestFirst(edges, measured_at);
-  const std::size_t older = CountOlder(sessions, kept);
+  const EdgesOfPairs window = ByPair(sessions);
+  const std::set<EdgeId> last_words = LastWordsOf(sessions, merged);
   Merge result;
-  for (std::size_t i = 0; i < older; ++i) {
-    const SessionEdges& session = sessions[i];
-    if (!std::all_of(session.good.begin(), session.good.end(), [&](const Edge* edge) { return Fits(*edge, merged, sessions); }))
-      continue;
-    if (!session.good.empty()) AddSession(session, merged), Compress(merged);
-    Take(session.good, result.taken);
-    Take(session.rest, result.taken);
+  for (const SessionEdges* session : OlderOf(sessions, kept)) {
+    const auto fits = [&](const Edge* edge) { return Fits(*edge, merged, window); };
+    if (!std::all_of(session->good.begin(), session->good.end(), fits)) continue;
+    if (merged.size() > kPairsTogetherMax) {
+      AddApart(*session, merged);
+    } else if (!session->good.empty()) {
+      AddTogether(*session, merged);
+      Compress(merged);
+    }
+    Take(session->good, result.taken);
+    Take(session->rest, result.taken);
   }
+  std::erase_if(result.taken, [&](const EdgeId& id) { return last_words.contains(id); });
   for (auto& [pair, one] : merged) result.merged.push_back(std::move(one));
   return result;
 }

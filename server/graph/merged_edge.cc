@@ -64,9 +64,14 @@ std::vector<BlockVector> BlocksThatScatter(const Matrix6d& C, const std::string&
   return blocks;
 }
 
-// One block vector more than there are columns, whose jackknife is columns columns^T; the same blocks for all edges with as
-// many. By Helmert's rows, which are orthonormal and add up to zero.
-std::vector<BlockVector> BlocksOfColumns(const Eigen::MatrixXd& columns) {
+// One block vector more than there are columns, and as many as count at least, whose jackknife is columns columns^T; the same
+// blocks for all edges with as many columns. By Helmert's rows, which are orthonormal and add up to zero.
+std::vector<BlockVector> BlocksOfColumns(Eigen::MatrixXd columns) {
+  const Eigen::Index given = columns.cols(), least = static_cast<Eigen::Index>(kJackknifeBlocksMin) - 1;
+  if (given < least) {
+    columns.conservativeResize(Eigen::NoChange, least);
+    columns.rightCols(least - given).setZero();
+  }
   const Eigen::Index m = columns.cols() + 1;
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(6, m);
   Vector6d later = Vector6d::Zero();  // sum over k > j of column k over sqrt(k (k + 1)): what block j has of them
@@ -104,13 +109,26 @@ std::vector<Contribution> ContributionsOf(const MergedEdge& merged) {
   return contributions;
 }
 
+// Information of an edge of which the place scatters besides; none along what it does not see.
+Matrix6d Widened(const Uncertainty& uncertainty, const Matrix6d& between) {
+  if (between.isZero(0.0)) return uncertainty.Omega;
+  const Matrix6d C = Observable(uncertainty.Omega).covariance;
+  const Matrix6d seen = Observable(uncertainty.Omega).covariance * uncertainty.Omega;  // a projector
+  return Observable(C + seen * between * seen.transpose()).covariance;
+}
+
 }  // namespace
 
-bool Agree(const Edge& x, const Edge& y) { return Agree(x.T_a_b, x.uncertainty.Omega, y.T_a_b, y.uncertainty.Omega); }
+bool Agree(const Edge& x, const Edge& y, const Matrix6d& between) {
+  return Agree(x.T_a_b, Widened(x.uncertainty, between), y.T_a_b, Widened(y.uncertainty, between));
+}
 
-bool Agree(const MergedEdge& merged, const Edge& edge) {
-  const Matrix6d by_blocks = Observable(AsPose(merged.Omega, merged.scatter)).covariance;
-  return Agree(merged.T_a_b, by_blocks, edge.T_a_b, edge.uncertainty.Omega);
+bool Agree(const MergedEdge& merged, const Edge& edge, const Matrix6d& between) {
+  Matrix6d scatter = merged.scatter + merged.given;
+  for (const auto& [name, scores] : merged.constants)
+    for (const Vector6d& score : scores) scatter += score * score.transpose();
+  const Matrix6d told = Observable(AsPose(merged.Omega, scatter)).covariance;
+  return Agree(merged.T_a_b, told, edge.T_a_b, Widened(edge.uncertainty, between));
 }
 
 void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged) {
@@ -130,7 +148,7 @@ void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged) {
   AddError(edge, merged);
 }
 
-Edge EdgeOf(const MergedEdge& merged, const RobotId& robot) {
+Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks) {
   Edge edge;
   edge.robot = robot;
   edge.frame_a = merged.frame_a, edge.frame_b = merged.frame_b;
@@ -138,12 +156,10 @@ Edge EdgeOf(const MergedEdge& merged, const RobotId& robot) {
   edge.state = EdgeState::kGood;
   edge.T_a_b = merged.T_a_b;
   edge.uncertainty = FromInformation(merged.Omega, merged.source, merged.dof);
-  if (merged.by_blocks) {
-    edge.uncertainty.blocks = MergedBlocksOf(merged);
-    edge.uncertainty.contributions = ContributionsOf(merged);
-  }
   edge.figures.emplace(merged.of_sessions ? kMergedSessions : kMergedEdges, merged.count);
   edge.id = PushedEdgeId(robot, ContentDigest(edge), static_cast<std::uint64_t>(merged.count));
+  if (merged.by_blocks) edge.uncertainty.contributions = ContributionsOf(merged);
+  if (merged.by_blocks && blocks) edge.uncertainty.blocks = MergedBlocksOf(merged);
   return edge;
 }
 

@@ -5,15 +5,16 @@
 
 namespace rigcal::graph {
 
-// Two edges of one pair, along the directions that both see: false at odds below 1e-6 by chance.
-[[nodiscard]] bool Agree(const Edge& x, const Edge& y);
-[[nodiscard]] bool Agree(const MergedEdge& merged, const Edge& edge);
+// Two edges of one pair, along the directions that both see: false at odds below 1e-6 by chance. `between`: covariance by which
+// the pose of an edge scatters from visit to visit, beyond its own uncertainty (right tangent at b).
+[[nodiscard]] bool Agree(const Edge& x, const Edge& y, const Matrix6d& between = Matrix6d::Zero());
+[[nodiscard]] bool Agree(const MergedEdge& merged, const Edge& edge, const Matrix6d& between = Matrix6d::Zero());
 
 // Adds a good edge of the pair: pose, information, given constants and the scatter of its own score.
 void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged);
 
-// As an edge of the graph: blocks that scatter as theirs do, contributions of the given constants. Its id is that of its
-// content.
-[[nodiscard]] Edge EdgeOf(const MergedEdge& merged, const RobotId& robot);
+// As an edge of the graph: blocks that scatter as theirs do, unless they are not asked for, and contributions of the given
+// constants. Its id is that of its pose, information and count.
+[[nodiscard]] Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks = true);
 
 }  // namespace rigcal::graph

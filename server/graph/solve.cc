@@ -212,9 +212,6 @@ std::string_view WithoutLeadingZeros(std::string_view digits) {
   return first == std::string_view::npos ? std::string_view() : digits.substr(first);
 }
 
-// What merged edges of sessions share: no session has this id.
-const SessionId kMergedHistory("merged");
-
 GraphEdge MeasurementOf(const Edge& edge) {
   return {edge.id,
           edge.frame_a,

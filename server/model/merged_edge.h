@@ -35,6 +35,8 @@ struct MergedEdge {
 
 // Figure of an edge that stands for as many that were pushed as finished results, or one of each of so many sessions.
 inline constexpr const char *kMergedEdges = "merged_edges", *kMergedSessions = "merged_sessions";
+// What merged edges of sessions have in the place of a session: no session has this id.
+inline const SessionId kMergedHistory("merged");
 [[nodiscard]] inline bool IsMergedOfSessions(const Edge& edge) { return edge.figures.contains(kMergedSessions); }
 [[nodiscard]] inline bool IsMerged(const Edge& edge) { return edge.figures.contains(kMergedEdges) || IsMergedOfSessions(edge); }
 

@@ -14,6 +14,7 @@
 #include "server/model/past.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
+#include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
@@ -74,23 +75,14 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   return formats::WriteSession(row, manifest.value_or(Manifest{}), edges);
 }
 
-// What was good where it was measured and does not count any more is so in the revision only.
-void TakePast(const formats::RevisionInput& revision, std::vector<Edge>& edges) {
-  std::map<EdgeId, const Edge*> past;
-  for (const Edge& edge : revision.edges)
-    if (IsPast(edge)) past.emplace(edge.id, &edge);
-  for (Edge& edge : edges)
-    if (const auto found = past.find(edge.id); found != past.end())
-      edge.state = found->second->state, edge.diagnoses = found->second->diagnoses;
-}
-
 Result<std::string> Edges(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
   RIGCAL_ASSIGN(auto edges, storage::LoadEdges(context.store, robot, false));
+  RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
+  RIGCAL_TRY(MarkPast(context.store, robot, counts, edges));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
   if (!newest) return formats::WriteEdges(robot, 0, edges, {});
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
-  TakePast(*revision.document, edges);
   return formats::WriteEdges(robot, newest->number, edges, revision.document->solution.residuals);
 }
 

@@ -53,7 +53,9 @@ Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, con
   return {};
 }
 
-Status MakePast(storage::Store& store, const RobotId& robot, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
+}  // namespace
+
+Status MarkPast(storage::Store& store, const RobotId& robot, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
   for (Edge& edge : edges) {
     if (const auto found = counts.superseded.find(edge.session); found != counts.superseded.end()) Supersede(found->second, edge);
     if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) Retire(found->second.word, edge);
@@ -61,8 +63,6 @@ Status MakePast(storage::Store& store, const RobotId& robot, const storage::What
   SupersedeWhatWasRunAgain(edges);
   return MakePastWhatWasRemounted(store, robot, counts.remounts, edges);
 }
-
-}  // namespace
 
 Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
   CurrentEdges current;
@@ -75,7 +75,7 @@ Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robo
     RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, blocks));
     RIGCAL_ASSIGN(current.merged, storage::LoadMergedEdges(store, robot));
   }
-  RIGCAL_TRY(MakePast(store, robot, current.counts, edges));
+  RIGCAL_TRY(MarkPast(store, robot, current.counts, edges));
   return current;
 }
 
@@ -85,7 +85,7 @@ Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const RobotId& 
   for (const Edge& edge : current.edges) wanted.erase(edge.session);
   if (wanted.empty()) return std::vector<Edge>();
   RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdgeRows(store, {wanted.begin(), wanted.end()}));
-  RIGCAL_TRY(MakePast(store, robot, current.counts, edges));
+  RIGCAL_TRY(MarkPast(store, robot, current.counts, edges));
   return edges;
 }
 

@@ -14,6 +14,7 @@
 #include "server/graph/merged_edge.h"
 #include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"
+#include "server/model/past.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
@@ -102,6 +103,7 @@ struct RobotEdges {
   std::map<EdgeId, Stamp> measured_at;
   CurrentEstimates refined;
   fleet::SessionTimes captured_at;
+  std::set<SessionId> unfinished;  // pairs of it are still to be calibrated
   std::vector<SensorId> listed;  // by its sessions
   SensorId reference;
   std::int64_t watermark = 0, standing_watermark = 0;
@@ -123,14 +125,16 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) 
     RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
     RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current));
     RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
+    RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
+    for (const storage::SessionRow& session : open) loaded.unfinished.insert(session.id);
     return {};
   }));
   return loaded;
 }
 
-RobotGraph GraphOf(const RobotEdges& loaded, const RobotId& robot) {
+RobotGraph GraphOf(const RobotEdges& loaded, const RobotId& robot, bool blocks) {
   RobotGraph result{loaded.current.edges, {}, loaded.watermark, loaded.standing_watermark};
-  for (const MergedEdge& merged : loaded.current.merged) result.edges.push_back(graph::EdgeOf(merged, robot));
+  for (const MergedEdge& merged : loaded.current.merged) result.edges.push_back(graph::EdgeOf(merged, robot, blocks));
   std::sort(result.edges.begin(), result.edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
   result.graph = graph::GraphOf(result.edges, loaded.reference);
   if (!loaded.reference.empty()) result.graph.reference = loaded.reference;
@@ -149,14 +153,25 @@ std::vector<EdgeId> IdsOf(const std::vector<Edge>& edges) {
   return ids;
 }
 
-// Edges leave the window for merged ones. A session of which pairs are still to come stays as it is: they share its captures.
-storage::MergeStep MergeOlder(std::int64_t pairs_waiting, RobotEdges& loaded) {
+// Of sessions that may be merged: where pairs are still to come, or wait for a file that the disk lost, these share its captures.
+std::vector<Edge> OfWholeSessions(const RobotEdges& loaded) {
+  std::set<SessionId> unfinished = loaded.unfinished;
+  std::set<EdgeId> ids;
+  for (const Edge& edge : loaded.current.edges) ids.insert(edge.id);
+  for (const Edge& edge : loaded.current.edges)
+    if (FailedForLostFile(edge) && !ids.contains(RepeatedEdgeId(edge.id))) unfinished.insert(edge.session);
+  std::vector<Edge> whole = loaded.current.edges;
+  std::erase_if(whole, [&](const Edge& edge) { return edge.session.empty() || unfinished.contains(edge.session); });
+  return whole;
+}
+
+// Edges leave the window for merged ones.
+storage::MergeStep MergeOlder(RobotEdges& loaded) {
   CurrentEdges& current = loaded.current;
   storage::MergeStep step;
   if (current.all) step.back = IdsOf(current.edges);
   Append(graph::MergeOlderEdges(current.merged, current.edges, loaded.measured_at), step);
-  const std::size_t kept = pairs_waiting > 0 ? current.edges.size() : graph::kSessionsKept;
-  Append(graph::MergeOlderSessions(current.merged, current.edges, loaded.measured_at, kept), step);
+  Append(graph::MergeOlderSessions(current.merged, OfWholeSessions(loaded), loaded.measured_at), step);
   const std::set<EdgeId> taken(step.taken.begin(), step.taken.end());
   for (const Edge& edge : current.edges)
     if (taken.contains(edge.id)) loaded.refined.within.push_back(edge);
@@ -167,7 +182,7 @@ storage::MergeStep MergeOlder(std::int64_t pairs_waiting, RobotEdges& loaded) {
 
 // What is told of the graph and judged.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting, JointPoses& poses) {
-  RobotGraph loaded = GraphOf(edges, robot);
+  RobotGraph loaded = GraphOf(edges, robot, true);
   formats::RevisionInput input;
   input.robot = robot;
   input.reference = loaded.graph.reference;
@@ -186,7 +201,7 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, blocks, loaded); }));
-  return GraphOf(loaded, robot);
+  return GraphOf(loaded, robot, blocks);
 }
 
 bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }
@@ -196,7 +211,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.robot = robot;
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
   RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot));
-  const storage::MergeStep merge = MergeOlder(pairs_waiting, loaded);
+  const storage::MergeStep merge = MergeOlder(loaded);
   revision.calibrated_at = CalibratedAt(loaded.current.edges, loaded.measured_at, merge.merged);
   JointPoses poses;
   const formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);

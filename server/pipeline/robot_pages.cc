@@ -7,6 +7,7 @@
 
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
+#include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/unreadable.h"
 #include "server/report/robot_pages.h"
@@ -68,14 +69,19 @@ Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const R
   return sensors;
 }
 
-// What the newest revision says of good edges that it does not count.
+// What the newest revision says of good edges that it does not count; and those that were retired, whether it still lists them or
+// not.
 Result<std::vector<Edge>> PastEdges(const AnswerContext& context, const RobotId& robot) {
-  std::vector<Edge> past;
+  RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
+  std::vector<EdgeId> retired;
+  for (const auto& [id, standing] : counts.retired) retired.push_back(id);
+  RIGCAL_ASSIGN(std::vector<Edge> past, storage::LoadEdges(context.store, retired));
+  RIGCAL_TRY(MarkPast(context.store, robot, counts, past));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
   if (!newest) return past;
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
   for (const Edge& edge : revision.document->edges)
-    if (IsPast(edge)) past.push_back(edge);
+    if (IsPast(edge) && !counts.retired.contains(edge.id)) past.push_back(edge);
   return past;
 }
 

@@ -5,6 +5,8 @@
 #include <set>
 #include <tuple>
 
+#include "server/model/merged_edge.h"
+
 namespace rigcal::report {
 namespace {
 
@@ -39,7 +41,7 @@ std::set<EdgeId> IdsOf(const formats::RevisionInput& revision) {
 
 EdgeMove MoveBetween(const Edge* before, const Edge* now) {
   EdgeMove move{before, now};
-  if (!before || !now || before->id == now->id) return move;
+  if (!before || !now || before->id == now->id || IsMerged(*before) || IsMerged(*now)) return move;
   move.measured_again = true;
   const Vector6d d = (before->T_a_b.Inverse() * now->T_a_b).Log();
   for (int axis = 0; axis < 6; ++axis) {

@@ -19,7 +19,8 @@ constexpr int kCaptures = 16;
 // pair of some sessions has none.
 class Sessions {
  public:
-  explicit Sessions(double sigma) : sigma_(sigma) {
+  // `pairs`: of kPairs the first so many. `visit`: how the poses of a visit scatter besides, in sigmas.
+  explicit Sessions(double sigma, std::size_t pairs = kPairs.size(), double visit = 0.0) : sigma_(sigma), pairs_(pairs), visit_(visit) {
     for (const char* sensor : {"a", "b", "c", "d"}) T_world_[sensor] = Se3::Exp(Normals(0.5));
   }
 
@@ -28,7 +29,7 @@ class Sessions {
     std::map<std::string, std::vector<Vector6d>> of_sensor;
     for (const char* sensor : {"a", "b", "c", "d"})
       for (int k = 0; k < kCaptures; ++k) of_sensor[sensor].push_back(Normals(sigma_ / 4));
-    for (std::size_t pair = 0; pair < kPairs.size(); ++pair) {
+    for (std::size_t pair = 0; pair < pairs_; ++pair) {
       const auto& [a, b] = kPairs[pair];
       Edge edge = Measured(session, a, b);
       if (pair != 4 || week % 3 != 0) AddBlocks(of_sensor.at(a), of_sensor.at(b), static_cast<int>(pair), edge.uncertainty);
@@ -56,7 +57,7 @@ class Sessions {
     edge.frame_a = SensorId(a), edge.frame_b = SensorId(b);
     edge.method = "stereo";
     edge.state = EdgeState::kGood;
-    edge.T_a_b = T_world_[a].Inverse() * T_world_[b] * Se3::Exp(Normals(sigma_));
+    edge.T_a_b = T_world_[a].Inverse() * T_world_[b] * Se3::Exp(Normals(sigma_)) * Se3::Exp(Normals(visit_ * sigma_));
     Matrix6d root;
     for (int i = 0; i < 6; ++i) root.col(i) = Normals(sigma_);
     edge.uncertainty = *FromCovariance(root * root.transpose() + sigma_ * sigma_ * Matrix6d::Identity(), UncertaintySource::kJackknife, 15);
@@ -73,6 +74,8 @@ class Sessions {
   }
 
   double sigma_;
+  std::size_t pairs_;
+  double visit_;
   std::mt19937 random_{11};
   std::map<std::string, Se3> T_world_;
 };
@@ -191,6 +194,37 @@ TEST(MergeSessions, WhatIsPastLeavesWithItsSessionAndCountsForNoWindow) {
   const Merge merge = MergeOlderSessions({}, sessions.edges, sessions.measured_at);
   EXPECT_EQ(merge.taken.size(), 6 * 3u);
   for (const MergedEdge& one : merge.merged) EXPECT_EQ(one.count, one.frame_b == SensorId("b") ? 2 : 3);
+}
+
+// A robot of two sensors: fewer causes than blocks that count.
+TEST(MergeSessions, OfOnePairKeepsItsBlocksAndWhatItsSessionsShare) {
+  Sessions sessions(1e-9, 1);
+  for (int week = 0; week < 40; ++week) sessions.Add(week);
+  Window window{{}, sessions.edges};
+  window.Take(MergeOlderSessions({}, sessions.edges, sessions.measured_at));
+  ASSERT_EQ(window.merged.size(), 1u);
+  EXPECT_EQ(BlocksOf(window.All()).size(), kSessionsKept + 1);
+  ExpectSame(Tell(sessions.edges), Tell(window.All()), 1e-5, 1e-6);
+}
+
+// As a mount does that gives a little from visit to visit: that contradicts nobody.
+TEST(MergeSessions, ThatScatterFromVisitToVisitAreMerged) {
+  Sessions sessions(2e-4, kPairs.size(), 5.0);
+  for (int week = 0; week < 30; ++week) sessions.Add(week);
+  EXPECT_GE(MergeOlderSessions({}, sessions.edges, sessions.measured_at).taken.size(), 6 * 20u);
+}
+
+TEST(MergeSessions, ThatNeverHadAGoodEdgeLeaveTooAndTheLastWordOfAPairStays) {
+  Sessions sessions(2e-4);
+  for (int week = 0; week < 30; ++week) sessions.Add(week);
+  for (Edge& edge : sessions.edges) edge.state = EdgeState::kFailed;
+  std::erase_if(sessions.edges, [&](const Edge& edge) {  // of the last pair only the first three sessions tell
+    return edge.frame_b == SensorId("d") && edge.frame_a == SensorId("b") && sessions.measured_at.at(edge.id).ns > 3'500'000'000;
+  });
+  const std::size_t all = sessions.edges.size();
+  const Merge merge = MergeOlderSessions({}, sessions.edges, sessions.measured_at);
+  EXPECT_TRUE(merge.merged.empty());
+  EXPECT_EQ(all - merge.taken.size(), 5 * kSessionsKept + 1);
 }
 
 TEST(MergeSessions, PushedEdgesAreLeftAlone) {

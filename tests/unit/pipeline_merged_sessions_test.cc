@@ -1,6 +1,9 @@
 // A robot whose sessions came week after week: its revisions hold the newest, and what the older ones say together.
 #include "server/graph/solve.h"
+#include "server/model/past.h"
+#include "server/pipeline/current_edges.h"
 #include "server/pipeline/revise.h"
+#include "storage/jobs.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
 #include "storage/standing.h"
@@ -25,7 +28,7 @@ class MergedSessionsTest : public PipelineTest {
     const SessionId session = StoreSession("r", {{"left/1.jpg", bytes + " left"}, {"right/1.jpg", bytes + " right"}}, remounted);
     sessions_.push_back(session);
     std::vector<Edge> edges;
-    for (const auto& [a, b, x_m] : kSeen) edges.push_back(GivenEdge("r", a, b, x_m + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
+    for (const auto& [a, b, x_m] : std::vector<Seen>(kSeen.begin(), kSeen.begin() + pairs_)) edges.push_back(GivenEdge("r", a, b, x_m + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
     edges.emplace_back();
     edges.back().robot = kWeekly, edges.back().frame_a = SensorId("left"), edges.back().frame_b = SensorId("back");
     edges.back().diagnoses = {{"no_view", "seen by neither", "Show it."}};
@@ -35,8 +38,13 @@ class MergedSessionsTest : public PipelineTest {
       edge.id = EstimatedEdgeId(kWeekly, session, edge.method, edge.frame_a, edge.frame_b);
     }
     StoreEdges(edges);
+    FinishJobs();
     ids_.push_back(edges.front().id);
     Revised();
+  }
+  void FinishJobs() {
+    for (auto job = storage::LoadNextJob(*store_, {}); job && *job; job = storage::LoadNextJob(*store_, {}))
+      ASSERT_TRUE(store_->Write([&] { return storage::FinishJob(*store_, (*job)->number, clock_.now); }));
   }
   void Revised() {
     auto revised = Revise(*store_, kWeekly, clock_);
@@ -73,6 +81,13 @@ class MergedSessionsTest : public PipelineTest {
     }
   }
 
+  // Whether the edge's session came before that of the week.
+  [[nodiscard]] bool Before(const Edge& edge, std::size_t week) const {
+    return std::find(sessions_.begin(), sessions_.begin() + static_cast<std::ptrdiff_t>(week), edge.session) !=
+           sessions_.begin() + static_cast<std::ptrdiff_t>(week);
+  }
+
+  std::ptrdiff_t pairs_ = 3;
   std::vector<SessionId> sessions_;
   std::vector<EdgeId> ids_;  // of the first pair, by week
   formats::RevisionInput newest_;
@@ -132,13 +147,48 @@ TEST_F(MergedSessionsTest, ASessionOfLongAgoThatIsPushedAgainAndRestoredCountsOn
   ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[20]; }));
 }
 
-TEST_F(MergedSessionsTest, NothingIsMergedWhilePairsAreStillToCome) {
-  Weeks(0, 8);
-  clock_.now.ns += 1;
-  const SessionId session = StoreSession("r", {{"left/1.jpg", "late"}});
-  const auto revised = Revise(*store_, kWeekly, clock_, 3);
-  ASSERT_TRUE(revised);
-  EXPECT_TRUE(storage::LoadMergedEdges(*store_, kWeekly)->empty());
+// A session of long ago that is only half calibrated.
+TEST_F(MergedSessionsTest, OneOfWhichPairsAreStillToComeStaysAsItIs) {
+  Weeks(0, 10);
+  const Stamp now = clock_.now;
+  clock_.now.ns -= 9LL * 7 * 86'400 * 1'000'000'000 + 1;
+  const SessionId session = StoreSession("r", {{"left/1.jpg", "late"}, {"right/1.jpg", "late too"}});
+  Edge edge = GivenEdge("r", "left", "right", 1.0);
+  edge.session = session, edge.method = "stereo";
+  edge.id = EstimatedEdgeId(kWeekly, session, edge.method, edge.frame_a, edge.frame_b);
+  StoreEdges({edge});
+  clock_.now = now;
+  const auto holds = [&] { return std::any_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& one) { return one.id == edge.id; }); };
+  newest_ = *formats::ReadRevisionDocument(Revise(*store_, kWeekly, clock_, 1)->document);
+  EXPECT_TRUE(holds());
+  FinishJobs();
+  Revised();
+  EXPECT_FALSE(holds());
+  ExpectPoses(WholeBut([](const Edge&) { return false; }));
+}
+
+// All that left the window was past, and nothing was merged: the word by which it is past may be taken back all the same.
+TEST_F(MergedSessionsTest, ARemountThatIsTakenBackBringsBackWhatLeftAsPast) {
+  pairs_ = 1;
+  Weeks(0, 10);
+  Week(10, 10, {SensorId("right")});
+  Weeks(11, 19);
+  ExpectPoses(WholeBut([&](const Edge& edge) { return Before(edge, 10); }));
+  clock_.now.ns -= 9LL * 7 * 86'400 * 1'000'000'000 + 1;
+  Week(19, 10);
+  clock_.now.ns += 9LL * 7 * 86'400 * 1'000'000'000 + 1;
+  Revised();
+  ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[10]; }));
+}
+
+TEST_F(MergedSessionsTest, TheListOfEdgesSaysThatAMergedOneWasRetired) {
+  Weeks(0, 20);
+  ASSERT_TRUE(storage::RetireEdge(*store_, ids_[2], {{4}, "Ada", "typed wrong"}));
+  Revised();
+  EXPECT_TRUE(std::none_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& edge) { return edge.id == ids_[2]; }));
+  auto edges = storage::LoadEdges(*store_, kWeekly, false).value();
+  ASSERT_TRUE(MarkPast(*store_, kWeekly, *storage::LoadWhatCounts(*store_, kWeekly), edges));
+  for (const Edge& edge : edges) EXPECT_EQ(IsPast(edge), edge.id == ids_[2]);
 }
 
 }  // namespace
