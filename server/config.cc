@@ -92,4 +92,12 @@ Result<http::Options> HttpOptions(const Config& config) {
   return options;
 }
 
+std::vector<std::string> WorkerCommand(const Config& config) {
+  std::vector<std::string> command = {"rigcal-worker", "--worker", "--data", config.data.string()};
+  if (config.verbose) command.emplace_back("--verbose");
+  for (const limits::Setting& setting : limits::Settings())
+    command.push_back("--limit=" + std::string(setting.name) + "=" + std::to_string(limits::InForce().*setting.value));
+  return command;
+}
+
 }  // namespace rigcal

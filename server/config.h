@@ -23,7 +23,6 @@ struct Config {
   bool verbose = false;
   bool standby = false;  // waits while another server is there, instead of ending
   bool worker = false;   // works for a server that started it (pipeline/worker.h), and serves nobody
-  std::vector<std::string> worker_command;
   std::filesystem::path limits_file;  // empty: none
   std::vector<std::string> limits;    // NAME=VALUE; they win over the file
 };
@@ -36,6 +35,9 @@ void AddOptions(CLI::App& app, Config& config);
 // kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given; of
 // decoded_bytes half of the memory that the process may have, if that is less.
 [[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);
+// By what name and arguments this program works for the server that has this configuration, with the limits in force: a file of
+// limits that is changed meanwhile is not read.
+[[nodiscard]] std::vector<std::string> WorkerCommand(const Config& config);
 // Puts them in force, before any thread is made; the log tells of those that are not the default.
 [[nodiscard]] Status EnforceLimits(const Config& config);
 

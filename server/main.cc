@@ -117,7 +117,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
-      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, config.worker_command}, announcer));
+      pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
   relay.Set(&runner);
 
   std::cout << "rigcald " << Version() << " is ready: reports at " << address << "/ , data in " << config.data.string()
@@ -130,7 +130,8 @@ Status Serve(const Config& config, const sigset_t& signals) {
 }
 
 // Who started it leaves it alone with SIGINT and SIGTERM, which come to all processes of a terminal or a service.
-int WorkFor(const Config& config) {
+int WorkFor(Config config) {
+  config.limits_file.clear();  // that of the environment: the server has said all of them
   const Status limited = EnforceLimits(config);
   if (limited) return pipeline::Work(config.data, SystemClock());
   LogError(limited.error());
@@ -156,9 +157,6 @@ int main(int argc, char** argv) {
   rigcal::SetLogLevel(config.verbose ? rigcal::LogLevel::kDebug : rigcal::LogLevel::kInfo);
 
   if (config.worker) return rigcal::WorkFor(config);
-  config.worker_command.assign(argv + 1, argv + argc);
-  config.worker_command.insert(config.worker_command.begin(), "rigcal-worker");
-  config.worker_command.emplace_back("--worker");
 
   sigset_t signals;
   sigemptyset(&signals);

@@ -25,30 +25,42 @@ Answerers::~Answerers() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-std::shared_future<Answerers::Document> Answerers::Ask(std::uint64_t client, const std::string& verb, const std::string& json) {
-  const Key key{client, verb, json};
+void Answerers::Changed() {
+  const std::lock_guard lock(mutex_);
+  ++changes_;
+}
+
+std::optional<std::shared_future<Answerers::Document>> Answerers::Ask(std::uint64_t client, const std::string& verb,
+                                                                      const std::string& json) {
   std::shared_future<Document> document;
   {
     const std::lock_guard lock(mutex_);
+    const Key key{client, verb, json, changes_};
     if (const auto found = open_.find(key); found != open_.end()) return found->second->document;
+    const auto own = std::count_if(waiting_.begin(), waiting_.end(), [&](const Key& other) { return std::get<0>(other) == client; });
+    if (waiting_.size() >= kWaitingMax || static_cast<std::size_t>(own) >= kOfOneClientWaitingMax) return std::nullopt;
     auto task = std::make_shared<Task>();
     document = task->document = task->promise.get_future().share();
     open_.emplace(key, std::move(task));
     waiting_.push_back(key);
   }
-  changed_.notify_one();
+  changed_.notify_all();  // the first place, if it is free, is faster than the others
   return document;
 }
 
 std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
-  return std::find_if(waiting_.begin(), waiting_.end(), [&](const Key& key) {
-    const auto busy = of_client_.find(std::get<0>(key));
-    return busy == of_client_.end() || busy->second < kOfOneClientMax;
-  });
+  auto next = waiting_.end();
+  int fewest = kOfOneClientMax;
+  for (auto key = waiting_.begin(); key != waiting_.end() && fewest > 0; ++key) {
+    const auto busy = of_client_.find(std::get<0>(*key));
+    const int own = busy == of_client_.end() ? 0 : busy->second;
+    if (own < fewest) next = key, fewest = own;
+  }
+  return next;
 }
 
 void Answerers::Run(Place& place) {
-  SetThreadRank(ThreadRank::kAnswers);
+  SetThreadRank(&place == places_.data() ? ThreadRank::kAnswers : ThreadRank::kServes);
   std::unique_lock lock(mutex_);
   while (true) {
     if (place.part != nullptr) place.part->Rest();

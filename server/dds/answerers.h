@@ -1,5 +1,6 @@
 // The threads that work answers out, each with a store of its own, so that a slow question holds up no other. One client has at
-// most two at a time; the same question of the same client, asked again while it is being answered, is answered by that.
+// most two at a time, and who has fewer goes first; the same question of the same client, asked again while it is being answered, is
+// answered by that, unless an order was carried out since.
 #pragma once
 
 #include <condition_variable>
@@ -9,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -23,7 +25,8 @@ class Answerers {
  public:
   using Document = std::string;
   using Work = std::function<Document(storage::Store& store, const std::string& verb, const std::string& json)>;
-  // A thread per store, told of by the part beside it. `done` is called from these threads after each answer; must not block.
+  // A thread per store, told of by the part beside it. The first runs in real time (kAnswers), as one thread may that answers for
+  // long; the others take what it has no time for. `done` is called from these threads after each answer; must not block.
   struct Place {
     storage::Store store;
     Part* part = nullptr;
@@ -33,11 +36,15 @@ class Answerers {
   Answerers(const Answerers&) = delete;
   Answerers& operator=(const Answerers&) = delete;
 
-  // `client`: any number that is alike for all questions of one. Never blocks.
-  [[nodiscard]] std::shared_future<Document> Ask(std::uint64_t client, const std::string& verb, const std::string& json);
+  // `client`: any number that is alike for all questions of one. Never blocks. Beyond kWaitingMax questions that wait, or
+  // kOfOneClientWaitingMax of the client, nothing.
+  [[nodiscard]] std::optional<std::shared_future<Document>> Ask(std::uint64_t client, const std::string& verb, const std::string& json);
+  // What was begun before holds no more for who asks from here on.
+  void Changed();
+  static constexpr std::size_t kWaitingMax = 1024, kOfOneClientWaitingMax = 64;
 
  private:
-  using Key = std::tuple<std::uint64_t, std::string, std::string>;
+  using Key = std::tuple<std::uint64_t, std::string, std::string, std::uint64_t>;  // client, verb, json, changes before it
   struct Task {
     std::promise<Document> promise;
     std::shared_future<Document> document;
@@ -50,10 +57,11 @@ class Answerers {
   const std::function<void()> done_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool stopping_ = false;                     // guarded by mutex_, as are the next three
+  bool stopping_ = false;                     // guarded by mutex_, as are the next four
   std::map<Key, std::shared_ptr<Task>> open_;
   std::deque<Key> waiting_;                   // of `open_`, first come, first served
   std::map<std::uint64_t, int> of_client_;    // being answered
+  std::uint64_t changes_ = 0;
   std::vector<std::thread> threads_;
 };
 

@@ -40,6 +40,12 @@ std::string DocumentOfAnswer(Result<std::string> answer) {
   return answer ? std::move(*answer) : formats::WriteError(answer.error());
 }
 
+std::shared_future<std::string> Said(const Error& error) {
+  std::promise<std::string> said;
+  said.set_value(formats::WriteError(error));
+  return said.get_future().share();
+}
+
 // The first partition of a writer in which questions may be asked; nothing if there is none.
 std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
   for (const std::string& partition : origin.partitions)
@@ -102,6 +108,7 @@ std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
   auto document = std::make_shared<std::promise<std::string>>();
   std::shared_future<std::string> future = document->get_future().share();
   const auto answer = [this, document](Result<std::string> done) {
+    answerers_->Changed();  // before anybody knows
     document->set_value(DocumentOfAnswer(std::move(done)));
     waitset_.Wake();
   };
@@ -138,12 +145,24 @@ bool Requests::Send(Pending& pending) {
 }
 
 std::shared_future<std::string> Requests::AnswerTo(const Question& question) {
-  if (const auto refused = Refused(question)) {
-    std::promise<std::string> said;
-    said.set_value(formats::WriteError(*refused));
-    return said.get_future().share();
-  }
-  return callbacks_.is_order(question.verb) ? GiveOrder(question) : answerers_->Ask(question.participant, question.verb, question.json);
+  if (const auto refused = Refused(question)) return Said(*refused);
+  if (callbacks_.is_order(question.verb)) return GiveOrder(question);
+  if (auto answer = answerers_->Ask(question.participant, question.verb, question.json)) return *answer;
+  return Said({ErrorCode::kBusy, "more questions wait for an answer than the server takes", "Ask again in a moment."});
+}
+
+// A client that asks again takes the answer to any copy: the older one, of which nothing was sent yet, goes. Beyond so many the
+// oldest of the same client goes, and orders never.
+void Requests::MakeRoomFor(const Pending& added) {
+  const auto same_client = [&](const Pending& one) { return !one.is_order && one.question.participant == added.question.participant; };
+  pending_.remove_if([&](const Pending& one) {
+    return same_client(one) && one.next_idx == 0 && one.question.partition == added.question.partition &&
+           one.question.verb == added.question.verb && one.question.json == added.question.json;
+  });
+  if (pending_.size() < kPendingMax) return;
+  auto oldest = std::find_if(pending_.begin(), pending_.end(), same_client);
+  if (oldest == pending_.end()) oldest = std::find_if(pending_.begin(), pending_.end(), [](const Pending& one) { return !one.is_order; });
+  if (oldest != pending_.end()) pending_.erase(oldest);
 }
 
 void Requests::Add(Question question) {
@@ -151,8 +170,9 @@ void Requests::Add(Question question) {
   pending.answer = AnswerTo(question);
   pending.question = std::move(question);
   pending.expires = std::chrono::steady_clock::now() + kAnswerFor;
+  pending.is_order = callbacks_.is_order(pending.question.verb);
   if (Send(pending)) return;
-  if (pending_.size() >= kPendingMax) pending_.pop_front();
+  MakeRoomFor(pending);
   pending_.push_back(std::move(pending));
 }
 

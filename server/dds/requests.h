@@ -48,6 +48,7 @@ class Requests {
     std::size_t next_idx = 0;
     Time expires;
     bool busy = false;  // a reader is slow: tried again soon, not only when readers change
+    bool is_order = false;
   };
 
   Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
@@ -57,6 +58,7 @@ class Requests {
   [[nodiscard]] std::shared_future<std::string> GiveOrder(const Question& question);
   [[nodiscard]] std::shared_future<std::string> AnswerTo(const Question& question);
   void Add(Question question);
+  void MakeRoomFor(const Pending& added);
   // True if there is nothing left to do for it.
   [[nodiscard]] bool Send(Pending& pending);
   void SendPending();

@@ -17,6 +17,7 @@ constexpr std::chrono::seconds kTurnWithin{
     30};  // each goes round once per second at least, unless the disk holds it up
 
 constexpr int kAnsweringThreads = 4;
+constexpr std::chrono::seconds kAnsweredWithin{90};
 
 std::uint64_t NewIncarnation() {
   std::random_device random;
@@ -52,7 +53,7 @@ Status Service::Impl::Open(const Options& options) {
   std::vector<Answerers::Place> places;
   for (int i = 1; i <= kAnsweringThreads; ++i) {
     RIGCAL_ASSIGN(storage::Store own, storage::Store::Open(options.folder));
-    places.push_back({std::move(own), &vitals.Expect("answers " + std::to_string(i), kTurnWithin)});
+    places.push_back({std::move(own), &vitals.Expect("answers " + std::to_string(i), kAnsweredWithin)});
   }
   RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
                                          vitals.Expect("questions", kTurnWithin), std::move(places)));

@@ -140,18 +140,21 @@ Result<bool> PublishBegunBefore(const StepContext& context) {
   return alone.taken() ? PublishNext(context, true) : Result<bool>(false);
 }
 
-// Without its refinement a session is what its edges say, as is one that cannot be refined.
-void Refine(const StepContext& context, const RobotId& robot) {
+// Without its refinement a session is what its edges say, as is one that cannot be refined. A fault of ours is an error.
+Status Refine(const StepContext& context, const RobotId& robot) {
   const Status refined = Guarded([&]() -> Status {
     if (context.workers == nullptr) return RefineSessions(context.store, robot, context.cameras, context.clock);
     const auto outcome = context.workers->Run(RefineOrder(robot));
     return outcome.said ? Status{} : Fail(outcome.said.error());
   });
-  if (!refined) LogError(refined.error());
+  if (refined || IsOurFault(refined.error())) return refined;
+  LogError(refined.error());
+  return {};
 }
 
-Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs) {
-  if (jobs == 0) Refine(context, robot);
+// `refine`: not where it has failed so often that the revision is made without.
+Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
+  if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
@@ -163,10 +166,10 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int6
   return {};
 }
 
-Status SolveBurst(const StepContext& context, const RobotId& robot, bool due, std::int64_t jobs) {
+Status SolveBurst(const StepContext& context, const RobotId& robot, bool due, std::int64_t jobs, bool refine) {
   RIGCAL_TRY(UpdateLive(context, robot));
   if (!due) return {};
-  RIGCAL_TRY(ReviseAndTell(context, robot, jobs));
+  RIGCAL_TRY(ReviseAndTell(context, robot, jobs, refine));
   SettleLive(context, robot);
   return {};
 }
@@ -180,7 +183,7 @@ Result<bool> SolveCounted(const StepContext& context, const RobotId& robot, bool
   const int before = CountOf(attempts, work);
   if (before >= kAttemptsMax) return false;
   const auto body = [&]() -> Status {
-    RIGCAL_TRY(SolveBurst(context, robot, due, jobs));
+    RIGCAL_TRY(SolveBurst(context, robot, due, jobs, before + 1 < kAttemptsMax));
     return storage::EndAttempt(context.store, work, storage::AttemptEnd::kDone, "", context.clock.Now());
   };
   RIGCAL_TRY(Attempted(context.store, context.clock, work, "the graph of robot " + robot.str(), before, body));

@@ -151,7 +151,8 @@ Fields AnswerTo(const WorkPlace& place, const Fields& order) {
 void LimitItself() {
   rlimit limit{};
   if (getrlimit(RLIMIT_DATA, &limit) == 0) {
-    const auto most = static_cast<rlim_t>(MemoryOfProcess() / 4 * 3);
+    const rlim_t stacks = rlim_t{8} << 20;  // of each thread, counted whole
+    const auto most = static_cast<rlim_t>(MemoryOfProcess() / 8 * 7) + std::thread::hardware_concurrency() * stacks;
     limit.rlim_cur = std::min(limit.rlim_cur, most);
     setrlimit(RLIMIT_DATA, &limit);
   }

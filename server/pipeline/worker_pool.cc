@@ -8,9 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
+#include <deque>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <thread>
@@ -47,7 +48,7 @@ namespace {
 using std::chrono::steady_clock;
 
 // One that holds more than this after an order is ended, and so is one that has carried out as many orders.
-constexpr std::int64_t kIdleBytesMax = 512LL << 20;
+std::int64_t IdleBytesMax() { return std::min<std::int64_t>(512LL << 20, MemoryOfProcess() / 16); }
 constexpr int kOrdersMax = 500;
 
 struct Pipe {
@@ -75,43 +76,91 @@ std::string HowItEnded(int status) {
 
 }  // namespace
 
+// The memory that a process is given to decode in, of the server's budget. It asks one after the other: who asks for another waits
+// in any case. What is still asked for when the process has ended is taken and given back at once, in its turn; nobody waits for that.
+class MemoryOnBehalf : public std::enable_shared_from_this<MemoryOnBehalf> {
+ public:
+  using Granted = std::function<void(const std::string& id)>;
+  explicit MemoryOnBehalf(Granted granted) : granted_(std::move(granted)) {}
+
+  void Ask(const std::string& id, std::int64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    asked_.emplace_back(id, bytes);
+    if (asking_) return;
+    std::thread([self = shared_from_this()] { self->TakeAll(); }).detach();
+    asking_ = true;
+  }
+  void Give(const std::string& id) {
+    const std::lock_guard lock(mutex_);
+    shares_.erase(id);
+  }
+  void End() {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+    asked_.clear();
+    shares_.clear();
+  }
+
+ private:
+  void TakeAll() {
+    while (true) {
+      std::unique_lock lock(mutex_);
+      if (asked_.empty()) {
+        asking_ = false;
+        return;
+      }
+      const auto [id, bytes] = asked_.front();
+      asked_.pop_front();
+      lock.unlock();
+      auto share = DecodingBudget().Take(bytes);
+      lock.lock();
+      if (ended_) continue;
+      if (share) shares_.emplace(id, std::move(*share));
+      granted_(id);
+    }
+  }
+
+  std::mutex mutex_;
+  const Granted granted_;
+  std::deque<std::pair<std::string, std::int64_t>> asked_;
+  std::map<std::string, MemoryBudget::Share> shares_;
+  bool asking_ = false, ended_ = false;
+};
+
 class Worker {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Worker>> Start(const WorkerPool::Options& options);
   ~Worker() {
-    {
-      const std::lock_guard lock(saying_);
-      orders_ = PipeEnd();  // it ends with its input
-    }
-    if (pid_ > 0) {
-      if (broken_) kill(pid_, SIGKILL);
-      waitpid(pid_, nullptr, 0);
-    }
-    JoinAsking();
+    memory_->End();  // from here on nothing is said to it
+    orders_ = PipeEnd();  // it ends with its input
+    if (pid_ <= 0) return;
+    if (broken_) kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
   }
 
   // False: it had ended before.
   [[nodiscard]] bool Tell(const std::string& order) {
     ++told_;
+    broken_ = true;  // until it has said how that went
     Say(order);
     const auto line = NextLine(steady_clock::now() + std::chrono::minutes(5));
-    broken_ = !line || *line != "begun";
-    return !broken_;
+    return line && *line == "begun";
   }
 
   [[nodiscard]] WorkerPool::Outcome Await(steady_clock::time_point until) {
     while (const auto line = NextLine(until)) {
       const std::vector<std::string> fields = WorkerFields(*line);
-      if (fields[0] == "take" && fields.size() == 3) TakeMemory(fields[1], std::stoll(fields[2]));
-      if (fields[0] == "give" && fields.size() == 2) GiveMemory(fields[1]);
+      if (fields[0] == "take" && fields.size() == 3) memory_->Ask(fields[1], std::stoll(fields[2]));
+      if (fields[0] == "give" && fields.size() == 2) memory_->Give(fields[1]);
       if (fields[0] != "done" && fields[0] != "failed") continue;
-      JoinAsking();
+      broken_ = false;
       if (fields[0] == "done" && fields.size() == 2) return {fields[1]};
       if (fields[0] == "failed" && fields.size() == 4)
         return {Fail(static_cast<ErrorCode>(std::stoi(fields[1])), fields[2], fields[3])};
       break;
     }
     broken_ = true;
+    memory_->End();
     return {Fail(ErrorCode::kInternal, "the process that did the work ended: " + End(until),
                  "Nothing, if it is done at the next attempt; else report it with the log of the server."),
             true};
@@ -121,7 +170,7 @@ class Worker {
     if (broken_ || told_ >= kOrdersMax) return false;
     std::int64_t pages = 0, resident = 0;
     std::ifstream("/proc/" + std::to_string(pid_) + "/statm") >> pages >> resident;
-    return resident * sysconf(_SC_PAGESIZE) <= kIdleBytesMax;
+    return resident * sysconf(_SC_PAGESIZE) <= IdleBytesMax();
   }
 
  private:
@@ -158,48 +207,22 @@ class Worker {
     }
   }
 
-  // Another thread waits, as what this process gives back must be read meanwhile.
-  void TakeMemory(const std::string& id, std::int64_t bytes) {
-    asking_.emplace_back([this, id, bytes] {
-      auto share = DecodingBudget().Take(bytes);
-      {
-        const std::lock_guard lock(taking_);
-        if (share && !broken_) shares_.emplace(id, std::move(*share));
-      }
-      Say("granted\t" + id);
-    });
-  }
-  // Who waits for memory on its behalf gets it in the end, and gives it back at once where it is not needed any more.
-  void JoinAsking() {
-    for (std::thread& thread : asking_) thread.join();
-    asking_.clear();
-  }
-  void GiveMemory(const std::string& id) {
-    const std::lock_guard lock(taking_);
-    shares_.erase(id);
-  }
-
   std::string End(steady_clock::time_point until) {
     const bool late = steady_clock::now() >= until;
     kill(pid_, SIGKILL);  // nothing, where it has ended
     int status = 0;
     waitpid(pid_, &status, 0);
     pid_ = -1;
-    {
-      const std::lock_guard lock(taking_);
-      shares_.clear();
-    }
     return late ? "it took longer than work may" : HowItEnded(status);
   }
 
   pid_t pid_;
   PipeEnd orders_, answers_;
   std::string read_;
-  std::atomic<bool> broken_ = false;
+  bool broken_ = false;
   int told_ = 0;
-  std::mutex saying_, taking_;
-  std::map<std::string, MemoryBudget::Share> shares_;  // guarded by taking_
-  std::vector<std::thread> asking_;
+  std::mutex saying_;
+  std::shared_ptr<MemoryOnBehalf> memory_ = std::make_shared<MemoryOnBehalf>([this](const std::string& id) { Say("granted\t" + id); });
 };
 
 Result<std::unique_ptr<Worker>> Worker::Start(const WorkerPool::Options& options) {
@@ -248,7 +271,14 @@ WorkerPool::Outcome WorkerPool::Run(const std::string& order) {
     if (!worker->Tell(order))
       return {Fail(ErrorCode::kStorage, "a process to work in ended at its start", "Look at the log of the server.")};
   }
-  Outcome outcome = worker->Await(steady_clock::now() + options_.order_max);
+  Outcome outcome{std::string()};
+  try {
+    outcome = worker->Await(steady_clock::now() + options_.order_max);
+  } catch (const std::exception& thrown) {  // no thread, no memory
+    return {Fail(ErrorCode::kInternal, std::string("the server could not follow the process that did the work: ") + thrown.what(),
+                 "Nothing, if it is done at the next attempt; else give the server more memory."),
+            true};
+  }
   if (!worker->IsWorthKeeping()) return outcome;
   const std::lock_guard lock(mutex_);
   idle_.push_back(std::move(worker));
