@@ -49,13 +49,15 @@ std::optional<std::shared_future<Answerers::Document>> Answerers::Ask(std::uint6
 }
 
 std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
+  const auto rank = [&](std::uint64_t client) {
+    const auto busy = of_client_.find(client);
+    const auto served = served_.find(client);
+    return std::pair(busy == of_client_.end() ? 0 : busy->second, served == served_.end() ? 0 : served->second);
+  };
   auto next = waiting_.end();
-  int fewest = kOfOneClientMax;
-  for (auto key = waiting_.begin(); key != waiting_.end() && fewest > 0; ++key) {
-    const auto busy = of_client_.find(std::get<0>(*key));
-    const int own = busy == of_client_.end() ? 0 : busy->second;
-    if (own < fewest) next = key, fewest = own;
-  }
+  std::pair<int, std::uint64_t> best{kOfOneClientMax, 0};
+  for (auto key = waiting_.begin(); key != waiting_.end(); ++key)
+    if (const auto own = rank(std::get<0>(*key)); own < best) next = key, best = own;
   return next;
 }
 
@@ -72,12 +74,15 @@ void Answerers::Run(Place& place) {
     const std::shared_ptr<Task> task = open_.at(key);
     const std::uint64_t client = std::get<0>(key);
     ++of_client_[client];
+    served_[client] = ++turn_;
     lock.unlock();
     if (place.part != nullptr) place.part->Turn();
     Document document = work_(place.store, std::get<1>(key), std::get<2>(key));
     lock.lock();
     open_.erase(key);  // from here on it is another question
     if (--of_client_[client] == 0) of_client_.erase(client);
+    const bool gone = std::none_of(open_.begin(), open_.end(), [&](const auto& one) { return std::get<0>(one.first) == client; });
+    if (gone) served_.erase(client);
     lock.unlock();
     task->promise.set_value(std::move(document));
     changed_.notify_all();

@@ -1,6 +1,6 @@
 // The threads that work answers out, each with a store of its own, so that a slow question holds up no other. One client has at
-// most two at a time, and who has fewer goes first; the same question of the same client, asked again while it is being answered, is
-// answered by that, unless an order was carried out since.
+// most two at a time; who has fewer goes first, then who was served longest ago. The same question of the same client, asked again
+// while it is being answered, is answered by that, unless an order was carried out since.
 #pragma once
 
 #include <condition_variable>
@@ -57,10 +57,12 @@ class Answerers {
   const std::function<void()> done_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool stopping_ = false;                     // guarded by mutex_, as are the next four
+  bool stopping_ = false;                     // guarded by mutex_, as are the next six
   std::map<Key, std::shared_ptr<Task>> open_;
   std::deque<Key> waiting_;                   // of `open_`, first come, first served
   std::map<std::uint64_t, int> of_client_;    // being answered
+  std::map<std::uint64_t, std::uint64_t> served_;  // when each client that has questions was served last, counted by `turn_`
+  std::uint64_t turn_ = 0;
   std::uint64_t changes_ = 0;
   std::vector<std::thread> threads_;
 };

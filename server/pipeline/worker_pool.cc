@@ -9,15 +9,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <deque>
 #include <fstream>
-#include <functional>
-#include <map>
 #include <optional>
 #include <thread>
 
 #include "server/base/log.h"
 #include "server/base/memory_budget.h"
+#include "server/pipeline/memory_on_behalf.h"
 #include "server/pipeline/worker.h"
 
 extern char** environ;
@@ -75,57 +73,6 @@ std::string HowItEnded(int status) {
 }
 
 }  // namespace
-
-// The memory that a process is given to decode in, of the server's budget. It asks one after the other: who asks for another waits
-// in any case. What is still asked for when the process has ended is taken and given back at once, in its turn; nobody waits for that.
-class MemoryOnBehalf : public std::enable_shared_from_this<MemoryOnBehalf> {
- public:
-  using Granted = std::function<void(const std::string& id)>;
-  explicit MemoryOnBehalf(Granted granted) : granted_(std::move(granted)) {}
-
-  void Ask(const std::string& id, std::int64_t bytes) {
-    const std::lock_guard lock(mutex_);
-    asked_.emplace_back(id, bytes);
-    if (asking_) return;
-    std::thread([self = shared_from_this()] { self->TakeAll(); }).detach();
-    asking_ = true;
-  }
-  void Give(const std::string& id) {
-    const std::lock_guard lock(mutex_);
-    shares_.erase(id);
-  }
-  void End() {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-    asked_.clear();
-    shares_.clear();
-  }
-
- private:
-  void TakeAll() {
-    while (true) {
-      std::unique_lock lock(mutex_);
-      if (asked_.empty()) {
-        asking_ = false;
-        return;
-      }
-      const auto [id, bytes] = asked_.front();
-      asked_.pop_front();
-      lock.unlock();
-      auto share = DecodingBudget().Take(bytes);
-      lock.lock();
-      if (ended_) continue;
-      if (share) shares_.emplace(id, std::move(*share));
-      granted_(id);
-    }
-  }
-
-  std::mutex mutex_;
-  const Granted granted_;
-  std::deque<std::pair<std::string, std::int64_t>> asked_;
-  std::map<std::string, MemoryBudget::Share> shares_;
-  bool asking_ = false, ended_ = false;
-};
 
 class Worker {
  public:
