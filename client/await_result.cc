@@ -19,17 +19,7 @@ bool HoldsAll(const Document& revision, const std::set<std::string>& wanted) {
   return missing.empty();
 }
 
-// Then what is stored and not there by itself is in a merged one, once no edge waits for its revision.
-bool HoldsMerged(const Document& revision) {
-  for (const Document& edge : revision["edges"].Items())
-    if (!edge["figures"]["merged_edges"].IsNull() || !edge["figures"]["merged_sessions"].IsNull()) return true;
-  return false;
-}
 
-bool HoldsAny(const Document& revision, const std::set<std::string>& wanted) {
-  const auto edges = revision["edges"].Items();
-  return std::any_of(edges.begin(), edges.end(), [&](const Document& edge) { return wanted.count(edge["id"].Text()) > 0; });
-}
 
 }  // namespace
 
@@ -43,6 +33,7 @@ struct ResultWatch::State {
   bool ask_now = true;
   std::int64_t waiting = 0, total = 0;  // jobs of the session
   std::int64_t looked_at_revision = 0;  // it does not hold all the edges
+  std::int64_t settled_revision = 0;    // likewise, and no edge waited for another when it was looked at
   std::size_t looked_for = 0;           // that many edges
 };
 
@@ -125,14 +116,14 @@ Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   state.looked_at_revision = newest;
   state.looked_for = state.place.edges.size();
   const Document revision = state.result.show["document"];
-  // A session that is older than those that stand by themselves is merged as a whole, and what failed in it does not stand there.
-  const bool of_edges = state.place.session.empty();
-  const bool merged = of_edges ? HoldsMerged(revision) : !HoldsAny(revision, state.place.edges);
-  const bool all_revised = merged && !state.result.show["calculating"].Flag();
+  // What is old stands in a merged edge, and what failed in it nowhere: then the newest revision has all, once no edge waits for
+  // another. It is the newest if it still is at the next look.
+  const bool settled = !state.result.show["calculating"].Flag(), again = settled && state.settled_revision == newest;
+  state.settled_revision = settled ? newest : 0;
   state.result.has_revision = state.finished =
-      (all_revised || HoldsAll(revision, state.place.edges)) &&
+      (again || HoldsAll(revision, state.place.edges)) &&
       state.result.show["standing"].Integer().value_or(0) >= state.place.standing;
-  if (merged && !state.finished) state.looked_at_revision = 0;  // look again: the same revision may come to hold all
+  if (settled && !state.finished) state.looked_at_revision = 0;
   return {};
 }
 

@@ -104,6 +104,7 @@ class SessionVisits:
     """Every week a session of four small cameras and a tracker's body."""
     prefix, robot, ends = "sessions_", "mars-mapper", ("front_left", "left_back")
     reports_max = 21
+    simulated = ()
 
     def __init__(self, context, folder):
         self.rigcal, self.folder, self.session = str(context.bin / "rigcal"), folder, folder / "session"
@@ -122,7 +123,7 @@ class SessionVisits:
         shutil.rmtree(self.session, ignore_errors=True)
         at = datetime.datetime(2016, 1, 4) + datetime.timedelta(weeks=week)
         self.run("simulate", self.folder / "rig.yaml", "--out", self.session, "--captures", 12, "--scale", 0.25, "--seed", week,
-                 "--captured-at", at.strftime("%Y-%m-%dT%H:%M:%SZ"))
+                 "--captured-at", at.strftime("%Y-%m-%dT%H:%M:%SZ"), *self.simulated)
 
     def push(self, server):
         return server.rigcal("push", self.session, "--json")
@@ -130,6 +131,11 @@ class SessionVisits:
     def truth(self):
         told = (self.session / "truth.yaml").read_text()
         return read_pose(re.search(r"  left_back:\n    type: camera\n    T_ref_sensor: (\{.*\})", told).group(1))
+
+
+class ScatteredVisits(SessionVisits):
+    """The same where every sensor sits a little elsewhere on each visit: the truth that is compared with is that visit's."""
+    prefix, simulated = "scattered_sessions_", ("--visit-scatter", "0.3,0.01")
 
 
 def timed(ask):
@@ -226,5 +232,5 @@ def rows(kind, weeks, figures):
 
 def run(context):
     weeks = 520 if context.full else 26
-    for kind in (EdgeVisits, SessionVisits):
+    for kind in (EdgeVisits, SessionVisits, ScatteredVisits):
         yield from rows(kind, weeks, push_weeks(context, kind, weeks))

@@ -107,12 +107,10 @@ std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates
 GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                                   const std::vector<SessionEstimate>& estimates) {
   std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
-  const auto is_fused = [&](const SensorId& sensor) {
-    const std::vector<SensorId>& fused = solution.fused.sensors;
-    return std::find(fused.begin(), fused.end(), sensor) != fused.end() ||
-           std::any_of(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) {
-             return pose.sensor == sensor && pose.known && pose.covariance.isZero(0.0);  // the reference
-           });
+  const auto is_fused = [&](const SensorId& sensor) {  // or the reference, which is known exactly
+    return std::any_of(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) {
+      return pose.sensor == sensor && pose.known && (pose.fused || pose.covariance.isZero(0.0));
+    });
   };
   for (const Edge& edge : edges)
     if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) && is_fused(edge.frame_b))

@@ -8,10 +8,6 @@
 namespace rigcal::graph {
 namespace {
 
-using PairKey = std::tuple<SensorId, SensorId, std::string>;
-
-PairKey KeyOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
-
 // In time, by id where that is the same.
 using Timed = std::pair<Stamp, const Edge*>;
 
@@ -44,14 +40,14 @@ void MergeOldest(const std::vector<Timed>& all, std::size_t older, MergedEdge& m
 
 Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                       const std::map<EdgeId, Stamp>& measured_at, std::size_t kept) {
-  std::map<PairKey, MergedEdge> merged;
+  std::map<MeasuredPair, MergedEdge> merged;
   for (const MergedEdge& one : before)
-    if (!one.of_sessions) merged.emplace(PairKey{one.frame_a, one.frame_b, one.method}, one);
-  std::map<PairKey, std::vector<Timed>> of_pair;
+    if (!one.of_sessions) merged.emplace(MeasuredPair{one.frame_a, one.frame_b, one.method}, one);
+  std::map<MeasuredPair, std::vector<Timed>> of_pair;
   for (const Edge& edge : edges)
     if (const auto at = measured_at.find(edge.id); edge.state == EdgeState::kGood && edge.session.empty() &&
                                                    !IsMerged(edge) && at != measured_at.end())
-      of_pair[KeyOf(edge)].emplace_back(at->second, &edge);
+      of_pair[PairOf(edge)].emplace_back(at->second, &edge);
   Merge result;
   for (auto& [key, all] : of_pair) {
     std::sort(all.begin(), all.end(), [](const auto& x, const auto& y) {

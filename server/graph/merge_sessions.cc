@@ -1,9 +1,7 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <set>
 #include <tuple>
 
-#include "server/graph/graph_jackknife.h"
 #include "server/graph/merge_edges.h"
 #include "server/graph/merged_edge.h"
 #include "server/graph/session_fusion.h"
@@ -11,14 +9,6 @@
 
 namespace rigcal::graph {
 namespace {
-
-using Eigen::Index;
-using Eigen::MatrixXd;
-
-using PairKey = std::tuple<SensorId, SensorId, std::string>;
-using MergedPairs = std::map<PairKey, MergedEdge>;
-
-PairKey PairOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
 
 struct SessionEdges {
   Stamp captured_at;
@@ -60,7 +50,7 @@ std::vector<const SessionEdges*> OlderOf(const std::vector<SessionEdges>& sessio
 }
 
 // Good edges of each pair and method, as they are now.
-using EdgesOfPairs = std::map<PairKey, std::vector<const Edge*>>;
+using EdgesOfPairs = std::map<MeasuredPair, std::vector<const Edge*>>;
 EdgesOfPairs ByPair(const std::vector<SessionEdges>& sessions) {
   EdgesOfPairs pairs;
   for (const SessionEdges& session : sessions)
@@ -115,82 +105,6 @@ std::set<EdgeId> LastWordsOf(const std::vector<SessionEdges>& sessions, const Me
   return ids;
 }
 
-Index ColumnsOf(const MergedPairs& merged) {
-  Index columns = 0;
-  for (const auto& [pair, one] : merged) columns = std::max(columns, one.scores.cols());
-  return columns;
-}
-
-void Widen(Index columns, MergedEdge& merged) {
-  const Index before = merged.scores.cols();
-  merged.scores.conservativeResize(Eigen::NoChange, columns);
-  merged.scores.rightCols(columns - before).setZero();
-}
-
-// Block ids of a session, of all its edges that have blocks.
-std::vector<std::string> BlockIdsOf(const BlocksByEdge& blocks) {
-  std::set<std::string> ids;
-  for (const auto& [edge, own] : blocks)
-    for (const BlockVector& block : own.blocks) ids.insert(block.block_id);
-  return {ids.begin(), ids.end()};
-}
-
-// What the edge's score errs by: by the session's blocks, a column each, or by itself.
-MatrixXd ScoresOf(const Edge& edge, const BlocksByEdge& blocks, const std::vector<std::string>& ids) {
-  const auto own = blocks.find(edge.id);
-  if (own == blocks.end()) return SquareRoot(edge.uncertainty.Omega);
-  return edge.uncertainty.Omega * CentredBlocks(own->second.blocks, ids);
-}
-
-// Beyond so many pairs what they have in common is let go: it would be a matrix of as many rows and columns, times six.
-constexpr std::size_t kPairsTogetherMax = 200;
-
-void AddApart(const SessionEdges& session, MergedPairs& merged) {
-  for (auto& [pair, one] : merged) one.scores.resize(Eigen::NoChange, 0);  // `scatter` has each pair's own
-  for (const Edge* edge : session.good) {
-    MergedEdge& one = merged[PairOf(*edge)];
-    one.of_sessions = true;
-    Add(*edge, session.captured_at, one);
-  }
-}
-
-void AddTogether(const SessionEdges& session, MergedPairs& merged) {
-  std::vector<Edge> good;
-  for (const Edge* edge : session.good) good.push_back(*edge);
-  const BlocksByEdge blocks = BlocksOf(good);
-  const std::vector<std::string> ids = BlockIdsOf(blocks);
-  const Index shared = ColumnsOf(merged);
-  Index own = shared + static_cast<Index>(ids.size());
-  for (const Edge& edge : good) {
-    MergedEdge& one = merged[PairOf(edge)];
-    one.of_sessions = true;
-    const bool by_blocks = blocks.contains(edge.id);
-    const MatrixXd scores = ScoresOf(edge, blocks, ids);
-    const Index at = by_blocks ? shared : own;
-    own += by_blocks ? 0 : scores.cols();
-    Widen(std::max(one.scores.cols(), at + scores.cols()), one);
-    one.scores.middleCols(at, scores.cols()) += scores;
-    Add(edge, session.captured_at, one);
-  }
-  for (auto& [pair, one] : merged) Widen(own, one);
-}
-
-// As few columns as pairs have directions, with the same products among all pairs: R of S^T = Q R, as S S^T = R^T R.
-void Compress(MergedPairs& merged) {
-  const Index rows = 6 * static_cast<Index>(merged.size()), columns = ColumnsOf(merged);
-  if (columns == 0) return;
-  for (auto& [pair, one] : merged) one.scatter = one.scores * one.scores.transpose();
-  if (columns > rows) {
-    MatrixXd transposed(columns, rows);
-    Index at = 0;
-    for (const auto& [pair, one] : merged) transposed.middleCols<6>(at) = one.scores.transpose(), at += 6;
-    const Eigen::HouseholderQR<Eigen::Ref<MatrixXd>> qr(transposed);
-    const MatrixXd R = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
-    at = 0;
-    for (auto& [pair, one] : merged) one.scores = R.middleCols<6>(at).transpose(), at += 6;
-  }
-}
-
 void Take(const std::vector<const Edge*>& edges, std::vector<EdgeId>& taken) {
   for (const Edge* edge : edges) taken.push_back(edge->id);
 }
@@ -201,7 +115,7 @@ Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vecto
                          const std::map<EdgeId, Stamp>& measured_at, std::size_t kept) {
   MergedPairs merged;
   for (const MergedEdge& one : before)
-    if (one.of_sessions) merged.emplace(PairKey{one.frame_a, one.frame_b, one.method}, one);
+    if (one.of_sessions) merged.emplace(MeasuredPair{one.frame_a, one.frame_b, one.method}, one);
   const std::vector<SessionEdges> sessions = OldestFirst(edges, measured_at);
   const EdgesOfPairs window = ByPair(sessions);
   const std::set<EdgeId> last_words = LastWordsOf(sessions, merged);
@@ -209,12 +123,7 @@ Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vecto
   for (const SessionEdges* session : OlderOf(sessions, kept)) {
     const auto fits = [&](const Edge* edge) { return Fits(*edge, merged, window); };
     if (!std::all_of(session->good.begin(), session->good.end(), fits)) continue;
-    if (merged.size() > kPairsTogetherMax) {
-      AddApart(*session, merged);
-    } else if (!session->good.empty()) {
-      AddTogether(*session, merged);
-      Compress(merged);
-    }
+    if (!session->good.empty()) AddSession(session->good, session->captured_at, merged);
     Take(session->good, result.taken);
     Take(session->rest, result.taken);
   }

@@ -1,6 +1,11 @@
 // One merged edge (model/merged_edge.h): what comes into it, whether it fits, and what it is in the graph.
 #pragma once
 
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include "server/model/merged_edge.h"
 
 namespace rigcal::graph {
@@ -12,6 +17,12 @@ namespace rigcal::graph {
 
 // Adds a good edge of the pair: pose, information, given constants and the scatter of its own score.
 void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged);
+
+using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;  // frames and method
+[[nodiscard]] inline MeasuredPair PairOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
+using MergedPairs = std::map<MeasuredPair, MergedEdge>;
+// Adds the good edges of a session to those of its pairs, and what they have in common as columns of their scores.
+void AddSession(const std::vector<const Edge*>& good, Stamp captured_at, MergedPairs& merged);
 
 // As an edge of the graph: blocks that scatter as theirs do, unless they are not asked for, and contributions of the given
 // constants. Its id is that of its pose, information and count.

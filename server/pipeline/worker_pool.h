@@ -7,11 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "server/base/result.h"
+#include "server/pipeline/worker_process.h"
 
 namespace rigcal::pipeline {
-
-class Worker;
 
 class WorkerPool {
  public:
@@ -27,20 +25,17 @@ class WorkerPool {
 
   // Carries out an order in a process that has no other, and gives what it says. An error of the order is its own; where the
   // process ended amid the order, or took longer than `order_max`, `died` is true and the error says how. Any thread.
-  struct Outcome {
-    Result<std::string> said;
-    bool died = false;
-  };
+  using Outcome = WorkerOutcome;
   [[nodiscard]] Outcome Run(const std::string& order);
   // Starts one, so that the first order need not wait for it.
   void Warm();
 
  private:
-  [[nodiscard]] std::unique_ptr<Worker> TakeWarmest();
+  [[nodiscard]] std::unique_ptr<WorkerProcess> TakeWarmest();
 
   Options options_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Worker>> idle_;  // the one that worked last is last
+  std::vector<std::unique_ptr<WorkerProcess>> idle_;  // the one that worked last is last
 };
 
 }  // namespace rigcal::pipeline
