@@ -21,7 +21,8 @@ Answerers::~Answerers() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  changed_.notify_all();
+  first_changed_.notify_all();
+  others_changed_.notify_all();
   for (std::thread& thread : threads_) thread.join();
 }
 
@@ -32,21 +33,20 @@ void Answerers::Changed() {
 
 std::optional<std::shared_future<Answerers::Document>> Answerers::Ask(std::uint64_t client, const std::string& verb,
                                                                       const std::string& json) {
-  std::shared_future<Document> document;
-  {
-    const std::lock_guard lock(mutex_);
-    const Key key{client, verb, json, changes_};
-    if (const auto found = open_.find(key); found != open_.end()) return found->second->document;
-    const auto own = std::count_if(waiting_.begin(), waiting_.end(), [&](const Key& other) { return std::get<0>(other) == client; });
-    if (waiting_.size() >= kWaitingMax || static_cast<std::size_t>(own) >= kOfOneClientWaitingMax) return std::nullopt;
-    auto task = std::make_shared<Task>();
-    document = task->document = task->promise.get_future().share();
-    open_.emplace(key, std::move(task));
-    waiting_.push_back(key);
-  }
-  changed_.notify_all();  // the first place, if it is free, is faster than the others
-  return document;
+  const std::lock_guard lock(mutex_);
+  const Key key{client, verb, json, changes_};
+  if (const auto found = open_.find(key); found != open_.end()) return found->second->document;
+  const auto own = std::count_if(waiting_.begin(), waiting_.end(), [&](const Key& other) { return std::get<0>(other) == client; });
+  if (waiting_.size() >= kWaitingMax || static_cast<std::size_t>(own) >= kOfOneClientWaitingMax) return std::nullopt;
+  auto task = std::make_shared<Task>();
+  task->document = task->promise.get_future().share();
+  open_.emplace(key, task);
+  waiting_.push_back(key);
+  WakeOne();
+  return task->document;
 }
+
+void Answerers::WakeOne() { (first_is_free_ ? first_changed_ : others_changed_).notify_one(); }
 
 std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
   const auto rank = [&](std::uint64_t client) {
@@ -62,33 +62,44 @@ std::deque<Answerers::Key>::iterator Answerers::NextAllowed() {
 }
 
 void Answerers::Run(Place& place) {
-  SetThreadRank(&place == places_.data() ? ThreadRank::kAnswers : ThreadRank::kServes);
+  const bool is_first = &place == places_.data();
+  SetThreadRank(is_first ? ThreadRank::kAnswers : ThreadRank::kServes);
   std::unique_lock lock(mutex_);
   while (true) {
     if (place.part != nullptr) place.part->Rest();
-    changed_.wait(lock, [&] { return stopping_ || NextAllowed() != waiting_.end(); });
+    if (is_first) first_is_free_ = true;
+    (is_first ? first_changed_ : others_changed_).wait(lock, [&] { return stopping_ || NextAllowed() != waiting_.end(); });
+    if (is_first) first_is_free_ = false;
     if (stopping_) return;
     const auto next = NextAllowed();
     const Key key = *next;
     waiting_.erase(next);
     const std::shared_ptr<Task> task = open_.at(key);
-    const std::uint64_t client = std::get<0>(key);
-    ++of_client_[client];
-    served_[client] = ++turn_;
+    Begin(std::get<0>(key));
+    if (NextAllowed() != waiting_.end()) WakeOne();
     lock.unlock();
     if (place.part != nullptr) place.part->Turn();
     Document document = work_(place.store, std::get<1>(key), std::get<2>(key));
     lock.lock();
-    open_.erase(key);  // from here on it is another question
-    if (--of_client_[client] == 0) of_client_.erase(client);
-    const bool gone = std::none_of(open_.begin(), open_.end(), [&](const auto& one) { return std::get<0>(one.first) == client; });
-    if (gone) served_.erase(client);
+    End(key);  // before anybody knows the answer: from here on it is another question
     lock.unlock();
     task->promise.set_value(std::move(document));
-    changed_.notify_all();
     done_();
     lock.lock();
   }
+}
+
+void Answerers::Begin(std::uint64_t client) {
+  ++of_client_[client];
+  served_[client] = ++turn_;
+}
+
+void Answerers::End(const Key& key) {
+  const std::uint64_t client = std::get<0>(key);
+  open_.erase(key);
+  if (--of_client_[client] == 0) of_client_.erase(client);
+  const bool asks_more = std::any_of(open_.begin(), open_.end(), [&](const auto& one) { return std::get<0>(one.first) == client; });
+  if (!asks_more) served_.erase(client);
 }
 
 }  // namespace rigcal::dds

@@ -51,12 +51,16 @@ class Answerers {
   };
   void Run(Place& place);
   [[nodiscard]] std::deque<Key>::iterator NextAllowed();  // call with mutex_
+  void Begin(std::uint64_t client);                       // likewise
+  void End(const Key& key);                               // likewise
+  void WakeOne();                                         // likewise: the first, if it is free
 
   std::vector<Place> places_;
   const Work work_;
   const std::function<void()> done_;
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable first_changed_, others_changed_;
+  bool first_is_free_ = false;                // guarded by mutex_
   bool stopping_ = false;                     // guarded by mutex_, as are the next six
   std::map<Key, std::shared_ptr<Task>> open_;
   std::deque<Key> waiting_;                   // of `open_`, first come, first served
