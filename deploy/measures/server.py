@@ -68,6 +68,10 @@ class Server:
                     pids.append(int(stat.parent.name))
         return pids
 
+    def rss_mib(self):
+        """Of the server alone, now."""
+        return next(int(line.split()[1]) / 1024 for line in open("/proc/%d/status" % self.process.pid) if line.startswith("VmRSS"))
+
     def peak_rss_mib(self):
         """Of all its processes together, as they are now."""
         peaks = [int(line.split()[1]) / 1024 for pid in self.processes() for line in open("/proc/%d/status" % pid) if line.startswith("VmHWM")]
