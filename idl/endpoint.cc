@@ -1,6 +1,7 @@
 #include <array>
 
 #include "idl/dds.h"
+#include "idl/discovery.h"
 
 namespace rigcal::wire::internal {
 namespace {
@@ -125,14 +126,7 @@ const SampleOrigin& Origins::Of(dds_entity_t reader, dds_instance_handle_t publi
   const EndpointData data(dds_get_matched_publication_data(reader, publication));
   if (data == nullptr) return origin;
   origin.participant = data->participant_instance_handle;
-  std::uint32_t count = 0;
-  char** names = nullptr;
-  if (!dds_qget_partition(data->qos, &count, &names)) return origin;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    origin.partitions.emplace_back(names[i]);
-    dds_free(names[i]);
-  }
-  dds_free(names);
+  origin.partitions = PartitionsOf(data->qos);
   return origin;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "idl/discovery.h"
 #include "server/base/text.h"
 
 namespace rigcal::wire {
@@ -92,14 +93,6 @@ Status ForEachAlive(dds_entity_t reader, const Body& body, std::uint32_t max = k
     if (infos[i].valid_data) body(*static_cast<const Sample*>(samples[i]));
   if (count > 0) dds_return_loan(reader, samples.data(), count);
   return are_more ? ForEachAlive<Sample>(reader, body, 4 * max) : Status();
-}
-
-Result<Entity> OpenBuiltin(const Participant& participant, dds_entity_t topic) {
-  Entity entity(dds_create_reader(participant.get(), topic, nullptr, nullptr));
-  if (entity.get() < 0)
-    return Fail(ErrorCode::kInternal, std::string("DDS discovery: ") + dds_strretcode(-entity.get()),
-                "Too little memory, or a fault in Rigcal: report it with the log");
-  return entity;
 }
 
 }  // namespace

@@ -17,8 +17,8 @@
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/orders.h"
+#include "server/pipeline/robot_state.h"
 #include "server/pipeline/runner.h"
-#include "server/pipeline/startup.h"
 #include "server/pipeline/worker.h"
 #include "server/standby.h"
 #include "storage/folder_lock.h"
@@ -47,17 +47,7 @@ pipeline::Announcer AnnouncerTo(dds::Service& service) {
                                const std::string& json) {
     service.Announce({robot, kind, subject, SystemClock().Now(), json});
   };
-  announcer.status = [&service](const Revision& revision, std::int64_t edges) {
-    service.PublishStatus(revision.robot, revision.number, revision.verdict, edges, 0, revision.created_at);
-  };
-  announcer.calibration = [&service](const Revision& revision, const SensorId& reference,
-                                     const std::vector<SensorPose>& poses) {
-    service.PublishCalibration(revision.robot, revision.number, reference, poses, revision.verdict,
-                               revision.created_at);
-  };
-  announcer.withdraw = [&service](const RobotId& robot, const std::vector<SensorPose>& poses) {
-    service.WithdrawCalibration(robot, poses);
-  };
+  announcer.state = [&service](const RobotState& state) { service.Tell(state); };
   return announcer;
 }
 
@@ -106,6 +96,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   callbacks.carry_out = [](storage::Store& store, const std::string& verb, const std::string& json) {
     return pipeline::CarryOut(store, SystemClock(), verb, json);
   };
+  callbacks.state_of = pipeline::LoadRobotState;
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
@@ -113,7 +104,6 @@ Status Serve(const Config& config, const sigset_t& signals) {
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
-  RIGCAL_TRY(pipeline::AnnounceStored(start_store, announcer));
   if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(
       pipeline::Runner runner,

@@ -12,8 +12,8 @@ constexpr int kBigAtOnce = 1;     // a chunk is copied while it is loaned from D
 
 }  // namespace
 
-Intake::Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part)
-    : readers_(std::move(readers)), waitset_(std::move(waitset)), outbox_(&outbox), inbox_(&inbox), part_(&part) {}
+Intake::Intake(Readers readers, wire::NewReaders listeners, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part)
+    : readers_(std::move(readers)), listeners_(std::move(listeners)), waitset_(std::move(waitset)), outbox_(&outbox), inbox_(&inbox), part_(&part) {}
 
 Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant) {
   const std::vector<std::string> robots = {wire::kAllRobotsPartition};
@@ -26,11 +26,12 @@ Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant
 
 Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox, Part& part) {
   RIGCAL_ASSIGN(Readers readers, OpenReaders(participant));
+  RIGCAL_ASSIGN(wire::NewReaders listeners, wire::NewReaders::Open(participant));
   RIGCAL_ASSIGN(wire::WaitSet waitset, wire::WaitSet::Open(participant));
   for (const dds_entity_t reader :
-       {readers.headers.get(), readers.manifests.get(), readers.edges.get(), readers.chunks.get()})
+       {readers.headers.get(), readers.manifests.get(), readers.edges.get(), readers.chunks.get(), listeners.get()})
     RIGCAL_TRY(waitset.Attach(reader));
-  return Intake(std::move(readers), std::move(waitset), outbox, inbox, part);
+  return Intake(std::move(readers), std::move(listeners), std::move(waitset), outbox, inbox, part);
 }
 
 template <typename T>
@@ -53,27 +54,25 @@ Result<bool> Intake::TakeAll() {
   return any;
 }
 
-// A robot that may soon push or listen gets its writers now, so that the first receipt finds its reader.
-void Intake::MeetRobots() {
-  const auto meet = [&](const std::vector<wire::SampleOrigin>& writers) {
-    for (const wire::SampleOrigin& writer : writers)
-      for (const std::string& partition : writer.partitions)
-        if (const auto robot = RobotOfPartition(partition)) outbox_->AddRobot(*robot);
-  };
-  meet(readers_.headers.Matched());
-  meet(readers_.edges.Matched());
+// Who may soon push, or listens, reads of its robot first.
+Status Intake::MeetRobots() {
+  RIGCAL_ASSIGN(const auto partitions, listeners_.TakePartitions(Outbox::Topics()));
+  for (const std::string& partition : partitions)
+    if (const auto robot = RobotOfPartition(partition)) outbox_->Meet(*robot);
+  outbox_->CloseQuiet();
+  return {};
 }
 
-// What came is taken also where waiting for it failed.
+// What came is taken also where waiting for it, or looking who is there, failed.
 Status Intake::Round() {
   const auto woken = waitset_.Wait(kIdle);
-  if (!woken || *woken) MeetRobots();
+  const Status met = MeetRobots();
   bool any = true;
   while (any && !retry_->Stopped()) {
     RIGCAL_ASSIGN(any, TakeAll());
-    if (woken) part_->Turn();
+    if (woken && met) part_->Turn();
   }
-  return woken ? Status() : Fail(woken.error());
+  return woken ? met : Fail(woken.error());
 }
 
 void Intake::Run() {

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "idl/discovery.h"
 #include "server/base/vitals.h"
 #include "server/dds/inbox.h"
 #include "server/dds/outbox.h"
@@ -26,16 +27,17 @@ class Intake {
     wire::Reader<rigcal_wire_PairwiseResult> edges;
     wire::Reader<rigcal_wire_Chunk> chunks;
   };
-  Intake(Readers readers, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part);
+  Intake(Readers readers, wire::NewReaders listeners, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part);
 
   [[nodiscard]] static Result<Readers> OpenReaders(const wire::Participant& participant);
   [[nodiscard]] Status Round();          // waits, then takes until there is nothing left
   [[nodiscard]] Result<bool> TakeAll();  // true if there was something
   template <typename T>
   [[nodiscard]] Result<bool> TakeInto(wire::Reader<T>& reader, int max);
-  void MeetRobots();
+  [[nodiscard]] Status MeetRobots();
 
   Readers readers_;
+  wire::NewReaders listeners_;
   wire::WaitSet waitset_;
   Outbox* outbox_;
   Inbox* inbox_;

@@ -1,6 +1,7 @@
 // Writers of replies, one per partition that asks. Thread Q only.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <string>
 
@@ -20,14 +21,22 @@ class ReplyWriters {
   // participant that asked has no matched reader yet; kBusy if its reader does not take.
   [[nodiscard]] Status Send(const std::string& partition, dds_instance_handle_t participant,
                             const rigcal_wire_Reply& part);
+  // Ends the writers of robots' partitions in which nobody has read replies for a while. Again and again.
+  void CloseQuiet();
 
  private:
   using Writer = wire::Writer<rigcal_wire_Reply>;
-  [[nodiscard]] Result<Writer*> WriterOf(const std::string& partition);
+  using Time = std::chrono::steady_clock::time_point;
+  struct Kept {
+    Writer writer;
+    Time quiet_since;
+  };
+  [[nodiscard]] Result<Kept*> WriterOf(const std::string& partition);
 
   const wire::Participant& participant_;
   wire::WaitSet& waitset_;
-  std::map<std::string, Writer> writers_;
+  std::map<std::string, Kept> writers_;
+  Time next_look_{};  // for quiet ones
 };
 
 }  // namespace rigcal::dds

@@ -208,6 +208,7 @@ Status Requests::Round() {
     if (!pending_.empty()) SendPending();
   }
   if (!pending_.empty()) SendPending();
+  writers_.CloseQuiet();
   return woken ? Status() : Fail(woken.error());
 }
 

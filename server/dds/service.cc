@@ -7,7 +7,6 @@
 #include "server/dds/intake.h"
 #include "server/dds/recorder.h"
 #include "server/dds/requests.h"
-#include "storage/sessions.h"
 
 namespace rigcal::dds {
 namespace {
@@ -36,7 +35,7 @@ struct Service::Impl {
   wire::Participant participant;
   Callbacks callbacks;
   Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
-  Outbox outbox{participant};
+  Outbox outbox{participant, [this](const RobotId& robot) { static_cast<void>(inbox.Offer(RobotMet{robot})); }};
   LastQuestion asked;
   Vitals alone{SystemClock()};
   std::unique_ptr<Requests> requests;
@@ -47,8 +46,6 @@ struct Service::Impl {
 
 Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
-  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
-  for (const storage::RobotRow& row : robots) outbox.AddRobot(row.robot);
   Vitals& vitals = options.vitals == nullptr ? alone : *options.vitals;
   std::vector<Answerers::Place> places;
   for (int i = 1; i <= kAnsweringThreads; ++i) {
@@ -96,18 +93,6 @@ Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
 
 void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }
 
-void Service::PublishCalibration(const RobotId& robot, int revision, const SensorId& reference,
-                                 const std::vector<SensorPose>& poses, const Verdict& verdict, Stamp at) {
-  for (const SensorPose& pose : poses) impl_->outbox.SendCalibration(robot, revision, reference, pose, verdict, at);
-}
-
-void Service::WithdrawCalibration(const RobotId& robot, const std::vector<SensorPose>& poses) {
-  for (const SensorPose& pose : poses) impl_->outbox.WithdrawCalibration(robot, pose.sensor);
-}
-
-void Service::PublishStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
-                            std::int64_t jobs_waiting, Stamp at) {
-  impl_->outbox.SendStatus(robot, revision, verdict, edges, jobs_waiting, at);
-}
+void Service::Tell(const RobotState& state) { impl_->outbox.Tell(state); }
 
 }  // namespace rigcal::dds

@@ -13,8 +13,8 @@
 #include "idl/dds.h"
 #include "server/base/stamp.h"
 #include "server/base/vitals.h"
-#include "server/model/graph.h"
 #include "server/model/order.h"
+#include "server/model/robot_state.h"
 #include "storage/store.h"
 
 namespace rigcal::dds {
@@ -34,6 +34,9 @@ struct Callbacks {
   std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };
   std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json)> carry_out =
       {};
+  // What is stored of a robot that somebody began to read of; nothing: no revision. Called from thread W.
+  std::function<Result<std::optional<RobotState>>(storage::Store& store, const RobotId&)> state_of =
+      [](storage::Store&, const RobotId&) { return std::optional<RobotState>(); };
   // Something durable arrived that may mean work (session closed, edges stored). Called from thread W; must not block.
   std::function<void(const RobotId&)> work_arrived;
 };
@@ -54,15 +57,10 @@ class Service {
   Service(Service&&) noexcept;
   Service& operator=(Service&&) noexcept;
 
+  // Both go to those who read of the robot now; who comes later is told its state, and no events of before.
   void Announce(const Announcement& announcement);
-  // The poses of a numbered revision, for the robot to use; late joiners get them until others follow.
-  void PublishCalibration(const RobotId& robot, int revision, const SensorId& reference,
-                          const std::vector<SensorPose>& poses, const Verdict& verdict, Stamp at);
-  // Of these sensors there is nothing to use: each instance is disposed of, and late joiners get none.
-  void WithdrawCalibration(const RobotId& robot, const std::vector<SensorPose>& poses);
-  // The robot's one line, of its newest revision.
-  void PublishStatus(const RobotId& robot, int revision, const Verdict& verdict, std::int64_t edges,
-                     std::int64_t jobs_waiting, Stamp at);
+  // The robot's one line, and the poses for it to use. Without these, what was told of sensors is taken back.
+  void Tell(const RobotState& state);
 
  private:
   struct Impl;

@@ -11,7 +11,7 @@
 
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/model/graph.h"
+#include "server/model/robot_state.h"
 #include "server/pipeline/live_graphs.h"
 #include "server/pipeline/missing_report.h"
 #include "server/pipeline/worker_pool.h"
@@ -43,12 +43,8 @@ class Claims {
 struct Announcer {
   std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)>
       event;
-  // Of each new revision, whatever its verdict.
-  std::function<void(const Revision&, std::int64_t edges)> status;
-  // Of a revision whose verdict is pass or warn: what robots use from now on.
-  std::function<void(const Revision&, const SensorId& reference, const std::vector<SensorPose>&)> calibration;
-  // What was told of these sensors is to be used no more, and there is nothing in its place.
-  std::function<void(const RobotId&, const std::vector<SensorPose>&)> withdraw;
+  // After each new revision, whatever its verdict.
+  std::function<void(const RobotState&)> state;
 };
 
 struct StepContext {

@@ -31,12 +31,30 @@ class Listener {
   wire::WaitSet waitset_;
 };
 
+const RobotId kMapper("mapper-01");
+
+SensorPose PoseOf(const char* sensor) {
+  SensorPose pose;
+  pose.sensor = SensorId(sensor);
+  return pose;
+}
+
+RobotState StateOf(int revision, const Verdict& verdict, std::vector<SensorPose> poses) {
+  RobotState state;
+  state.newest.robot = kMapper;
+  state.newest.number = revision;
+  state.newest.created_at = Stamp{40 + revision};
+  state.newest.verdict = verdict;
+  state.edges = 5;
+  if (!poses.empty()) state.calibration = {state.newest, SensorId("left"), std::move(poses)};
+  return state;
+}
+
 TEST_F(AnnounceTest, EventsReachTheRobotsSubscribers) {
-  const RobotId robot("mapper-01");
-  server_->Announce({robot, "edge", "none", Stamp{1}, "{}"});  // makes the robot known; nobody hears it
+  server_->Announce({kMapper, "edge", "none", Stamp{1}, "{}"});  // nobody hears it
   Listener<rigcal_wire_Event> listener(options_.participant, "robot/mapper-01");
   listener.WaitForServer();
-  server_->Announce({robot, "revision", "17", Stamp{42}, "{\"revision\": 17}"});
+  server_->Announce({kMapper, "revision", "17", Stamp{42}, "{\"revision\": 17}"});
   listener.Take(1, [](const rigcal_wire_Event& event) {
     EXPECT_STREQ(event.robot_id, "mapper-01");
     EXPECT_STREQ(event.kind, "revision");
@@ -46,19 +64,14 @@ TEST_F(AnnounceTest, EventsReachTheRobotsSubscribers) {
   });
 }
 
-// Error on one axis, looked for at that index on the wire.
+// Error on one axis, looked for at that index on the wire. Told before anybody listens: it comes from the store.
 TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
-  const RobotId robot("mapper-01");
-  SensorPose left, right;
-  left.sensor = SensorId("left");
-  right.sensor = SensorId("right");
+  SensorPose left = PoseOf("left"), right = PoseOf("right");
   right.known = true;
   right.T_ref_sensor.p_m = {1, 2, 3};
   right.T_ref_sensor.q = Eigen::Quaterniond(0.5, 0.1, -0.7, 0.5);
   right.covariance(4, 2) = 7;
-  const Verdict verdict{VerdictLevel::kWarn, "why", "do"};
-  server_->PublishCalibration(robot, 3, SensorId("left"), {left, right}, verdict, Stamp{42});
-  server_->PublishStatus(robot, 3, verdict, 5, 6, Stamp{42});
+  StoreAndTell(StateOf(3, {VerdictLevel::kWarn, "why", "do"}, {left, right}));
   std::map<std::string, rigcal_wire_Calibration> heard;
   Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01")
       .Take(2, [&](const rigcal_wire_Calibration& sample) { heard[sample.sensor_id] = sample; });
@@ -79,25 +92,47 @@ TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
         EXPECT_EQ(status.revision, 3u);
         EXPECT_STREQ(status.why, "why");
         EXPECT_EQ(status.edges, 5u);
-        EXPECT_EQ(status.jobs_waiting, 6u);
-        EXPECT_EQ(status.stamp_ns, 42);
+        EXPECT_EQ(status.stamp_ns, 43);
       });
 }
 
-// What was withdrawn is gone for those who listen, and for those who come later; the others' stay.
+// While somebody listens the writers keep what was told: who joins then hears the newest, and nothing that was withdrawn.
 TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
-  const RobotId robot("mapper-01");
-  SensorPose left, right;
-  left.sensor = SensorId("left");
-  right.sensor = SensorId("right");
-  const Verdict verdict{VerdictLevel::kPass, "why", "do"};
-  server_->PublishCalibration(robot, 3, SensorId("left"), {left, right}, verdict, Stamp{42});
-  server_->WithdrawCalibration(robot, {left, right});
-  server_->PublishCalibration(robot, 4, SensorId("left"), {right}, verdict, Stamp{43});
+  const Verdict pass{VerdictLevel::kPass, "why", "do"};
+  Listener<rigcal_wire_RobotStatus> keeps_it_open(options_.participant, "robot/mapper-01");
+  keeps_it_open.WaitForServer();
+  StoreAndTell(StateOf(3, pass, {PoseOf("left"), PoseOf("right")}));
+  StoreAndTell(StateOf(4, {VerdictLevel::kFail, "why", "do"}, {}));
+  StoreAndTell(StateOf(5, pass, {PoseOf("right")}));
   std::map<std::string, std::uint32_t> heard;
   Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01")
       .Take(1, [&](const rigcal_wire_Calibration& sample) { heard[sample.sensor_id] = sample.revision; });
-  EXPECT_EQ(heard, (std::map<std::string, std::uint32_t>{{"right", 4}}));
+  EXPECT_EQ(heard, (std::map<std::string, std::uint32_t>{{"right", 5}}));
+}
+
+// Two threads may tell: what one of them loaded before the other's revision changes nothing.
+TEST_F(AnnounceTest, AnOlderStateIsNotTold) {
+  const Verdict pass{VerdictLevel::kPass, "why", "do"};
+  Listener<rigcal_wire_RobotStatus> listener(options_.participant, "robot/mapper-01");
+  listener.WaitForServer();
+  server_->Tell(StateOf(4, pass, {PoseOf("right")}));
+  server_->Tell(StateOf(3, pass, {PoseOf("right")}));
+  std::vector<std::uint32_t> heard;
+  const auto note = [&](const rigcal_wire_RobotStatus& status) { heard.push_back(status.revision); };
+  listener.Take(1, note);
+  server_->Tell(StateOf(5, pass, {PoseOf("right")}));
+  listener.Take(1, note);
+  EXPECT_EQ(heard, (std::vector<std::uint32_t>{4, 5}));
+}
+
+// Who reads of all robots at once hears of each that has news, though none of them has a reader of its own.
+TEST_F(AnnounceTest, WhoListensToTheFleetHearsOfEachRobotWithNews) {
+  Listener<rigcal_wire_RobotStatus> listener(options_.participant, "robot/*");
+  server_->Tell(StateOf(1, {VerdictLevel::kPass, "why", "do"}, {}));  // nobody may be known to listen yet
+  listener.WaitForServer();
+  StoreAndTell(StateOf(2, {VerdictLevel::kPass, "why", "do"}, {}));
+  std::uint32_t heard = 0;
+  while (heard < 2) listener.Take(1, [&](const rigcal_wire_RobotStatus& status) { heard = status.revision; });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <random>
 #include <string>
@@ -241,6 +242,11 @@ class ServiceTest : public testing::Test {
     callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json) {
       return carry_out_(verb, json);
     };
+    callbacks.state_of = [this](storage::Store&, const RobotId& robot) -> Result<std::optional<RobotState>> {
+      const std::lock_guard lock(mutex_);
+      const auto found = states_.find(robot);
+      return found == states_.end() ? std::nullopt : std::optional(found->second);
+    };
     callbacks.work_arrived = [this](const RobotId& robot) {
       const std::lock_guard lock(mutex_);
       work_.push_back(robot);
@@ -249,6 +255,14 @@ class ServiceTest : public testing::Test {
   }
   void StopServer() { server_.reset(); }
   Client MakeClient(const std::string& robot) { return Client(options_.participant, RobotId(robot)); }
+  // As when a revision was stored.
+  void StoreAndTell(const RobotState& state) {
+    {
+      const std::lock_guard lock(mutex_);
+      states_[state.newest.robot] = state;
+    }
+    server_->Tell(state);
+  }
   std::vector<RobotId> Work() {
     const std::lock_guard lock(mutex_);
     return work_;
@@ -264,6 +278,7 @@ class ServiceTest : public testing::Test {
   };
   std::mutex mutex_;
   std::vector<RobotId> work_;
+  std::map<RobotId, RobotState> states_;  // stored
   std::optional<Service> server_;
 };
 

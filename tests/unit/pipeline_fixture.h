@@ -39,15 +39,10 @@ class PipelineTest : public testing::Test {
     announcer_.event = [this](const RobotId&, const std::string& kind, const std::string&, const std::string& json) {
       events_.push_back({kind, json});
     };
-    announcer_.status = [this](const Revision& revision, std::int64_t) {
-      revisions_.push_back(revision);
-      if (const auto document = formats::ReadRevisionDocument(revision.document)) poses_ = document->solution.poses;
-    };
-    announcer_.calibration = [this](const Revision& revision, const SensorId&, const std::vector<SensorPose>&) {
-      told_.push_back(revision.number);
-    };
-    announcer_.withdraw = [this](const RobotId&, const std::vector<SensorPose>& poses) {
-      for (const SensorPose& pose : poses) withdrawn_.push_back(pose.sensor.str());
+    announcer_.state = [this](const RobotState& state) {
+      states_.push_back(state);
+      revisions_.push_back(storage::LoadRevision(*store_, state.newest.robot, state.newest.number).value().value());
+      if (const auto document = formats::ReadRevisionDocument(revisions_.back().document)) poses_ = document->solution.poses;
     };
   }
   void TearDown() override {
@@ -65,6 +60,10 @@ class PipelineTest : public testing::Test {
     }
     ADD_FAILURE() << "the pipeline never comes to rest";
     return 1000;
+  }
+  // The revision that robots were told to use last; 0: none.
+  [[nodiscard]] int InUse() const {
+    return states_.empty() || !states_.back().calibration ? 0 : states_.back().calibration->revision.number;
   }
   [[nodiscard]] int Count(const std::string& kind) const {
     return static_cast<int>(
@@ -152,8 +151,7 @@ class PipelineTest : public testing::Test {
   std::vector<std::pair<std::string, std::string>> events_;
   std::vector<Revision> revisions_;
   std::vector<SensorPose> poses_;       // of the newest of them
-  std::vector<int> told_;               // revisions whose poses went out for robots to use
-  std::vector<std::string> withdrawn_;  // sensors of which there is nothing to use
+  std::vector<RobotState> states_;      // as told
 };
 
 // A finished edge between two sensors with T_a_b = a shift along x and equal, independent errors.

@@ -46,7 +46,7 @@ TEST_F(PipelineTurnsTest, EdgesOfARobotWhoseJobsNeverEndAreRevised) {
   // Half of what a session says is no calibration: nobody is told to use it.
   EXPECT_EQ(revisions_[0].verdict.level, VerdictLevel::kUnknown);
   EXPECT_NE(revisions_[0].verdict.why.find("still to be calibrated"), std::string::npos) << revisions_[0].verdict.why;
-  EXPECT_TRUE(told_.empty());
+  EXPECT_EQ(InUse(), 0);
   for (int i = 0; i < 6; ++i) {
     StoreUnreadable("r");
     StoreUnreadable("r");
@@ -62,7 +62,7 @@ TEST_F(PipelineTurnsTest, WhatRobotsUseStaysWhileASessionIsCalibrated) {
   StoreEdges(Triangle("r"));
   StepAll();
   ASSERT_EQ(revisions_.size(), 1u);
-  const std::size_t told = told_.size(), withdrawn = withdrawn_.size();
+  ASSERT_EQ(InUse(), 1);
   StoreUnreadable("r");
   StoreUnreadable("r");
   ASSERT_TRUE(StepOnce());  // one pair of two
@@ -70,8 +70,7 @@ TEST_F(PipelineTurnsTest, WhatRobotsUseStaysWhileASessionIsCalibrated) {
   ASSERT_TRUE(StepOnce());
   ASSERT_EQ(revisions_.size(), 2u);
   EXPECT_EQ(revisions_[1].verdict.level, VerdictLevel::kUnknown);
-  EXPECT_EQ(told_.size(), told);
-  EXPECT_EQ(withdrawn_.size(), withdrawn);
+  EXPECT_EQ(InUse(), 1);
 }
 
 }  // namespace

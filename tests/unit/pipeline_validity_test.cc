@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "server/pipeline/answer.h"
+#include "server/pipeline/robot_state.h"
 #include "server/pipeline/validity.h"
-#include "server/pipeline/startup.h"
 #include "storage/attempts.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
@@ -67,14 +67,13 @@ class ValidityTest : public PipelineTest {
 TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   PushGood();
   ASSERT_TRUE(IsUsable(revisions_.back().verdict)) << revisions_.back().verdict.why;
-  EXPECT_EQ(told_, std::vector<int>{1});
+  EXPECT_EQ(InUse(), 1);
   EXPECT_EQ(Event("revision")["usable"]["revision"], 1);
   clock_.now.ns += kDay_ns;
   PushContradiction();
   ASSERT_EQ(revisions_.size(), 2U);
   ASSERT_EQ(revisions_.back().verdict.level, VerdictLevel::kFail);
-  EXPECT_EQ(told_, std::vector<int>{1}) << "a failed revision is no calibration";
-  EXPECT_TRUE(withdrawn_.empty()) << "what was told before stays";
+  EXPECT_EQ(InUse(), 1) << "a failed revision is no calibration: what was told before stays";
   const json usable = {{"revision", 1}, {"created_at", ToIso(revisions_[0].created_at)}};
   EXPECT_EQ(Event("revision")["usable"], usable);
   EXPECT_EQ(Ask("show")["usable"], usable);
@@ -85,28 +84,28 @@ TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   EXPECT_EQ(Report(1).find("Keep using"), std::string::npos);
 }
 
-TEST_F(ValidityTest, AServerThatStartsTellsTheUsableOneAndTheNewestVerdict) {
+TEST_F(ValidityTest, WhoBeginsToListenIsToldTheUsableOneAndTheNewestVerdict) {
   PushGood();
   PushContradiction();
-  told_.clear(), revisions_.clear();
-  ASSERT_TRUE(AnnounceStored(*store_, announcer_));
-  EXPECT_EQ(told_, std::vector<int>{1});
-  ASSERT_EQ(revisions_.size(), 1U);
-  EXPECT_EQ(revisions_[0].number, 2);
-  EXPECT_EQ(revisions_[0].verdict.level, VerdictLevel::kFail);
+  const auto state = LoadRobotState(*store_, RobotId("r"));
+  ASSERT_TRUE(state && *state);
+  EXPECT_EQ((*state)->newest.number, 2);
+  EXPECT_EQ((*state)->newest.verdict.level, VerdictLevel::kFail);
+  ASSERT_TRUE((*state)->calibration);
+  EXPECT_EQ((*state)->calibration->revision.number, 1);
+  EXPECT_EQ((*state)->calibration->poses.size(), 3U);
 }
 
 TEST_F(ValidityTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
   StoreEdges(Closing("r", 3.0));
   StepAll();
   ASSERT_FALSE(IsUsable(revisions_.back().verdict));
-  EXPECT_TRUE(told_.empty());
+  EXPECT_EQ(InUse(), 0);
   EXPECT_TRUE(Ask("show")["usable"].is_null());
   const std::string none = "There is no earlier calibration to fall back to.";
   EXPECT_NE(Page("/robots/r/").find(none), std::string::npos);
   EXPECT_NE(Report(1).find(none), std::string::npos);
-  ASSERT_TRUE(AnnounceStored(*store_, announcer_));
-  EXPECT_TRUE(told_.empty());
+  EXPECT_EQ(InUse(), 0);
 }
 
 // Its poses are those of a rig that is no more.
@@ -117,7 +116,7 @@ TEST_F(ValidityTest, WhatWasSolvedBeforeARemountIsNoFallback) {
   StepAll();
   ASSERT_FALSE(IsUsable(revisions_.back().verdict)) << revisions_.back().verdict.why;
   EXPECT_TRUE(Ask("show")["usable"].is_null());
-  EXPECT_EQ(withdrawn_, (std::vector<std::string>{"a", "b", "c", "left", "right"}));
+  EXPECT_EQ(InUse(), 0);
 }
 
 TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {

@@ -1,0 +1,150 @@
+#include "server/dds/robot_writers.h"
+
+#include "server/base/log.h"
+
+namespace rigcal::dds {
+namespace {
+
+void LogFailure(const Status& status) {
+  if (!status) LogError(status.error());
+}
+
+// The text must outlive the sample; DDS only reads it.
+char* Borrow(const std::string& text) { return const_cast<char*>(text.c_str()); }
+
+template <std::size_t N>
+Status Put(const std::string& text, char (&to)[N], const char* field) {
+  return wire::CopyText(text, to, N, field);
+}
+
+Status FillEvent(const Announcement& announcement, rigcal_wire_Event& sample) {
+  RIGCAL_TRY(Put(announcement.robot.str(), sample.robot_id, "robot_id"));
+  RIGCAL_TRY(Put(announcement.kind, sample.kind, "event kind"));
+  RIGCAL_TRY(Put(announcement.subject_id, sample.subject_id, "event subject"));
+  sample.stamp_ns = announcement.at.ns;
+  sample.json = Borrow(announcement.json);
+  return {};
+}
+
+Status FillKey(const RobotId& robot, const SensorId& sensor, rigcal_wire_Calibration& sample) {
+  RIGCAL_TRY(Put(robot.str(), sample.robot_id, "robot_id"));
+  return Put(sensor.str(), sample.sensor_id, "sensor_id");
+}
+
+void FillPose(const SensorPose& pose, rigcal_wire_Calibration& sample) {
+  const Se3 T_ref_sensor = pose.known ? pose.T_ref_sensor : Se3{};
+  sample.known = pose.known;
+  for (int i = 0; i < 3; ++i) sample.p_m[i] = T_ref_sensor.p_m[i];
+  for (int i = 0; i < 4; ++i) sample.q_xyzw[i] = T_ref_sensor.q.coeffs()[i];
+  for (int row = 0; row < 6; ++row)
+    for (int col = 0; col < 6; ++col) sample.covariance[6 * row + col] = pose.known ? pose.covariance(row, col) : 0.0;
+}
+
+Status FillCalibration(const RobotId& robot, const RobotState::Calibration& calibration, const SensorPose& pose,
+                       rigcal_wire_Calibration& sample) {
+  RIGCAL_TRY(FillKey(robot, pose.sensor, sample));
+  RIGCAL_TRY(Put(calibration.reference.str(), sample.reference_id, "reference_id"));
+  RIGCAL_TRY(Put(NameOf(calibration.revision.verdict.level), sample.verdict, "verdict"));
+  sample.revision = static_cast<std::uint32_t>(calibration.revision.number);
+  sample.stamp_ns = calibration.revision.created_at.ns;
+  FillPose(pose, sample);
+  return {};
+}
+
+}  // namespace
+
+RobotWriters::RobotWriters(wire::Publisher publisher, wire::Writer<rigcal_wire_Receipt> receipts, wire::Writer<rigcal_wire_Event> events,
+                           wire::Writer<rigcal_wire_Calibration> calibrations, wire::Writer<rigcal_wire_RobotStatus> statuses)
+    : publisher_(std::move(publisher)),
+      receipts_(std::move(receipts)),
+      events_(std::move(events)),
+      calibrations_(std::move(calibrations)),
+      statuses_(std::move(statuses)),
+      quiet_since_(std::chrono::steady_clock::now()) {}
+
+Result<std::shared_ptr<RobotWriters>> RobotWriters::Open(const wire::Participant& participant, const RobotId& partition) {
+  RIGCAL_ASSIGN(auto publisher, wire::Publisher::Open(participant, wire::RobotPartition(partition)));
+  RIGCAL_ASSIGN(auto receipts, wire::Writer<rigcal_wire_Receipt>::Open(participant, publisher));
+  RIGCAL_ASSIGN(auto events, wire::Writer<rigcal_wire_Event>::Open(participant, publisher));
+  RIGCAL_ASSIGN(auto calibrations, wire::Writer<rigcal_wire_Calibration>::Open(participant, publisher));
+  RIGCAL_ASSIGN(auto statuses, wire::Writer<rigcal_wire_RobotStatus>::Open(participant, publisher));
+  return std::shared_ptr<RobotWriters>(
+      new RobotWriters(std::move(publisher), std::move(receipts), std::move(events), std::move(calibrations), std::move(statuses)));
+}
+
+void RobotWriters::Send(const wire::Receipt& receipt) {
+  quiet_since_ = std::chrono::steady_clock::now();  // its reader may not be known yet
+  const auto owned = wire::ToReceipt(receipt);
+  if (!owned) return LogError(owned.error());
+  LogFailure(receipts_.Write(owned->sample));
+}
+
+void RobotWriters::Forget(const wire::Receipt& receipt) {
+  if (const auto owned = wire::ToReceipt(receipt)) LogFailure(receipts_.Forget(owned->sample));
+}
+
+void RobotWriters::Send(const Announcement& announcement, std::uint64_t sequence_number) {
+  rigcal_wire_Event sample{};
+  sample.sequence_number = sequence_number;
+  if (const Status filled = FillEvent(announcement, sample); !filled) return LogError(filled.error());
+  LogFailure(events_.Write(sample));
+}
+
+void RobotWriters::TellStatus(const RobotState& state) {
+  rigcal_wire_RobotStatus sample{};
+  const auto fill = [&]() -> Status {
+    RIGCAL_TRY(Put(state.newest.robot.str(), sample.robot_id, "robot_id"));
+    return Put(NameOf(state.newest.verdict.level), sample.verdict, "verdict");
+  };
+  if (const Status filled = fill(); !filled) return LogError(filled.error());
+  sample.revision = static_cast<std::uint32_t>(state.newest.number);
+  sample.why = Borrow(state.newest.verdict.why);
+  sample.edges = static_cast<std::uint32_t>(state.edges);
+  sample.stamp_ns = state.newest.created_at.ns;
+  LogFailure(statuses_.Write(sample));
+}
+
+void RobotWriters::TellCalibration(const RobotId& robot, const RobotState::Calibration& calibration) {
+  if (calibration.revision.number == told_calibration_) return;
+  std::set<SensorId> told;
+  for (const SensorPose& pose : calibration.poses) {
+    rigcal_wire_Calibration sample{};
+    if (const Status filled = FillCalibration(robot, calibration, pose, sample); !filled) return LogError(filled.error());
+    LogFailure(calibrations_.Write(sample));
+    told.insert(pose.sensor);
+  }
+  Withdraw(robot, told);
+  told_sensors_ = std::move(told);
+  told_calibration_ = calibration.revision.number;
+}
+
+void RobotWriters::Withdraw(const RobotId& robot, const std::set<SensorId>& kept) {
+  for (const SensorId& sensor : told_sensors_) {
+    if (kept.contains(sensor)) continue;
+    rigcal_wire_Calibration key{};
+    if (const Status filled = FillKey(robot, sensor, key); !filled) return LogError(filled.error());
+    LogFailure(calibrations_.Forget(key));
+  }
+  told_sensors_.clear();
+  told_calibration_ = 0;
+}
+
+void RobotWriters::Tell(const RobotState& state) {
+  const std::lock_guard lock(mutex_);
+  if (state.newest.number < told_revision_) return;
+  told_revision_ = state.newest.number;
+  TellStatus(state);
+  if (state.calibration) return TellCalibration(state.newest.robot, *state.calibration);
+  Withdraw(state.newest.robot, {});
+}
+
+bool RobotWriters::HasReaders() const {
+  return receipts_.MatchedReaders() + events_.MatchedReaders() + calibrations_.MatchedReaders() + statuses_.MatchedReaders() > 0;
+}
+
+RobotWriters::Time RobotWriters::QuietSince(Time now) {
+  if (HasReaders()) quiet_since_ = now;
+  return quiet_since_;
+}
+
+}  // namespace rigcal::dds

@@ -1,0 +1,23 @@
+// What whoever listens to a robot is told of it: its newest verdict, and the poses that it is to use.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "server/model/graph.h"
+
+namespace rigcal {
+
+struct RobotState {
+  Revision newest;         // without its document
+  std::int64_t edges = 0;  // that counted when it was made, good and failed
+  struct Calibration {
+    Revision revision;  // without its document
+    SensorId reference;
+    std::vector<SensorPose> poses;
+  };
+  std::optional<Calibration> calibration;  // of the newest revision that may be used; absent: there is none
+};
+
+}  // namespace rigcal

@@ -1,0 +1,14 @@
+// READ: what whoever listens to a robot is told of it (model/robot_state.h).
+#pragma once
+
+#include <optional>
+
+#include "server/model/robot_state.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Nothing of a robot without a revision.
+[[nodiscard]] Result<std::optional<RobotState>> LoadRobotState(storage::Store& store, const RobotId& robot);
+
+}  // namespace rigcal::pipeline
