@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kLiveRobotsMax = 16'000;  // a participant may have 16,382 publishers
 constexpr std::size_t kFinishedReceiptsMax = 4'096;
-constexpr std::chrono::seconds kQuietFor{20}, kLookEvery{5};
+constexpr std::chrono::seconds kQuietFor{5}, kLookEvery{1};
 const RobotId kNoRobot("!");  // no robot may be called that
 
 }  // namespace

@@ -4,7 +4,7 @@ namespace rigcal::dds {
 namespace {
 
 constexpr std::size_t kPartitionsMax = 16'000;  // a participant may have 16,382 publishers
-constexpr std::chrono::seconds kReplyQuietFor{20}, kReplyLookEvery{5};
+constexpr std::chrono::seconds kReplyQuietFor{5}, kReplyLookEvery{1};
 
 }  // namespace
 
