@@ -87,6 +87,18 @@ struct Manifest {
 [[nodiscard]] Status Validate(const SessionHeader& header);
 [[nodiscard]] Status Validate(const Manifest& manifest);
 
+// The sensor of this name; null: the session has none.
+[[nodiscard]] const Sensor* SensorOf(const SessionHeader& header, const SensorId& id);
+// What its .bin files hold, if the session says it.
+[[nodiscard]] std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar);
+// The targets that both may see.
+[[nodiscard]] std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b);
+// Captures that a camera or a lidar has a file of, by name.
+[[nodiscard]] std::vector<CaptureId> RecordedCaptures(const Manifest& manifest);
+// Captures in which both have one and the same file, by the digests: a copying mistake, and no measurement. In the
+// manifest's order.
+[[nodiscard]] std::vector<CaptureId> SamePictures(const Manifest& manifest, const SensorPair& pair);
+
 // All pairs of sensors of a session that there is a method (method.h) for and that are not to be skipped; a < b in the order of
 // the session's sensors.
 [[nodiscard]] std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header);
