@@ -82,6 +82,8 @@ struct Manifest {
 
 // One sensor by itself: what its kind does not have is absent, intrinsics in range, nominal pose finite and unit.
 [[nodiscard]] Status Validate(const Sensor& sensor);
+// One file by itself: its sensor is of the session, its path as the sensor's kind has it, its size in range.
+[[nodiscard]] Status Validate(const Payload& payload, const SessionHeader& header);
 // Reference and targets exist, names unique, counts and sizes in range, payloads of known sensors. The error names
 // the sensor, target or file.
 [[nodiscard]] Status Validate(const SessionHeader& header);
