@@ -14,6 +14,7 @@ constexpr const char* kFooter =
     "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn or calibration\n"
     "overdue, 6 verdict unknown. A verdict is told by push, push-edges, show, lookup and `status ROBOT`.\n"
     "Examples:\n"
+    "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"
     "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
     "  rigcal lookup mapper-01 front_left lidar  the pose of the lidar in the front left camera\n"
     "  rigcal doctor                            what is in the way between here and the server\n";
@@ -49,7 +50,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddLookup,    AddStatus,           AddWatch,  AddReport, AddDue,      AddCompare,
-    AddExport, AddDoctor,    AddSimulateElsewhere};
+    AddExport, AddDoctor,    AddCheckElsewhere,   AddSimulateElsewhere};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

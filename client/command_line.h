@@ -1,5 +1,5 @@
 // The whole command line: parses, runs one verb, gives the exit code. No exception leaves it.
-// `rigcal simulate` replaces the process.
+// `rigcal simulate` and `rigcal check` replace the process.
 #pragma once
 
 #include <ostream>

@@ -180,7 +180,7 @@ void AddOptions(CLI::App& verb, Options& options) {
 }  // namespace
 
 void AddSimulate(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("simulate", "Write the session of a virtual robot, with its truth");
+  CLI::App* verb = app.add_subcommand("simulate", kSimulateDescription);
   auto options = std::make_shared<Options>();
   AddOptions(*verb, *options);
   verb->footer(

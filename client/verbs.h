@@ -27,8 +27,12 @@ void AddDue(CLI::App& app, Context& context);
 void AddCompare(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
-// In the program of simulate_main.cc; `rigcal` has the one that starts it.
+// In programs of their own (simulate_main.cc, check_main.cc); `rigcal` has those that start them.
+inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
+inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";
 void AddSimulate(CLI::App& app, Context& context);
 void AddSimulateElsewhere(CLI::App& app, Context& context);
+void AddCheck(CLI::App& app, Context& context);
+void AddCheckElsewhere(CLI::App& app, Context& context);
 
 }  // namespace rigcal::client

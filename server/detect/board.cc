@@ -1,5 +1,6 @@
 #include "server/detect/board.h"
 
+#include <functional>
 #include <locale>
 #include <new>
 #include <numeric>
@@ -11,7 +12,6 @@
 #include "server/detect/annotate.h"
 #include "server/detect/charuco.h"
 #include "server/detect/corners.h"
-#include "server/detect/grey_image.h"
 #include "server/detect/image_header.h"
 #include "server/detect/markers.h"
 #include "server/detect/orientation.h"
@@ -80,14 +80,13 @@ void FindBoard(const GreyImage& image, const Target& board, BoardView& view) {
   }
 }
 
-AnnotatedView DetectIn(const GreyImage& image, const Target& board) {
-  AnnotatedView result;
-  result.view.target = board.id;
-  result.view.image_width_px = image.width_px;
-  result.view.image_height_px = image.height_px;
-  FindBoard(image, board, result.view);
-  result.picture = Annotated(image, result.view, board);
-  return result;
+BoardView Searched(const GreyImage& image, const Target& board) {
+  BoardView view;
+  view.target = board.id;
+  view.image_width_px = image.width_px;
+  view.image_height_px = image.height_px;
+  FindBoard(image, board, view);
+  return view;
 }
 
 AnnotatedView NotFound(const Target& board, std::string why_not, const ImageSize& size) {
@@ -97,6 +96,16 @@ AnnotatedView NotFound(const Target& board, std::string why_not, const ImageSize
   result.view.image_height_px = static_cast<int>(size.height_px);
   result.view.why_not = std::move(why_not);
   return result;
+}
+
+// What a library throws is a search that found nothing out.
+AnnotatedView Guarded(const Target& board, const std::function<AnnotatedView()>& search) {
+  try {
+    return search();
+  } catch (const std::exception& exception) {
+    if (IsOutOfMemory(exception)) throw std::bad_alloc();
+    return NotFound(board, std::string("the search for the board failed: ") + exception.what(), {});
+  }
 }
 
 }  // namespace
@@ -117,17 +126,22 @@ std::string DetectorKey(const Target& target) {
   return NameOf(target.kind) + search + geometry + markers.str() + target.id.str();
 }
 
+BoardView FindIn(const GreyImage& image, const Target& board) {
+  if (std::string why_not = WhyUnsearchable(board); !why_not.empty())
+    return NotFound(board, std::move(why_not), {image.width_px, image.height_px}).view;
+  return Guarded(board, [&] { return AnnotatedView{Searched(image, board), {}}; }).view;
+}
+
 AnnotatedView Detect(std::span<const std::byte> encoded, const Target& board) {
   if (std::string why_not = WhyUnsearchable(board); !why_not.empty())
     return NotFound(board, std::move(why_not), ReadImageSize(encoded).value_or(ImageSize{}));
   const auto image = DecodeGrey(encoded);
   if (!image) return NotFound(board, image.error().what + "; " + image.error().cure, {});
-  try {
-    return DetectIn(*image, board);
-  } catch (const std::exception& exception) {
-    if (IsOutOfMemory(exception)) throw std::bad_alloc();
-    return NotFound(board, std::string("the search for the board failed: ") + exception.what(), {});
-  }
+  return Guarded(board, [&] {
+    BoardView view = Searched(*image, board);
+    std::string picture = Annotated(*image, view, board);
+    return AnnotatedView{std::move(view), std::move(picture)};
+  });
 }
 
 }  // namespace rigcal::detect

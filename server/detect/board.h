@@ -1,9 +1,10 @@
-// Finds a target of any kind in an encoded picture.
+// Finds a target of any kind in a picture.
 #pragma once
 
 #include <span>
 #include <string>
 
+#include "server/detect/grey_image.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
 
@@ -18,5 +19,7 @@ namespace rigcal::detect {
 // and the indices of TargetPoints(). A checkerboard is seen whole, in the order of Oriented(); boards with markers may
 // be seen in part. Pure: the same bytes give the same corners.
 [[nodiscard]] AnnotatedView Detect(std::span<const std::byte> encoded, const Target& target);
+// The view alone, of a picture that is decoded: that of Detect() of the same pixels.
+[[nodiscard]] BoardView FindIn(const GreyImage& image, const Target& target);
 
 }  // namespace rigcal::detect

@@ -1,7 +1,6 @@
 #include "server/formats/session_folder.h"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
 #include <set>
 
@@ -10,12 +9,12 @@
 #include "server/base/parallel_for.h"
 #include "server/base/sha256.h"
 #include "server/base/text.h"
-#include "server/formats/bin_layout.h"
 #include "server/formats/folder_listing.h"
 #include "server/formats/nearest.h"
 #include "server/formats/payload_kind.h"
 #include "server/formats/payload_path.h"
-#include "server/formats/poses.h"
+#include "server/formats/refusals.h"
+#include "server/formats/session_contents.h"
 
 namespace rigcal::formats {
 namespace {
@@ -23,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSessionYaml = "session.yaml";
-constexpr const char *kTableSuffix = "csv", *kBinSuffix = "bin";
 constexpr const char* kTruthYaml = "truth.yaml";  // of a simulated session: not for those who calibrate it
 constexpr const char* kIgnoredHint = "Move it out of the folder, or begin its name with a '.': such files are ignored.";
 
@@ -58,95 +56,58 @@ Result<Payload> PayloadOf(const ListedEntry& entry, const fs::path& folder, cons
 }
 
 Status AppendSensorFolder(const fs::path& folder, const ListedEntry& entry, const SessionHeader& header,
-                          std::vector<Payload>& payloads) {
-  RIGCAL_TRY(CheckSensorFolder(entry, header));
-  RIGCAL_ASSIGN(const std::vector<ListedEntry> files, ListFolder(folder / entry.name, folder));
-  for (const ListedEntry& file : files) {
-    RIGCAL_ASSIGN(Payload payload, PayloadOf(file, folder, entry.name));
-    payloads.push_back(std::move(payload));
+                          const Refusals& refusals, std::vector<Payload>& payloads) {
+  if (const Status known = CheckSensorFolder(entry, header); !known) return refusals.Take(known.error());
+  const auto files = ListFolder(folder / entry.name, folder);
+  if (!files) return refusals.Take(files.error());
+  for (const ListedEntry& file : *files) {
+    Result<Payload> payload = PayloadOf(file, folder, entry.name);
+    if (payload)
+      payloads.push_back(*std::move(payload));
+    else
+      RIGCAL_TRY(refusals.Take(std::move(payload).error()));
   }
   return {};
 }
 
-Status CheckOneFilePerCapture(const std::vector<Payload>& payloads) {
+Status KeepOneFilePerCapture(const Refusals& refusals, std::vector<Payload>& payloads) {
   std::set<std::pair<SensorId, CaptureId>> seen;
-  for (const Payload& payload : payloads)
-    if (!seen.emplace(payload.sensor, payload.capture).second)
-      return Fail(ErrorCode::kInvalidInput,
-                  "file " + Quoted(payload.path) + ": sensor '" + payload.sensor.str() +
-                      "' has another file of capture '" + payload.capture.str() + "'",
-                  "Keep one of the two.");
-  return {};
+  std::vector<Status> outcomes;
+  for (const Payload& payload : payloads) {
+    const bool is_first = seen.emplace(payload.sensor, payload.capture).second;
+    outcomes.push_back(is_first ? Status()
+                                : Fail(ErrorCode::kInvalidInput,
+                                       "file " + Quoted(payload.path) + ": sensor '" + payload.sensor.str() +
+                                           "' has another file of capture '" + payload.capture.str() + "'",
+                                       "Keep one of the two."));
+  }
+  return KeepGood(outcomes, refusals, payloads);
 }
 
 // Everything that can be refused without reading the pictures.
-Result<std::vector<Payload>> ListPayloads(const fs::path& folder, const SessionHeader& header) {
+Result<std::vector<Payload>> ListPayloads(const fs::path& folder, const SessionHeader& header,
+                                          const Refusals& refusals) {
   RIGCAL_ASSIGN(const std::vector<ListedEntry> entries, ListFolder(folder, folder));
   std::vector<Payload> payloads;
   for (const ListedEntry& entry : entries) {
     if (entry.name == kSessionYaml || entry.name == kTruthYaml) continue;
-    if (entry.kind != ListedEntry::Kind::kFolder)
-      return Fail(ErrorCode::kInvalidInput, "file " + Quoted(entry.name) + ": it does not belong to a session",
-                  kIgnoredHint);
-    RIGCAL_TRY(AppendSensorFolder(folder, entry, header, payloads));
+    if (entry.kind == ListedEntry::Kind::kFolder)
+      RIGCAL_TRY(AppendSensorFolder(folder, entry, header, refusals, payloads));
+    else
+      RIGCAL_TRY(refusals.Take({ErrorCode::kInvalidInput,
+                                "file " + Quoted(entry.name) + ": it does not belong to a session", kIgnoredHint}));
   }
-  if (payloads.empty())
-    return Fail(ErrorCode::kInvalidInput, "session folder " + Quoted(folder.string()) + ": it has no captures",
-                "Put the pictures in <sensor>/<capture>.png or .jpg beside session.yaml.");
+  if (payloads.empty() && !refusals.Any())
+    RIGCAL_TRY(
+        refusals.Take({ErrorCode::kInvalidInput, "session folder " + Quoted(folder.string()) + ": it has no captures",
+                       "Put the pictures in <sensor>/<capture>.png or .jpg beside session.yaml."}));
   std::sort(payloads.begin(), payloads.end(), [](const Payload& a, const Payload& b) { return a.path < b.path; });
-  RIGCAL_TRY(CheckOneFilePerCapture(payloads));
+  RIGCAL_TRY(KeepOneFilePerCapture(refusals, payloads));
   return payloads;
 }
 
-// The captures that sensors other than `tracker` have: names of files, and of rows of other trackers.
-std::set<CaptureId> OtherCaptures(const std::map<SensorId, PoseTable>& tables, const std::vector<Payload>& payloads,
-                                  const SensorId& tracker) {
-  std::set<CaptureId> captures;
-  for (const Payload& payload : payloads)
-    if (SuffixOf(payload.path) != kTableSuffix) captures.insert(payload.capture);
-  for (const auto& [sensor, table] : tables)
-    if (sensor != tracker)
-      for (const TimedPose& pose : table) captures.insert(pose.capture);
-  return captures;
-}
-
-// A picture that is bad costs one capture; a table of poses is all that its sensor has, so it is read before it is
-// sent.
-Status CheckPoseTables(const fs::path& folder, const Manifest& manifest) {
-  std::map<SensorId, std::string> texts;
-  std::map<SensorId, PoseTable> tables;
-  for (const Payload& payload : manifest.payloads) {
-    if (SuffixOf(payload.path) != kTableSuffix) continue;
-    const auto sensor = std::find_if(manifest.header.sensors.begin(), manifest.header.sensors.end(),
-                                     [&](const Sensor& s) { return s.id == payload.sensor; });
-    RIGCAL_ASSIGN(std::string text, ReadFile(folder / payload.path, limits::kPoseTableBytesMax));
-    RIGCAL_ASSIGN(PoseTable table, ReadPoses(text, sensor->kind, payload.path));
-    if (sensor->kind != SensorKind::kTracker) continue;
-    tables[payload.sensor] = std::move(table);
-    texts[payload.sensor] = std::move(text);
-  }
-  for (const auto& [sensor, text] : texts)
-    RIGCAL_TRY(ReadPosesOf(OtherCaptures(tables, manifest.payloads, sensor), text,
-                           sensor.str() + "/" + std::string(kPoseTableStem) + "." + kTableSuffix));
-  return {};
-}
-
-// Nothing in a .bin says what it holds, and a technician can say it.
-Status CheckBins(const fs::path& folder, const Manifest& manifest) {
-  std::vector<Status> outcomes(manifest.payloads.size());
-  ParallelFor(manifest.payloads.size(), [&](std::size_t i) {
-    const Payload& payload = manifest.payloads[i];
-    if (SuffixOf(payload.path) != kBinSuffix) return;
-    const auto bytes = ReadFile(folder / payload.path, static_cast<std::size_t>(limits::kPayloadBytesMax));
-    const auto sensor = std::find_if(manifest.header.sensors.begin(), manifest.header.sensors.end(),
-                                     [&](const Sensor& s) { return s.id == payload.sensor; });
-    outcomes[i] = bytes ? CheckBinLayout(*bytes, sensor->layout, payload.path) : Status(Fail(bytes.error()));
-  });
-  for (const Status& outcome : outcomes) RIGCAL_TRY(outcome);
-  return {};
-}
-
-Status HashPayloads(const fs::path& folder, const Progress& progress, std::vector<Payload>& payloads) {
+Status HashPayloads(const fs::path& folder, const Progress& progress, const Refusals& refusals,
+                    std::vector<Payload>& payloads) {
   std::int64_t bytes_in_all = 0, bytes_hashed = 0;
   for (const Payload& payload : payloads) bytes_in_all += payload.size_bytes;
   std::mutex mutex;
@@ -161,13 +122,19 @@ Status HashPayloads(const fs::path& folder, const Progress& progress, std::vecto
     bytes_hashed += payloads[i].size_bytes;
     if (progress) progress(bytes_hashed, bytes_in_all);
   });
-  for (const Status& outcome : outcomes) RIGCAL_TRY(outcome);
-  return {};
+  return KeepGood(outcomes, refusals, payloads);
 }
 
-}  // namespace
+Status CheckManifest(const Refusals& refusals, Manifest& manifest) {
+  std::vector<Status> outcomes;
+  for (const Payload& payload : manifest.payloads) outcomes.push_back(Validate(payload, manifest.header));
+  RIGCAL_TRY(KeepGood(outcomes, refusals, manifest.payloads));
+  if (manifest.payloads.empty()) return {};
+  const Status valid = Validate(manifest);
+  return valid ? Status() : refusals.Take(valid.error());
+}
 
-Result<Manifest> ReadSessionFolder(const fs::path& folder, const Progress& progress) {
+Result<Manifest> ReadFolder(const fs::path& folder, const Progress& progress, const Refusals& refusals) {
   RIGCAL_ASSIGN(const std::vector<ListedEntry> entries, ListFolder(folder, folder));
   const auto is_session_yaml = [](const ListedEntry& entry) { return entry.name == kSessionYaml; };
   if (std::none_of(entries.begin(), entries.end(), is_session_yaml))
@@ -176,12 +143,23 @@ Result<Manifest> ReadSessionFolder(const fs::path& folder, const Progress& progr
   RIGCAL_ASSIGN(const std::string text, ReadFile(folder / kSessionYaml, limits::kSessionYamlBytesMax));
   Manifest manifest;
   RIGCAL_ASSIGN(manifest.header, ReadSessionYaml(text, kSessionYaml));
-  RIGCAL_ASSIGN(manifest.payloads, ListPayloads(folder, manifest.header));
-  RIGCAL_TRY(HashPayloads(folder, progress, manifest.payloads));
-  RIGCAL_TRY(Validate(manifest));
-  RIGCAL_TRY(CheckPoseTables(folder, manifest));
-  RIGCAL_TRY(CheckBins(folder, manifest));
+  RIGCAL_ASSIGN(manifest.payloads, ListPayloads(folder, manifest.header, refusals));
+  RIGCAL_TRY(HashPayloads(folder, progress, refusals, manifest.payloads));
+  RIGCAL_TRY(CheckManifest(refusals, manifest));
+  RIGCAL_TRY(CheckContents(folder, refusals, manifest));
   return manifest;
+}
+
+}  // namespace
+
+Result<Manifest> ReadSessionFolder(const fs::path& folder, const Progress& progress) {
+  return ReadFolder(folder, progress, Refusals(nullptr));
+}
+
+Result<SessionSurvey> SurveySessionFolder(const fs::path& folder, const Progress& progress) {
+  SessionSurvey survey;
+  RIGCAL_ASSIGN(survey.manifest, ReadFolder(folder, progress, Refusals(&survey.refusals)));
+  return survey;
 }
 
 }  // namespace rigcal::formats

@@ -86,6 +86,12 @@ const std::vector<std::string_view>& SuffixesOf(SensorKind kind) {
   return kind == SensorKind::kLidar ? kClouds : kTables;
 }
 
+Status Validate(const Payload& payload, const SessionHeader& header) {
+  const Sensor* sensor = SensorOf(header, payload.sensor);
+  if (sensor == nullptr) return CheckPayload(payload, {});
+  return CheckPayload(payload, {{sensor->id, sensor->kind}});
+}
+
 Status Validate(const Manifest& manifest) {
   RIGCAL_TRY(Validate(manifest.header));
   const std::size_t count = manifest.payloads.size();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -9,9 +10,11 @@ namespace {
 
 bool MayShareTarget(const Sensor& a, const Sensor& b) { return !a.sees || !b.sees || *a.sees == *b.sees; }
 
+bool MaySee(const Sensor& sensor, const Target& target) { return !sensor.sees || *sensor.sees == target.id; }
+
 bool MaySeeTarget(const SessionHeader& header, const Sensor& sensor) {
   return std::any_of(header.targets.begin(), header.targets.end(),
-                     [&](const Target& target) { return !sensor.sees || *sensor.sees == target.id; });
+                     [&](const Target& target) { return MaySee(sensor, target); });
 }
 
 // Whether sensors of the method's kinds, in its order, can be calibrated by it.
@@ -45,6 +48,26 @@ std::optional<Method> MethodFor(const SessionHeader& header, const Sensor& a, co
   for (const MethodRow& row : kMethods)
     if (row.a == a.kind && row.b == b.kind && Applies(row.method, header, a, b)) return row.method;
   return std::nullopt;
+}
+
+std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b) {
+  std::vector<const Target*> targets;
+  for (const Target& target : header.targets)
+    if (MaySee(a, target) && MaySee(b, target)) targets.push_back(&target);
+  return targets;
+}
+
+std::vector<CaptureId> SamePictures(const Manifest& manifest, const SensorPair& pair) {
+  std::map<CaptureId, Digest> of_a;
+  for (const Payload& payload : manifest.payloads)
+    if (payload.sensor == pair.a) of_a.emplace(payload.capture, payload.digest);
+  std::vector<CaptureId> same;
+  for (const Payload& payload : manifest.payloads) {
+    if (payload.sensor != pair.b) continue;
+    const auto other = of_a.find(payload.capture);
+    if (other != of_a.end() && other->second == payload.digest) same.push_back(payload.capture);
+  }
+  return same;
 }
 
 std::vector<SensorPair> PairsToCalibrate(const SessionHeader& header) {

@@ -185,4 +185,25 @@ Status Validate(const SessionHeader& header) {
   return CheckLidarPolish(header);
 }
 
+const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {
+  const auto it =
+      std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
+  return it == header.sensors.end() ? nullptr : &*it;
+}
+
+std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar) {
+  const Sensor* sensor = SensorOf(header, lidar);
+  return sensor == nullptr ? std::nullopt : sensor->layout;
+}
+
+std::vector<CaptureId> RecordedCaptures(const Manifest& manifest) {
+  std::set<CaptureId> captures;
+  for (const Payload& payload : manifest.payloads) {
+    const Sensor* sensor = SensorOf(manifest.header, payload.sensor);
+    if (sensor != nullptr && (sensor->kind == SensorKind::kCamera || sensor->kind == SensorKind::kLidar))
+      captures.insert(payload.capture);
+  }
+  return {captures.begin(), captures.end()};
+}
+
 }  // namespace rigcal

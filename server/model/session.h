@@ -82,10 +82,24 @@ struct Manifest {
 
 // One sensor by itself: what its kind does not have is absent, intrinsics in range, nominal pose finite and unit.
 [[nodiscard]] Status Validate(const Sensor& sensor);
+// One file by itself: its sensor is of the session, its path as the sensor's kind has it, its size in range.
+[[nodiscard]] Status Validate(const Payload& payload, const SessionHeader& header);
 // Reference and targets exist, names unique, counts and sizes in range, payloads of known sensors. The error names
 // the sensor, target or file.
 [[nodiscard]] Status Validate(const SessionHeader& header);
 [[nodiscard]] Status Validate(const Manifest& manifest);
+
+// The sensor of this name; null: the session has none.
+[[nodiscard]] const Sensor* SensorOf(const SessionHeader& header, const SensorId& id);
+// What its .bin files hold, if the session says it.
+[[nodiscard]] std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar);
+// The targets that both may see.
+[[nodiscard]] std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b);
+// Captures that a camera or a lidar has a file of, by name.
+[[nodiscard]] std::vector<CaptureId> RecordedCaptures(const Manifest& manifest);
+// Captures in which both have one and the same file, by the digests: a copying mistake, and no measurement. In the
+// manifest's order.
+[[nodiscard]] std::vector<CaptureId> SamePictures(const Manifest& manifest, const SensorPair& pair);
 
 // All pairs of sensors of a session that there is a method (method.h) for and that are not to be skipped; a < b in the order of
 // the session's sensors.

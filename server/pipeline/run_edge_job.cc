@@ -1,8 +1,7 @@
 #include "server/pipeline/run_edge_job.h"
 
-#include <set>
-
 #include "server/base/log.h"
+#include "server/calib/stereo/same_pictures.h"
 #include "server/model/method.h"
 #include "server/model/past.h"
 #include "server/pipeline/attempt.h"
@@ -10,7 +9,6 @@
 #include "server/pipeline/decoding.h"
 #include "server/pipeline/lost_payloads.h"
 #include "server/pipeline/pair_inputs.h"
-#include "server/pipeline/same_pictures.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -48,30 +46,19 @@ Result<Edge> EdgeFrom(storage::Store& store, const SensorPair& pair, Method meth
   return edge;
 }
 
-// Captures that a camera or a lidar has a file of.
-std::vector<CaptureId> CapturesOf(const Manifest& manifest) {
-  std::set<CaptureId> captures;
-  for (const Payload& payload : manifest.payloads) {
-    const Sensor* sensor = SensorOf(manifest.header, payload.sensor);
-    if (sensor != nullptr && (sensor->kind == SensorKind::kCamera || sensor->kind == SensorKind::kLidar))
-      captures.insert(payload.capture);
-  }
-  return {captures.begin(), captures.end()};
-}
-
 // All pairs of a session leave out the same captures at once.
 template <typename Inputs>
 Result<Inputs> InSession(const Manifest& manifest, Result<Inputs> inputs) {
-  if (inputs) inputs->problem.session_captures = CapturesOf(manifest);
+  if (inputs) inputs->problem.session_captures = RecordedCaptures(manifest);
   return inputs;
 }
 
 Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
   const std::vector<CaptureId> same = SamePictures(manifest, pair);
   auto inputs = InSession(manifest, LoadStereo(store, manifest, pair));
-  if (inputs) LeaveOut(same, inputs->problem);
+  if (inputs) calib::LeaveOut(same, inputs->problem);
   RIGCAL_ASSIGN(Edge edge, EdgeFrom(store, pair, Method::kStereo, std::move(inputs), calib::EstimateEdge));
-  TellLeftOut(same, edge);
+  calib::TellLeftOut(same, edge);
   return edge;
 }
 

@@ -1,6 +1,6 @@
 #include "server/pipeline/sightings.h"
 
-#include <algorithm>
+#include <optional>
 #include <span>
 
 #include "server/base/parallel_for.h"
@@ -144,8 +144,6 @@ std::pair<storage::StoredCloud, std::string> DetectCloud(const std::string& byte
   return {{std::move(found.view), {}}, std::move(found.picture)};
 }
 
-bool MaySee(const Sensor& sensor, const Target& target) { return !sensor.sees || *sensor.sees == target.id; }
-
 }  // namespace
 
 Result<Sightings<storage::StoredView>> SeePictures(storage::Store& store, const Manifest& manifest,
@@ -160,24 +158,6 @@ Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const M
   return SearchAll<storage::StoredCloud>(store, manifest, lidar, target,
                                          {detect::CloudDetectorKey(target), storage::LoadCloud, storage::AppendCloud,
                                           ToSearchCloud, DetectCloud, LayoutOf(manifest.header, lidar)});
-}
-
-const Sensor* SensorOf(const SessionHeader& header, const SensorId& id) {
-  const auto it =
-      std::find_if(header.sensors.begin(), header.sensors.end(), [&](const Sensor& s) { return s.id == id; });
-  return it == header.sensors.end() ? nullptr : &*it;
-}
-
-std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b) {
-  std::vector<const Target*> targets;
-  for (const Target& target : header.targets)
-    if (MaySee(a, target) && MaySee(b, target)) targets.push_back(&target);
-  return targets;
-}
-
-std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar) {
-  const Sensor* sensor = SensorOf(header, lidar);
-  return sensor == nullptr ? std::nullopt : sensor->layout;
 }
 
 std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found) {

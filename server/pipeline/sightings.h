@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 
 #include "server/model/session.h"
 #include "storage/detections.h"
@@ -17,12 +16,6 @@ using Sightings = std::map<CaptureId, Stored>;
 [[nodiscard]] Result<Sightings<storage::StoredCloud>> SeeClouds(storage::Store& store, const Manifest& manifest,
                                                                 const SensorId& lidar, const Target& target);
 
-// The sensor of this name; null: the session has none.
-[[nodiscard]] const Sensor* SensorOf(const SessionHeader& header, const SensorId& id);
-// What its .bin files hold, if the session says it.
-[[nodiscard]] std::optional<CloudLayout> LayoutOf(const SessionHeader& header, const SensorId& lidar);
-// The targets that both may see.
-[[nodiscard]] std::vector<const Target*> CommonTargets(const SessionHeader& header, const Sensor& a, const Sensor& b);
 // For reports: "left / 003: 54 corners".
 [[nodiscard]] std::string EvidenceTitle(const SensorId& sensor, const CaptureId& capture, const std::string& found);
 

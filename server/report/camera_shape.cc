@@ -1,6 +1,5 @@
 #include "server/report/camera_shape.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,45 +9,8 @@
 namespace rigcal::report {
 namespace {
 
-constexpr int kColumns = 12, kRowsMax = 24;  // of the coverage
-constexpr int kMeanColumns = 8;              // of the fields whose mean residual is drawn
-constexpr std::size_t kMeanCornersMin = 8;   // of such a field
-constexpr double kEmptyMargin_ratio = 0.12;  // is named
-constexpr double kFlatTilt_rad = 0.26, kSameDistance_ratio = 1.2;
-
-int RowsFor(const CameraFit& fit, int columns) {
-  if (fit.width_px <= 0 || fit.height_px <= 0) return 1;
-  return std::clamp(static_cast<int>(std::lround(double(columns) * fit.height_px / fit.width_px)), 1, kRowsMax);
-}
-
-// The field of a corner; a corner beyond the picture's edge counts to the field there. Pixel 0 reaches from -0.5 to
-// 0.5.
-int FieldOf(double at_px, int size_px, int fields) {
-  const double part = (at_px + 0.5) / std::max(size_px, 1) * fields;
-  return std::clamp(static_cast<int>(std::floor(std::clamp(part, 0.0, 1e6))), 0, fields - 1);
-}
-
-void CountCorners(const CameraFit& fit, Coverage& coverage) {
-  for (const ViewFit& view : fit.views)
-    for (const Eigen::Vector2d& uv_px : view.uv_px) {
-      if (!uv_px.allFinite()) continue;
-      const int column = FieldOf(uv_px.x(), fit.width_px, coverage.columns);
-      const int row = FieldOf(uv_px.y(), fit.height_px, coverage.rows);
-      ++coverage.corners[static_cast<std::size_t>(row * coverage.columns + column)];
-    }
-}
-
-void MeasureMargins(const CameraFit& fit, Coverage& coverage) {
-  Eigen::AlignedBox2d seen;
-  for (const ViewFit& view : fit.views)
-    for (const Eigen::Vector2d& uv_px : view.uv_px)
-      if (uv_px.allFinite()) seen.extend(uv_px);
-  if (seen.isEmpty() || fit.width_px <= 0 || fit.height_px <= 0) return;
-  const auto part = [](double margin_px, int size_px) { return std::clamp(margin_px / size_px, 0.0, 1.0); };
-  coverage.margin_ratio = {
-      part(seen.min().x() + 0.5, fit.width_px), part(fit.width_px - 0.5 - seen.max().x(), fit.width_px),
-      part(seen.min().y() + 0.5, fit.height_px), part(fit.height_px - 0.5 - seen.max().y(), fit.height_px)};
-}
+constexpr int kMeanColumns = 8;             // of the fields whose mean residual is drawn
+constexpr std::size_t kMeanCornersMin = 8;  // of such a field
 
 template <typename Act>
 void ForEachResidual(const CameraFit& fit, const Act& act) {
@@ -63,29 +25,15 @@ std::size_t BinOf(double in_sigmas) {
 }
 
 std::string JoinedSides(const std::array<double, 4>& margin_ratio) {
-  constexpr std::array<const char*, 4> kSides = {"left", "right", "top", "bottom"};
   std::string text;
-  for (std::size_t side = 0; side < kSides.size(); ++side)
+  for (std::size_t side = 0; side < kSidesOfPicture.size(); ++side)
     if (margin_ratio[side] > kEmptyMargin_ratio)
-      text +=
-          (text.empty() ? "" : ", ") + std::string(kSides[side]) + " (" + Fixed(100 * margin_ratio[side], 0) + " %)";
+      text += (text.empty() ? "" : ", ") + std::string(kSidesOfPicture[side]) + " (" +
+              Fixed(100 * margin_ratio[side], 0) + " %)";
   return text;
 }
 
 }  // namespace
-
-Coverage CoverageOf(const CameraFit& fit) {
-  Coverage coverage;
-  coverage.columns = kColumns;
-  coverage.rows = RowsFor(fit, kColumns);
-  coverage.corners.assign(static_cast<std::size_t>(coverage.columns * coverage.rows), 0);
-  CountCorners(fit, coverage);
-  MeasureMargins(fit, coverage);
-  const auto seen =
-      std::count_if(coverage.corners.begin(), coverage.corners.end(), [](int count) { return count > 0; });
-  coverage.share_ratio = static_cast<double>(seen) / static_cast<double>(coverage.corners.size());
-  return coverage;
-}
 
 ResidualShape ShapeOf(const CameraFit& fit) {
   ResidualShape shape;

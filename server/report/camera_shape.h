@@ -1,25 +1,14 @@
-// What the corners of a camera say together: where in the picture they were, how large their residuals are and how they
-// are spread, how the boards stood.
+// What the corners of a camera say together: how large their residuals are and how they are spread, how the boards
+// stood, and what to do about where they were.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "server/model/camera_fit.h"
+#include "server/model/coverage.h"
 
 namespace rigcal::report {
-
-// The picture in fields of equal size, about square.
-struct Coverage {
-  int columns = 0, rows = 0;
-  std::vector<int> corners;              // of every field, row by row
-  double share_ratio = 0.0;              // of the fields that have a corner
-  std::array<double, 4> margin_ratio{};  // without a corner at the left, right, top, bottom; of width or height
-  [[nodiscard]] int At(int column, int row) const { return corners[static_cast<std::size_t>(row * columns + column)]; }
-};
-[[nodiscard]] Coverage CoverageOf(const CameraFit& fit);
 
 // Of u and v residuals alike, in units of their own root mean square.
 struct ResidualShape {

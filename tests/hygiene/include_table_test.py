@@ -20,8 +20,14 @@ EVERYWHERE = {"expected", "Eigen"}  # the two that public headers may show
 
 
 class Row:
-    def __init__(self, module, allowed, libraries):
-        self.module, self.allowed, self.libraries = module, allowed, libraries
+    """`allowed`: columns marked for the whole module, or None: all; `in_folder`: others, marked for one folder of it."""
+    def __init__(self, module, allowed, in_folder, libraries):
+        self.module, self.allowed, self.in_folder, self.libraries = module, allowed, in_folder, libraries
+
+    def allows(self, path, target):
+        if self.allowed is None or target == self.module or target in self.allowed:
+            return True
+        return target in self.in_folder and str(path).startswith(self.in_folder[target] + "/")
 
 
 def module_name(column):
@@ -37,9 +43,10 @@ def parse_table(text):
         if cells[0] == "module":
             columns = [module_name(cell) for cell in cells[1:-1]]
             continue
-        marks = [cell == "x" for cell in cells[1:-1]]
-        allowed = {column for column, mark in zip(columns, marks) if mark}
-        rows[cells[0]] = Row(cells[0], None if cells[1] == "everything" else allowed, cells[-1])
+        marks = dict(zip(columns, cells[1:-1]))
+        allowed = {column for column, mark in marks.items() if mark == "x"}
+        in_folder = {column: mark for column, mark in marks.items() if "/" in mark}
+        rows[cells[0]] = Row(cells[0], None if cells[1] == "everything" else allowed, in_folder, cells[-1])
     return rows
 
 
@@ -77,7 +84,7 @@ def quoted_problem(path, include, rows):
     target = module_of(include, rows)
     if target is None:
         return f'"{include}" lies in no module of {TABLE}'
-    if row.allowed is None or target == row.module or target in row.allowed:
+    if row.allows(path, target):
         return None
     return f'{row.module} may not include {target} ("{include}")'
 
@@ -136,7 +143,7 @@ class TheProject(unittest.TestCase):
 class TheCheck(unittest.TestCase):
     ROWS = parse_table("| module | base | idl | graph | libraries |\n|---|---|---|---|---|\n"
                        "| server/base | | | | TBB |\n| server/graph | x | | | Ceres |\n| idl | x | | | Cyclone |\n"
-                       "| client | x | x | | CLI11; client/sim: OpenCV |\n| server/main.cc | everything | | | |\n")
+                       "| client | x | x | client/check | CLI11; client/sim: OpenCV |\n| server/main.cc | everything | | | |\n")
 
     def found(self, path, line, **more):
         return problems({path: line, **{k.replace("__", "/") + ".h": v for k, v in more.items()}}, self.ROWS)
@@ -145,14 +152,16 @@ class TheCheck(unittest.TestCase):
         for path, line in [("server/graph/a.cc", '#include "server/base/b.h"'), ("server/base/a.cc", "#include <map>"),
                            ("server/graph/a.cc", '#include "server/graph/b.h"'), ("idl/a.cc", '#include "rigcal.h"'),
                            ("server/main.cc", '#include "client/b.h"'), ("client/sim/a.cc", "#include <opencv2/core.hpp>"),
-                           ("client/a.cc", "#include <unistd.h>"), ("client/a.cc", "#include <Eigen/Core>")]:
+                           ("client/a.cc", "#include <unistd.h>"), ("client/a.cc", "#include <Eigen/Core>"),
+                           ("client/check/a.cc", '#include "server/graph/b.h"'), ("client/a.cc", '#include "client/check/b.h"')]:
             self.assertEqual([], self.found(path, line), (path, line))
 
     def test_finds_what_is_not(self):
         for path, line in [("server/base/a.cc", '#include "server/graph/b.h"'), ("client/a.cc", '#include "rigcal.h"'),
                            ("client/a.cc", "#include <opencv2/core.hpp>"), ("server/base/a.cc", "# include <ceres/x.h>"),
                            ("server/base/a.cc", "#include <unheard/of.h>"), ("server/new/a.cc", "#include <map>"),
-                           ("server/base/a.cc", '  #include "server/main.cc"'), ("client/a.cc", '#include "tests/x.h"')]:
+                           ("server/base/a.cc", '  #include "server/main.cc"'), ("client/a.cc", '#include "tests/x.h"'),
+                           ("client/a.cc", '#include "server/graph/b.h"'), ("client/checks.cc", '#include "server/graph/b.h"')]:
             self.assertEqual(1, len(self.found(path, line)), (path, line))
 
     def test_knows_public_headers_through_others(self):

@@ -34,7 +34,7 @@ Ran Rigcal(const std::string& arguments) {
 }
 
 const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges",   "show",   "lookup",
-                                         "status", "watch",      "report", "due",      "compare", "doctor", "simulate"};
+                                         "status", "watch",      "report", "due",      "compare", "doctor", "check", "simulate"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
@@ -61,7 +61,7 @@ TEST(Program, WrongUsageIsTwoWithASentence) {
        {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
         "show r --revision zero", "show r --revision 0", "status --timeout never", "status --timeout -1",
         "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate",
-        "simulate --captures x", "--frobnicate simulate"}) {
+        "simulate --captures x", "--frobnicate simulate", "check", "check a b", "check --frobnicate x"}) {
     const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;
@@ -76,6 +76,13 @@ TEST(Program, SimulateTakesItsWordsAndEndsLikeTheOthers) {
   const Ran refused = Rigcal("--json simulate no-such-rig --captures 2");
   EXPECT_EQ(refused.code, 4) << refused.text;
   EXPECT_NE(refused.text.find(R"("what":"rig no-such-rig)"), std::string::npos) << refused.text;
+}
+
+TEST(Program, CheckTakesItsWordsAndRefusesWhatIsNoSession) {
+  const Ran refused = Rigcal("--json check /does/not/exist");
+  EXPECT_EQ(refused.code, 4) << refused.text;
+  EXPECT_NE(refused.text.find("there is no such folder"), std::string::npos) << refused.text;
+  EXPECT_NE(refused.text.find(R"("code":"not_found")"), std::string::npos) << refused.text;
 }
 
 TEST(Program, SimulateSaysHowADisturbanceIsWritten) {

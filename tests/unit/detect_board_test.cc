@@ -148,6 +148,19 @@ TEST(Detect, RefusesBoardsThatAreTooSmall) {
   EXPECT_THAT(DetectIn(Encoded(Photographed(0.2, 0.5).grey), board).view.why_not, HasSubstr("3 to 256"));
 }
 
+TEST(Detect, ADecodedPictureGivesTheSameView) {
+  for (const std::string& bytes : {Encoded(Photographed(0.7, 0.5).grey), Encoded(cv::Mat(480, 640, CV_8U, 120.0))}) {
+    const auto image = DecodeGrey(std::as_bytes(std::span(bytes)));
+    ASSERT_TRUE(image) << image.error().what;
+    EXPECT_EQ(FindIn(*image, kBoard), DetectIn(bytes).view);
+  }
+  Target small = kBoard;
+  small.rows = 2;
+  const BoardView refused = FindIn({4, 3, std::vector<std::uint8_t>(12)}, small);
+  EXPECT_THAT(refused.why_not, HasSubstr("3 to 256"));
+  EXPECT_EQ(refused.image_width_px, 4);
+}
+
 TEST(Detect, TheThreadCountDoesNotMatter) {
   const std::string bytes = Encoded(Photographed(0.7, 0.5).grey);
   const int before = cv::getNumThreads();

@@ -203,6 +203,54 @@ TEST_F(SessionFolder, ReadsTablesOfPosesBeforeTheyAreSent) {
   ExpectRefused("file \"vio/pose.csv\": the path is not <sensor>/poses.csv");
 }
 
+TEST_F(SessionFolder, ASurveyTellsEachRefusalAndReadsTheRest) {
+  Write("left/02.png", "");
+  Write("left/03.png", kJpeg);
+  Write("left/04.pcd", "# .PCD");
+  Write("notes.txt", "x");
+  Write("rigth/01.png", kPng);
+  Write("right/01.png", kPng);
+  const auto survey = SurveySessionFolder(folder_, {});
+  ASSERT_TRUE(survey) << Sentence(survey.error());
+  std::vector<std::string> told, kept;
+  for (const Error& refusal : survey->refusals) told.push_back(refusal.what);
+  for (const Payload& payload : survey->manifest.payloads) kept.push_back(payload.path);
+  EXPECT_THAT(kept, testing::ElementsAre("left/01.png", "right/01.jpg", "right/02.jpeg"));
+  using testing::HasSubstr;
+  EXPECT_THAT(
+      told, testing::ElementsAre(HasSubstr("left/02.png\": it is empty"), HasSubstr("left/03.png\": it is a JPEG"),
+                                 HasSubstr("notes.txt"), HasSubstr("rigth"), HasSubstr("another file of capture '01'"),
+                                 HasSubstr("left/04.pcd")));
+  EXPECT_EQ(Read().error().what, told.front());
+}
+
+TEST_F(SessionFolder, ASurveyOfAGoodFolderIsItsManifest) {
+  const auto survey = SurveySessionFolder(folder_, {});
+  ASSERT_TRUE(survey) << Sentence(survey.error());
+  EXPECT_TRUE(survey->refusals.empty());
+  EXPECT_EQ(WriteManifest(survey->manifest), WriteManifest(*Read()));
+}
+
+TEST_F(SessionFolder, ASurveyEndsWhereThereIsNoSession) {
+  Write("session.yaml", "format: 1\nrobot: 'a b'\n");
+  EXPECT_FALSE(SurveySessionFolder(folder_, {}));
+  fs::remove_all(folder_ / "left");
+  fs::remove_all(folder_ / "right");
+  fs::remove(folder_ / "session.yaml");
+  EXPECT_FALSE(SurveySessionFolder(folder_, {}));
+}
+
+TEST_F(SessionFolder, ASurveyKeepsTheTableOfATrackerWhoseCapturesAreRefused) {
+  const std::string yaml = samples::FileText((folder_ / "session.yaml").string());
+  Write("session.yaml", yaml + "  body: {type: tracker}\n");
+  Write("body/poses.csv", "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n01,0,0,0,0,0,0,0,1\n07,1,0,0,0,0,0,0,1\n");
+  Write("left/07.png", "");
+  const auto survey = SurveySessionFolder(folder_, {});
+  ASSERT_TRUE(survey);
+  EXPECT_EQ(survey->refusals.size(), 1u);
+  EXPECT_EQ(survey->manifest.payloads.front().path, "body/poses.csv");
+}
+
 TEST_F(SessionFolder, RefusesWhatIsNoSession) {
   fs::remove(folder_ / "session.yaml");
   ExpectRefused("it has no session.yaml");

@@ -11,39 +11,43 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProgram = "rigcal-simulate";
-
 // Beside this program in a build folder; in the folder for such programs where it is installed.
-std::vector<fs::path> Places() {
+std::vector<fs::path> Places(const std::string& program) {
   std::error_code failed;
   const fs::path own = fs::read_symlink("/proc/self/exe", failed).parent_path();
   if (failed) return {};
-  return {own / kProgram, (own / RIGCAL_LIBEXEC / kProgram).lexically_normal()};
+  return {own / program, (own / RIGCAL_LIBEXEC / program).lexically_normal()};
 }
 
 // Returns only if it cannot be started. The program has the same options as this one, so it gets all that was given.
-Error Start(Context& context) {
+Error Start(Context& context, const std::string& program) {
   std::vector<char*> arguments;
   for (const char* argument : context.arguments) arguments.push_back(const_cast<char*>(argument));
   arguments.push_back(nullptr);
   context.out.flush();
   context.err.flush();
-  const std::vector<fs::path> places = Places();
+  const std::vector<fs::path> places = Places(program);
   for (const fs::path& place : places) execv(place.c_str(), arguments.data());
-  return {ErrorCode::kUnsupported, "the simulator (" + std::string(kProgram) + ") is not where it belongs",
+  return {ErrorCode::kUnsupported, "the program " + program + " is not where it belongs",
           places.empty() ? "Install rigcal whole" : "Install rigcal whole, or put it at " + places.back().string()};
+}
+
+// Programs of their own: what they do needs OpenCV with some 140 libraries behind it, and loading them would cost every
+// other verb a tenth of a second.
+void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description) {
+  CLI::App* verb = app.add_subcommand(name, description);
+  verb->set_help_flag();
+  verb->fallthrough(false);
+  verb->prefix_command();
+  verb->callback([&context, name] { context.exit_code = Report(Start(context, "rigcal-" + name), context); });
 }
 
 }  // namespace
 
-// A program of its own: the simulator needs OpenCV with some 140 libraries behind it, and loading them would cost every
-// other verb a tenth of a second.
 void AddSimulateElsewhere(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("simulate", "Write the session of a virtual robot, with its truth");
-  verb->set_help_flag();
-  verb->fallthrough(false);
-  verb->prefix_command();
-  verb->callback([&context] { context.exit_code = Report(Start(context), context); });
+  AddElsewhere(app, context, "simulate", kSimulateDescription);
 }
+
+void AddCheckElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "check", kCheckDescription); }
 
 }  // namespace rigcal::client

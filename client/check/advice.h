@@ -1,0 +1,40 @@
+// What a technician should do before leaving the robot: the verdict.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "client/check/findings.h"
+
+namespace rigcal::check {
+
+enum class Urgency { kRough, kFew, kNoAnswer };  // a result less sure than wanted; few captures; no result at all
+
+struct Advice {
+  std::vector<std::string> of;  // sensors, or pairs as "left - right"
+  std::string text;             // one line: what is wrong, and what to do
+  Urgency urgency = Urgency::kFew;
+  std::size_t captures_more = 0;  // 0: more captures are not the cure
+};
+
+struct Judgement {
+  std::vector<Advice> advice;        // worst first; empty: the session will do
+  std::vector<std::string> remarks;  // files that are missing, unreadable, alike, blurred: sentences
+  std::size_t captures_more = 0;     // at the least, by the advice that wants most
+  [[nodiscard]] bool IsEnough() const { return advice.empty(); }
+};
+[[nodiscard]] Judgement JudgeFindings(const Findings& findings);
+// "Enough.", "Take 7 more captures.", "Take at least 7 more captures.", "Not enough yet."
+[[nodiscard]] std::string Headline(const Judgement& judgement);
+
+// sensor_advice.cc: of each sensor that is in a pair. Whoever has advice here explains its pairs, too.
+[[nodiscard]] std::vector<Advice> SensorAdvice(const Findings& findings);
+// Likewise of one camera that sees its board often enough: its lens, its sharpness.
+[[nodiscard]] std::vector<Advice> LensAdvice(const CameraFound& camera, std::size_t enough);
+// pair_advice.cc: of pairs, but for those that advice on a sensor explains.
+[[nodiscard]] std::vector<Advice> PairAdvice(const Findings& findings, const std::set<SensorId>& explained);
+// remarks.cc: what should be known of the files, whether it matters or not.
+[[nodiscard]] std::vector<std::string> RemarksOf(const Findings& findings);
+
+}  // namespace rigcal::check

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cmath>
+
+#include "client/check/advice.h"
+#include "client/pose_text.h"
+#include "client/table.h"
+#include "server/fleet/assess.h"
+
+namespace rigcal::check {
+namespace {
+
+std::string PairName(const PairFound& pair) { return pair.pair.a.str() + " - " + pair.pair.b.str(); }
+
+std::string SentenceOf(const Diagnosis& diagnosis) {
+  return Sentence({ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure});
+}
+
+// After "in 5 captures".
+const char* SeenTogether(Method method) {
+  switch (method) {
+    case Method::kStereo:
+      return "both see the board";
+    case Method::kNonOverlapping:
+      return "each sees its board";
+    case Method::kTrackerCamera:
+      return "there is a pose, and the board in the picture";
+    case Method::kLidarCamera:
+      return "there is a cloud, and the board in the picture";
+    case Method::kLidarLidar:
+      return "both have a cloud";
+    case Method::kTrackerLidar:
+      return "there are a pose and a cloud";
+    case Method::kPoseStreams:
+      return "both have a pose";
+  }
+  return "both see something";
+}
+
+std::string CountedText(const PairFound& pair, std::size_t more) {
+  const std::string captures = pair.both == 0   ? "no capture"
+                               : pair.both == 1 ? "1 capture"
+                                                : std::to_string(pair.both) + " different captures";
+  const bool drives = RowOf(pair.method).board_stands_still;
+  return std::string(SeenTogether(pair.method)) + " in " + captures + ", " + std::to_string(pair.needed.enough) +
+         " are enough: take " + std::to_string(more) + " more" +
+         (drives ? " from other places, the robot turned otherwise" : "");
+}
+
+std::optional<Advice> TooFew(const PairFound& pair) {
+  if (pair.both >= pair.needed.enough) return std::nullopt;
+  const std::size_t more = pair.needed.enough - pair.both;
+  return Advice{{PairName(pair)},
+                CountedText(pair, more),
+                pair.both < pair.needed.least ? Urgency::kNoAnswer : Urgency::kFew,
+                more};
+}
+
+std::optional<Advice> NoAnswer(const PairFound& pair) {
+  const bool failed = pair.edge && pair.edge->state == EdgeState::kFailed;
+  if (!pair.problem && !failed) return std::nullopt;
+  if (failed && pair.edge->diagnoses.empty()) return Advice{{PairName(pair)}, "it fails", Urgency::kNoAnswer, 0};
+  return Advice{
+      {PairName(pair)}, SentenceOf(pair.problem ? *pair.problem : pair.edge->diagnoses.front()), Urgency::kNoAnswer, 0};
+}
+
+// The largest of three axes.
+double LargestSigma(const Edge& edge, int first_axis) {
+  double largest = 0;
+  for (int axis = first_axis; axis < first_axis + 3; ++axis)
+    largest = std::max(largest, SigmaOf(edge.uncertainty, axis).value);
+  return largest;
+}
+
+// Sigma falls with the root of the captures.
+std::optional<Advice> TooRough(const PairFound& pair) {
+  if (pair.method != Method::kStereo || !pair.IsWhole()) return std::nullopt;
+  const fleet::Policy policy;
+  const double sigma_m = LargestSigma(*pair.edge, 0), sigma_rad = LargestSigma(*pair.edge, 3);
+  const double excess = std::max(sigma_m / policy.sigma_max_m, sigma_rad / policy.sigma_max_rad);
+  if (!(excess > 1)) return std::nullopt;
+  const double more = std::ceil(static_cast<double>(pair.both) * std::min(excess * excess - 1, 1.0));
+  return Advice{{PairName(pair)},
+                "known to " + client::Fixed(client::kMmPerM * sigma_m, 1) + " mm and " +
+                    client::Fixed(client::kDegPerRad * sigma_rad, 2) + " deg only, " +
+                    client::Fixed(client::kMmPerM * policy.sigma_max_m, 0) + " mm and " +
+                    client::Fixed(client::kDegPerRad * policy.sigma_max_rad, 2) +
+                    " deg are wanted: hold the board nearer, tilted to all sides, in all parts of both pictures",
+                Urgency::kRough,
+                static_cast<std::size_t>(more)};
+}
+
+// Sensors that pairs known whole tie together have one number.
+std::map<SensorId, int> TiedTogether(const Findings& findings) {
+  std::map<SensorId, int> group;
+  for (const SensorFiles& files : findings.sensors) group.emplace(files.sensor, static_cast<int>(group.size()));
+  for (const PairFound& pair : findings.pairs) {
+    if (!pair.IsWhole()) continue;
+    const int kept = group.at(pair.pair.a), gone = group.at(pair.pair.b);
+    for (auto& [sensor, number] : group)
+      if (number == gone) number = kept;
+  }
+  return group;
+}
+
+// A direction stays open that no other pair closes.
+std::optional<Advice> OpenMotion(const PairFound& pair, const std::map<SensorId, int>& group) {
+  if (!pair.edge || pair.edge->state == EdgeState::kFailed || pair.IsWhole()) return std::nullopt;
+  if (group.at(pair.pair.a) == group.at(pair.pair.b) || pair.edge->diagnoses.empty()) return std::nullopt;
+  return Advice{{PairName(pair)}, SentenceOf(pair.edge->diagnoses.front()), Urgency::kRough, 0};
+}
+
+}  // namespace
+
+std::vector<Advice> PairAdvice(const Findings& findings, const std::set<SensorId>& explained) {
+  const std::map<SensorId, int> group = TiedTogether(findings);
+  std::vector<Advice> all;
+  for (const PairFound& pair : findings.pairs) {
+    if (explained.contains(pair.pair.a) || explained.contains(pair.pair.b)) continue;
+    std::optional<Advice> advice = TooFew(pair);
+    if (!advice) advice = NoAnswer(pair);
+    if (!advice) advice = TooRough(pair);
+    if (!advice) advice = OpenMotion(pair, group);
+    if (advice) all.push_back(std::move(*advice));
+  }
+  return all;
+}
+
+}  // namespace rigcal::check

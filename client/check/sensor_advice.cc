@@ -1,0 +1,163 @@
+#include <algorithm>
+
+#include "client/check/advice.h"
+#include "client/check/words.h"
+#include "client/table.h"
+
+namespace rigcal::check {
+namespace {
+
+using client::Fixed;
+
+// Of a focal length, 1 sigma: 5 mm at a metre, the fleet's limit for a sensor (fleet::Policy).
+constexpr double kFocalSigmaMax_ratio = 0.005;
+// Fewer of the fields of the picture with a corner: the lens is told in its middle only.
+constexpr double kCoveredMin_ratio = 0.5;
+
+std::string NoFilesText(const SensorFiles& files) {
+  const std::string id = files.sensor.str();
+  switch (files.kind) {
+    case SensorKind::kCamera:
+      return "no files: put its pictures into " + id + "/, or take it out of session.yaml";
+    case SensorKind::kLidar:
+      return "no files: put its clouds into " + id + "/, or take it out of session.yaml";
+    case SensorKind::kTracker:
+    case SensorKind::kPoseStream:
+      return "no poses: put them into " + id + "/poses.csv, or take it out of session.yaml";
+  }
+  return "no files";
+}
+
+std::string OfPictures(std::size_t found, std::size_t pictures) {
+  return "the board is in " + std::to_string(found) + " of " + std::to_string(pictures) +
+         (pictures == 1 ? " picture" : " pictures");
+}
+
+std::string HeldText(const SensorFiles& files, const CameraFound* camera) {
+  if (camera != nullptr && files.usable == 0)
+    return "no board in " + std::to_string(files.files) + (files.files == 1 ? " picture" : " pictures") +
+           (camera->why_not.empty() ? "" : " (" + camera->why_not + ")");
+  if (camera != nullptr) return OfPictures(files.usable, files.files);
+  const char* const thing = files.kind == SensorKind::kLidar ? " that can be read" : "";
+  return std::to_string(files.usable) + (files.kind == SensorKind::kLidar ? " cloud" : " pose") +
+         (files.usable == 1 ? "" : "s") + thing;
+}
+
+std::optional<Advice> WhyShort(const Findings& findings, const SensorFiles& files) {
+  const calib::CapturesNeeded needed = NeededOf(findings, files.sensor);
+  if (files.files == 0) return Advice{{files.sensor.str()}, NoFilesText(files), Urgency::kNoAnswer, 0};
+  if (files.usable >= needed.enough) return std::nullopt;
+  const auto camera = findings.cameras.find(files.sensor);
+  const std::size_t more = needed.enough - files.usable;
+  return Advice{{files.sensor.str()},
+                HeldText(files, camera == findings.cameras.end() ? nullptr : &camera->second) + ", " +
+                    std::to_string(needed.enough) + " are enough: take " + std::to_string(more) + " more" +
+                    (camera == findings.cameras.end() ? "" : " with the board in view"),
+                files.usable < needed.least ? Urgency::kNoAnswer : Urgency::kFew,
+                more};
+}
+
+std::vector<std::string> EmptySides(const Coverage& coverage) {
+  std::vector<std::string> sides;
+  for (std::size_t side = 0; side < kSidesOfPicture.size(); ++side)
+    if (coverage.margin_ratio[side] > kEmptyMargin_ratio) sides.emplace_back(kSidesOfPicture[side]);
+  return sides;
+}
+
+std::string TiltText(const CameraFound& camera) {
+  const std::string sides = OpenSides(camera.ring);
+  std::string text =
+      sides.empty() ? "tilt the board by 20 to 45 degrees in more captures" : "tilt the board 30 degrees " + sides;
+  if (camera.distances && camera.distances->far_widths < kSameDistance_ratio * camera.distances->near_widths)
+    text += ", and hold it nearer and farther";
+  return text;
+}
+
+std::size_t TiltedMore(const CameraFound& camera) { return std::max(kTiltedViewsMin, CapturesToClose(camera.ring)); }
+
+// The pictures leave the lens open.
+Advice LensProblem(const CameraFound& camera) {
+  const Diagnosis& problem = *camera.lens_problem;
+  if (problem.code == "no_tilt")
+    return {{camera.camera.str()},
+            "its boards stand too much alike to tell its focal length: " + TiltText(camera),
+            Urgency::kNoAnswer,
+            TiltedMore(camera)};
+  return {
+      {camera.camera.str()}, Sentence({ErrorCode::kInvalidInput, problem.what, problem.cure}), Urgency::kNoAnswer, 0};
+}
+
+// Of a lens that is to be estimated, and can be.
+std::optional<Advice> LensOpen(const CameraFound& camera) {
+  std::vector<std::string> cures;
+  std::size_t more = 0;
+  if (camera.focal_sigma_ratio && !(*camera.focal_sigma_ratio <= kFocalSigmaMax_ratio)) {
+    cures.push_back("its focal length is known to " + Fixed(100 * *camera.focal_sigma_ratio, 1) +
+                    " % only: " + TiltText(camera));
+    more = TiltedMore(camera);
+  }
+  const std::vector<std::string> sides = EmptySides(camera.coverage);
+  if (!sides.empty()) cures.push_back("hold the board near the " + Enumerated(sides) + " edge of its picture");
+  if (sides.empty() && camera.coverage.share_ratio < kCoveredMin_ratio)
+    cures.push_back("hold the board in every part of its picture, of which corners cover " +
+                    Fixed(100 * camera.coverage.share_ratio, 0) + " %");
+  if (cures.empty()) return std::nullopt;
+  std::string text;
+  for (const std::string& cure : cures) text += (text.empty() ? "" : "; ") + cure;
+  return Advice{{camera.camera.str()}, text, Urgency::kRough, std::max({more, sides.size(), std::size_t{1}})};
+}
+
+std::optional<Advice> WhyBlurred(const CameraFound& camera, std::size_t enough) {
+  const std::size_t sharp = camera.with_board.size() - std::min(camera.with_board.size(), camera.blurred.size());
+  if (sharp >= enough) return std::nullopt;
+  return Advice{{camera.camera.str()},
+                std::to_string(camera.blurred.size()) + " of " + std::to_string(camera.with_board.size()) +
+                    " pictures of the board are blurred: hold board and robot still, with more light or a shorter "
+                    "exposure, and take " +
+                    std::to_string(enough - sharp) + " more",
+                Urgency::kRough,
+                enough - sharp};
+}
+
+bool IsInPair(const Findings& findings, const SensorId& sensor) {
+  return std::any_of(findings.pairs.begin(), findings.pairs.end(),
+                     [&](const PairFound& pair) { return pair.pair.a == sensor || pair.pair.b == sensor; });
+}
+
+// Two cameras may tell what one alone does not.
+bool HasGoodEdgesOnly(const Findings& findings, const SensorId& sensor) {
+  return std::all_of(findings.pairs.begin(), findings.pairs.end(), [&](const PairFound& pair) {
+    if (pair.pair.a != sensor && pair.pair.b != sensor) return true;
+    return pair.edge && pair.edge->state == EdgeState::kGood;
+  });
+}
+
+}  // namespace
+
+std::vector<Advice> LensAdvice(const CameraFound& camera, std::size_t enough) {
+  if (camera.lens_problem) return {LensProblem(camera)};
+  std::vector<Advice> advice;
+  if (camera.estimates_lens)
+    if (auto open = LensOpen(camera)) advice.push_back(std::move(*open));
+  if (auto blurred = WhyBlurred(camera, enough)) advice.push_back(std::move(*blurred));
+  return advice;
+}
+
+std::vector<Advice> SensorAdvice(const Findings& findings) {
+  std::vector<Advice> all;
+  for (const SensorFiles& files : findings.sensors) {
+    if (!IsInPair(findings, files.sensor)) continue;
+    if (auto why_short = WhyShort(findings, files)) {
+      all.push_back(std::move(*why_short));
+      continue;
+    }
+    const auto camera = findings.cameras.find(files.sensor);
+    if (camera == findings.cameras.end()) continue;
+    if (camera->second.lens_problem && HasGoodEdgesOnly(findings, files.sensor)) continue;
+    const std::vector<Advice> of_lens = LensAdvice(camera->second, NeededOf(findings, files.sensor).enough);
+    all.insert(all.end(), of_lens.begin(), of_lens.end());
+  }
+  return all;
+}
+
+}  // namespace rigcal::check

@@ -1,0 +1,20 @@
+#include "client/check/words.h"
+
+namespace rigcal::check {
+
+std::string Enumerated(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  return text;
+}
+
+std::string NamesText(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 6;
+  if (names.size() <= kShown) return Enumerated(names);
+  std::vector<std::string> shown(names.begin(), names.begin() + kShown);
+  shown.push_back(std::to_string(names.size() - kShown) + " more");
+  return Enumerated(shown);
+}
+
+}  // namespace rigcal::check
