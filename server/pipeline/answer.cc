@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <set>
 
 #include "server/base/version.h"
 #include "server/formats/answers.h"
@@ -11,10 +10,10 @@
 #include "server/graph/joint_poses.h"
 #include "server/graph/merged_edge.h"
 #include "server/graph/solve.h"
-#include "server/model/past.h"
+#include "server/pipeline/asked.h"
+#include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
-#include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
@@ -31,40 +30,10 @@ namespace {
 using formats::Parameters;
 using Verb = std::function<Result<std::string>(const AnswerContext&, const Parameters&)>;
 
-template <typename IdType>
-Result<IdType> RequiredId(const Parameters& parameters, const std::string& name) {
-  const auto text = parameters.Text(name);
-  if (!text)
-    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing",
-                "See docs/api.md for the verb's parameters.");
-  return IdType::Parse(*text);
-}
-
-Result<RobotId> OptionalRobot(const Parameters& parameters) {
-  return parameters.Text("robot") ? RequiredId<RobotId>(parameters, "robot") : RobotId();
-}
-
-// kNotFound for a robot that the store does not know.
-Result<RobotId> KnownRobot(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
-  RIGCAL_ASSIGN(const bool is_known, storage::HasRobot(context.store, robot));
-  if (is_known) return robot;
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known",
-              "`rigcal robots` lists those that are.");
-}
-
 Result<std::string> Robots(const AnswerContext& context, const Parameters&) {
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
   return formats::WriteRobots(rows, now);
-}
-
-Result<std::string> Sessions(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
-  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(auto rows, LoadSessionRows(context.store, robot));
-  RIGCAL_TRY(AddStanding(context.store, robot, rows));
-  return formats::WriteSessions(rows);
 }
 
 Result<std::string> Session(const AnswerContext& context, const Parameters& parameters) {
@@ -73,17 +42,6 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(context.store, id));
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, id));
   return formats::WriteSession(row, manifest.value_or(Manifest{}), edges);
-}
-
-Result<std::string> Edges(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(auto edges, storage::LoadEdges(context.store, robot, false));
-  RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
-  RIGCAL_TRY(MarkPast(context.store, robot, counts, edges));
-  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
-  if (!newest) return formats::WriteEdges(robot, 0, edges, {});
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
-  return formats::WriteEdges(robot, newest->number, edges, revision.document->solution.residuals);
 }
 
 Result<std::string> OneEdge(const AnswerContext& context, const Parameters& parameters) {
@@ -96,19 +54,13 @@ Result<std::string> OneEdge(const AnswerContext& context, const Parameters& para
 }
 
 Result<std::string> Show(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
   RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, number));
   RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(context.store, {robot, revision.number}));
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
   return formats::WriteShow(revision, is_published, validity, now);
-}
-
-Result<std::string> Revisions(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
-  return formats::WriteRevisions(robot, revisions, context.clock.Now());
 }
 
 // Of the revision's edges, merged ones too.
@@ -146,7 +98,7 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
 
 // What the newest revision says: an edge that arrived since plays no part.
 Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
   RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
   RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, 0));
@@ -168,7 +120,7 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
 }
 
 Result<std::string> OfStatus(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
+  RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   const Stamp now = context.clock.Now();
   formats::StatusAnswer answer;
   answer.version = std::string(Version());
@@ -184,8 +136,8 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
 }
 
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
-  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
+  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context.store, parameters));
   return LiveDocument(context.store, robot);
 }
 
@@ -197,14 +149,14 @@ Result<int> ReportNumber(const AnswerContext& context, const RobotId& robot, con
 }
 
 Result<std::string> FilesOfReport(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
   auto files = ReportFiles(context.store, robot, number);
   return files ? std::move(files) : Fail(WhyMissing(context, robot, number, "index.html"));
 }
 
 Result<std::string> FileOfReport(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
   RIGCAL_ASSIGN(const std::int64_t offset, parameters.IntegerOr("offset", 0));
   return ReportFile(context.store, robot, number, parameters.Text("path").value_or(""), offset);
@@ -240,13 +192,13 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
 const std::map<std::string, Verb>& Verbs() {
   static const std::map<std::string, Verb> verbs = {
       {"robots", Robots},
-      {"sessions", Sessions},
+      {"sessions", ListSessions},
       {"session", Session},
-      {"edges", Edges},
+      {"edges", ListEdges},
       {"edge", OneEdge},
       {"show", Show},
       {"lookup", Lookup},
-      {"revisions", Revisions},
+      {"revisions", ListRevisions},
       {"status", OfStatus},
       {"due", Due},
       {"health", Health},
