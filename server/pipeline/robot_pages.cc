@@ -12,6 +12,7 @@
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/unreadable.h"
+#include "server/pipeline/whole_revision.h"
 #include "server/report/robot_pages.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
@@ -165,6 +166,13 @@ Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
   return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
 }
 
+// What tells how many pixels a movement is: figures and evidence of its edges.
+Result<report::SolvedRevision> WithFocalLengths(const AnswerContext& context, const ParsedRevision& parsed) {
+  if (parsed.document->whole) return report::SolvedRevision{parsed.summary.number, parsed.document};
+  RIGCAL_ASSIGN(auto whole, WithWholeEdges(context.store, parsed.summary.number, *parsed.document, Blocks::kLeftOut));
+  return report::SolvedRevision{parsed.summary.number, std::make_shared<const formats::RevisionInput>(std::move(whole))};
+}
+
 Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot, const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
   RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
@@ -177,7 +185,7 @@ Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(const ParsedRevision first, context.revisions.Load(context.store, robot, std::min(before, now)));
   RIGCAL_ASSIGN(const ParsedRevision second, context.revisions.Load(context.store, robot, std::max(before, now)));
   input.before = {first.summary.number, first.document};
-  input.now = {second.summary.number, second.document};
+  RIGCAL_ASSIGN(input.now, WithFocalLengths(context, second));
   RIGCAL_ASSIGN(input.captured_at, CapturedAt(context, input));
   RIGCAL_ASSIGN(std::string body, report::RenderCompare(input));
   return PageText{std::move(body), kHtmlType};
