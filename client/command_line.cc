@@ -49,8 +49,8 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
-    AddShow,   AddLookup,    AddStatus,           AddWatch,  AddReport, AddDue,      AddCompare,
-    AddExport, AddDoctor,    AddCheckElsewhere,   AddSimulateElsewhere};
+    AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
+    AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/edge_table.h"
+#include "client/page_options.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -14,22 +15,39 @@ void PrintAnswer(const Document& document, std::ostream& out) {
   PrintEdges(edges, out, EdgeIds::kShown);
 }
 
+struct EdgesOptions {
+  std::string robot;
+  PageOptions page;
+};
+
+ExitCode RunEdges(const Context& context, const EdgesOptions& options) {
+  std::vector<Field> parameters = {{"robot", options.robot}};
+  AddTo(parameters, options.page);
+  const auto print = [&](const Document& document, std::ostream& out) {
+    if (document["edges"].size() == 0 && !options.page.before.empty())
+      out << kNoOlderOnes;
+    else
+      PrintAnswer(document, out);
+    PrintNextPage(document, "rigcal edges " + options.robot + LimitText(options.page), out);
+  };
+  return Answer(context, {"edges", JsonObject(parameters), print, {}});
+}
+
 }  // namespace
 
 void AddEdges(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("edges", "List a robot's pairwise results with their uncertainty");
-  auto robot = std::make_shared<std::string>();
-  verb->add_option("ROBOT", *robot, "The robot's id")->required();
+  auto options = std::make_shared<EdgesOptions>();
+  verb->add_option("ROBOT", options->robot, "The robot's id")->required();
+  AddPageOptions(*verb, options->page, "edges", "the whole id of an edge");
   verb->footer(
       "EDGE: the first digits of its id, for `rigcal retire`. --json has the whole ids.\n"
       "p, rpy: pose of B in A. sigma: one standard deviation per axis of B. |e|: how far the edge is from the graph.\n"
       "A failed edge is listed with its reason and what to do. lidar_lidar+gicp: polished, as the session asked for.\n"
       "Examples:\n"
       "  rigcal edges mapper-01\n"
-      "  rigcal edges mapper-01 --json\n");
-  verb->callback([&context, robot] {
-    context.exit_code = Answer(context, {"edges", JsonObject({{"robot", *robot}}), PrintAnswer, {}});
-  });
+      "  rigcal edges mapper-01 --limit 50 --json\n");
+  verb->callback([&context, options] { context.exit_code = RunEdges(context, *options); });
 }
 
 }  // namespace rigcal::client

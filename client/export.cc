@@ -23,11 +23,14 @@ struct Exported {
 Result<Exported> Export(const Context& context, const ExportOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".g2o")
     return Fail(ErrorCode::kInvalidInput, "the suffix of " + options.out + " names no format", "Let it end in .g2o");
-  std::vector<Field> parameters = {{"robot", options.robot}};
+  // Of a server that does not know `whole` every document is.
+  std::vector<Field> parameters = {{"robot", options.robot}, Field::Raw("whole", "true")};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
   RIGCAL_ASSIGN(const std::string text, AskOnce(context, "show", JsonObject(parameters)));
   RIGCAL_ASSIGN(const Document shown, Document::Parse(text, "the server's answer"));
   RIGCAL_ASSIGN(const formats::RevisionInput revision, formats::ReadRevisionDocument(shown["document"].Dump()));
+  if (!revision.whole)
+    return Fail(ErrorCode::kUnsupported, "the server's document has no information matrices", "Install a newer rigcald.");
   RIGCAL_ASSIGN(const std::string g2o, formats::WriteG2o(revision.edges, revision.solution.poses, revision.reference));
   RIGCAL_TRY(WriteDurably(options.out, g2o));
   Exported exported{shown["revision"].Integer().value_or(0), 0, 0};

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/page_options.h"
 #include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -32,22 +33,40 @@ void PrintSessions(const Document& document, std::ostream& out) {
     if (IsSuperseded(row)) out << StandingText(row) << '\n';
 }
 
+struct SessionsOptions {
+  std::string robot;
+  PageOptions page;
+};
+
+ExitCode RunSessions(const Context& context, const SessionsOptions& options) {
+  std::vector<Field> parameters;
+  if (!options.robot.empty()) parameters.emplace_back("robot", options.robot);
+  AddTo(parameters, options.page);
+  const std::string command = "rigcal sessions" + (options.robot.empty() ? "" : " " + options.robot) + LimitText(options.page);
+  const auto print = [&](const Document& document, std::ostream& out) {
+    if (document["sessions"].size() == 0 && !options.page.before.empty())
+      out << kNoOlderOnes;
+    else
+      PrintSessions(document, out);
+    PrintNextPage(document, command, out);
+  };
+  return Answer(context, {"sessions", JsonObject(parameters), print, {}});
+}
+
 }  // namespace
 
 void AddSessions(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("sessions", "List the capture sessions of all robots, or of one");
-  auto robot = std::make_shared<std::string>();
-  verb->add_option("ROBOT", *robot, "Only this robot's");
+  auto options = std::make_shared<SessionsOptions>();
+  verb->add_option("ROBOT", options->robot, "Only this robot's");
+  AddPageOptions(*verb, options->page, "sessions", "the whole id of a session");
   verb->footer(
       "FILES: on the server's disk / in all. JOBS: sensor pairs done / in all. --json has the whole session ids.\n"
       "A superseded session does not count: another one of the same pictures was pushed, or restored, after it.\n"
       "Examples:\n"
       "  rigcal sessions\n"
-      "  rigcal sessions mapper-01\n");
-  verb->callback([&context, robot] {
-    const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
-    context.exit_code = Answer(context, {"sessions", parameters, PrintSessions, {}});
-  });
+      "  rigcal sessions mapper-01 --limit 20\n");
+  verb->callback([&context, options] { context.exit_code = RunSessions(context, *options); });
 }
 
 }  // namespace rigcal::client

@@ -44,11 +44,13 @@ void PrintShow(const Document& document, std::ostream& out) {
 struct ShowOptions {
   std::string robot;
   int revision = 0;
+  bool whole = false;
 };
 
 ExitCode RunShow(const Context& context, const ShowOptions& options) {
   std::vector<Field> parameters = {{"robot", options.robot}};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
+  if (options.whole) parameters.push_back(Field::Raw("whole", "true"));
   return Answer(context, {"show", JsonObject(parameters), PrintShow,
                           [](const Document& document) { return Judge(document["document"]["verdict"], document); }});
 }
@@ -62,11 +64,12 @@ void AddShow(CLI::App& app, Context& context) {
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  verb->add_flag("--whole", options->whole, "With --json: every edge with its captures, evidence, information and covariance");
   verb->footer(std::string(kVerdictCodes) +
                "Examples:\n"
                "  rigcal show mapper-01\n"
                "  rigcal show mapper-01 --revision 3\n"
-               "  rigcal show mapper-01 --json > mapper-01.json\n");
+               "  rigcal show mapper-01 --whole --json > mapper-01.json\n");
   verb->callback([&context, options] { context.exit_code = RunShow(context, *options); });
 }
 

@@ -19,6 +19,7 @@ void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);
 void AddEdges(CLI::App& app, Context& context);
 void AddShow(CLI::App& app, Context& context);
+void AddHistory(CLI::App& app, Context& context);
 void AddLookup(CLI::App& app, Context& context);
 void AddStatus(CLI::App& app, Context& context);
 void AddWatch(CLI::App& app, Context& context);

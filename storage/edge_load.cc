@@ -1,5 +1,6 @@
 #include <sqlite3.h>
 
+#include <limits>
 #include <unordered_map>
 
 #include "storage/edges.h"
@@ -177,8 +178,35 @@ Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId
   });
 }
 
-Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids) {
-  return LoadSelection(store, "edges by id", {"e.edge_id IN (SELECT value FROM json_each(?))", ListOf(ids)});
+Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids, bool blocks) {
+  return LoadSelection(store, "edges by id", {"e.edge_id IN (SELECT value FROM json_each(?))", ListOf(ids), blocks});
+}
+
+namespace {
+
+// When it began to count, as a number that only grows; of an empty id: after all others.
+Result<std::int64_t> TurnOf(Store& store, const RobotId& robot, const EdgeId& id) {
+  if (id.empty()) return std::numeric_limits<std::int64_t>::max();
+  Query query(store,
+              "SELECT c.number FROM edge e JOIN counted_edge c ON c.edge_number = e.number WHERE e.edge_id = ? AND c.robot_id = ?");
+  if (query.Bind(id, robot).Step()) return query.Int(0);
+  return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is none of robot " + robot.str(),
+              "`rigcal edges " + robot.str() + "` lists those that are.");
+}
+
+}  // namespace
+
+Result<std::vector<EdgeId>> LoadEdgeIds(Store& store, const RobotId& robot, const EdgeId& before, std::int64_t limit) {
+  return Load<std::vector<EdgeId>>(store, "edges of robot " + robot.str(), [&]() -> Result<std::vector<EdgeId>> {
+    RIGCAL_ASSIGN(const std::int64_t turn, TurnOf(store, robot, before));
+    Query query(store,
+                "SELECT e.edge_id FROM counted_edge c CROSS JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ? "
+                "AND c.number < ? ORDER BY c.number DESC LIMIT ?");
+    query.Bind(robot, turn, limit);
+    std::vector<EdgeId> ids;
+    while (query.Step()) ids.push_back(query.IdAt<EdgeId>(0));
+    return ids;
+  });
 }
 
 Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges) {

@@ -22,8 +22,11 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
 // Those that are in no merged edge (merged_edges.h), likewise.
 [[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, bool blocks);
-// Those of `ids` that are there, sorted by id.
-[[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids);
+// Those of `ids` that are there, sorted by id; likewise.
+[[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids, bool blocks = true);
+// Ids of the robot's edges, the one that began to count last first, up to `limit`: those after the edge `before`, the first ones if it
+// is empty. kNotFound if it is none of the robot's.
+[[nodiscard]] Result<std::vector<EdgeId>> LoadEdgeIds(Store& store, const RobotId& robot, const EdgeId& before, std::int64_t limit);
 // Sorted by id; only those of the session.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
 // Those of the sessions, sorted by id: ids, ends, pose and uncertainty, and nothing else of them.

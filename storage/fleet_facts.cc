@@ -31,15 +31,15 @@ Result<std::map<RobotId, FleetFacts>> LoadFleetFacts(Store& store) {
   });
 }
 
-Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const RobotId& robot) {
+Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const std::vector<SessionId>& sessions) {
   using Facts = std::map<SessionId, SessionFacts>;
-  return Load<Facts>(store, "results of the sessions of robot " + robot.str(), [&]() -> Result<Facts> {
+  return Load<Facts>(store, "results of sessions", [&]() -> Result<Facts> {
     Facts facts;
     Query query(store,
-                "SELECT session_id, sum(state = 'good'), sum(state = 'failed') FROM counted_edge c JOIN edge e "
-                "ON e.number = c.edge_number WHERE c.robot_id = ? AND "
-                "session_id IS NOT NULL GROUP BY session_id");
-    query.Bind(robot);
+                "SELECT e.session_id, sum(e.state = 'good'), sum(e.state = 'failed') FROM edge e "
+                "WHERE e.session_id IN (SELECT value FROM json_each(?)) "
+                "AND EXISTS (SELECT 1 FROM counted_edge c WHERE c.edge_number = e.number) GROUP BY e.session_id");
+    query.Bind(ListOf(sessions));
     while (query.Step()) facts[query.IdAt<SessionId>(0)] = {query.Int(1), query.Int(2)};
     return facts;
   });

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "server/base/stamp.h"
 #include "storage/revisions.h"
@@ -27,6 +28,6 @@ struct FleetFacts {
 struct SessionFacts {
   std::int64_t good = 0, failed = 0;
 };
-[[nodiscard]] Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const RobotId& robot);
+[[nodiscard]] Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const std::vector<SessionId>& sessions);
 
 }  // namespace rigcal::storage

@@ -40,6 +40,11 @@ void ReplaceScores(Store& store, const RobotId& robot, const std::vector<MergedE
           .Run();
 }
 
+void ReplaceIds(Store& store, const RobotId& robot, const std::vector<EdgeId>& ids) {
+  Query(store, "DELETE FROM merge_state_edge WHERE robot_id = ?").Bind(robot).Run();
+  Query(store, "INSERT OR IGNORE INTO merge_state_edge SELECT value, ? FROM json_each(?)").Bind(robot, ListOf(ids)).Run();
+}
+
 Result<MergedEdge> MergedAt(const Query& row) {
   MergedEdge merged;
   merged.frame_a = row.IdAt<SensorId>(0), merged.frame_b = row.IdAt<SensorId>(1);
@@ -168,6 +173,14 @@ Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& rob
   });
 }
 
+Result<std::optional<RobotId>> FindRobotOfMerged(Store& store, const EdgeId& id) {
+  using Found = std::optional<RobotId>;
+  return Load<Found>(store, "merged edge " + id.str(), [&]() -> Result<Found> {
+    Query query(store, "SELECT robot_id FROM merge_state_edge WHERE edge_id = ?");
+    return query.Bind(id).Step() ? Found(query.IdAt<RobotId>(0)) : std::nullopt;
+  });
+}
+
 Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
   WhatCounts counts;
   RIGCAL_ASSIGN(counts.superseded, LoadSuperseded(store, robot));
@@ -186,6 +199,7 @@ Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& 
   return store.connection().Append(Subject(key.robot), [&]() -> Status {
     for (const MergedEdge& one : step.merged) Insert(store, key, one);
     ReplaceScores(store, key.robot, step.merged);
+    ReplaceIds(store, key.robot, step.ids);
     if (!step.back.empty()) PutBack(store, key.robot, step.back);
     if (!step.taken.empty()) TakeOut(store, key.robot, step.taken);
     const std::string basis = BasisOf(store, key.robot, counts);

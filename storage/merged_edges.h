@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "server/model/merged_edge.h"
@@ -13,6 +14,9 @@ namespace rigcal::storage {
 
 // Of a revision, or of the newest (`number` 0), by frames and method; scores of sessions only with those of the newest.
 [[nodiscard]] Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number = 0);
+
+// The robot in whose newest revision a merged edge has this id.
+[[nodiscard]] Result<std::optional<RobotId>> FindRobotOfMerged(Store& store, const EdgeId& id);
 
 // What people said of a robot's edges that matters for what was merged.
 struct WhatCounts {
@@ -29,6 +33,7 @@ struct MergeStep {
   std::vector<MergedEdge> merged;
   std::vector<EdgeId> taken;  // are in merged edges from now on, or past
   std::vector<EdgeId> back;   // were, and are in none: all edges that there are, where merging began anew
+  std::vector<EdgeId> ids = {};  // that the merged ones have in the revision
 };
 // Call inside the Write that appends the revision. `counts`: as the revision saw it.
 [[nodiscard]] Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts);

@@ -22,6 +22,12 @@ Blob BlobOf(const Matrix6d& matrix) {
   return BlobOf(rows.data(), 36);
 }
 
+std::string ListOf(const std::vector<int>& numbers) {
+  std::string list = "[";
+  for (const int number : numbers) list += (list.size() == 1 ? "" : ",") + std::to_string(number);
+  return list + "]";
+}
+
 Query::Query(Store& store, const std::string& sql)
     : idle_(store.connection().IdleStatement(sql)), statement_(std::move(idle_)) {
   if (!statement_) statement_ = std::make_unique<SQLite::Statement>(store.connection().database(), sql);

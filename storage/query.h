@@ -88,7 +88,6 @@ class Query {
   int bound_ = 0;
 };
 
-// NULL for an empty id.
 // As json_each takes it; ids hold no character that JSON escapes.
 template <typename Tag>
 [[nodiscard]] std::string ListOf(const std::vector<Id<Tag>>& ids) {
@@ -97,6 +96,9 @@ template <typename Tag>
   return list + "]";
 }
 
+[[nodiscard]] std::string ListOf(const std::vector<int>& numbers);
+
+// NULL for an empty id.
 template <typename Tag>
 [[nodiscard]] std::optional<Id<Tag>> NullIfEmpty(const Id<Tag>& id) {
   return id.empty() ? std::nullopt : std::optional(id);

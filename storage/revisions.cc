@@ -1,5 +1,9 @@
 #include "storage/revisions.h"
 
+#include <limits>
+
+#include "server/base/limits.h"
+#include "storage/compressed.h"
 #include "storage/query.h"
 #include "storage/sessions.h"
 
@@ -56,11 +60,24 @@ void UpdateWaiting(Store& store, const RobotId& robot) {
       .Run();
 }
 
-void Insert(Store& store, const Revision& revision, int number) {
-  Query insert(store, "INSERT INTO revision VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
-              revision.verdict.why, revision.verdict.what_to_do, revision.digest);
-  insert.BindNoCopy(revision.document).Run();
+std::string DocumentSubject(const RobotId& robot, int number) {
+  return "the document of revision " + std::to_string(number) + " of robot " + robot.str();
+}
+
+// Column 10: compressed; 11: as revisions of before have it.
+Result<std::string> DocumentOf(const Query& query, const std::string& subject) {
+  if (!query.IsNull(10)) return Decompress(subject, query.Text(10), limits::kRevisionBytesMax);
+  std::string text = query.Text(11);
+  if (text.empty()) return Fail(ErrorCode::kStorage, subject + " is missing", "Restore the database from a backup.");
+  return text;
+}
+
+void Insert(Store& store, const Revision& revision, int number, const Blob& document) {
+  Query(store, "INSERT INTO revision VALUES (?, ?, ?, ?, ?, ?, ?, ?, '')")
+      .Bind(revision.robot, number, revision.created_at, revision.edge_watermark, NameOf(revision.verdict.level),
+            revision.verdict.why, revision.verdict.what_to_do, revision.digest)
+      .Run();
+  Query(store, "INSERT INTO revision_document VALUES (?, ?, ?)").Bind(revision.robot, number, document).Run();
   Query(store, "INSERT INTO revision_standing VALUES (?, ?, ?)")
       .Bind(revision.robot, number, revision.standing_watermark)
       .Run();
@@ -78,17 +95,20 @@ Result<int> AppendRevision(Store& store, const Revision& revision) {
   return Append<int>(store, RevisionsSubject(revision.robot), [&]() -> Result<int> {
     RIGCAL_TRY(AppendRobot(store, revision.robot, revision.created_at));
     const int number = NewestNumber(store, revision.robot) + 1;
-    Insert(store, revision, number);
+    RIGCAL_ASSIGN(std::string document, Compress(DocumentSubject(revision.robot, number), revision.document, limits::kRevisionBytesMax));
+    Insert(store, revision, number, {std::move(document)});
     return number;
   });
 }
 
 Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, "SELECT " + kColumns + ", document FROM revision WHERE robot_id = ? AND number = ?");
+    Query query(store, "SELECT " + kColumns +
+                           ", (SELECT zstd FROM revision_document d WHERE d.robot_id = revision.robot_id AND "
+                           "d.revision_number = revision.number), document FROM revision WHERE robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionOf(query);
-    revision.document = query.Text(10);
+    RIGCAL_ASSIGN(revision.document, DocumentOf(query, DocumentSubject(robot, revision.number)));
     return revision;
   });
 }
@@ -116,13 +136,24 @@ Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& 
   });
 }
 
-Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot) {
+Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before, std::int64_t limit) {
   return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
-    Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? ORDER BY number DESC");
-    query.Bind(robot);
+    Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");
+    query.Bind(robot, before > 0 ? before : std::numeric_limits<int>::max(), limit);
     std::vector<Revision> revisions;
     while (query.Step()) revisions.push_back(RevisionOf(query));
     return revisions;
+  });
+}
+
+Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, const std::vector<int>& numbers) {
+  using Stamps = std::map<int, Stamp>;
+  return Load<Stamps>(store, RevisionsSubject(robot), [&]() -> Result<Stamps> {
+    Query query(store, "SELECT number, created_ns FROM revision WHERE robot_id = ? AND number IN (SELECT value FROM json_each(?))");
+    query.Bind(robot, ListOf(numbers));
+    Stamps stamps;
+    while (query.Step()) stamps.emplace(static_cast<int>(query.Int(0)), query.Time(1));
+    return stamps;
   });
 }
 

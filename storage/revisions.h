@@ -1,6 +1,8 @@
 // Numbered revisions, append-only, and which of them are published.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -10,16 +12,19 @@
 namespace rigcal::storage {
 
 // Appends with the next number of the robot (1, 2, ...) and returns it. Call inside Write. `calibrated_at` is part of
-// it.
+// it. The document is kept compressed, up to limits::kRevisionBytesMax.
 [[nodiscard]] Result<int> AppendRevision(Store& store, const Revision& revision);
-// number 0: the newest.
+// number 0: the newest. kStorage where its document is damaged.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number);
 // The same without the document, which may be many megabytes.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number);
 // The newest up to `number` (0: of all) whose verdict is pass or warn; without the document.
 [[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number);
-// Without documents; newest first.
-[[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot);
+// Without documents; newest first, up to `limit` with numbers below `before` (0: from the newest on).
+[[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before = 0,
+                                                          std::int64_t limit = kAllRows);
+// When those of `numbers` that there are were made.
+[[nodiscard]] Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, const std::vector<int>& numbers);
 // Robots with edges whose newest edge or newest standing (standing.h) is not in their newest revision, or that have
 // none.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);

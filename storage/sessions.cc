@@ -1,5 +1,6 @@
 #include "storage/sessions.h"
 
+#include <limits>
 #include <set>
 
 #include "server/formats/documents.h"
@@ -147,10 +148,28 @@ Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id) 
   });
 }
 
-Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot) {
+namespace {
+
+struct SessionPlace {
+  std::int64_t captured_ns = std::numeric_limits<std::int64_t>::max(), number = std::numeric_limits<std::int64_t>::max();
+};
+
+// In lists, the newest first; of an empty id: before all.
+Result<SessionPlace> PlaceOf(Store& store, const SessionId& id) {
+  if (id.empty()) return SessionPlace{};
+  Query query(store, "SELECT captured_ns, number FROM session WHERE session_id = ?");
+  if (query.Bind(id).Step()) return SessionPlace{query.Int(0), query.Int(1)};
+  return Fail(ErrorCode::kNotFound, Subject(id) + " is not known", "`rigcal sessions --json` lists those that are.");
+}
+
+}  // namespace
+
+Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot, const SessionId& before, std::int64_t limit) {
   return Load<std::vector<SessionRow>>(store, "list of sessions", [&]() -> Result<std::vector<SessionRow>> {
-    Query query(store, kSelectRow + (robot.empty() ? "" : "WHERE s.robot_id = ? ") +
-                           "ORDER BY s.captured_ns DESC, s.number DESC");
+    RIGCAL_ASSIGN(const SessionPlace place, PlaceOf(store, before));
+    Query query(store, kSelectRow + "WHERE (s.captured_ns, s.number) < (?, ?) " + (robot.empty() ? "" : "AND s.robot_id = ?4 ") +
+                           "ORDER BY s.captured_ns DESC, s.number DESC LIMIT ?3");
+    query.Bind(place.captured_ns, place.number, limit);
     if (!robot.empty()) query.Bind(robot);
     std::vector<SessionRow> rows;
     while (query.Step()) rows.push_back(SessionRowOf(query));
@@ -161,8 +180,8 @@ Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot)
 Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot) {
   return Load<std::vector<SessionRow>>(store, Subject(robot), [&]() -> Result<std::vector<SessionRow>> {
     Query query(store, kSelectRow +
-                           "WHERE s.robot_id = ? AND (c.closed_ns IS NULL OR EXISTS (SELECT 1 FROM job j "
-                           "JOIN waiting_job w ON w.job_number = j.number WHERE j.session_number = s.number)) "
+                           "WHERE s.robot_id = ?1 AND (c.closed_ns IS NULL OR s.number IN (SELECT j.session_number FROM waiting_job w "
+                           "CROSS JOIN job j ON j.number = w.job_number WHERE w.robot_id = ?1)) "
                            "ORDER BY s.captured_ns DESC, s.number DESC");
     query.Bind(robot);
     std::vector<SessionRow> rows;
@@ -176,6 +195,17 @@ Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& r
   return Load<Stamps>(store, Subject(robot), [&]() -> Result<Stamps> {
     Query query(store, "SELECT session_id, captured_ns FROM session WHERE robot_id = ?");
     query.Bind(robot);
+    Stamps stamps;
+    while (query.Step()) stamps.emplace(query.IdAt<SessionId>(0), query.Time(1));
+    return stamps;
+  });
+}
+
+Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions) {
+  using Stamps = std::map<SessionId, Stamp>;
+  return Load<Stamps>(store, "times of sessions", [&]() -> Result<Stamps> {
+    Query query(store, "SELECT session_id, captured_ns FROM session WHERE session_id IN (SELECT value FROM json_each(?))");
+    query.Bind(ListOf(sessions));
     Stamps stamps;
     while (query.Step()) stamps.emplace(query.IdAt<SessionId>(0), query.Time(1));
     return stamps;

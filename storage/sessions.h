@@ -26,9 +26,13 @@ struct SessionRow {
                                    const Manifest& manifest, Stamp now);
 [[nodiscard]] Result<std::optional<SessionRow>> LoadSession(Store& store, const SessionId& id);
 [[nodiscard]] Result<std::optional<Manifest>> LoadManifest(Store& store, const SessionId& id);
-// All of one robot, or of all robots if `robot` is empty; newest captured_at first.
-[[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot);
+// Of one robot, or of all robots if `robot` is empty; newest captured_at first. Of that list up to `limit`: those after the session
+// `before`, the first ones if it is empty; kNotFound if it is not known.
+[[nodiscard]] Result<std::vector<SessionRow>> LoadSessions(Store& store, const RobotId& robot, const SessionId& before = {},
+                                                           std::int64_t limit = kAllRows);
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& robot);
+// Of those that are known.
+[[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions);
 // Of the closed ones that which was captured first; of several the smallest id.
 [[nodiscard]] Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot);
 // Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.

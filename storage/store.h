@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include "server/base/result.h"
@@ -16,6 +17,8 @@ class Database;
 namespace rigcal::storage {
 
 class Connection;
+
+inline constexpr std::int64_t kAllRows = std::numeric_limits<std::int64_t>::max();  // the limit of a list in one piece
 
 class Store {
  public:

@@ -56,7 +56,7 @@ def run(context):
         with Server(context, pathlib.Path(temporary) / "store") as server:
             if server.rigcal("push", session).returncode not in ANSWERED:
                 raise RuntimeError("push failed")
-            document = json.loads(server.rigcal("show", "caliscope-rig", "--json").stdout)["document"]
+            document = json.loads(server.rigcal("show", "caliscope-rig", "--whole", "--json").stdout)["document"]
     edges = [edge for edge in document["edges"] if edge["state"] == "good"]
     yield equal("caliscope_pairs", "%d/%d" % (len(edges), len(list(itertools.combinations(author, 2)))), "6/6")
     differences = [difference(edge, author) for edge in edges]

@@ -29,7 +29,7 @@ def simulate(context, folder, lidar, seed, *options):
 
 
 def edge_of(server, visit):
-    edges = json.loads(server.rigcal("show", visit.name, "--json").stdout)["document"]["edges"]
+    edges = json.loads(server.rigcal("show", visit.name, "--whole", "--json").stdout)["document"]["edges"]
     if [edge["method"] for edge in edges] != ["tracker_lidar"]:
         raise RuntimeError("one edge, tracker_lidar: %r" % [edge["method"] for edge in edges])
     return edges[0]

@@ -41,5 +41,7 @@ constexpr std::size_t kHttpConnectionsMax = 64;
 constexpr std::size_t kHttpWaitingMax = 384;  // connections whose request has not come whole
 constexpr std::int64_t kReportsOfRobot = 20;  // kept on disk, beside one of each month
 constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;
+constexpr std::size_t kRevisionBytesMax = 1ULL << 30;  // of a revision's document
+constexpr std::int64_t kPageRowsMax = 1'000;           // of a list that is asked for by pages
 
 }  // namespace rigcal::limits

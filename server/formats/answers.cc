@@ -71,14 +71,19 @@ void WritePart(JsonWriter& out, const PartState& part) {
   });
 }
 
+void WriteNext(JsonWriter& out, const NextPage& next) {
+  if (next) next->empty() ? out.Null("next") : out.Text("next", *next);
+}
+
 }  // namespace
 
 std::string WriteRobots(const std::vector<RobotAnswer>& robots, Stamp now) {
   return WriteObject([&](JsonWriter& out) { WriteRobotRows(out, robots, now); });
 }
 
-std::string WriteSessions(const std::vector<SessionAnswer>& sessions) {
+std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next) {
   return WriteObject([&](JsonWriter& out) {
+    WriteNext(out, next);
     out.List("sessions", [&] {
       for (const SessionAnswer& session : sessions) out.Object([&] { WriteSessionMembers(out, session); });
     });
@@ -111,10 +116,11 @@ std::string WriteRetired(const Edge& edge, const Standing& retired) {
 }
 
 std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
-                       const std::vector<EdgeResidual>& residuals) {
+                       const std::vector<EdgeResidual>& residuals, const NextPage& next) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     WriteRevisionNumber(out, revision);
+    WriteNext(out, next);
     out.List("edges", [&] {
       for (const Edge& edge : edges)
         out.Object([&] { WriteEdgeRowMembers(out, edge, ResidualOf(residuals, edge.id)); });
@@ -136,9 +142,10 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
   return text.replace(text.find(place) + place.size() - 4, 4, revision.document);
 }
 
-std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now) {
+std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
+    if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");
     out.List("revisions", [&] {
       for (const Revision& revision : revisions)
         out.Object([&] {

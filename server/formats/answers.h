@@ -16,6 +16,10 @@
 
 namespace rigcal::formats {
 
+// Of a list that was asked for by pages, "next": what the following page is asked for with; empty, written as null: there is none.
+// Absent of a list in one piece.
+using NextPage = std::optional<std::string>;
+
 // verb robots
 struct RobotAnswer {
   RobotId robot;
@@ -41,7 +45,7 @@ struct SessionAnswer {
   std::optional<Superseding> superseded_by = {};  // absent: current, or not closed
   std::vector<SessionId> supersedes = {};
 };
-[[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions);
+[[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
                                        const std::vector<Edge>& edges);
 
@@ -52,12 +56,13 @@ struct SessionAnswer {
 
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
-                                     const std::vector<EdgeResidual>& residuals);
+                                     const std::vector<EdgeResidual>& residuals, const NextPage& next = {});
 
 // verb show: number, time and digest around the revision's document, which is put in byte for byte.
 [[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now);
-// verb revisions: without documents.
-[[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now);
+// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page.
+[[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
+                                         const std::optional<int>& next = {});
 
 // verb lookup
 struct LookupAnswer {

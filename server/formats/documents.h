@@ -27,16 +27,19 @@ namespace rigcal::formats {
 [[nodiscard]] Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& robot);
 
 // A revision's canonical document: sensors, edges, residuals, verdict; neither number nor time, and the same bytes
-// for the same edges whatever the order in which they arrived.
+// for the same edges whatever the order in which they arrived. Format 2 refers to its edges (edge_reference.h).
 struct RevisionInput {
   RobotId robot;
   SensorId reference;
   std::vector<Edge> edges;  // good and failed, sorted by id
   GraphSolution solution;
   Verdict verdict;
+  bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/whole_revision.h)
 };
 [[nodiscard]] std::string WriteRevisionDocument(const RevisionInput& input);
-// Back to values; edges without block vectors, evidence included.
+// Format 1: the same with every detail of the edges but block vectors. `input` must be whole.
+[[nodiscard]] std::string WriteWholeRevisionDocument(const RevisionInput& input);
+// Back to values, of either format; edges without block vectors.
 [[nodiscard]] Result<RevisionInput> ReadRevisionDocument(std::string_view text);
 
 }  // namespace rigcal::formats

@@ -131,7 +131,9 @@ std::vector<Evidence> ReadEvidence(const JsonField& field) {
 
 }  // namespace
 
-void WriteEdgeSummary(JsonWriter& out, const Edge& edge) {
+void WriteEdgeSummary(JsonWriter& out, const Edge& edge) { WriteEdgeRow(out, edge, edge.figures); }
+
+void WriteEdgeRow(JsonWriter& out, const Edge& edge, const std::map<std::string, double>& figures) {
   out.Text("id", edge.id.str());
   out.Text("frame_a", edge.frame_a.str());
   out.Text("frame_b", edge.frame_b.str());
@@ -142,7 +144,7 @@ void WriteEdgeSummary(JsonWriter& out, const Edge& edge) {
   edge.state == EdgeState::kGood ? WriteEstimate(out, edge) : WriteNoEstimate(out);
   WriteDiagnoses(out, "diagnoses", edge.diagnoses);
   out.Object("figures", [&] {
-    for (const auto& [name, value] : edge.figures) out.Number(name, value);
+    for (const auto& [name, value] : figures) out.Number(name, value);
   });
 }
 
@@ -190,10 +192,9 @@ const EdgeResidual* ResidualOf(const std::vector<EdgeResidual>& residuals, const
   return at != residuals.end() && at->edge == edge ? &*at : nullptr;
 }
 
-Edge ReadEdgeFields(const JsonField& field) {
+Edge ReadEdgeRow(const JsonField& field) {
   Edge edge;
   edge.id = ReadId<EdgeId>(field.At("id"));
-  edge.robot = ReadId<RobotId>(field.At("robot"));
   edge.frame_a = ReadId<SensorId>(field.At("frame_a"));
   edge.frame_b = ReadId<SensorId>(field.At("frame_b"));
   edge.state = ReadState(field.At("state"));
@@ -202,11 +203,16 @@ Edge ReadEdgeFields(const JsonField& field) {
   edge.epoch = static_cast<int>(field.At("epoch").Integer(1, INT_MAX));
   edge.diagnoses = ReadDiagnoses(field.At("diagnoses"));
   for (const auto& [name, value] : field.At("figures").Members(kFiguresMax)) edge.figures[name] = value.Number();
+  if (edge.state == EdgeState::kGood) edge.T_a_b = ReadPose(field.At("T_a_b"), kUnitTolerance);
+  return edge;
+}
+
+Edge ReadEdgeFields(const JsonField& field) {
+  Edge edge = ReadEdgeRow(field);
+  edge.robot = ReadId<RobotId>(field.At("robot"));
   edge.captures = ReadCaptures(field.At("captures"));
   edge.evidence = ReadEvidence(field.At("evidence"));
-  if (edge.state == EdgeState::kFailed) return edge;
-  edge.T_a_b = ReadPose(field.At("T_a_b"), kUnitTolerance);
-  edge.uncertainty = ReadUncertainty(field);
+  if (edge.state == EdgeState::kGood) edge.uncertainty = ReadUncertainty(field);
   return edge;
 }
 

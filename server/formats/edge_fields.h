@@ -1,6 +1,8 @@
 // An edge's members, in the groups of which the documents of edges are made.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "server/formats/json_field.h"
@@ -12,6 +14,8 @@ namespace rigcal::formats {
 
 // Of a row: ids, frames, state, pose, sigmas, figures, diagnoses.
 void WriteEdgeSummary(JsonWriter& out, const Edge& edge);
+// The same with `figures` in the place of the edge's own.
+void WriteEdgeRow(JsonWriter& out, const Edge& edge, const std::map<std::string, double>& figures);
 // The rest, without block vectors: robot, information, covariance, contributions, captures, evidence.
 void WriteEdgeDetail(JsonWriter& out, const Edge& edge);
 void WriteBlocks(JsonWriter& out, const std::vector<BlockVector>& blocks);
@@ -22,6 +26,8 @@ void WriteResidual(JsonWriter& out, const EdgeResidual* residual);
 
 // Both groups; not validated.
 [[nodiscard]] Edge ReadEdgeFields(const JsonField& field);
+// A row, without robot and uncertainty; not validated.
+[[nodiscard]] Edge ReadEdgeRow(const JsonField& field);
 [[nodiscard]] std::vector<BlockVector> ReadBlocks(const JsonField& field);
 [[nodiscard]] std::vector<Contribution> ReadContributions(const JsonField& field);
 [[nodiscard]] UncertaintySource ReadSource(const JsonField& field);

@@ -71,6 +71,13 @@ Result<std::int64_t> Parameters::IntegerOr(const std::string& name, std::int64_t
   return Fail(ErrorCode::kInvalidInput, "the parameter " + Quoted(name) + " is not an integer", "Give a whole number.");
 }
 
+Result<bool> Parameters::Flag(const std::string& name) const {
+  const std::string text = Text(name).value_or("false");
+  if (text == "true" || text == "1") return true;
+  if (text == "false" || text == "0") return false;
+  return Fail(ErrorCode::kInvalidInput, "the parameter " + Quoted(name) + " is neither true nor false", "Give true or false.");
+}
+
 Result<std::string> ParametersOfQuery(std::string_view query) {
   auto object = nlohmann::json::object();
   while (!query.empty()) {

@@ -18,6 +18,8 @@ class Parameters {
   [[nodiscard]] std::optional<std::string> Text(const std::string& name) const;
   // Also of a text of digits; `fallback` if the parameter is absent; kInvalidInput if it is not an integer.
   [[nodiscard]] Result<std::int64_t> IntegerOr(const std::string& name, std::int64_t fallback) const;
+  // A boolean, or one of the texts "true", "false", "1", "0"; false if the parameter is absent.
+  [[nodiscard]] Result<bool> Flag(const std::string& name) const;
 
  private:
   std::map<std::string, std::string> texts_;

@@ -4,6 +4,7 @@
 #include "server/base/limits.h"
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
+#include "server/formats/edge_reference.h"
 #include "server/formats/insight_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/suspects_fields.h"
@@ -11,7 +12,7 @@
 namespace rigcal::formats {
 namespace {
 
-constexpr std::size_t kRevisionBytesMax = 1u << 30;
+constexpr int kWithWholeEdges = 1, kWithReferences = 2;  // formats
 
 // What the covariance would be if edges were independent; null where it is that.
 void WriteAnalytic(JsonWriter& out, const SensorPose& pose) {
@@ -139,15 +140,15 @@ std::vector<const Edge*> SortedById(const std::vector<Edge>& edges) {
   return sorted;
 }
 
-void WriteRevisionEdges(JsonWriter& out, const RevisionInput& input) {
+void WriteRevisionEdges(JsonWriter& out, const RevisionInput& input, int format) {
   std::vector<EdgeResidual> residuals = input.solution.residuals;
   std::sort(residuals.begin(), residuals.end(),
             [](const EdgeResidual& a, const EdgeResidual& b) { return a.edge < b.edge; });
   out.List("edges", [&] {
     for (const Edge* edge : SortedById(input.edges))
       out.Object([&] {
-        WriteEdgeSummary(out, *edge);
-        WriteEdgeDetail(out, *edge);
+        format == kWithReferences ? WriteEdgeReference(out, *edge) : WriteEdgeSummary(out, *edge);
+        if (format == kWithWholeEdges) WriteEdgeDetail(out, *edge);
         WriteResidual(out, ResidualOf(residuals, edge->id));
         WriteInfluence(out, input.solution.influences, edge->id);
       });
@@ -203,37 +204,45 @@ GraphSolution ReadSolution(const JsonField& root) {
   return solution;
 }
 
-}  // namespace
-
-std::string WriteRevisionDocument(const RevisionInput& input) {
+std::string WriteInFormat(const RevisionInput& input, int format) {
   return WriteObject([&](JsonWriter& out) {
-    out.Integer("format", 1);
+    out.Integer("format", format);
     out.Text("robot", input.robot.str());
     input.reference.empty() ? out.Null("reference") : out.Text("reference", input.reference.str());
     WriteVerdict(out, "verdict", input.verdict);
     WriteSolution(out, input.solution);
-    WriteRevisionEdges(out, input);
+    WriteRevisionEdges(out, input, format);
   });
 }
 
-Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
-  const JsonKind kind = {"revision", "Ask for the revision again; docs/api.md describes the document.",
-                         kRevisionBytesMax};
-  RIGCAL_ASSIGN(JsonDocument document, JsonDocument::Parse(text, kind));
-  const JsonField root = document.Root();
-  RevisionInput input;
-  (void)root.At("format").Integer(1, 1);
-  input.robot = ReadId<RobotId>(root.At("robot"));
-  if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
-  input.verdict = ReadVerdict(root.At("verdict"));
-  input.solution = ReadSolution(root);
-  for (const JsonField& field : root.At("edges").Items(limits::kEdgesPerBatchMax)) {
-    input.edges.push_back(ReadEdgeFields(field));
+void ReadRevisionEdges(const JsonField& edges, RevisionInput& input) {
+  for (const JsonField& field : edges.Items(limits::kEdgesPerBatchMax)) {
+    input.edges.push_back(input.whole ? ReadEdgeFields(field) : ReadEdgeReference(field, input.robot));
     if (const auto residual = field.Find("residual"))
       input.solution.residuals.push_back(ReadResidual(*residual, input.edges.back().id));
     if (const auto influence = field.Find("influence"))
       input.solution.influences.edges.push_back(ReadInfluence(*influence, input.edges.back().id));
   }
+}
+
+}  // namespace
+
+std::string WriteRevisionDocument(const RevisionInput& input) { return WriteInFormat(input, kWithReferences); }
+
+std::string WriteWholeRevisionDocument(const RevisionInput& input) { return WriteInFormat(input, kWithWholeEdges); }
+
+Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
+  const JsonKind kind = {"revision", "Ask for the revision again; docs/api.md describes the document.",
+                         limits::kRevisionBytesMax};
+  RIGCAL_ASSIGN(JsonDocument document, JsonDocument::Parse(text, kind));
+  const JsonField root = document.Root();
+  RevisionInput input;
+  input.whole = root.At("format").Integer(kWithWholeEdges, kWithReferences) == kWithWholeEdges;
+  input.robot = ReadId<RobotId>(root.At("robot"));
+  if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
+  input.verdict = ReadVerdict(root.At("verdict"));
+  input.solution = ReadSolution(root);
+  ReadRevisionEdges(root.At("edges"), input);
   RIGCAL_TRY(document.status());
   return input;
 }

@@ -25,7 +25,7 @@ using MergedPairs = std::map<MeasuredPair, MergedEdge>;
 void AddSession(const std::vector<const Edge*>& good, Stamp captured_at, MergedPairs& merged);
 
 // As an edge of the graph: blocks that scatter as theirs do, unless they are not asked for, and contributions of the given
-// constants. Its id is that of its pose, information and count.
+// constants. Its id is that of its pose, information and count: documents of revisions refer to it by that.
 [[nodiscard]] Edge EdgeOf(const MergedEdge& merged, const RobotId& robot, bool blocks = true);
 
 }  // namespace rigcal::graph

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <set>
 
 #include "server/base/version.h"
 #include "server/formats/answers.h"
@@ -11,12 +10,13 @@
 #include "server/graph/joint_poses.h"
 #include "server/graph/merged_edge.h"
 #include "server/graph/solve.h"
-#include "server/model/past.h"
+#include "server/pipeline/asked.h"
+#include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
-#include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/validity.h"
+#include "server/pipeline/whole_revision.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/lost_blobs.h"
@@ -31,40 +31,10 @@ namespace {
 using formats::Parameters;
 using Verb = std::function<Result<std::string>(const AnswerContext&, const Parameters&)>;
 
-template <typename IdType>
-Result<IdType> RequiredId(const Parameters& parameters, const std::string& name) {
-  const auto text = parameters.Text(name);
-  if (!text)
-    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing",
-                "See docs/api.md for the verb's parameters.");
-  return IdType::Parse(*text);
-}
-
-Result<RobotId> OptionalRobot(const Parameters& parameters) {
-  return parameters.Text("robot") ? RequiredId<RobotId>(parameters, "robot") : RobotId();
-}
-
-// kNotFound for a robot that the store does not know.
-Result<RobotId> KnownRobot(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
-  RIGCAL_ASSIGN(const bool is_known, storage::HasRobot(context.store, robot));
-  if (is_known) return robot;
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known",
-              "`rigcal robots` lists those that are.");
-}
-
 Result<std::string> Robots(const AnswerContext& context, const Parameters&) {
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
   return formats::WriteRobots(rows, now);
-}
-
-Result<std::string> Sessions(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
-  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(auto rows, LoadSessionRows(context.store, robot));
-  RIGCAL_TRY(AddStanding(context.store, robot, rows));
-  return formats::WriteSessions(rows);
 }
 
 Result<std::string> Session(const AnswerContext& context, const Parameters& parameters) {
@@ -75,51 +45,56 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   return formats::WriteSession(row, manifest.value_or(Manifest{}), edges);
 }
 
-Result<std::string> Edges(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(auto edges, storage::LoadEdges(context.store, robot, false));
-  RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
-  RIGCAL_TRY(MarkPast(context.store, robot, counts, edges));
-  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
-  if (!newest) return formats::WriteEdges(robot, 0, edges, {});
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
-  return formats::WriteEdges(robot, newest->number, edges, revision.document->solution.residuals);
+// Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids were kept.
+Result<std::optional<Edge>> FindMergedEdge(storage::Store& store, const EdgeId& id, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto known, storage::FindRobotOfMerged(store, id));
+  const RobotId whose = known.value_or(robot);
+  if (whose.empty()) return std::nullopt;
+  RIGCAL_ASSIGN(const auto all, storage::LoadMergedEdges(store, whose));
+  for (const MergedEdge& merged : all)
+    if (graph::EdgeOf(merged, whose, false).id == id) return graph::EdgeOf(merged, whose);
+  return std::nullopt;
 }
 
 Result<std::string> OneEdge(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const EdgeId id, RequiredId<EdgeId>(parameters, "id"));
-  RIGCAL_ASSIGN(const auto edge, storage::LoadEdge(context.store, id));
-  if (!edge)
-    return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known",
-                "`rigcal edges ROBOT` lists those that are.");
-  return formats::WriteEdge(*edge);
+  RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
+  RIGCAL_ASSIGN(auto edge, storage::LoadEdge(context.store, id));
+  if (!edge) {
+    RIGCAL_ASSIGN(edge, FindMergedEdge(context.store, id, robot));
+  }
+  if (edge) return formats::WriteEdge(*edge);
+  return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known", "`rigcal edges ROBOT` lists those that are.");
+}
+
+// A document of format 1 is whole as it is.
+Result<std::string> WholeDocumentOf(storage::Store& store, const Revision& revision) {
+  RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(revision.document));
+  if (document.whole) return revision.document;
+  RIGCAL_ASSIGN(const auto whole, WithWholeEdges(store, revision.number, std::move(document), Blocks::kLeftOut));
+  return formats::WriteWholeRevisionDocument(whole);
 }
 
 Result<std::string> Show(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
-  RIGCAL_ASSIGN(const auto revision, LoadRevisionOf(context.store, robot, number));
+  RIGCAL_ASSIGN(const bool whole, parameters.Flag("whole"));
+  RIGCAL_ASSIGN(Revision revision, LoadRevisionOf(context.store, robot, number));
+  if (whole) {
+    RIGCAL_ASSIGN(revision.document, WholeDocumentOf(context.store, revision));
+  }
   RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(context.store, {robot, revision.number}));
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
   return formats::WriteShow(revision, is_published, validity, now);
 }
 
-Result<std::string> Revisions(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
-  return formats::WriteRevisions(robot, revisions, context.clock.Now());
-}
-
-// Of the revision's edges, merged ones too.
-Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::RevisionInput& document, int number) {
-  std::vector<EdgeId> good;
-  for (const Edge& edge : document.edges)
-    if (edge.state == EdgeState::kGood) good.push_back(edge.id);
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, good));
+// Those of merged edges scatter as theirs do.
+Result<graph::BlocksByEdge> BlocksOfWhole(storage::Store& store, formats::RevisionInput document, int number) {
+  std::erase_if(document.edges, [](const Edge& edge) { return IsMerged(edge); });
   RIGCAL_ASSIGN(const auto merged, storage::LoadMergedEdges(store, document.robot, number));
-  for (const MergedEdge& one : merged) edges.push_back(graph::EdgeOf(one, document.robot));
-  return graph::BlocksOf(edges);
+  for (const MergedEdge& one : merged) document.edges.push_back(graph::EdgeOf(one, document.robot));
+  return graph::BlocksOf(document.edges);
 }
 
 // From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
@@ -127,17 +102,18 @@ Result<graph::BlocksByEdge> LoadBlocks(storage::Store& store, const formats::Rev
 Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const RobotId& robot, int number, const SensorId& a,
                                             const SensorId& b) {
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, number));
-  const formats::RevisionInput& document = *revision.document;
+  const formats::RevisionInput& told = *revision.document;
+  if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
+  RIGCAL_ASSIGN(const formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
   Graph graph = graph::GraphOf(document.edges, document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
   for (const SensorPose& pose : document.solution.poses) graph.sensors.push_back(pose.sensor);
-  if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(document.solution, document.reference), a, b)) return *fused;
   RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
   const auto& poses = document.solution.poses;
   graph::GraphJackknife jackknife;
   if (std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; })) {
-    RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, LoadBlocks(context.store, document, number));
+    RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, BlocksOfWhole(context.store, document, number));
     jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
   }
   if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
@@ -146,7 +122,7 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
 
 // What the newest revision says: an edge that arrived since plays no part.
 Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
   RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
   RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, 0));
@@ -168,7 +144,7 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
 }
 
 Result<std::string> OfStatus(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
+  RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   const Stamp now = context.clock.Now();
   formats::StatusAnswer answer;
   answer.version = std::string(Version());
@@ -184,8 +160,8 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
 }
 
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, OptionalRobot(parameters));
-  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
+  if (!robot.empty()) RIGCAL_TRY(KnownRobot(context.store, parameters));
   return LiveDocument(context.store, robot);
 }
 
@@ -197,14 +173,14 @@ Result<int> ReportNumber(const AnswerContext& context, const RobotId& robot, con
 }
 
 Result<std::string> FilesOfReport(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
   auto files = ReportFiles(context.store, robot, number);
   return files ? std::move(files) : Fail(WhyMissing(context, robot, number, "index.html"));
 }
 
 Result<std::string> FileOfReport(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context, parameters));
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const int number, ReportNumber(context, robot, parameters));
   RIGCAL_ASSIGN(const std::int64_t offset, parameters.IntegerOr("offset", 0));
   return ReportFile(context.store, robot, number, parameters.Text("path").value_or(""), offset);
@@ -240,13 +216,13 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
 const std::map<std::string, Verb>& Verbs() {
   static const std::map<std::string, Verb> verbs = {
       {"robots", Robots},
-      {"sessions", Sessions},
+      {"sessions", ListSessions},
       {"session", Session},
-      {"edges", Edges},
+      {"edges", ListEdges},
       {"edge", OneEdge},
       {"show", Show},
       {"lookup", Lookup},
-      {"revisions", Revisions},
+      {"revisions", ListRevisions},
       {"status", OfStatus},
       {"due", Due},
       {"health", Health},

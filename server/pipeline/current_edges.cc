@@ -43,9 +43,11 @@ void MakePast(const storage::Remount& remount, Edge& edge) {
            "Where no later session measured this pair, measure it anew; where one did, that one counts.", edge);
 }
 
-Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, const std::vector<storage::Remount>& all,
-                                std::vector<Edge>& edges) {
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot, all));
+Status MakePastWhatWasRemounted(storage::Store& store, const std::vector<storage::Remount>& all, std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges)
+    if (!edge.session.empty()) sessions.insert(edge.session);
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, {sessions.begin(), sessions.end()}, all));
   for (Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
@@ -55,13 +57,13 @@ Status MakePastWhatWasRemounted(storage::Store& store, const RobotId& robot, con
 
 }  // namespace
 
-Status MarkPast(storage::Store& store, const RobotId& robot, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
+Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
   for (Edge& edge : edges) {
     if (const auto found = counts.superseded.find(edge.session); found != counts.superseded.end()) Supersede(found->second, edge);
     if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) Retire(found->second.word, edge);
   }
   SupersedeWhatWasRunAgain(edges);
-  return MakePastWhatWasRemounted(store, robot, counts.remounts, edges);
+  return MakePastWhatWasRemounted(store, counts.remounts, edges);
 }
 
 Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
@@ -75,17 +77,17 @@ Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robo
     RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, blocks));
     RIGCAL_ASSIGN(current.merged, storage::LoadMergedEdges(store, robot));
   }
-  RIGCAL_TRY(MarkPast(store, robot, current.counts, edges));
+  RIGCAL_TRY(MarkPast(store, current.counts, edges));
   return current;
 }
 
-Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const RobotId& robot, const CurrentEdges& current,
+Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEdges& current,
                                           const std::vector<SessionId>& sessions) {
   std::set<SessionId> wanted(sessions.begin(), sessions.end());
   for (const Edge& edge : current.edges) wanted.erase(edge.session);
   if (wanted.empty()) return std::vector<Edge>();
   RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdgeRows(store, {wanted.begin(), wanted.end()}));
-  RIGCAL_TRY(MarkPast(store, robot, current.counts, edges));
+  RIGCAL_TRY(MarkPast(store, current.counts, edges));
   return edges;
 }
 

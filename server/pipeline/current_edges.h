@@ -21,10 +21,10 @@ struct CurrentEdges {
 // within one Read.
 [[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks);
 // Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason. Call within one Read.
-[[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const RobotId& robot, const CurrentEdges& current,
+[[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEdges& current,
                                                         const std::vector<SessionId>& sessions);
 // Good edges that do not count are failed, with the reason as their only diagnosis (IsPast).
-[[nodiscard]] Status MarkPast(storage::Store& store, const RobotId& robot, const storage::WhatCounts& counts, std::vector<Edge>& edges);
+[[nodiscard]] Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::vector<Edge>& edges);
 // As it is shown where it was retired.
 void Retire(const Word& word, Edge& edge);
 

@@ -5,15 +5,19 @@
 namespace rigcal::pipeline {
 
 Result<Remounts> Remounts::Load(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto remounts, storage::LoadRemounts(store, robot));
-  return Load(store, robot, remounts);
+  Remounts loaded;
+  RIGCAL_ASSIGN(loaded.remounts_, storage::LoadRemounts(store, robot));
+  if (loaded.remounts_.empty()) return loaded;
+  RIGCAL_ASSIGN(loaded.captured_at_, storage::LoadCapturedAt(store, robot));
+  return loaded;
 }
 
-Result<Remounts> Remounts::Load(storage::Store& store, const RobotId& robot, const std::vector<storage::Remount>& remounts) {
+Result<Remounts> Remounts::Load(storage::Store& store, const std::vector<SessionId>& sessions,
+                                const std::vector<storage::Remount>& remounts) {
   Remounts loaded;
   loaded.remounts_ = remounts;
   if (remounts.empty()) return loaded;
-  RIGCAL_ASSIGN(loaded.captured_at_, storage::LoadCapturedAt(store, robot));
+  RIGCAL_ASSIGN(loaded.captured_at_, storage::LoadCapturedAt(store, sessions));
   return loaded;
 }
 

@@ -11,8 +11,9 @@ namespace rigcal::pipeline {
 class Remounts {
  public:
   [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const RobotId& robot);
-  // With those that were loaded.
-  [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const RobotId& robot, const std::vector<storage::Remount>& remounts);
+  // With those that were loaded; After() then knows these sessions only.
+  [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const std::vector<SessionId>& sessions,
+                                             const std::vector<storage::Remount>& remounts);
   // The earliest remount of the sensor after this session was captured; null: none. What has no session has no date.
   [[nodiscard]] const storage::Remount* After(const SessionId& session, const SensorId& sensor) const;
 

@@ -8,7 +8,7 @@
 #include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/validity.h"
-#include "storage/edges.h"
+#include "server/pipeline/whole_revision.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -62,14 +62,9 @@ Status TakeSessions(storage::Store& store, report::ReportInput& input) {
   return {};
 }
 
-Status TakeBlocks(storage::Store& store, report::ReportInput& input) {
-  std::vector<EdgeId> shown;
-  for (const Edge& edge : input.revision.edges)
-    if (edge.state == EdgeState::kGood) shown.push_back(edge.id);
-  RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdges(store, shown));
-  for (Edge& edge : edges)
+void TakeBlocks(report::ReportInput& input) {
+  for (Edge& edge : input.revision.edges)
     if (!edge.uncertainty.blocks.empty()) input.blocks.emplace(edge.id, std::move(edge.uncertainty.blocks));
-  return {};
 }
 
 void TakeLimits(report::ReportInput& input) {
@@ -113,9 +108,9 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   input.software_version = std::string(Version());
   input.calibrated_at = revision.calibrated_at;
   RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision));
-  RIGCAL_ASSIGN(input.revision, formats::ReadRevisionDocument(revision.document));
+  RIGCAL_ASSIGN(input.revision, LoadWholeRevision(store, revision, Blocks::kLoaded));
+  TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));
-  RIGCAL_TRY(TakeBlocks(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
   TakeCameras(store, input);

@@ -34,15 +34,17 @@ void RemoveLeftOvers(const fs::path& folder) {
 
 std::string MonthOf(Stamp stamp) { return ToIso(stamp).substr(0, 7); }
 
-// `revisions` newest first.
-std::set<int> NewestOfMonths(const std::vector<Revision>& revisions) {
+// Of `numbers` those of revisions after which none was made in the same month.
+Result<std::set<int>> NewestOfMonths(storage::Store& store, const RobotId& robot, const std::vector<int>& numbers) {
+  std::vector<int> asked = numbers;
+  for (const int number : numbers) asked.push_back(number + 1);
+  RIGCAL_ASSIGN(const auto created_at, storage::LoadCreatedAt(store, robot, asked));
   std::set<int> newest;
-  std::string month;
-  for (const Revision& revision : revisions)
-    if (const std::string its = MonthOf(revision.created_at); its != month) {
-      month = its;
-      newest.insert(revision.number);
-    }
+  for (const int number : numbers) {
+    const auto own = created_at.find(number), next = created_at.find(number + 1);
+    if (own == created_at.end()) continue;
+    if (next == created_at.end() || MonthOf(own->second) != MonthOf(next->second)) newest.insert(number);
+  }
   return newest;
 }
 
@@ -61,16 +63,16 @@ Result<Freed> RemoveOldReports(storage::Store& store, const RobotId& robot, std:
   const std::vector<int> numbers = NumbersIn(folder);
   RemoveLeftOvers(folder);
   if (static_cast<std::int64_t>(numbers.size()) <= kept) return Freed{};
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(store, robot));
+  const std::vector<int> older(numbers.begin() + kept, numbers.end());
+  RIGCAL_ASSIGN(std::set<int> stay, NewestOfMonths(store, robot, older));
   RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, 0));
-  std::set<int> stay = NewestOfMonths(revisions);
   if (usable) stay.insert(usable->number);
   Freed freed;
-  for (std::size_t i = static_cast<std::size_t>(kept); i < numbers.size(); ++i) {
-    if (stay.contains(numbers[i])) continue;
-    const fs::path report = folder / std::to_string(numbers[i]);
+  for (const int number : older) {
+    if (stay.contains(number)) continue;
+    const fs::path report = folder / std::to_string(number);
     const std::int64_t bytes = OwnBytesOf(report);
-    const fs::path aside = folder / (".old-" + std::to_string(numbers[i]));
+    const fs::path aside = folder / (".old-" + std::to_string(number));
     std::error_code error;
     fs::rename(report, aside, error);  // at once, for whoever reads
     if (!error) fs::remove_all(aside, error);

@@ -142,6 +142,12 @@ RobotGraph GraphOf(const RobotEdges& loaded, const RobotId& robot, bool blocks) 
   return result;
 }
 
+std::vector<EdgeId> IdsOf(const std::vector<MergedEdge>& merged, const RobotId& robot) {
+  std::vector<EdgeId> ids;
+  for (const MergedEdge& one : merged) ids.push_back(graph::EdgeOf(one, robot, false).id);
+  return ids;
+}
+
 void Append(graph::Merge merge, storage::MergeStep& step) {
   std::move(merge.merged.begin(), merge.merged.end(), std::back_inserter(step.merged));
   std::move(merge.taken.begin(), merge.taken.end(), std::back_inserter(step.taken));
@@ -166,7 +172,7 @@ std::vector<Edge> OfWholeSessions(const RobotEdges& loaded) {
 }
 
 // Edges leave the window for merged ones.
-storage::MergeStep MergeOlder(RobotEdges& loaded) {
+storage::MergeStep MergeOlder(const RobotId& robot, RobotEdges& loaded) {
   CurrentEdges& current = loaded.current;
   storage::MergeStep step;
   if (current.all) step.back = IdsOf(current.edges);
@@ -177,6 +183,7 @@ storage::MergeStep MergeOlder(RobotEdges& loaded) {
     if (taken.contains(edge.id)) loaded.refined.within.push_back(edge);
   std::erase_if(current.edges, [&](const Edge& edge) { return taken.contains(edge.id); });
   current.merged = step.merged;
+  step.ids = IdsOf(step.merged, robot);
   return step;
 }
 
@@ -211,7 +218,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.robot = robot;
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
   RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot));
-  const storage::MergeStep merge = MergeOlder(loaded);
+  const storage::MergeStep merge = MergeOlder(robot, loaded);
   revision.calibrated_at = CalibratedAt(loaded.current.edges, loaded.measured_at, merge.merged);
   JointPoses poses;
   const formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);

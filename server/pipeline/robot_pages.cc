@@ -4,12 +4,15 @@
 #include <charconv>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
+#include "server/pipeline/asked.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/unreadable.h"
+#include "server/pipeline/whole_revision.h"
 #include "server/report/robot_pages.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
@@ -21,7 +24,9 @@ namespace rigcal::pipeline {
 namespace {
 
 constexpr const char* kHtmlType = "text/html; charset=utf-8";
-constexpr std::size_t kTrendRevisionsMax = 24, kTrendBytesMax = 64u << 20, kTrendSensorsMax = 60;
+constexpr std::int64_t kListRows = 50;  // of revisions, and of sessions
+constexpr std::int64_t kTrendRevisionsMax = 24;
+constexpr std::size_t kTrendBytesMax = 64u << 20, kTrendSensorsMax = 60;
 constexpr std::size_t kPictureBytesMax = 64u << 20;
 
 tl::unexpected<Error> NoPage(const std::string& rest) {
@@ -42,8 +47,10 @@ report::SessionRow SessionRowOf(const formats::SessionAnswer& answer) {
   return row;
 }
 
-Status AddResults(const AnswerContext& context, const RobotId& robot, std::vector<report::SessionRow>& rows) {
-  RIGCAL_ASSIGN(const auto facts, storage::LoadSessionFacts(context.store, robot));
+Status AddResults(const AnswerContext& context, std::vector<report::SessionRow>& rows) {
+  std::vector<SessionId> sessions;
+  for (const report::SessionRow& row : rows) sessions.push_back(row.id);
+  RIGCAL_ASSIGN(const auto facts, storage::LoadSessionFacts(context.store, sessions));
   for (report::SessionRow& row : rows) {
     const auto found = facts.find(row.id);
     if (found != facts.end()) row.good = found->second.good, row.failed = found->second.failed;
@@ -51,17 +58,18 @@ Status AddResults(const AnswerContext& context, const RobotId& robot, std::vecto
   return {};
 }
 
-Result<std::map<SessionId, Stamp>> CapturedAt(const AnswerContext& context, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(context.store, robot));
-  std::map<SessionId, Stamp> captured_at;
-  for (const storage::SessionRow& session : sessions) captured_at[session.id] = session.captured_at;
-  return captured_at;
+Result<std::map<SessionId, Stamp>> CapturedAt(const AnswerContext& context, const report::CompareInput& compared) {
+  std::set<SessionId> sessions;
+  for (const report::SolvedRevision* one : {&compared.before, &compared.now})
+    for (const Edge& edge : one->revision->edges)
+      if (!edge.session.empty()) sessions.insert(edge.session);
+  return storage::LoadCapturedAt(context.store, {sessions.begin(), sessions.end()});
 }
 
 // Of the newest revision; none if there are more than charts would show.
-Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const RobotId& robot, std::size_t revisions) {
+Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const RobotId& robot, int newest_revision) {
   std::vector<SensorId> sensors;
-  if (revisions < 2) return sensors;
+  if (newest_revision < 2) return sensors;
   RIGCAL_ASSIGN(const ParsedRevision newest, context.revisions.Load(context.store, robot, 0));
   for (const SensorPose& pose : newest.document->solution.poses)
     if (pose.known && pose.sensor != newest.document->reference) sensors.push_back(pose.sensor);
@@ -75,8 +83,8 @@ Result<std::vector<Edge>> PastEdges(const AnswerContext& context, const RobotId&
   RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
   std::vector<EdgeId> retired;
   for (const auto& [id, standing] : counts.retired) retired.push_back(id);
-  RIGCAL_ASSIGN(std::vector<Edge> past, storage::LoadEdges(context.store, retired));
-  RIGCAL_TRY(MarkPast(context.store, robot, counts, past));
+  RIGCAL_ASSIGN(std::vector<Edge> past, storage::LoadEdges(context.store, retired, false));
+  RIGCAL_TRY(MarkPast(context.store, counts, past));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
   if (!newest) return past;
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
@@ -99,29 +107,56 @@ Status MovePast(const AnswerContext& context, const RobotId& robot, std::vector<
   return {};
 }
 
-Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
+std::vector<report::SessionRow> SessionRowsOf(const std::vector<formats::SessionAnswer>& answers) {
+  std::vector<report::SessionRow> rows;
+  for (const formats::SessionAnswer& answer : answers) rows.push_back(SessionRowOf(answer));
+  return rows;
+}
+
+Status TakeListedRevisions(const AnswerContext& context, const RobotId& robot, int before, report::RobotInput& input) {
+  RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot, before, kListRows + 1));
+  input.older_revisions = CutToPage(kListRows, input.revisions);
+  input.newest_revisions = before == 0;
+  return {};
+}
+
+Status TakeListedSessions(const AnswerContext& context, const RobotId& robot, const SessionId& before, report::RobotInput& input) {
+  RIGCAL_ASSIGN(auto sessions, LoadSessionRows(context.store, robot, before, kListRows + 1));
+  input.older_sessions = CutToPage(kListRows, sessions);
+  input.newest_sessions = before.empty();
+  RIGCAL_TRY(AddStanding(context.store, robot, sessions));
+  input.sessions = SessionRowsOf(sessions);
+  RIGCAL_TRY(AddResults(context, input.sessions));
+  RIGCAL_TRY(MovePast(context, robot, input.sessions));
+  RIGCAL_ASSIGN(const auto open, LoadOpenSessionRows(context.store, robot));
+  input.open = SessionRowsOf(open);
+  return {};
+}
+
+Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(const int revisions_before, RevisionBefore(parameters));
+  RIGCAL_ASSIGN(const SessionId sessions_before, OptionalId<SessionId>(parameters, "sessions_before"));
   const Stamp now = context.clock.Now();
   report::RobotInput input;
   RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
   input.row = FleetRowOf(rows.front());
-  RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot));
-  RIGCAL_ASSIGN(auto sessions, LoadSessionRows(context.store, robot));
-  RIGCAL_TRY(AddStanding(context.store, robot, sessions));
-  for (const auto& session : sessions) input.sessions.push_back(SessionRowOf(session));
-  RIGCAL_TRY(AddResults(context, robot, input.sessions));
-  RIGCAL_TRY(MovePast(context, robot, input.sessions));
-  RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.revisions.size()));
+  RIGCAL_TRY(TakeListedRevisions(context, robot, revisions_before, input));
+  RIGCAL_TRY(TakeListedSessions(context, robot, sessions_before, input));
+  RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.row.revision));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
   return PageText{std::move(body), kHtmlType};
 }
 
 // The newest revisions, as many as stay within bounds.
 Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
+  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot, 0, kTrendRevisionsMax));
   std::vector<report::SolvedRevision> solved;
   std::size_t bytes = 0;
-  for (std::size_t i = 0; i < std::min(revisions.size(), kTrendRevisionsMax) && bytes < kTrendBytesMax; ++i) {
-    RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(context.store, robot, revisions[i].number));
+  for (const Revision& revision : revisions) {
+    if (bytes >= kTrendBytesMax) break;
+    RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(context.store, robot, revision.number));
     RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(whole.document));
     bytes += whole.document.size();
     solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document)),
@@ -131,21 +166,27 @@ Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
   return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
 }
 
+// What tells how many pixels a movement is: figures and evidence of its edges.
+Result<report::SolvedRevision> WithFocalLengths(const AnswerContext& context, const ParsedRevision& parsed) {
+  if (parsed.document->whole) return report::SolvedRevision{parsed.summary.number, parsed.document};
+  RIGCAL_ASSIGN(auto whole, WithWholeEdges(context.store, parsed.summary.number, *parsed.document, Blocks::kLeftOut));
+  return report::SolvedRevision{parsed.summary.number, std::make_shared<const formats::RevisionInput>(std::move(whole))};
+}
+
 Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot, const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
   RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot));
-  const int newest = revisions.empty() ? 0 : revisions.front().number;
-  RIGCAL_ASSIGN(const std::int64_t now, parameters.IntegerOr("a", newest));
-  RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("b", std::max(newest - 1, 1)));
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
   report::CompareInput input;
   input.robot = robot;
-  for (const Revision& revision : revisions) input.numbers.push_back(revision.number);
+  input.newest = newest ? newest->number : 0;
+  RIGCAL_ASSIGN(const std::int64_t now, parameters.IntegerOr("a", input.newest));
+  RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("b", std::max(input.newest - 1, 1)));
   RIGCAL_ASSIGN(const ParsedRevision first, context.revisions.Load(context.store, robot, std::min(before, now)));
   RIGCAL_ASSIGN(const ParsedRevision second, context.revisions.Load(context.store, robot, std::max(before, now)));
   input.before = {first.summary.number, first.document};
-  input.now = {second.summary.number, second.document};
-  RIGCAL_ASSIGN(input.captured_at, CapturedAt(context, robot));
+  RIGCAL_ASSIGN(input.now, WithFocalLengths(context, second));
+  RIGCAL_ASSIGN(input.captured_at, CapturedAt(context, input));
   RIGCAL_ASSIGN(std::string body, report::RenderCompare(input));
   return PageText{std::move(body), kHtmlType};
 }
@@ -162,7 +203,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   report::SessionInput input;
   input.robot = robot;
   std::vector<report::SessionRow> rows = {SessionRowOf(row)};
-  RIGCAL_TRY(AddResults(context, robot, rows));
+  RIGCAL_TRY(AddResults(context, rows));
   input.row = rows.front();
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
@@ -228,7 +269,7 @@ Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string
     start = end + 1;
   }
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(parts[0]));
-  if (parts.size() == 2 && parts[1].empty()) return RobotPage(context, robot);
+  if (parts.size() == 2 && parts[1].empty()) return RobotPage(context, robot, query);
   if (parts.size() == 2 && parts[1] == "trend.js") return Trend(context, robot);
   if (parts.size() == 2 && parts[1] == "compare") return ComparePage(context, robot, query);
   if (parts.size() >= 4 && parts[1] == "revisions") return MissingFile(context, robot, parts);

@@ -1,7 +1,10 @@
 #include "server/pipeline/robot_rows.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
+#include "server/base/limits.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -13,8 +16,8 @@ namespace rigcal::pipeline {
 namespace {
 
 Result<bool> HasWholeSession(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
-  return std::any_of(sessions.begin(), sessions.end(), [](const auto& session) { return session.closed; });
+  RIGCAL_ASSIGN(const auto earliest, storage::LoadEarliestClosed(store, robot));
+  return earliest.has_value();
 }
 
 // Of a robot that has nothing but a batch that is not whole.
@@ -120,8 +123,9 @@ Result<std::vector<formats::SessionAnswer>> RowsOf(storage::Store& store, const 
 
 }  // namespace
 
-Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
+Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot, const SessionId& before,
+                                                            std::int64_t limit) {
+  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot, before, limit));
   return RowsOf(store, sessions);
 }
 
@@ -130,8 +134,26 @@ Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& 
   return RowsOf(store, sessions);
 }
 
+namespace {
+
+// Of one robot, of those of a page, or of all.
+Result<std::map<SessionId, Superseding>> LoadSupersededOf(storage::Store& store, const RobotId& robot,
+                                                          const std::vector<formats::SessionAnswer>& rows) {
+  if (!robot.empty() || static_cast<std::int64_t>(rows.size()) > limits::kPageRowsMax) return storage::LoadSuperseded(store, robot);
+  std::set<RobotId> robots;
+  for (const formats::SessionAnswer& row : rows) robots.insert(row.robot);
+  std::map<SessionId, Superseding> superseded;
+  for (const RobotId& one : robots) {
+    RIGCAL_ASSIGN(auto of_one, storage::LoadSuperseded(store, one));
+    superseded.merge(of_one);
+  }
+  return superseded;
+}
+
+}  // namespace
+
 Status AddStanding(storage::Store& store, const RobotId& robot, std::vector<formats::SessionAnswer>& rows) {
-  RIGCAL_ASSIGN(const auto superseded, storage::LoadSuperseded(store, robot));
+  RIGCAL_ASSIGN(const auto superseded, LoadSupersededOf(store, robot, rows));
   for (formats::SessionAnswer& row : rows) {
     RIGCAL_ASSIGN(row.standing, storage::LoadStanding(store, row.session));
     if (const auto found = superseded.find(row.session); found != superseded.end()) row.superseded_by = found->second;

@@ -15,11 +15,12 @@ namespace rigcal::pipeline {
 // Of the same, one row each, of its newest revision, sorted by id.
 [[nodiscard]] Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot,
                                                                       Stamp now);
-// Without their standing.
-[[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot);
+// Without their standing, as storage::LoadSessions lists them.
+[[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot,
+                                                                          const SessionId& before, std::int64_t limit);
 // Those that are still arriving, or whose pairs are still being calibrated.
 [[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadOpenSessionRows(storage::Store& store, const RobotId& robot);
-// Which of the robot's sessions are current, and by which the others are superseded; of all robots if it is empty.
+// Which of `rows`, sessions of the robot or of several if it is empty, are current, and by which the others are superseded.
 [[nodiscard]] Status AddStanding(storage::Store& store, const RobotId& robot,
                                  std::vector<formats::SessionAnswer>& rows);
 // With its standing.

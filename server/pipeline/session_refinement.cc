@@ -192,8 +192,8 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   CurrentEstimates result;
   for (storage::SessionEstimateRow& row : rows)
     if (row.estimate && !current.counts.superseded.contains(row.session)) result.estimates.push_back(std::move(*row.estimate));
-  RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, robot, current, SessionsOf(result.estimates)));
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, robot, current.counts.remounts));
+  RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
+  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, SessionsOf(result.estimates), current.counts.remounts));
   const Counting counting = CountingOf(current.edges, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;

@@ -1,6 +1,5 @@
 #include "server/pipeline/validity.h"
 
-#include <algorithm>
 #include <set>
 
 #include "server/pipeline/attempt.h"
@@ -19,13 +18,13 @@ namespace {
 // Whether a session that came after `solved_at` says that a sensor was moved on purpose.
 Result<bool> WasRemountedAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
   RIGCAL_ASSIGN(const auto remounts, storage::LoadRemounts(store, robot));
-  if (remounts.empty()) return false;
   std::set<SessionId> named;
   for (const storage::Remount& remount : remounts) named.insert(remount.session);
-  RIGCAL_ASSIGN(const auto sessions, storage::LoadSessions(store, robot));
-  return std::any_of(sessions.begin(), sessions.end(), [&](const storage::SessionRow& session) {
-    return named.contains(session.id) && session.closed_at > solved_at;
-  });
+  for (const SessionId& id : named) {
+    RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
+    if (session && session->closed_at > solved_at) return true;
+  }
+  return false;
 }
 
 // Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more.

@@ -1,13 +1,14 @@
 #include "server/report/choices.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace rigcal::report {
 
-void FillChoices(Dictionary& parent, const char* section, std::vector<int> numbers, int chosen) {
-  constexpr std::size_t kChoicesMax = 500;
-  std::sort(numbers.rbegin(), numbers.rend());
-  numbers.resize(std::min(numbers.size(), kChoicesMax));
+void FillChoices(Dictionary& parent, const char* section, int newest, int chosen) {
+  constexpr int kChoicesMax = 500;
+  std::vector<int> numbers;
+  for (int number = newest; number > std::max(newest - kChoicesMax, 0); --number) numbers.push_back(number);
   if (std::find(numbers.begin(), numbers.end(), chosen) == numbers.end()) numbers.push_back(chosen);
   for (const int number : numbers) {
     Dictionary* option = parent.AddSectionDictionary(section);

@@ -133,8 +133,8 @@ Result<std::string> RenderCompare(const CompareInput& input) {
   page.SetValue("NOW", std::to_string(input.now.number));
   FillVerdict(page, "VERDICT_BEFORE", input.before);
   FillVerdict(page, "VERDICT_NOW", input.now);
-  FillChoices(page, "CHOICE_A", input.numbers, input.before.number);
-  FillChoices(page, "CHOICE_B", input.numbers, input.now.number);
+  FillChoices(page, "CHOICE_A", input.newest, input.before.number);
+  FillChoices(page, "CHOICE_B", input.newest, input.now.number);
   const Changes changes = Compare(*input.before.revision, *input.now.revision);
   const std::vector<EdgeMove> edges = EdgeMoves(*input.before.revision, *input.now.revision, input.captured_at);
   FillWhatMoved(page, input, changes, edges);

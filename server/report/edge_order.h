@@ -16,7 +16,7 @@ struct ShownEdge {
 };
 [[nodiscard]] std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision);
 
-// How much of a very large graph goes into one page; the rest is in revision.json.
+// How much of a very large graph goes into one page; the rest is in revision.json, edges.csv and `rigcal show --whole`.
 inline constexpr std::size_t kPoseRowsMax = 3000;
 inline constexpr std::size_t kEdgeRowsMax = 6000;
 inline constexpr std::size_t kDetailItemsMax = 6000;  // captures + pictures + diagnoses, all sections together

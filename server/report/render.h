@@ -38,7 +38,7 @@ struct ReportInput {
   int number = 0;
   Stamp created_at;
   Digest digest;                    // of the revision's document
-  formats::RevisionInput revision;  // edges with evidence
+  formats::RevisionInput revision;  // whole
   std::string software_version;
   std::vector<Digest> evidence;  // digests whose pictures exist; the rest is shown as missing
   CloudSection clouds;           // its files are put there by pipeline, too

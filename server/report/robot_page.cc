@@ -11,31 +11,38 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::size_t kSessionsMax = 200, kOpenSessionsMax = 5;
+constexpr std::size_t kOpenSessionsMax = 5;
 
-void FillRevisions(Dictionary& page, std::vector<Revision> revisions, Stamp now) {
-  constexpr std::size_t kRevisionsMax = 500;
+// The ways to other pages of a list.
+void FillPages(Dictionary& list, bool is_newest, const std::string& last_shown) {
+  if (is_newest && last_shown.empty()) return;
+  Dictionary* pages = list.AddSectionDictionary("PAGES");
+  if (!is_newest) pages->ShowSection("NEWEST_PAGE");
+  if (!last_shown.empty()) ShowValue(*pages, "OLDER", "BEFORE", last_shown);
+}
+
+void FillRevisions(Dictionary& page, const RobotInput& input, Stamp now) {
+  std::vector<Revision> revisions = input.revisions;
   if (revisions.empty()) return;
   std::stable_sort(revisions.begin(), revisions.end(),
                    [](const Revision& a, const Revision& b) { return a.number > b.number; });
   Dictionary* list = page.AddSectionDictionary("REVISIONS");
-  for (std::size_t i = 0; i < std::min(revisions.size(), kRevisionsMax); ++i) {
+  for (const Revision& revision : revisions) {
     Dictionary* row = list->AddSectionDictionary("REVISION");
-    row->SetValue("NUMBER", std::to_string(revisions[i].number));
-    FillBadge(*row, revisions[i].verdict.level);
-    row->SetValue("WHY", revisions[i].verdict.why);
-    row->SetValue("TIME", TimeText(revisions[i].created_at));
-    row->SetValue("AGE", AgeOf(revisions[i].created_at, now));
-    if (i + 1 == revisions.size()) {
+    row->SetValue("NUMBER", std::to_string(revision.number));
+    FillBadge(*row, revision.verdict.level);
+    row->SetValue("WHY", revision.verdict.why);
+    row->SetValue("TIME", TimeText(revision.created_at));
+    row->SetValue("AGE", AgeOf(revision.created_at, now));
+    if (revision.number <= 1) {
       row->ShowSection("FIRST");
       continue;
     }
     Dictionary* changed = row->AddSectionDictionary("CHANGED");
-    changed->SetValue("NUMBER", std::to_string(revisions[i].number));
-    changed->SetValue("BEFORE", std::to_string(revisions[i + 1].number));
+    changed->SetValue("NUMBER", std::to_string(revision.number));
+    changed->SetValue("BEFORE", std::to_string(revision.number - 1));
   }
-  if (revisions.size() > kRevisionsMax)
-    ShowValue(*list, "MORE", "COUNT", std::to_string(revisions.size() - kRevisionsMax));
+  FillPages(*list, input.newest_revisions, input.older_revisions ? std::to_string(revisions.back().number) : "");
 }
 
 void FillOpen(Dictionary& page, const SessionRow& session) {
@@ -50,11 +57,10 @@ void FillOpen(Dictionary& page, const SessionRow& session) {
 }
 
 // Pushes that broke off and were never taken up again stay: the newest stand for all.
-void FillOpenOnes(Dictionary& page, const std::vector<SessionRow>& sessions) {
-  std::size_t open = 0;
-  for (const SessionRow& session : sessions)
-    if ((!session.closed || session.pairs_waiting > 0) && open++ < kOpenSessionsMax) FillOpen(page, session);
-  if (open > kOpenSessionsMax) ShowValue(page, "MORE_OPEN", "COUNT", Count(open - kOpenSessionsMax, "older session", "older sessions"));
+void FillOpenOnes(Dictionary& page, const std::vector<SessionRow>& open) {
+  for (std::size_t i = 0; i < std::min(open.size(), kOpenSessionsMax); ++i) FillOpen(page, open[i]);
+  if (open.size() > kOpenSessionsMax)
+    ShowValue(page, "MORE_OPEN", "COUNT", Count(open.size() - kOpenSessionsMax, "older session", "older sessions"));
 }
 
 // By which, since when and by whom; and how it is taken back.
@@ -82,12 +88,10 @@ void FillResult(Dictionary& row, const SessionRow& session) {
   if (session.failed > 0) ShowValue(row, "FAILED", "COUNT", std::to_string(session.failed));
 }
 
-void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Stamp now) {
-  FillOpenOnes(page, sessions);
-  if (sessions.empty()) return;
+void FillSessions(Dictionary& page, const RobotInput& input, Stamp now) {
+  if (input.sessions.empty()) return;
   Dictionary* list = page.AddSectionDictionary("SESSIONS");
-  for (std::size_t i = 0; i < std::min(sessions.size(), kSessionsMax); ++i) {
-    const SessionRow& session = sessions[i];
+  for (const SessionRow& session : input.sessions) {
     Dictionary* row = list->AddSectionDictionary("SESSION");
     row->SetValue("ID", session.id.str());
     row->SetValue("SHORT", ShortDigest(session.id.str()));
@@ -97,33 +101,26 @@ void FillSessions(Dictionary& page, const std::vector<SessionRow>& sessions, Sta
     row->SetValue("FILES", std::to_string(session.files));
     FillResult(*row, session);
   }
-  if (sessions.size() > kSessionsMax)
-    ShowValue(*list, "MORE", "COUNT", std::to_string(sessions.size() - kSessionsMax));
+  FillPages(*list, input.newest_sessions, input.older_sessions ? input.sessions.back().id.str() : "");
 }
 
 // The way on: the newest report, and what is different in it.
-void FillNewest(Dictionary& page, const std::vector<Revision>& revisions) {
-  std::vector<int> numbers;
-  for (const Revision& revision : revisions) numbers.push_back(revision.number);
-  if (numbers.empty()) return;
-  std::sort(numbers.rbegin(), numbers.rend());
+void FillNewest(Dictionary& page, int number) {
+  if (number == 0) return;
   Dictionary* newest = page.AddSectionDictionary("NEWEST");
-  newest->SetValue("NUMBER", std::to_string(numbers[0]));
-  if (numbers.size() < 2) return;
+  newest->SetValue("NUMBER", std::to_string(number));
+  if (number < 2) return;
   Dictionary* since = newest->AddSectionDictionary("SINCE");
-  since->SetValue("NUMBER", std::to_string(numbers[0]));
-  since->SetValue("BEFORE", std::to_string(numbers[1]));
+  since->SetValue("NUMBER", std::to_string(number));
+  since->SetValue("BEFORE", std::to_string(number - 1));
 }
 
 // Two revisions to compare: the newest and the one before it.
-void FillCompare(Dictionary& page, const std::vector<Revision>& revisions) {
-  if (revisions.size() < 2) return;
-  std::vector<int> numbers;
-  for (const Revision& revision : revisions) numbers.push_back(revision.number);
-  std::sort(numbers.rbegin(), numbers.rend());
+void FillCompare(Dictionary& page, int newest) {
+  if (newest < 2) return;
   Dictionary* compare = page.AddSectionDictionary("COMPARE");
-  FillChoices(*compare, "CHOICE_A", numbers, numbers[1]);
-  FillChoices(*compare, "CHOICE_B", numbers, numbers[0]);
+  FillChoices(*compare, "CHOICE_A", newest, newest - 1);
+  FillChoices(*compare, "CHOICE_B", newest, newest);
 }
 
 }  // namespace
@@ -144,12 +141,13 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
     newer->SetValue("TEXT", row.validity.given_up.empty() ? kCalculatingText : row.validity.given_up);
     newer->SetValue("NUMBER", std::to_string(row.revision));
   }
-  FillNewest(page, input.revisions);
-  FillSessions(page, input.sessions, now);
-  FillRevisions(page, input.revisions, now);
-  FillCompare(page, input.revisions);
+  FillNewest(page, row.revision);
+  FillOpenOnes(page, input.open);
+  FillSessions(page, input, now);
+  FillRevisions(page, input, now);
+  FillCompare(page, row.revision);
   AddScript(page, "../../" + AssetPath("live.js"));
-  if (input.revisions.size() < 2 || input.sensors.empty()) return Expand("robot.tpl", page);
+  if (row.revision < 2 || input.sensors.empty()) return Expand("robot.tpl", page);
   Dictionary* trends = page.AddSectionDictionary("TRENDS");
   for (const SensorId& sensor : input.sensors) ShowValue(*trends, "TREND", "SENSOR", sensor.str());
   AddScript(page, "trend.js");

@@ -24,11 +24,15 @@ struct SessionRow {
   std::int64_t past = 0;              // good where they were measured, but the newest revision counts them no more
   std::optional<Superseding> superseded_by = {};
 };
+// Of revisions and of sessions a page each, the newest first; "?before=<revision>" and "?sessions_before=<id>" show others.
 struct RobotInput {
   FleetRow row;
   std::vector<Revision> revisions;
-  std::vector<SessionRow> sessions;  // the newest first
-  std::vector<SensorId> sensors;     // whose history is drawn
+  std::vector<SessionRow> sessions;
+  std::vector<SensorId> sensors;      // whose history is drawn
+  std::vector<SessionRow> open = {};  // of all sessions: still arriving, or being calibrated; the newest first
+  bool older_revisions = false, older_sessions = false;  // there are, beyond the page
+  bool newest_revisions = true, newest_sessions = true;  // the page is the first
 };
 [[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);
 
@@ -44,7 +48,7 @@ struct SolvedRevision {
 struct CompareInput {
   RobotId robot;
   SolvedRevision before, now;
-  std::vector<int> numbers;  // of all revisions, to choose from
+  int newest = 0;  // revisions 1 to this are to choose from
   std::map<SessionId, Stamp> captured_at = {};
 };
 [[nodiscard]] Result<std::string> RenderCompare(const CompareInput& input);

@@ -70,6 +70,24 @@ def many_of_one_pair(flow):
     check(len(json.loads(flow.rigcal("edges", "many", "--json").stdout)["edges"]) == 36, "all edges are listed")
 
 
+def refers_to_edges(flow):
+    """A revision refers to its edges; whole ones, merged ones too, and pages of a history come when they are asked for."""
+    shown = json.loads(flow.rigcal("show", "many", "--json").stdout)["document"]
+    whole = json.loads(flow.rigcal("show", "many", "--whole", "--json").stdout)["document"]
+    check((shown["format"], whole["format"]) == (2, 1), "formats: %r, %r" % (shown["format"], whole["format"]))
+    check([one["id"] for one in shown["edges"]] == [one["id"] for one in whole["edges"]], "the same edges")
+    check(not any("information" in one for one in shown["edges"]) and all("information" in one for one in whole["edges"]), "whole ones have it")
+    merged = next(one for one in shown["edges"] if "merged_edges" in one["figures"])
+    told = json.loads(flow.get("/api/v1/edge?id=" + merged["id"]))
+    check(told["figures"]["merged_edges"] == 4 and told["T_a_b"] == merged["T_a_b"], "the merged edge: %r" % told)
+    page = json.loads(flow.rigcal("edges", "many", "--limit", 5, "--json").stdout)
+    check(len(page["edges"]) == 5 and page["next"] == page["edges"][-1]["id"], "a page: %r" % page["next"])
+    rest = json.loads(flow.get("/api/v1/edges?robot=many&limit=1000&before=" + page["next"]))
+    check(len(rest["edges"]) == 31 and rest["next"] is None, "the rest: %d, %r" % (len(rest["edges"]), rest["next"]))
+    told = flow.rigcal("history", "many").stdout
+    check(told.count("\n") == 2 and told.startswith("REVISION"), "one revision: " + told)
+
+
 def main():
     with Flow() as flow, Flow() as other:
         path = triangle(flow.folder)
@@ -90,6 +108,7 @@ def main():
 
         g2o_round_trip(flow)
         many_of_one_pair(flow)
+        refers_to_edges(flow)
         flow.kill_and_restart()
         check(newest(flow) ["document"] == shown["document"], "the revision survives kill -9")
         check(json.loads(flow.get("/api/v1/show?robot=rig"))["digest"] == shown["digest"], "HTTP gives the same document")

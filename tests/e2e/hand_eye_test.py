@@ -7,7 +7,7 @@ from measures import hand_eye_sessions
 
 
 def edge_of(flow, robot, method):
-    edges = json.loads(flow.rigcal("show", robot, "--json").stdout)["document"]["edges"]
+    edges = json.loads(flow.rigcal("show", robot, "--whole", "--json").stdout)["document"]["edges"]
     check([edge["method"] for edge in edges] == [method], "one edge, %s: %r" % (method, [edge["method"] for edge in edges]))
     check(edges[0]["state"] == "good", "%s: %r" % (method, edges[0]["diagnoses"]))
     return edges[0]

@@ -8,7 +8,7 @@ REFUSED = 4  # exit code
 
 
 def edges_of(flow):
-    return json.loads(flow.rigcal("show", "pair", "--json").stdout)["document"]["edges"]
+    return json.loads(flow.rigcal("show", "pair", "--whole", "--json").stdout)["document"]["edges"]
 
 
 def codes(edge):

@@ -85,10 +85,20 @@ Extent CountedEdgesExtent(Store& store) {
   return any ? EdgesExtent(store) : Extent::kNone;
 }
 
+// Still 100 kB when it is compressed.
+const std::string& LargeDocument() {
+  static const std::string text = [] {
+    std::string digests;
+    for (int i = 0; i < 3200; ++i) digests += DigestOf(std::to_string(i)).str();
+    return digests;
+  }();
+  return text;
+}
+
 // With the checkpoint that moves it from the log to the database file.
 Status CommitRevision(Store& store) {
   Revision revision = MakeRevision(5);
-  revision.document.assign(100'000, 'd');
+  revision.document = LargeDocument();
   if (LoadRevision(store, kRobot, 1).value_or(std::nullopt)) return {};
   RIGCAL_TRY(AppendRevision(store, revision));
   store.database().tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
@@ -97,7 +107,7 @@ Status CommitRevision(Store& store) {
 
 Extent RevisionExtent(Store& store) {
   const std::optional<Revision> revision = LoadRevision(store, kRobot, 1).value();
-  const bool whole = revision && revision->document == std::string(100'000, 'd');
+  const bool whole = revision && revision->document == LargeDocument();
   return ExtentOf(revision || !LoadUnpublished(store).value().empty(), whole && LoadUnpublished(store)->size() == 1);
 }
 

@@ -9,6 +9,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::RequireFinite(pose.T_ref_sensor.p_m, "position");
     fuzz::RequireFinite(pose.covariance, "covariance");
   }
+  for (const Edge& edge : revision->edges)
+    if (edge.state == EdgeState::kGood) fuzz::CheckUncertainty(edge.uncertainty);
   fuzz::RequireRoundTrip(*revision, formats::WriteRevisionDocument, formats::ReadRevisionDocument);
+  if (revision->whole)
+    fuzz::RequireRoundTrip(*revision, formats::WriteWholeRevisionDocument, formats::ReadRevisionDocument);
   return 0;
 }

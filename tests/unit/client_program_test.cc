@@ -33,8 +33,8 @@ Ran Rigcal(const std::string& arguments) {
   return ran;
 }
 
-const std::vector<std::string> kVerbs = {"push",   "push-edges", "robots", "sessions", "edges",   "show",   "lookup",
-                                         "status", "watch",      "report", "due",      "compare", "doctor", "check", "simulate"};
+const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
+                                         "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
@@ -59,7 +59,8 @@ TEST(Program, Version) {
 TEST(Program, WrongUsageIsTwoWithASentence) {
   for (const char* arguments :
        {"", "frobnicate", "lookup r a", "lookup r a b c", "push", "push-edges file.json", "show", "edges", "report",
-        "show r --revision zero", "show r --revision 0", "status --timeout never", "status --timeout -1",
+        "show r --revision zero", "show r --revision 0", "history", "history r --limit 0", "history r --before x",
+        "sessions --limit 1001", "edges r --limit none", "status --timeout never", "status --timeout -1",
         "due --max-age tomorrow", "watch --count 0", "push-edges f --robot r --shuffle x", "robots --frobnicate",
         "simulate --captures x", "--frobnicate simulate", "check", "check a b", "check --frobnicate x"}) {
     const Ran ran = Rigcal(arguments);

@@ -118,6 +118,7 @@ TEST(Verbs, EveryListTakesAnEmptyDocumentAndForeignTypes) {
                                                                                        {"sessions", "r"},
                                                                                        {"edges", "r"},
                                                                                        {"show", "r"},
+                                                                                       {"history", "r"},
                                                                                        {"lookup", "r", "a", "b"},
                                                                                        {"status"},
                                                                                        {"due"}})

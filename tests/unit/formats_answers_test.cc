@@ -123,6 +123,18 @@ TEST(Answers, Revisions) {
   EXPECT_FALSE(row.contains("document"));
 }
 
+// Of a list in one piece there is no next page; of a page it is told, also that there is none.
+TEST(Answers, PagesSayWhatTheNextOneIsAskedForWith) {
+  EXPECT_FALSE(json::parse(WriteRevisions(kRobot, {}, kNow)).contains("next"));
+  EXPECT_EQ(json::parse(WriteRevisions(kRobot, {}, kNow, 17))["next"], 17);
+  EXPECT_TRUE(json::parse(WriteRevisions(kRobot, {}, kNow, 0)).at("next").is_null());
+  EXPECT_FALSE(json::parse(WriteSessions({})).contains("next"));
+  EXPECT_EQ(json::parse(WriteSessions({}, "ab"))["next"], "ab");
+  EXPECT_TRUE(json::parse(WriteSessions({}, "")).at("next").is_null());
+  EXPECT_FALSE(json::parse(WriteEdges(kRobot, 0, {}, {})).contains("next"));
+  EXPECT_EQ(json::parse(WriteEdges(kRobot, 0, {}, {}, "cd"))["next"], "cd");
+}
+
 TEST(Answers, LookupHasTheVarianceOfOneAxisThere) {
   LookupAnswer answer;
   answer.robot = kRobot;

@@ -76,14 +76,15 @@ TEST_F(LostFileTest, AFlippedByteFailsTheEdgeByNameAndIsMendedByPushingAgain) {
                                  [](const Edge& edge) { return edge.state == EdgeState::kGood; });
   ASSERT_NE(good, document->edges.end());
   EXPECT_EQ(good->id, RepeatedEdgeId(failed.id));
+  const Edge again = storage::LoadEdge(*store_, good->id).value().value();
 
   TearDown();
   SetUp();  // the same session, undisturbed
   StoreSession("r", files);
   StepAll();
   ASSERT_EQ(Edges().size(), 1u);
-  EXPECT_EQ(Edges().front().T_a_b, good->T_a_b);
-  EXPECT_EQ(Edges().front().figures, good->figures);
+  EXPECT_EQ(Edges().front().T_a_b, again.T_a_b);
+  EXPECT_EQ(Edges().front().figures, again.figures);
 }
 
 TEST_F(LostFileTest, HealthNamesWhatIsLost) {

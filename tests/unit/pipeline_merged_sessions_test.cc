@@ -187,7 +187,7 @@ TEST_F(MergedSessionsTest, TheListOfEdgesSaysThatAMergedOneWasRetired) {
   Revised();
   EXPECT_TRUE(std::none_of(newest_.edges.begin(), newest_.edges.end(), [&](const Edge& edge) { return edge.id == ids_[2]; }));
   auto edges = storage::LoadEdges(*store_, kWeekly, false).value();
-  ASSERT_TRUE(MarkPast(*store_, kWeekly, *storage::LoadWhatCounts(*store_, kWeekly), edges));
+  ASSERT_TRUE(MarkPast(*store_, *storage::LoadWhatCounts(*store_, kWeekly), edges));
   for (const Edge& edge : edges) EXPECT_EQ(IsPast(edge), edge.id == ids_[2]);
 }
 

@@ -19,6 +19,13 @@ TEST(Parameters, FlatObjectsOnly) {
   EXPECT_NE(Parameters::Read(R"({"\u001b[2J":null})").error().what.find(R"("\x1b[2J")"), std::string::npos);
 }
 
+TEST(Parameters, FlagsAreBooleansOrTheirWords) {
+  const auto given = Parameters::Read(R"({"a":true,"b":false,"c":"1","d":"0","e":"yes"})").value();
+  for (const char* name : {"a", "c"}) EXPECT_EQ(given.Flag(name), true) << name;
+  for (const char* name : {"b", "d", "absent"}) EXPECT_EQ(given.Flag(name), false) << name;
+  EXPECT_EQ(given.Flag("e").error().what, "the parameter \"e\" is neither true nor false");
+}
+
 TEST(Parameters, QueryStringsAreDecoded) {
   EXPECT_EQ(ParametersOfQuery("robot=a%2Db&x=1+2&&flag").value(), R"({"flag":"","robot":"a-b","x":"1 2"})");
   EXPECT_EQ(ParametersOfQuery("").value(), "{}");

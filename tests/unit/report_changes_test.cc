@@ -154,7 +154,7 @@ TEST(ReportEdgeMoves, AFreeAxisIsNoMovement) {
   EXPECT_NEAR(move.d(tangent::kX), 0.006, 1e-9);
   EXPECT_EQ(move.d(tangent::kZ), 0.0);
   EXPECT_FALSE(move.known[tangent::kZ]);
-  const std::string page = RenderCompare({RobotId("r"), {1, before}, {2, now}, {1, 2}}).value();
+  const std::string page = RenderCompare({RobotId("r"), {1, before}, {2, now}, 2}).value();
   EXPECT_THAT(page, HasSubstr("<td>6.00</td><td class=\"sigma\" data-v=\"5.3\">5.3, free: z</td>"));
 }
 
@@ -171,7 +171,7 @@ TEST(ReportCompare, SaysWhereAPairWasFoundOtherwise) {
     return std::make_shared<const formats::RevisionInput>(std::move(revision));
   };
   const auto page = [&](double polished) {
-    return RenderCompare({RobotId("r"), {1, found('1', 0.0, 0.0)}, {2, found('2', 0.9, polished)}, {1, 2}}).value();
+    return RenderCompare({RobotId("r"), {1, found('1', 0.0, 0.0)}, {2, found('2', 0.9, polished)}, 2}).value();
   };
   EXPECT_THAT(page(1.0), HasSubstr("lidar-lidar \xE2\x86\x92 lidar-lidar, polished by GICP"));
   EXPECT_THAT(page(1.0),
@@ -182,9 +182,7 @@ TEST(ReportCompare, SaysWhereAPairWasFoundOtherwise) {
 // One page stays of one size, however long the history: but for what is compared.
 TEST(ReportCompare, OffersTheNewestRevisionsAndTheChosen) {
   const auto empty = std::make_shared<const formats::RevisionInput>();
-  CompareInput input{RobotId("r"), {3, empty}, {2000, empty}, {}};
-  for (int number = 1; number <= 2000; ++number) input.numbers.push_back(number);
-  const std::string page = RenderCompare(input).value();
+  const std::string page = RenderCompare({RobotId("r"), {3, empty}, {2000, empty}, 2000}).value();
   EXPECT_THAT(page, HasSubstr("<option selected>3</option>"));
   EXPECT_THAT(page, HasSubstr("<option>1501</option>"));
   EXPECT_THAT(page, Not(HasSubstr("<option>1500</option>")));
@@ -203,7 +201,7 @@ TEST(ReportCompare, PixelsByTheFocalLengthOfAnyEdge) {
     revision.edges[0].evidence = {{"", SensorId("cam"), CaptureId("01"), Digest(), "fit"}};
     return std::make_shared<const formats::RevisionInput>(std::move(revision));
   };
-  const std::string page = RenderCompare({RobotId("r"), {1, turned(0.0)}, {2, turned(0.002)}, {1, 2}}).value();
+  const std::string page = RenderCompare({RobotId("r"), {1, turned(0.0)}, {2, turned(0.002)}, 2}).value();
   EXPECT_THAT(page, HasSubstr("<td>3.0</td></tr>"));
 }
 

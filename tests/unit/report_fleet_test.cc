@@ -231,6 +231,7 @@ TEST(ReportRobot, SessionsSayWhatTheyGave) {
   input.sessions = {{SessionId(Sha256Of("a").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 11, 3},
                     {SessionId(Sha256Of("b").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 0, 14, 0, 0, BySession("a")},
                     {SessionId(Sha256Of("c").str()), Stamp{kDay_ns}, "", true, 4, 4, 14, 5, 9, 0}};
+  input.open = {input.sessions.back()};
   const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
   EXPECT_THAT(page, HasSubstr("11 of 14 pairs good <span class=\"badge fail\">3 failed</span>"));
   EXPECT_THAT(page, HasSubstr("<span class=\"badge unknown\">superseded</span>"));
@@ -244,16 +245,42 @@ TEST(ReportRobot, SessionsSayWhatTheyGave) {
 
 TEST(ReportRobot, WhatIsLeftOutIsNamed) {
   RobotInput input{RowOf("mapper", VerdictLevel::kPass, 3), {}, {}, {}};
-  for (int i = 0; i < 203; ++i)
-    input.sessions.push_back(
-        {SessionId(Sha256Of(std::to_string(i)).str()), Stamp{kDay_ns}, "", i % 20 != 0, 4, i % 20 != 0 ? 4 : 1, 0, 0});
+  for (int i = 0; i < 11; ++i)
+    input.open.push_back({SessionId(Sha256Of(std::to_string(i)).str()), Stamp{kDay_ns}, "", false, 4, 1, 0, 0});
   const std::string page = RenderRobot(input, Stamp{2 * kDay_ns}).value();
-  EXPECT_THAT(page, HasSubstr("3 older sessions are kept: <code>rigcal sessions mapper</code> lists them."));
   std::size_t open = 0;
   for (std::size_t at = page.find("is arriving ("); at != std::string::npos; at = page.find("is arriving (", at + 1))
     ++open;
   EXPECT_EQ(open, 5U);  // of 11 pushes that broke off
   EXPECT_THAT(page, HasSubstr("6 older sessions did not come whole"));
+}
+
+Revision RevisionOf(int number) {
+  Revision revision;
+  revision.number = number;
+  revision.verdict.level = VerdictLevel::kPass;
+  return revision;
+}
+
+// One page stays of one size, however long the history.
+TEST(ReportRobot, PagesOfAHistoryAreLinked) {
+  const SessionRow session{SessionId(Sha256Of("s").str()), Stamp{kDay_ns}, "", true, 4, 4, 1, 0, 1, 0};
+  RobotInput input{RowOf("mapper", VerdictLevel::kPass, 520), {RevisionOf(520), RevisionOf(519)}, {session}, {}};
+  const std::string whole = RenderRobot(input, Stamp{2 * kDay_ns}).value();
+  for (const char* link : {"?before=", "?sessions_before=", "The newest"}) EXPECT_THAT(whole, Not(HasSubstr(link)));
+  input.older_revisions = input.older_sessions = true;
+  const std::string first = RenderRobot(input, Stamp{2 * kDay_ns}).value();
+  EXPECT_THAT(first, HasSubstr("<a href=\"?before=519#revisions\">Older revisions</a>"));
+  EXPECT_THAT(first, HasSubstr("<a href=\"?sessions_before=" + session.id.str() + "#sessions\">Older sessions</a>"));
+  EXPECT_THAT(first, Not(HasSubstr("The newest")));
+  input.revisions = {RevisionOf(2), RevisionOf(1)};
+  input.older_revisions = input.newest_revisions = false;
+  const std::string last = RenderRobot(input, Stamp{2 * kDay_ns}).value();
+  EXPECT_THAT(last, HasSubstr("<a href=\"./#revisions\">The newest revisions</a>"));
+  EXPECT_THAT(last, Not(HasSubstr("The newest sessions")));
+  EXPECT_THAT(last, HasSubstr("href=\"revisions/520/\">Report of revision 520</a>"));
+  EXPECT_THAT(last, HasSubstr("href=\"compare?a=519&amp;b=520\">What moved since revision 519</a>"));
+  EXPECT_THAT(last, HasSubstr("the first"));
 }
 
 TEST(ReportRobot, RevisionsNewestFirst) {

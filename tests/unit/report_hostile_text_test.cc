@@ -99,7 +99,7 @@ TEST(HostileTextElsewhere, FleetAndRobotPage) {
   revision.verdict = row.verdict;
   ExpectHarmless(RenderFleet({row}, Stamp{2}).value(), "fleet");
   const SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
-  ExpectHarmless(RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}}, Stamp{2}).value(), "robot");
+  ExpectHarmless(RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2}).value(), "robot");
 }
 
 TEST(HostileTextElsewhere, SessionPage) {
@@ -121,7 +121,7 @@ TEST(HostileTextElsewhere, Comparison) {
   auto revision = std::make_shared<formats::RevisionInput>(SampleReport().revision);
   revision->solution.poses[1].sensor = SensorId(kHostile);
   revision->edges[0].method = kHostile;
-  ExpectHarmless(RenderCompare({RobotId(kHostile), {1, revision}, {2, revision}, {1, 2}}).value(), "compare");
+  ExpectHarmless(RenderCompare({RobotId(kHostile), {1, revision}, {2, revision}, 2}).value(), "compare");
 }
 
 // A spreadsheet runs what begins like a formula.

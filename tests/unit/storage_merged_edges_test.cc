@@ -132,6 +132,23 @@ TEST_F(MergedEdgesTest, OfSessionsComeBackWithTheirScoresOfTheNewestRevision) {
   EXPECT_EQ((*LoadMergedEdges(store_, kRobot, 1))[1].Omega, of_sessions.Omega);
 }
 
+TEST_F(MergedEdgesTest, AreFoundByTheIdThatTheyHaveInTheNewestRevision) {
+  const auto merge = [&](const std::vector<EdgeId>& ids) {
+    ASSERT_TRUE(store_.Write([&]() -> Status {
+      RIGCAL_ASSIGN(const int number, AppendRevision(store_, MakeRevision(1)));
+      return AppendMergedEdges(store_, {kRobot, number}, {{MakeMerged(0.1)}, {}, {}, ids}, *LoadWhatCounts(store_, kRobot));
+    }));
+  };
+  const EdgeId first(DigestOf("first").str()), stays(DigestOf("stays").str()), last(DigestOf("last").str());
+  merge({first, stays});
+  EXPECT_EQ(FindRobotOfMerged(store_, first).value(), kRobot);
+  merge({stays, last});
+  EXPECT_EQ(FindRobotOfMerged(store_, first).value(), std::nullopt);
+  EXPECT_EQ(FindRobotOfMerged(store_, stays).value(), kRobot);
+  EXPECT_EQ(FindRobotOfMerged(store_, last).value(), kRobot);
+  EXPECT_EQ(FindRobotOfMerged(store_, ids_[0]).value(), std::nullopt);
+}
+
 TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
   ASSERT_TRUE(AppendRobot(store_, RobotId("other"), {1}));
   Merge(MakeMerged(0.1), {ids_[0]}, {});

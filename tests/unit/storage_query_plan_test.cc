@@ -5,6 +5,7 @@
 #include <map>
 
 #include "storage/edges.h"
+#include "storage/fleet_facts.h"
 #include "storage/jobs.h"
 #include "storage/merged_edges.h"
 #include "storage/revision_poses.h"
@@ -68,6 +69,18 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadCapturedAt(store_, kRobot));
   EXPECT_TRUE(LoadEarliestClosed(store_, kRobot));
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
+  EXPECT_EQ(LoadRevisions(store_, kRobot, 2, 1)->size(), 1U);
+  EXPECT_EQ(LoadCreatedAt(store_, kRobot, {1, 2})->size(), 1U);
+  EXPECT_EQ(LoadSessions(store_, kRobot, SessionId(), 1)->size(), 1U);
+  EXPECT_EQ(LoadSessions(store_, RobotId(), SessionId(), 1)->size(), 1U);  // a page of all robots'
+  EXPECT_TRUE(LoadSessions(store_, kRobot, session_, 1)->empty());
+  const std::vector<EdgeId> ids = LoadEdgeIds(store_, kRobot, EdgeId(), 2).value();
+  EXPECT_EQ(ids.size(), 2U);
+  EXPECT_EQ(LoadEdgeIds(store_, kRobot, ids.back(), 2)->size(), 1U);
+  EXPECT_EQ(LoadEdges(store_, ids, false)->size(), 2U);
+  EXPECT_EQ(LoadCapturedAt(store_, std::vector<SessionId>{session_})->size(), 1U);
+  EXPECT_TRUE(LoadSessionFacts(store_, {session_})->empty());
+  EXPECT_FALSE(FindRobotOfMerged(store_, ids.front())->has_value());
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 

@@ -134,7 +134,7 @@
 {{#DETAIL_SECTION}}
 {{>DETAIL}}
 {{/DETAIL_SECTION}}
-{{#MORE_DETAILS}}<p class="hint">Details of {{COUNT}} more edges are in <a href="revision.json">revision.json</a>.</p>{{/MORE_DETAILS}}
+{{#MORE_DETAILS}}<p class="hint">Details of {{COUNT}} more edges: <code>rigcal show {{ROBOT}} --revision {{NUMBER}} --whole --json</code> has them.</p>{{/MORE_DETAILS}}
 <section class="card provenance">
 <h2 id="source" data-part="Source">Where this comes from</h2>
 <dl>
@@ -145,7 +145,7 @@
 <dt>Document</dt><dd><a href="revision.json">revision.json</a> <code>sha256 {{DIGEST}}</code></dd>
 <dt>Sessions</dt><dd>{{#SESSION}}<div class="session"><a href="../../sessions/{{ID}}/">{{#FACTS}}Captured {{CAPTURED}}{{/FACTS}}{{#NO_FACTS}}Session{{/NO_FACTS}}</a>{{#FACTS}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}, {{FILES}}{{/FACTS}}, {{EDGES}}<br><code>{{ID}}</code>{{#FACTS}}{{#BOARDS}}<ul>{{#BOARD}}<li><bdi>{{NAME}}</bdi></li>{{/BOARD}}</ul>{{/BOARDS}}{{/FACTS}}</div>{{/SESSION}}{{#EARLIER}}<div class="session">and, of each pair, up to {{COUNT}} before these: what they said is one edge</div>{{/EARLIER}}{{#PUSHED}}{{COUNT}} pushed as finished results{{/PUSHED}}{{#MORE_SESSIONS}}and {{COUNT}} more sessions{{/MORE_SESSIONS}}</dd>
 </dl>
-<p class="downloads"><a class="button" href="revision.json" download>Everything as JSON</a> <a class="button" href="edges.csv" download>Edges as CSV</a></p>
+<p class="downloads"><a class="button" href="revision.json" download>Result as JSON</a> <a class="button" href="edges.csv" download>Edges as CSV</a></p>
 <p class="hint">The whole report as one file: <code>rigcal report {{ROBOT}} --out report.zip</code></p>
 </section>
 </main>

@@ -28,7 +28,7 @@
 </tbody>
 </table>
 </div>
-{{#MORE}}<p class="hint">{{COUNT}} older revisions are kept: <code>rigcal show {{ROBOT}} --revision N</code> shows one.</p>{{/MORE}}
+{{#PAGES}}<p class="hint">{{#NEWEST_PAGE}}<a href="./#revisions">The newest revisions</a> {{/NEWEST_PAGE}}{{#OLDER}}<a href="?before={{BEFORE}}#revisions">Older revisions</a>{{/OLDER}}</p>{{/PAGES}}
 </section>
 {{/REVISIONS}}
 {{#SESSIONS}}
@@ -44,7 +44,7 @@
 </tbody>
 </table>
 </div>
-{{#MORE}}<p class="hint">{{COUNT}} older sessions are kept: <code>rigcal sessions {{ROBOT}}</code> lists them.</p>{{/MORE}}
+{{#PAGES}}<p class="hint">{{#NEWEST_PAGE}}<a href="./#sessions">The newest sessions</a> {{/NEWEST_PAGE}}{{#OLDER}}<a href="?sessions_before={{BEFORE}}#sessions">Older sessions</a>{{/OLDER}}</p>{{/PAGES}}
 </section>
 {{/SESSIONS}}
 </div>

@@ -1,0 +1,58 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/page_options.h"
+#include "client/table.h"
+#include "client/verbs.h"
+#include "server/base/limits.h"
+
+namespace rigcal::client {
+namespace {
+
+struct HistoryOptions {
+  std::string robot;
+  int limit = 20, before = 0;
+};
+
+void PrintHistory(const Document& document, const HistoryOptions& options, std::ostream& out) {
+  const std::vector<Document> revisions = document["revisions"].Items();
+  const char* none = options.before > 0 ? kNoOlderOnes : "There is no revision yet. Send a session with `rigcal push DIR`.\n";
+  if (revisions.empty()) out << none;
+  if (revisions.empty()) return;
+  Table table({{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"WHY"}});
+  for (const Document& revision : revisions)
+    table.Add({CountOf(revision["revision"]), revision["created_at"].Text("-"), revision["verdict"]["level"].Text("unknown"),
+               revision["verdict"]["why"].Text()});
+  table.Print(out);
+  PrintNextPage(document, "rigcal history " + options.robot + " --limit " + std::to_string(options.limit), out);
+}
+
+ExitCode RunHistory(const Context& context, const HistoryOptions& options) {
+  std::vector<Field> parameters = {{"robot", options.robot}, {"limit", std::int64_t{options.limit}}};
+  if (options.before > 0) parameters.emplace_back("before", std::int64_t{options.before});
+  const auto print = [&](const Document& document, std::ostream& out) { PrintHistory(document, options, out); };
+  return Answer(context, {"revisions", JsonObject(parameters), print, {}});
+}
+
+}  // namespace
+
+void AddHistory(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("history", "List a robot's revisions with their verdicts, the newest first");
+  auto options = std::make_shared<HistoryOptions>();
+  verb->add_option("ROBOT", options->robot, "The robot's id")->required();
+  verb->add_option("--limit", options->limit, "So many revisions (default 20)")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{1}, limits::kPageRowsMax));
+  verb->add_option("--before", options->before, "Only those before this revision")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  verb->footer(
+      "Exit code 0, whatever the verdicts: `rigcal show ROBOT --revision N` ends with that of one revision.\n"
+      "Examples:\n"
+      "  rigcal history mapper-01\n"
+      "  rigcal history mapper-01 --limit 50 --before 471\n"
+      "  rigcal history mapper-01 --json\n");
+  verb->callback([&context, options] { context.exit_code = RunHistory(context, *options); });
+}
+
+}  // namespace rigcal::client
