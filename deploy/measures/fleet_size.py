@@ -51,6 +51,25 @@ class Pushes:
         return 59 * self.pushed / (time.monotonic() - self.began)
 
 
+class Load:
+    """Edges of many robots from eight clients at once, at a given rate, until its time is over."""
+    RATE, ROBOTS, SECONDS = 5300, 64, 25
+
+    def __init__(self, context, server, folder):
+        path = folder / "load.json"
+        path.write_text(json.dumps(Rig().week(1)))
+        self.process = subprocess.Popen([str(context.bin / "edge_load"), "--tag", server.tag, "--file", str(path), "--robots", str(self.ROBOTS),
+                                         "--edges-per-s", str(self.RATE), "--seconds", str(self.SECONDS)],
+                                        stdout=subprocess.PIPE, text=True, env=server.environment())
+
+    def finish(self):
+        """Edges per second that were stored."""
+        said = self.process.communicate()[0]
+        if self.process.returncode != 0:
+            raise RuntimeError("edge_load failed")
+        return json.loads(said)["edges_per_s"]
+
+
 def asked(context, server, count):
     """Figures in ms of one robot's questions and of the fleet's page."""
     address = server.address
@@ -82,3 +101,11 @@ def run(context):
                     yield at_most("%s_beside_pushes" % key, value_ms, limit_ms, "ms")
                 yield at_least("pushes_meanwhile", pushes.pushed, 2)
                 yield info("edges_pushed_meanwhile", pushes.edges_per_s(), "/s")
+            load = Load(context, server, folder)
+            time.sleep(3.0)  # until all of its clients push
+            figures = asked(context, server, 300)
+            meanwhile = load.process.poll() is None
+            rate = load.finish()
+            for key, (value_ms, limit_ms) in figures.items():
+                yield at_most("%s_beside_5000_edges_per_s" % key, value_ms, limit_ms, "ms")
+            yield at_least("edges_stored_meanwhile", rate if meanwhile else 0.0, 5000.0, "/s")

@@ -3,6 +3,7 @@ rigcal_program(durable_write_bench SOURCES bench/durable_write_bench.cc DEPS rig
 rigcal_program(receipt_recorder SOURCES bench/receipt_recorder.cc DEPS rigcal_idl)
 rigcal_program(query_bench SOURCES bench/query_bench.cc DEPS rigcal_client)
 rigcal_program(misspelt_robots SOURCES bench/misspelt_robots.cc DEPS rigcal_idl)
+rigcal_program(edge_load SOURCES bench/edge_load.cc DEPS rigcal_client)
 rigcal_program(graph_honesty_measure SOURCES bench/graph_honesty_measure.cc DEPS rigcal_graph)
 rigcal_program(graph_faults_measure SOURCES bench/graph_faults_measure.cc bench/fault_graphs.cc DEPS rigcal_graph rigcal_fleet)
 rigcal_program(board_speed_measure SOURCES bench/board_speed_measure.cc bench/board_pictures.cc DEPS rigcal_detect)
