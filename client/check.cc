@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "client/check/look.h"
 #include "client/check/report.h"
@@ -7,6 +8,7 @@
 #include "client/transfer.h"
 #include "client/verbs.h"
 #include "server/base/thread_rank.h"
+#include "server/model/admission.h"
 
 namespace rigcal::client {
 namespace {
@@ -40,6 +42,12 @@ Result<check::SessionSeen> LookAt(const Context& context, const std::string& fol
                               }});
 }
 
+// As the server will by its own clock.
+void RefuseFuture(check::SessionSeen& session) {
+  const Status past = CheckCapturedAt(session.manifest.header, SystemClock().Now(), "this machine");
+  if (!past) session.refusals.push_back(past.error());
+}
+
 check::Findings FindIn(const Context& context, const check::SessionSeen& session) {
   Bar bar(context, "Estimating", Progress::Unit::kEdges);
   return check::FindAll(session, [&](std::int64_t done, std::int64_t total) { bar.Show(done, total); });
@@ -47,7 +55,8 @@ check::Findings FindIn(const Context& context, const check::SessionSeen& session
 
 Result<ExitCode> RunCheck(const Context& context, const CheckOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
-  RIGCAL_ASSIGN(const check::SessionSeen session, LookAt(context, options.folder));
+  RIGCAL_ASSIGN(check::SessionSeen session, LookAt(context, options.folder));
+  RefuseFuture(session);
   const check::Findings findings = FindIn(context, session);
   const check::Judgement judgement = check::JudgeFindings(findings);
   for (const Error& refusal : findings.refusals) Report(refusal, context.err);

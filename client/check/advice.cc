@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "server/calib/core/wording.h"
+
 namespace rigcal::check {
 namespace {
 
@@ -59,8 +61,8 @@ std::string Headline(const Judgement& judgement) {
   if (judgement.IsEnough()) return "Enough.";
   if (judgement.captures_more == 0) return "Not enough yet.";
   const bool alone = judgement.advice.size() == 1;
-  return std::string("Take ") + (alone ? "" : "at least ") + std::to_string(judgement.captures_more) + " more capture" +
-         (judgement.captures_more == 1 ? "." : "s.");
+  return std::string("Take ") + (alone ? "" : "at least ") + calib::CountText(judgement.captures_more, "more capture") +
+         ".";
 }
 
 }  // namespace rigcal::check

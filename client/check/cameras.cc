@@ -46,8 +46,9 @@ void SetFound(const Pictures& pictures, CameraFound& found) {
     if (seen->view.found) {
       found.with_board.push_back(capture);
       found.corners += seen->view.corners_px.size();
-    } else if (found.why_not.empty() && picture.width_px > 0) {
-      found.why_not = seen->view.why_not;
+    } else if (picture.width_px > 0) {
+      if (found.without_board.empty()) found.why_not = seen->view.why_not;
+      found.without_board.push_back(capture);
     }
   }
 }
@@ -124,6 +125,13 @@ void SetLens(const calib::CameraProblem& problem, calib::CameraMemory& lenses, C
 
 }  // namespace
 
+std::vector<std::string> EmptySides(const Coverage& coverage) {
+  std::vector<std::string> sides;
+  for (std::size_t side = 0; side < kSidesOfPicture.size(); ++side)
+    if (coverage.margin_ratio[side] > kEmptyMargin_ratio) sides.emplace_back(kSidesOfPicture[side]);
+  return sides;
+}
+
 const Target* BestTarget(const std::vector<const Target*>& targets, const Pictures& pictures) {
   const Target* best = nullptr;
   for (const Target* target : targets)
@@ -143,6 +151,7 @@ CameraFound FindCamera(const Sensor& camera, const std::vector<const Target*>& t
   CameraFound found;
   found.camera = camera.id;
   found.estimates_lens = !camera.intrinsics;
+  found.fills_picture = calib::ModelOf(camera) != CameraModel::kFisheyeKb4;
   SetSizes(pictures, found);
   const Target* board = BestTarget(targets, pictures);
   if (board == nullptr) return found;

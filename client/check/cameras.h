@@ -20,9 +20,9 @@ struct BlurredPicture {
 struct CameraFound {
   SensorId camera;
   std::optional<Target> board;  // of those it may see, the one found in most pictures; absent: it may see none
-  std::vector<CaptureId> with_board;
-  std::string why_not;      // no board, in the first picture that can be read and has none
-  std::size_t corners = 0;  // in all pictures
+  std::vector<CaptureId> with_board, without_board;  // of the pictures that can be read
+  std::string why_not;                               // no board, in the first of those without
+  std::size_t corners = 0;                           // in all pictures
   Coverage coverage;
   TiltRing ring;
   std::optional<BoardDistances> distances;
@@ -31,6 +31,7 @@ struct CameraFound {
   int width_px = 0, height_px = 0;          // of most pictures
   std::vector<CaptureId> resized;           // the others
   bool estimates_lens = false;              // its intrinsics are not given
+  bool fills_picture = true;                // not a fisheye, of which a part of the picture may stay dark
   std::optional<Diagnosis> lens_problem;    // why board poses and intrinsics cannot be had of these pictures
   std::optional<double> focal_sigma_ratio;  // of estimated intrinsics: sigma of fx over fx
   std::map<CaptureId, Se3> T_cam_board;     // where the above is absent
@@ -41,6 +42,8 @@ struct CameraFound {
 [[nodiscard]] CameraFound FindCamera(const Sensor& camera, const std::vector<const Target*>& targets,
                                      const std::map<CaptureId, PictureSeen>& pictures, calib::CameraMemory& lenses);
 
+// Of the picture, those that no corner was near; of kSidesOfPicture.
+[[nodiscard]] std::vector<std::string> EmptySides(const Coverage& coverage);
 // Views of one target, of every picture.
 [[nodiscard]] std::vector<std::pair<CaptureId, BoardView>> ViewsOf(const std::map<CaptureId, PictureSeen>& pictures,
                                                                    const TargetId& target);

@@ -126,6 +126,11 @@ const SensorFiles* FilesOf(const Findings& findings, const SensorId& sensor) {
   return files == findings.sensors.end() ? nullptr : &*files;
 }
 
+bool IsInPair(const Findings& findings, const SensorId& sensor) {
+  return std::any_of(findings.pairs.begin(), findings.pairs.end(),
+                     [&](const PairFound& pair) { return pair.pair.a == sensor || pair.pair.b == sensor; });
+}
+
 calib::CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor) {
   calib::CapturesNeeded needed;
   for (const PairFound& pair : findings.pairs) {

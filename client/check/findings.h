@@ -56,6 +56,8 @@ struct Findings {
 
 // Null: there is none of this name.
 [[nodiscard]] const SensorFiles* FilesOf(const Findings& findings, const SensorId& sensor);
+// It takes part in a pair that is calibrated.
+[[nodiscard]] bool IsInPair(const Findings& findings, const SensorId& sensor);
 // What its pairs want most of it; zeros of a sensor in no pair that goes by captures.
 [[nodiscard]] calib::CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor);
 

@@ -2,20 +2,16 @@
 #include <cmath>
 
 #include "client/check/advice.h"
+#include "client/check/words.h"
 #include "client/pose_text.h"
 #include "client/table.h"
+#include "server/calib/core/wording.h"
 #include "server/fleet/assess.h"
 
 namespace rigcal::check {
 namespace {
 
-std::string PairName(const PairFound& pair) { return pair.pair.a.str() + " - " + pair.pair.b.str(); }
-
-std::string SentenceOf(const Diagnosis& diagnosis) {
-  return Sentence({ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure});
-}
-
-// After "in 5 captures".
+// Before "in 5 different captures".
 const char* SeenTogether(Method method) {
   switch (method) {
     case Method::kStereo:
@@ -37,9 +33,7 @@ const char* SeenTogether(Method method) {
 }
 
 std::string CountedText(const PairFound& pair, std::size_t more) {
-  const std::string captures = pair.both == 0   ? "no capture"
-                               : pair.both == 1 ? "1 capture"
-                                                : std::to_string(pair.both) + " different captures";
+  const std::string captures = pair.both == 0 ? "no capture" : calib::CountText(pair.both, "different capture");
   const bool drives = RowOf(pair.method).board_stands_still;
   return std::string(SeenTogether(pair.method)) + " in " + captures + ", " + std::to_string(pair.needed.enough) +
          " are enough: take " + std::to_string(more) + " more" +
@@ -49,7 +43,7 @@ std::string CountedText(const PairFound& pair, std::size_t more) {
 std::optional<Advice> TooFew(const PairFound& pair) {
   if (pair.both >= pair.needed.enough) return std::nullopt;
   const std::size_t more = pair.needed.enough - pair.both;
-  return Advice{{PairName(pair)},
+  return Advice{{PairText(pair.pair)},
                 CountedText(pair, more),
                 pair.both < pair.needed.least ? Urgency::kNoAnswer : Urgency::kFew,
                 more};
@@ -58,9 +52,11 @@ std::optional<Advice> TooFew(const PairFound& pair) {
 std::optional<Advice> NoAnswer(const PairFound& pair) {
   const bool failed = pair.edge && pair.edge->state == EdgeState::kFailed;
   if (!pair.problem && !failed) return std::nullopt;
-  if (failed && pair.edge->diagnoses.empty()) return Advice{{PairName(pair)}, "it fails", Urgency::kNoAnswer, 0};
-  return Advice{
-      {PairName(pair)}, SentenceOf(pair.problem ? *pair.problem : pair.edge->diagnoses.front()), Urgency::kNoAnswer, 0};
+  if (failed && pair.edge->diagnoses.empty()) return Advice{{PairText(pair.pair)}, "it fails", Urgency::kNoAnswer, 0};
+  return Advice{{PairText(pair.pair)},
+                SentenceOf(pair.problem ? *pair.problem : pair.edge->diagnoses.front()),
+                Urgency::kNoAnswer,
+                0};
 }
 
 // The largest of three axes.
@@ -79,7 +75,7 @@ std::optional<Advice> TooRough(const PairFound& pair) {
   const double excess = std::max(sigma_m / policy.sigma_max_m, sigma_rad / policy.sigma_max_rad);
   if (!(excess > 1)) return std::nullopt;
   const double more = std::ceil(static_cast<double>(pair.both) * std::min(excess * excess - 1, 1.0));
-  return Advice{{PairName(pair)},
+  return Advice{{PairText(pair.pair)},
                 "known to " + client::Fixed(client::kMmPerM * sigma_m, 1) + " mm and " +
                     client::Fixed(client::kDegPerRad * sigma_rad, 2) + " deg only, " +
                     client::Fixed(client::kMmPerM * policy.sigma_max_m, 0) + " mm and " +
@@ -106,7 +102,7 @@ std::map<SensorId, int> TiedTogether(const Findings& findings) {
 std::optional<Advice> OpenMotion(const PairFound& pair, const std::map<SensorId, int>& group) {
   if (!pair.edge || pair.edge->state == EdgeState::kFailed || pair.IsWhole()) return std::nullopt;
   if (group.at(pair.pair.a) == group.at(pair.pair.b) || pair.edge->diagnoses.empty()) return std::nullopt;
-  return Advice{{PairName(pair)}, SentenceOf(pair.edge->diagnoses.front()), Urgency::kRough, 0};
+  return Advice{{PairText(pair.pair)}, SentenceOf(pair.edge->diagnoses.front()), Urgency::kRough, 0};
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "client/check/capture_names.h"
 #include "client/check/words.h"
 #include "client/table.h"
+#include "server/calib/core/wording.h"
 
 namespace rigcal::check {
 namespace {
@@ -34,6 +35,13 @@ void AddTroubles(const std::vector<FileTrouble>& troubles, Remarks& remarks) {
     remarks.push_back("... and " + std::to_string(troubles.size() - kAlikeMax) + " more files like these.");
 }
 
+// Of a camera without any board its advice says it.
+void AddWithoutBoard(const CameraFound& camera, const std::vector<CaptureId>& all, Remarks& remarks) {
+  if (camera.with_board.empty() || camera.without_board.empty()) return;
+  remarks.push_back(camera.camera.str() + ": no board in " + Stretches(InOrder(camera.without_board), all) + " (" +
+                    camera.why_not + ").");
+}
+
 void AddResized(const CameraFound& camera, const std::vector<CaptureId>& all, Remarks& remarks) {
   if (camera.resized.empty()) return;
   remarks.push_back(camera.camera.str() + ": the pictures of " + Stretches(InOrder(camera.resized), all) +
@@ -52,9 +60,9 @@ void AddBlurred(const CameraFound& camera, Remarks& remarks) {
 
 void AddGaps(const StreamFound& stream, Remarks& remarks) {
   if (stream.gaps == 0) return;
-  remarks.push_back(stream.stream.str() + " has " + std::to_string(stream.gaps) +
-                    (stream.gaps == 1 ? " gap" : " gaps") + " without a pose in its " + Fixed(stream.seconds, 0) +
-                    " s, the longest of " + Fixed(stream.longest_gap_s, 1) + " s: nothing is known there.");
+  remarks.push_back(stream.stream.str() + " has " + calib::CountText(stream.gaps, "gap") + " without a pose in its " +
+                    Fixed(stream.seconds, 0) + " s, the longest of " + Fixed(stream.longest_gap_s, 1) +
+                    " s: nothing is known there.");
 }
 
 void AddSame(const Findings& findings, Remarks& remarks) {
@@ -66,13 +74,6 @@ void AddSame(const Findings& findings, Remarks& remarks) {
                       " more files that are copies.");
 }
 
-void AddWithoutPair(const Findings& findings, const SensorFiles& files, Remarks& remarks) {
-  const bool in_pair = std::any_of(findings.pairs.begin(), findings.pairs.end(), [&](const PairFound& pair) {
-    return pair.pair.a == files.sensor || pair.pair.b == files.sensor;
-  });
-  if (!in_pair) remarks.push_back(files.sensor.str() + " is in no pair of sensors that is calibrated.");
-}
-
 }  // namespace
 
 std::vector<std::string> RemarksOf(const Findings& findings) {
@@ -80,9 +81,11 @@ std::vector<std::string> RemarksOf(const Findings& findings) {
   for (const SensorFiles& files : findings.sensors) {
     AddMissing(findings, files, remarks);
     AddTroubles(files.unreadable, remarks);
-    AddWithoutPair(findings, files, remarks);
+    if (!IsInPair(findings, files.sensor))
+      remarks.push_back(files.sensor.str() + " is in no pair of sensors that is calibrated.");
     const auto camera = findings.cameras.find(files.sensor);
     if (camera == findings.cameras.end()) continue;
+    AddWithoutBoard(camera->second, findings.captures, remarks);
     AddResized(camera->second, findings.captures, remarks);
     AddBlurred(camera->second, remarks);
   }

@@ -86,6 +86,7 @@ void WriteCoverage(JsonWriter& out, const Coverage& coverage) {
 void WriteCamera(JsonWriter& out, const CameraFound& camera) {
   out.Text("id", camera.camera.str());
   WriteCaptures(out, "board_in", camera.with_board);
+  WriteCaptures(out, "board_not_in", camera.without_board);
   out.Integer("corners", static_cast<std::int64_t>(camera.corners));
   WriteCoverage(out, camera.coverage);
   WriteRing(out, camera.ring);

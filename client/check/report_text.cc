@@ -4,11 +4,13 @@
 #include "client/check/words.h"
 #include "client/pose_text.h"
 #include "client/table.h"
+#include "server/calib/core/wording.h"
 #include "server/model/validity.h"
 
 namespace rigcal::check {
 namespace {
 
+using calib::CountText;
 using client::Align;
 using client::Fixed;
 using client::Plain;
@@ -16,10 +18,6 @@ using client::Scaled;
 using client::Table;
 
 constexpr const char* kIndent = "         ";
-
-std::string Counted(std::size_t count, const std::string& thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
 
 std::size_t FilesOfKind(const Findings& findings, SensorKind kind) {
   std::size_t files = 0;
@@ -30,16 +28,16 @@ std::size_t FilesOfKind(const Findings& findings, SensorKind kind) {
 
 void PrintHead(const Findings& findings, std::ostream& out) {
   out << findings.robot.str() << ", captured " << DayText(findings.captured_at) << ": "
-      << Counted(findings.sensors.size(), "sensor") << ", " << Counted(findings.captures.size(), "capture") << ", "
-      << Counted(FilesOfKind(findings, SensorKind::kCamera), "picture") << ", "
-      << Counted(FilesOfKind(findings, SensorKind::kLidar), "cloud") << '\n';
+      << CountText(findings.sensors.size(), "sensor") << ", " << CountText(findings.captures.size(), "capture") << ", "
+      << CountText(FilesOfKind(findings, SensorKind::kCamera), "picture") << ", "
+      << CountText(FilesOfKind(findings, SensorKind::kLidar), "cloud") << '\n';
 }
 
 void PrintVerdict(const Findings& findings, const Judgement& judgement, std::ostream& out) {
   out << "verdict  ";
   if (!findings.refusals.empty())
-    out << "A push refuses this folder for " << Counted(findings.refusals.size(), "reason")
-        << ": mend them first. Of the rest: ";
+    out << "A push refuses this folder (" << CountText(findings.refusals.size(), "reason")
+        << ", above). Mend that first. Of the rest: ";
   out << Headline(judgement) << '\n';
   for (const Advice& advice : judgement.advice) {
     std::string line = NamesText(advice.of) + ": " + advice.text;
@@ -59,13 +57,6 @@ std::string TiltsText(const CameraFound& camera) {
   return text;
 }
 
-std::string EmptySidesText(const CameraFound& camera) {
-  std::vector<std::string> sides;
-  for (std::size_t side = 0; side < kSidesOfPicture.size(); ++side)
-    if (camera.coverage.margin_ratio[side] > kEmptyMargin_ratio) sides.emplace_back(kSidesOfPicture[side]);
-  return Enumerated(sides);
-}
-
 std::string LensText(const CameraFound& camera) {
   if (camera.lens_problem) return "not known";
   if (!camera.estimates_lens) return "given";
@@ -76,6 +67,7 @@ void PrintCameras(const Findings& findings, std::ostream& out) {
   Table table({{"CAMERA"},
                {"pictures", Align::kRight},
                {"board in", Align::kRight},
+               {"corners", Align::kRight},
                {"covered %", Align::kRight},
                {"nothing near"},
                {"tilts l r u d deg", Align::kRight},
@@ -89,7 +81,8 @@ void PrintCameras(const Findings& findings, std::ostream& out) {
     const CameraFound& found = camera->second;
     const auto& away = found.distances;
     table.Add({files.sensor.str(), std::to_string(files.files), std::to_string(found.with_board.size()),
-               Fixed(100 * found.coverage.share_ratio, 0), EmptySidesText(found), TiltsText(found),
+               std::to_string(found.corners), Fixed(100 * found.coverage.share_ratio, 0),
+               Enumerated(EmptySides(found.coverage)), TiltsText(found),
                away ? Fixed(away->near_widths, 1) + " to " + Fixed(away->far_widths, 1) : "-", Fixed(found.edge_px, 1),
                std::to_string(found.blurred.size()), LensText(found)});
   }
@@ -141,16 +134,14 @@ std::string StateText(const PairFound& pair) {
   return pair.edge ? "good" : "counted only";
 }
 
-std::string PairText(const PairFound& pair) { return pair.pair.a.str() + " - " + pair.pair.b.str(); }
-
 // Each sentence once, with the pairs that it is about.
 void PrintSentences(const Findings& findings, std::ostream& out) {
   std::vector<std::pair<std::string, std::vector<std::string>>> told;
   const auto add = [&](const PairFound& pair, const Diagnosis& diagnosis) {
-    const std::string sentence = Sentence({ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure});
+    const std::string sentence = SentenceOf(diagnosis);
     auto known = std::find_if(told.begin(), told.end(), [&](const auto& one) { return one.first == sentence; });
     if (known == told.end()) known = told.insert(told.end(), {sentence, {}});
-    known->second.push_back(PairText(pair));
+    known->second.push_back(PairText(pair.pair));
   };
   for (const PairFound& pair : findings.pairs) {
     if (pair.problem) add(pair, *pair.problem);

@@ -3,10 +3,12 @@
 #include "client/check/advice.h"
 #include "client/check/words.h"
 #include "client/table.h"
+#include "server/calib/core/wording.h"
 
 namespace rigcal::check {
 namespace {
 
+using calib::CountText;
 using client::Fixed;
 
 // Of a focal length, 1 sigma: 5 mm at a metre, the fleet's limit for a sensor (fleet::Policy).
@@ -28,19 +30,14 @@ std::string NoFilesText(const SensorFiles& files) {
   return "no files";
 }
 
-std::string OfPictures(std::size_t found, std::size_t pictures) {
-  return "the board is in " + std::to_string(found) + " of " + std::to_string(pictures) +
-         (pictures == 1 ? " picture" : " pictures");
-}
-
 std::string HeldText(const SensorFiles& files, const CameraFound* camera) {
-  if (camera != nullptr && files.usable == 0)
-    return "no board in " + std::to_string(files.files) + (files.files == 1 ? " picture" : " pictures") +
-           (camera->why_not.empty() ? "" : " (" + camera->why_not + ")");
-  if (camera != nullptr) return OfPictures(files.usable, files.files);
-  const char* const thing = files.kind == SensorKind::kLidar ? " that can be read" : "";
-  return std::to_string(files.usable) + (files.kind == SensorKind::kLidar ? " cloud" : " pose") +
-         (files.usable == 1 ? "" : "s") + thing;
+  if (camera == nullptr)
+    return files.kind == SensorKind::kLidar ? CountText(files.usable, "cloud") + " that can be read"
+                                            : CountText(files.usable, "pose");
+  if (files.usable > 0)
+    return "the board is in " + std::to_string(files.usable) + " of " + CountText(files.files, "picture");
+  return "no board in " + CountText(files.files, "picture") +
+         (camera->why_not.empty() ? "" : " (" + camera->why_not + ")");
 }
 
 std::optional<Advice> WhyShort(const Findings& findings, const SensorFiles& files) {
@@ -55,13 +52,6 @@ std::optional<Advice> WhyShort(const Findings& findings, const SensorFiles& file
                     (camera == findings.cameras.end() ? "" : " with the board in view"),
                 files.usable < needed.least ? Urgency::kNoAnswer : Urgency::kFew,
                 more};
-}
-
-std::vector<std::string> EmptySides(const Coverage& coverage) {
-  std::vector<std::string> sides;
-  for (std::size_t side = 0; side < kSidesOfPicture.size(); ++side)
-    if (coverage.margin_ratio[side] > kEmptyMargin_ratio) sides.emplace_back(kSidesOfPicture[side]);
-  return sides;
 }
 
 std::string TiltText(const CameraFound& camera) {
@@ -83,8 +73,7 @@ Advice LensProblem(const CameraFound& camera) {
             "its boards stand too much alike to tell its focal length: " + TiltText(camera),
             Urgency::kNoAnswer,
             TiltedMore(camera)};
-  return {
-      {camera.camera.str()}, Sentence({ErrorCode::kInvalidInput, problem.what, problem.cure}), Urgency::kNoAnswer, 0};
+  return {{camera.camera.str()}, SentenceOf(problem), Urgency::kNoAnswer, 0};
 }
 
 // Of a lens that is to be estimated, and can be.
@@ -96,9 +85,10 @@ std::optional<Advice> LensOpen(const CameraFound& camera) {
                     " % only: " + TiltText(camera));
     more = TiltedMore(camera);
   }
-  const std::vector<std::string> sides = EmptySides(camera.coverage);
+  const std::vector<std::string> sides =
+      camera.fills_picture ? EmptySides(camera.coverage) : std::vector<std::string>();
   if (!sides.empty()) cures.push_back("hold the board near the " + Enumerated(sides) + " edge of its picture");
-  if (sides.empty() && camera.coverage.share_ratio < kCoveredMin_ratio)
+  if (camera.fills_picture && sides.empty() && camera.coverage.share_ratio < kCoveredMin_ratio)
     cures.push_back("hold the board in every part of its picture, of which corners cover " +
                     Fixed(100 * camera.coverage.share_ratio, 0) + " %");
   if (cures.empty()) return std::nullopt;
@@ -111,17 +101,12 @@ std::optional<Advice> WhyBlurred(const CameraFound& camera, std::size_t enough) 
   const std::size_t sharp = camera.with_board.size() - std::min(camera.with_board.size(), camera.blurred.size());
   if (sharp >= enough) return std::nullopt;
   return Advice{{camera.camera.str()},
-                std::to_string(camera.blurred.size()) + " of " + std::to_string(camera.with_board.size()) +
-                    " pictures of the board are blurred: hold board and robot still, with more light or a shorter "
+                std::to_string(camera.blurred.size()) + " of " + CountText(camera.with_board.size(), "picture") +
+                    " of the board are blurred: hold board and robot still, with more light or a shorter "
                     "exposure, and take " +
                     std::to_string(enough - sharp) + " more",
                 Urgency::kRough,
                 enough - sharp};
-}
-
-bool IsInPair(const Findings& findings, const SensorId& sensor) {
-  return std::any_of(findings.pairs.begin(), findings.pairs.end(),
-                     [&](const PairFound& pair) { return pair.pair.a == sensor || pair.pair.b == sensor; });
 }
 
 // Two cameras may tell what one alone does not.

@@ -17,4 +17,10 @@ std::string NamesText(const std::vector<std::string>& names) {
   return Enumerated(shown);
 }
 
+std::string PairText(const SensorPair& pair) { return pair.a.str() + " - " + pair.b.str(); }
+
+std::string SentenceOf(const Diagnosis& diagnosis) {
+  return Sentence({ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure});
+}
+
 }  // namespace rigcal::check

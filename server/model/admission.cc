@@ -32,11 +32,11 @@ Status CheckAdmission(const Manifest& manifest, const limits::Limits& limits) {
                 "Split it into several sessions");
 }
 
-Status CheckCapturedAt(const SessionHeader& header, Stamp now) {
+Status CheckCapturedAt(const SessionHeader& header, Stamp now, const std::string& whose) {
   constexpr std::int64_t kAheadMax_ns = 86'400'000'000'000, kSecond_ns = 1'000'000'000;
   if (header.captured_at.ns - kAheadMax_ns <= now.ns) return {};
   return Fail(ErrorCode::kInvalidInput,
-              "captured_at " + ToIso(header.captured_at) + " is more than a day ahead of this server's clock, " +
+              "captured_at " + ToIso(header.captured_at) + " is more than a day ahead of " + whose + "'s clock, " +
                   ToIso({now.ns - now.ns % kSecond_ns}),
               "Correct captured_at in session.yaml, or the clock that is wrong.");
 }

@@ -12,7 +12,7 @@ namespace rigcal {
 [[nodiscard]] Status CheckAdmission(const Manifest& manifest, const limits::Limits& limits);
 
 // Age and due dates count from captured_at, so a session from the future would never be due. A day is allowed for
-// clocks in other time zones. `now`: the server's clock.
-[[nodiscard]] Status CheckCapturedAt(const SessionHeader& header, Stamp now);
+// clocks in other time zones. `now`: of whose clock, the error names.
+[[nodiscard]] Status CheckCapturedAt(const SessionHeader& header, Stamp now, const std::string& whose = "this server");
 
 }  // namespace rigcal

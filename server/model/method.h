@@ -1,6 +1,6 @@
 // How a pair of sensors is calibrated: one row per method. A new one is a row here, a case of Applies(), and in
-// server/pipeline a case that names its loader and its estimator; every switch over Method has a case of each, so that
-// the compiler says what is missing.
+// server/pipeline and client/check a case that names its loader and its estimator; every switch over Method has a case
+// of each, so that the compiler says what is missing.
 #pragma once
 
 #include <array>

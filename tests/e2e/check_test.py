@@ -76,7 +76,7 @@ def refused_as_a_push(place, good):
     told = place.rigcal("check", bad, exit_code=REFUSED)
     pushed = place.rigcal("push", bad, "--timeout-total", 1, exit_code=REFUSED)
     check(told.stderr == pushed.stderr and "02.jpg\": it is empty" in told.stderr, "%r, %r" % (told.stderr, pushed.stderr))
-    check("A push refuses this folder for 1 reason" in told.stdout and "Pairs, as the server" in told.stdout, "the rest: " + told.stdout)
+    check("A push refuses this folder (1 reason, above)" in told.stdout and "Pairs, as the server" in told.stdout, "the rest: " + told.stdout)
     document = json.loads(place.rigcal("check", bad, "--json", exit_code=REFUSED).stdout)
     check(len(document["refused"]) == 1 and not document["enough"], "refused: %r" % document["refused"])
     place.rigcal("check", place.folder / "nowhere", exit_code=REFUSED)

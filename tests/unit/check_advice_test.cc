@@ -164,6 +164,9 @@ TEST(CheckAdvice, ALensThatIsEstimatedWantsTheEdgesOfThePicture) {
   const Judgement judgement = JudgeFindings(findings);
   EXPECT_THAT(TextsOf(judgement), ElementsAre("hold the board near the left and top edge of its picture"));
   EXPECT_EQ(Headline(judgement), "Take 2 more captures.");
+  left.fills_picture = false;
+  EXPECT_TRUE(JudgeFindings(findings).IsEnough()) << "a fisheye's picture has dark sides";
+  left.fills_picture = true;
   left.coverage.margin_ratio = {};
   left.coverage.share_ratio = 0.3;
   EXPECT_THAT(TextsOf(JudgeFindings(findings)),
@@ -259,11 +262,14 @@ TEST(CheckAdvice, RemarksNameFiles) {
   findings.sensors[0].present = Captures(5);
   findings.sensors[0].unreadable = {{"left/03.png", "the picture is cut off; save or copy the picture again"}};
   findings.cameras[SensorId("right")].resized = {CaptureId("02")};
+  findings.cameras[SensorId("right")].without_board = {CaptureId("04"), CaptureId("05"), CaptureId("06")};
+  findings.cameras[SensorId("right")].why_not = "no 9 x 6 board in the picture";
   findings.same_files = {{"left/01.png", "right/01.png"}};
   findings.streams = {{SensorId("vio"), 100, 41.0, 1, 2.3}};
   EXPECT_THAT(JudgeFindings(findings).remarks,
               ElementsAre("left has files for 5 of 12 captures: 06 to 12 are missing.",
                           "left/03.png: the picture is cut off; save or copy the picture again.",
+                          "right: no board in 04 to 06 (no 9 x 6 board in the picture).",
                           "right: the pictures of 02 are not of 640 x 480 pixels like the others: take all pictures of "
                           "one camera at one size.",
                           "vio has 1 gap without a pose in its 41 s, the longest of 2.3 s: nothing is known there.",
