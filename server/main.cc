@@ -104,7 +104,6 @@ Status Serve(const Config& config, const sigset_t& signals) {
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
-  if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
       pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));
