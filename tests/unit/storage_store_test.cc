@@ -324,6 +324,18 @@ TEST_F(StoreTest, AReaderKeepsItsSnapshotWhileAnotherWrites) {
   EXPECT_EQ(LoadRobots(store_)->size(), 3u);
 }
 
+TEST_F(StoreTest, WhoCannotWaitIsToldThatTheStoreIsBusy) {
+  Store writer = Open();
+  const auto append = [&] { return AppendRobot(store_, kRobot, {1}); };
+  EXPECT_TRUE(writer.Write([&]() -> Status {
+    EXPECT_EQ(store_.WriteSoon(append).error().code, ErrorCode::kBusy);
+    return {};
+  }));
+  EXPECT_TRUE(store_.WriteSoon(append));
+  EXPECT_TRUE(*HasRobot(store_, kRobot));
+  EXPECT_EQ(store_.database().execAndGet("PRAGMA busy_timeout").getString(), "10000") << "others wait as long as before";
+}
+
 TEST_F(StoreTest, TwoWritersTakeTurns) {
   constexpr int kEach = 50;
   std::vector<std::thread> threads;
