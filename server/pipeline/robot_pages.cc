@@ -9,6 +9,7 @@
 #include "server/model/past.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/pipeline/robot_summary.h"
 #include "server/pipeline/unreadable.h"
 #include "server/report/robot_pages.h"
 #include "storage/blobs.h"
@@ -102,8 +103,7 @@ Status MovePast(const AnswerContext& context, const RobotId& robot, std::vector<
 Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot) {
   const Stamp now = context.clock.Now();
   report::RobotInput input;
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
-  input.row = FleetRowOf(rows.front());
+  RIGCAL_ASSIGN(input.row, LoadRobotSummary(context.store, robot, now));
   RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot));
   RIGCAL_ASSIGN(auto sessions, LoadSessionRows(context.store, robot));
   RIGCAL_TRY(AddStanding(context.store, robot, sessions));
@@ -207,18 +207,6 @@ Result<PageText> MissingFile(const AnswerContext& context, const RobotId& robot,
 }
 
 }  // namespace
-
-report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
-  report::FleetRow fleet;
-  fleet.robot = row.robot;
-  fleet.revision = row.revision;
-  fleet.verdict = row.verdict;
-  fleet.validity = row.validity;
-  fleet.sessions = row.sessions;
-  fleet.edges = row.edges;
-  fleet.pairs_waiting = row.jobs_waiting;
-  return fleet;
-}
 
 Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string& rest, const std::string& query) {
   std::vector<std::string> parts;  // the last is empty for an address that ends in '/'

@@ -25,7 +25,7 @@ struct SessionRow {
   std::optional<Superseding> superseded_by = {};
 };
 struct RobotInput {
-  FleetRow row;
+  RobotSummary row;
   std::vector<Revision> revisions;
   std::vector<SessionRow> sessions;  // the newest first
   std::vector<SensorId> sensors;     // whose history is drawn
