@@ -19,6 +19,7 @@
 #include "server/pipeline/orders.h"
 #include "server/pipeline/robot_state.h"
 #include "server/pipeline/runner.h"
+#include "server/pipeline/summaries.h"
 #include "server/pipeline/worker.h"
 #include "server/standby.h"
 #include "storage/folder_lock.h"
@@ -71,6 +72,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(storage::LockFolder(config.data));
   storage::KeepReserve(config.data);
   RIGCAL_ASSIGN(storage::Store start_store, storage::Store::Open(config.data));  // migrated before anybody is served
+  pipeline::RefreshAllSummaries(start_store, SystemClock());
   if (!config.standby) RIGCAL_TRY(only->Settle());
   const Stamp started_at = SystemClock().Now();
   pipeline::RevisionCache revisions;
@@ -104,7 +106,6 @@ Status Serve(const Config& config, const sigset_t& signals) {
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
   const pipeline::Announcer announcer = AnnouncerTo(service);
-  if (const Status drawn = pipeline::DrawMissingReports(start_store); !drawn) LogError(drawn.error());
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
       pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));

@@ -7,7 +7,7 @@
 namespace rigcal::storage {
 namespace {
 
-constexpr int kBusyTimeoutMs = 10'000;
+constexpr int kBusyTimeoutMs = 10'000, kSoonTimeoutMs = 100;
 
 // Without recursive triggers, INSERT OR REPLACE would delete behind the back of the append-only triggers.
 constexpr const char* kSettings =
@@ -100,6 +100,20 @@ Status Connection::Write(const Body& body) {
   if (!done) Rollback();
   state_ = State::kIdle;
   return done;
+}
+
+Status Connection::WriteSoon(const Body& body) {
+  RIGCAL_TRY(WaitFor(kSoonTimeoutMs));
+  Status done = Write(body);
+  const Status patient = WaitFor(kBusyTimeoutMs);
+  return done ? patient : done;
+}
+
+Status Connection::WaitFor(int busy_timeout_ms) {
+  return Guarded(name_, [&]() -> Status {
+    database_.setBusyTimeout(busy_timeout_ms);
+    return {};
+  });
 }
 
 Status Connection::Read(const Body& body) {

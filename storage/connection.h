@@ -33,6 +33,7 @@ class Connection {
 
   // The transactions of store.h.
   [[nodiscard]] Status Write(const Body& body);
+  [[nodiscard]] Status WriteSoon(const Body& body);
   [[nodiscard]] Status Read(const Body& body);
   // Runs `body` in the Write that is under way, or in one of its own. A body checks all its input before it writes:
   // then whoever goes on after its error has no half of it. A failure of SQLite instead dooms the whole Write.
@@ -44,6 +45,7 @@ class Connection {
   enum class State { kIdle, kReading, kWriting };
 
   [[nodiscard]] Status Begin(const char* sql);
+  [[nodiscard]] Status WaitFor(int busy_timeout_ms);
   [[nodiscard]] Status Guarded(const std::string& subject, const Body& body);
   [[nodiscard]] Status Commit();
   void Rollback();

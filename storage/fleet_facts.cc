@@ -13,21 +13,13 @@ Status AppendWorstEdge(Store& store, const RevisionKey& key, const WorstEdge& wo
   });
 }
 
-Result<std::map<RobotId, FleetFacts>> LoadFleetFacts(Store& store) {
-  using Facts = std::map<RobotId, FleetFacts>;
-  return Load<Facts>(store, "facts of all robots", [&]() -> Result<Facts> {
-    Facts facts;
-    Query sessions(
-        store,
-        "SELECT s.robot_id, max(s.captured_ns) FROM session s JOIN session_closed c ON c.session_number = s.number "
-        "GROUP BY s.robot_id");
-    while (sessions.Step()) facts[sessions.IdAt<RobotId>(0)].last_session_at = sessions.Time(1);
-    Query worst(store,
-                "SELECT w.robot_id, w.frame_a, w.frame_b, w.residual_ratio FROM revision_worst_edge w WHERE "
-                "w.revision_number = (SELECT max(number) FROM revision r WHERE r.robot_id = w.robot_id)");
-    while (worst.Step())
-      facts[worst.IdAt<RobotId>(0)].worst = WorstEdge{worst.IdAt<SensorId>(1), worst.IdAt<SensorId>(2), worst.Real(3)};
-    return facts;
+Result<std::optional<WorstEdge>> LoadWorstEdge(Store& store, const RevisionKey& key) {
+  using Worst = std::optional<WorstEdge>;
+  return Load<Worst>(store, "worst edge of robot " + key.robot.str(), [&]() -> Result<Worst> {
+    Query query(store,
+                "SELECT frame_a, frame_b, residual_ratio FROM revision_worst_edge WHERE robot_id = ? AND revision_number = ?");
+    if (!query.Bind(key.robot, key.number).Step()) return std::nullopt;
+    return WorstEdge{query.IdAt<SensorId>(0), query.IdAt<SensorId>(1), query.Real(2)};
   });
 }
 

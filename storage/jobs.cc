@@ -52,6 +52,13 @@ Result<std::optional<JobRow>> LoadNextJob(Store& store, const std::vector<RobotI
   });
 }
 
+Result<std::int64_t> CountJobs(Store& store) {
+  return Load<std::int64_t>(store, "jobs of all robots", [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT count(*) FROM waiting_job");
+    return query.Step() ? query.Int(0) : 0;
+  });
+}
+
 Result<std::int64_t> CountJobs(Store& store, const RobotId& robot) {
   return Load<std::int64_t>(store, "jobs of robot " + robot.str(), [&]() -> Result<std::int64_t> {
     Query query(store, "SELECT count(*) FROM waiting_job WHERE robot_id = ?");

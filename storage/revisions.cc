@@ -183,6 +183,18 @@ Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   });
 }
 
+Result<std::vector<RevisionKey>> LoadNewestRevisions(Store& store, const RobotId& after, int max) {
+  return Load<std::vector<RevisionKey>>(store, "newest revisions", [&]() -> Result<std::vector<RevisionKey>> {
+    Query query(store,
+                "SELECT robot_id, coalesce((SELECT max(number) FROM revision v WHERE v.robot_id = r.robot_id), 0) "
+                "FROM robot r WHERE robot_id > ? ORDER BY robot_id LIMIT ?");
+    query.Bind(after, max);
+    std::vector<RevisionKey> keys;
+    while (query.Step()) keys.push_back({query.IdAt<RobotId>(0), static_cast<int>(query.Int(1))});
+    return keys;
+  });
+}
+
 Result<std::vector<RevisionKey>> LoadUnpublished(Store& store) {
   return Load<std::vector<RevisionKey>>(store, "revisions to publish", [&]() -> Result<std::vector<RevisionKey>> {
     Query query(store, "SELECT robot_id, revision_number FROM waiting_publication ORDER BY robot_id, revision_number");
@@ -206,12 +218,10 @@ Result<bool> IsPublished(Store& store, const RevisionKey& key) {
   });
 }
 
-Status QueuePublication(Store& store, const RevisionKey& key) {
-  return store.connection().Append(PublicationSubject(key), [&]() -> Status {
-    Query(store, "INSERT INTO waiting_publication VALUES (?, ?) ON CONFLICT DO NOTHING")
-        .Bind(key.robot, key.number)
-        .Run();
-    return {};
+Result<bool> QueuePublication(Store& store, const RevisionKey& key) {
+  return Append<bool>(store, PublicationSubject(key), [&]() -> Result<bool> {
+    Query query(store, "INSERT INTO waiting_publication VALUES (?, ?) ON CONFLICT DO NOTHING");
+    return query.Bind(key.robot, key.number).Run() > 0;
   });
 }
 

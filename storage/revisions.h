@@ -36,10 +36,12 @@ struct RevisionKey {
   RobotId robot;
   int number = 0;
 };
+// The newest of each of the next `max` robots after `after`, by id; 0: it has none.
+[[nodiscard]] Result<std::vector<RevisionKey>> LoadNewestRevisions(Store& store, const RobotId& after, int max);
 [[nodiscard]] Result<std::vector<RevisionKey>> LoadUnpublished(Store& store);
 [[nodiscard]] Result<std::int64_t> CountUnpublished(Store& store, const RobotId& robot);
-// To be published, perhaps again.
-[[nodiscard]] Status QueuePublication(Store& store, const RevisionKey& key);
+// To be published, perhaps again; false if it was already.
+[[nodiscard]] Result<bool> QueuePublication(Store& store, const RevisionKey& key);
 [[nodiscard]] Result<bool> IsPublished(Store& store, const RevisionKey& key);
 // The robot's newest revision, once more: what it shows was not all there. A no-op without a revision.
 [[nodiscard]] Status PublishAgain(Store& store, const RobotId& robot);

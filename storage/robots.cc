@@ -11,31 +11,13 @@ Status AppendRobot(Store& store, const RobotId& robot, Stamp now) {
   });
 }
 
-namespace {
-
-const std::string kSelectRobot =
-    "SELECT robot_id, first_seen_ns, (SELECT count(*) FROM session s WHERE s.robot_id = r.robot_id), "
-    "(SELECT count(*) FROM counted_edge c WHERE c.robot_id = r.robot_id) FROM robot r ";
-
-RobotRow RobotRowOf(const Query& query) {
-  return {query.IdAt<RobotId>(0), query.Time(1), query.Int(2), query.Int(3)};
-}
-
-}  // namespace
-
-Result<std::vector<RobotRow>> LoadRobots(Store& store) {
-  return Load<std::vector<RobotRow>>(store, "list of robots", [&]() -> Result<std::vector<RobotRow>> {
-    Query query(store, kSelectRobot + "ORDER BY robot_id");
-    std::vector<RobotRow> rows;
-    while (query.Step()) rows.push_back(RobotRowOf(query));
-    return rows;
-  });
-}
-
 Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot) {
   return Load<std::optional<RobotRow>>(store, "robot " + robot.str(), [&]() -> Result<std::optional<RobotRow>> {
-    Query query(store, kSelectRobot + "WHERE robot_id = ?");
-    return query.Bind(robot).Step() ? std::optional(RobotRowOf(query)) : std::nullopt;
+    Query query(store,
+                "SELECT robot_id, first_seen_ns, (SELECT count(*) FROM session s WHERE s.robot_id = r.robot_id), "
+                "(SELECT count(*) FROM counted_edge c WHERE c.robot_id = r.robot_id) FROM robot r WHERE robot_id = ?");
+    if (!query.Bind(robot).Step()) return std::nullopt;
+    return RobotRow{query.IdAt<RobotId>(0), query.Time(1), query.Int(2), query.Int(3)};
   });
 }
 

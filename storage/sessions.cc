@@ -222,6 +222,15 @@ Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId&
   });
 }
 
+Result<std::optional<Stamp>> LoadNewestCapture(Store& store, const RobotId& robot) {
+  return Load<std::optional<Stamp>>(store, Subject(robot), [&]() -> Result<std::optional<Stamp>> {
+    Query query(store,
+                "SELECT captured_ns FROM session JOIN session_closed ON session_number = number WHERE robot_id = ? "
+                "ORDER BY captured_ns DESC LIMIT 1");
+    return query.Bind(robot).Step() ? std::optional(query.Time(0)) : std::nullopt;
+  });
+}
+
 Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now) {
   return store.connection().Append(Subject(id), [&]() -> Status {
     RIGCAL_ASSIGN(const std::optional<SessionRow> row, LoadSession(store, id));

@@ -35,6 +35,8 @@ struct SessionRow {
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions);
 // Of the closed ones that which was captured first; of several the smallest id.
 [[nodiscard]] Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot);
+// Of the closed ones when the newest was captured.
+[[nodiscard]] Result<std::optional<Stamp>> LoadNewestCapture(Store& store, const RobotId& robot);
 // Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.
 [[nodiscard]] Result<std::vector<SessionRow>> LoadOpenSessions(Store& store, const RobotId& robot);
 
@@ -69,7 +71,6 @@ struct RobotRow {
   std::int64_t sessions = 0, edges = 0;
 };
 [[nodiscard]] Status AppendRobot(Store& store, const RobotId& robot, Stamp now);
-[[nodiscard]] Result<std::vector<RobotRow>> LoadRobots(Store& store);
 // Nothing of a robot that is not known.
 [[nodiscard]] Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot);
 [[nodiscard]] Result<bool> HasRobot(Store& store, const RobotId& robot);

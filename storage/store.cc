@@ -69,6 +69,7 @@ fs::path Store::BlobFolder() const { return BlobFolderOf(impl_->folder); }
 fs::path Store::IntakeFolder() const { return IntakeFolderOf(impl_->folder); }
 fs::path Store::ReportFolder() const { return ReportFolderOf(impl_->folder); }
 Status Store::Write(const std::function<Status()>& body) { return impl_->connection.Write(body); }
+Status Store::WriteSoon(const std::function<Status()>& body) { return impl_->connection.WriteSoon(body); }
 Status Store::Read(const std::function<Status()>& body) { return impl_->connection.Read(body); }
 SQLite::Database& Store::database() { return impl_->connection.database(); }
 Connection& Store::connection() { return impl_->connection; }

@@ -40,6 +40,8 @@ class Store {
   // the database for 10 s; a failure of SQLite inside `body` fails the whole Write even if `body` returns good. Every
   // Append... of storage/*.h may be called inside a Write, or alone: then it is a transaction of its own.
   [[nodiscard]] Status Write(const std::function<Status()>& body);
+  // The same, but kBusy where another has the database for 100 ms: of what whoever asks need not wait for.
+  [[nodiscard]] Status WriteSoon(const std::function<Status()>& body);
   // Runs `body` in one read snapshot; inside another Read or a Write it sees that one's.
   [[nodiscard]] Status Read(const std::function<Status()>& body);
 

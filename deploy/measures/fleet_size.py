@@ -81,11 +81,34 @@ def asked(context, server, count):
             "fleet_page": (1e3 * statistics.median(fleet_pages), 500.0), "lookup_p99": (lookups["p99_ms"], 20.0)}
 
 
+def fill(context, data, robots, visits):
+    subprocess.run([str(context.bin / "page_store"), "fleet", str(data), str(robots), str(visits)], check=True, stdout=subprocess.DEVNULL)
+
+
+def p99_ms(url, count):
+    return 1e3 * sorted(seconds(url) for _ in range(count))[int(0.99 * (count - 1))]
+
+
+def of_one_visit(context, robots):
+    """Very many robots that came once: a start, pages of the list of them, and what its open page asks every second."""
+    with context.folder() as name:
+        data = pathlib.Path(name) / "data"
+        fill(context, data, robots, 1)
+        began = time.monotonic()
+        with Server(context, data) as server:
+            yield at_most("start_to_serving_%d_robots" % robots, time.monotonic() - began, 3.0, "s")
+            pages = {"fleet_page": "/", "fleet_last_page": "/?page=%d" % robots, "fleet_search": "/?q=robot-%d+says" % (robots - 1)}
+            for key, path in pages.items():
+                took_ms = 1e3 * statistics.median(seconds(server.address + path) for _ in range(5))
+                yield at_most("%s_%d_robots" % (key, robots), took_ms, 500.0, "ms")
+            yield at_most("fleet_poll_p99_%d_robots" % robots, p99_ms(server.address + "/api/v1/live", 300), 5.0, "ms")
+
+
 def run(context):
     robots, visits = (1000, 52) if context.full else (1000, 12)
     with context.folder() as name:
         folder = pathlib.Path(name)
-        subprocess.run([str(context.bin / "page_store"), "fleet", str(folder / "data"), str(robots), str(visits)], check=True, stdout=subprocess.DEVNULL)
+        fill(context, folder / "data", robots, visits)
         began = time.monotonic()
         with Server(context, folder / "data") as server:
             yield at_most("start_to_serving", time.monotonic() - began, 3.0, "s")
@@ -109,3 +132,4 @@ def run(context):
             for key, (value_ms, limit_ms) in figures.items():
                 yield at_most("%s_beside_5000_edges_per_s" % key, value_ms, limit_ms, "ms")
             yield at_least("edges_stored_meanwhile", rate if meanwhile else 0.0, 5000.0, "/s")
+    yield from of_one_visit(context, 100_000 if context.full else 10_000)

@@ -23,7 +23,7 @@ void WriteValidity(JsonWriter& out, const Validity& validity) {
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
 }
 
-void WriteRobotRow(JsonWriter& out, const RobotAnswer& robot, Stamp now) {
+void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
   out.Object([&] {
     out.Text("robot", robot.robot.str());
     WriteRevisionNumber(out, robot.revision);
@@ -36,10 +36,15 @@ void WriteRobotRow(JsonWriter& out, const RobotAnswer& robot, Stamp now) {
   });
 }
 
-void WriteRobotRows(JsonWriter& out, const std::vector<RobotAnswer>& robots, Stamp now) {
+void WriteRobotRows(JsonWriter& out, const std::vector<RobotSummary>& robots, Stamp now) {
   out.List("robots", [&] {
-    for (const RobotAnswer& robot : robots) WriteRobotRow(out, robot, now);
+    for (const RobotSummary& robot : robots) WriteRobotRow(out, robot, now);
   });
+}
+
+void WriteNext(JsonWriter& out, const std::optional<RobotId>& next) {
+  if (!next) return;
+  next->empty() ? out.Null("next") : out.Text("next", next->str());
 }
 
 void WriteOpenBatch(JsonWriter& out, const OpenBatchAnswer& batch, Stamp now) {
@@ -77,8 +82,11 @@ void WriteNext(JsonWriter& out, const NextPage& next) {
 
 }  // namespace
 
-std::string WriteRobots(const std::vector<RobotAnswer>& robots, Stamp now) {
-  return WriteObject([&](JsonWriter& out) { WriteRobotRows(out, robots, now); });
+std::string WriteRobots(const std::vector<RobotSummary>& robots, Stamp now, const std::optional<RobotId>& next) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteRobotRows(out, robots, now);
+    WriteNext(out, next);
+  });
 }
 
 std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next) {
@@ -183,6 +191,7 @@ std::string WriteStatus(const StatusAnswer& answer, Stamp now) {
       for (const OpenBatchAnswer& batch : answer.open_batches) out.Object([&] { WriteOpenBatch(out, batch, now); });
     });
     WriteRobotRows(out, answer.robots, now);
+    WriteNext(out, answer.next);
   });
 }
 
@@ -200,20 +209,23 @@ std::string WriteLive(const LiveAnswer& answer) {
   });
 }
 
-std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_ns, Stamp now) {
-  const auto write_row = [&](JsonWriter& out, const DueAnswer& robot) {
+std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
+                     const std::optional<RobotId>& next) {
+  const auto write_row = [&](JsonWriter& out, const RobotSummary& robot) {
+    const std::optional<Stamp>& calibrated_at = robot.validity.calibrated_at;
     out.Text("robot", robot.robot.str());
-    WriteStamp(out, "calibrated_at", robot.calibrated_at);
-    WriteAge(out, robot.calibrated_at, now);
-    out.Flag("overdue", IsOverdue(robot.calibrated_at, max_age_ns, now));
+    WriteStamp(out, "calibrated_at", calibrated_at);
+    WriteAge(out, calibrated_at, now);
+    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns, now));
     WriteVerdict(out, "verdict", robot.verdict);
   };
   return WriteObject([&](JsonWriter& out) {
     out.Integer("max_age_ns", max_age_ns);
     out.Text("now", ToIso(now));
     out.List("robots", [&] {
-      for (const DueAnswer& robot : robots) out.Object([&] { write_row(out, robot); });
+      for (const RobotSummary& robot : robots) out.Object([&] { write_row(out, robot); });
     });
+    WriteNext(out, next);
   });
 }
 

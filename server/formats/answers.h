@@ -11,6 +11,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/robot_summary.h"
 #include "server/model/standing.h"
 #include "server/model/validity.h"
 
@@ -20,17 +21,9 @@ namespace rigcal::formats {
 // Absent of a list in one piece.
 using NextPage = std::optional<std::string>;
 
-// verb robots
-struct RobotAnswer {
-  RobotId robot;
-  int revision = 0;  // 0: none yet, written as null
-  Verdict verdict;
-  Validity validity;  // of that revision
-  std::int64_t sessions = 0;
-  std::int64_t edges = 0;  // of the revision; of a robot without one: all that arrived
-  std::int64_t jobs_waiting = 0;
-};
-[[nodiscard]] std::string WriteRobots(const std::vector<RobotAnswer>& robots, Stamp now);
+// verb robots. `next` is there for a part of a list: the robot after which the next part begins, empty where nothing follows.
+[[nodiscard]] std::string WriteRobots(const std::vector<RobotSummary>& robots, Stamp now,
+                                      const std::optional<RobotId>& next = std::nullopt);
 
 // verbs sessions, session
 struct SessionAnswer {
@@ -87,8 +80,9 @@ struct StatusAnswer {
   std::string version;
   std::int64_t uptime_ns = 0;
   std::int64_t jobs_waiting = 0;
-  std::vector<RobotAnswer> robots;  // all, or the one asked for
-  std::vector<OpenBatchAnswer> open_batches;  // of these robots: no edge of them counts
+  std::vector<RobotSummary> robots;           // all, a part of them, or the one asked for
+  std::optional<RobotId> next;                // of a part: as in WriteRobots
+  std::vector<OpenBatchAnswer> open_batches;  // of all robots, or the one asked for: no edge of them counts
   std::string http_address;         // of the reports; empty: none
   std::optional<Error> problem;     // why the server cannot store or answer
 };
@@ -104,13 +98,9 @@ struct LiveAnswer {
 };
 [[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
 
-// verb due: every robot; overdue = older than max_age_ns, or never calibrated.
-struct DueAnswer {
-  RobotId robot;
-  std::optional<Stamp> calibrated_at;
-  Verdict verdict;
-};
-[[nodiscard]] std::string WriteDue(const std::vector<DueAnswer>& robots, std::int64_t max_age_ns, Stamp now);
+// verb due: every robot, or a part of them; overdue = older than max_age_ns, or never calibrated.
+[[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
+                                   const std::optional<RobotId>& next = std::nullopt);
 
 // A payload that the server's disk has not kept, and that was not sent again yet.
 struct LostFileAnswer {

@@ -15,6 +15,8 @@
 #include "server/pipeline/live.h"
 #include "server/pipeline/report_files.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/pipeline/robot_summary.h"
+#include "server/pipeline/summaries.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
 #include "storage/edges.h"
@@ -31,10 +33,9 @@ namespace {
 using formats::Parameters;
 using Verb = std::function<Result<std::string>(const AnswerContext&, const Parameters&)>;
 
-Result<std::string> Robots(const AnswerContext& context, const Parameters&) {
-  const Stamp now = context.clock.Now();
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
-  return formats::WriteRobots(rows, now);
+Result<std::string> Robots(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotList list, LoadRobotList(context.store, context.clock, parameters));
+  return formats::WriteRobots(list.robots, context.clock.Now(), list.next);
 }
 
 Result<std::string> Session(const AnswerContext& context, const Parameters& parameters) {
@@ -143,6 +144,21 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   return formats::WriteLookup(answer);
 }
 
+Status TakeList(const AnswerContext& context, const Parameters& parameters, formats::StatusAnswer& answer) {
+  RIGCAL_ASSIGN(RobotList list, LoadRobotList(context.store, context.clock, parameters));
+  answer.robots = std::move(list.robots);
+  answer.next = std::move(list.next);
+  RIGCAL_ASSIGN(answer.jobs_waiting, storage::CountJobs(context.store));
+  return {};
+}
+
+Status TakeOne(const AnswerContext& context, const RobotId& robot, Stamp now, formats::StatusAnswer& answer) {
+  RIGCAL_ASSIGN(RobotSummary summary, LoadRobotSummary(context.store, robot, now));
+  answer.jobs_waiting = summary.jobs_waiting;
+  answer.robots.push_back(std::move(summary));
+  return {};
+}
+
 Result<std::string> OfStatus(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   const Stamp now = context.clock.Now();
@@ -151,8 +167,7 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   answer.http_address = context.http_address;
   answer.uptime_ns = now.ns - context.started_at.ns;
   answer.problem = LookAtHealth(context).problem();
-  RIGCAL_ASSIGN(answer.robots, LoadRobotRows(context.store, robot, now));
-  for (const auto& row : answer.robots) answer.jobs_waiting += row.jobs_waiting;
+  RIGCAL_TRY(robot.empty() ? TakeList(context, parameters, answer) : TakeOne(context, robot, now, answer));
   RIGCAL_ASSIGN(const auto batches, storage::LoadOpenBatches(context.store, robot));
   for (const auto& one : batches)
     answer.open_batches.push_back({one.id, one.robot, one.items, one.held, one.opened_at, one.newest_at});
@@ -190,11 +205,8 @@ Result<std::string> Due(const AnswerContext& context, const Parameters& paramete
   RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", kDefaultMaxAge_ns));
   if (max_age_ns < 0)
     return Fail(ErrorCode::kInvalidInput, "the parameter 'max_age_ns' is negative", "Give an age such as 90d.");
-  const Stamp now = context.clock.Now();
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
-  std::vector<formats::DueAnswer> due;
-  for (const auto& row : rows) due.push_back({row.robot, row.validity.calibrated_at, row.verdict});
-  return formats::WriteDue(due, max_age_ns, now);
+  RIGCAL_ASSIGN(const RobotList list, LoadRobotList(context.store, context.clock, parameters));
+  return formats::WriteDue(list.robots, max_age_ns, context.clock.Now(), list.next);
 }
 
 Status TakeLostFiles(storage::Store& store, formats::HealthAnswer& answer) {

@@ -1,5 +1,6 @@
 // The query side: (verb, parameters) -> the /api/v1 document (docs/api.md), and the pages that are made when asked for.
-// Reads only, but for a report that is to be drawn again; one Store per calling thread.
+// Reads only, but for a report that is to be drawn again, and summaries that a list brings up to date; one Store per calling
+// thread.
 #pragma once
 
 #include <functional>

@@ -2,26 +2,31 @@
 
 #include "server/formats/answers.h"
 #include "server/pipeline/robot_rows.h"
-#include "storage/jobs.h"
+#include "server/pipeline/robot_summary.h"
+#include "storage/fleet_list.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
 namespace {
 
-Result<std::int64_t> CountUnfinished(storage::Store& store, const RobotId& robot) {
-  if (!robot.empty()) {
-    RIGCAL_ASSIGN(const bool unsolved, storage::IsUnsolved(store, robot));
-    RIGCAL_ASSIGN(const std::int64_t reports, storage::CountUnpublished(store, robot));
-    return reports + (unsolved ? 1 : 0);
-  }
-  RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(store));
-  RIGCAL_ASSIGN(const auto unpublished, storage::LoadUnpublished(store));
-  return static_cast<std::int64_t>(unsolved.size() + unpublished.size());
+Status TakeFleet(storage::Store& store, formats::LiveAnswer& answer) {
+  RIGCAL_ASSIGN(const storage::FleetSize size, storage::LoadFleetSize(store));
+  answer.robots = size.robots;
+  answer.sessions = size.sessions;
+  answer.edges = size.edges;
+  answer.unfinished = size.unfinished;
+  return {};
 }
 
-// Sessions that are still arriving, or whose pairs are still being calibrated.
-Status TakeOpenSessions(storage::Store& store, formats::LiveAnswer& answer) {
+Status TakeRobot(storage::Store& store, formats::LiveAnswer& answer) {
+  RIGCAL_ASSIGN(const storage::RobotRow row, LoadKnownRobot(store, answer.robot));
+  answer.robots = 1;
+  answer.sessions = row.sessions;
+  answer.edges = row.edges;
+  RIGCAL_ASSIGN(const bool unsolved, storage::IsUnsolved(store, answer.robot));
+  RIGCAL_ASSIGN(const std::int64_t reports, storage::CountUnpublished(store, answer.robot));
+  answer.unfinished = reports + (unsolved ? 1 : 0);
   RIGCAL_ASSIGN(answer.open_sessions, LoadOpenSessionRows(store, answer.robot));
   if (!answer.open_sessions.empty()) RIGCAL_TRY(AddStanding(store, answer.robot, answer.open_sessions));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, answer.robot, 0));
@@ -34,14 +39,7 @@ Status TakeOpenSessions(storage::Store& store, formats::LiveAnswer& answer) {
 Result<std::string> LiveDocument(storage::Store& store, const RobotId& robot) {
   formats::LiveAnswer answer;
   answer.robot = robot;
-  RIGCAL_ASSIGN(const auto robots, LoadKnown(store, robot));
-  for (const storage::RobotRow& row : robots) {
-    ++answer.robots;
-    answer.sessions += row.sessions;
-    answer.edges += row.edges;
-  }
-  RIGCAL_ASSIGN(answer.unfinished, CountUnfinished(store, robot));
-  if (!robot.empty()) RIGCAL_TRY(TakeOpenSessions(store, answer));
+  RIGCAL_TRY(robot.empty() ? TakeFleet(store, answer) : TakeRobot(store, answer));
   return formats::WriteLive(answer);
 }
 

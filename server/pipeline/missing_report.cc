@@ -6,7 +6,7 @@
 
 #include "server/base/log.h"
 #include "server/pipeline/attempt.h"
-#include "storage/sessions.h"
+#include "storage/attempts.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -23,12 +23,6 @@ bool IsThere(const storage::Store& store, const storage::RevisionKey& key, const
   return std::filesystem::exists(store.ReportFolder() / key.robot.str() / std::to_string(key.number) / file, error);
 }
 
-Result<bool> IsQueued(storage::Store& store, const storage::RevisionKey& key) {
-  RIGCAL_ASSIGN(const auto queued, storage::LoadUnpublished(store));
-  return std::any_of(queued.begin(), queued.end(),
-                     [&](const auto& one) { return one.robot == key.robot && one.number == key.number; });
-}
-
 // Reports of the robot that are still to be drawn, but for those that were given up.
 Result<std::ptrdiff_t> QueuedOf(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto queued, storage::LoadUnpublished(store));
@@ -41,11 +35,9 @@ Result<std::ptrdiff_t> QueuedOf(storage::Store& store, const RobotId& robot) {
 
 // True if it was not to be drawn before.
 Result<bool> Queue(storage::Store& store, const storage::RevisionKey& key) {
-  RIGCAL_ASSIGN(const bool is_queued, IsQueued(store, key));
-  if (is_queued) return false;
-  RIGCAL_TRY(storage::QueuePublication(store, key));
-  LogInfo(ReportOf(key) + " is not in " + store.ReportFolder().string() + " any more: it is drawn again");
-  return true;
+  RIGCAL_ASSIGN(const bool is_new, storage::QueuePublication(store, key));
+  if (is_new) LogInfo(ReportOf(key) + " is not in " + store.ReportFolder().string() + " any more: it is drawn again");
+  return is_new;
 }
 
 Error Being(const storage::RevisionKey& key, const char* drawn) {
@@ -104,14 +96,18 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
   return published && *published ? Being(key, "drawn again, as its folder was gone") : Being(key, "drawn");
 }
 
-Status DrawMissingReports(storage::Store& store) {
-  RIGCAL_ASSIGN(const auto robots, storage::LoadRobots(store));
-  for (const storage::RobotRow& row : robots) {
-    RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, row.robot, 0));
-    if (!newest || IsThere(store, {row.robot, newest->number})) continue;
-    RIGCAL_TRY(Queue(store, {row.robot, newest->number}));
-  }
-  return {};
+Result<RobotId> DrawMissingReports(storage::Store& store, const RobotId& after) {
+  constexpr int kLookedAtOnce = 256;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadNewestRevisions(store, after, kLookedAtOnce));
+  std::vector<storage::RevisionKey> gone;
+  for (const storage::RevisionKey& key : newest)
+    if (key.number > 0 && !IsThere(store, key)) gone.push_back(key);
+  if (!gone.empty())
+    RIGCAL_TRY(store.Write([&]() -> Status {
+      for (const storage::RevisionKey& key : gone) RIGCAL_TRY(Queue(store, key));
+      return {};
+    }));
+  return newest.empty() ? RobotId() : newest.back().robot;
 }
 
 }  // namespace rigcal::pipeline

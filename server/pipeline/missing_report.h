@@ -30,7 +30,8 @@ class UndrawnReports {
 [[nodiscard]] Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const storage::RevisionKey& key,
                                const std::string& file, const std::function<void()>& drawn_soon);
 
-// At start-up: the newest reports that are gone will be drawn again.
-[[nodiscard]] Status DrawMissingReports(storage::Store& store);
+// After a start: the newest reports of the next robots after `after`, by id, will be drawn again where they are gone. The last
+// robot that it looked at; empty where none was left.
+[[nodiscard]] Result<RobotId> DrawMissingReports(storage::Store& store, const RobotId& after);
 
 }  // namespace rigcal::pipeline

@@ -1,15 +1,14 @@
 #include <algorithm>
-#include <map>
 
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/experiments.h"
 #include "server/pipeline/robot_pages.h"
-#include "server/pipeline/robot_rows.h"
+#include "server/pipeline/summaries.h"
 #include "server/report/assets.h"
 #include "server/report/render.h"
-#include "storage/fleet_facts.h"
+#include "storage/fleet_list.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -18,10 +17,10 @@ constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kJson = "application/json; charset=utf-8";
 
-Result<report::FleetQuery> FleetQueryOf(const std::string& query) {
+Result<FleetQuery> FleetQueryOf(const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
   RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
-  report::FleetQuery asked;
+  FleetQuery asked;
   asked.search = parameters.Text("q").value_or("");
   asked.verdict = parameters.Text("verdict").value_or("");
   asked.sort = parameters.Text("sort").value_or("");
@@ -31,24 +30,19 @@ Result<report::FleetQuery> FleetQueryOf(const std::string& query) {
   return asked;
 }
 
-void AddFacts(const storage::FleetFacts& facts, report::FleetRow& row) {
-  row.last_session_at = facts.last_session_at;
-  if (facts.worst)
-    row.worst = report::WorstFit{facts.worst->frame_a.str(), facts.worst->frame_b.str(), facts.worst->in_sigmas};
-}
-
-Result<PageText> FleetPage(const AnswerContext& context, const std::string& query) {
-  RIGCAL_ASSIGN(const report::FleetQuery asked, FleetQueryOf(query));
+Result<PageText> Fleet(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const FleetQuery asked, FleetQueryOf(query));
   const Stamp now = context.clock.Now();
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
-  RIGCAL_ASSIGN(const auto facts, storage::LoadFleetFacts(context.store));
-  std::vector<report::FleetRow> fleet;
-  for (const auto& row : rows) {
-    fleet.push_back(FleetRowOf(row));
-    if (const auto known = facts.find(row.robot); known != facts.end()) AddFacts(known->second, fleet.back());
-  }
+  FreshenSummaries(context.store, context.clock);
+  FleetCounts fleet;
+  FleetPage list;
+  RIGCAL_TRY(context.store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(fleet, storage::CountFleet(context.store, now));
+    RIGCAL_ASSIGN(list, storage::LoadFleetPage(context.store, asked, now));
+    return {};
+  }));
   const std::size_t experiments = ListExperiments(context.store.folder()).size();
-  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, now, asked, experiments));
+  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, list, now, asked, experiments));
   return PageText{std::move(body), kHtml};
 }
 
@@ -67,23 +61,16 @@ Result<PageText> Api(const AnswerContext& context, const std::string& verb, cons
 // Prometheus text: one gauge per line.
 Result<PageText> Metrics(const AnswerContext& context) {
   const Stamp now = context.clock.Now();
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, RobotId(), now));
-  std::map<std::string, int> verdicts = {{"pass", 0}, {"warn", 0}, {"fail", 0}, {"unknown", 0}};
-  std::int64_t jobs = 0, edges = 0, sessions = 0;
-  for (const auto& row : rows) {
-    ++verdicts[NameOf(row.verdict.level)];
-    jobs += row.jobs_waiting;
-    edges += row.edges;
-    sessions += row.sessions;
-  }
+  FreshenSummaries(context.store, context.clock);
+  RIGCAL_ASSIGN(FleetCounts fleet, storage::CountFleet(context.store, now));
   std::string text = "rigcal_uptime_seconds " + std::to_string((now.ns - context.started_at.ns) / 1'000'000'000) + "\n";
-  text += "rigcal_jobs_waiting " + std::to_string(jobs) + "\nrigcal_edges " + std::to_string(edges) +
-          "\nrigcal_sessions " + std::to_string(sessions) + "\n";
+  text += "rigcal_jobs_waiting " + std::to_string(fleet.jobs_waiting) + "\nrigcal_edges " + std::to_string(fleet.edges) +
+          "\nrigcal_sessions " + std::to_string(fleet.sessions) + "\n";
   for (const PartState& part : LookAtHealth(context).parts)
     text += "rigcal_part_failing{part=\"" + part.name + "\"} " + (part.problem ? "1" : "0") +
             "\nrigcal_part_failures_total{part=\"" + part.name + "\"} " + std::to_string(part.failures) + "\n";
-  for (const auto& [verdict, count] : verdicts)
-    text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(count) + "\n";
+  for (const std::string verdict : {"fail", "pass", "unknown", "warn"})
+    text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(fleet.verdicts[VerdictLevelOf(verdict)]) + "\n";
   return PageText{text, "text/plain; version=0.0.4; charset=utf-8"};
 }
 
@@ -96,7 +83,7 @@ PageText Healthz(const AnswerContext& context) {
 
 Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
   const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/";
-  if (path == "/") return FleetPage(context, query);
+  if (path == "/") return Fleet(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);

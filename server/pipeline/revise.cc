@@ -89,11 +89,11 @@ std::optional<Stamp> CalibratedAt(const std::vector<Edge>& edges, const std::map
 }
 
 // The worst fit of those that other edges check; failed ones have no fit.
-std::optional<storage::WorstEdge> WorstEdgeOf(const formats::RevisionInput& revision) {
+std::optional<WorstEdge> WorstEdgeOf(const formats::RevisionInput& revision) {
   if (revision.solution.dof <= 0) return std::nullopt;
   for (const report::ShownEdge& shown : report::InOrder(revision))
     if (shown.edge->state == EdgeState::kGood && shown.residual != nullptr)
-      return storage::WorstEdge{shown.edge->frame_a, shown.edge->frame_b, shown.in_sigmas};
+      return WorstEdge{shown.edge->frame_a, shown.edge->frame_b, shown.in_sigmas};
   return std::nullopt;
 }
 

@@ -11,6 +11,7 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/pipeline/robot_summary.h"
 #include "server/pipeline/unreadable.h"
 #include "server/pipeline/whole_revision.h"
 #include "server/report/robot_pages.h"
@@ -140,8 +141,7 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, c
   RIGCAL_ASSIGN(const SessionId sessions_before, OptionalId<SessionId>(parameters, "sessions_before"));
   const Stamp now = context.clock.Now();
   report::RobotInput input;
-  RIGCAL_ASSIGN(const auto rows, LoadRobotRows(context.store, robot, now));
-  input.row = FleetRowOf(rows.front());
+  RIGCAL_ASSIGN(input.row, LoadRobotSummary(context.store, robot, now));
   RIGCAL_TRY(TakeListedRevisions(context, robot, revisions_before, input));
   RIGCAL_TRY(TakeListedSessions(context, robot, sessions_before, input));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.row.revision));
@@ -248,18 +248,6 @@ Result<PageText> MissingFile(const AnswerContext& context, const RobotId& robot,
 }
 
 }  // namespace
-
-report::FleetRow FleetRowOf(const formats::RobotAnswer& row) {
-  report::FleetRow fleet;
-  fleet.robot = row.robot;
-  fleet.revision = row.revision;
-  fleet.verdict = row.verdict;
-  fleet.validity = row.validity;
-  fleet.sessions = row.sessions;
-  fleet.edges = row.edges;
-  fleet.pairs_waiting = row.jobs_waiting;
-  return fleet;
-}
 
 Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string& rest, const std::string& query) {
   std::vector<std::string> parts;  // the last is empty for an address that ends in '/'

@@ -3,13 +3,9 @@
 
 #include <string>
 
-#include "server/formats/answers.h"
 #include "server/pipeline/answer.h"
-#include "server/report/render.h"
 
 namespace rigcal::pipeline {
-
-[[nodiscard]] report::FleetRow FleetRowOf(const formats::RobotAnswer& row);
 
 // `rest` is what follows "/robots/": "<id>/", "<id>/trend.js", "<id>/compare", "<id>/sessions/<id>/",
 // "<id>/sessions/<id>/evidence/<digest>.<suffix>". kNotFound for everything else; "<id>/revisions/<n>/...": why it is

@@ -5,8 +5,7 @@
 #include <set>
 
 #include "server/base/limits.h"
-#include "server/pipeline/validity.h"
-#include "storage/edges.h"
+#include "server/pipeline/robot_summary.h"
 #include "storage/jobs.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -14,63 +13,6 @@
 
 namespace rigcal::pipeline {
 namespace {
-
-Result<bool> HasWholeSession(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto earliest, storage::LoadEarliestClosed(store, robot));
-  return earliest.has_value();
-}
-
-// Of a robot that has nothing but a batch that is not whole.
-Result<std::optional<Error>> IncompleteBatch(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto batches, storage::LoadOpenBatches(store, robot));
-  if (batches.empty()) return std::nullopt;
-  const storage::OpenBatch& batch = batches.front();
-  return Error{ErrorCode::kNotFound,
-               "a batch of " + std::to_string(batch.items) + " edges is incomplete: " + std::to_string(batch.held) +
-                   " of " + std::to_string(batch.items) + " since " + ToIso(batch.newest_at),
-               "Push the same edges again: that completes it, and nothing is stored twice."};
-}
-
-// Of a robot without a revision. `whole`: a session of it came whole.
-Verdict FirstVerdict(const formats::RobotAnswer& row, bool whole, const std::optional<Error>& incomplete) {
-  const char* wait = "Wait: the result appears by itself.";
-  if (!row.validity.given_up.empty()) return {VerdictLevel::kUnknown, row.validity.given_up, ""};
-  if (row.jobs_waiting > 0) return {VerdictLevel::kUnknown, "The first session is being calibrated.", wait};
-  if (row.edges > 0) return {VerdictLevel::kUnknown, "The first result is being worked out.", wait};
-  if (whole)
-    return {VerdictLevel::kUnknown, "No session of it has two sensors that can be calibrated against each other.",
-            "Name at least two sensors in session.yaml that see one target, or that move together, and push it again."};
-  if (row.sessions > 0)
-    return {VerdictLevel::kUnknown, "The first session is arriving, or its push broke off.",
-            "Wait a moment; if nothing changes, push it again: what is here already is not sent twice."};
-  if (incomplete)
-    return {VerdictLevel::kUnknown, "There is no revision yet: " + incomplete->what + ".", incomplete->cure};
-  return {VerdictLevel::kUnknown, "There is no revision yet.", "Push a capture session or finished edges."};
-}
-
-Result<formats::RobotAnswer> RowOf(storage::Store& store, const storage::RobotRow& robot, Stamp now) {
-  formats::RobotAnswer row;
-  row.robot = robot.robot;
-  row.sessions = robot.sessions;
-  row.edges = robot.edges;
-  RIGCAL_ASSIGN(row.jobs_waiting, storage::CountJobs(store, robot.robot));
-  RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot.robot, 0));
-  if (!revision) {
-    RIGCAL_TRY(LoadWhatIsNew(store, robot.robot, row.validity));
-    RIGCAL_ASSIGN(const bool whole, HasWholeSession(store, robot.robot));
-    RIGCAL_ASSIGN(const auto incomplete, IncompleteBatch(store, robot.robot));
-    row.verdict = FirstVerdict(row, whole, incomplete);
-    return row;
-  }
-  row.revision = revision->number;
-  row.verdict = revision->verdict;
-  RIGCAL_ASSIGN(row.validity, LoadValidity(store, *revision, now));
-  // What arrived since is told once it is in a revision: one page shows the numbers of one revision.
-  if (row.validity.calculating) {
-    RIGCAL_ASSIGN(row.edges, storage::CountEdges(store, robot.robot, revision->edge_watermark));
-  }
-  return row;
-}
 
 Result<formats::SessionAnswer> RowOf(storage::Store& store, const storage::SessionRow& session) {
   formats::SessionAnswer row;
@@ -89,28 +31,6 @@ Result<formats::SessionAnswer> RowOf(storage::Store& store, const storage::Sessi
   row.jobs_total = jobs.total;
   return row;
 }
-
-}  // namespace
-
-Result<std::vector<storage::RobotRow>> LoadKnown(storage::Store& store, const RobotId& robot) {
-  if (robot.empty()) return storage::LoadRobots(store);
-  RIGCAL_ASSIGN(const auto one, storage::LoadRobot(store, robot));
-  if (one) return std::vector{*one};
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
-}
-
-Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot, Stamp now) {
-  std::vector<formats::RobotAnswer> rows;
-  RIGCAL_ASSIGN(const auto robots, LoadKnown(store, robot));
-  for (const storage::RobotRow& item : robots) {
-    RIGCAL_ASSIGN(auto row, RowOf(store, item, now));
-    rows.push_back(std::move(row));
-  }
-  std::sort(rows.begin(), rows.end(), [](const auto& x, const auto& y) { return x.robot < y.robot; });
-  return rows;
-}
-
-namespace {
 
 Result<std::vector<formats::SessionAnswer>> RowsOf(storage::Store& store, const std::vector<storage::SessionRow>& sessions) {
   std::vector<formats::SessionAnswer> rows;

@@ -1,4 +1,4 @@
-// READ: what the store says of each robot, as answers and pages show it.
+// READ: what the store says of a robot's sessions and revisions, as answers and pages show it.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,6 @@
 
 namespace rigcal::pipeline {
 
-// All robots, or only `robot` if it is not empty (kNotFound if there is none).
-[[nodiscard]] Result<std::vector<storage::RobotRow>> LoadKnown(storage::Store& store, const RobotId& robot);
-// Of the same, one row each, of its newest revision, sorted by id.
-[[nodiscard]] Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot,
-                                                                      Stamp now);
 // Without their standing, as storage::LoadSessions lists them.
 [[nodiscard]] Result<std::vector<formats::SessionAnswer>> LoadSessionRows(storage::Store& store, const RobotId& robot,
                                                                           const SessionId& before, std::int64_t limit);

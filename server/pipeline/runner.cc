@@ -40,6 +40,8 @@ struct Runner::Impl {
   std::condition_variable changed;
   std::uint64_t wakes = 0;  // guarded by mutex
   bool stopping = false;    // guarded by mutex
+  std::mutex reports_mutex;
+  std::optional<RobotId> looked_at = RobotId();  // guarded by reports_mutex; absent: all were
   std::vector<std::thread> threads;
 
   void Loop(storage::Store& store, Part& part) {
@@ -49,13 +51,21 @@ struct Runner::Impl {
       part.Turn();
       const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn, workers ? &*workers : nullptr});
       if (!result) LogError(result.error());
-      if (result && result->worked) {
-        Signal();  // its robot may be free for another thread now
-        continue;
-      }
+      if (result && result->worked) Signal();  // its robot may be free for another thread now
+      if (result && (result->worked || LookForReports(store))) continue;
       part.Rest();
       Wait(seen, result ? result->wake_at : Stamp{options.clock->Now().ns + kRetry_ns});
     }
+  }
+
+  // With nothing else to do, whether the newest reports of some robots are on disk. False once all were looked at.
+  bool LookForReports(storage::Store& store) {
+    const std::lock_guard lock(reports_mutex);
+    if (!looked_at) return false;
+    const auto last = DrawMissingReports(store, *looked_at);
+    if (!last) LogError(last.error());
+    looked_at = last && !last->empty() ? std::optional(*last) : std::nullopt;
+    return true;
   }
 
   // Notes which wakes are covered by the step to come; false when stopping.

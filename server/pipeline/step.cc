@@ -13,6 +13,7 @@
 #include "server/pipeline/robot_state.h"
 #include "server/pipeline/run_edge_job.h"
 #include "server/pipeline/session_refinement.h"
+#include "server/pipeline/summaries.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/worker.h"
 #include "storage/edges.h"
@@ -42,6 +43,8 @@ class Claim {
 // No robot's name: of work that was begun before and not finished one piece is done at a time, so that what kills the
 // process is not held against its neighbours for ever.
 const RobotId kBegunBefore;
+// Likewise: one thread at a time works out summaries.
+const RobotId kSummaries("/");
 
 Status UpdateLive(const StepContext& context, const RobotId& robot) {
   RIGCAL_ASSIGN(const RobotGraph loaded, LoadRobotGraph(context.store, robot));
@@ -157,6 +160,8 @@ Status Refine(const StepContext& context, const RobotId& robot) {
 Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int64_t jobs, bool refine) {
   if (jobs == 0 && refine) RIGCAL_TRY(Refine(context, robot));
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
+  // Whoever hears of it finds it in the lists.
+  if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
                           formats::WriteRevisionEvent(revision, usable));
@@ -331,7 +336,19 @@ void Claims::EndRests(Stamp now) {
   std::erase_if(resting_, [&](const auto& rest) { return rest.second <= now; });
 }
 
-Result<StepResult> Step(const StepContext& context) {
+namespace {
+
+// What else came of robots is in the lists soon after, few at a time. True if there is more of it.
+bool RefreshOthers(const StepContext& context) {
+  constexpr int kSummariesOfStep = 64;
+  const Claim claim(context.claims, kSummaries);
+  if (!claim.taken()) return false;
+  const Result<int> refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep);
+  if (!refreshed) LogError(refreshed.error());
+  return refreshed && *refreshed == kSummariesOfStep;
+}
+
+Result<StepResult> DoNext(const StepContext& context) {
   context.claims.EndRests(context.clock.Now());
   const Result<bool> published = PublishNext(context, false);
   if (published && *published) return StepResult{true, std::nullopt};
@@ -344,6 +361,15 @@ Result<StepResult> Step(const StepContext& context) {
   if (!published) return Fail(published.error());
   WakeBy(context.claims.NextRestEnd(), revised);
   return revised;
+}
+
+}  // namespace
+
+Result<StepResult> Step(const StepContext& context) {
+  Result<StepResult> done = DoNext(context);
+  const bool more = RefreshOthers(context);
+  if (done && more) done->worked = true;
+  return done;
 }
 
 }  // namespace rigcal::pipeline

@@ -9,6 +9,6 @@ namespace rigcal::report {
 
 [[nodiscard]] std::string AgeOf(Stamp then, Stamp now);
 // Not calibrated yet: no revision, or one of failed edges only.
-[[nodiscard]] bool IsNever(const FleetRow& robot);
+[[nodiscard]] bool IsNever(const RobotSummary& robot);
 
 }  // namespace rigcal::report

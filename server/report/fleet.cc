@@ -6,7 +6,6 @@
 #include "server/report/age.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
-#include "server/report/fleet_view.h"
 #include "server/report/render.h"
 #include "server/report/sigmas.h"
 #include "server/report/text.h"
@@ -18,41 +17,39 @@ std::string AgeOf(Stamp then, Stamp now) {
 }
 
 // A revision may hold failed edges only.
-bool IsNever(const FleetRow& robot) { return robot.revision == 0 || !robot.validity.calibrated_at; }
+bool IsNever(const RobotSummary& robot) { return robot.revision == 0 || !robot.validity.calibrated_at; }
 
 namespace {
 
+std::string CountOfRobots(const FleetCounts& fleet) {
+  return Count(static_cast<std::size_t>(fleet.robots), "robot", "robots");
+}
+
 // Each count leads to the robots that it counts.
-void FillSummary(Dictionary& page, const std::vector<FleetRow>& rows) {
-  std::size_t overdue = 0;
-  std::map<VerdictLevel, std::size_t> levels;
-  for (const FleetRow& row : rows) {
-    ++levels[row.verdict.level];
-    overdue += row.validity.overdue ? 1 : 0;
-  }
-  page.SetValue("SUMMARY", Count(rows.size(), "robot", "robots"));
-  const auto add = [&](const std::string& value, std::size_t count) {
+void FillSummary(Dictionary& page, const FleetCounts& fleet) {
+  page.SetValue("SUMMARY", CountOfRobots(fleet));
+  const auto add = [&](const std::string& value, std::int64_t count) {
     if (count == 0) return;
     Dictionary* part = page.AddSectionDictionary("PART");
     part->SetValue("VALUE", value);
     part->SetValue("TEXT", std::to_string(count) + " " + value);
   };
-  add("overdue", overdue);
+  add("overdue", fleet.overdue);
   for (const VerdictLevel level :
        {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass})
-    add(NameOf(level), levels[level]);
+    if (const auto found = fleet.verdicts.find(level); found != fleet.verdicts.end()) add(NameOf(level), found->second);
 }
 
-void FillWorst(Dictionary& row, const std::optional<WorstFit>& worst) {
+void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
   if (!worst) return row.ShowSection("NO_WORST");
   Dictionary* one = row.AddSectionDictionary("WORST");
-  one->SetValue("FROM", worst->frame_a);
-  one->SetValue("TO", worst->frame_b);
+  one->SetValue("FROM", worst->frame_a.str());
+  one->SetValue("TO", worst->frame_b.str());
   one->SetValue("SIGMAS", SigmasText(worst->in_sigmas));
   one->SetValue("LEVEL", SigmasClass(worst->in_sigmas));
 }
 
-void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
+void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
   FillOverdue(row, robot.validity);
   FillBadge(row, robot.verdict.level);
@@ -60,9 +57,9 @@ void FillRow(Dictionary& row, const FleetRow& robot, Stamp now) {
   if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())
     ShowValue(row, "DO", "WHAT_TO_DO", robot.verdict.what_to_do);
   if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.validity.usable));
-  if (robot.pairs_waiting > 0)
+  if (robot.jobs_waiting > 0)
     ShowValue(row, "WORKING", "TEXT",
-              Count(static_cast<std::size_t>(robot.pairs_waiting), "pair", "pairs") + " being calibrated");
+              Count(static_cast<std::size_t>(robot.jobs_waiting), "pair", "pairs") + " being calibrated");
   row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(*robot.validity.calibrated_at, now));
   row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
   FillWorst(row, robot.worst);
@@ -130,40 +127,38 @@ void FillColumns(Dictionary& list, const FleetQuery& query) {
   }
 }
 
-void FillPager(Dictionary& list, FleetQuery query, const FleetSlice& slice, std::size_t robots) {
-  list.SetValue("COUNT", slice.matches == robots
-                             ? Count(robots, "robot", "robots")
-                             : std::to_string(slice.matches) + " of " + Count(robots, "robot", "robots"));
-  if (slice.matches == 0) list.ShowSection("NOTHING");
-  if (slice.pages < 2) return;
+void FillPager(Dictionary& list, FleetQuery query, const FleetCounts& fleet, const FleetPage& shown) {
+  const bool all = shown.matches == static_cast<std::size_t>(fleet.robots);
+  list.SetValue("COUNT", (all ? "" : std::to_string(shown.matches) + " of ") + CountOfRobots(fleet));
+  if (shown.matches == 0) list.ShowSection("NOTHING");
+  if (shown.pages < 2) return;
   Dictionary* pager = list.AddSectionDictionary("PAGER");
-  pager->SetValue("PAGE", std::to_string(slice.page));
-  pager->SetValue("PAGES", std::to_string(slice.pages));
-  query.page = slice.page - 1;
-  if (slice.page > 1) FillAddress(*pager->AddSectionDictionary("BEFORE"), query);
-  query.page = slice.page + 1;
-  if (slice.page < slice.pages) FillAddress(*pager->AddSectionDictionary("NEXT"), query);
+  pager->SetValue("PAGE", std::to_string(shown.page));
+  pager->SetValue("PAGES", std::to_string(shown.pages));
+  query.page = shown.page - 1;
+  if (shown.page > 1) FillAddress(*pager->AddSectionDictionary("BEFORE"), query);
+  query.page = shown.page + 1;
+  if (shown.page < shown.pages) FillAddress(*pager->AddSectionDictionary("NEXT"), query);
 }
 
 }  // namespace
 
-Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now, const FleetQuery& query,
+Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now, const FleetQuery& query,
                                 std::size_t experiments) {
   Dictionary page("fleet");
   FillHead(page, "Fleet", "");
   if (experiments > 0) ShowValue(page, "EXPERIMENTS", "COUNT", Count(experiments, "experiment", "experiments"));
   AddScript(page, AssetPath("live.js"));
-  if (rows.empty()) {
+  if (fleet.robots == 0) {
     page.ShowSection("EMPTY");
     return Expand("fleet.tpl", page);
   }
-  FillSummary(page, rows);
-  const FleetSlice slice = SliceOf(rows, query, now);
-  Dictionary* list = page.AddSectionDictionary("ROBOTS");
-  FillForm(*list, query);
-  FillColumns(*list, query);
-  FillPager(*list, query, slice, rows.size());
-  for (const FleetRow* row : slice.rows) FillRow(*list->AddSectionDictionary("ROW"), *row, now);
+  FillSummary(page, fleet);
+  Dictionary* robots = page.AddSectionDictionary("ROBOTS");
+  FillForm(*robots, query);
+  FillColumns(*robots, query);
+  FillPager(*robots, query, fleet, list);
+  for (const RobotSummary& row : list.rows) FillRow(*robots->AddSectionDictionary("ROW"), row, now);
   return Expand("fleet.tpl", page);
 }
 

@@ -11,7 +11,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::size_t kRowsMax = 200, kNamesMax = 10;
+constexpr std::size_t kFusedRowsMax = 200, kFusedNamesMax = 10;
 
 struct Moved {
   const SensorPose* pose;
@@ -30,7 +30,7 @@ std::vector<Moved> MostMovedFirst(const formats::RevisionInput& revision) {
   }
   std::stable_sort(moved.begin(), moved.end(),
                    [](const Moved& x, const Moved& y) { return x.by.in_sigmas > y.by.in_sigmas; });
-  if (moved.size() > kRowsMax) moved.resize(kRowsMax);
+  if (moved.size() > kFusedRowsMax) moved.resize(kFusedRowsMax);
   return moved;
 }
 
@@ -58,8 +58,8 @@ void FillRow(Dictionary& row, const Moved& moved, bool visits) {
 
 std::string CapturesText(const std::vector<std::string>& names) {
   std::string text = names.size() == 1 ? "capture " : "captures ";
-  for (std::size_t i = 0; i < std::min(names.size(), kNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  return text + (names.size() > kNamesMax ? " and " + std::to_string(names.size() - kNamesMax) + " more" : "");
+  for (std::size_t i = 0; i < std::min(names.size(), kFusedNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return text + (names.size() > kFusedNamesMax ? " and " + std::to_string(names.size() - kFusedNamesMax) + " more" : "");
 }
 
 // "front_right in capture 007 contradicts all that was seen besides: ..."; where only two sensors saw the place, either

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/model/fleet_list.h"
 #include "server/model/validity.h"
 #include "server/report/camera_choice.h"
 #include "server/report/cloud_section.h"
@@ -59,33 +60,8 @@ struct ReportInput {
 [[nodiscard]] Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input,
                                                                         const std::string& document);
 
-struct WorstFit {
-  std::string frame_a, frame_b;
-  double in_sigmas = 0.0;
-};
-struct FleetRow {
-  RobotId robot;
-  int revision = 0;  // 0: none yet
-  Verdict verdict;
-  Validity validity;  // of that revision
-  std::int64_t sessions = 0, edges = 0;
-  std::optional<Stamp> last_session_at = {};  // captured; absent: no session
-  std::optional<WorstFit> worst = {};         // of the newest revision; absent: nothing checks an edge
-  std::int64_t pairs_waiting = 0;             // to be calibrated
-};
-// What the fleet's page is asked for; each part comes from its address and may be anything.
-struct FleetQuery {
-  std::string search;   // words that a robot's row must hold
-  // "pass", "warn", "fail", "unknown", "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days);
-  // empty: all
-  std::string verdict;
-  // "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
-  std::string sort;
-  bool descending = false;
-  std::size_t page = 1;
-};
 // Fleet index "/" (a page of it). The pages of one robot: robot_pages.h. `experiments`: how many there are to link to.
-[[nodiscard]] Result<std::string> RenderFleet(const std::vector<FleetRow>& rows, Stamp now,
+[[nodiscard]] Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now,
                                               const FleetQuery& query = {}, std::size_t experiments = 0);
 // Drawing of the sensor graph alone: circles and edges, labels escaped, failed edges dashed.
 [[nodiscard]] std::string RenderGraphSvg(const formats::RevisionInput& revision);

@@ -127,7 +127,7 @@ void FillCompare(Dictionary& page, int newest) {
 
 Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   Dictionary page("robot");
-  const FleetRow& row = input.row;
+  const RobotSummary& row = input.row;
   FillHead(page, row.robot.str() + ": " + (row.validity.overdue ? "Overdue, " : "") + VerdictWord(row.verdict.level),
            "../../");
   page.SetValue("ROBOT", row.robot.str());

@@ -26,7 +26,7 @@ struct SessionRow {
 };
 // Of revisions and of sessions a page each, the newest first; "?before=<revision>" and "?sessions_before=<id>" show others.
 struct RobotInput {
-  FleetRow row;
+  RobotSummary row;
   std::vector<Revision> revisions;
   std::vector<SessionRow> sessions;
   std::vector<SensorId> sensors;      // whose history is drawn

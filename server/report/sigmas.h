@@ -3,11 +3,11 @@
 
 #include <string>
 
+#include "server/model/robot_summary.h"
+
 namespace rigcal::report {
 
-inline constexpr double kOff_sigmas = 3.0;  // from here on it is "off", and red
-
-// "fit0" below 1 sigma, "fit1" below 2, "fit2" below 3, "fit3" from there on.
+// "fit0" below 1 sigma, "fit1" below 2, "fit2" below kOff_sigmas, "fit3", which is red, from there on.
 [[nodiscard]] const char* SigmasClass(double in_sigmas);
 // One decimal; never rounded up to the limit.
 [[nodiscard]] std::string SigmasText(double in_sigmas);

@@ -1,6 +1,7 @@
 // Stores for measuring pages.  `page_store render DIR`: a rig of 12 sensors, 59 edges of 40 captures with two pictures
 // each; publishes it, then again with one more edge; prints the times as JSON.  `page_store fleet DIR COUNT [VISITS]`: robots.
 // `page_store serve DIR`: pages alone, without DDS, until its input ends.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +14,7 @@
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/publish.h"
 #include "server/pipeline/revise.h"
+#include "server/pipeline/summaries.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
@@ -157,14 +159,23 @@ Status AppendSmallRobot(storage::Store& store, const graph::RandomRig& rig, int 
   return {};
 }
 
+// Few robots at a time: what is not committed takes as much of the disk again.
+Status AppendFleet(storage::Store& store, int count, int visits) {
+  constexpr int kAtOnce = 500;
+  const graph::RandomRig rig = graph::MakeRig(12, 59, 77, 0.001, 0.0005);
+  for (int first = 0; first < count; first += kAtOnce)
+    RIGCAL_TRY(store.Write([&]() -> Status {
+      for (int i = first; i < std::min(count, first + kAtOnce); ++i) RIGCAL_TRY(AppendSmallRobot(store, rig, i, visits));
+      return {};
+    }));
+  return {};
+}
+
 int FillFleet(const char* folder, int count, int visits) {
   storage::Store store = storage::Store::Open(folder).value();
-  const graph::RandomRig rig = graph::MakeRig(12, 59, 77, 0.001, 0.0005);
-  const Status filled = store.Write([&]() -> Status {
-    for (int i = 0; i < count; ++i) RIGCAL_TRY(AppendSmallRobot(store, rig, i, visits));
-    return {};
-  });
+  const Status filled = AppendFleet(store, count, visits);
   if (!filled) std::fprintf(stderr, "%s\n", filled.error().what.c_str());
+  pipeline::RefreshAllSummaries(store, SystemClock());  // as a server that lived through it
   return filled ? 0 : 1;
 }
 

@@ -113,6 +113,10 @@ def main():
         check(newest(flow) ["document"] == shown["document"], "the revision survives kill -9")
         check(json.loads(flow.get("/api/v1/show?robot=rig"))["digest"] == shown["digest"], "HTTP gives the same document")
         check("rig" in flow.get("/"), "the fleet page lists the robot")
+        listed = [row["robot"] for row in json.loads(flow.rigcal("robots", "--json").stdout)["robots"]]
+        part = json.loads(flow.rigcal("robots", "--limit", "1", "--json").stdout)
+        check([row["robot"] for row in part["robots"]] == listed[:1] and "rig" in listed, "a part of the list: %r of %r" % (part, listed))
+        check(part["next"] == (listed[0] if len(listed) > 1 else None), "where the next part begins: %r" % part)
         check("<svg" in flow.get("/robots/rig/revisions/%d/" % shown["revision"]), "the report has a drawing")
         flow.rigcal("due", "--max-age", "90d")
         flow.rigcal("doctor")

@@ -127,6 +127,29 @@ TEST(Verbs, EveryListTakesAnEmptyDocumentAndForeignTypes) {
   }
 }
 
+TEST(Verbs, RobotsAreListedInParts) {
+  std::string asked;
+  const std::string row = R"({"robot":"r2","verdict":{"level":"pass"}})";
+  std::string next = R"("r2")", rows = row;
+  FakeServer server("r", [&](const std::string&, const std::string& json) -> Result<std::string> {
+    asked = json;
+    return R"({"robots":[)" + rows + R"(],"next":)" + next + "}";
+  });
+  const Ran part = Rigcal({"robots", "--limit", "1", "--after", "r1"});
+  EXPECT_EQ(part.code, 0) << part.err;
+  EXPECT_EQ(asked, R"({"limit":1,"after":"r1"})");
+  EXPECT_NE(part.out.find("More: rigcal robots --limit 1 --after r2\n"), std::string::npos) << part.out;
+  next = "null";
+  EXPECT_EQ(Rigcal({"robots", "--limit", "1"}).out.find("More:"), std::string::npos);
+  EXPECT_EQ(asked, R"({"limit":1})");
+  rows.clear();
+  EXPECT_EQ(Rigcal({"robots", "--after", "r2"}).out, "No robot comes after r2.\n");
+  EXPECT_EQ(asked, R"({"after":"r2"})");
+  EXPECT_EQ(Rigcal({"robots"}).out, "No robot is known yet. Send a session with `rigcal push DIR`.\n");
+  EXPECT_EQ(asked, "{}");
+  EXPECT_EQ(Rigcal({"robots", "--limit", "0"}).code, 2);
+}
+
 TEST(Verbs, WatchPrintsEventsAndEndsAfterItsCount) {
   FakeServer server("r");
   std::atomic<bool> ended{false};

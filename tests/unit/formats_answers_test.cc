@@ -16,7 +16,7 @@ const Verdict kPass{VerdictLevel::kPass, "All is well.", "Nothing."};
 
 const UsableRevision kUsable{3, kDayBefore};
 
-RobotAnswer SampleRobot() { return {kRobot, 3, kPass, {kDayBefore, false, kUsable, true}, 2, 7, 1}; }
+RobotSummary SampleRobot() { return {kRobot, 3, kPass, {kDayBefore, false, kUsable, true}, 2, 7, 1}; }
 
 SessionAnswer SampleSession() {
   return {SessionId(std::string(64, 'c')), kRobot, false, 18, 17, 1234567, kDayBefore, kNow, std::nullopt, "Ada", 1, 2};
@@ -32,9 +32,23 @@ TEST(Answers, Robots) {
   EXPECT_EQ(WriteRobots({}, kNow), "{\"robots\":[]}");
 }
 
+TEST(Answers, APartOfAListSaysWhereTheNextOneBegins) {
+  const std::vector<RobotSummary> robots = {SampleRobot()};
+  StatusAnswer status;
+  status.robots = robots;
+  for (const std::optional<RobotId>& next : {std::optional(kRobot), std::optional(RobotId()), std::optional<RobotId>()}) {
+    status.next = next;
+    for (const std::string& text : {WriteRobots(robots, kNow, next), WriteStatus(status, kNow), WriteDue(robots, 1, kNow, next)}) {
+      const json document = json::parse(text);
+      EXPECT_EQ(document.contains("next"), next.has_value()) << text;
+      EXPECT_EQ(document.value("next", json()), next && !next->empty() ? json("mapper-01") : json()) << text;
+    }
+  }
+}
+
 TEST(Answers, ARobotWithoutRevisionHasNoAge) {
   const json row = json::parse(
-      WriteRobots({RobotAnswer{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];
+      WriteRobots({RobotSummary{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];
   for (const char* key : {"revision", "calibrated_at", "age_ns", "valid_until", "usable"})
     EXPECT_TRUE(row.at(key).is_null()) << key;
   EXPECT_EQ(row["verdict"]["level"], "unknown");
@@ -155,7 +169,9 @@ TEST(Answers, LookupHasTheVarianceOfOneAxisThere) {
 TEST(Answers, DueCountsFromTheLimit) {
   const std::int64_t day_ns = kNow.ns - kDayBefore.ns;
   const auto overdue = [&](std::optional<Stamp> at, std::int64_t max_age_ns) {
-    return json::parse(WriteDue({{kRobot, at, kPass}}, max_age_ns, kNow))["robots"][0]["overdue"].get<bool>();
+    RobotSummary robot = SampleRobot();
+    robot.validity.calibrated_at = at;
+    return json::parse(WriteDue({robot}, max_age_ns, kNow))["robots"][0]["overdue"].get<bool>();
   };
   EXPECT_FALSE(overdue(kDayBefore, day_ns));
   EXPECT_TRUE(overdue(kDayBefore, day_ns - 1));

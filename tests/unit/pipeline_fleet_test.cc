@@ -3,7 +3,7 @@
 #include "server/pipeline/answer.h"
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/experiments.h"
-#include "storage/fleet_facts.h"
+#include "server/pipeline/robot_summary.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {
@@ -26,23 +26,21 @@ class FleetPageTest : public PipelineTest {
 TEST_F(FleetPageTest, RowKnowsTheWorstEdgeOfTheNewestRevision) {
   StoreEdges(Triangle("r"));
   StepAll();
-  const auto facts = storage::LoadFleetFacts(*store_);
-  ASSERT_TRUE(facts) << Sentence(facts.error());
-  const auto row = facts->find(RobotId("r"));
-  ASSERT_NE(row, facts->end());
-  ASSERT_TRUE(row->second.worst);
+  const auto summary = LoadRobotSummary(*store_, RobotId("r"), clock_.now);
+  ASSERT_TRUE(summary) << Sentence(summary.error());
+  ASSERT_TRUE(summary->worst);
   const auto page = Page("/");
   ASSERT_TRUE(page) << Sentence(page.error());
-  EXPECT_NE(page->body.find(row->second.worst->frame_a.str() + " &rarr; " + row->second.worst->frame_b.str()),
-            std::string::npos);
-  EXPECT_FALSE(row->second.last_session_at);
+  EXPECT_NE(page->body.find(summary->worst->frame_a.str() + " &rarr; " + summary->worst->frame_b.str()), std::string::npos);
+  EXPECT_FALSE(summary->last_session_at);
 }
 
 TEST_F(FleetPageTest, RowKnowsTheNewestClosedSession) {
   StoreSession("r", {{"left/1.png", "no picture"}});
-  const auto facts = storage::LoadFleetFacts(*store_);
-  ASSERT_TRUE(facts) << Sentence(facts.error());
-  EXPECT_EQ(facts->at(RobotId("r")).last_session_at->ns, clock_.now.ns);
+  const auto summary = LoadRobotSummary(*store_, RobotId("r"), clock_.now);
+  ASSERT_TRUE(summary) << Sentence(summary.error());
+  EXPECT_EQ(summary->last_session_at, clock_.now);
+  EXPECT_NE(Page("/")->body.find(">0 s ago"), std::string::npos);
 }
 
 // It came whole: pushing it again would change nothing.

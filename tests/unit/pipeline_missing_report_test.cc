@@ -114,11 +114,16 @@ TEST_F(MissingReportTest, FilesThatAreAskedForOverDdsAreDrawnAgain) {
   EXPECT_TRUE(Answer(context, "report_files", R"({"robot":"r"})"));
 }
 
-TEST_F(MissingReportTest, NewestIsMissedAtTheStart) {
-  ASSERT_TRUE(DrawMissingReports(*store_));
+TEST_F(MissingReportTest, NewestIsMissedAfterAStart) {
+  ASSERT_TRUE(storage::AppendRobot(*store_, RobotId("without-revision"), clock_.now));
+  EXPECT_EQ(DrawMissingReports(*store_, RobotId()).value(), RobotId("without-revision"));  // it looked at both
+  EXPECT_TRUE(DrawMissingReports(*store_, RobotId("without-revision")).value().empty());
   EXPECT_EQ(StepAll(), 0);
   fs::remove_all(Report(1));
-  ASSERT_TRUE(DrawMissingReports(*store_));
+  ASSERT_TRUE(DrawMissingReports(*store_, RobotId("r")));
+  EXPECT_EQ(StepAll(), 0) << "those after it";
+  ASSERT_TRUE(DrawMissingReports(*store_, RobotId()));
+  ASSERT_TRUE(DrawMissingReports(*store_, RobotId()));  // is drawn once all the same
   EXPECT_EQ(StepAll(), 1);
   EXPECT_TRUE(fs::exists(Report(1) / "index.html"));
 }

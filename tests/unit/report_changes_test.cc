@@ -5,7 +5,6 @@
 #include "server/report/changes.h"
 #include "server/report/edge_fit.h"
 #include "server/report/edge_moves.h"
-#include "server/report/fleet_view.h"
 #include "server/report/influence.h"
 #include "server/report/moved_text.h"
 #include "server/report/page_data.h"
@@ -255,42 +254,6 @@ TEST(ReportData, HoldsPosesSigmasAndBlocks) {
   const std::string csv = EdgeCsv(input, InOrder(input.revision));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);  // a heading and six edges
   EXPECT_THAT(csv, HasSubstr("front_left,rear,failed,stereo,,,,,,,,,,,,,,"));
-}
-
-FleetRow Robot(const std::string& name, VerdictLevel level, std::int64_t edges) {
-  return {RobotId(name), 1, {level, "why of " + name, ""}, {Stamp{1}, false, std::nullopt, false}, 0, edges};
-}
-
-std::vector<std::string> Names(const FleetSlice& slice) {
-  std::vector<std::string> names;
-  for (const FleetRow* row : slice.rows) names.push_back(row->robot.str());
-  return names;
-}
-
-TEST(FleetView, SearchesFiltersSortsAndTurnsPages) {
-  std::vector<FleetRow> rows = {Robot("alpha-1", VerdictLevel::kPass, 5), Robot("beta-2", VerdictLevel::kFail, 9),
-                                Robot("Alpha-3", VerdictLevel::kWarn, 7)};
-  EXPECT_THAT(Names(SliceOf(rows, {})), ElementsAre("beta-2", "Alpha-3", "alpha-1"));
-  EXPECT_THAT(Names(SliceOf(rows, {"ALPHA why", "", "robot", false, 1})), ElementsAre("Alpha-3", "alpha-1"));
-  EXPECT_THAT(Names(SliceOf(rows, {"", "fail", "", false, 1})), ElementsAre("beta-2"));
-  EXPECT_THAT(Names(SliceOf(rows, {"", "", "edges", true, 1})), ElementsAre("alpha-1", "Alpha-3", "beta-2"));
-  EXPECT_EQ(SliceOf(rows, {"nobody", "", "", false, 1}).matches, 0U);
-  for (int i = 0; i < 250; ++i) rows.push_back(Robot("more-" + std::to_string(1000 + i), VerdictLevel::kPass, 1));
-  const FleetSlice last = SliceOf(rows, {"", "", "robot", false, 99});
-  EXPECT_EQ(last.pages, 3U);
-  EXPECT_EQ(last.page, 3U);
-  EXPECT_EQ(last.rows.size(), 53U);
-  EXPECT_EQ(last.rows.back()->robot.str(), "more-1249");
-}
-
-TEST(FleetView, NamesAreOrderedAsPeopleCount) {
-  std::vector<FleetRow> rows;
-  for (const char* name : {"r10", "r9", "r010", "r9b", "r", "r9a10", "r9a9"})
-    rows.push_back(Robot(name, VerdictLevel::kPass, 1));
-  EXPECT_THAT(Names(SliceOf(rows, {"", "", "robot", false, 1})),
-              ElementsAre("r", "r9", "r9a9", "r9a10", "r9b", "r010", "r10"));
-  EXPECT_THAT(Names(SliceOf(rows, {"", "", "robot", true, 1})),
-              ElementsAre("r10", "r010", "r9b", "r9a10", "r9a9", "r9", "r"));
 }
 
 TEST(Trend, CountsFromTheFirstPoseAndBeginsAnewWithANewReference) {

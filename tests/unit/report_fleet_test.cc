@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "server/report/experiments_page.h"
-#include "server/report/fleet_view.h"
 #include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
 
@@ -15,7 +14,7 @@ using ::testing::Not;
 
 constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
 
-FleetRow RowOf(const std::string& robot, VerdictLevel level, int revision) {
+RobotSummary RowOf(const std::string& robot, VerdictLevel level, int revision) {
   return {RobotId(robot),
           revision,
           {level, "because of " + robot, ""},
@@ -24,19 +23,28 @@ FleetRow RowOf(const std::string& robot, VerdictLevel level, int revision) {
           5};
 }
 
+// The page of a fleet that has no other robots.
+std::string PageWith(const std::vector<RobotSummary>& robots, Stamp now, const FleetQuery& query = {}, std::size_t experiments = 0) {
+  FleetCounts fleet;
+  for (const RobotSummary& robot : robots) {
+    ++fleet.robots;
+    ++fleet.verdicts[robot.verdict.level];
+    fleet.overdue += robot.validity.overdue ? 1 : 0;
+  }
+  return RenderFleet(fleet, {robots, robots.size(), 1, 1}, now, query, experiments).value();
+}
+
 TEST(ReportFleet, EmptyFleetTellsHowToPush) {
-  const std::string page = RenderFleet({}, Stamp{0}).value();
+  const std::string page = PageWith({}, Stamp{0});
   EXPECT_THAT(page, HasSubstr("rigcal push"));
   EXPECT_THAT(page, Not(HasSubstr("<table")));
 }
 
-TEST(ReportFleet, WorstFirstWithAgeAndLinks) {
-  FleetRow late = RowOf("late", VerdictLevel::kPass, 4);
+TEST(ReportFleet, RowsWithAgeAndLinks) {
+  RobotSummary late = RowOf("late", VerdictLevel::kPass, 4);
   late.validity.overdue = true;
   const std::string page =
-      RenderFleet({RowOf("good", VerdictLevel::kPass, 1), late, RowOf("bad", VerdictLevel::kFail, 2)},
-                  Stamp{103 * kDay_ns})
-          .value();
+      PageWith({RowOf("bad", VerdictLevel::kFail, 2), late, RowOf("good", VerdictLevel::kPass, 1)}, Stamp{103 * kDay_ns});
   EXPECT_LT(page.find("because of bad"), page.find("because of late"));
   EXPECT_LT(page.find("because of late"), page.find("because of good"));
   EXPECT_THAT(page, HasSubstr("href=\"robots/late/revisions/4/\""));
@@ -47,68 +55,67 @@ TEST(ReportFleet, WorstFirstWithAgeAndLinks) {
 }
 
 TEST(ReportFleet, SaysWhatToDoAndWhatIsUnderWay) {
-  FleetRow bad = RowOf("bad", VerdictLevel::kFail, 2), good = RowOf("good", VerdictLevel::kPass, 2);
+  RobotSummary bad = RowOf("bad", VerdictLevel::kFail, 2), good = RowOf("good", VerdictLevel::kPass, 2);
   bad.verdict.what_to_do = "Repeat the session.";
   good.verdict.what_to_do = "Go on as before.";
-  bad.pairs_waiting = 3;
-  const std::string page = RenderFleet({bad, good}, Stamp{103 * kDay_ns}).value();
+  bad.jobs_waiting = 3;
+  const std::string page = PageWith({bad, good}, Stamp{103 * kDay_ns});
   EXPECT_THAT(page, HasSubstr("Repeat the session."));
   EXPECT_THAT(page, HasSubstr("3 pairs being calibrated"));
   EXPECT_THAT(page, Not(HasSubstr("Go on as before.")));
 }
 
 TEST(ReportFleet, RobotWithoutRevisionHasNoAge) {
-  const std::string page = RenderFleet({RowOf("new", VerdictLevel::kUnknown, 0)}, Stamp{0}).value();
+  const std::string page = PageWith({RowOf("new", VerdictLevel::kUnknown, 0)}, Stamp{0});
   EXPECT_THAT(page, HasSubstr("never"));
   EXPECT_THAT(page, Not(HasSubstr("revisions/")));
 }
 
 TEST(ReportFleet, ClockThatWentBackIsNamed) {
-  EXPECT_THAT(RenderFleet({RowOf("a", VerdictLevel::kPass, 1)}, Stamp{0}).value(), HasSubstr("check the clock"));
+  EXPECT_THAT(PageWith({RowOf("a", VerdictLevel::kPass, 1)}, Stamp{0}), HasSubstr("check the clock"));
 }
 
-TEST(ReportFleet, LastSessionAndWorstEdgeAreShownSearchedAndSorted) {
-  FleetRow quiet = RowOf("quiet", VerdictLevel::kPass, 1), off = RowOf("off", VerdictLevel::kPass, 1),
+TEST(ReportFleet, LastSessionAndWorstEdgeAreShown) {
+  RobotSummary quiet = RowOf("quiet", VerdictLevel::kPass, 1), off = RowOf("off", VerdictLevel::kPass, 1),
            fine = RowOf("fine", VerdictLevel::kPass, 1);
   quiet.last_session_at = Stamp{10 * kDay_ns};
   off.last_session_at = Stamp{99 * kDay_ns};
-  off.worst = WorstFit{"left", "mast", 4.25};
+  off.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
   fine.last_session_at = Stamp{98 * kDay_ns};
-  fine.worst = WorstFit{"left", "right", 0.5};
-  const std::vector<FleetRow> rows = {quiet, off, fine};
-  const Stamp now{100 * kDay_ns};
-  const std::string page = RenderFleet(rows, now).value();
+  fine.worst = WorstEdge{SensorId("left"), SensorId("right"), 0.5};
+  const std::string page = PageWith({quiet, off, fine}, Stamp{100 * kDay_ns});
   EXPECT_THAT(page, HasSubstr("<span class=\"badge fit3\">4.2 &sigma;</span> <span class=\"pair\">left &rarr; mast"));
   EXPECT_THAT(page, HasSubstr("<span class=\"badge fit0\">0.5 &sigma;</span>"));
   EXPECT_THAT(page, HasSubstr("90 days ago"));
-  const auto order = [&](const FleetQuery& query) {
-    std::string names;
-    for (const FleetRow* row : SliceOf(rows, query, now).rows) names += row->robot.str() + " ";
-    return names;
-  };
-  FleetQuery query;
-  query.sort = "worst";
-  EXPECT_EQ(order(query), "off fine quiet ");
-  query.sort = "session";
-  EXPECT_EQ(order(query), "quiet fine off ");
-  query.descending = true;
-  EXPECT_EQ(order(query), "off fine quiet ");
-  EXPECT_EQ(order({"MAST", "", "", false, 1}), "off ");
-  EXPECT_EQ(order({"", "off", "", false, 1}), "off ");
-  EXPECT_EQ(order({"", "quiet", "", false, 1}), "quiet ");
 }
 
 TEST(ReportFleet, WhatStandsBetweenBackticksIsCodeAndEscaped) {
-  FleetRow row = RowOf("a", VerdictLevel::kWarn, 1);
+  RobotSummary row = RowOf("a", VerdictLevel::kWarn, 1);
   row.verdict.what_to_do = "Type `<b>--remounted a&b` or `` or ` alone.";
-  EXPECT_THAT(RenderFleet({row}, Stamp{0}).value(),
+  EXPECT_THAT(PageWith({row}, Stamp{0}),
               HasSubstr("Type <code class=\"typed\">&lt;b&gt;--remounted a&amp;b</code> or <code class=\"typed\"></code> or ` alone."));
 }
 
 TEST(ReportFleet, ExperimentsAreLinkedWhereThereAreAny) {
-  const std::vector<FleetRow> rows = {RowOf("a", VerdictLevel::kPass, 1)};
-  EXPECT_THAT(RenderFleet(rows, Stamp{0}).value(), Not(HasSubstr("experiments/")));
-  EXPECT_THAT(RenderFleet(rows, Stamp{0}, {}, 2).value(), HasSubstr("<a href=\"experiments/\">2 experiments</a>"));
+  const std::vector<RobotSummary> rows = {RowOf("a", VerdictLevel::kPass, 1)};
+  EXPECT_THAT(PageWith(rows, Stamp{0}), Not(HasSubstr("experiments/")));
+  EXPECT_THAT(PageWith(rows, Stamp{0}, {}, 2), HasSubstr("<a href=\"experiments/\">2 experiments</a>"));
+}
+
+TEST(ReportFleet, APageOfManySaysWhichAndLeadsToTheOthers) {
+  FleetCounts fleet;
+  fleet.robots = 1000;
+  const FleetQuery query{"ab", "fail", "edges", true, 2};
+  const FleetPage list{{RowOf("a", VerdictLevel::kFail, 1)}, 250, 3, 2};
+  const std::string page = RenderFleet(fleet, list, Stamp{0}, query).value();
+  EXPECT_THAT(page, HasSubstr("250 of 1000 robots"));
+  EXPECT_THAT(page, HasSubstr("page 2 of 3"));
+  const std::string same = "?q=ab&amp;verdict=fail&amp;sort=edges&amp;order=down";
+  EXPECT_THAT(page, HasSubstr(same + "&amp;page=1\">Previous"));
+  EXPECT_THAT(page, HasSubstr(same + "&amp;page=3\">Next"));
+  const std::string none = RenderFleet(fleet, {}, Stamp{0}, query).value();
+  EXPECT_THAT(none, HasSubstr("0 of 1000 robots"));
+  EXPECT_THAT(none, HasSubstr("No robot is like that."));
 }
 
 TEST(ReportFleet, ALongListOfExperimentsSaysThatItIsCut) {

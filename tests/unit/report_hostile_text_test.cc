@@ -92,12 +92,15 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& field) { return field.param.name; });
 
 TEST(HostileTextElsewhere, FleetAndRobotPage) {
-  const FleetRow row{
+  RobotSummary row{
       RobotId(kHostile), 3, {VerdictLevel::kFail, kHostile, kHostile}, {Stamp{1}, true, std::nullopt, false}, 1, 1};
   Revision revision;
   revision.number = 3;
   revision.verdict = row.verdict;
-  ExpectHarmless(RenderFleet({row}, Stamp{2}).value(), "fleet");
+  row.worst = WorstEdge{SensorId(kHostile), SensorId(kHostile), 1.0};
+  FleetCounts fleet;
+  fleet.robots = 1;
+  ExpectHarmless(RenderFleet(fleet, {{row}, 1, 1, 1}, Stamp{2}, {kHostile, kHostile, kHostile, true, 1}).value(), "fleet");
   const SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
   ExpectHarmless(RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2}).value(), "robot");
 }

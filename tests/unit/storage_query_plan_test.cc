@@ -1,9 +1,13 @@
-// A question about one robot looks at rows of that robot: no statement of it walks through a whole table.
+// A question about one robot looks at rows of that robot: no statement of it walks through a whole table. The list of all
+// robots is counted and sorted by an index that holds no words.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
 #include <map>
 
+#include "storage/fleet_facts.h"
+#include "storage/fleet_list.h"
+#include "storage/robot_summary.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/jobs.h"
@@ -38,6 +42,21 @@ class QueryPlanTest : public StoreTest {
     for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr; one = sqlite3_next_stmt(database, one))
       if (const int steps = sqlite3_stmt_status(one, SQLITE_STMTSTATUS_FULLSCAN_STEP, 1); steps > 0) scanned[sqlite3_sql(one)] = steps;
     return scanned;
+  }
+
+  std::string PlanOf(const std::string& sql) {
+    std::string plan;
+    SQLite::Statement query(store_.database(), "EXPLAIN QUERY PLAN " + sql);
+    while (query.executeStep()) plan += query.getColumn(3).getString() + "; ";
+    return plan;
+  }
+  void SumUpAll() {
+    const std::vector<WaitingSummary> waiting = LoadWaitingSummaries(store_, 100).value();
+    for (const WaitingSummary& one : waiting) {
+      RobotSummary summary;
+      summary.robot = one.robot;
+      ASSERT_TRUE(ReplaceSummary(store_, summary, one.changes));
+    }
   }
 
   SessionId session_;
@@ -81,13 +100,42 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_EQ(LoadCapturedAt(store_, std::vector<SessionId>{session_})->size(), 1U);
   EXPECT_TRUE(LoadSessionFacts(store_, {session_})->empty());
   EXPECT_FALSE(FindRobotOfMerged(store_, ids.front())->has_value());
+  EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
+  EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
-// The test sees a scan where there is one.
-TEST_F(QueryPlanTest, TheListOfAllRobotsScans) {
+// Nor does what open pages ask every second, a part of the list, or the queues' heads.
+TEST_F(QueryPlanTest, PartsOfTheFleetDoNotScan) {
+  SumUpAll();
   (void)Scanned();
-  EXPECT_TRUE(LoadRobots(store_));
+  EXPECT_EQ(LoadFleetSize(store_)->robots, 4);
+  EXPECT_EQ(LoadSummaries(store_, RobotId("b"), 1, {1})->size(), 1u);
+  EXPECT_EQ(LoadNewestRevisions(store_, RobotId("b"), 1)->size(), 1u);
+  EXPECT_TRUE(CountJobs(store_));
+  EXPECT_TRUE(LoadWaitingSummaries(store_, 64)->empty());
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+TEST_F(QueryPlanTest, TheListOfAllRobotsIsSortedWithoutItsWords) {
+  SumUpAll();
+  (void)Scanned();
+  EXPECT_EQ(CountFleet(store_, {1})->robots, 4);
+  for (const char* sort : {"", "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"})
+    for (const bool descending : {false, true})
+      EXPECT_EQ(LoadFleetPage(store_, {"", "", sort, descending, 1}, {1})->rows.size(), 4u);
+  const std::map<std::string, int> scanned = Scanned();
+  EXPECT_FALSE(scanned.empty());
+  for (const auto& [sql, steps] : scanned)
+    EXPECT_NE(PlanOf(sql).find("COVERING INDEX summary_robot_sorted"), std::string::npos) << sql << ": " << PlanOf(sql);
+}
+
+// The test sees a scan where there is one.
+TEST_F(QueryPlanTest, TheListOfAllSessionsScans) {
+  AppendOpenSession(store_, 3);
+  (void)Scanned();
+  EXPECT_TRUE(LoadSessions(store_, RobotId()));
   EXPECT_FALSE(Scanned().empty());
 }
 

@@ -144,14 +144,35 @@ TEST_F(SessionsTest, RobotsAreCounted) {
   AppendOpenSession(store_, 1);
   AppendOpenSession(store_, 2);
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
-  const std::vector<RobotRow> robots = LoadRobots(store_).value();
-  ASSERT_EQ(robots.size(), 2u);
-  EXPECT_EQ(robots[0].robot, kRobot);
-  EXPECT_EQ(robots[0].sessions, 2);
-  EXPECT_EQ(robots[0].edges, 1);
-  EXPECT_EQ(robots[1].robot, RobotId("quiet"));
-  EXPECT_EQ(robots[1].first_seen_at.ns, 5);
-  EXPECT_EQ(robots[1].sessions + robots[1].edges, 0);
+  const auto robot = LoadRobot(store_, kRobot).value(), quiet = LoadRobot(store_, RobotId("quiet")).value();
+  ASSERT_TRUE(robot && quiet);
+  EXPECT_EQ(robot->robot, kRobot);
+  EXPECT_EQ(robot->sessions, 2);
+  EXPECT_EQ(robot->edges, 1);
+  EXPECT_EQ(quiet->robot, RobotId("quiet"));
+  EXPECT_EQ(quiet->first_seen_at.ns, 5);
+  EXPECT_EQ(quiet->sessions + quiet->edges, 0);
+  EXPECT_FALSE(LoadRobot(store_, RobotId("nobody")).value());
+}
+
+TEST_F(SessionsTest, TheNewestCaptureIsThatOfASessionThatCameWhole) {
+  EXPECT_FALSE(LoadNewestCapture(store_, kRobot).value());
+  const auto append = [&](std::size_t payloads, std::int64_t captured_ns, bool whole) {
+    Manifest manifest = MakeManifest(payloads);
+    manifest.header.captured_at = {captured_ns};
+    const SessionId id = IdOf(manifest);
+    ASSERT_TRUE(AppendSession(store_, id, "{}", manifest, {10}));
+    std::vector<std::uint32_t> all(payloads);
+    for (std::uint32_t i = 0; i < payloads; ++i) all[i] = i;
+    ASSERT_TRUE(AppendHeld(store_, id, all, {11}));
+    if (!whole) return;
+    ASSERT_TRUE(CloseSession(store_, id, {}, {12}));
+  };
+  append(1, 50, true);
+  append(2, 40, true);
+  append(3, 60, false);
+  EXPECT_EQ(LoadNewestCapture(store_, kRobot).value(), Stamp{50});
+  EXPECT_FALSE(LoadNewestCapture(store_, RobotId("nobody")).value());
 }
 
 TEST_F(SessionsTest, ARobotWithoutANameIsRefused) {

@@ -3,6 +3,8 @@
 #include <functional>
 #include <iostream>
 
+#include "storage/fleet_list.h"
+#include "storage/robot_summary.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -76,6 +78,27 @@ TEST_F(SpeedTest, AFleetAtRest) {
                            [&] { ASSERT_TRUE(LoadUnsolvedRobots(store_).value().empty()); }),
             200.0);
   EXPECT_LT(MillisecondsOf("open the store", [&] { Open(); }), 500.0);
+}
+
+TEST_F(SpeedTest, AListOfTenThousandRobots) {
+  constexpr int kRobots = 10'000;
+  ASSERT_TRUE(store_.Write([&]() -> Status {
+    for (int i = 0; i < kRobots; ++i) {
+      RobotSummary summary;
+      summary.robot = RobotId("robot-" + std::to_string(i));
+      summary.verdict = {static_cast<VerdictLevel>(i % 4), "Sentence " + std::to_string(i) + " says why.", ""};
+      RIGCAL_TRY(AppendRobot(store_, summary.robot, {1}));
+      RIGCAL_TRY(ReplaceSummary(store_, summary, 1));
+    }
+    return {};
+  }));
+  const Stamp now{1};
+  const FleetQuery last_page{"", "", "", false, kRobots}, search{"sentence 9999", "", "", false, 1};
+  EXPECT_LT(MillisecondsOf("count them", [&] { ASSERT_EQ(CountFleet(store_, now)->robots, kRobots); }), 100.0);
+  EXPECT_LT(MillisecondsOf("first page", [&] { ASSERT_EQ(LoadFleetPage(store_, {}, now)->rows.size(), 100u); }), 100.0);
+  EXPECT_LT(MillisecondsOf("last page", [&] { ASSERT_EQ(LoadFleetPage(store_, last_page, now)->rows.size(), 100u); }), 100.0);
+  EXPECT_LT(MillisecondsOf("search", [&] { ASSERT_EQ(LoadFleetPage(store_, search, now)->matches, 1u); }), 200.0);
+  EXPECT_LT(MillisecondsOf("how many there are", [&] { ASSERT_EQ(LoadFleetSize(store_)->robots, kRobots); }), 20.0);
 }
 
 }  // namespace

@@ -172,7 +172,7 @@ TEST(StoreOpen, NamesADamagedDatabase) {
   file << std::string(size_bytes - 4096, '\x5a');
   file.close();
   Result<Store> store = Store::Open(folder.path());
-  const Error error = store ? LoadRobots(*store).error() : store.error();
+  const Error error = store ? LoadRobot(*store, kRobot).error() : store.error();
   EXPECT_EQ(error.code, ErrorCode::kStorage);
   EXPECT_THAT(Sentence(error), AllOf(HasSubstr("malformed"), HasSubstr("restore it from a backup")));
 }
@@ -300,7 +300,7 @@ TEST_F(StoreTest, AWriteDoesNotNestButAReadDoes) {
   EXPECT_TRUE(store_.Write([&]() -> Status {
     RIGCAL_TRY(AppendRobot(store_, kRobot, {1}));
     return store_.Read([&]() -> Status {
-      EXPECT_EQ(LoadRobots(store_)->size(), 1u);
+      EXPECT_TRUE(*HasRobot(store_, kRobot));
       return {};
     });
   }));
@@ -312,16 +312,28 @@ TEST_F(StoreTest, AReaderKeepsItsSnapshotWhileAnotherWrites) {
   ASSERT_TRUE(store_.Read([&]() -> Status {
     // The snapshot is taken at the start of Read, not at its first query.
     EXPECT_TRUE(AppendRobot(writer, RobotId("r2"), {2}));
-    EXPECT_EQ(LoadRobots(store_)->size(), 1u);
+    EXPECT_EQ(CountRobots(store_), 1);
     EXPECT_TRUE(writer.Write([&]() -> Status {
       RIGCAL_TRY(AppendRobot(writer, RobotId("r3"), {3}));
-      EXPECT_EQ(LoadRobots(store_)->size(), 1u);
+      EXPECT_EQ(CountRobots(store_), 1);
       return {};
     }));
-    EXPECT_EQ(LoadRobots(store_)->size(), 1u);
+    EXPECT_EQ(CountRobots(store_), 1);
     return {};
   }));
-  EXPECT_EQ(LoadRobots(store_)->size(), 3u);
+  EXPECT_EQ(CountRobots(store_), 3);
+}
+
+TEST_F(StoreTest, WhoCannotWaitIsToldThatTheStoreIsBusy) {
+  Store writer = Open();
+  const auto append = [&] { return AppendRobot(store_, kRobot, {1}); };
+  EXPECT_TRUE(writer.Write([&]() -> Status {
+    EXPECT_EQ(store_.WriteSoon(append).error().code, ErrorCode::kBusy);
+    return {};
+  }));
+  EXPECT_TRUE(store_.WriteSoon(append));
+  EXPECT_TRUE(*HasRobot(store_, kRobot));
+  EXPECT_EQ(store_.database().execAndGet("PRAGMA busy_timeout").getString(), "10000") << "others wait as long as before";
 }
 
 TEST_F(StoreTest, TwoWritersTakeTurns) {

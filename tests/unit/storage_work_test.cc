@@ -110,7 +110,7 @@ TEST_F(WorkTest, NoEdgeOfABatchCountsBeforeAllAreThere) {
   EXPECT_EQ(counted(), 0u);
   EXPECT_FALSE(LoadEdge(store_, MakeEdge(0).id).value());
   EXPECT_EQ(LoadEdgeWatermark(store_, kRobot).value(), 0);
-  EXPECT_EQ(LoadRobots(store_).value().front().edges, 0);
+  EXPECT_EQ(LoadRobot(store_, kRobot).value()->edges, 0);
   EXPECT_THAT(LoadUnsolvedRobots(store_).value(), IsEmpty());
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(7), {3}));  // another's edge counts at once, and theirs do not with it
   EXPECT_EQ(counted(), 1u);
@@ -118,7 +118,7 @@ TEST_F(WorkTest, NoEdgeOfABatchCountsBeforeAllAreThere) {
   EXPECT_THAT(LoadUnsolvedRobots(store_).value(), IsEmpty());
   AppendItem(1, 1, {4});
   EXPECT_EQ(counted(), 4u);
-  EXPECT_EQ(LoadRobots(store_).value().front().edges, 4);
+  EXPECT_EQ(LoadRobot(store_, kRobot).value()->edges, 4);
   EXPECT_THAT(LoadUnsolvedRobots(store_).value(), ElementsAre(kRobot));
 }
 

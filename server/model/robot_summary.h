@@ -1,0 +1,33 @@
+// What lists of robots and a robot's own page say of it at a glance.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "server/base/ids.h"
+#include "server/base/stamp.h"
+#include "server/model/diagnosis.h"
+#include "server/model/validity.h"
+
+namespace rigcal {
+
+// The edge of a revision that fits worst.
+struct WorstEdge {
+  SensorId frame_a, frame_b;
+  double in_sigmas = 0.0;  // its residual over its own sigma
+};
+inline constexpr double kOff_sigmas = 3.0;  // from here on it is "off"
+
+struct RobotSummary {
+  RobotId robot;
+  int revision = 0;        // the newest; 0: none yet
+  Verdict verdict;         // of that revision; without one: why there is none
+  Validity validity;       // of that revision; `overdue` as of the question, never without a revision
+  std::int64_t sessions = 0;
+  std::int64_t edges = 0;  // of that revision; without one: all that arrived
+  std::int64_t jobs_waiting = 0;              // pairs to be calibrated
+  std::optional<Stamp> last_session_at = {};  // captured; of those that came whole the newest; absent: none did
+  std::optional<WorstEdge> worst = {};        // of that revision; absent: nothing checks an edge, or it was not kept
+};
+
+}  // namespace rigcal

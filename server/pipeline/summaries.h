@@ -1,0 +1,33 @@
+// The stored summaries of robots, which lists show: worked out anew where something changed (storage/robot_summary.h). Several
+// threads may do so at the same time: what is newer stays.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "server/formats/parameters.h"
+#include "server/model/robot_summary.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Up to `max` of those that wait; how many it took up.
+[[nodiscard]] Result<int> RefreshSummaries(storage::Store& store, const Clock& clock, int max);
+// That of one robot, if it waits.
+[[nodiscard]] Status RefreshSummary(storage::Store& store, const Clock& clock, const RobotId& robot);
+// All that wait, before anybody is served: after a migration those of the whole fleet. What fails is logged, and waits on.
+void RefreshAllSummaries(storage::Store& store, const Clock& clock);
+
+// Before a list is read: some that wait, so that it shows what somebody was just told. Where the store is busy or takes nothing
+// (a full disk), the list shows what is there.
+void FreshenSummaries(storage::Store& store, const Clock& clock);
+
+struct RobotList {
+  std::vector<RobotSummary> robots;      // by id
+  std::optional<RobotId> next = {};      // of a part: the last of it, empty where nothing follows; absent: all that follow
+};
+// All robots, or the part that `limit` and `after` ask for (docs/api.md), freshened; overdue as of the clock.
+[[nodiscard]] Result<RobotList> LoadRobotList(storage::Store& store, const Clock& clock,
+                                              const formats::Parameters& parameters);
+
+}  // namespace rigcal::pipeline

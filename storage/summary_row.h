@@ -1,0 +1,15 @@
+// A row of summary_robot. For storage/*.cc only.
+#pragma once
+
+#include "server/model/robot_summary.h"
+#include "storage/query.h"
+
+namespace rigcal::storage {
+
+inline constexpr const char* kSummaryColumns =
+    "robot_id, revision_number, verdict, verdict_why, verdict_what_to_do, calibrated_ns, usable_number, usable_created_ns, "
+    "calculating, given_up, sessions, edges, jobs_waiting, last_session_ns, worst_frame_a, worst_frame_b, worst_ratio";
+// Of a query whose first columns are these; overdue as of `now`.
+[[nodiscard]] RobotSummary SummaryOf(const Query& query, Stamp now);
+
+}  // namespace rigcal::storage
