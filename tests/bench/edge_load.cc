@@ -3,7 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <random>
 #include <thread>
 #include <vector>
@@ -27,11 +29,27 @@ struct Options {
 };
 
 struct Load {
-  Options options;
-  std::string text;  // of the file
+  Load(Options given, std::string file) : options(std::move(given)), text(std::move(file)) {}
+
+  const Options options;
+  const std::string text;  // of the file
   Clock::time_point began = Clock::now();
   std::atomic<std::int64_t> edges{0}, batches{0};
-  std::atomic<bool> failed{false};
+  std::mutex mutex;
+  std::condition_variable failed_now;
+  bool failed = false;
+
+  // The clients together keep to the rate. False: one of them has failed.
+  bool WaitForTurn() {
+    const auto turn = began + std::chrono::duration<double>(static_cast<double>(edges) / options.edges_per_s);
+    std::unique_lock lock(mutex);
+    return !failed_now.wait_until(lock, turn, [&] { return failed; });
+  }
+  void Fail() {
+    const std::lock_guard lock(mutex);
+    failed = true;
+    failed_now.notify_all();
+  }
 };
 
 // A tenth of a millimetre and of a milliradian apart from the file's, so that no two are the same content.
@@ -61,14 +79,12 @@ Status PushAll(Load& load, int client) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(load.options.participant));
   std::mt19937_64 random(static_cast<std::uint64_t>(client));
   const auto until = load.began + std::chrono::duration<double>(load.options.seconds);
-  for (int turn = client; Clock::now() < until && !load.failed; turn += load.options.clients) {
+  for (int turn = client; Clock::now() < until && load.WaitForTurn(); turn += load.options.clients) {
     const RobotId robot("load-" + std::to_string(turn % load.options.robots));
     RIGCAL_ASSIGN(auto edges, Shaken(load, robot, random));
     const auto count = static_cast<std::int64_t>(edges.size());
     RIGCAL_TRY(Push(participant, robot, std::move(edges)));
     load.edges += count, ++load.batches;
-    // The clients together keep to the rate.
-    std::this_thread::sleep_until(load.began + std::chrono::duration<double>(static_cast<double>(load.edges) / load.options.edges_per_s));
   }
   return {};
 }
@@ -76,13 +92,13 @@ Status PushAll(Load& load, int client) {
 int Run(const Options& options) {
   const auto text = ReadFile(options.file, limits::kG2oFileBytesMax);
   if (!text) return std::fprintf(stderr, "%s\n", Sentence(text.error()).c_str()), 1;
-  Load load{options, *text};
+  Load load(options, *text);
   std::vector<std::thread> clients;
   for (int i = 0; i < options.clients; ++i)
     clients.emplace_back([&load, i] {
       const Status done = PushAll(load, i);
       if (done) return;
-      load.failed = true;
+      load.Fail();
       std::fprintf(stderr, "%s\n", Sentence(done.error()).c_str());
     });
   for (std::thread& one : clients) one.join();

@@ -1,11 +1,10 @@
 // One client that speaks for many robots nobody has: it asks in the name of each and begins a session, then goes. Tells how many
-// writers the others on this domain keep for robots: before, right after, and when so much time has passed. Prints one JSON object.
+// writers the others on this domain keep for robots: before, right after, and when none is left or so much time has passed. Prints one JSON object.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "idl/convert.h"
@@ -107,7 +106,11 @@ rigcal::Status Run(const Options& options) {
     received += said.received;
   }
   const int meanwhile = CountWriters(participant, publications.get());
-  std::this_thread::sleep_for(std::chrono::seconds(options.wait_s));
+  RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
+  RIGCAL_TRY(waitset.Attach(publications.get()));
+  const Time until = std::chrono::steady_clock::now() + std::chrono::seconds(options.wait_s);
+  while (CountWriters(participant, publications.get()) > 0 && std::chrono::steady_clock::now() < until)
+    RIGCAL_TRY(waitset.Wait(std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now())));
   std::printf("{\"count\": %d, \"answered\": %d, \"received\": %d, \"writers_before\": %d, \"writers_meanwhile\": %d, \"writers_after\": %d}\n",
               options.count, answered, received, before, meanwhile, CountWriters(participant, publications.get()));
   return {};
