@@ -11,6 +11,8 @@
 namespace rigcal::pipeline {
 namespace {
 
+[[maybe_unused]] const auto kIgnoredAsRigcaldDoes = std::signal(SIGPIPE, SIG_IGN);
+
 // A shell that does `script` for each order; "$order" is the line.
 WorkerPool::Options Shell(const std::string& script, std::chrono::seconds order_max = std::chrono::seconds(60)) {
   return {{"worker", "-c", "while read order; do echo begun; " + script + "; done"}, "/bin/sh", order_max};
@@ -51,7 +53,6 @@ TEST(WorkerPool, WhatTakesTooLongIsEnded) {
 }
 
 TEST(WorkerPool, OneThatEndedWhileItWasIdleCostsNothing) {
-  std::signal(SIGPIPE, SIG_IGN);  // as rigcald does
   WorkerPool pool(Shell("printf 'done\\tgood\\n'; exit 1"));
   for (int i = 0; i < 5; ++i) {
     const auto outcome = pool.Run("one");
