@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "client/command_words.h"
 #include "client/verbs.h"
 #include "server/base/version.h"
 
@@ -59,7 +60,9 @@ int Parse(CLI::App& app, int argc, const char* const* argv, const Context& conte
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request, context.out, context.err);
   } catch (const CLI::ParseError& error) {
-    context.err << "rigcal: " << error.what() << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
+    const std::string unknown = UnknownWordText(app);
+    context.err << "rigcal: " << (unknown.empty() ? error.what() : unknown)
+                << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
     return static_cast<int>(ExitCode::kUsage);
   }
 }
