@@ -104,6 +104,12 @@ struct LiveAnswer {
 };
 [[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
 
+// verbs robot_names, sensor_names; `more`: there are others.
+[[nodiscard]] std::string WriteRobotNames(const std::vector<RobotId>& robots, bool more);
+[[nodiscard]] std::string WriteSensorNames(const RobotId& robot, const std::vector<SensorId>& sensors, bool more);
+// verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
+[[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
+
 // verb due: every robot; overdue = older than max_age_ns, or never calibrated.
 struct DueAnswer {
   RobotId robot;

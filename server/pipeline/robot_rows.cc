@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/base/limits.h"
+#include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -96,7 +97,7 @@ Result<std::vector<storage::RobotRow>> LoadKnown(storage::Store& store, const Ro
   if (robot.empty()) return storage::LoadRobots(store);
   RIGCAL_ASSIGN(const auto one, storage::LoadRobot(store, robot));
   if (one) return std::vector{*one};
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+  return Fail(UnknownRobot(store, robot));
 }
 
 Result<std::vector<formats::RobotAnswer>> LoadRobotRows(storage::Store& store, const RobotId& robot, Stamp now) {
