@@ -40,6 +40,8 @@ class ResultWatch {
                                                 const wire::ParticipantOptions& dds, const RobotId& robot);
   // kUnreachable if no server answered for give_up_ns, or if two are there.
   [[nodiscard]] Result<Awaited> Await(AwaitPlace place, const AwaitHooks& hooks);
+  // For what is asked before the push.
+  [[nodiscard]] Connection& connection() { return connection_; }
 
  private:
   ResultWatch(Connection connection, wire::Reader<rigcal_wire_Event> events, wire::WaitSet waitset);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "client/edge_table.h"
+#include "client/new_robot.h"
 #include "client/progress.h"
 #include "client/push_result.h"
 #include "client/session_outlet.h"
@@ -23,7 +24,7 @@ struct PushOptions {
   std::string folder;
   double give_up_s = 60.0;
   std::optional<std::uint64_t> shuffle_seed;
-  bool no_wait = false;
+  bool no_wait = false, new_robot = false;
   std::vector<std::string> remounted;
 };
 
@@ -141,6 +142,7 @@ Status RunPush(Context& context, const PushOptions& options) {
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
+  if (!options.new_robot) RIGCAL_TRY(CheckNewRobot(watch.connection(), folder.session.robot, context.timeout));
   RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, folder));
   SaySent(context, summary);
   if (options.no_wait) {
@@ -170,6 +172,7 @@ void AddPush(CLI::App& app, Context& context) {
                    "Sensors that were moved on purpose since the sessions before: what those say of them is past")
       ->type_name("SENSOR[,SENSOR...]")
       ->delimiter(',');
+  verb->add_flag("--new-robot", options->new_robot, kNewRobotHelp);
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
   verb->add_option("--timeout-total", options->give_up_s,
                    "Give up after so many seconds without any answer (default 60)")
