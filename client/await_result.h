@@ -12,8 +12,10 @@
 namespace rigcal::client {
 
 struct AwaitHooks {
-  std::function<void(const Document& edge, std::int64_t waiting, std::int64_t total)> on_edge;  // each edge once
+  std::function<void(const Document& edge)> on_edge;  // each edge once
   std::function<void(const std::string&)> say;
+  // How many pairs of the session are calibrated, of all; several times a second, once the server has told it.
+  std::function<void(std::int64_t done, std::int64_t total)> on_pairs = {};
 };
 
 struct AwaitPlace {

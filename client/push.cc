@@ -129,12 +129,21 @@ void SaySent(const Context& context, const PushSummary& summary) {
 
 Result<Awaited> Await(const Context& context, const PushOptions& options, const SessionToPush& session,
                       ResultWatch& watch) {
-  const AwaitHooks hooks{[&](const Document& edge, std::int64_t, std::int64_t) {
+  Progress progress(context.err, context.err_is_terminal, "Calibrating", SteadyNow_ns(), Progress::Unit::kPairs);
+  std::optional<std::int64_t> done_before;
+  const AwaitHooks hooks{[&](const Document& edge) {
+                           progress.Clear();
                            (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
                          },
-                         [&](const std::string& line) { context.err << line << std::endl; }};
-  return watch.Await({session.robot, session.id, {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)},
-                     hooks);
+                         [&](const std::string& line) { progress.Say(line); },
+                         [&](std::int64_t done, std::int64_t total) {
+                           if (!done_before) progress.Skip(*(done_before = done));
+                           progress.Show({done, total, ""}, SteadyNow_ns());
+                         }};
+  auto awaited = watch.Await(
+      {session.robot, session.id, {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)}, hooks);
+  progress.Clear();
+  return awaited;
 }
 
 Status RunPush(Context& context, const PushOptions& options) {
