@@ -14,8 +14,10 @@
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/thread_rank.h"
+#include "server/formats/session_contents.h"
 #include "server/formats/session_folder.h"
 #include "server/model/past.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::client {
 namespace {
@@ -52,6 +54,8 @@ Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
   progress.Clear();
   if (!manifest) return Fail(manifest.error());
   RIGCAL_TRY(TakeRemounted(options.remounted, manifest->header));
+  const auto trackers = formats::ReadTrackers(options.folder, *manifest);
+  for (const auto& [file, doubt] : UnitDoubts(manifest->header, trackers)) SayUnitDoubt(file, doubt, context.err);
   folder.session = SessionOf(*manifest);
   return folder;
 }

@@ -15,6 +15,7 @@
 #include "server/formats/documents.h"
 #include "server/formats/g2o.h"
 #include "server/model/past.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::client {
 namespace {
@@ -96,6 +97,7 @@ Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
   RIGCAL_TRY(CheckCount(batch, options));
+  SayUnitDoubt(options.file, UnitDoubt(batch.edges), context.err);
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, batch.robot));
   if (!options.new_robot) RIGCAL_TRY(CheckNewRobot(watch.connection(), batch.robot, context.timeout));

@@ -18,10 +18,9 @@ TEST(PublicAddress, IsWhatWasGiven) {
 }
 
 TEST(PublicAddress, OfAnythingElseIsRefused) {
-  for (const std::string given : {"", "rigs.example.org", "ftp://rigs", "http://", "https:///rigcal", "http://:8420",
-                                  "http://a b", "http://rigs/?x=1", "http://me@rigs", "http://rigs/\"><script>",
-                                  "http://rigs\x1b[2J", "HTTP://rigs"})
-{
+  for (const std::string given :
+       {"", "rigs.example.org", "ftp://rigs", "http://", "https:///rigcal", "http://:8420", "http://a b",
+        "http://rigs/?x=1", "http://me@rigs", "http://rigs/\"><script>", "http://rigs\x1b[2J", "HTTP://rigs"}) {
     const auto read = ReadPublicUrl(given);
     ASSERT_FALSE(read) << *read;
     EXPECT_EQ(read.error().code, ErrorCode::kInvalidInput) << given;
