@@ -34,7 +34,8 @@ Ran Rigcal(const std::string& arguments) {
 }
 
 const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
-                                         "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate"};
+                                         "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate",
+                                         "completion"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
