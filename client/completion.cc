@@ -1,6 +1,7 @@
 #include "client/completion.h"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::string_view kCompleteWords = "complete-words";
 constexpr std::chrono::milliseconds kNamesWithin(500);  // while somebody waits for a key to act
+constexpr double kTimeoutMax_s = 86'400.0;
 
 std::vector<std::string> TypedWordsOf(const Context& context) {
   std::vector<std::string> words(context.arguments.begin() + 2, context.arguments.end());
@@ -23,12 +25,18 @@ std::vector<std::string> TypedWordsOf(const Context& context) {
   return words;
 }
 
-// As `--tag` and `--domain` of the line have it.
+// As `--tag`, `--domain` and `--timeout` of the line have it.
 void GoWhereTheLineGoes(const NextWord& next, Context& context) {
-  const auto tag = next.given.find("tag"), domain = next.given.find("domain");
-  if (tag != next.given.end()) context.dds.tag = tag->second;
-  if (domain != next.given.end()) setenv("RIGCAL_DOMAIN", domain->second.c_str(), 1);
+  const auto given = [&](const char* option) {
+    const auto found = next.given.find(option);
+    return found == next.given.end() ? std::string() : found->second;
+  };
+  context.dds.tag = given("tag");
+  if (const std::string domain = given("domain"); !domain.empty()) setenv("RIGCAL_DOMAIN", domain.c_str(), 1);
+  const double timeout_s = std::strtod(given("timeout").c_str(), nullptr);
   context.timeout = kNamesWithin;
+  if (timeout_s > 0.0 && timeout_s <= kTimeoutMax_s)
+    context.timeout = std::chrono::milliseconds(std::llround(timeout_s * 1e3));
 }
 
 void PrintNames(const NextWord& next, const std::string& verb, const std::string& key, Context& context) {

@@ -76,7 +76,7 @@ def with_a_server(flow):
                          (["lookup", "mapper-01", "top", "front_l"], ["reply front_left"]), (["edges", "nobody"], []),
                          (["check", "visit/", "--js"], ["reply --json"]), (["simulate", "--captured"], ["reply --captured-at"]),
                          (["check", ""], ["option -o dirnames"])):
-        told = press(["rigcal", *line], environment)
+        told = press(["rigcal", "--timeout", "20", *line], environment)
         check(told == wanted, "%r: %r" % (line, told))
 
 

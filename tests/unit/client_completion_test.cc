@@ -85,13 +85,13 @@ TEST(Completion, OfRobotsAndSensorsIsTheServers) {
     return R"({"more":false,"robot":"mapper-01","sensors":["front_left","front_right"]})";
   });
   const std::string tag = TestPlace().tag;
-  EXPECT_THAT(Completed({"--tag", tag, "show", "map"}), ElementsAre("mapper-01", "mapper-02"));
+  EXPECT_THAT(Completed({"--tag", tag, "--timeout", "20", "show", "map"}), ElementsAre("mapper-01", "mapper-02"));
   EXPECT_EQ(asked, R"(robot_names{"prefix":"map"})");
-  EXPECT_THAT(Completed({"push-edges", "e.json", "--tag=" + tag, "--robot", ""}),
+  EXPECT_THAT(Completed({"push-edges", "e.json", "--tag=" + tag, "--timeout=20", "--robot", ""}),
               ElementsAre("mapper-01", "mapper-02"));
   EXPECT_EQ(asked, "robot_names{}");
   for (const Lines& words : {Lines{"lookup", "mapper-01", "front"}, Lines{"lookup", "mapper-01", "top", "front"}}) {
-    Lines line = {"--tag", tag};
+    Lines line = {"--tag", tag, "--timeout", "20"};
     line.insert(line.end(), words.begin(), words.end());
     EXPECT_THAT(Completed(line), ElementsAre("front_left", "front_right"));
     EXPECT_EQ(asked, R"(sensor_names{"robot":"mapper-01","prefix":"front"})");
