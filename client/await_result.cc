@@ -53,7 +53,7 @@ void ResultWatch::NoteEdge(const Document& edge, State& state) {
   const std::string id = edge["id"].Text();
   if (id.empty() || !state.seen.insert(id).second) return;
   state.place.edges.insert(id);
-  if (state.hooks.on_edge) state.hooks.on_edge(edge, state.waiting, state.total);
+  if (state.hooks.on_edge) state.hooks.on_edge(edge);
 }
 
 void ResultWatch::TakeEvent(const rigcal_wire_Event& event, State& state) const {
@@ -164,6 +164,7 @@ Result<Awaited> ResultWatch::Await(AwaitPlace place, const AwaitHooks& hooks) {
       if (!asked && hooks.say)
         hooks.say("No rigcald answers on " + state.place.where + ". Still trying; nothing is lost.");
     }
+    if (state.total > 0 && hooks.on_pairs) hooks.on_pairs(state.total - state.waiting, state.total);
     if (!state.finished) RIGCAL_TRY(TakeEvents(state, milliseconds(200)));
   }
   RIGCAL_TRY(AwaitPublished(state));

@@ -12,8 +12,10 @@
 namespace rigcal::client {
 
 struct AwaitHooks {
-  std::function<void(const Document& edge, std::int64_t waiting, std::int64_t total)> on_edge;  // each edge once
+  std::function<void(const Document& edge)> on_edge;  // each edge once
   std::function<void(const std::string&)> say;
+  // How many pairs of the session are calibrated, of all; several times a second, once the server has told it.
+  std::function<void(std::int64_t done, std::int64_t total)> on_pairs = {};
 };
 
 struct AwaitPlace {
@@ -40,6 +42,8 @@ class ResultWatch {
                                                 const wire::ParticipantOptions& dds, const RobotId& robot);
   // kUnreachable if no server answered for give_up_ns, or if two are there.
   [[nodiscard]] Result<Awaited> Await(AwaitPlace place, const AwaitHooks& hooks);
+  // For what is asked before the push.
+  [[nodiscard]] Connection& connection() { return connection_; }
 
  private:
   ResultWatch(Connection connection, wire::Reader<rigcal_wire_Event> events, wire::WaitSet waitset);

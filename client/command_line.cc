@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "client/command_words.h"
+#include "client/completion.h"
 #include "client/verbs.h"
 #include "server/base/version.h"
 
@@ -50,7 +52,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
-    AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere};
+    AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {
@@ -59,7 +61,9 @@ int Parse(CLI::App& app, int argc, const char* const* argv, const Context& conte
   } catch (const CLI::Success& request) {  // --help, --version
     return app.exit(request, context.out, context.err);
   } catch (const CLI::ParseError& error) {
-    context.err << "rigcal: " << error.what() << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
+    const std::string unknown = UnknownWordText(app);
+    context.err << "rigcal: " << (unknown.empty() ? error.what() : unknown)
+                << "\nSee `rigcal --help`, or `rigcal VERB --help` with examples.\n";
     return static_cast<int>(ExitCode::kUsage);
   }
 }
@@ -80,6 +84,10 @@ int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::os
     app.parse_complete_callback([&] { Apply(app, options, context); });
     for (const AddVerb add : verbs) add(app, context);
     app.require_subcommand(1);
+    if (AsksForCompletion(context)) {
+      CompleteWords(app, context);
+      return static_cast<int>(context.exit_code);
+    }
     return Parse(app, argc, argv, context);
   } catch (const std::exception& error) {
     err << "rigcal: a fault of its own: " << error.what() << ". Please report it with the command line." << std::endl;

@@ -8,6 +8,7 @@
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/formats/json_values.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::client {
 namespace {
@@ -31,6 +32,12 @@ Result<Document> AskRevision(const Context& context, const std::string& robot, i
   return Document::Parse(text, "the server's answer to 'show'");
 }
 
+std::string UnitDoubtOf(const KnownPoses& poses) {
+  std::map<std::string, Eigen::Vector3d> p_m;
+  for (const auto& [sensor, pose] : poses) p_m[sensor] = pose.T_ref_sensor.p_m;
+  return UnitDoubt(p_m);
+}
+
 Result<Comparison> Compared(const Context& context, const CompareOptions& options) {
   RIGCAL_ASSIGN(const Document answer, AskRevision(context, options.robot, options.revision));
   const Document document = answer["document"];
@@ -43,6 +50,7 @@ Result<Comparison> Compared(const Context& context, const CompareOptions& option
     comparison.other = "revision " + std::to_string(options.with_revision);
   } else {
     RIGCAL_ASSIGN(others, PosesOfFile(options.poses_file));
+    SayUnitDoubt(options.poses_file, UnitDoubtOf(others), context.err);
   }
   RIGCAL_ASSIGN(comparison.differences, ComparePoses(PosesOfRevision(document), others, comparison.reference));
   return comparison;

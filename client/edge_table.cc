@@ -44,8 +44,6 @@ std::string SentenceOf(const Document& diagnosis) {
   return Sentence({ErrorCode::kInvalidInput, diagnosis["what"].Text(), diagnosis["cure"].Text()});
 }
 
-std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
-
 std::string Listed(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
@@ -82,6 +80,8 @@ void PrintPast(const std::vector<Document>& edges, std::ostream& out) {
 }
 
 }  // namespace
+
+std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
 
 bool IsPast(const Document& edge) {
   return edge["state"].Text() == "failed" && MeansPast(edge["diagnoses"][0]["code"].Text());

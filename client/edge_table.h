@@ -2,11 +2,15 @@
 #pragma once
 
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include "client/document.h"
 
 namespace rigcal::client {
+
+// "left - right"
+[[nodiscard]] std::string PairOf(const Document& edge);
 
 // Retired, of a superseded session, or measured before a sensor was remounted: no part of the solution any more.
 [[nodiscard]] bool IsPast(const Document& edge);

@@ -1,3 +1,5 @@
+#include "client/elsewhere.h"
+
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -19,8 +21,10 @@ std::vector<fs::path> Places(const std::string& program) {
   return {own / program, (own / RIGCAL_LIBEXEC / program).lexically_normal()};
 }
 
-// Returns only if it cannot be started. The program has the same options as this one, so it gets all that was given.
-Error Start(Context& context, const std::string& program) {
+}  // namespace
+
+Error StartElsewhere(Context& context, const std::string& verb) {
+  const std::string program = "rigcal-" + verb;
   std::vector<char*> arguments;
   for (const char* argument : context.arguments) arguments.push_back(const_cast<char*>(argument));
   arguments.push_back(nullptr);
@@ -32,6 +36,8 @@ Error Start(Context& context, const std::string& program) {
           places.empty() ? "Install rigcal whole" : "Install rigcal whole, or put it at " + places.back().string()};
 }
 
+namespace {
+
 // Programs of their own: what they do needs OpenCV with some 140 libraries behind it, and loading them would cost every
 // other verb a tenth of a second.
 void AddElsewhere(CLI::App& app, Context& context, const std::string& name, const std::string& description) {
@@ -39,7 +45,7 @@ void AddElsewhere(CLI::App& app, Context& context, const std::string& name, cons
   verb->set_help_flag();
   verb->fallthrough(false);
   verb->prefix_command();
-  verb->callback([&context, name] { context.exit_code = Report(Start(context, "rigcal-" + name), context); });
+  verb->callback([&context, name] { context.exit_code = Report(StartElsewhere(context, name), context); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "client/edge_table.h"
 #include "client/pose_text.h"
 #include "client/table.h"
 
@@ -11,8 +12,6 @@ namespace rigcal::client {
 namespace {
 
 constexpr std::size_t kRowsMax = 10, kLoopNamesMax = 8;
-
-std::string PairOf(const Document& edge) { return edge["frame_a"].Text("?") + " - " + edge["frame_b"].Text("?"); }
 
 // Those that are checked, the most influential first; the order of the document settles ties.
 std::vector<Document> ByInfluence(const Document& revision) {

@@ -28,20 +28,34 @@ Progress::Progress(std::ostream& err, bool is_terminal, std::string label, std::
       unit_(unit) {}
 
 std::string Progress::Amount(double amount) const {
-  return unit_ == Unit::kBytes ? ByteText(amount) : Fixed(amount, 0) + (unit_ == Unit::kEdges ? " edges" : " files");
+  switch (unit_) {
+    case Unit::kBytes:
+      break;
+    case Unit::kEdges:
+      return Fixed(amount, 0) + " edges";
+    case Unit::kFiles:
+      return Fixed(amount, 0) + " files";
+    case Unit::kPairs:
+      return Fixed(amount, 0) + " pairs";
+  }
+  return ByteText(amount);
+}
+
+std::string Progress::StandOf(double done, double total) const {
+  const double ratio = total > 0 ? done / total : 0.0;
+  const std::string bar = is_terminal_ ? Bar(ratio) : "";
+  if (unit_ == Unit::kPairs) return Fixed(done, 0) + " of " + Amount(total) + (bar.empty() ? "" : " " + bar);
+  return bar + (bar.empty() ? "" : " ") + Fixed(100.0 * ratio, 0) + " %  " + Amount(done) + " of " + Amount(total);
 }
 
 std::string Progress::LineOf(const ProgressState& state, std::int64_t now_ns) const {
   const auto done = static_cast<double>(state.done), total = static_cast<double>(state.total);
-  const double ratio = state.total > 0 ? done / total : 0.0;
   const double elapsed_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
   const double rate = elapsed_s > kRateAfter_s ? (done - static_cast<double>(skipped_)) / elapsed_s : 0.0;
-  std::string line = label_ + " ";
-  if (is_terminal_) line += Bar(ratio) + " ";
-  line += Fixed(100.0 * ratio, 0) + " %  " + Amount(done) + " of " + Amount(total);
+  std::string line = label_ + " " + StandOf(done, total);
   if (!state.detail.empty()) line += "  " + state.detail;
   if (rate <= 0.0) return line;
-  line += "  " + Amount(rate) + "/s";
+  if (unit_ != Unit::kPairs) line += "  " + Amount(rate) + "/s";
   if (done < total) line += "  " + DurationText((total - done) / rate) + " left";
   return line;
 }

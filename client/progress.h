@@ -15,8 +15,9 @@ struct ProgressState {
 
 class Progress {
  public:
+  // Pairs come slowly: "Calibrating 6 of 59 pairs", without a rate.
+  enum class Unit { kBytes, kEdges, kFiles, kPairs };
   // Times are nanoseconds of a steady clock.
-  enum class Unit { kBytes, kEdges, kFiles };
   Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns, Unit unit = Unit::kBytes);
   [[nodiscard]] bool IsDue(std::int64_t now_ns) const;
   // Draws if something is due; cheap to call often.
@@ -30,6 +31,7 @@ class Progress {
 
  private:
   [[nodiscard]] std::string Amount(double amount) const;
+  [[nodiscard]] std::string StandOf(double done, double total) const;
   [[nodiscard]] std::string LineOf(const ProgressState& state, std::int64_t now_ns) const;
 
   std::ostream& err_;

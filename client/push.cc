@@ -6,6 +6,7 @@
 #include <random>
 
 #include "client/edge_table.h"
+#include "client/new_robot.h"
 #include "client/progress.h"
 #include "client/push_result.h"
 #include "client/session_outlet.h"
@@ -13,8 +14,10 @@
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/thread_rank.h"
+#include "server/formats/session_contents.h"
 #include "server/formats/session_folder.h"
 #include "server/model/past.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::client {
 namespace {
@@ -23,7 +26,7 @@ struct PushOptions {
   std::string folder;
   double give_up_s = 60.0;
   std::optional<std::uint64_t> shuffle_seed;
-  bool no_wait = false;
+  bool no_wait = false, new_robot = false;
   std::vector<std::string> remounted;
 };
 
@@ -51,6 +54,8 @@ Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
   progress.Clear();
   if (!manifest) return Fail(manifest.error());
   RIGCAL_TRY(TakeRemounted(options.remounted, manifest->header));
+  const auto trackers = formats::ReadTrackers(options.folder, *manifest);
+  for (const auto& [file, doubt] : UnitDoubts(manifest->header, trackers)) SayUnitDoubt(file, doubt, context.err);
   folder.session = SessionOf(*manifest);
   return folder;
 }
@@ -128,12 +133,21 @@ void SaySent(const Context& context, const PushSummary& summary) {
 
 Result<Awaited> Await(const Context& context, const PushOptions& options, const SessionToPush& session,
                       ResultWatch& watch) {
-  const AwaitHooks hooks{[&](const Document& edge, std::int64_t, std::int64_t) {
+  Progress progress(context.err, context.err_is_terminal, "Calibrating", SteadyNow_ns(), Progress::Unit::kPairs);
+  std::optional<std::int64_t> done_before;
+  const AwaitHooks hooks{[&](const Document& edge) {
+                           progress.Clear();
                            (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
                          },
-                         [&](const std::string& line) { context.err << line << std::endl; }};
-  return watch.Await({session.robot, session.id, {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)},
-                     hooks);
+                         [&](const std::string& line) { progress.Say(line); },
+                         [&](std::int64_t done, std::int64_t total) {
+                           if (!done_before) progress.Skip(*(done_before = done));
+                           progress.Show({done, total, ""}, SteadyNow_ns());
+                         }};
+  auto awaited = watch.Await(
+      {session.robot, session.id, {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)}, hooks);
+  progress.Clear();
+  return awaited;
 }
 
 Status RunPush(Context& context, const PushOptions& options) {
@@ -141,6 +155,7 @@ Status RunPush(Context& context, const PushOptions& options) {
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
+  if (!options.new_robot) RIGCAL_TRY(CheckNewRobot(watch.connection(), folder.session.robot, context.timeout));
   RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, folder));
   SaySent(context, summary);
   if (options.no_wait) {
@@ -170,6 +185,7 @@ void AddPush(CLI::App& app, Context& context) {
                    "Sensors that were moved on purpose since the sessions before: what those say of them is past")
       ->type_name("SENSOR[,SENSOR...]")
       ->delimiter(',');
+  verb->add_flag("--new-robot", options->new_robot, kNewRobotHelp);
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
   verb->add_option("--timeout-total", options->give_up_s,
                    "Give up after so many seconds without any answer (default 60)")

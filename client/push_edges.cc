@@ -5,6 +5,7 @@
 #include <set>
 
 #include "client/edge_outlet.h"
+#include "client/new_robot.h"
 #include "client/progress.h"
 #include "client/push_result.h"
 #include "client/table.h"
@@ -14,6 +15,7 @@
 #include "server/formats/documents.h"
 #include "server/formats/g2o.h"
 #include "server/model/past.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::client {
 namespace {
@@ -24,7 +26,7 @@ struct PushEdgesOptions {
   std::string file, robot;
   std::optional<std::uint64_t> shuffle_seed;
   double give_up_s = 60.0;
-  bool no_wait = false;
+  bool no_wait = false, new_robot = false;
 };
 
 Result<EdgesToPush> ReadEdges(const PushEdgesOptions& options) {
@@ -95,8 +97,10 @@ Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
   RIGCAL_TRY(CheckCount(batch, options));
+  SayUnitDoubt(options.file, UnitDoubt(batch.edges), context.err);
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, batch.robot));
+  if (!options.new_robot) RIGCAL_TRY(CheckNewRobot(watch.connection(), batch.robot, context.timeout));
   RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, batch));
   context.err << summary.items << " edges of " << summary.robot << " are stored";
   if (summary.held_before > 0) context.err << " (" << summary.held_before << " were there before)";
@@ -123,6 +127,7 @@ void AddPushEdges(CLI::App& app, Context& context) {
   verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")
       ->required();
   verb->add_option("--robot", options->robot, "The robot whose edges they are")->required()->type_name("ID");
+  verb->add_flag("--new-robot", options->new_robot, kNewRobotHelp);
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
   verb->add_option("--shuffle", options->shuffle_seed, "Send in an order drawn from this seed; the result is the same")
       ->type_name("SEED");

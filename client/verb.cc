@@ -3,6 +3,7 @@
 #include "client/table.h"
 #include "server/base/stamp.h"
 #include "server/formats/answers.h"
+#include "server/model/unit_doubt.h"
 #include "server/model/validity.h"
 
 namespace rigcal::client {
@@ -115,6 +116,10 @@ std::string ReportAddress(const Document& status, const std::string& robot, std:
   const std::string address = Plain(status["http_address"].Text());
   if (address.empty()) return "";
   return address + "/robots/" + robot + "/revisions/" + std::to_string(revision) + "/";
+}
+
+void SayUnitDoubt(const std::string& file, const std::string& doubt, std::ostream& err) {
+  if (!doubt.empty()) err << Plain(file + ": " + doubt) << ' ' << kTakenInMetres << std::endl;
 }
 
 Document RobotRow(const Document& document, const std::string& robot) {

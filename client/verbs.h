@@ -1,6 +1,8 @@
 // The verbs of `rigcal`, one file each: Add...() declares its options, its help and what runs.
 #pragma once
 
+#include <array>
+
 #include "client/verb.h"
 
 namespace CLI {
@@ -28,6 +30,8 @@ void AddDue(CLI::App& app, Context& context);
 void AddCompare(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
+inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
+void AddCompletion(CLI::App& app, Context& context);
 // In programs of their own (simulate_main.cc, check_main.cc); `rigcal` has those that start them.
 inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
 inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";

@@ -9,6 +9,7 @@
 #include "server/base/memory_budget.h"
 #include "server/base/version.h"
 #include "server/formats/limits_text.h"
+#include "server/http/public_address.h"
 
 namespace rigcal {
 namespace {
@@ -36,6 +37,10 @@ void AddOptions(CLI::App& app, Config& config) {
   app.set_version_flag("--version", "rigcald " + std::string(Version()));
   app.add_option("--data", config.data, "Data folder; made if it is not there")->capture_default_str();
   app.add_option("--http", config.http, "HOST:PORT of the reports; port 0 takes a free one")->capture_default_str();
+  app.add_option("--public-url", config.public_url,
+                 "The address of the reports that robots and people are told, where it is not that of --http: behind a "
+                 "proxy, say. Not given: of --http, and this machine's name where it listens on every address")
+      ->type_name("URL");
   app.add_option("--domain", config.participant.domain, "DDS domain")->capture_default_str()->check(CLI::Range(0, 230));
   app.add_option("--tag", config.participant.tag, "DDS discovery tag: only peers with the same tag meet");
   app.add_flag("--worker", config.worker)->group("");  // a server starts its own
@@ -54,7 +59,8 @@ void AddOptions(CLI::App& app, Config& config) {
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420\n  rigcald --domain 7 --http "
-      "127.0.0.1:0\n  rigcald --data /srv/rigcal-2 --standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB");
+      "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --public-url https://rigs.example.org\n  rigcald --data /srv/rigcal-2 "
+      "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB");
 }
 
 Result<limits::Limits> LimitsOf(const Config& config) {
@@ -90,6 +96,10 @@ Result<http::Options> HttpOptions(const Config& config) {
   options.port = std::stoi(port);
   options.folder = config.data / "reports";
   return options;
+}
+
+Result<std::string> PublicUrl(const Config& config) {
+  return config.public_url.empty() ? Result<std::string>(std::string()) : http::ReadPublicUrl(config.public_url);
 }
 
 std::vector<std::string> WorkerCommand(const Config& config) {

@@ -18,6 +18,7 @@ namespace rigcal {
 struct Config {
   std::filesystem::path data;
   std::string http = "127.0.0.1:8420";
+  std::string public_url;  // empty: of http
   wire::ParticipantOptions participant;
   int threads = 2;
   bool verbose = false;
@@ -32,6 +33,8 @@ struct Config {
 void AddOptions(CLI::App& app, Config& config);
 // kInvalidInput if --http is not HOST:PORT.
 [[nodiscard]] Result<http::Options> HttpOptions(const Config& config);
+// --public-url as http/public_address.h reads it; empty where it is not given.
+[[nodiscard]] Result<std::string> PublicUrl(const Config& config);
 // kInvalidInput names the limit, and the file and line where it was read. The defaults where nothing is given; of
 // decoded_bytes half of the memory that the process may have, if that is less.
 [[nodiscard]] Result<limits::Limits> LimitsOf(const Config& config);

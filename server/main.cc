@@ -14,6 +14,7 @@
 #include "server/base/version.h"
 #include "server/config.h"
 #include "server/dds/service.h"
+#include "server/http/public_address.h"
 #include "server/http/server.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/orders.h"
@@ -67,6 +68,7 @@ http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& conte
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
+  RIGCAL_ASSIGN(const std::string public_url, PublicUrl(config));
   RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
@@ -87,7 +89,8 @@ Status Serve(const Config& config, const sigset_t& signals) {
             &undrawn, [&] { relay.Wake(); }};
   };
   RIGCAL_ASSIGN(const http::Server http, http::Server::Start(http_options, PagesOf(config.data, context_of)));
-  const std::string address = "http://" + http_options.host + ":" + std::to_string(http.port());
+  const std::string address =
+      public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
   address_promise.set_value(address);
 
   dds::Callbacks callbacks;

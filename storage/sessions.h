@@ -75,4 +75,12 @@ struct RobotRow {
 [[nodiscard]] Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot);
 [[nodiscard]] Result<bool> HasRobot(Store& store, const RobotId& robot);
 
+// Names of robots alone, in their order; each walks a range of the table's own order, or looks names up in it.
+// The first `limit` of those that begin with `prefix`.
+[[nodiscard]] Result<std::vector<RobotId>> LoadRobotNames(Store& store, const std::string& prefix, std::int64_t limit);
+// Those that stand next to `name`, known or not: up to `each_way` before it and after it.
+[[nodiscard]] Result<std::vector<RobotId>> LoadRobotsBeside(Store& store, const RobotId& name, std::int64_t each_way);
+// Those of `names` that are known.
+[[nodiscard]] Result<std::vector<RobotId>> LoadRobotsNamed(Store& store, const std::vector<RobotId>& names);
+
 }  // namespace rigcal::storage

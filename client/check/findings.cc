@@ -5,6 +5,7 @@
 #include "client/check/capture_names.h"
 #include "server/base/parallel_for.h"
 #include "server/calib/motion/stream_motion.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::check {
 namespace {
@@ -117,6 +118,7 @@ Findings FindAll(const SessionSeen& session, const PairProgress& progress) {
   for (const Sensor& sensor : header.sensors) AddSensor(session, sensor, findings);
   findings.pairs = FindPairs(session, findings.cameras, lenses, progress);
   findings.same_files = SameFiles(session.manifest);
+  findings.unit_doubts = UnitDoubts(header, session.poses);
   return findings;
 }
 

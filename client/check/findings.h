@@ -49,6 +49,7 @@ struct Findings {
   std::vector<StreamFound> streams;
   std::vector<PairFound> pairs;
   std::vector<std::vector<std::string>> same_files;  // paths of one content
+  std::map<std::string, std::string> unit_doubts;    // questions, by file
 };
 
 // Pure; deterministic. Cameras and pairs in parallel. Throws std::bad_alloc.

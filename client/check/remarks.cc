@@ -5,6 +5,7 @@
 #include "client/check/words.h"
 #include "client/table.h"
 #include "server/calib/core/wording.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::check {
 namespace {
@@ -92,6 +93,8 @@ std::vector<std::string> RemarksOf(const Findings& findings) {
   for (const LidarFound& lidar : findings.lidars) AddTroubles(lidar.odd, remarks);
   for (const StreamFound& stream : findings.streams) AddGaps(stream, remarks);
   AddSame(findings, remarks);
+  for (const auto& [file, doubt] : findings.unit_doubts)
+    remarks.push_back(file + ": " + doubt + " " + kTakenInMetres);
   return remarks;
 }
 

@@ -76,6 +76,13 @@ void WritePart(JsonWriter& out, const PartState& part) {
   });
 }
 
+template <typename AnId>
+void WriteNames(JsonWriter& out, std::string_view key, const std::vector<AnId>& names) {
+  out.List(key, [&] {
+    for (const AnId& name : names) out.Text(name.str());
+  });
+}
+
 void WriteNext(JsonWriter& out, const NextPage& next) {
   if (next) next->empty() ? out.Null("next") : out.Text("next", *next);
 }
@@ -206,6 +213,29 @@ std::string WriteLive(const LiveAnswer& answer) {
     out.List("open_sessions", [&] {
       for (const SessionAnswer& session : answer.open_sessions) out.Object([&] { WriteSessionMembers(out, session); });
     });
+  });
+}
+
+std::string WriteRobotNames(const std::vector<RobotId>& robots, bool more) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteNames(out, "robots", robots);
+    out.Flag("more", more);
+  });
+}
+
+std::string WriteSensorNames(const RobotId& robot, const std::vector<SensorId>& sensors, bool more) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("robot", robot.str());
+    WriteNames(out, "sensors", sensors);
+    out.Flag("more", more);
+  });
+}
+
+std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("robot", robot.str());
+    out.Flag("known", is_known);
+    WriteNames(out, "slip_of", slip_of);
   });
 }
 

@@ -98,6 +98,12 @@ struct LiveAnswer {
 };
 [[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
 
+// verbs robot_names, sensor_names; `more`: there are others.
+[[nodiscard]] std::string WriteRobotNames(const std::vector<RobotId>& robots, bool more);
+[[nodiscard]] std::string WriteSensorNames(const RobotId& robot, const std::vector<SensorId>& sensors, bool more);
+// verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
+[[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
+
 // verb due: every robot, or a part of them; overdue = older than max_age_ns, or never calibrated.
 [[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
                                    const std::optional<RobotId>& next = std::nullopt);

@@ -1,28 +1,13 @@
 #include "server/formats/nearest.h"
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
-#include <vector>
+
+#include "server/base/near_names.h"
 
 namespace rigcal::formats {
 namespace {
 
 constexpr std::size_t kComparedMax = 64;
-
-std::size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replace = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replace, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
 
 // A name that was cut short ("fx" of "fx_px") is one step away.
 std::size_t Distance(std::string_view name, std::string_view known) {

@@ -83,6 +83,18 @@ Status CheckBins(const fs::path& folder, const Refusals& refusals, Manifest& man
 
 }  // namespace
 
+std::map<SensorId, PoseTable> ReadTrackers(const fs::path& folder, const Manifest& manifest) {
+  std::map<SensorId, PoseTable> tables;
+  for (const Payload& payload : manifest.payloads) {
+    const Sensor* sensor = SensorOf(manifest.header, payload.sensor);
+    if (sensor == nullptr || sensor->kind != SensorKind::kTracker) continue;
+    const auto text = ReadFile(folder / payload.path, limits::kPoseTableBytesMax);
+    auto table = text ? ReadPoses(*text, sensor->kind, payload.path) : Fail(text.error());
+    if (table) tables[payload.sensor] = *std::move(table);
+  }
+  return tables;
+}
+
 Status CheckContents(const fs::path& folder, const Refusals& refusals, Manifest& manifest) {
   RIGCAL_TRY(CheckPoseTables(folder, refusals, manifest));
   return CheckBins(folder, refusals, manifest);

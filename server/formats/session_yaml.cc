@@ -5,6 +5,7 @@
 #include "server/formats/session_folder.h"
 #include "server/formats/yaml_field.h"
 #include "server/model/past.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::formats {
 namespace {
@@ -238,6 +239,18 @@ YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
   return polish && header.lidar_polish != LidarPolish::kNone && !HasLidarPair(header) ? *polish : root;
 }
 
+// Of the drawn poses that which is farthest from the reference; of none the file.
+YamlField FarthestNominal(const YamlField& root, const SessionHeader& header) {
+  double farthest_m = -1.0;
+  YamlField place = root;
+  for (const Sensor& sensor : header.sensors) {
+    if (!sensor.T_ref_nominal || sensor.T_ref_nominal->p_m.norm() <= farthest_m) continue;
+    farthest_m = sensor.T_ref_nominal->p_m.norm();
+    place = *root.At("sensors").At(sensor.id.str()).Find("T_ref_nominal");
+  }
+  return place;
+}
+
 }  // namespace
 
 Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& name) {
@@ -247,6 +260,11 @@ Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& 
   if (tree->error) return Fail(*tree->error);
   if (const Status valid = Validate(header); !valid) {
     PlaceOf(root, header).Refuse(valid.error());
+    return Fail(*tree->error);
+  }
+  // Of the file alone: a session that a server has may have been taken before this was asked.
+  if (const Status near = CheckSensorsApart(header); !near) {
+    FarthestNominal(root, header).Refuse(near.error());
     return Fail(*tree->error);
   }
   return header;

@@ -13,10 +13,12 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
+#include "server/pipeline/names.h"
 #include "server/pipeline/report_files.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
 #include "server/pipeline/summaries.h"
+#include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
 #include "storage/edges.h"
@@ -98,12 +100,21 @@ Result<graph::BlocksByEdge> BlocksOfWhole(storage::Store& store, formats::Revisi
   return graph::BlocksOf(document.edges);
 }
 
+Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision, const std::vector<SensorId>& asked) {
+  std::vector<SensorId> known;
+  for (const SensorPose& pose : revision.solution.poses) known.push_back(pose.sensor);
+  for (const SensorId& sensor : asked)
+    if (std::find(known.begin(), known.end(), sensor) == known.end()) return Fail(UnknownSensor(robot, sensor, known));
+  return {};
+}
+
 // From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
 // and for the reason why a pose is not known.
 Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const RobotId& robot, int number, const SensorId& a,
                                             const SensorId& b) {
   RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, number));
   const formats::RevisionInput& told = *revision.document;
+  RIGCAL_TRY(CheckSensors(robot, told, {a, b}));
   if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
   RIGCAL_ASSIGN(const formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
   Graph graph = graph::GraphOf(document.edges, document.reference);
@@ -235,6 +246,9 @@ const std::map<std::string, Verb>& Verbs() {
       {"show", Show},
       {"lookup", Lookup},
       {"revisions", ListRevisions},
+      {"robot_names", TellRobotNames},
+      {"sensor_names", TellSensorNames},
+      {"known_robot", TellKnownRobot},
       {"status", OfStatus},
       {"due", Due},
       {"health", Health},

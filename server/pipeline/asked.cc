@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "server/base/limits.h"
+#include "server/pipeline/unknown_names.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
@@ -11,7 +12,7 @@ Result<RobotId> KnownRobot(storage::Store& store, const formats::Parameters& par
   RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
   RIGCAL_ASSIGN(const bool is_known, storage::HasRobot(store, robot));
   if (is_known) return robot;
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+  return Fail(UnknownRobot(store, robot));
 }
 
 Result<std::int64_t> PageRows(const formats::Parameters& parameters) {

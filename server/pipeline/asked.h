@@ -24,7 +24,7 @@ template <typename IdType>
 [[nodiscard]] Result<IdType> OptionalId(const formats::Parameters& parameters, const std::string& name) {
   return parameters.Text(name) ? RequiredId<IdType>(parameters, name) : IdType();
 }
-// kNotFound for a robot that the store does not know.
+// For a robot that the store does not know: UnknownRobot.
 [[nodiscard]] Result<RobotId> KnownRobot(storage::Store& store, const formats::Parameters& parameters);
 
 // Rows of a page, `limit`; with `before` alone as many as there may be. 0: the whole list is asked for.

@@ -1,5 +1,6 @@
 #include "server/pipeline/robot_summary.h"
 
+#include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
@@ -49,7 +50,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
 Result<storage::RobotRow> LoadKnownRobot(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto known, storage::LoadRobot(store, robot));
   if (known) return *known;
-  return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' is not known", "`rigcal robots` lists those that are.");
+  return Fail(UnknownRobot(store, robot));
 }
 
 Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robot, Stamp now) {

@@ -1,6 +1,7 @@
 #include "server/pipeline/summaries.h"
 
 #include <algorithm>
+#include <map>
 
 #include "server/base/log.h"
 #include "server/pipeline/attempt.h"
@@ -60,6 +61,18 @@ Result<RobotId> AfterOf(const formats::Parameters& parameters) {
   return after ? RobotId::Parse(*after) : RobotId();
 }
 
+// In the place of those of the same robots, or where these would stand, of robots beyond `after`; then at most `max`.
+void PutIn(std::vector<RobotSummary> newer, const RobotId& after, std::optional<std::int64_t> max, std::vector<RobotSummary>& rows) {
+  std::erase_if(newer, [&](const RobotSummary& one) { return !(after < one.robot); });
+  if (newer.empty()) return;
+  std::map<RobotId, RobotSummary> by_id;
+  for (std::vector<RobotSummary>* part : {&newer, &rows})
+    for (RobotSummary& one : *part) by_id.try_emplace(one.robot, std::move(one));
+  rows.clear();
+  for (auto& [robot, summary] : by_id)
+    if (!max || static_cast<std::int64_t>(rows.size()) < *max) rows.push_back(std::move(summary));
+}
+
 }  // namespace
 
 Result<int> RefreshSummaries(storage::Store& store, const Clock& clock, int max) {
@@ -89,20 +102,23 @@ void RefreshAllSummaries(storage::Store& store, const Clock& clock) {
   if (all > 0) LogInfo("the summaries of " + std::to_string(all) + " robots were worked out");
 }
 
-void FreshenSummaries(storage::Store& store, const Clock& clock) {
-  const auto made = MakeWaiting(store, clock.Now(), kFreshenedMax);
-  if (!made || made->empty()) return;
-  static_cast<void>(store.WriteSoon([&] { return Keep(store, *made); }));  // or the next one does
+std::vector<RobotSummary> FreshenSummaries(storage::Store& store, const Clock& clock) {
+  auto made = MakeWaiting(store, clock.Now(), kFreshenedMax);
+  std::vector<RobotSummary> not_kept;
+  if (!made || made->empty() || store.WriteSoon([&] { return Keep(store, *made); })) return not_kept;
+  for (MadeSummary& one : *made) not_kept.push_back(std::move(one.summary));  // the next one keeps them
+  return not_kept;
 }
 
 Result<RobotList> LoadRobotList(storage::Store& store, const Clock& clock, const formats::Parameters& parameters) {
   RIGCAL_ASSIGN(const std::optional<std::int64_t> limit, LimitOf(parameters));
   RIGCAL_ASSIGN(const RobotId after, AfterOf(parameters));
-  FreshenSummaries(store, clock);
+  std::vector<RobotSummary> not_kept = FreshenSummaries(store, clock);
   RobotList list;
   // One more tells whether any follows.
   const auto max = limit ? std::optional(*limit + 1) : std::nullopt;
   RIGCAL_ASSIGN(list.robots, storage::LoadSummaries(store, after, max, clock.Now()));
+  PutIn(std::move(not_kept), after, max, list.robots);
   if (!limit) return list;
   list.next = RobotId();
   if (static_cast<std::int64_t>(list.robots.size()) <= *limit) return list;

@@ -18,9 +18,9 @@ namespace rigcal::pipeline {
 // All that wait, before anybody is served: after a migration those of the whole fleet. What fails is logged, and waits on.
 void RefreshAllSummaries(storage::Store& store, const Clock& clock);
 
-// Before a list is read: some that wait, so that it shows what somebody was just told. Where the store is busy or takes nothing
-// (a full disk), the list shows what is there.
-void FreshenSummaries(storage::Store& store, const Clock& clock);
+// Before a list is read: some that wait, so that it shows what somebody was just told. Those that could not be kept, because the
+// store is busy or takes nothing (a full disk).
+std::vector<RobotSummary> FreshenSummaries(storage::Store& store, const Clock& clock);
 
 struct RobotList {
   std::vector<RobotSummary> robots;      // by id

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "client/check/advice.h"
 #include "client/check/look.h"
@@ -125,6 +126,34 @@ TEST_F(CheckSession, ThreeCapturesAreNotEnough) {
   const Judgement judgement = JudgeFindings(Found());
   EXPECT_EQ(Headline(judgement), "Take at least 7 more captures.") << TextOf(judgement);
   EXPECT_THAT(TextOf(judgement), HasSubstr("the board is in 3 of 3 pictures, 10 are enough: take 7 more"));
+}
+
+// Of each row the position times 1000.
+std::string InMillimetres(const std::string& table) {
+  std::istringstream rows(table);
+  std::string row, text;
+  std::getline(rows, text);
+  while (std::getline(rows, row)) {
+    std::istringstream fields(row);
+    std::string field;
+    text += "\n";
+    for (int column = 0; std::getline(fields, field, ','); ++column) {
+      const bool is_position = column >= 2 && column <= 4;
+      text += (column == 0 ? "" : ",") + (is_position ? std::to_string(1000.0 * std::stod(field)) : field);
+    }
+  }
+  return text + "\n";
+}
+
+TEST_F(CheckSession, ATrackerInMillimetresIsAskedAbout) {
+  Simulate(RigYaml(kFree, "[4, 12, 9]"));
+  EXPECT_TRUE(Found().unit_doubts.empty());
+  Overwrite("body/poses.csv", InMillimetres(Bytes("body/poses.csv")));
+  const Judgement judgement = JudgeFindings(Found());
+  EXPECT_THAT(judgement.remarks, Contains(testing::AllOf(testing::StartsWith("body/poses.csv: "),
+                                                         HasSubstr(" m between captures "),
+                                                         testing::EndsWith(": are these millimetres? Positions are taken "
+                                                                           "in metres."))));
 }
 
 TEST_F(CheckSession, ABoardHeldFrontalAlwaysIsToldToBeTilted) {

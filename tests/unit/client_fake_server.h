@@ -79,6 +79,13 @@ class FakeServer {
     const std::lock_guard lock(mutex_);
     return subjects_[id];
   }
+  // Ids of all sessions and batches of which anything came.
+  std::set<std::string> SubjectsSeen() {
+    const std::lock_guard lock(mutex_);
+    std::set<std::string> ids;
+    for (const auto& [id, subject] : subjects_) ids.insert(id);
+    return ids;
+  }
   [[nodiscard]] const wire::Participant& participant() const { return participant_; }
   void SendEvent(const std::string& kind, const std::string& json) {
     rigcal_wire_Event event{};

@@ -34,7 +34,8 @@ Ran Rigcal(const std::string& arguments) {
 }
 
 const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
-                                         "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate"};
+                                         "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate",
+                                         "completion"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");
@@ -66,6 +67,31 @@ TEST(Program, WrongUsageIsTwoWithASentence) {
     const Ran ran = Rigcal(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
     EXPECT_EQ(ran.text.rfind("rigcal: ", 0), 0U) << arguments << "\n" << ran.text;
+  }
+}
+
+TEST(Program, AMisspeltWordIsToldWhatItMayMean) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"pusch", "there is no verb 'pusch': did you mean push?"},
+      {"pusch visit/ --no-wait", "there is no verb 'pusch': did you mean push?"},
+      {"frobnicate --no-wait", "there is no verb 'frobnicate'\n"},
+      {"--tga bench pusch visit/", "there is no verb 'pusch': did you mean push?"},
+      {"psuh-edges file.json", "there is no verb 'psuh-edges': did you mean push-edges?"},
+      {"shwo mapper-01", "there is no verb 'shwo': did you mean show?"},
+      {"frobnicate", "there is no verb 'frobnicate'\n"},
+      {"--jsno robots", "there is no option '--jsno': did you mean --json?"},
+      {"--domian=3 check visit/", "there is no option '--domian': did you mean --domain?"},
+      {"show mapper-01 --revison 3", "there is no option '--revison': did you mean --revision?"},
+      {"show --revison=3", "there is no option '--revison': did you mean --revision?"},
+      {"compare r --poess file", "there is no option '--poess': did you mean --poses?"},
+      {"check visit/ --jsn", "there is no option '--jsn': did you mean --json?"},
+      {"simulate mars-mapper --sede 3", "there is no option '--sede': did you mean --seed?"},
+      {"show r -q", "there is no option '-q'\n"}};
+  for (const auto& [arguments, sentence] : cases) {
+    const Ran ran = Rigcal(arguments);
+    EXPECT_EQ(ran.code, 2) << arguments << "\n" << ran.text;
+    EXPECT_EQ(ran.text.rfind("rigcal: " + sentence, 0), 0U) << arguments << "\n" << ran.text;
+    EXPECT_NE(ran.text.find("rigcal --help"), std::string::npos) << ran.text;
   }
 }
 

@@ -43,6 +43,21 @@ TEST(Progress, EdgesAreCountedAsEdges) {
   EXPECT_EQ(err.str(), "Sending 25 %  500 edges of 2000 edges  100 edges/s  15 s left\n");
 }
 
+TEST(Progress, PairsAreCountedWithoutTheirRate) {
+  std::ostringstream err;
+  Progress progress(err, false, "Calibrating", 0, Progress::Unit::kPairs);
+  progress.Skip(2);
+  progress.Show({2, 59, ""}, 5 * kSecond_ns);
+  progress.Show({6, 59, ""}, 21 * kSecond_ns);
+  progress.Show({59, 59, ""}, 300 * kSecond_ns);
+  EXPECT_EQ(err.str(),
+            "Calibrating 2 of 59 pairs\nCalibrating 6 of 59 pairs  4 min 39 s left\nCalibrating 59 of 59 pairs\n");
+  std::ostringstream terminal;
+  Progress bar(terminal, true, "Calibrating", 0, Progress::Unit::kPairs);
+  bar.Show({5, 12, ""}, 61 * kSecond_ns);
+  EXPECT_EQ(terminal.str(), "\r\x1b[KCalibrating 5 of 12 pairs [##########..............]  1 min 26 s left");
+}
+
 TEST(Progress, ALineOfItsOwnStandsAboveTheBar) {
   std::ostringstream err;
   Progress progress(err, true, "Sending", 0);

@@ -219,6 +219,7 @@ FakeServer::AnswerTo CalibratedServer(std::atomic<int>& session_questions) {
              (is_done ? edge : "") + "]}";
     }
     if (verb == "status") return R"({"http_address":"http://127.0.0.1:8420","robots":[{"robot":"r1","revision":1}]})";
+    if (verb == "known_robot") return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
     EXPECT_EQ(verb, "show");
     EXPECT_EQ(json, R"({"robot":"r1","revision":1})");
     return R"({"robot":"r1","revision":1,"age_ns":1,"digest":"d","document":{"verdict":{"level":"pass","why":"all agree"},"edges":[)" +
@@ -280,12 +281,39 @@ TEST(Verbs, PushJsonIsOneDocument) {
   EXPECT_EQ((*document)["report"].Text(), "http://127.0.0.1:8420/robots/r1/revisions/1/");
 }
 
-TEST(Verbs, PushWithoutWaitingAsksNothing) {
+TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherTheRobotIsKnown) {
   SessionFolder folder;
   folder.WriteSession("r1", 2, 1000);
-  FakeServer server("r1");
-  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait"}).code, 0);
+  std::set<std::string> asked;
+  FakeServer server("r1", [&](const std::string& verb, const std::string& json) -> Result<std::string> {
+    asked.insert(verb + json);
+    return R"({"known":true,"robot":"r1","slip_of":[]})";
+  });
+  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
   EXPECT_EQ(server.requests_seen, 0);
+  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait"}).code, 0);
+  EXPECT_EQ(asked, std::set<std::string>{R"(known_robot{"robot":"r1"})"});
+}
+
+TEST(Verbs, APushForAMisspeltRobotSendsNothing) {
+  SessionFolder folder, edges;
+  folder.WriteSession("maper-01", 2, 1000);
+  edges.Write("edges.json", R"({"format":1,"edges":[{"frame_a":"a","frame_b":"b","T_a_b":{"p_m":[0,1,0],)"
+                             R"("q_xyzw":[0,0,0,1]},"information":[[1,0,0,0,0,0],[0,1,0,0,0,0],[0,0,1,0,0,0],)"
+                             R"([0,0,0,1,0,0],[0,0,0,0,1,0],[0,0,0,0,0,1]]}]})");
+  FakeServer server("maper-01", Always(R"({"known":false,"robot":"maper-01","slip_of":["mapper-01","maper-1"]})"));
+  const std::string file = (edges.path() / "edges.json").string();
+  const std::vector<std::string> push_edges = {"push-edges", file, "--robot", "maper-01", "--no-wait"};
+  for (const auto& words : {push_edges, {"push", folder.path().string(), "--no-wait"}}) {
+    const Ran ran = Rigcal(words);
+    EXPECT_EQ(ran.code, 4) << words.front();
+    EXPECT_EQ(ran.err,
+              "rigcal: robot 'maper-01' is new, and mapper-01 is known: push with --new-robot if it is another robot. "
+              "Else correct the name; nothing was sent.\n");
+    EXPECT_TRUE(server.SubjectsSeen().empty()) << words.front();
+  }
+  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
+  EXPECT_EQ(server.SubjectsSeen().size(), 1U);
 }
 
 constexpr const char* kRestoredRow =

@@ -46,6 +46,14 @@ TEST(Answers, APartOfAListSaysWhereTheNextOneBegins) {
   }
 }
 
+TEST(Answers, Names) {
+  EXPECT_EQ(WriteRobotNames({kRobot, RobotId("rover")}, true), R"({"more":true,"robots":["mapper-01","rover"]})");
+  EXPECT_EQ(WriteSensorNames(kRobot, {SensorId("top")}, false), R"({"more":false,"robot":"mapper-01","sensors":["top"]})");
+  EXPECT_EQ(WriteKnownRobot(RobotId("maper-01"), false, {kRobot}),
+            R"({"known":false,"robot":"maper-01","slip_of":["mapper-01"]})");
+  EXPECT_EQ(WriteKnownRobot(kRobot, true, {}), R"({"known":true,"robot":"mapper-01","slip_of":[]})");
+}
+
 TEST(Answers, ARobotWithoutRevisionHasNoAge) {
   const json row = json::parse(
       WriteRobots({RobotSummary{kRobot, 0, {}, {std::nullopt, true, std::nullopt, false}, 0, 0, 0}}, kNow))["robots"][0];

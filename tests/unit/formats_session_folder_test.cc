@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "server/base/sha256.h"
+#include "server/formats/session_contents.h"
 #include "server/formats/session_folder.h"
 #include "tests/unit/formats_samples.h"
 
@@ -201,6 +202,22 @@ TEST_F(SessionFolder, ReadsTablesOfPosesBeforeTheyAreSent) {
   ExpectRefused("vio/poses.csv line 1: the header is \"capture,stamp_ns");
   fs::rename(folder_ / "vio/poses.csv", folder_ / "vio/pose.csv");
   ExpectRefused("file \"vio/pose.csv\": the path is not <sensor>/poses.csv");
+}
+
+TEST_F(SessionFolder, GivesTheTablesOfTrackersAlone) {
+  std::ifstream before(folder_ / "session.yaml");
+  const std::string yaml((std::istreambuf_iterator<char>(before)), {});
+  Write("session.yaml", yaml + "  body: {type: tracker}\n  vio: {type: pose_stream}\n");
+  const std::string header = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n";
+  Write("body/poses.csv", header + "02,1,210,0,0,0,0,0,1\n01,0,0,0,0,0,0,0,1\n");
+  Write("vio/poses.csv", header.substr(8) + "0,0,0,0,0,0,0,1\n");
+  const auto manifest = Read();
+  ASSERT_TRUE(manifest) << Sentence(manifest.error());
+  const auto tables = ReadTrackers(folder_, *manifest);
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_EQ(tables.at(SensorId("body")).back().T_world_body.p_m.x(), 210.0);
+  fs::remove(folder_ / "body/poses.csv");
+  EXPECT_TRUE(ReadTrackers(folder_, *manifest).empty());
 }
 
 TEST_F(SessionFolder, ASurveyTellsEachRefusalAndReadsTheRest) {

@@ -159,6 +159,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadYaml{"{fx_px", "{sigma: 1, fx_px", "line 11: sensor 'right': intrinsics: sigma: must be a list [...]"},
         BadYaml{"[0, 0, 0, 1]", "[0, 0, 0, 2]",
                 "line 12: sensor 'right': T_ref_nominal: q_xyzw: must have unit length (it is 2.000000)"},
+        BadYaml{"[0.08, 0, 0]", "[210, 0, 0]",
+                "line 12: T_ref_nominal: 210 m between left and right: are these millimetres?"},
         BadYaml{"p_m", "p", "line 12: sensor 'right': T_ref_nominal: unknown key \"p\""},
         BadYaml{"checkerboard", "chessboard", "line 6: target 'board': type: is not known here"},
         BadYaml{"[9, 6]", "[9]", "line 6: target 'board': inner_corners: must be two numbers, [columns, rows]"},

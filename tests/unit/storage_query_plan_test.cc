@@ -66,6 +66,10 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   (void)Scanned();  // what SetUp left
   EXPECT_TRUE(LoadRobot(store_, kRobot).value());
   EXPECT_TRUE(HasRobot(store_, kRobot).value());
+  EXPECT_EQ(LoadRobotNames(store_, "", 2)->size(), 2U);
+  EXPECT_EQ(LoadRobotNames(store_, "m", 9)->size(), 1U);
+  EXPECT_EQ(LoadRobotsBeside(store_, RobotId("bb"), 1)->size(), 2U);
+  EXPECT_EQ(LoadRobotsNamed(store_, {RobotId("d"), RobotId("e")})->size(), 1U);
   EXPECT_TRUE(LoadOpenSessions(store_, kRobot));
   EXPECT_TRUE(LoadSessions(store_, kRobot));
   EXPECT_TRUE(LoadSession(store_, session_));

@@ -1,0 +1,14 @@
+// Verbs that are programs of their own beside this one.
+#pragma once
+
+#include <string>
+
+#include "client/verb.h"
+
+namespace rigcal::client {
+
+// Replaces this process by the program of that verb, `rigcal-check` of `check`, which gets all arguments as they were
+// given. Returns only if it cannot be started.
+[[nodiscard]] Error StartElsewhere(Context& context, const std::string& verb);
+
+}  // namespace rigcal::client

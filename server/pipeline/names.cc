@@ -1,0 +1,67 @@
+#include "server/pipeline/names.h"
+
+#include <set>
+
+#include "server/base/limits.h"
+#include "server/base/near_names.h"
+#include "server/formats/answers.h"
+#include "server/pipeline/asked.h"
+#include "server/pipeline/unknown_names.h"
+#include "storage/revision_poses.h"
+#include "storage/revisions.h"
+#include "storage/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using formats::Parameters;
+
+// Empty where it is not there, or empty.
+Result<std::string> PrefixOf(const Parameters& parameters) {
+  const std::string prefix = parameters.Text("prefix").value_or("");
+  if (!prefix.empty()) RIGCAL_TRY(CheckName("prefix", prefix));
+  return prefix;
+}
+
+// Of the newest revision those with a pose, if it keeps its poses beside its document; and those that sessions list.
+Result<std::set<SensorId>> LoadSensorNames(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto listed, storage::LoadListedSensors(store, robot));
+  std::set<SensorId> sensors(listed.begin(), listed.end());
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
+  if (!newest) return sensors;
+  RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(store, {robot, newest->number}));
+  if (!poses) return sensors;
+  for (const auto& [sensor, pose] : poses->T_ref_sensor) sensors.insert(sensor);
+  return sensors;
+}
+
+}  // namespace
+
+Result<std::string> TellRobotNames(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const std::string prefix, PrefixOf(parameters));
+  RIGCAL_ASSIGN(auto robots, storage::LoadRobotNames(context.store, prefix, limits::kPageRowsMax + 1));
+  const bool more = CutToPage(limits::kPageRowsMax, robots);
+  return formats::WriteRobotNames(robots, more);
+}
+
+Result<std::string> TellSensorNames(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
+  RIGCAL_ASSIGN(const std::string prefix, PrefixOf(parameters));
+  RIGCAL_ASSIGN(const auto all, LoadSensorNames(context.store, robot));
+  std::vector<SensorId> sensors;
+  for (const SensorId& sensor : all)
+    if (sensor.str().rfind(prefix, 0) == 0) sensors.push_back(sensor);
+  const bool more = CutToPage(limits::kPageRowsMax, sensors);
+  return formats::WriteSensorNames(robot, sensors, more);
+}
+
+Result<std::string> TellKnownRobot(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
+  RIGCAL_ASSIGN(const bool is_known, storage::HasRobot(context.store, robot));
+  if (is_known) return formats::WriteKnownRobot(robot, true, {});
+  RIGCAL_ASSIGN(auto near, LoadNearRobots(context.store, robot));
+  std::erase_if(near, [&](const RobotId& one) { return !IsSlip(robot.str(), one.str()); });
+  return formats::WriteKnownRobot(robot, false, near);
+}
+
+}  // namespace rigcal::pipeline
