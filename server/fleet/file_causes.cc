@@ -36,9 +36,14 @@ void TakeSilent(CauseSearch& search, std::map<SensorId, BlindSensor>& blind) {
   }
 }
 
+// Two sensors that see the board at other times look different ways, and no one of them is to blame.
+bool FailedForLoss(const Edge& edge, Loss loss) {
+  return loss == Loss::kNoBoard ? FailedFor(edge, {"too_few_captures"}) : SawTooLittle(edge);
+}
+
 std::map<SensorId, BlindSensor> TakeBlind(CauseSearch& search, Loss loss) {
   const std::vector<const Edge*> taken = search.Take([&](const Edge& edge) {
-    const auto blind = SawTooLittle(edge) ? BlindEndOf(edge) : std::nullopt;
+    const auto blind = FailedForLoss(edge, loss) ? BlindEndOf(edge) : std::nullopt;
     return blind && blind->sight.LargestLoss() == loss;
   });
   std::map<SensorId, BlindSensor> by_sensor;

@@ -63,10 +63,10 @@ TEST(Exchanged, TwoCamerasAtEachOthersPlaces) {
   EXPECT_THAT(causes[0].sensors, ElementsAre(SensorId("front_left"), SensorId("front_right")));
   const Verdict verdict = drawn.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_EQ(verdict.why, "front_left and front_right look exchanged: each sits where the other should be (422 mm and 0 deg "
-                         "from nominal).");
-  EXPECT_EQ(verdict.what_to_do,
-            "Exchange their folders, or their names in session.yaml, then `rigcal push FOLDER`.");
+  EXPECT_EQ(verdict.why,
+            "front_left and front_right look exchanged: each sits where the other should be (422 mm and 0 deg "
+            "from nominal).");
+  EXPECT_EQ(verdict.what_to_do, "Exchange their folders, or their names in session.yaml, then `rigcal push FOLDER`.");
 }
 
 TEST(Exchanged, TwoLidarsExplainWhyTheirCloudsDoNotMatch) {
@@ -141,8 +141,7 @@ TEST(FarFromNominal, SeveralAreOneLineAndAllOfThemTellOfTheReference) {
   EXPECT_THAT(drawn.Causes().at(0).said.what_to_do, StartsWith("Check their names and their mounts"));
   drawn.Add("c", SensorKind::kLidar, At({0, 0, 1}), At({0, 0.2, 1}));
   ASSERT_THAT(drawn.Causes(), SizeIs(1));
-  EXPECT_EQ(drawn.Causes().at(0).said.what_to_do,
-            "Check the name and the mount of base, from which all are measured");
+  EXPECT_EQ(drawn.Causes().at(0).said.what_to_do, "Check the name and the mount of base, from which all are measured");
 }
 
 TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
@@ -155,8 +154,9 @@ TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
   rig.solution.residuals[1] = ResidualOf(rig.edges[1], 0.03);  // right - top
   const Verdict around = Assess(rig.edges, rig.solution, {}, {}, {}, visit.Headers());
   EXPECT_EQ(around.level, VerdictLevel::kFail);
-  EXPECT_THAT(around.why, StartsWith("top sits 500 mm and 0 deg from where the drawing has it; also, right and top do not "
-                                     "fit the other measurements: 30 mm, 0 deg off"));
+  EXPECT_THAT(around.why,
+              StartsWith("top sits 500 mm and 0 deg from where the drawing has it; also, right and top do not "
+                         "fit the other measurements: 30 mm, 0 deg off"));
   rig.solution.residuals[1] = ResidualOf(rig.edges[1], 0.0005);
   rig.solution.residuals[0] = ResidualOf(rig.edges[0], 0.03);  // left - right
   EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {}, visit.Headers()).why, Not(HasSubstr("drawing")));
@@ -243,8 +243,9 @@ TEST(PartialPoses, AreAResultInTheVerdict) {
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
   EXPECT_EQ(verdict.why, "The height of rear was not measured; the rest was, to 1 mm and 0.057 deg.");
   EXPECT_EQ(verdict.what_to_do, "Capture rear again, with boards and motion in every direction.");
-  EXPECT_THAT(Assess(OpenRig({}, {tangent::kX, tangent::kY}).edges, OpenRig({}, {tangent::kX, tangent::kY}).solution).why,
-              StartsWith("The forward position and the sideways position of rear were not measured; the rest was, to 1 mm"));
+  EXPECT_THAT(
+      Assess(OpenRig({}, {tangent::kX, tangent::kY}).edges, OpenRig({}, {tangent::kX, tangent::kY}).solution).why,
+      StartsWith("The forward position and the sideways position of rear were not measured; the rest was, to 1 mm"));
 }
 
 }  // namespace

@@ -17,8 +17,12 @@ std::optional<BoardView> Pictured(char letter, std::optional<BoardView> seen) {
   if (letter == ' ') return std::nullopt;
   if (letter == 'B') return seen;
   const bool readable = letter == '.';
-  return BoardView{false, readable ? "no board in the picture" : "it cannot be decoded", seen->target,
-                   readable ? seen->image_width_px : 0, readable ? seen->image_height_px : 0, {}};
+  return BoardView{false,
+                   readable ? "no board in the picture" : "it cannot be decoded",
+                   seen->target,
+                   readable ? seen->image_width_px : 0,
+                   readable ? seen->image_height_px : 0,
+                   {}};
 }
 
 std::optional<CloudView> Scanned(char letter, std::optional<CloudView> seen) {
@@ -94,7 +98,8 @@ void Visit::AddLidarCamera(const std::string& camera, const Letters& pictures, c
                            const Letters& clouds) {
   AddSensor(camera, SensorKind::kCamera);
   AddSensor(lidar, SensorKind::kLidar);
-  calib::LidarCameraProblem problem = LidarPair(camera, lidar, calib::BoardsBefore(static_cast<int>(pictures.size())), 8);
+  calib::LidarCameraProblem problem =
+      LidarPair(camera, lidar, calib::BoardsBefore(static_cast<int>(pictures.size())), 8);
   for (std::size_t k = 0; k < pictures.size(); ++k) {
     problem.captures[k].view = Pictured(pictures[k], problem.captures[k].view);
     problem.captures[k].cloud = Scanned(clouds[k], problem.captures[k].cloud);
@@ -138,8 +143,9 @@ Target LidarBoard() {
 Edge FlatStereo(const std::string& a, const std::string& b) {
   std::vector<Se3> boards;
   for (int k = 0; k < 10; ++k)
-    boards.push_back(calib::BoardAt(
-        Cameras(), {0.05 + 0.05 * std::sin(2.0 * k), 0.04 * std::cos(3.0 * k), 0.45 + 0.02 * k}, Eigen::Vector3d::Zero()));
+    boards.push_back(calib::BoardAt(Cameras(),
+                                    {0.05 + 0.05 * std::sin(2.0 * k), 0.04 * std::cos(3.0 * k), 0.45 + 0.02 * k},
+                                    Eigen::Vector3d::Zero()));
   return calib::EstimateEdge(Pair(a, b, boards));
 }
 
@@ -159,7 +165,8 @@ GraphSolution SolutionOf(const std::vector<std::string>& known, const std::vecto
   GraphSolution solution;
   solution.converged = true;
   solution.dof = 6;
-  for (const std::string& name : known) solution.poses.push_back(PoseOf(name, true, solution.poses.empty() ? 0.0 : 1e-6));
+  for (const std::string& name : known)
+    solution.poses.push_back(PoseOf(name, true, solution.poses.empty() ? 0.0 : 1e-6));
   for (const std::string& name : unknown) solution.poses.push_back(PoseOf(name, false));
   return solution;
 }
