@@ -18,8 +18,8 @@ std::set<std::string> NamesOf(const std::vector<Edge>& edges, const GraphSolutio
 
 // A sensor's name stays as it is written.
 std::string Capitalised(std::string text, const std::set<std::string>& names) {
-  const bool is_name = names.contains(text.substr(0, text.find_first_of(" ,")));
-  if (!text.empty() && !is_name) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  if (text.empty() || names.contains(text.substr(0, text.find_first_of(" ,")))) return text;
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text;
 }
 
