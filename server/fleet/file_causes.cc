@@ -53,7 +53,7 @@ std::map<SensorId, BlindSensor> TakeBlind(CauseSearch& search, Loss loss) {
     of_sensor.edges.push_back(edge);
     if (blind.sight.captures > of_sensor.most.sight.captures) of_sensor.most = blind;
   }
-  TakeSilent(search, by_sensor);
+  if (loss != Loss::kNoBoard) TakeSilent(search, by_sensor);  // which look for no board
   return by_sensor;
 }
 
