@@ -4,13 +4,22 @@
 #include <cctype>
 #include <set>
 
-#include "server/fleet/findings.h"
+#include "server/fleet/cause_findings.h"
 
 namespace rigcal::fleet {
 namespace {
 
-std::string Capitalised(std::string text) {
-  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+std::set<std::string> NamesOf(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  std::set<std::string> names;
+  for (const Edge& edge : edges) names.insert({edge.frame_a.str(), edge.frame_b.str()});
+  for (const SensorPose& pose : solution.poses) names.insert(pose.sensor.str());
+  return names;
+}
+
+// A sensor's name stays as it is written.
+std::string Capitalised(std::string text, const std::set<std::string>& names) {
+  if (text.empty() || names.contains(text.substr(0, text.find_first_of(" ,")))) return text;
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   return text;
 }
 
@@ -20,12 +29,12 @@ std::string Uncapitalised(std::string text) {
 }
 
 // One sentence each, however many findings.
-Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings) {
+Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings, const std::set<std::string>& names) {
   Verdict verdict;
   verdict.level = level;
   for (const Finding& finding : findings) {
     const bool first = verdict.why.empty();
-    verdict.why += first ? Capitalised(finding.why) : "; also, " + finding.why;
+    verdict.why += first ? Capitalised(finding.why, names) : "; also, " + finding.why;
     verdict.what_to_do += first ? finding.what_to_do : "; then " + Uncapitalised(finding.what_to_do);
   }
   verdict.why += ".";
@@ -55,12 +64,13 @@ std::vector<Finding> Collect(std::initializer_list<std::optional<Finding>> candi
 // the residuals finds a contradiction too; they tell better than a residual at the plain optimum who is to blame.
 std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const GraphSolution& solution,
                                         const Policy& policy, const SessionTimes& captured_at) {
-  const auto contradiction = FindContradiction(edges, solution, policy);
+  const auto contradiction = MostContradicting(edges, solution, policy);
   const bool shared = std::any_of(solution.residuals.begin(), solution.residuals.end(),
                                   [](const EdgeResidual& residual) { return residual.by_jackknife; });
   if (!contradiction && shared) return {};
   std::vector<Finding> suspects = Collect({FindTwoPoses(edges, solution, captured_at), FindSuspectEdges(edges, solution)});
-  if (suspects.empty() && contradiction) suspects.push_back(*contradiction);
+  if (suspects.empty() && contradiction)
+    suspects.push_back(DoNotFit(contradiction->edge->frame_a, contradiction->edge->frame_b, contradiction->e));
   return suspects;
 }
 
@@ -83,30 +93,60 @@ std::set<SensorId> AccusedSensors(const std::vector<Edge>& edges, const GraphSol
   return accused;
 }
 
+// What may be behind accusations stands before and after them.
+std::vector<Finding> FindFailing(const std::vector<Edge>& edges, const GraphSolution& judged, const Policy& policy,
+                                 const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+                                 const std::vector<RootCause>& causes) {
+  const std::vector<Finding> accusations = FindAccusations(edges, judged, policy, captured_at);
+  if (accusations.empty()) return FindMisplaced(causes, {});
+  const std::set<SensorId> accused = AccusedSensors(edges, judged);
+  std::set<SensorId> around = accused;
+  if (const auto worst = MostContradicting(edges, judged, policy))
+    around.insert({worst->edge->frame_a, worst->edge->frame_b});
+  std::vector<Finding> failing = FindMisplaced(causes, around);
+  failing.insert(failing.end(), accusations.begin(), accusations.end());
+  if (auto lens = FindLensBehind(estimates, accused)) failing.push_back(std::move(*lens));
+  return failing;
+}
+
+std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                                  const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+                                  const std::vector<RootCause>& causes, bool pairs_disagree) {
+  std::vector<Finding> warnings = FindingsOf(causes, [](const RootCause&) { return true; });
+  for (Finding& other :
+       Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
+                FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
+                FindUncertainSensors(solution, policy), FindUncheckedEdges(edges, solution),
+                FindUntestable(edges, solution, policy), FindUnrefined(estimates, captured_at),
+                FindUnseenMoves(estimates, policy, captured_at), FindUncheckedSensors(edges, solution)}))
+    warnings.push_back(std::move(other));
+  return warnings;
+}
+
 }  // namespace
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-               const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates) {
-  if (const auto none = FindNoEdges(edges)) return VerdictFrom(VerdictLevel::kUnknown, {*none});
-  if (const auto moved = FindMovedWithin(estimates, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
+               const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
+               const SessionHeaders& headers) {
+  const std::set<std::string> names = NamesOf(edges, solution);
+  const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
+    return VerdictFrom(level, findings, names);
+  };
+  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at);
+  if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
+    return say(VerdictLevel::kUnknown, nothing);
+  if (const auto moved = FindMovedWithin(estimates, captured_at)) return say(VerdictLevel::kFail, {*moved});
   // Residuals that are no optimum blame no edge.
-  if (const auto unsettled = FindUnsettled(solution)) return VerdictFrom(VerdictLevel::kUnknown, {*unsettled});
-  if (const auto moved = FindMovedBetween(solution, captured_at)) return VerdictFrom(VerdictLevel::kFail, {*moved});
+  if (const auto unsettled = FindUnsettled(solution)) return say(VerdictLevel::kUnknown, {*unsettled});
+  if (const auto moved = FindMovedBetween(solution, captured_at)) return say(VerdictLevel::kFail, {*moved});
   const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
-  if (auto accusations = FindAccusations(edges, judged, policy, captured_at); !accusations.empty()) {
-    if (auto lens = FindLensBehind(estimates, AccusedSensors(edges, judged))) accusations.push_back(std::move(*lens));
-    return VerdictFrom(VerdictLevel::kFail, accusations);
-  }
+  if (const auto failing = FindFailing(edges, judged, policy, captured_at, estimates, causes); !failing.empty())
+    return say(VerdictLevel::kFail, failing);
+  if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
+    return say(VerdictLevel::kUnknown, unknown);
   const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();
-  if (const auto unknown = Collect({FindUnknownSensors(edges, solution)}); !unknown.empty())
-    return VerdictFrom(VerdictLevel::kUnknown, unknown);
-  const auto warnings =
-      Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
-               FindFailedEdges(edges), FindPastPairs(edges), FindUncertainSensors(solution, policy),
-               FindUncheckedSensors(edges, solution), FindUncheckedEdges(edges, solution),
-               FindUntestable(edges, solution, policy),
-               FindUnrefined(estimates, captured_at), FindUnseenMoves(estimates, policy, captured_at)});
-  if (!warnings.empty()) return VerdictFrom(VerdictLevel::kWarn, warnings);
+  const auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
+  if (!warnings.empty()) return say(VerdictLevel::kWarn, warnings);
   return Pass(UntestedLoops(edges, solution), SmallestMoveNoticed(estimates, solution));
 }
 

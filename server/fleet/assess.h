@@ -1,8 +1,9 @@
 // Judges a robot's revision: verdict with one plain sentence why and one what to do.
 //
-// Severity, worst first, and what decides: fail (an edge contradicts the others), unknown (a sensor without a pose, or
-// no settled solution), warn (failed edges, uncertain sensors, nothing that checks the result), pass. The worst that
-// applies is the verdict; of several reasons of one level all are named.
+// Severity, worst first, and what decides: fail (an edge contradicts the others, or two sensors are exchanged), unknown
+// (a sensor without a pose, or no settled solution), warn (failed edges, uncertain sensors, nothing that checks the
+// result), pass. The worst that applies is the verdict; of several reasons of one level all are named, causes first:
+// failures that have one in common (root_causes.h) are told by it alone.
 #pragma once
 
 #include <map>
@@ -10,6 +11,7 @@
 
 #include "server/base/stamp.h"
 #include "server/model/graph.h"
+#include "server/model/session.h"
 #include "server/model/session_estimate.h"
 
 namespace rigcal::fleet {
@@ -32,11 +34,14 @@ struct Policy {
 // sensors have a good edge as well (the failure was repaired since). Sessions are named by when they were captured, as
 // far as that is known.
 using SessionTimes = std::map<SessionId, Stamp>;
-// `estimates`: of the sessions that count, the newest first; a sensor that was moved during one of them fails the robot,
-// and is told before what it made of the edges. A lens that bends beyond its model warns, by name; where nothing else than
-// such lenses of one session can be behind edges that disagree, no edge or sensor is accused.
+// `estimates`: of the sessions that count, the newest first; a sensor that was moved during one of them fails the
+// robot, and is told before what it made of the edges. A lens that bends beyond its model warns, by name; where nothing
+// else than such lenses of one session can be behind edges that disagree, no edge or sensor is accused. `headers`: of
+// the sessions of the edges, as far as they are known: what they say of boards and of nominal poses.
+using SessionHeaders = std::map<SessionId, SessionHeader>;
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
-                             const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {});
+                             const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
+                             const SessionHeaders& headers = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has
 // it, else e^T Omega e (edge covariance minus what the solution explains is not used: conservative). limit is 0 where

@@ -43,17 +43,18 @@ std::string CureOfLoop(const CycleResidual& loop, const std::vector<Edge>& edges
       sessions.insert(edge.session);
       if (IsMergedOfSessions(edge)) sessions.insert(kMergedHistory);  // many
     }
-  const std::string repeat = "Repeat the sessions of its edges, the one first that the failing loops have in common";
-  if (sessions.size() < 2) return repeat;
-  return repeat + "; if a sensor was moved between them, push the later one again with --remounted and its name";
+  const std::string sensors = List(loop.sensors);
+  if (sessions.size() < 2) return "Capture " + sensors + " again";
+  return "Was one of them moved between the sessions? Yes: `rigcal push FOLDER --remounted SENSOR` of the later one. "
+         "No: "
+         "capture " +
+         sensors + " again";
 }
 
 std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges) {
   if (cycles.failing < 1 || cycles.worst.empty() || !cycles.worst.front().fails()) return std::nullopt;
   const CycleResidual& worst = cycles.worst.front();
-  std::vector<std::string> names;
-  for (const SensorId& sensor : worst.sensors) names.push_back(sensor.str());
-  std::string why = "the loop of " + List(names) + " does not close: it is off by " + OffText(worst.e) + ", " +
+  std::string why = "the loop of " + List(worst.sensors) + " does not close: " + OffList(worst.e) + " off, " +
                     Number(worst.t_squared / worst.limit, "times") + " what chance allows";
   if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
   return Finding{why, CureOfLoop(worst, edges)};
@@ -61,26 +62,29 @@ std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edg
 
 }  // namespace
 
-std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                         const Policy& policy) {
+std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                               const Policy& policy) {
   std::map<EdgeId, const Edge*> by_id;
   for (const Edge& edge : edges) by_id.emplace(edge.id, &edge);
   const auto edge_count = static_cast<std::size_t>(std::count_if(solution.residuals.begin(), solution.residuals.end(),
                                                                  [](const EdgeResidual& r) { return r.in_solution; }));
-  const Edge* worst = nullptr;
-  const EdgeResidual* worst_residual = nullptr;
+  std::optional<Contradiction> worst;
   double worst_ratio = 1.0;
   for (const EdgeResidual& residual : solution.residuals) {
     const auto found = by_id.find(residual.edge);
     if (found == by_id.end()) continue;
     const double ratio = RatioOf(residual, TestResidual(*found->second, residual, edge_count, policy), policy);
-    if (ratio > worst_ratio) worst = found->second, worst_residual = &residual, worst_ratio = ratio;
+    if (ratio > worst_ratio) worst = Contradiction{found->second, residual.e}, worst_ratio = ratio;
   }
-  if (worst == nullptr) return std::nullopt;
-  return Finding{"edge " + NameOfEdge(*worst) + " contradicts the other edges: it is off by " +
-                     OffText(worst_residual->e) + ", " + Number(worst_ratio, "times") + " what chance allows",
-                 "Check that " + worst->frame_a.str() + " and " + worst->frame_b.str() +
-                     " have not moved and are named right, then repeat their session, with --remounted if one has"};
+  return worst;
+}
+
+Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e) {
+  const std::string first = a.str(), second = b.str();
+  return {
+      first + " and " + second + " do not fit the other measurements: " + OffList(e) + " off; one was probably moved",
+      "Was " + first + " or " + second + " moved? Yes: `rigcal push FOLDER --remounted " + first + "`, or " + second +
+          ". No: check their names, capture them again"};
 }
 
 std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
@@ -113,23 +117,18 @@ std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges) {
                  "Push a session that calibrates " + List(past) + " anew"};
 }
 
-std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges) {
-  std::set<std::pair<SensorId, SensorId>> good;
-  for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kGood) good.insert(PairOf(edge));
-  std::set<std::pair<SensorId, SensorId>> seen;
-  std::vector<std::string> failed;
-  std::string cure;
-  for (const Edge& edge : edges) {
-    if (edge.state == EdgeState::kGood || IsPast(edge)) continue;
-    if (good.contains(PairOf(edge)) || !seen.insert(PairOf(edge)).second) continue;
-    if (failed.empty() && !edge.diagnoses.empty()) cure = edge.diagnoses.front().cure;
-    failed.push_back(NameOfEdge(edge));
+std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures) {
+  if (failures.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  std::set<std::string> cures;
+  for (const Edge* edge : failures) {
+    names.push_back(NameOfEdge(*edge));
+    cures.insert(edge->diagnoses.empty() ? "" : edge->diagnoses.front().cure);
   }
-  if (failed.empty()) return std::nullopt;
+  std::string cure = cures.size() == 1 ? *cures.begin() : "";
   if (!cure.empty() && cure.back() == '.') cure.pop_back();
-  if (failed.size() > 1 || cure.empty()) cure = "Open each failed edge: its page says why and what to do";
-  return Finding{"the calibration of " + List(failed) + " failed", cure};
+  if (cure.empty()) cure = "Open each failed edge: its page says why and what to do";
+  return Finding{"the calibration of " + List(names) + " failed", cure};
 }
 
 std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
@@ -143,16 +142,15 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
   }
   if (uncertain.empty()) return std::nullopt;
   std::stable_sort(uncertain.begin(), uncertain.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<std::string> names;
-  for (const auto& [ratio, pose] : uncertain) names.push_back(pose->sensor.str());
+  std::vector<SensorId> sensors;
+  for (const auto& [ratio, pose] : uncertain) sensors.push_back(pose->sensor);
   const Vector6d sigma = uncertain.front().second->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const std::string worst = Number(1e3 * sigma.head<3>().maxCoeff(), "mm") + " and " +
-                            Number(kDegreesPerRadian * sigma.tail<3>().maxCoeff(), "deg");
-  const std::string limit =
-      Number(1e3 * policy.sigma_max_m, "mm") + " and " + Number(kDegreesPerRadian * policy.sigma_max_rad, "deg");
-  return Finding{"the pose of " + List(names) + " is less certain than the policy asks (worst " + names.front() + ": " +
-                     worst + " at 1 sigma, limit " + limit + ")",
-                 "Add captures of " + List(names) + " at more distances and tilts"};
+  const std::string names = List(sensors);
+  const std::string known = sensors.size() == 1 ? "the pose of " + names + " is known to "
+                                                : "the poses of " + names + " are known, at worst, to ";
+  return Finding{known + SigmaText(sigma.head<3>().maxCoeff(), sigma.tail<3>().maxCoeff()) + " only (" +
+                     SigmaText(policy.sigma_max_m, policy.sigma_max_rad) + " wanted)",
+                 "Capture " + names + " at more distances and tilts"};
 }
 
 std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
@@ -211,7 +209,7 @@ std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const Graph
   if (solution.cost <= limit) return std::nullopt;
   return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) +
                      " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + LimitText(limit) + ")",
-                 "Look for the edge with the largest residual in sigmas and repeat its session"};
+                 "Capture the pair again that is off by most sigmas"};
 }
 
 std::string UntestedLoops(const std::vector<Edge>& edges, const GraphSolution& solution) {

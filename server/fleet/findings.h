@@ -14,9 +14,15 @@ struct Finding {
   std::string what_to_do;
 };
 
-// The edge that contradicts the others most.
-[[nodiscard]] std::optional<Finding> FindContradiction(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                                       const Policy& policy);
+// The edge that contradicts the others most, and by how much.
+struct Contradiction {
+  const Edge* edge = nullptr;
+  Vector6d e = Vector6d::Zero();
+};
+[[nodiscard]] std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges,
+                                                             const GraphSolution& solution, const Policy& policy);
+// Two sensors whose edge the others contradict.
+[[nodiscard]] Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e);
 // Sensors that had two poses during the newest session in which one had.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);
@@ -67,8 +73,13 @@ struct Finding {
 [[nodiscard]] std::string UntestedLoops(const std::vector<Edge>& edges, const GraphSolution& solution);
 [[nodiscard]] std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUnsettled(const GraphSolution& solution);
-[[nodiscard]] std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution);
-[[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<Edge>& edges);
+// Sensors without a pose: what is known of those that are tied to the reference but for some directions; who is not
+// tied at all, but for those that `explained` has.
+[[nodiscard]] std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                      const SessionHeaders& headers,
+                                                      const std::set<SensorId>& explained);
+// Of these, each of a pair of its own.
+[[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
 // Pairs that were measured before one of their sensors was remounted, and not since.
 [[nodiscard]] std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);

@@ -47,9 +47,8 @@ std::string WhyOf(const std::vector<LensMisfit>& misfits, const LensMisfit& wors
   const bool one = misfits.size() == 1;
   return std::string(one ? "the lens of " : "the lenses of ") + List(NamesOf(misfits)) +
          (one ? " bends in a way that " : " bend in ways that ") + ModelsOf(misfits) +
-         " cannot: " + (one ? "" : "worst is " + worst.camera.str() + ", ") + "by " + Number(worst.rms_px, "px") +
-         " rms, which makes poses uncertain by " + Number(1e3 * worst.pose_sigma_m, "mm") + " and " +
-         Number(kDegreesPerRadian * worst.pose_sigma_rad, "deg");
+         " cannot: " + TwoDigits(worst.rms_px, "px") + (one ? "" : " of " + worst.camera.str()) +
+         ", which makes poses uncertain by " + SigmaText(worst.pose_sigma_m, worst.pose_sigma_rad);
 }
 
 // A richer model where there is one; else only seeing more of the picture tells more of the lens.
@@ -61,7 +60,7 @@ std::string CureOf(const std::vector<LensMisfit>& misfits) {
   if (!radtan.empty()) cure = "Try `model: pinhole_rational` for " + List(radtan);
   if (others.empty()) return cure;
   return cure + (cure.empty() ? "Capture" : "; capture") + " boards all over the pictures of " + List(others) +
-         ", and have their intrinsics estimated (give `intrinsics_sigma`, or leave the intrinsics out)";
+         ", and leave out or give a sigma with their intrinsics";
 }
 
 // The one that adds most first; at least one.
@@ -78,7 +77,7 @@ std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estim
   if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return !Matters(one); });
   if (misfits.empty()) return std::nullopt;
   Finding finding = FindingOf(std::move(misfits));
-  if (edges_disagree) finding.why = "pairs of sensors disagree beyond chance because " + finding.why;
+  if (edges_disagree) finding.why = "pairs of sensors disagree because " + finding.why;
   return finding;
 }
 
@@ -87,7 +86,7 @@ std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estima
   std::erase_if(misfits, [&](const LensMisfit& one) { return !accused.contains(one.camera); });
   if (misfits.empty()) return std::nullopt;
   Finding finding = FindingOf(std::move(misfits));
-  finding.why = "a cause may be that " + finding.why;
+  finding.why = "it may be that " + finding.why;
   return finding;
 }
 

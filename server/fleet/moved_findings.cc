@@ -18,9 +18,8 @@ std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estim
   }
   std::string flags;
   for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
-  finding.what_to_do = "Tighten the mount of " + List(names) +
-                       ", capture a new session and push it with `--remounted " + flags +
-                       "`; nothing that this session says of " + List(names) + " can be relied on";
+  finding.what_to_do =
+      "Tighten the mount of " + List(names) + ", capture again, then `rigcal push FOLDER --remounted " + flags + "`";
   return finding;
 }
 
@@ -50,9 +49,10 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Ses
   }
   std::string flags;
   for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
-  finding.what_to_do = "Look at the mount of " + List(names) + "; when it is tight, push the session of " +
-                       NameOfSession(moved.front().first_after, captured_at) + " again with `--remounted " + flags +
-                       "`, so that nothing from before counts for " + List(names);
+  const SensorMovedBetween& first = moved.front();
+  finding.what_to_do = "Was " + List(names) + " moved after " + NameOfSession(first.last_before, captured_at) +
+                       "? Yes: `rigcal push FOLDER --remounted " + flags + "` of the session of " +
+                       NameOfSession(first.first_after, captured_at) + ". No: tighten the mount, capture again";
   return finding;
 }
 

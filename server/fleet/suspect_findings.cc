@@ -5,7 +5,6 @@
 #include "server/fleet/findings.h"
 #include "server/fleet/wording.h"
 #include "server/model/merged_edge.h"
-#include "server/model/method.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -38,9 +37,29 @@ std::string NameOf(const SuspectEdge& suspect) { return suspect.frame_a.str() + 
 Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
   std::vector<std::string> names = NamesOf(suspect.alternatives, ById(edges));
   names.insert(names.begin(), NameOf(suspect));
-  return {"the loop of edges " + List(names) + " does not close: it is off by " + OffText(suspect.e) +
-              ", and one of them is wrong",
-          "Repeat the sessions of these edges, or calibrate one more pair of their sensors to see which"};
+  return {
+      "the loop of edges " + List(names) + " does not close: " + OffList(suspect.e) + " off, and one of them is wrong",
+      "Capture these pairs again, or one more pair of their sensors to see which"};
+}
+
+// Sensors that all of them have: one, or both of a single pair.
+std::vector<SensorId> SharedBy(const std::vector<SuspectEdge>& suspects) {
+  std::vector<SensorId> shared = {suspects.front().frame_a, suspects.front().frame_b};
+  for (const SuspectEdge& suspect : suspects)
+    std::erase_if(shared,
+                  [&](const SensorId& sensor) { return suspect.frame_a != sensor && suspect.frame_b != sensor; });
+  return shared;
+}
+
+Finding SensorDoesNotFit(const SensorId& sensor, const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst) {
+  std::vector<SensorId> others;
+  for (const SuspectEdge& suspect : suspects)
+    others.push_back(suspect.frame_a == sensor ? suspect.frame_b : suspect.frame_a);
+  const std::string name = sensor.str();
+  return {name + " does not fit the other measurements: " + OffList(worst.e) + " off at worst, against " +
+              List(others) + "; it was probably moved",
+          "Was " + name + " moved? Yes: `rigcal push FOLDER --remounted " + name +
+              "`. No: check its name and its mount, capture again"};
 }
 
 std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
@@ -51,20 +70,35 @@ std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<Ed
   return sessions;
 }
 
+// The newest of a group; nothing where one of its sessions has no date.
+std::optional<SessionId> NewestIn(const std::set<SessionId>& sessions, const SessionTimes& captured_at) {
+  std::optional<SessionId> newest;
+  for (const SessionId& session : sessions) {
+    if (!captured_at.contains(session)) return std::nullopt;
+    if (!newest || captured_at.at(*newest) < captured_at.at(session)) newest = session;
+  }
+  return newest;
+}
+
+// "after 2026-01-31": from the newest session of the older group on.
+std::string WhenMoved(const std::set<SessionId>& a, const std::set<SessionId>& b, const SessionTimes& captured_at) {
+  const auto of_a = NewestIn(a, captured_at), of_b = NewestIn(b, captured_at);
+  if (!of_a || !of_b || *of_a == *of_b) return "between these sessions";
+  return "after " + NameOfSession(captured_at.at(*of_a) < captured_at.at(*of_b) ? *of_a : *of_b, captured_at);
+}
+
 // Only sessions have a date, and only what two of them say can be told apart by it. Edges too weak to tell go with the
 // larger group, so one session may be in both.
-std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id) {
-  const std::string name = two.sensor.str();
+std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id, const SessionTimes& captured_at) {
+  const std::string name = two.sensor.str(), was = "Was " + name + " moved ";
   const std::set<SessionId> a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
   if (a.contains(SessionId()) || b.contains(SessionId()))
-    return "Find out whether " + name +
-           " was moved between these measurements. If not, repeat the wrong one. If so, edges that were pushed without "
-           "a session keep counting, as they have no date: push what was measured since under a new robot name";
-  if (a == b)
-    return "Find out whether " + name + " was moved during a session, and repeat that with " + name + " fixed";
-  return "Find out whether " + name +
-         " was moved between these sessions. If so, push the one with the later captured_at again with --remounted " +
-         name + "; if not, repeat it";
+    return was +
+           "between these measurements? Yes: push what was measured since under a new robot name, for edges without "
+           "a session have no date. No: repeat the wrong one";
+  if (a == b) return was + "during the session? Tighten its mount, capture again";
+  return was + WhenMoved(a, b, captured_at) + "? Yes: `rigcal push FOLDER --remounted " + name +
+         "` of the later session. No: tighten its mount, capture again";
 }
 
 // Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest
@@ -83,75 +117,19 @@ std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, con
   return edges + (earlier.empty() ? "" : earlier + " and of ") + (names.size() == 1 ? "session " : "sessions ") + List(names);
 }
 
-std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vector<Edge>& edges) {
-  const std::set<SessionId> refined(sessions.begin(), sessions.end());
-  std::set<EdgeId> ids;
-  for (const Edge& edge : edges)
-    if (refined.contains(edge.session)) ids.insert(edge.id);
-  return ids;
-}
-
-// Edges of sessions in which a board moved, by methods that take boards to stand still.
-std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
-  std::vector<SessionId> sessions;
-  for (const SessionEstimate& estimate : estimates)
-    if (!estimate.boards_moved.empty()) sessions.push_back(estimate.session);
-  std::set<EdgeId> ids = EdgesOf(sessions, edges);
-  for (const Edge& edge : edges)
-    if (const auto method = MethodNamed(edge.method); !method || !RowOf(*method).board_stands_still) ids.erase(edge.id);
-  return ids;
-}
-
 }  // namespace
-
-GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
-                                  const std::vector<SessionEstimate>& estimates) {
-  std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
-  const auto is_fused = [&](const SensorId& sensor) {  // or the reference, which is known exactly
-    return std::any_of(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) {
-      return pose.sensor == sensor && pose.known && (pose.fused || pose.covariance.isZero(0.0));
-    });
-  };
-  for (const Edge& edge : edges)
-    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) && is_fused(edge.frame_b))
-      refined.insert(edge.id);
-  if (refined.empty()) return solution;
-  const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
-  const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {
-    bool small = e.head<3>().norm() <= policy.residual_max_m && e.tail<3>().norm() <= policy.residual_max_rad;
-    for (const std::vector<EdgeId>& ids : groups)
-      for (const EdgeId& id : ids) {
-        if (!refined.contains(id)) return false;
-        small = small || before_moved_boards.contains(id);
-      }
-    return small;
-  };
-  GraphSolution judged = solution;
-  std::erase_if(judged.suspects.two_poses,
-                [&](const TwoPoses& two) { return excused(two.difference, {two.group_a, two.group_b}); });
-  std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
-    return excused(suspect.e, {{suspect.edge}, suspect.alternatives});
-  });
-  std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return excused(residual.e, {{residual.edge}}); });
-  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) {
-    const bool gone = excused(cycle.e, {cycle.edges});
-    judged.cycles.failing -= gone && cycle.fails() ? 1 : 0;
-    return gone;
-  });
-  return judged;
-}
 
 std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
                                     const SessionTimes& captured_at) {
   if (solution.suspects.two_poses.empty()) return std::nullopt;
   const TwoPoses& two = solution.suspects.two_poses.front();
   const auto by_id = ById(edges);
-  std::string why = "sensor " + two.sensor.str() + " has two poses, " + OffText(two.difference) +
+  std::string why = two.sensor.str() + " has two poses, " + OffText(two.difference) +
                     " apart: " + GroupText(two.group_a, by_id, captured_at) + " agree on one, " +
                     GroupText(two.group_b, by_id, captured_at) + " on the other";
   const std::size_t more = solution.suspects.two_poses.size() - 1;
   if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
-  return Finding{why, CureOf(two, by_id)};
+  return Finding{why, CureOf(two, by_id, captured_at)};
 }
 
 std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
@@ -159,15 +137,18 @@ std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const Gr
   if (suspects.empty()) return std::nullopt;
   const SuspectEdge& worst = WorstOf(suspects);
   if (suspects.size() == 1 && !worst.alternatives.empty()) return OpenLoop(worst, edges);
+  const std::vector<SensorId> shared = SharedBy(suspects);
+  if (shared.size() == 2) return DoNotFit(worst.frame_a, worst.frame_b, worst.e);
+  if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst);
   std::vector<std::string> names = {NameOf(worst)};
   for (const SuspectEdge& suspect : suspects)
     if (&suspect != &worst) names.push_back(NameOf(suspect));
-  const std::string them = names.size() == 1 ? "it is" : "worst is the first,";
-  return Finding{(names.size() == 1 ? "edge " : "edges ") + List(names) +
-                     (names.size() == 1 ? " contradicts" : " contradict") + " the other edges: " + them + " off by " +
-                     OffText(worst.e) + ", " + Number(worst.statistic / worst.limit, "times") + " what chance allows",
-                 "Check that " + worst.frame_a.str() + " and " + worst.frame_b.str() +
-                     " have not moved and are named right, then repeat their session, with --remounted if one has"};
+  return Finding{
+      List(names) + " do not fit the other measurements: " + OffList(worst.e) +
+          " off at worst; sensors were probably moved",
+      "Was " + worst.frame_a.str() + " or " + worst.frame_b.str() +
+          " moved? Yes: `rigcal push FOLDER --remounted` with its name. No: check the names of all, capture them "
+          "again"};
 }
 
 }  // namespace rigcal::fleet

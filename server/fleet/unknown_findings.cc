@@ -3,46 +3,17 @@
 #include <map>
 #include <set>
 
+#include "server/fleet/failures.h"
 #include "server/fleet/findings.h"
+#include "server/fleet/partial_poses.h"
 #include "server/fleet/wording.h"
 
 namespace rigcal::fleet {
 namespace {
 
-const Diagnosis* DiagnosisOf(const GraphSolution& solution, const std::string& sensor) {
-  for (const Diagnosis& diagnosis : solution.diagnoses)
-    if (diagnosis.what.find("sensor " + sensor + " ") != std::string::npos ||
-        diagnosis.what.find("sensor " + sensor + ":") != std::string::npos)
-      return &diagnosis;
-  return nullptr;
-}
-
 std::string WithoutStop(std::string sentence) {
   if (!sentence.empty() && sentence.back() == '.') sentence.pop_back();
   return sentence;
-}
-
-// Sensors without a pose: those whose edges leave a few directions open, and those that no good edge ties at all.
-struct Unknown {
-  std::vector<std::string> open, apart;
-  std::size_t directions_max = 0;  // left open, of one sensor
-};
-
-Unknown UnknownOf(const std::vector<Edge>& edges, const GraphSolution& solution) {
-  Unknown unknown;
-  std::set<SensorId> solved;
-  for (const SensorPose& pose : solution.poses) {
-    solved.insert(pose.sensor);
-    if (pose.known) continue;
-    (pose.unobservable_basis.empty() ? unknown.apart : unknown.open).push_back(pose.sensor.str());
-    unknown.directions_max = std::max(unknown.directions_max, pose.unobservable_basis.size());
-  }
-  std::set<SensorId> only_failed;
-  for (const Edge& edge : edges)
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!solved.contains(sensor)) only_failed.insert(sensor);
-  for (const SensorId& sensor : only_failed) unknown.apart.push_back(sensor.str());
-  return unknown;
 }
 
 struct Motion {
@@ -72,29 +43,83 @@ std::optional<Finding> WhyOpen(const std::vector<Edge>& edges) {
   return why;
 }
 
-std::optional<Finding> FindOpenSensors(const Unknown& unknown, const std::vector<Edge>& edges) {
+// Sensors of which the same is open.
+struct AlikeOpen {
+  std::vector<SensorId> sensors;
+  bool several = false, told = true;  // how well the rest of each is known is told
+  double sigma_m = 0.0, sigma_rad = 0.0;
+};
+
+std::map<std::string, AlikeOpen> OpenAlike(const std::vector<PartialPose>& partial) {
+  std::map<std::string, AlikeOpen> alike;
+  for (const PartialPose& one : partial) {
+    AlikeOpen& group = alike[one.open];
+    group.sensors.push_back(one.sensor);
+    group.several = one.several;
+    group.told = group.told && one.sigma_m && one.sigma_rad;
+    group.sigma_m = std::max(group.sigma_m, one.sigma_m.value_or(0.0));
+    group.sigma_rad = std::max(group.sigma_rad, one.sigma_rad.value_or(0.0));
+  }
+  return alike;
+}
+
+Finding OpenDirections(const std::vector<PartialPose>& partial, const std::vector<Edge>& edges) {
   const auto reason = WhyOpen(edges);
-  if (unknown.open.empty() || !reason) return std::nullopt;
-  const std::string count = std::to_string(unknown.directions_max) + " directions";
-  std::string why = "the pose of " + List(unknown.open) + " is known but for " +
-                    (unknown.directions_max == 1 ? "one direction" : count) + ": " + reason->why;
-  if (!unknown.apart.empty()) why += "; no good edges tie " + List(unknown.apart) + " to the reference";
-  return Finding{why, reason->what_to_do};
+  Finding finding;
+  std::vector<SensorId> sensors;
+  for (const auto& [open, group] : OpenAlike(partial)) {
+    finding.why += (finding.why.empty() ? "" : "; ") + open + " of " + List(group.sensors) +
+                   (group.several ? " were not measured" : " was not measured");
+    if (reason && sensors.empty()) finding.why += ", as " + reason->why;
+    finding.why += "; the rest was" + (group.told ? ", to " + SigmaText(group.sigma_m, group.sigma_rad) : "");
+    sensors.insert(sensors.end(), group.sensors.begin(), group.sensors.end());
+  }
+  finding.what_to_do =
+      reason ? reason->what_to_do : "Capture " + List(sensors) + " again, with boards and motion in every direction";
+  return finding;
+}
+
+// Without a pose, and without directions that would be known.
+std::vector<SensorId> ApartSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  std::vector<SensorId> apart;
+  std::set<SensorId> solved, only_failed;
+  for (const SensorPose& pose : solution.poses) {
+    solved.insert(pose.sensor);
+    if (!pose.known && pose.unobservable_basis.empty()) apart.push_back(pose.sensor);
+  }
+  for (const Edge& edge : edges)
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (!solved.contains(sensor)) only_failed.insert(sensor);
+  apart.insert(apart.end(), only_failed.begin(), only_failed.end());
+  return apart;
+}
+
+Finding NotTied(const std::vector<SensorId>& apart, const GraphSolution& solution) {
+  for (const Diagnosis& diagnosis : solution.diagnoses)
+    if (diagnosis.code == "not_judged" || diagnosis.code == "singular")
+      return {diagnosis.what, WithoutStop(diagnosis.cure)};
+  const std::string sensors = List(apart), them = apart.size() == 1 ? "it" : "them";
+  const SensorPose* reference = ReferenceOf(solution);
+  return {(apart.size() == 1 ? "the pose of " : "the poses of ") + sensors + (apart.size() == 1 ? " is" : " are") +
+              " not known: no good edge ties " + them + " to " +
+              (reference ? reference->sensor.str() : "the reference"),
+          "Capture " + sensors + " together with sensors that are known"};
 }
 
 }  // namespace
 
-std::optional<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
-  const Unknown unknown = UnknownOf(edges, solution);
-  std::vector<std::string> all = unknown.apart;
-  all.insert(all.end(), unknown.open.begin(), unknown.open.end());
-  if (all.empty()) return std::nullopt;
-  if (auto open = FindOpenSensors(unknown, edges)) return open;
-  const Diagnosis* diagnosis = DiagnosisOf(solution, all.front());
-  if (all.size() == 1 && diagnosis != nullptr) return Finding{diagnosis->what, WithoutStop(diagnosis->cure)};
-  const std::string them = all.size() == 1 ? "it" : "them";
-  return Finding{"the pose of " + List(all) + " is not known: no good edges tie " + them + " fully to the reference",
-                 "Capture a session that shows " + List(all) + " together with sensors that are known"};
+std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                        const SessionHeaders& headers, const std::set<SensorId>& explained) {
+  std::vector<PartialPose> partial;
+  for (const SensorPose& pose : solution.poses)
+    if (!pose.known && !pose.unobservable_basis.empty())
+      partial.push_back(PartialPoseOf(pose, edges, solution, headers));
+  std::vector<SensorId> apart = ApartSensors(edges, solution);
+  std::erase_if(apart, [&](const SensorId& sensor) { return explained.contains(sensor); });
+  std::vector<Finding> findings;
+  if (!partial.empty()) findings.push_back(OpenDirections(partial, edges));
+  if (!apart.empty()) findings.push_back(NotTied(apart, solution));
+  return findings;
 }
 
 }  // namespace rigcal::fleet

@@ -54,16 +54,16 @@ double TimesTheCaptures(double told, double tolerance, double least) {
 }
 
 std::string MorePlaces(const Unseen& worst, const Policy& policy) {
-  const std::string seen = "; it saw something in " + std::to_string(worst.move.captures) + " captures";
-  if (IsAnyMove(worst.move)) return "Capture more places that " + worst.sensor.str() + " sees" + seen;
+  const std::string seen = std::to_string(worst.move.captures), places = " places that " + worst.sensor.str() + " sees";
+  if (IsAnyMove(worst.move)) return "Capture more than " + seen + places;
   if (policy.unseen_move_max_m <= kMovedMin_m || policy.unseen_move_max_rad <= kMovedMin_rad)
     return "Allow a larger unseen bump: one below 1 mm and 1 mrad is not told";
   const double times =
       std::max(TimesTheCaptures(std::max(worst.move.m, policy.unseen_move_max_m), policy.unseen_move_max_m, kMovedMin_m),
                TimesTheCaptures(std::max(worst.move.rad, policy.unseen_move_max_rad), policy.unseen_move_max_rad,
                                 kMovedMin_rad));
-  return "Capture at least " + std::to_string(static_cast<long>(std::ceil(worst.move.captures * times))) + " places that " +
-         worst.sensor.str() + " sees" + seen;
+  return "Capture at least " + std::to_string(static_cast<long>(std::ceil(worst.move.captures * times))) + places +
+         ", not " + seen;
 }
 
 }  // namespace
@@ -83,9 +83,8 @@ std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estim
   Finding finding;
   const bool one = names.size() == 1;
   const std::string size = IsAnyMove(worst.move) ? "" : "by up to " + SizeText(worst.move);
-  finding.why = "a bump of " + std::string(one ? "" : "any of ") + List(names) +
-                (one && !size.empty() ? " " + size : "") + " half-way through the session of " +
-                NameOfSession(worst.session, captured_at) + " would not have been noticed" +
+  finding.why = "a bump of " + List(names) + (one && !size.empty() ? " " + size : "") +
+                " half-way through the session of " + NameOfSession(worst.session, captured_at) + " would go unseen" +
                 (one || size.empty() ? "" : ", of " + worst.sensor.str() + " " + size);
   finding.what_to_do = MorePlaces(worst, policy);
   return finding;
@@ -96,8 +95,7 @@ std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimat
   const Diagnosis& why = estimates.front().why_not.front();
   if (why.code != kRefinementFailed) return std::nullopt;
   return Finding{"the session of " + NameOfSession(estimates.front().session, captured_at) +
-                     " could not be refined as a whole (" + why.what +
-                     "), so that nobody knows whether a sensor was bumped during it",
+                     " could not be refined as a whole (" + why.what + "): a bump during it would go unseen",
                  "Capture another session, from other places"};
 }
 

@@ -8,13 +8,29 @@
 
 namespace rigcal::fleet {
 namespace {
+
 constexpr std::size_t kNamesMax = 6;
+
+std::string Rounded(const char* format, double value, const char* unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), format, value, unit);
+  return text.data();
+}
+
+// Less than a millionth of a millimetre or degree is arithmetic, not a disagreement.
+std::string Amount(double value, const char* unit) { return Number(value < 1e-6 ? 0.0 : value, unit); }
+
+std::string LengthOf(const Vector6d& e) { return Amount(1e3 * e.head<3>().norm(), "mm"); }
+std::string AngleOf(const Vector6d& e) { return Amount(kDegreesPerRadian * e.tail<3>().norm(), "deg"); }
+
 }  // namespace
 
 std::string Number(double value, const char* unit) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), std::abs(value) < 100.0 ? "%.3g %s" : "%.0f %s", value, unit);
-  return text.data();
+  return Rounded(std::abs(value) < 100.0 ? "%.3g %s" : "%.0f %s", value, unit);
+}
+
+std::string TwoDigits(double value, const char* unit) {
+  return Rounded(std::abs(value) < 9.95 ? "%.2g %s" : "%.0f %s", value, unit);
 }
 
 std::string LimitText(double value) {
@@ -35,12 +51,19 @@ std::string List(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string List(const std::vector<SensorId>& sensors) {
+  std::vector<std::string> names;
+  for (const SensorId& sensor : sensors) names.push_back(sensor.str());
+  return List(names);
+}
+
 std::string NameOfEdge(const Edge& edge) { return edge.frame_a.str() + " - " + edge.frame_b.str(); }
 
-std::string OffText(const Vector6d& e) {
-  // Less than a millionth of a millimetre or degree is arithmetic, not a disagreement.
-  const auto amount = [](double value, const char* unit) { return Number(value < 1e-6 ? 0.0 : value, unit); };
-  return amount(1e3 * e.head<3>().norm(), "mm") + " and " + amount(kDegreesPerRadian * e.tail<3>().norm(), "deg");
+std::string OffText(const Vector6d& e) { return LengthOf(e) + " and " + AngleOf(e); }
+std::string OffList(const Vector6d& e) { return LengthOf(e) + ", " + AngleOf(e); }
+
+std::string SigmaText(double sigma_m, double sigma_rad) {
+  return TwoDigits(1e3 * sigma_m, "mm") + " and " + TwoDigits(kDegreesPerRadian * sigma_rad, "deg");
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // Why something could not be done, or not trusted, in words a technician can act on.
 #pragma once
 
+#include <map>
 #include <string>
 
 namespace rigcal {
@@ -10,6 +11,9 @@ struct Diagnosis {
   std::string code;
   std::string what;
   std::string cure;
+  // Numbers behind the sentences, by name and unit ("board_tilt_rad"), on their way to the figures of an edge: an edge,
+  // the store and documents hold them there alone.
+  std::map<std::string, double> figures = {};
   friend bool operator==(const Diagnosis&, const Diagnosis&) = default;
 };
 

@@ -103,6 +103,7 @@ struct RobotEdges {
   std::map<EdgeId, Stamp> measured_at;
   CurrentEstimates refined;
   fleet::SessionTimes captured_at;
+  fleet::SessionHeaders headers;  // of sessions with an edge that is not past
   std::set<SessionId> unfinished;  // pairs of it are still to be calibrated
   std::vector<SensorId> listed;  // by its sessions
   SensorId reference;
@@ -118,6 +119,17 @@ Status LoadForGraph(storage::Store& store, const RobotId& robot, bool blocks, Ro
   return {};
 }
 
+Status LoadHeaders(storage::Store& store, const std::vector<Edge>& edges, fleet::SessionHeaders& headers) {
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges)
+    if (!edge.session.empty() && !IsPast(edge)) sessions.insert(edge.session);
+  for (const SessionId& session : sessions) {
+    RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, session));
+    if (manifest) headers.emplace(session, std::move(manifest->header));
+  }
+  return {};
+}
+
 Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
@@ -125,6 +137,7 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) 
     RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
     RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current));
     RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
+    RIGCAL_TRY(LoadHeaders(store, loaded.current.edges, loaded.headers));
     RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
     for (const storage::SessionRow& session : open) loaded.unfinished.insert(session.id);
     return {};
@@ -198,7 +211,8 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
   poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
-                                    : fleet::Assess(loaded.edges, input.solution, {}, edges.captured_at, edges.refined.estimates);
+                                    : fleet::Assess(loaded.edges, input.solution, {}, edges.captured_at,
+                                                    edges.refined.estimates, edges.headers);
   input.edges = std::move(loaded.edges);
   return input;
 }

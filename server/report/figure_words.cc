@@ -27,9 +27,21 @@ constexpr std::array kWords = {
     Word{"Earlier edges in it", Word::kEach, {kMergedEdges, ""}},
     Word{"Earlier sessions in it", Word::kEach, {kMergedSessions, ""}},
     Word{"Captures with the board in both pictures", Word::kEach, {"captures_both", ""}},
+    Word{"Files of {a} that show a board", Word::kOutOf, {"files_with_board_a", "files_a"}},
+    Word{"Files of {b} that show a board", Word::kOutOf, {"files_with_board_b", "files_b"}},
+    Word{"Files of {a} that cannot be read", Word::kEach, {"files_unreadable_a", ""}},
+    Word{"Files of {b} that cannot be read", Word::kEach, {"files_unreadable_b", ""}},
+    Word{"Boards before {a} turned apart by at most", Word::kEach, {"board_tilt_a_rad", ""}},
+    Word{"Boards before {b} turned apart by at most", Word::kEach, {"board_tilt_b_rad", ""}},
     Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},
     Word{"Reprojection error in {a}, rms", Word::kEach, {"rms_a_px", ""}},
     Word{"Reprojection error in {b}, rms", Word::kEach, {"rms_b_px", ""}},
+    Word{"Reprojection error in {a} alone as pinhole_radtan, rms", Word::kEach, {"rms_as_pinhole_radtan_a_px", ""}},
+    Word{"Reprojection error in {b} alone as pinhole_radtan, rms", Word::kEach, {"rms_as_pinhole_radtan_b_px", ""}},
+    Word{"Reprojection error in {a} alone as pinhole_rational, rms", Word::kEach, {"rms_as_pinhole_rational_a_px", ""}},
+    Word{"Reprojection error in {b} alone as pinhole_rational, rms", Word::kEach, {"rms_as_pinhole_rational_b_px", ""}},
+    Word{"Reprojection error in {a} alone as fisheye_kb4, rms", Word::kEach, {"rms_as_fisheye_kb4_a_px", ""}},
+    Word{"Reprojection error in {b} alone as fisheye_kb4, rms", Word::kEach, {"rms_as_fisheye_kb4_b_px", ""}},
     Word{"Board in the cloud off the board in the picture, rms",
          Word::kEach,
          {"plane_distance_rms_m", "plane_angle_rms_rad"}},
@@ -37,6 +49,7 @@ constexpr std::array kWords = {
     Word{"Noise of one range of {b}", Word::kEach, {"range_sigma_m", ""}},
     Word{"Error that the points of one capture share", Word::kEach, {"capture_sigma_m", ""}},
     Word{"Ranges too short by", Word::kWithSigma, {"range_bias_m", "range_bias_sigma_m"}},
+    Word{"Squares of the board as given", Word::kEach, {"board_square_m", ""}},
     Word{"Boards larger than given by", Word::kWithSigma, {"board_scale_ratio", "board_scale_sigma_ratio"}},
     Word{"Motions of {a} and {b} differ by, rms", Word::kEach, {"motion_rms_m", "motion_rms_rad"}},
     Word{"Noise of one pose of {a}", Word::kEach, {"noise_a_m", "noise_a_rad"}},
@@ -140,7 +153,7 @@ FigureRows RowsOf(const Edge& edge) {
     if (!MeansNothing(word, edge.figures)) rows.checks.push_back({NameOf(word, edge), RowText(word, edge.figures)});
   }
   for (const auto& [figure, value] : edge.figures) {
-    if (told.contains(figure)) continue;
+    if (told.contains(figure) || figure.ends_with("_idx")) continue;  // a place in a list is for programs
     if (IsLens(figure))
       rows.lens.push_back({LensName(figure, edge), AsCertainAs(value, 0.0) + UnitOfFigure(figure).shown});
     else

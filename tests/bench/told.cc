@@ -65,15 +65,17 @@ SessionEstimate Refined(const FeatureSession& visit, const std::vector<Edge>& ed
 Told Judge(const std::vector<FeatureSession>& visits) {
   std::vector<Edge> edges;
   std::vector<SessionEstimate> estimates;
+  fleet::SessionHeaders headers;
   for (const FeatureSession& visit : visits) {
     const std::vector<Edge> of_visit = EdgesOf(visit);
+    if (!of_visit.empty()) headers.emplace(of_visit.front().session, visit.header);
     estimates.insert(estimates.begin(), Refined(visit, of_visit));
     edges.insert(edges.end(), of_visit.begin(), of_visit.end());
   }
   const SessionHeader& header = visits.front().header;
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
   graph::FuseSessions(edges, {}, header.reference, estimates, solution);
-  Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates), {}, 0};
+  Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0};
   told.said = SaidOf(told.verdict, edges);
   for (const FusedSessions::HeldBack& look : solution.fused.held_back)  // as the report has it
     told.said.push_back({"held_back", look.sensor.str() + " in capture " + look.capture.str() +

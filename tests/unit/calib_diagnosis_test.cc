@@ -81,6 +81,27 @@ TEST(Diagnosis, APictureThatCannotBeReadIsNotAHiddenBoard) {
   ExpectNote(edge, "board_not_found", "front_left does not show the 9 x 6 target 'board' in 1 capture: 007");
 }
 
+// Where the cause of a failure is looked for over all pairs, sentences do not help.
+TEST(Diagnosis, AFailedEdgeCountsWhatItsFilesHold) {
+  StereoProblem problem = Usual(6);
+  for (const std::size_t k : {0U, 2U}) problem.captures[k].a.reset();
+  problem.captures[1].b = NotFoundView();
+  for (const std::size_t k : {4U, 5U})
+    problem.captures[k].b = BoardView{false, "the picture cannot be decoded", TargetId("board"), 0, 0, {}};
+  const Edge edge = EstimateEdge(problem);
+  ASSERT_EQ(edge.state, EdgeState::kFailed);
+  const std::map<std::string, double> expected = {{"captures_total", 6},     {"files_a", 4},
+                                                  {"files_with_board_a", 4}, {"files_b", 6},
+                                                  {"files_with_board_b", 3}, {"files_unreadable_b", 2},
+                                                  {"first_unreadable_b_idx", 4}};
+  for (const auto& [name, value] : expected) {
+    ASSERT_TRUE(edge.figures.contains(name)) << name;
+    EXPECT_EQ(edge.figures.at(name), value) << name;
+  }
+  EXPECT_FALSE(edge.figures.contains("files_unreadable_a"));
+  EXPECT_EQ(edge.captures.at(4).capture.str(), "004");
+}
+
 BoardView LegacyView() {
   BoardView view = NotFoundView();
   view.why_not = "no charuco board in the picture; it looks like the legacy layout: set legacy_layout: true";
@@ -118,15 +139,17 @@ TEST(Diagnosis, AnotherLensModelIsTheCureWhereItFits) {
   CameraProblem camera = CameraOf(problem, &StereoCapture::a);
   const Diagnosis high{"high_residual", "front_left does not fit.", "Take more captures."};
   EXPECT_FALSE(FindBetterLens(camera)) << "its own model fits";
-  EXPECT_EQ(WithLensAsCure(high, {camera}).cure, high.cure);
+  EXPECT_EQ(WithLensAsCure(high, {{"", camera}}).cure, high.cure);
   camera.camera.camera_model = CameraModel::kPinholeRadtan;
   const auto lens = FindBetterLens(camera);
   ASSERT_TRUE(lens);
   EXPECT_EQ(lens->model, CameraModel::kFisheyeKb4);
   EXPECT_LT(lens->rms_px, 0.04);
-  EXPECT_THAT(WithLensAsCure(high, {camera}).cure, testing::StartsWith("Give front_left 'model: fisheye_kb4'"));
+  const Diagnosis cured = WithLensAsCure(high, {{"_b", camera}});
+  EXPECT_THAT(cured.cure, testing::StartsWith("Give front_left 'model: fisheye_kb4'"));
+  EXPECT_EQ(cured.figures.at("rms_as_fisheye_kb4_b_px"), lens->rms_px);
   const Diagnosis few{"few_captures", "Only 6 captures.", "Take more captures."};
-  EXPECT_EQ(WithLensAsCure(few, {camera}).cure, few.cure) << "what no lens can cure";
+  EXPECT_EQ(WithLensAsCure(few, {{"", camera}}).cure, few.cure) << "what no lens can cure";
   camera.camera.intrinsics = PairOf(CameraModel::kFisheyeKb4).a;
   EXPECT_FALSE(FindBetterLens(camera)) << "given intrinsics are not doubted here";
 }
@@ -139,7 +162,10 @@ TEST(Diagnosis, NoCommonView) {
 
 TEST(Diagnosis, NoTiltWhereAllBoardsFaceTheCamera) {
   const auto problem = Photographed(VirtualPair(), FlatBoards(10, Eigen::Vector3d::Zero()), 0.2, 2);
-  ExpectFailed(EstimateEdge(problem), "no_tilt", "The boards that front_left sees");
+  const Edge edge = EstimateEdge(problem);
+  ExpectFailed(edge, "no_tilt", "The boards that front_left sees");
+  EXPECT_TRUE(edge.figures.contains("board_tilt_a_rad"));
+  for (const Diagnosis& diagnosis : edge.diagnoses) EXPECT_TRUE(diagnosis.figures.empty()) << diagnosis.code;
 }
 
 TEST(Diagnosis, NoTiltWhereExactBoardsFaceTheCamera) {

@@ -192,6 +192,18 @@ TEST(HandEye, TooFewAreADiagnosis) {
   EXPECT_EQ(result.error().code, "too_few_captures");
 }
 
+TEST(HandEye, AFailedEdgeCountsWhatItsFilesHold) {
+  const VirtualView view;
+  HandEyeProblem problem = TrackerAndCamera(Looking(view, 12, 0.25, 0.15, 5), view, {0.0002, 0.0009}, 0, 5);
+  problem.a.poses.resize(3);
+  const Edge edge = EstimateHandEyeEdge(problem);
+  ASSERT_EQ(edge.diagnoses.front().code, "too_few_captures");
+  EXPECT_EQ(edge.figures.at("captures_total"), 12);
+  EXPECT_EQ(edge.figures.at("files_a"), 3);
+  EXPECT_EQ(edge.figures.at("files_with_board_a"), 3);
+  EXPECT_EQ(edge.figures.at("files_b"), 12);
+}
+
 TEST(HandEye, TurnedBoardsGiveTheSameResult) {
   VirtualView view;
   view.board.cols = 9, view.board.rows = 7;

@@ -254,6 +254,20 @@ TEST(LidarCameraDiagnosis, WhatCannotBeReadIsNamedApart) {
   EXPECT_FALSE(HasNote(edge, "board_not_found_in_cloud"));
 }
 
+TEST(LidarCameraDiagnosis, AFailedEdgeCountsWhatItsFilesHold) {
+  LidarCameraProblem problem = Recorded(NoisyRig(), BoardsBefore(8), 8);
+  for (std::size_t i = 0; i < 4; ++i) problem.captures[i].view.reset();
+  for (std::size_t i = 5; i < 8; ++i) problem.captures[i].cloud = CloudView();
+  const Edge edge = EstimateLidarCameraEdge(problem);
+  ASSERT_EQ(CodeOf(edge), "too_few_captures");
+  EXPECT_EQ(edge.figures.at("files_a"), 4);
+  EXPECT_EQ(edge.figures.at("files_with_board_a"), 4);
+  EXPECT_EQ(edge.figures.at("files_b"), 8);
+  EXPECT_EQ(edge.figures.at("files_with_board_b"), 5);
+  EXPECT_EQ(edge.figures.at("files_unreadable_b"), 3);
+  EXPECT_EQ(edge.figures.at("first_unreadable_b_idx"), 5);
+}
+
 TEST(LidarCameraDiagnosis, NoSpreadOfNormals) {
   std::vector<Se3> boards = BoardsBefore(12);
   for (Se3& board : boards) board.q.setIdentity();
@@ -298,6 +312,8 @@ TEST(LidarCameraDiagnosis, AWrongSquareSizeIsNamedWithTheRightOne) {
   EXPECT_EQ(edge.state, EdgeState::kFailed);
   ASSERT_EQ(CodeOf(edge), "board_size_suspected");
   EXPECT_THAT(edge.diagnoses.front().what, HasSubstr("instead of 105.00 mm"));
+  EXPECT_EQ(edge.figures.at("board_square_m"), 0.105);
+  EXPECT_NEAR(edge.figures.at("board_scale_ratio"), 0.1 / 0.105 - 1, 4 * edge.figures.at("board_scale_sigma_ratio"));
 }
 
 TEST(LidarCamera, ASmallErrorOfTheSquareIsNotedAndPutIntoSigma) {

@@ -221,6 +221,8 @@ TEST(WideRationalPair, RadtanIsRefusedByName) {
   const Edge edge = EstimateEdge(problem);
   ASSERT_EQ(edge.state, EdgeState::kFailed);
   EXPECT_THAT(edge.diagnoses.at(0).cure, HasSubstr("'model: pinhole_rational'"));
+  EXPECT_TRUE(edge.figures.contains("rms_as_pinhole_rational_a_px") ||
+              edge.figures.contains("rms_as_pinhole_rational_b_px"));
 }
 
 // A rational lens in the middle of a picture: only sums of its coefficients can be known.

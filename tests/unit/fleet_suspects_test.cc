@@ -55,17 +55,29 @@ TEST(AssessSuspects, NamesTheEdgeAndByHowMuchItIsOff) {
   rig.Suspect(1, 0.02);
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("Edge right - top contradicts the other edges: it is off by 20 mm and 0 deg, 16 "
-                                     "times what chance allows"));
-  EXPECT_THAT(verdict.what_to_do, HasSubstr("right and top have not moved"));
+  EXPECT_THAT(verdict.why, HasSubstr("right and top do not fit the other measurements: 20 mm, 0 deg off; one was "
+                                     "probably moved"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("Was right or top moved? Yes: `rigcal push FOLDER --remounted right`"));
+}
+
+TEST(AssessSuspects, NamesTheSensorThatAllOfThemHave) {
+  Rig rig;
+  rig.Suspect(0, 0.02);
+  rig.Suspect(2, 0.03);
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.why,
+            "left does not fit the other measurements: 30 mm, 0 deg off at worst, against right and top; it was probably "
+            "moved.");
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("Was left moved? Yes: `rigcal push FOLDER --remounted left`"));
 }
 
 TEST(AssessSuspects, NamesTheWorstFirst) {
   Rig rig;
-  rig.Suspect(0, 0.02);
+  rig.Suspect(1, 0.02);
   rig.Suspect(2, 0.03);
-  EXPECT_THAT(rig.Judge().why, HasSubstr("Edges left - top and left - right contradict the other edges: worst is the "
-                                         "first, off by 30 mm"));
+  rig.solution.suspects.edges[1].frame_b = SensorId("rear");
+  EXPECT_EQ(rig.Judge().why, "left - rear and right - top do not fit the other measurements: 30 mm, 0 deg off at worst; "
+                             "sensors were probably moved.");
 }
 
 TEST(AssessSuspects, ALoopIsNamedWhole) {
@@ -73,8 +85,8 @@ TEST(AssessSuspects, ALoopIsNamedWhole) {
   rig.Suspect(1, 0.02);
   rig.solution.suspects.edges[0].alternatives = {rig.edges[0].id, rig.edges[2].id};
   const Verdict verdict = rig.Judge();
-  EXPECT_THAT(verdict.why, HasSubstr("The loop of edges right - top, left - right and left - top does not close: it is "
-                                     "off by 20 mm and 0 deg, and one of them is wrong"));
+  EXPECT_THAT(verdict.why, HasSubstr("The loop of edges right - top, left - right and left - top does not close: 20 mm, "
+                                     "0 deg off, and one of them is wrong"));
 }
 
 TEST(AssessSuspects, TwoPosesTakeNoSide) {
@@ -86,7 +98,7 @@ TEST(AssessSuspects, TwoPosesTakeNoSide) {
   rig.solution.suspects.two_poses.push_back(two);
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("Sensor top has two poses, 40 mm and 0 deg apart: edges right - top agree on one, "
+  EXPECT_THAT(verdict.why, HasSubstr("top has two poses, 40 mm and 0 deg apart: edges right - top agree on one, "
                                      "edges left - top on the other"));
   rig.edges[1].session = SessionId(std::string(64, 'a')), rig.edges[2].session = SessionId(std::string(64, 'b'));
   EXPECT_THAT(rig.Judge().why, HasSubstr("0 deg apart: 1 edge of session aaaaaaaaaaaa agree on one, "
@@ -109,14 +121,21 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
   two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[2].id};
   rig.solution.suspects.two_poses.push_back(two);
   rig.edges[1].session = SessionId(std::string(64, 'a'));
-  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("pushed without a session keep counting"));
+  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("edges without a session have no date"));
   rig.edges[2].session = SessionId(std::string(64, 'b'));
-  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("push the one with the later captured_at again with --remounted top"));
+  EXPECT_EQ(rig.Judge().what_to_do,
+            "Was top moved between these sessions? Yes: `rigcal push FOLDER --remounted top` of the later session. No: "
+            "tighten its mount, capture again.");
+  const SessionTimes times = {{rig.edges[1].session, *ParseIso("2026-02-01T09:30:10Z")},
+                              {rig.edges[2].session, *ParseIso("2026-01-31T00:00:00Z")}};
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("Was top moved after 2026-01-31? Yes: "));
   rig.edges[0].session = rig.edges[2].session;  // too weak to tell
-  rig.solution.suspects.two_poses[0].group_a.push_back(rig.edges[0].id);
-  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("between these sessions. If so, push the one with the later"));
+  rig.solution.suspects.two_poses[0].group_b.push_back(rig.edges[0].id);
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("Was top moved after 2026-01-31? Yes: "));
+  rig.edges[0].session = rig.edges[1].session;  // the newest is on both sides
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, times).what_to_do, HasSubstr("Was top moved between these sessions?"));
   for (Edge& edge : rig.edges) edge.session = rig.edges[1].session;
-  EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("whether top was moved during a session"));
+  EXPECT_EQ(rig.Judge().what_to_do, "Was top moved during the session? Tighten its mount, capture again.");
 }
 
 TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
@@ -128,7 +147,7 @@ TEST(AssessSuspects, SharedCapturesNeedTheHonestTestToo) {
   rig.solution.residuals[0].t_squared = 200.0;
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_THAT(verdict.why, HasSubstr("Edge right - top contradicts"));
+  EXPECT_THAT(verdict.why, HasSubstr("right and top do not fit"));
 }
 
 TEST(TestResidual, UsesTheJackknifeWhereThereIsOne) {

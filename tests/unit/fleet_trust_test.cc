@@ -108,14 +108,13 @@ TEST(Trust, AnOpenLoopOfEstimatedEdgesIsNamedByItsOwnTest) {
   const Verdict verdict = chain.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);
   EXPECT_EQ(verdict.why,
-            "The loop of left, right and top does not close: it is off by 10 mm and 2 deg, 2 times what chance "
-            "allows.");
+            "The loop of left, right and top does not close: 10 mm, 2 deg off, 2 times what chance allows.");
   EXPECT_THAT(verdict.what_to_do, Not(HasSubstr("--remounted")));
   for (const Edge& edge : chain.edges) chain.solution.cycles.worst.front().edges.push_back(edge.id);
   for (Edge& edge : chain.edges) edge.session = SessionId(std::string(64, '1'));
   EXPECT_THAT(chain.Judge().what_to_do, Not(HasSubstr("--remounted")));
   chain.edges.back().session = SessionId(std::string(64, '2'));
-  EXPECT_THAT(chain.Judge().what_to_do, HasSubstr("push the later one again with --remounted and its name"));
+  EXPECT_THAT(chain.Judge().what_to_do, HasSubstr("`rigcal push FOLDER --remounted SENSOR` of the later one"));
   chain.solution.cycles.worst = {Loop(39.0, 40.0)};
   chain.solution.cycles.failing = 0;
   EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);

@@ -61,6 +61,17 @@ TEST(FigureWords, LensValuesAreApartAndUnknownFiguresKeepTheirNames) {
   EXPECT_EQ(Joined(rows.lens), "fx of left = 700.25 px\ncy = 510 px\nk1 of top = -0.08\n");
 }
 
+TEST(FigureWords, FilesOfAFailedPairAreCountedWithoutTheirPlaces) {
+  EXPECT_EQ(Joined(RowsOf(EdgeWith({{"files_a", 6},
+                                    {"files_with_board_a", 2},
+                                    {"files_unreadable_a", 3},
+                                    {"first_unreadable_a_idx", 4},
+                                    {"rms_as_fisheye_kb4_b_px", 0.21}}))
+                       .checks),
+            "Files of left that show a board = 2 of 6\nFiles of left that cannot be read = 3\n"
+            "Reprojection error in top alone as fisheye_kb4, rms = 0.2100 px\n");
+}
+
 TEST(FigureWords, MethodsHaveNames) {
   EXPECT_EQ(MethodText("lidar_camera"), "lidar-camera");
   EXPECT_EQ(MethodText("theirs_2"), "theirs_2");

@@ -23,7 +23,7 @@ std::set<std::string> Captures(std::string_view text) {
 }
 
 TEST(TrustWords, SensorsAreWholeWords) {
-  EXPECT_EQ(Named("Edge front_left - back contradicts the other edges: it is off by 5 mm."),
+  EXPECT_EQ(Named("front_left and back do not fit the other measurements: 5 mm, 0.1 deg off."),
             (std::set<std::string>{"front_left", "back"}));
   EXPECT_EQ(Named("Check that left has moved."), (std::set<std::string>{"left"}));
   EXPECT_EQ(Named("Calibrate left_front."), (std::set<std::string>{"left_front"}));
@@ -40,8 +40,9 @@ TEST(TrustWords, CapturesAreNamesNotAmounts) {
 }
 
 TEST(TrustWords, MovedAndLensAreTold) {
-  EXPECT_TRUE(SaysMoved("Check that a and b have not moved and are named right"));
-  EXPECT_TRUE(SaysMoved("sensor a has two poses, 20 mm apart"));
+  EXPECT_TRUE(SaysMoved("a and b do not fit the other measurements; one was probably moved."));
+  EXPECT_TRUE(SaysMoved("a has two poses, 20 mm apart"));
+  EXPECT_FALSE(SaysMoved("A bump of a by up to 8 mm would go unseen."));
   EXPECT_FALSE(SaysMoved("A sensor was remounted: push it with --remounted."));
   EXPECT_TRUE(SaysLens("the lens of a bends in a way that pinhole_radtan cannot: try pinhole_rational"));
   EXPECT_FALSE(SaysLens("Every sensor is known well enough and the edges agree with each other."));

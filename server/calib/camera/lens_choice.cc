@@ -75,11 +75,15 @@ std::optional<BetterLens> FindBetterLens(const CameraProblem& problem) {
   return chosen;
 }
 
-Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::vector<CameraProblem>& cameras) {
+Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::map<std::string, CameraProblem>& cameras) {
   if (std::find(kLensCodes.begin(), kLensCodes.end(), diagnosis.code) == kLensCodes.end()) return diagnosis;
   std::string cure;
-  for (const CameraProblem& camera : cameras)
-    if (const auto lens = FindBetterLens(camera)) cure += (cure.empty() ? "" : " ") + CureOf(*lens);
+  for (const auto& [side, camera] : cameras) {
+    const auto lens = FindBetterLens(camera);
+    if (!lens) continue;
+    cure += (cure.empty() ? "" : " ") + CureOf(*lens);
+    diagnosis.figures["rms_as_" + NameOf(lens->model) + side + "_px"] = lens->rms_px;
+  }
   if (!cure.empty()) diagnosis.cure = std::move(cure);
   return diagnosis;
 }

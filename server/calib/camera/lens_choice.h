@@ -2,8 +2,9 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
-#include <vector>
+#include <string>
 
 #include "server/calib/camera/intrinsics.h"
 
@@ -29,8 +30,9 @@ struct BetterLens {
 // them within twice the residual, or where none fits them to half the residual that is refused.
 [[nodiscard]] std::optional<BetterLens> FindBetterLens(const CameraProblem& problem);
 // "high_residual", "ill_conditioned" and the like are also what a wrong lens gives: where another one fits, it is the
-// cure. Other diagnoses stay as they are.
-[[nodiscard]] Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::vector<CameraProblem>& cameras);
+// cure, and "rms_as_fisheye_kb4_a_px" the figure. Cameras by their side of a pair, "_a" and "_b", or one alone by "".
+// Other diagnoses stay as they are.
+[[nodiscard]] Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::map<std::string, CameraProblem>& cameras);
 // "lens_model_suspected": a note on a good edge of a camera that fits its corners to `rms_px`.
 [[nodiscard]] Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens);
 

@@ -1,5 +1,7 @@
 #include "server/calib/core/diagnoses.h"
 
+#include <cmath>
+
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/selection.h"
@@ -82,7 +84,8 @@ Diagnosis NoTilt(const SensorId& camera, double spread_deg, double focal_sigma_r
                   focal_sigma_ratio < 1 ? Formatted("%.0f", 100 * focal_sigma_ratio) : "more than 100"}),
           Worded("Tilt the board by 20 to 40 deg to the left, right, up and down, or give the intrinsics of {} in "
                  "session.yaml.",
-                 {camera})};
+                 {camera}),
+          {{"board_tilt_rad", spread_deg * M_PI / 180}}};
 }
 
 Diagnosis AmbiguousPose(const StereoProblem& problem, const std::vector<CaptureId>& captures) {

@@ -1,5 +1,7 @@
 #include "server/calib/core/pair_edge.h"
 
+#include <utility>
+
 #include "server/calib/camera/camera_diagnoses.h"
 
 namespace rigcal::calib {
@@ -17,6 +19,7 @@ Edge FailedFor(std::vector<Diagnosis> diagnoses, Edge edge) {
   PutLayoutFirst(diagnoses);
   edge.state = EdgeState::kFailed;
   edge.diagnoses = std::move(diagnoses);
+  for (Diagnosis& diagnosis : edge.diagnoses) edge.figures.merge(std::exchange(diagnosis.figures, {}));
   return edge;
 }
 
@@ -26,6 +29,22 @@ Edge Good(const Se3& T_a_b, Uncertainty uncertainty, std::vector<Diagnosis> note
   edge.uncertainty = std::move(uncertainty);
   edge.diagnoses = std::move(notes);
   return edge;
+}
+
+void FilesFound::Add(std::size_t capture_idx, bool readable, bool board) {
+  ++files;
+  with_board += board ? 1 : 0;
+  if (readable) return;
+  ++unreadable;
+  if (!first_unreadable_idx) first_unreadable_idx = capture_idx;
+}
+
+void AddFilesFound(const FilesFound& found, const std::string& side, Edge& edge) {
+  edge.figures["files" + side] = static_cast<double>(found.files);
+  edge.figures["files_with_board" + side] = static_cast<double>(found.with_board);
+  if (!found.first_unreadable_idx) return;
+  edge.figures["files_unreadable" + side] = static_cast<double>(found.unreadable);
+  edge.figures["first_unreadable" + side + "_idx"] = static_cast<double>(*found.first_unreadable_idx);
 }
 
 void Append(std::vector<Diagnosis> more, std::vector<Diagnosis>& diagnoses) {

@@ -1,6 +1,7 @@
 // What the finished edges of all methods share.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,20 @@ namespace rigcal::calib {
 
 // Of a pair that is not solved yet.
 [[nodiscard]] Edge UnsolvedEdge(const SensorId& a, const SensorId& b, Method method, std::size_t captures);
-// Failed; a board that is described wrong is said before everything that follows from it.
+// Failed; a board that is described wrong is said before everything that follows from it. Figures of the diagnoses are
+// the edge's from then on.
 [[nodiscard]] Edge FailedFor(std::vector<Diagnosis> diagnoses, Edge edge);
 [[nodiscard]] Edge Good(const Se3& T_a_b, Uncertainty uncertainty, std::vector<Diagnosis> notes, Edge edge);
+
+// What the files of one sensor of a pair hold, capture by capture: pictures, clouds or rows of poses.
+struct FilesFound {
+  std::size_t files = 0, unreadable = 0, with_board = 0;  // of a tracker every row counts as one with a board
+  std::optional<std::size_t> first_unreadable_idx;        // into the captures of the pair
+  void Add(std::size_t capture_idx, bool readable, bool board);
+};
+// "files_a" and "files_with_board_a" with `side` "_a"; where there are any, "files_unreadable_a" and
+// "first_unreadable_a_idx".
+void AddFilesFound(const FilesFound& found, const std::string& side, Edge& edge);
 
 void Append(std::vector<Diagnosis> more, std::vector<Diagnosis>& diagnoses);
 // "fx_a_px", ..., "k1_a_ratio" with `camera` "_a".

@@ -1,5 +1,6 @@
 #include "server/calib/core/wording.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -71,6 +72,16 @@ const char* FewMeanText(std::size_t used, std::size_t for_jackknife) {
 void MissedCaptures::Add(const CaptureId& capture, const std::string& why) {
   if (captures.empty()) first_reason = FirstReason(why);
   captures.push_back(capture);
+}
+
+Diagnosis OfSide(Diagnosis diagnosis, const std::string& side) {
+  std::map<std::string, double> figures;
+  for (const auto& [name, value] : diagnosis.figures) {
+    const std::size_t unit = std::min(name.rfind('_'), name.size());
+    figures.emplace(name.substr(0, unit) + side + name.substr(unit), value);
+  }
+  diagnosis.figures = std::move(figures);
+  return diagnosis;
 }
 
 Diagnosis AsDiagnosis(const std::string& whose, const std::string& code, const Error& error) {

@@ -59,6 +59,10 @@ inline constexpr const char* kTurnMore =
     "on them, help.";
 inline constexpr const char* kDriveElsewhere = "Drive the robot to different places between captures. ";
 
+// What is said of a camera by itself, as of one side of a pair, "_a" or "_b": its figure "board_tilt_rad" becomes
+// "board_tilt_a_rad".
+[[nodiscard]] Diagnosis OfSide(Diagnosis diagnosis, const std::string& side);
+
 // "a and b: what."
 [[nodiscard]] Diagnosis AsDiagnosis(const std::string& whose, const std::string& code, const Error& error);
 [[nodiscard]] Diagnosis BoardNotFound(const SensorId& camera, const std::string& board, const MissedCaptures& missed);

@@ -252,7 +252,7 @@ OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& p
     return Finished(problem, work);
   }
   auto camera = EstimateCameraBy(problem.solve_camera, CameraOf(problem));
-  if (!camera) return tl::unexpected(camera.error());
+  if (!camera) return tl::unexpected(OfSide(std::move(camera.error()), SideOfCamera(problem)));
   if (!problem.camera.intrinsics && camera->T_cam_board.size() < kLidarViewsForIntrinsics)
     return tl::unexpected(TooFewForIntrinsics(problem, camera->T_cam_board.size()));
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;

@@ -3,6 +3,7 @@
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/core/pair_edge.h"
+#include "server/calib/core/selection.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
@@ -45,10 +46,22 @@ Edge EdgeOf(const LidarCameraProblem& problem) {
                       problem.captures.size());
 }
 
+void AddFiles(const LidarCameraProblem& problem, Edge& edge) {
+  FilesFound pictures, clouds;
+  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
+    const LidarCameraCapture& capture = problem.captures[idx];
+    if (capture.view) pictures.Add(idx, !NoPicture(capture), Sees(capture.view, problem.board));
+    if (capture.cloud) clouds.Add(idx, !NoCloud(capture), capture.cloud->found);
+  }
+  AddFilesFound(pictures, SideOfCamera(problem), edge);
+  AddFilesFound(clouds, problem.camera_is_a ? "_b" : "_a", edge);
+}
+
 Edge FailedEdge(const LidarCameraProblem& problem, std::vector<Diagnosis> diagnoses) {
   Edge edge = EdgeOf(problem);
   for (const LidarCameraCapture& capture : problem.captures)
     edge.captures.push_back({capture.capture, 0.0, false, "the pair was not solved"});
+  AddFiles(problem, edge);
   AddMissing(problem, diagnoses);
   return FailedFor(std::move(diagnoses), std::move(edge));
 }
@@ -58,12 +71,13 @@ std::vector<CameraFit> FitsOf(const LidarCameraProblem& problem, const CameraEst
   return {FitOrSeen(CameraOf(problem), camera)};
 }
 
-void AddSystematics(const LidarCameraEstimate& estimate, Edge& edge) {
+void AddSystematics(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
   if (!estimate.KnowsSystematics()) return;
   edge.figures["range_bias_m"] = estimate.range_bias_m;
   edge.figures["range_bias_sigma_m"] = estimate.range_bias_sigma_m;
   edge.figures["board_scale_ratio"] = estimate.board_scale_ratio;
   edge.figures["board_scale_sigma_ratio"] = estimate.board_scale_sigma_ratio;
+  edge.figures["board_square_m"] = problem.board.square_m;
 }
 
 // Across the plane of the boards' normals, in the frame of a.
@@ -76,7 +90,7 @@ void AddAxis(const LidarCameraProblem& problem, const LidarCameraEstimate& estim
 
 void AddFigures(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, Edge& edge) {
   AddAxis(problem, estimate, edge);
-  AddSystematics(estimate, edge);
+  AddSystematics(problem, estimate, edge);
   std::size_t points = 0;
   for (const auto& [capture, check] : estimate.checks) points += check.points;
   edge.figures["captures_used"] = static_cast<double>(estimate.patch_idx.size());
@@ -113,6 +127,14 @@ void AddNotes(const LidarCameraProblem& problem, const LidarCameraEstimate& esti
   AddMissing(problem, notes);
 }
 
+// Solved, and not believed.
+Edge Refused(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate, std::vector<Diagnosis> diagnoses) {
+  Edge edge = FailedEdge(problem, std::move(diagnoses));
+  edge.captures = estimate.residuals;
+  AddFigures(problem, estimate, edge);
+  return edge;
+}
+
 Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   std::vector<Diagnosis> notes;
   if (fits) *fits = FitsOf(problem, nullptr);
@@ -122,15 +144,12 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   if (const Status widened = WidenSystematics(problem, *estimate); !widened)
     return FailedEdge(problem, {NotSolvable(problem, widened.error())});
   if (std::abs(estimate->board_scale_ratio) > kScaleMax_ratio && estimate->SuspectsBoardSize())
-    return FailedEdge(problem, {BoardSizeSuspected(problem, *estimate)});
+    return Refused(problem, *estimate, {BoardSizeSuspected(problem, *estimate)});
   if (std::abs(estimate->range_bias_m) > kBiasMax_m && estimate->SuspectsRangeBias())
-    return FailedEdge(problem, {RangeBiasSuspected(problem, *estimate)});
+    return Refused(problem, *estimate, {RangeBiasSuspected(problem, *estimate)});
   if (!(estimate->rms_m <= kHighRms_m && estimate->rms_rad <= kHighRms_rad)) {
     notes.insert(notes.begin(), HighLidarResidual(problem, *estimate));
-    Edge edge = FailedEdge(problem, std::move(notes));
-    edge.captures = estimate->residuals;
-    AddFigures(problem, *estimate, edge);
-    return edge;
+    return Refused(problem, *estimate, std::move(notes));
   }
   auto uncertainty = JackknifeLidarCamera(problem, *estimate);
   if (!uncertainty) return FailedEdge(problem, {NotSolvable(problem, uncertainty.error())});

@@ -11,6 +11,11 @@
 
 namespace rigcal::calib {
 
+// Which end of the edge the camera is: "_a" or "_b", as its figures have it.
+[[nodiscard]] inline const char* SideOfCamera(const LidarCameraProblem& problem) {
+  return problem.camera_is_a ? "_a" : "_b";
+}
+
 struct UsedPatch {
   std::size_t capture_idx = 0, patch_idx = 0;
 };

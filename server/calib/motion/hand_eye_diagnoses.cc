@@ -66,7 +66,9 @@ Diagnosis FewMotions(const HandEyeProblem& problem, std::size_t used) {
 }
 
 Diagnosis CameraFailed(const HandEyeProblem& problem, const HandEyeSide& side, const Diagnosis& why) {
-  return {why.code, Worded("{}: {} gives no poses: {}", {PairOf(problem), side.sensor.id, why.what}), why.cure};
+  Diagnosis of_pair = OfSide(why, &side == &problem.a ? "_a" : "_b");
+  of_pair.what = Worded("{}: {} gives no poses: {}", {PairOf(problem), side.sensor.id, why.what});
+  return of_pair;
 }
 
 Diagnosis MotionsContradict(const HandEyeProblem& problem, std::size_t captures) {

@@ -1,7 +1,9 @@
+#include <iterator>
 #include <set>
 
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/core/pair_edge.h"
+#include "server/calib/core/selection.h"
 #include "server/calib/motion/hand_eye.h"
 #include "server/calib/motion/hand_eye_work.h"
 
@@ -27,10 +29,29 @@ Edge EdgeOf(const HandEyeProblem& problem) {
   return edge;
 }
 
+FilesFound FilesOf(const HandEyeSide& side, const std::set<CaptureId>& captures) {
+  FilesFound found;
+  const auto place = [&](const CaptureId& capture) {
+    return static_cast<std::size_t>(std::distance(captures.begin(), captures.find(capture)));
+  };
+  for (const auto& [capture, view] : side.views)
+    found.Add(place(capture), view.found || view.image_width_px > 0, side.board && Sees(view, *side.board));
+  for (const TimedPose& pose : side.poses)
+    if (!pose.capture.empty()) found.Add(place(pose.capture), true, true);
+  return found;
+}
+
+void AddFiles(const HandEyeProblem& problem, const std::set<CaptureId>& captures, Edge& edge) {
+  if (problem.method == Method::kPoseStreams) return;
+  AddFilesFound(FilesOf(problem.a, captures), "_a", edge);
+  AddFilesFound(FilesOf(problem.b, captures), "_b", edge);
+}
+
 Edge FailedEdge(const HandEyeProblem& problem, const Diagnosis& diagnosis) {
   Edge edge = EdgeOf(problem);
-  for (const CaptureId& capture : AllCaptures(problem))
-    edge.captures.push_back({capture, 0.0, false, "the pair was not solved"});
+  const std::set<CaptureId> captures = AllCaptures(problem);
+  for (const CaptureId& capture : captures) edge.captures.push_back({capture, 0.0, false, "the pair was not solved"});
+  AddFiles(problem, captures, edge);
   std::vector<Diagnosis> diagnoses = {diagnosis};
   Append(MissedViews(problem), diagnoses);
   return FailedFor(std::move(diagnoses), std::move(edge));

@@ -70,10 +70,11 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
 }
 
 void CheckTilt(const StereoProblem& problem, const std::vector<std::size_t>& used, std::vector<Diagnosis>& diagnoses) {
-  for (const auto camera : {&StereoCapture::a, &StereoCapture::b}) {
+  for (const auto& [camera, side] : {std::pair{&StereoCapture::a, "_a"}, {&StereoCapture::b, "_b"}}) {
     const Sensor& sensor = SensorOf(problem, camera);
     if (sensor.intrinsics) continue;
-    if (auto no_tilt = WhyNoTilt(sensor.id, ViewsOf(problem, used, camera))) diagnoses.push_back(std::move(*no_tilt));
+    if (auto no_tilt = WhyNoTilt(sensor.id, ViewsOf(problem, used, camera)))
+      diagnoses.push_back(OfSide(std::move(*no_tilt), side));
   }
 }
 

@@ -26,6 +26,16 @@ Edge EdgeOf(const StereoProblem& problem) {
   return UnsolvedEdge(problem.camera_a.id, problem.camera_b.id, Method::kStereo, problem.captures.size());
 }
 
+void AddFiles(const StereoProblem& problem, Edge& edge) {
+  for (const auto& [camera, side] : {std::pair{&StereoCapture::a, "_a"}, {&StereoCapture::b, "_b"}}) {
+    FilesFound found;
+    for (std::size_t idx = 0; idx < problem.captures.size(); ++idx)
+      if (const std::optional<BoardView>& view = problem.captures[idx].*camera)
+        found.Add(idx, view->found || view->image_width_px > 0, Sees(view, problem.board));
+    AddFilesFound(found, side, edge);
+  }
+}
+
 Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) {
   Edge edge = EdgeOf(problem);
   const Selection selection = Select(problem);
@@ -35,6 +45,7 @@ Edge FailedEdge(const StereoProblem& problem, std::vector<Diagnosis> diagnoses) 
                              why == selection.unused.end() ? "the pair was not solved" : why->second});
   }
   edge.figures["captures_both"] = static_cast<double>(CountBoth(problem, selection.used));
+  AddFiles(problem, edge);
   AddMissed(problem, diagnoses);
   return FailedFor(std::move(diagnoses), std::move(edge));
 }
@@ -63,7 +74,7 @@ double HighestRms_px(const StereoProblem& problem) {
 
 Diagnosis LensAsCure(const StereoProblem& problem, Diagnosis diagnosis) {
   return WithLensAsCure(std::move(diagnosis),
-                        {CameraOf(problem, &StereoCapture::a), CameraOf(problem, &StereoCapture::b)});
+                        {{"_a", CameraOf(problem, &StereoCapture::a)}, {"_b", CameraOf(problem, &StereoCapture::b)}});
 }
 
 // Residuals that are not refused yet, where the lens is what they come from.

@@ -48,10 +48,22 @@ Edge EdgeOf(const TrackerLidarProblem& problem) {
                       Method::kTrackerLidar, problem.captures.size());
 }
 
+void AddFiles(const TrackerLidarProblem& problem, Edge& edge) {
+  FilesFound poses, clouds;
+  for (std::size_t idx = 0; idx < problem.captures.size(); ++idx) {
+    const TrackerLidarCapture& capture = problem.captures[idx];
+    if (capture.T_world_body) poses.Add(idx, true, true);
+    if (!capture.clouds.empty()) clouds.Add(idx, capture.clouds.front().points > 0, !PatchesOf(capture).empty());
+  }
+  AddFilesFound(poses, problem.tracker_is_a ? "_a" : "_b", edge);
+  AddFilesFound(clouds, problem.tracker_is_a ? "_b" : "_a", edge);
+}
+
 Edge FailedEdge(const TrackerLidarProblem& problem, const Diagnosis& diagnosis) {
   Edge edge = EdgeOf(problem);
   for (const TrackerLidarCapture& capture : problem.captures)
     edge.captures.push_back({capture.capture, 0.0, false, "the pair was not solved"});
+  AddFiles(problem, edge);
   std::vector<Diagnosis> diagnoses = {diagnosis};
   Append(MissedClouds(problem), diagnoses);
   return FailedFor(std::move(diagnoses), std::move(edge));

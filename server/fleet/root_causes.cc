@@ -1,0 +1,57 @@
+#include "server/fleet/root_causes.h"
+
+#include <algorithm>
+#include <set>
+
+#include "server/model/past.h"
+
+namespace rigcal::fleet {
+namespace {
+
+// Sessions that nothing was measured in any more say nothing of the rig.
+SessionHeaders WithoutPast(const SessionHeaders& headers, const std::vector<Edge>& edges) {
+  SessionHeaders current;
+  for (const Edge& edge : edges)
+    if (const auto header = headers.find(edge.session); header != headers.end() && !IsPast(edge))
+      current.insert(*header);
+  return current;
+}
+
+bool IsWorse(const RootCause& x, const RootCause& y) {
+  const bool x_exchanged = x.kind == CauseKind::kExchanged, y_exchanged = y.kind == CauseKind::kExchanged;
+  return x_exchanged != y_exchanged ? x_exchanged : x.edges.size() > y.edges.size();
+}
+
+}  // namespace
+
+std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                      const SessionHeaders& headers, const SessionTimes& captured_at) {
+  const SessionHeaders current = WithoutPast(headers, edges);
+  CauseSearch search{edges, solution, current, captured_at};
+  search.open = FindOpenFailures(edges, captured_at);
+  for (const auto find : {FindFileCauses, FindBoardCounts, FindExchanged, FindBoardSizes, FindLensModels,
+                          FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal, FindNotMeasured})
+    find(search);
+  std::stable_sort(search.causes.begin(), search.causes.end(), IsWorse);
+  return std::move(search.causes);
+}
+
+Finding FindingOf(const RootCause& cause) {
+  Finding finding = cause.said;
+  if (!cause.command.empty()) finding.what_to_do += ", then `" + cause.command + "`";
+  return finding;
+}
+
+std::set<EdgeId> ExplainedBy(const std::vector<RootCause>& causes) {
+  std::set<EdgeId> explained;
+  for (const RootCause& cause : causes) explained.insert(cause.edges.begin(), cause.edges.end());
+  return explained;
+}
+
+std::vector<EdgeId> IdsOf(const std::vector<const Edge*>& edges) {
+  std::vector<EdgeId> ids;
+  for (const Edge* edge : edges) ids.push_back(edge->id);
+  return ids;
+}
+
+}  // namespace rigcal::fleet

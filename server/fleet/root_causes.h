@@ -1,0 +1,85 @@
+// What failures of pairs have in common, and what else is wrong with a rig as a whole: each cause once, however many
+// pairs it fails, with one thing to do.
+#pragma once
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/fleet/failures.h"
+#include "server/fleet/findings.h"
+
+namespace rigcal::fleet {
+
+enum class CauseKind {
+  kExchanged,        // two sensors sit where the drawing has the other
+  kFilesMissing,     // a sensor without files of most captures
+  kFilesUnreadable,  // a sensor most of whose files cannot be read
+  kBoardCounts,      // a board that no camera finds in any picture
+  kBoardSize,        // a board that lidars and cameras together see larger or smaller than given
+  kLensModel,        // a camera that another lens model fits
+  kBoardTilt,        // boards that all face one way
+  kBoardPlaces,      // boards in a part of the picture only
+  kBoardUnseen,      // a sensor that sees no board in most of its files
+  kShortSession,     // a session of a few captures
+  kFarFromNominal,   // sensors that are not where the drawing has them
+  kNotMeasured       // sensors that no edge names
+};
+
+struct RootCause {
+  CauseKind kind = CauseKind::kNotMeasured;
+  std::vector<SensorId> sensors;    // that it is about
+  std::vector<TargetId> boards;     // likewise
+  std::vector<CaptureId> captures;  // likewise: the first whose file cannot be read
+  std::vector<EdgeId> edges;        // that it explains, of FindOpenFailures(); none: it failed no pair
+  Finding said;
+  std::string command;  // to copy when it is done; empty: none
+};
+
+// Sensors that are exchanged first, then by the number of edges that a cause explains. An edge has one cause, but where
+// lenses of both its cameras are to blame. `headers`: of the sessions of the edges; without them boards have no names,
+// and nothing is held against a drawing.
+[[nodiscard]] std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                                    const SessionHeaders& headers, const SessionTimes& captured_at);
+// The sentence and the action, with the command.
+[[nodiscard]] Finding FindingOf(const RootCause& cause);
+[[nodiscard]] std::set<EdgeId> ExplainedBy(const std::vector<RootCause>& causes);
+
+// What the causes are looked for in. `open` has the failures that no cause found so far explains.
+struct CauseSearch {
+  const std::vector<Edge>& edges;
+  const GraphSolution& solution;
+  const SessionHeaders& headers;
+  const SessionTimes& captured_at;
+  std::vector<const Edge*> open = {};
+  std::vector<RootCause> causes = {};
+
+  // Takes those of which `is_so` out of `open`.
+  template <typename IsSo>
+  std::vector<const Edge*> Take(const IsSo& is_so) {
+    const auto taken = std::stable_partition(open.begin(), open.end(), [&](const Edge* edge) { return !is_so(*edge); });
+    std::vector<const Edge*> explained(taken, open.end());
+    open.erase(taken, open.end());
+    return explained;
+  }
+};
+[[nodiscard]] std::vector<EdgeId> IdsOf(const std::vector<const Edge*>& edges);
+
+// One per kind of cause, in the order in which they are asked: what is certain before what it may look like.
+void FindFileCauses(CauseSearch& search);      // kFilesMissing, kFilesUnreadable
+void FindBoardCounts(CauseSearch& search);     // kBoardCounts
+void FindExchanged(CauseSearch& search);       // kExchanged
+void FindBoardSizes(CauseSearch& search);      // kBoardSize
+void FindLensModels(CauseSearch& search);      // kLensModel
+void FindAlikeBoards(CauseSearch& search);     // kBoardTilt, kBoardPlaces
+void FindUnseenBoards(CauseSearch& search);    // kBoardUnseen
+void FindShortSessions(CauseSearch& search);   // kShortSession
+void FindFarFromNominal(CauseSearch& search);  // kFarFromNominal; after FindExchanged
+void FindNotMeasured(CauseSearch& search);     // kNotMeasured
+
+constexpr const char* kPushAgain = "rigcal push FOLDER";
+constexpr const char* kCheckFirst = "rigcal check FOLDER";
+constexpr int kCapturesMore = 8;  // that are asked for where boards were too few or too much alike
+
+}  // namespace rigcal::fleet
