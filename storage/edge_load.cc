@@ -167,9 +167,11 @@ Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session) {
   return LoadSelection(store, "edges of session " + session.str(), {"e.session_id = ?", session.str()});
 }
 
-Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, bool blocks) {
-  return LoadSelection(store, "edges of robot " + robot.str(),
-                       {"e.number IN (SELECT edge_number FROM waiting_merge WHERE robot_id = ?)", robot.str(), blocks});
+Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, EdgeParts parts) {
+  const std::string subject = "edges of robot " + robot.str();
+  const Selection selection{"e.number IN (SELECT edge_number FROM waiting_merge WHERE robot_id = ?)", robot.str()};
+  if (parts == EdgeParts::kAll) return LoadSelection(store, subject, selection);
+  return Load<std::vector<Edge>>(store, subject, [&]() -> Result<std::vector<Edge>> { return LoadRows(store, selection).edges; });
 }
 
 Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions) {

@@ -20,8 +20,10 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::optional<Edge>> LoadEdge(Store& store, const EdgeId& id);
 // All edges of a robot, good and failed, sorted by id. With `blocks` false the block vectors are left out.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
-// Those that are in no merged edge (merged_edges.h), likewise.
-[[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, bool blocks);
+// Those that are in no merged edge (merged_edges.h), sorted by id: whole, or ids, ends, state, pose and uncertainty without
+// its block vectors, which is what a graph is made of.
+enum class EdgeParts { kAll, kRow };
+[[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, EdgeParts parts);
 // Those of `ids` that are there, sorted by id; likewise.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids, bool blocks = true);
 // Ids of the robot's edges, the one that began to count last first, up to `limit`: those after the edge `before`, the first ones if it

@@ -39,9 +39,12 @@ bool SettleSides(Sides& sides) {
       for (std::size_t s = 0; s < residuals.size(); ++s)
         visits[side->sensors[s]].insert(visits[side->sensors[s]].end(), residuals[s].begin(), residuals[s].end());
     }
+    bool changed = false;
     for (SessionFusion* side : {&sides.before.fusion, &sides.after.fusion})
       for (std::size_t s = 0; s < side->sensors.size(); ++s)
-        side->scatter[s] = BetweenVisits(visits[side->sensors[s]], 2);
+        if (const VisitVariance scatter = BetweenVisits(visits[side->sensors[s]], 2); scatter != side->scatter[s])
+          side->scatter[s] = scatter, changed = true;
+    if (!changed) return true;
   }
   return true;
 }

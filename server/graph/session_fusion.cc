@@ -1,6 +1,7 @@
 #include "server/graph/session_fusion.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -171,24 +172,38 @@ Normal NormalOf(const SessionFusion& fusion) {
 
 constexpr int kHalvings = 60;
 
-double SquaresAt(const std::vector<VisitResidual>& visits, int part, double variance) {
-  double squares = 0.0;
+// e^T (C + v I)^-1 e is the sum of square / (variance + v), along the axes of C.
+struct AlongAxis {
+  double square = 0.0, variance = 0.0;
+};
+
+std::vector<AlongAxis> AlongAxes(const std::vector<VisitResidual>& visits, int part) {
+  std::vector<AlongAxis> axes;
   for (const VisitResidual& visit : visits) {
-    Eigen::Matrix3d C = visit.own.block<3, 3>(part, part);
-    C.diagonal().array() += variance;
-    squares += visit.e.segment<3>(part).dot(C.ldlt().solve(visit.e.segment<3>(part)));
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(visit.own.block<3, 3>(part, part));
+    const Eigen::Vector3d e = eigen.eigenvectors().transpose() * visit.e.segment<3>(part);
+    for (int i = 0; i < 3; ++i) axes.push_back({e(i) * e(i), std::max(0.0, eigen.eigenvalues()(i))});
   }
+  return axes;
+}
+
+double SquaresAt(const std::vector<AlongAxis>& axes, double variance) {
+  double squares = 0.0;
+  for (const AlongAxis& axis : axes)
+    if (axis.square > 0.0) squares += axis.square / (axis.variance + variance);
   return squares;
 }
 
 double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means) {
   const double expected = 3.0 * (static_cast<double>(visits.size()) - means);
-  if (expected <= 0 || SquaresAt(visits, part, 0.0) <= expected) return 0.0;
+  if (expected <= 0) return 0.0;
+  const std::vector<AlongAxis> axes = AlongAxes(visits, part);
+  if (SquaresAt(axes, 0.0) <= expected) return 0.0;
   double low = 0.0, high = 0.0;
-  for (const VisitResidual& visit : visits) high += visit.e.segment<3>(part).squaredNorm();  // sum e^2 / high <= 1
+  for (const AlongAxis& axis : axes) high += axis.square;  // sum e^2 / high <= 1
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
-    (SquaresAt(visits, part, middle) > expected ? low : high) = middle;
+    (SquaresAt(axes, middle) > expected ? low : high) = middle;
   }
   return high;
 }

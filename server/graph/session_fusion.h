@@ -36,6 +36,7 @@ constexpr std::size_t kFusedSensorsMax = 200;
 struct VisitVariance {
   double translation_m2 = 0.0, rotation_rad2 = 0.0;
   [[nodiscard]] Matrix6d Matrix() const;
+  bool operator==(const VisitVariance&) const = default;
 };
 
 // What a visit said of the sensor, less where the sensor is on the whole.

@@ -66,15 +66,15 @@ Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::v
   return MakePastWhatWasRemounted(store, counts.remounts, edges);
 }
 
-Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks) {
+Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, storage::EdgeParts parts) {
   CurrentEdges current;
   std::vector<Edge>& edges = current.edges;
   RIGCAL_ASSIGN(current.counts, storage::LoadWhatCounts(store, robot));
   RIGCAL_ASSIGN(current.all, storage::IsMergeOutdated(store, robot, current.counts));
   if (current.all) {
-    RIGCAL_ASSIGN(edges, storage::LoadEdges(store, robot, blocks));
+    RIGCAL_ASSIGN(edges, storage::LoadEdges(store, robot, parts == storage::EdgeParts::kAll));
   } else {
-    RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, blocks));
+    RIGCAL_ASSIGN(edges, storage::LoadUnmergedEdges(store, robot, parts));
     RIGCAL_ASSIGN(current.merged, storage::LoadMergedEdges(store, robot));
   }
   RIGCAL_TRY(MarkPast(store, current.counts, edges));

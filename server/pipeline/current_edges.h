@@ -5,6 +5,7 @@
 
 #include "server/model/merged_edge.h"
 #include "server/model/standing.h"
+#include "storage/edges.h"
 #include "storage/merged_edges.h"
 #include "storage/store.h"
 
@@ -17,9 +18,8 @@ struct CurrentEdges {
   storage::WhatCounts counts;      // by which edges are past
 };
 // Edges that were retired, those of a superseded session, and those of a sensor that was remounted since are failed, with that
-// as their only diagnosis (IsPast). Where that changes for edges that were merged, no edge is merged. Block vectors only on demand. Call
-// within one Read.
-[[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, bool blocks);
+// as their only diagnosis (IsPast). Where that changes for edges that were merged, no edge is merged. Call within one Read.
+[[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, storage::EdgeParts parts);
 // Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason. Call within one Read.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEdges& current,
                                                         const std::vector<SessionId>& sessions);

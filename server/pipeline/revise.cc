@@ -110,10 +110,10 @@ struct RobotEdges {
   std::int64_t watermark = 0, standing_watermark = 0;
 };
 
-Status LoadForGraph(storage::Store& store, const RobotId& robot, bool blocks, RobotEdges& loaded) {
+Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, RobotEdges& loaded) {
   RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
   RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
-  RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, blocks));
+  RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, parts));
   RIGCAL_ASSIGN(loaded.listed, storage::LoadListedSensors(store, robot));
   RIGCAL_ASSIGN(loaded.reference, LoadReference(store, robot));
   return {};
@@ -133,7 +133,7 @@ Status LoadHeaders(storage::Store& store, const std::vector<Edge>& edges, fleet:
 Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_TRY(LoadForGraph(store, robot, true, loaded));
+    RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kAll, loaded));
     RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
     RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current));
     RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
@@ -219,10 +219,10 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
 
 }  // namespace
 
-Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks) {
+Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
   RobotEdges loaded;
-  RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, blocks, loaded); }));
-  return GraphOf(loaded, robot, blocks);
+  RIGCAL_TRY(store.Read([&] { return LoadForGraph(store, robot, storage::EdgeParts::kRow, loaded); }));
+  return GraphOf(loaded, robot, false);
 }
 
 bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }

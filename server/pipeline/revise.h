@@ -17,8 +17,8 @@ struct RobotGraph {
   Graph graph;
   std::int64_t watermark = 0, standing_watermark = 0;
 };
-// Block vectors only on demand.
-[[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot, bool blocks = false);
+// As the live state needs it: `edges` are storage::EdgeParts::kRow.
+[[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot);
 
 // Merges the older edges of pairs that were pushed often (graph/merge_edges.h), solves, judges and commits. The same edges that
 // count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond

@@ -49,7 +49,7 @@ class MergedEdgesTest : public StoreTest {
   }
   std::vector<EdgeId> Unmerged() {
     std::vector<EdgeId> ids;
-    const auto edges = LoadUnmergedEdges(store_, kRobot, true);
+    const auto edges = LoadUnmergedEdges(store_, kRobot, EdgeParts::kAll);
     for (const Edge& edge : *edges) ids.push_back(edge.id);
     return ids;
   }
@@ -153,7 +153,7 @@ TEST_F(MergedEdgesTest, OneRobotHasNoneOfAnother) {
   ASSERT_TRUE(AppendRobot(store_, RobotId("other"), {1}));
   Merge(MakeMerged(0.1), {ids_[0]}, {});
   EXPECT_TRUE(LoadMergedEdges(store_, RobotId("other"), 0)->empty());
-  EXPECT_TRUE(LoadUnmergedEdges(store_, RobotId("other"), true)->empty());
+  EXPECT_TRUE(LoadUnmergedEdges(store_, RobotId("other"), EdgeParts::kAll)->empty());
 }
 
 // Version 14, which knew no sessions in merged edges and found repeats, remounts and listed sensors in the manifests.

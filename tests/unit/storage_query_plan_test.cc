@@ -85,7 +85,7 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
   EXPECT_TRUE(LoadStandingWatermark(store_, kRobot));
   EXPECT_TRUE(LoadEdges(store_, kRobot, true));
-  EXPECT_TRUE(LoadUnmergedEdges(store_, kRobot, true));
+  EXPECT_TRUE(LoadUnmergedEdges(store_, kRobot, EdgeParts::kAll));
   EXPECT_TRUE(LoadMergedEdges(store_, kRobot));
   EXPECT_TRUE(IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   EXPECT_TRUE(LoadListedSensors(store_, kRobot));
