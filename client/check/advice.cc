@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "client/check/words.h"
 #include "server/calib/core/wording.h"
 
 namespace rigcal::check {
@@ -27,13 +28,11 @@ bool IsWorse(const Advice& x, const Advice& y) {
   return x.captures_more > y.captures_more;
 }
 
-// Blurred pictures and open sides do not keep a pair from being judged by itself.
-std::set<SensorId> Explained(const std::vector<Advice>& of_sensors) {
-  std::set<SensorId> explained;
-  for (const Advice& advice : of_sensors)
-    if (advice.urgency != Urgency::kRough)
-      for (const std::string& name : advice.of) explained.insert(SensorId(name));
-  return explained;
+std::vector<SensorId> LidarsOnlyCounted(const Findings& findings) {
+  std::vector<SensorId> lidars;
+  for (const LidarFound& lidar : findings.lidars)
+    if (IsInPair(findings, lidar.lidar)) lidars.push_back(lidar.lidar);
+  return lidars;
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ std::set<SensorId> Explained(const std::vector<Advice>& of_sensors) {
 Judgement JudgeFindings(const Findings& findings) {
   Judgement judgement;
   std::vector<Advice> all = SensorAdvice(findings);
-  const std::vector<Advice> of_pairs = PairAdvice(findings, Explained(all));
+  const std::vector<Advice> of_pairs = PairAdvice(findings, all);
   all.insert(all.end(), of_pairs.begin(), of_pairs.end());
   if (findings.pairs.empty())
     all.push_back({{findings.robot.str()},
@@ -54,11 +53,19 @@ Judgement JudgeFindings(const Findings& findings) {
   for (const Advice& advice : judgement.advice)
     judgement.captures_more = std::max(judgement.captures_more, advice.captures_more);
   judgement.remarks = RemarksOf(findings);
+  for (std::string& remark : PairRemarks(findings)) judgement.remarks.push_back(std::move(remark));
+  judgement.clouds_of = LidarsOnlyCounted(findings);
   return judgement;
 }
 
 std::string Headline(const Judgement& judgement) {
-  if (judgement.IsEnough()) return "Enough.";
+  if (judgement.IsEnough() && judgement.clouds_of.empty()) return "Enough.";
+  if (judgement.IsEnough()) {
+    std::vector<std::string> lidars;
+    for (const SensorId& lidar : judgement.clouds_of) lidars.push_back(lidar.str());
+    return "Enough, as far as was looked: whether the clouds of " + NamesText(lidars) +
+           " show the board is found after the push.";
+  }
   if (judgement.captures_more == 0) return "Not enough yet.";
   const bool alone = judgement.advice.size() == 1;
   return std::string("Take ") + (alone ? "" : "at least ") + calib::CountText(judgement.captures_more, "more capture") +

@@ -1,7 +1,6 @@
 // What a technician should do before leaving the robot: the verdict.
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -22,18 +21,21 @@ struct Judgement {
   std::vector<Advice> advice;        // worst first; empty: the session will do
   std::vector<std::string> remarks;  // files that are missing, unreadable, alike, blurred: sentences
   std::size_t captures_more = 0;     // at the least, by the advice that wants most
+  std::vector<SensorId> clouds_of;   // lidars whose clouds were only counted: boards in them were not looked for
   [[nodiscard]] bool IsEnough() const { return advice.empty(); }
 };
 [[nodiscard]] Judgement JudgeFindings(const Findings& findings);
-// "Enough.", "Take 7 more captures.", "Take at least 7 more captures.", "Not enough yet."
+// "Enough.", "Enough, as far as was looked: ...", "Take 7 more captures.", "Take at least 7 more captures.", "Not enough yet."
 [[nodiscard]] std::string Headline(const Judgement& judgement);
 
 // sensor_advice.cc: of each sensor that is in a pair. Whoever has advice here explains its pairs, too.
 [[nodiscard]] std::vector<Advice> SensorAdvice(const Findings& findings);
 // Likewise of one camera that sees its board often enough: its lens, its sharpness.
 [[nodiscard]] std::vector<Advice> LensAdvice(const CameraFound& camera, std::size_t enough);
-// pair_advice.cc: of pairs, but for those that advice on a sensor explains.
-[[nodiscard]] std::vector<Advice> PairAdvice(const Findings& findings, const std::set<SensorId>& explained);
+// pair_advice.cc: of pairs, but for what advice on one of the two sensors says already, and asks at least as much for.
+[[nodiscard]] std::vector<Advice> PairAdvice(const Findings& findings, const std::vector<Advice>& of_sensors);
+// Pairs of which nothing comes, or not all, while others may make up for it: sentences.
+[[nodiscard]] std::vector<std::string> PairRemarks(const Findings& findings);
 // remarks.cc: what should be known of the files, whether it matters or not.
 [[nodiscard]] std::vector<std::string> RemarksOf(const Findings& findings);
 

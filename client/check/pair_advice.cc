@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "client/check/advice.h"
 #include "client/check/words.h"
@@ -85,12 +86,13 @@ std::optional<Advice> TooRough(const PairFound& pair) {
                 static_cast<std::size_t>(more)};
 }
 
-// Sensors that pairs known whole tie together have one number.
-std::map<SensorId, int> TiedTogether(const Findings& findings) {
-  std::map<SensorId, int> group;
+// Sensors that pairs known whole tie together have one number. `counted`: also those that were only counted.
+using Groups = std::map<SensorId, int>;
+Groups TiedTogether(const Findings& findings, bool counted) {
+  Groups group;
   for (const SensorFiles& files : findings.sensors) group.emplace(files.sensor, static_cast<int>(group.size()));
   for (const PairFound& pair : findings.pairs) {
-    if (!pair.IsWhole()) continue;
+    if (!pair.IsWhole() || (!counted && !pair.edge)) continue;
     const int kept = group.at(pair.pair.a), gone = group.at(pair.pair.b);
     for (auto& [sensor, number] : group)
       if (number == gone) number = kept;
@@ -98,27 +100,64 @@ std::map<SensorId, int> TiedTogether(const Findings& findings) {
   return group;
 }
 
+bool AreTied(const PairFound& pair, const Groups& group) { return group.at(pair.pair.a) == group.at(pair.pair.b); }
+
 // A direction stays open that no other pair closes.
-std::optional<Advice> OpenMotion(const PairFound& pair, const std::map<SensorId, int>& group) {
+std::optional<Advice> OpenMotion(const PairFound& pair, const Groups& group) {
   if (!pair.edge || pair.edge->state == EdgeState::kFailed || pair.IsWhole()) return std::nullopt;
-  if (group.at(pair.pair.a) == group.at(pair.pair.b) || pair.edge->diagnoses.empty()) return std::nullopt;
+  if (AreTied(pair, group) || pair.edge->diagnoses.empty()) return std::nullopt;
   return Advice{{PairText(pair.pair)}, SentenceOf(pair.edge->diagnoses.front()), Urgency::kRough, 0};
+}
+
+// Two that never see the board together, while others tie them: nothing that more captures need mend.
+bool IsNeverTogether(const PairFound& pair, const Groups& group) {
+  return pair.both == 0 && pair.needed.least > 0 && !pair.IsWhole() && AreTied(pair, group);
+}
+
+// Blurred pictures and open sides do not keep a pair from being judged by itself.
+bool IsExplained(const PairFound& pair, const Advice& advice, const std::vector<Advice>& of_sensors) {
+  return std::any_of(of_sensors.begin(), of_sensors.end(), [&](const Advice& of_sensor) {
+    const bool is_end = std::any_of(of_sensor.of.begin(), of_sensor.of.end(), [&](const std::string& name) {
+      return name == pair.pair.a.str() || name == pair.pair.b.str();
+    });
+    if (!is_end || of_sensor.urgency == Urgency::kRough) return false;
+    return of_sensor.urgency == Urgency::kNoAnswer ||
+           (advice.urgency <= of_sensor.urgency && advice.captures_more <= of_sensor.captures_more);
+  });
+}
+
+std::optional<Advice> AdviceOn(const PairFound& pair, const Groups& group) {
+  if (IsNeverTogether(pair, group)) return std::nullopt;
+  std::optional<Advice> advice = TooFew(pair);
+  if (!advice) advice = NoAnswer(pair);
+  if (!advice) advice = TooRough(pair);
+  if (!advice) advice = OpenMotion(pair, group);
+  return advice;
 }
 
 }  // namespace
 
-std::vector<Advice> PairAdvice(const Findings& findings, const std::set<SensorId>& explained) {
-  const std::map<SensorId, int> group = TiedTogether(findings);
+std::vector<Advice> PairAdvice(const Findings& findings, const std::vector<Advice>& of_sensors) {
+  const Groups group = TiedTogether(findings, true);
   std::vector<Advice> all;
-  for (const PairFound& pair : findings.pairs) {
-    if (explained.contains(pair.pair.a) || explained.contains(pair.pair.b)) continue;
-    std::optional<Advice> advice = TooFew(pair);
-    if (!advice) advice = NoAnswer(pair);
-    if (!advice) advice = TooRough(pair);
-    if (!advice) advice = OpenMotion(pair, group);
-    if (advice) all.push_back(std::move(*advice));
-  }
+  for (const PairFound& pair : findings.pairs)
+    if (auto advice = AdviceOn(pair, group); advice && !IsExplained(pair, *advice, of_sensors))
+      all.push_back(std::move(*advice));
   return all;
+}
+
+std::vector<std::string> PairRemarks(const Findings& findings) {
+  const Groups looked_at = TiedTogether(findings, false), group = TiedTogether(findings, true);
+  std::vector<std::string> remarks;
+  for (const PairFound& pair : findings.pairs) {
+    const std::string name = PairText(pair.pair);
+    if (IsNeverTogether(pair, group))
+      remarks.push_back(name + " have no capture in common: nothing comes of this pair; `skip_pairs` in session.yaml "
+                               "leaves it out.");
+    else if (OpenMotion(pair, looked_at) && !OpenMotion(pair, group))
+      remarks.push_back(name + " leaves a direction open; pairs with a lidar, whose clouds were not looked at, may close it.");
+  }
+  return remarks;
 }
 
 }  // namespace rigcal::check

@@ -169,6 +169,9 @@ std::string ReportJson(const Findings& findings, const Judgement& judgement) {
     out.Flag("enough", judgement.IsEnough() && findings.refusals.empty());
     out.Integer("captures_more", static_cast<std::int64_t>(judgement.captures_more));
     out.Text("verdict", Headline(judgement));
+    out.List("clouds_not_looked_at", [&] {
+      for (const SensorId& lidar : judgement.clouds_of) out.Text(lidar.str());
+    });
     WriteAdvice(out, judgement);
     WriteTexts(out, "remarks", judgement.remarks);
     WriteRefusals(out, findings);

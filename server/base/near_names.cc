@@ -23,21 +23,58 @@ std::string Mapped(std::string_view name, char (*map)(char)) {
   return mapped;
 }
 
-// Those in a name, without the zeros before them.
-std::vector<std::string> NumbersOf(std::string_view name) {
-  std::vector<std::string> numbers;
-  bool in_number = false;
+bool IsLetter(char c) { return IsLower(c) || IsUpper(c); }
+
+// Runs of letters and digits.
+std::vector<std::string> PartsOf(std::string_view name) {
+  std::vector<std::string> parts;
+  bool in_part = false;
   for (const char c : name) {
+    const bool is_part = IsDigit(c) || IsLetter(c);
+    if (is_part && !in_part) parts.emplace_back();
+    if (is_part) parts.back() += Lower(c);
+    in_part = is_part;
+  }
+  return parts;
+}
+
+bool HasOnly(std::string_view part, std::string_view characters) {
+  return part.find_first_not_of(characters) == std::string_view::npos;
+}
+
+// "7ba" and "af3b", as serial numbers are; "iv".
+bool IsSerialNumber(std::string_view part) {
+  const bool has_letter = std::any_of(part.begin(), part.end(), IsLetter), has_digit = std::any_of(part.begin(), part.end(), IsDigit);
+  return has_letter && (has_digit ? HasOnly(part, "0123456789abcdef") : HasOnly(part, "ivx"));
+}
+
+// Of digits, without the zeros before them.
+void AddNumbersIn(std::string_view part, std::vector<std::string>& numbers) {
+  bool in_number = false;
+  for (const char c : part) {
     if (IsDigit(c) && !in_number) numbers.emplace_back();
     in_number = IsDigit(c);
     if (in_number && (c != '0' || !numbers.back().empty())) numbers.back() += c;
   }
+}
+
+// What tells the robots of a series apart: numbers, also hexadecimal and Roman ones.
+std::vector<std::string> NumbersOf(std::string_view name) {
+  std::vector<std::string> numbers;
+  for (const std::string& part : PartsOf(name)) {
+    if (IsSerialNumber(part))
+      numbers.push_back(part);
+    else
+      AddNumbersIn(part, numbers);
+  }
   return numbers;
 }
 
+// By itself, or a capital at the end of a word: arm-a, robotB.
 bool IsLoneLetter(std::string_view name, std::size_t at) {
-  const auto is_letter = [&](std::size_t i) { return i < name.size() && (IsLower(name[i]) || IsUpper(name[i])); };
-  return is_letter(at) && !is_letter(at + 1) && (at == 0 || !is_letter(at - 1));
+  const auto is_letter = [&](std::size_t i) { return i < name.size() && IsLetter(name[i]); };
+  const bool after_word = at > 0 && is_letter(at - 1) && !(IsUpper(name[at]) && IsLower(name[at - 1]));
+  return is_letter(at) && !is_letter(at + 1) && !after_word;
 }
 
 // arm-a and arm-b: the letter counts, as a number would.
@@ -45,7 +82,7 @@ bool IsOtherLetter(std::string_view name, std::string_view known) {
   const std::string a = Mapped(name, Lower), b = Mapped(known, Lower);
   if (a.size() != b.size() || a == b) return false;
   const auto at = static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin());
-  return IsLoneLetter(a, at) && IsLoneLetter(b, at);
+  return IsLoneLetter(name, at) && IsLoneLetter(known, at);
 }
 
 std::vector<std::string> CutToTold(std::vector<std::string> names) {

@@ -14,8 +14,8 @@ namespace rigcal {
 [[nodiscard]] std::size_t EditDistance(std::string_view a, std::string_view b);
 
 // Whether `name` is one edit away from `known` and no other name of a series: their numbers are the same but for
-// leading zeros, and no letter that stands alone is another letter (mapper-1 of mapper-01, but not mapper-02; not
-// arm-a of arm-b). Of names under four characters every edit makes another name.
+// leading zeros, hexadecimal and Roman ones too, and no letter that stands alone or is a word's last capital is another
+// letter (mapper-1 of mapper-01, but not mapper-02; not arm-a of arm-b, robotA of robotB, mk-ii of mk-i, unit-7ba of unit-7bc). Of names under four characters every edit makes another name.
 [[nodiscard]] bool IsSlip(std::string_view name, std::string_view known);
 
 // Of `known` those that `name` may mean, in their order, at most three: those that it is a slip of, else the nearest. Up

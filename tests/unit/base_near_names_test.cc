@@ -55,6 +55,16 @@ TEST(IsSlip, LettersSeparatorsAndZeros) {
     EXPECT_TRUE(IsSlip(name, "mapper-01")) << name;
 }
 
+TEST(IsSlip, NotAnotherLetterSerialOrRomanNumber) {
+  const std::vector<std::pair<const char*, const char*>> others = {
+      {"robotB", "robotA"}, {"kitchenL", "kitchenR"}, {"mapper-ii", "mapper-i"}, {"rig-7bc", "rig-7ba"}, {"unit-af3b", "unit-bf3b"}};
+  for (const auto& [name, known] : others) EXPECT_FALSE(IsSlip(name, known)) << name;
+  EXPECT_TRUE(IsSlip("robtA", "robotA"));
+  EXPECT_TRUE(IsSlip("ROBOTB", "ROBOTC")) << "no word's last capital where all are capitals";
+  EXPECT_TRUE(IsSlip("mappe-ii", "mapper-ii"));
+  EXPECT_TRUE(IsSlip("unti-af3b", "unit-af3b"));
+}
+
 TEST(IsSlip, NotTheNextOfASeries) {
   for (const char* name : {"mapper-01", "mapper-02", "mapper-11", "mapper-010", "mapper-10", "mapper-0", "mapper-",
                            "mapper-012", "mapper-0-1", "mapper", "maper-02", "rover-01"})

@@ -234,6 +234,59 @@ TEST(CheckAdvice, AnOpenDirectionMattersWhereNoOtherPairClosesIt) {
   EXPECT_TRUE(JudgeFindings(findings).IsEnough());
 }
 
+void AddLidar(std::size_t clouds, Findings& findings) {
+  SensorFiles files;
+  files.sensor = SensorId("top");
+  files.kind = SensorKind::kLidar;
+  files.files = files.usable = clouds, files.present = Captures(clouds);
+  findings.sensors.push_back(files);
+  findings.lidars.push_back({files.sensor, clouds, 1000, 1000, {}});
+  AddPair("left", "top", Method::kLidarCamera, clouds, std::nullopt, findings);
+  AddPair("right", "top", Method::kLidarCamera, clouds, std::nullopt, findings);
+}
+
+TEST(CheckAdvice, WhatWasOnlyCountedIsNotSaidToBeEnough) {
+  Findings findings = TwoCameras();
+  AddLidar(12, findings);
+  const Judgement judgement = JudgeFindings(findings);
+  EXPECT_TRUE(judgement.IsEnough());
+  EXPECT_EQ(Headline(judgement),
+            "Enough, as far as was looked: whether the clouds of top show the board is found after the push.");
+}
+
+TEST(CheckAdvice, CountedPairsMayCloseADirectionButNeedNot) {
+  Findings findings = TwoCameras();
+  AddLidar(12, findings);
+  findings.pairs[0].edge = PlanarEdge();
+  const Judgement judgement = JudgeFindings(findings);
+  EXPECT_TRUE(judgement.IsEnough());
+  EXPECT_THAT(judgement.remarks, ElementsAre("left - right leaves a direction open; pairs with a lidar, whose clouds were "
+                                             "not looked at, may close it."));
+}
+
+// Pictures 01 to 07 of one camera and 08 to 14 of the other: each wants one more, the pair wants eight.
+TEST(CheckAdvice, ASensorsAdviceDoesNotHideAPairThatWantsMore) {
+  Findings findings = TwoCameras(0);
+  findings.pairs[0].edge = Edge{};
+  for (std::size_t i : {0, 1}) findings.sensors[i].usable = 7;
+  const Judgement judgement = JudgeFindings(findings);
+  ASSERT_EQ(judgement.advice.size(), 2u);
+  EXPECT_THAT(judgement.advice[0].of, ElementsAre("left - right"));
+  EXPECT_THAT(judgement.advice[1].of, ElementsAre("left", "right"));
+  EXPECT_EQ(Headline(judgement), "Take at least 8 more captures.");
+}
+
+TEST(CheckAdvice, TwoThatNeverSeeTheBoardTogetherAreLeftToTheOthers) {
+  Findings findings = TwoCameras();
+  AddCamera("back", 12, 12, findings);
+  AddPair("right", "back", Method::kStereo, 12, GoodEdge(0.0002, 1e-4), findings);
+  AddPair("left", "back", Method::kStereo, 0, Edge{}, findings);
+  const Judgement judgement = JudgeFindings(findings);
+  EXPECT_TRUE(judgement.IsEnough());
+  EXPECT_THAT(judgement.remarks, ElementsAre("left - back have no capture in common: nothing comes of this pair; "
+                                             "`skip_pairs` in session.yaml leaves it out."));
+}
+
 TEST(CheckAdvice, TheWorstComesFirst) {
   Findings findings = TwoCameras(6);
   AddCamera("top", 1, 12, findings);
