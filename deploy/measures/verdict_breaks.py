@@ -1,5 +1,6 @@
 """What goes wrong with a session folder before it is pushed, and finished edges that agree or do not."""
 import math
+import random
 import shutil
 
 from .verdict_rigs import changed
@@ -38,13 +39,13 @@ def drop_sensors(session, *sensors):
 
 
 def darken(session, sensors):
-    """Pictures as with the caps on the lenses."""
+    """Pictures as with the caps on the lenses: a little noise, another in each."""
     from bad_session import png
-    black = png(612, 512, [bytes(612)] * 512)
+    noise, nearly_black = random.Random(1), bytes(value % 4 for value in range(256))
     for sensor in sensors:
-        for path in list((session / sensor).iterdir()):
+        for path in sorted((session / sensor).iterdir()):
             path.unlink()
-            path.with_suffix(".png").write_bytes(black)
+            path.with_suffix(".png").write_bytes(png(612, 512, [noise.randbytes(612).translate(nearly_black) for _ in range(512)]))
 
 
 def in_millimetres(session, body):

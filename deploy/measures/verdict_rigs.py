@@ -51,10 +51,17 @@ class Mapper:
                                                              "".join(self.sensors[name] for name in sensors)), changes)
 
 
+def simulated(server, *arguments):
+    done = subprocess.run(server.client("simulate", *arguments), capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError("simulate: " + done.stderr.strip()[-300:])
+    return done.stdout
+
+
 class Bench:
     def __init__(self, context, folder, server):
         self.context, self.folder, self.server = context, folder, server
-        self.mapper = Mapper(subprocess.run(server.client("simulate", "--print-rig", "mars-mapper"), capture_output=True, text=True, check=True).stdout)
+        self.mapper = Mapper(simulated(server, "--print-rig", "mars-mapper"))
         self.named = {}  # robot: its sensors and boards, of which any may be accused
 
     def visit(self, robot, sensors, *options, captures=20, days=2, changes=(), name="visit"):
@@ -64,10 +71,8 @@ class Bench:
         rig = place.with_suffix(".rig.yaml")
         rig.write_text(self.mapper.rig(robot, sensors, changes))
         seed = zlib.crc32((robot + name).encode()) % 1000
-        done = subprocess.run(self.server.client("simulate", rig, "--out", place, "--captures", captures, "--scale", 0.25, "--seed", seed, "--threads", 1,
-                                                 "--captured-at", ago(days), *options), capture_output=True, text=True)
-        if done.returncode != 0:
-            raise RuntimeError("simulate %s: %s" % (robot, done.stderr.strip()[-300:]))
+        simulated(self.server, rig, "--out", place, "--captures", captures, "--scale", 0.25, "--seed", seed, "--threads", 1,
+                  "--captured-at", ago(days), *options)
         self.named[robot] = list(sensors) + self.mapper.seen(sensors)
         return place
 

@@ -13,7 +13,7 @@ from .verdict_wanted import Wanted
 
 RAD = math.pi / 180
 CORNERS = ("left", "right", "top", "back")  # sensors of finished edges
-AGAIN = r"record|repeat|again|new session"
+AGAIN = r"capture|record|repeat|again|new session"
 
 
 @dataclasses.dataclass
@@ -67,7 +67,8 @@ def board_moved(robot, by, ratio):
 
 def other_instant(robot, sensors, sensor, capture):
     return Situation(robot, drawn(sensors, "--wrong-instant", "%02d:%s" % (capture, sensor)),
-                     Wanted("warn|pass", all_of(name(sensor), r"\b0*%d\b" % capture), r"trigger|synchron|instant|same (moment|time)|" + AGAIN, (sensor,)))
+                     Wanted("warn|pass", all_of(name(sensor), r"\b0*%d\b" % capture), r"trigger|synchron|instant|same (moment|time)|" + AGAIN,
+                            (sensor,)))
 
 
 def fisheye(robot, sensor, changes):
@@ -77,7 +78,7 @@ def fisheye(robot, sensor, changes):
         if count != 1:
             raise RuntimeError("one fisheye")
         header.write_text(text)
-    return Situation(robot, drawn(FRONT, changes=changes, spoil=spoil),
+    return Situation(robot, drawn(FRONT, "--tilt-deg", 12, changes=changes, spoil=spoil),
                      Wanted("fail|unknown", all_of(name(sensor), "lens|fisheye"), "model: fisheye_kb4", (sensor,)))
 
 
@@ -149,5 +150,5 @@ def unsure(robot, count, off_mm, sigmas):
 
 
 def unchecked(robot, made):
-    return edges(robot, made, "warn", r"unchecked|\b(no|not|nothing|nobody|without|hardly|weak|only|single)\b.*(check|loop|second|other way|confirm)", r"pair|measure|push|add|" + AGAIN,
-                 r"moved|bumped|exchanged|contradict")
+    nothing = r"unchecked|\b(no|not|nothing|nobody|without|hardly|weak|only|single)\b.*(check|loop|second|other way|confirm)"
+    return edges(robot, made, "warn", nothing, r"pair|measure|push|add|" + AGAIN, r"moved|bumped|exchanged|contradict")

@@ -13,7 +13,8 @@ FRONT_RIGHT, FRONT_TOP = "p_m: [0.301, -0.101, -0.001], rpy_deg: [-0.4, 0.2, -0.
 FISHEYE_RIGHT = ((FRONT_RIGHT, FRONT_RIGHT.replace("-0.6", "-45.6")),
                  ("lens: {fx_px: 1448.9, fy_px: 1448.4, cx_px: 1218.2, cy_px: 1027.9, distortion: [-0.0795, 0.0702, -0.00018, 0.00041, -0.0098]},\n"
                   "     intrinsics_sigma: [0.1, 0.1, 0.1, 0.1, 0.0002, 0.0003, 0.00001, 0.00001, 0]}\n  front_top",
-                  "lens: {model: fisheye_kb4, fx_px: 900, fy_px: 900.4, cx_px: 1218.2, cy_px: 1027.9, distortion: [-0.02, 0.002, 0, 0]}}\n  front_top"))
+                  "lens: {model: fisheye_kb4, fx_px: 900, fy_px: 900.4, cx_px: 1218.2, cy_px: 1027.9, distortion: [-0.02, 0.002, 0, 0]}}\n"
+                  "  front_top"))
 FISHEYE_TOP = ((FRONT_TOP, FRONT_TOP.replace("-0.4]", "48.2]")),
                ("lens: {fx_px: 1449.1, fy_px: 1449.7, cx_px: 1221.3, cy_px: 1021.2, distortion: [-0.081, 0.072, 0.0001, 0.0002, -0.01]},\n"
                 "     intrinsics_sigma: [0.1, 0.1, 0.1, 0.1, 0.0002, 0.0003, 0.00001, 0.00001, 0]}",
@@ -47,7 +48,7 @@ SITUATIONS = [
     other_instant("other-instant-15-tracker", BODY, "front_top", 15),
     fisheye("fisheye-front-right", "front_right", FISHEYE_RIGHT),
     fisheye("fisheye-front-top", "front_top", FISHEYE_TOP),
-    squares("squares-100-mm-lidar", PAIR + LIDARS[:1], 0.1, 16),
+    squares("squares-100-mm-lidar", PAIR + LIDARS[:1], 0.1, 20),
     squares("squares-85-mm-tracker", BODY, 0.085, 20),
     counts("corners-11-by-8", (11, 8)),
     counts("corners-9-by-6", (9, 6)),
@@ -56,11 +57,11 @@ SITUATIONS = [
     files("half-of-the-files-missing", lambda session: broken.drop_files(session, "front_top", 0.5), "warn", r"(10 of (the )?20|missing|half)",
           "copy|check|" + AGAIN),
     millimetres("tracker-in-mm", BODY, 20),
-    millimetres("tracker-in-mm-left", LEFT + ("body",), 16),
+    millimetres("tracker-in-mm-left", LEFT + ("body",), 20),
     exchanged("cameras-exchanged", FRONT, "front_left", "front_right", "fail", 20),
-    exchanged("lidars-exchanged", LEFT + LIDARS, *LIDARS, "fail|unknown", 12),
-    Situation("three-captures", drawn(FRONT, captures=3), Wanted("unknown", r"(3|three|few) (different )?captures|captures .*(few|short)|too few|short session",
-                                                                r"\bcaptures\b", FRONT)),
+    exchanged("lidars-exchanged", LEFT + LIDARS, *LIDARS, "fail|unknown", 20),
+    Situation("three-captures", drawn(FRONT, captures=3),
+              Wanted("unknown", r"(3|three|few) (different )?captures|captures .*(few|short)|too few|short session", r"\bcaptures\b", FRONT)),
     Situation("boards-upright", drawn(FRONT, "--intrinsics", "absent", changes=UPRIGHT),
               Wanted("unknown", all_of("(board|%s)" % name("front"), "(tilt|frontal|straight)"), "tilt", FRONT + ("front",))),
     level("level-floor", BODY, "planar", "height"),
@@ -77,9 +78,10 @@ SITUATIONS = [
     unsure("off-40-mm-at-1.2-sigma", 4, 40, 1.2),
     Situation("caps-on-the-lenses", drawn(FRONT, spoil=lambda session: broken.darken(session, FRONT)),
               Wanted("unknown", all_of("(picture|board|camera)", r"(no board|not (be )?(seen|found)|sees? no|dark|black|none|no picture)"),
-                     r"light|\bcaps?\b|board|rigcal check", FRONT + ("front",))),
+                     r"light|\bcaps?\b|lens|look at|open (the|one)|rigcal check", FRONT + ("front",))),
     Situation("three-sensors-absent", drawn(FRONT + MISSING, spoil=lambda session: broken.drop_sensors(session, *MISSING)),
-              Wanted("unknown", all_of(*[name(sensor) for sensor in MISSING], r"(no (files|pictures|data)|missing|not measured|never measured|absent|nothing)"),
+              Wanted("unknown", all_of(*[name(sensor) for sensor in MISSING],
+                                       r"(no (files|pictures|data)|missing|not measured|never measured|absent|nothing)"),
                      "copy|check|" + AGAIN, MISSING)),
     unchecked("no-loop", broken.chain(CORNERS[:3], 1e-4, 1e-5)),
     unchecked("weak-loop", broken.weak_ring(CORNERS[:4], 1e-4, 0.1)),

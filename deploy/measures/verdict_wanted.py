@@ -8,8 +8,9 @@ DRIVE = {"pass": r"OK to drive until \d{1,2} [A-Z][a-z]{2}", "warn": r"OK to dri
          "unknown": r"Not verified: do not rely on \S"}
 NEVER = "(?!)"  # matches nothing
 DRIVE_WORDS = ("OK to drive until", "OK to drive;", "Do not drive", "Not verified")
-ACCUSES = r"moved|bump|exchange|swap|bent|bend|disagree|contradict|wrong|fail|two poses|missing|could not|cannot|not (known|measured|calibrated)|nominal"
-EXCUSES = r"unseen|unnoticed|not (have been|be) noticed"
+ACCUSES = (r"moved|bump|exchange|swap|bent|bend|disagree|contradict|wrong|fail|two poses|missing|could not|cannot|nominal|"
+           r"not (known|measured|calibrated)")
+EXCUSES = r"unseen|unnoticed|not (have been|be) noticed|^so "  # what follows from a fault of something else is told, not blamed
 
 
 @dataclasses.dataclass

@@ -40,8 +40,11 @@ def ask(server, situation, pushed):
 
 
 def judged(bench, situation):
-    pushed = situation.push(bench, situation.robot)
-    told = ask(bench.server, situation, pushed)
+    """What was told, and what of it was to be told otherwise."""
+    try:
+        told = ask(bench.server, situation, situation.push(bench, situation.robot))
+    except Exception as error:  # the other situations are judged all the same
+        return Told("not taken", repr(error), ""), ["not taken: %r" % error]
     return told, faults(told, situation.wanted, bench.named.get(situation.robot, []))
 
 
