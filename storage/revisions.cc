@@ -157,6 +157,23 @@ Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, c
   });
 }
 
+Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId& robot, std::int64_t watermark,
+                                                    const std::vector<SessionId>& sessions) {
+  using Numbers = std::map<SessionId, int>;
+  return Load<Numbers>(store, RevisionsSubject(robot), [&]() -> Result<Numbers> {
+    // Watermarks grow with the numbers: from the newest revision back, those that have all are passed over.
+    Query query(store,
+                "SELECT newest.session_id, coalesce((SELECT r.number FROM revision r WHERE r.robot_id = ?1 AND r.edge_watermark < "
+                "newest.number ORDER BY r.number DESC LIMIT 1), 0) + 1 FROM (SELECT e.session_id, max(c.number) AS number FROM edge e "
+                "JOIN counted_edge c ON c.edge_number = e.number WHERE e.session_id IN (SELECT value FROM json_each(?2)) AND "
+                "c.number <= ?3 GROUP BY e.session_id) newest");
+    query.Bind(robot, ListOf(sessions), watermark);
+    Numbers numbers;
+    while (query.Step()) numbers.emplace(query.IdAt<SessionId>(0), static_cast<int>(query.Int(1)));
+    return numbers;
+  });
+}
+
 Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
   return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
     return Query(store, kUnsolved).Bind(robot).Step();

@@ -25,6 +25,9 @@ namespace rigcal::storage {
                                                           std::int64_t limit = kAllRows);
 // When those of `numbers` that there are were made.
 [[nodiscard]] Result<std::map<int, Stamp>> LoadCreatedAt(Store& store, const RobotId& robot, const std::vector<int>& numbers);
+// Of each of the sessions with edges that began to count up to `watermark`: the first revision that has all of these.
+[[nodiscard]] Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId& robot, std::int64_t watermark,
+                                                                  const std::vector<SessionId>& sessions);
 // Robots with edges whose newest edge or newest standing (standing.h) is not in their newest revision, or that have
 // none.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);

@@ -154,6 +154,12 @@ def newest_report(data):
     return max(folders, key=lambda path: path.stat().st_mtime)
 
 
+def bytes_of_its_own(data, report):
+    """What the report's visit added to the disk: files that no other report has."""
+    others = {path.stat().st_ino for path in (data / "reports").rglob("*") if path.is_file() and report not in path.parents}
+    return sum(path.stat().st_size for path in report.rglob("*") if path.is_file() and path.stat().st_ino not in others)
+
+
 def wait_published(server, robot, number):
     """Asks until the revision has a report; a question takes its time, so that nothing else need be waited for."""
     asked_until = time.monotonic() + PUSH_MAX_S
@@ -191,6 +197,7 @@ def settled(server, data, visits, week, figures):
     figures["show_s"] = statistics.median(timed(lambda: server.rigcal("show", visits.robot))[0] for _ in range(5))
     figures["document_bytes"] = len(server.rigcal("show", visits.robot, "--json").stdout)
     figures["report_bytes"] = folder_bytes(newest_report(data))
+    figures["report_bytes_of_its_own"] = bytes_of_its_own(data, newest_report(data))
     figures["reports_kept"] = len([path for path in (data / "reports" / visits.robot).iterdir() if path.name.isdigit()])
     figures["peak_rss_mib"] = server.peak_rss_mib()
     return figures
@@ -216,7 +223,7 @@ def rows(kind, weeks, figures):
     week, late, answered = len(figures), figures[-1], sum(one["lookup_answered"] for one in figures)
     yield Measure(kind.prefix + "weeks_pushed", str(week), "==%d" % weeks, "ok" if week == weeks else "SHORT")
     yield Measure(kind.prefix + "cold_lookups_answered", "%d_of_%d" % (answered, week), "all", "ok" if answered == week else "SHORT")
-    for key in ("push_to_revision_s", "cold_lookup_s", "warm_lookup_s", "show_s", "document_bytes", "report_bytes", "peak_rss_mib"):
+    for key in ("push_to_revision_s", "cold_lookup_s", "warm_lookup_s", "show_s", "document_bytes", "report_bytes", "report_bytes_of_its_own", "peak_rss_mib"):
         for early in (EARLY_WEEK, WINDOW_WEEK):
             if early < week:
                 yield at_most(kind.prefix + "%s_week_%d_over_week_%d" % (key, week, early), late[key] / figures[early - 1][key], 1.2)

@@ -33,6 +33,13 @@ Status LinkFile(const fs::path& from, const fs::path& file) {
   return error ? Status(Fail(DiskError(file, error))) : Status();
 }
 
+// Those of earlier visits are on the reports of these.
+std::vector<Edge> EdgesWithPictures(const report::ReportInput& input) {
+  std::vector<Edge> shown = input.revision.edges;
+  std::erase_if(shown, [&](const Edge& edge) { return input.detailed_in.contains(edge.id); });
+  return shown;
+}
+
 // Pictures are hard links to their blobs: no copy, and a blob never changes.
 Status LinkEvidence(const storage::Store& store, const std::vector<Edge>& edges, const fs::path& folder,
                     std::vector<Digest>& present) {
@@ -119,13 +126,14 @@ Result<fs::path> Publish(storage::Store& store, const storage::RevisionKey& key,
                 "See its revisions with: rigcal show " + key.robot.str());
   RIGCAL_ASSIGN(report::ReportInput input, LoadReportInput(store, *revision));
   RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(store, key));
-  RIGCAL_TRY(RemakeLostEvidence(store, input.revision.edges, is_published));
+  const std::vector<Edge> shown = EdgesWithPictures(input);
+  RIGCAL_TRY(RemakeLostEvidence(store, shown, is_published));
   const fs::path robot_folder = store.ReportFolder() / key.robot.str();
   const fs::path folder = robot_folder / std::to_string(key.number);
   const fs::path temporary = robot_folder / (".new-" + std::to_string(key.number));
   std::error_code error;
   fs::remove_all(temporary, error);
-  RIGCAL_TRY(LinkEvidence(store, input.revision.edges, temporary / "evidence", input.evidence));
+  RIGCAL_TRY(LinkEvidence(store, shown, temporary / "evidence", input.evidence));
   RIGCAL_TRY(LinkFits(store, input.cameras, temporary / "cameras"));
   if (why_no_clouds.empty()) {
     RIGCAL_ASSIGN(input.clouds, WriteClouds(store, input.revision, temporary, clock.Now()));

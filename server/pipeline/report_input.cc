@@ -7,6 +7,7 @@
 #include "server/fleet/assess.h"
 #include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
+#include "server/pipeline/earlier_details.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
 #include "storage/revisions.h"
@@ -114,6 +115,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
   TakeCameras(store, input);
+  RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
   return input;
 }
 

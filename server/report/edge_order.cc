@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "server/model/past.h"
+#include "server/report/edge_fit.h"
 #include "server/report/edge_state.h"
 
 namespace rigcal::report {
@@ -42,7 +43,7 @@ bool Before(const ShownEdge& left, const ShownEdge& right) {
 void ChooseDetailed(std::vector<ShownEdge>& shown) {
   std::size_t items = 0;
   for (ShownEdge& one : shown) {
-    if (!HasDetails(*one.edge) || items + ItemsOf(*one.edge) > kDetailItemsMax) continue;
+    if (one.detailed_in != 0 || !HasDetails(*one.edge) || items + ItemsOf(*one.edge) > kDetailItemsMax) continue;
     items += ItemsOf(*one.edge);
     one.detailed = true;
   }
@@ -50,7 +51,18 @@ void ChooseDetailed(std::vector<ShownEdge>& shown) {
 
 }  // namespace
 
-std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision) {
+std::set<EdgeId> WorthDetails(const ReportInput& input) {
+  const Contradictions contradictions = ContradictionsOf(input.revision.solution.suspects);
+  std::set<EdgeId> worth = contradictions.suspects;
+  worth.insert(contradictions.alternatives.begin(), contradictions.alternatives.end());
+  for (const auto& [edge, test] : input.limits)
+    if (test.limit > 0.0 && test.statistic > test.limit) worth.insert(edge);
+  for (const Edge& edge : input.revision.edges)
+    if (HasFailed(edge)) worth.insert(edge.id);
+  return worth;
+}
+
+std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision, const std::map<EdgeId, int>& detailed_in) {
   std::unordered_map<EdgeId, const EdgeResidual*> residuals;
   for (const EdgeResidual& residual : revision.solution.residuals)
     if (residual.in_solution) residuals.emplace(residual.edge, &residual);
@@ -59,7 +71,9 @@ std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision) {
   for (const Edge& edge : revision.edges) {
     const auto found = residuals.find(edge.id);
     const EdgeResidual* residual = found == residuals.end() ? nullptr : found->second;
-    shown.push_back({&edge, residual, false, InSigmas(edge, residual), "e-" + edge.id.str().substr(0, 16)});
+    const auto elsewhere = detailed_in.find(edge.id);
+    shown.push_back({&edge, residual, false, InSigmas(edge, residual), "e-" + edge.id.str().substr(0, 16),
+                     elsewhere == detailed_in.end() ? 0 : elsewhere->second});
   }
   std::sort(shown.begin(), shown.end(), Before);
   ChooseDetailed(shown);

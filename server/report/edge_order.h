@@ -1,6 +1,8 @@
 // Edges as the report shows them: joined with their residuals, failed first, then the worst fit, past ones last.
 #pragma once
 
+#include <map>
+#include <set>
 #include <vector>
 
 #include "server/report/render.h"
@@ -13,8 +15,13 @@ struct ShownEdge {
   bool detailed = false;                   // has a section of its own
   double in_sigmas = 0.0;  // sqrt(T^2 / rank) by the covariance of this residual, else sqrt(e^T Omega e / rank)
   std::string anchor;                      // of the section
+  int detailed_in = 0;                     // the revision whose report has the section; 0: this one, if any
 };
-[[nodiscard]] std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision);
+// `detailed_in`: ReportInput's.
+[[nodiscard]] std::vector<ShownEdge> InOrder(const formats::RevisionInput& revision, const std::map<EdgeId, int>& detailed_in = {});
+// Edges that are worth a look although they were shown before: they failed, contradict others or may be behind it, or are
+// beyond the limit of their test.
+[[nodiscard]] std::set<EdgeId> WorthDetails(const ReportInput& input);
 
 // How much of a very large graph goes into one page; the rest is in revision.json, edges.csv and `rigcal show --whole`.
 inline constexpr std::size_t kPoseRowsMax = 3000;

@@ -114,7 +114,8 @@ struct Judged {
 
 void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, const Judged& judged) {
   const Edge& edge = *shown.edge;
-  Dictionary* name = row.AddSectionDictionary(shown.detailed ? "LINK" : "PLAIN");
+  Dictionary* name = row.AddSectionDictionary(shown.detailed ? "LINK" : shown.detailed_in != 0 ? "EARLIER" : "PLAIN");
+  name->SetValue("REVISION", std::to_string(shown.detailed_in));
   name->SetValue("ANCHOR", shown.anchor);
   name->SetValue("FROM", edge.frame_a.str());
   name->SetValue("TO", edge.frame_b.str());

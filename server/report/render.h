@@ -48,6 +48,9 @@ struct ReportInput {
   std::vector<SessionFacts> sessions;
   std::map<EdgeId, EdgeLimit> limits;
   std::map<EdgeId, std::vector<BlockVector>> blocks;
+  // Edges of earlier visits of which nothing new is told: the revisions whose reports have their details. None of
+  // those that are worth another look (WorthDetails).
+  std::map<EdgeId, int> detailed_in;
   std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured

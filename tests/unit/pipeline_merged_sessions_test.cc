@@ -2,6 +2,7 @@
 #include "server/graph/solve.h"
 #include "server/model/past.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/report_input.h"
 #include "server/pipeline/revise.h"
 #include "storage/jobs.h"
 #include "storage/merged_edges.h"
@@ -189,6 +190,27 @@ TEST_F(MergedSessionsTest, TheListOfEdgesSaysThatAMergedOneWasRetired) {
   auto edges = storage::LoadEdges(*store_, kWeekly, false).value();
   ASSERT_TRUE(MarkPast(*store_, *storage::LoadWhatCounts(*store_, kWeekly), edges));
   for (const Edge& edge : edges) EXPECT_EQ(IsPast(edge), edge.id == ids_[2]);
+}
+
+// The edge of left and right of each week, and in which report its captures and pictures are; 0: in that of the revision itself.
+TEST_F(MergedSessionsTest, AReportHasTheDetailsOfItsOwnVisit) {
+  Weeks(0, 4);
+  const auto detailed_in = [&](int number, std::size_t week) {
+    const auto input = LoadReportInput(*store_, **storage::LoadRevision(*store_, kWeekly, number));
+    const auto found = input->detailed_in.find(ids_[week]);
+    return found == input->detailed_in.end() ? 0 : found->second;
+  };
+  EXPECT_EQ(detailed_in(4, 0), 1);
+  EXPECT_EQ(detailed_in(4, 2), 3);
+  EXPECT_EQ(detailed_in(4, 3), 0);
+  EXPECT_EQ(detailed_in(3, 2), 0) << "drawn again, an older report shows what it showed";
+  const auto input = LoadReportInput(*store_, **storage::LoadRevision(*store_, kWeekly, 4));
+  for (const Edge& edge : input->revision.edges)
+    EXPECT_TRUE(edge.state == EdgeState::kGood || !input->detailed_in.contains(edge.id)) << "a failed one is shown again";
+  ASSERT_TRUE(storage::RetireEdge(*store_, ids_[1], {clock_.now, "Anna", "typed wrong"}));
+  Revised();
+  EXPECT_EQ(detailed_in(5, 3), 0) << "the newest visit's stay where nothing else is new";
+  EXPECT_EQ(detailed_in(5, 1), 2);
 }
 
 }  // namespace

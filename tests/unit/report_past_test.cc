@@ -54,6 +54,30 @@ TEST(ReportPast, AnyOtherReasonIsAFailure) {
   EXPECT_FALSE(IsPast(SampleEdge("a", "b", Se3())));
 }
 
+TEST(ReportPast, AnEdgeOfAnEarlierVisitIsLinkedToThatVisitsReport) {
+  ReportInput input = SampleReport();
+  const Edge& edge = input.revision.edges.front();
+  ASSERT_FALSE(WorthDetails(input).contains(edge.id));
+  const std::string anchor = "e-" + edge.id.str().substr(0, 16), section = "<div id=\"" + anchor + "\"";
+  EXPECT_THAT(RenderRevision(input, "{}").value().at("index.html"), HasSubstr(section));
+  input.detailed_in[edge.id] = 3;
+  const auto files = RenderRevision(input, "{}").value();
+  EXPECT_THAT(files.at("index.html"), AllOf(HasSubstr("<a href=\"../3/#" + anchor + "\">"), Not(HasSubstr(section)),
+                                            HasSubstr("1 edge of earlier visits")));
+  EXPECT_THAT(files.at("data.js"), Not(HasSubstr(anchor)));
+  EXPECT_THAT(files.at("edges.csv"), HasSubstr(edge.frame_a.str() + "," + edge.frame_b.str()));
+}
+
+TEST(ReportPast, WhatFailsOrContradictsIsWorthAnotherLook) {
+  ReportInput input = SampleReport();
+  const EdgeId beyond = input.revision.edges[0].id, within = input.revision.edges[1].id;
+  input.limits = {{beyond, {30.0, 20.0}}, {within, {10.0, 20.0}}};
+  const std::set<EdgeId> worth = WorthDetails(input);
+  EXPECT_TRUE(worth.contains(beyond));
+  EXPECT_FALSE(worth.contains(within));
+  for (const Edge& edge : input.revision.edges) EXPECT_TRUE(edge.state != EdgeState::kFailed || worth.contains(edge.id));
+}
+
 TEST(ReportPast, ChangesNameWhatBecamePast) {
   const ReportInput input = OnePast("remounted");
   const auto& edges = input.revision.edges;

@@ -94,6 +94,7 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
   EXPECT_EQ(LoadRevisions(store_, kRobot, 2, 1)->size(), 1U);
   EXPECT_EQ(LoadCreatedAt(store_, kRobot, {1, 2})->size(), 1U);
+  EXPECT_TRUE(LoadFirstRevisions(store_, kRobot, 9, {session_}));
   EXPECT_EQ(LoadSessions(store_, kRobot, SessionId(), 1)->size(), 1U);
   EXPECT_EQ(LoadSessions(store_, RobotId(), SessionId(), 1)->size(), 1U);  // a page of all robots'
   EXPECT_TRUE(LoadSessions(store_, kRobot, session_, 1)->empty());

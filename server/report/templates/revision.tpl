@@ -102,7 +102,7 @@
 </thead>
 <tbody>
 {{#EDGE}}
-<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}</td>{{/FAILED}}</tr>
+<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#EARLIER}}<a href="../{{REVISION}}/#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a> <span class="soft">rev. {{REVISION}}</span>{{/EARLIER}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}</td>{{/FAILED}}</tr>
 {{/EDGE}}
 </tbody>
 </table>
@@ -134,6 +134,7 @@
 {{#DETAIL_SECTION}}
 {{>DETAIL}}
 {{/DETAIL_SECTION}}
+{{#EARLIER_DETAILS}}<p class="hint">{{TEXT}}</p>{{/EARLIER_DETAILS}}
 {{#MORE_DETAILS}}<p class="hint">Details of {{COUNT}} more edges: <code>rigcal show {{ROBOT}} --revision {{NUMBER}} --whole --json</code> has them.</p>{{/MORE_DETAILS}}
 <section class="card provenance">
 <h2 id="source" data-part="Source">Where this comes from</h2>
