@@ -21,7 +21,7 @@ enum class CauseKind {
   kLensModel,        // a camera that another lens model fits
   kBoardTilt,        // boards that all face one way
   kBoardPlaces,      // boards in a part of the picture only
-  kBoardUnseen,      // a sensor that sees no board in most of its files
+  kBoardUnseen,      // a sensor that sees a board in almost none of its files, and that nothing ties in its session
   kShortSession,     // a session of a few captures
   kFarFromNominal,   // sensors that are not where the drawing has them
   kNotMeasured       // sensors that no edge names
