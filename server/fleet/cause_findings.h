@@ -23,8 +23,8 @@ template <typename IsSo>
 // Sensors that are exchanged; of those that edges disagree `around` also who is far from where the drawing has him.
 [[nodiscard]] std::vector<Finding> FindMisplaced(const std::vector<RootCause>& causes,
                                                  const std::set<SensorId>& around);
-// Why sensors have no pose: the causes of failures with the sensors that are lost to them, and what no cause explains.
-// Empty: all have one.
+// Why sensors have no pose: the causes of failures, each with the sensors that are lost to it, and what no cause
+// explains. Empty: all have one.
 [[nodiscard]] std::vector<Finding> FindUnknown(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                const SessionHeaders& headers, const std::vector<RootCause>& causes);
 [[nodiscard]] std::vector<const Edge*> UnexplainedFailures(const std::vector<Edge>& edges,

@@ -223,6 +223,39 @@ TEST(Mixed, SensorsThatACauseLeavesWithoutAPoseFollowFromIt) {
                         "to left."));
 }
 
+// What has nothing to do with a sensor's pose is not said to be why it is not known.
+TEST(Mixed, WhatIsNotKnownStandsBesideTheCauseThatItIsLostTo) {
+  Visit visit(StereoBoard());
+  visit.AddStereo("front", "            ", "right", "BBBBBBBBBBBB");
+  visit.AddStereo("front", "            ", "rear", "BBBBBBBBBBBB");
+  visit.AddFailed("left", "right", "stereo", "high_residual", {{"rms_as_fisheye_kb4_a_px", 0.2}});
+  visit.AddSensor("left", SensorKind::kCamera);
+  for (const char* camera : {"left", "right"}) visit.AddGood("rear", camera);
+  const Verdict verdict = visit.Judge(SolutionOf({"rear", "right", "left"}, {"front"}));
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.why,
+            "front has no files; so the pose of front is not known; also, the lens of left is not pinhole_radtan: as "
+            "fisheye_kb4 it fits to 0.2 px.");
+}
+
+// However the causes are sorted, a sensor is lost to the one that names it.
+TEST(Mixed, EachCauseTellsWhatIsLostToIt) {
+  Visit visit(StereoBoard());
+  for (const char* camera : {"front", "left", "rear"}) visit.AddSensor(camera, SensorKind::kCamera);
+  for (const char* other : {"front", "rear", "right"}) {
+    visit.AddFailed("left", other, "stereo", "high_residual", {{"rms_as_fisheye_kb4_a_px", 0.2}});
+    visit.AddSensor(other, SensorKind::kCamera);
+  }
+  visit.AddStereo("front", "            ", "right", "BBBBBBBBBBBB");
+  visit.AddStereo("front", "            ", "rear", "BBBBBBBBBBBB");
+  visit.AddGood("rear", "right");
+  visit.AddGood("left", "low");
+  EXPECT_EQ(
+      visit.Judge(SolutionOf({"rear", "right"}, {"front", "left", "low"})).why,
+      "The lens of left is not pinhole_radtan: as fisheye_kb4 it fits to 0.2 px; so the poses of left and low are "
+      "not known; also, front has no files; so the pose of front is not known.");
+}
+
 TEST(OpenFailures, ArePairsThatNothingMeasuredSince) {
   Visit visit(StereoBoard());
   visit.AddStereo("left", "BBBBBBBBBBBB", "rear", "............");
