@@ -3,174 +3,112 @@
 
 #include "server/fleet/partial_poses.h"
 #include "server/model/past.h"
-#include "tests/unit/fleet_rig.h"
-#include "tests/unit/fleet_visit.h"
+#include "tests/unit/fleet_drawn.h"
 
 namespace rigcal::fleet {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
-constexpr double kDegree = M_PI / 180;
-
-Se3 At(const Eigen::Vector3d& p_m, double yaw_rad = 0.0) {
-  Se3 T;
-  T.p_m = p_m;
-  T.q = Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
-  return T;
-}
-
-// A drawing, and where its sensors were found; the first is the reference.
-struct Drawn {
-  Visit visit = Visit(StereoBoard());
-  GraphSolution solution = SolutionOf({}, {});
-
-  void Add(const std::string& name, SensorKind kind, const Se3& drawn, const Se3& measured, double sigma_m = 0.001) {
-    visit.AddSensor(name, kind);
-    const bool reference = visit.header.sensors.size() == 1;
-    if (!reference) {
-      visit.header.sensors.back().T_ref_nominal = drawn;
-      visit.AddGood(visit.header.reference.str(), name);
-    }
-    SensorPose pose = PoseOf(name, true, reference ? 0.0 : sigma_m * sigma_m);
-    pose.T_ref_sensor = measured;
-    solution.poses.push_back(pose);
-  }
-  [[nodiscard]] std::vector<RootCause> Causes() const { return visit.Causes(solution); }
-  [[nodiscard]] Verdict Judge() const { return visit.Judge(solution); }
-};
-
-Drawn WithReference(SensorKind kind = SensorKind::kLidar) {
-  Drawn drawn;
-  drawn.Add("base", kind, {}, {});
-  return drawn;
-}
-
-const Se3 kLeft = At({1, 0.211, 0.5}), kRight = At({1, -0.211, 0.5});
-
-TEST(Exchanged, TwoCamerasAtEachOthersPlaces) {
-  Drawn drawn = WithReference();
-  drawn.Add("front_left", SensorKind::kCamera, kLeft, kRight);
-  drawn.Add("front_right", SensorKind::kCamera, kRight, kLeft * At({0.004, 0, 0}));
-  drawn.Add("rear", SensorKind::kCamera, At({-1, 0, 0.5}, M_PI), At({-1, 0.01, 0.5}, M_PI));
-  const std::vector<RootCause> causes = drawn.Causes();
-  ASSERT_THAT(causes, SizeIs(1));
-  EXPECT_EQ(causes[0].kind, CauseKind::kExchanged);
-  EXPECT_THAT(causes[0].sensors, ElementsAre(SensorId("front_left"), SensorId("front_right")));
-  const Verdict verdict = drawn.Judge();
-  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
-  EXPECT_EQ(verdict.why,
-            "front_left and front_right look exchanged: each sits where the other should be (422 mm and 0 deg "
-            "from nominal).");
-  EXPECT_EQ(verdict.what_to_do, "Exchange their folders, or their names in session.yaml, then `rigcal push FOLDER`.");
-}
-
-TEST(Exchanged, TwoLidarsExplainWhyTheirCloudsDoNotMatch) {
-  Drawn drawn = WithReference(SensorKind::kCamera);
-  const Se3 up = At({0.2, 0, 1.5}), down = At({0.2, 0, 0.3}, 90 * kDegree);
-  drawn.Add("lidar_up", SensorKind::kLidar, up, down);
-  drawn.Add("lidar_down", SensorKind::kLidar, down, up);
-  drawn.visit.AddFailed("lidar_up", "lidar_down", "lidar_lidar", "low_overlap");
-  const std::vector<RootCause> causes = drawn.Causes();
-  ASSERT_THAT(causes, SizeIs(1));
-  EXPECT_THAT(causes[0].edges, SizeIs(1));
-  EXPECT_THAT(causes[0].said.why, HasSubstr("(1200 mm and 90 deg from nominal)"));
-}
-
-// Measured from a camera that is in truth the other one, all others are elsewhere.
-TEST(Exchanged, TheReferenceAndAnotherCamera) {
-  const Se3 left = At({0, 0.3, 0}, 20 * kDegree), top = At({0.1, 0.1, 0.6}), rear = At({-1, 0, 0}, M_PI);
-  const Se3 from_left = left.Inverse();
-  Drawn drawn = WithReference(SensorKind::kCamera);
-  drawn.Add("left", SensorKind::kCamera, left, from_left);
-  drawn.Add("top", SensorKind::kLidar, top, from_left * top);
-  drawn.Add("rear", SensorKind::kCamera, rear, from_left * rear);
-  const std::vector<RootCause> causes = drawn.Causes();
-  ASSERT_THAT(causes, SizeIs(1));
-  EXPECT_THAT(causes[0].sensors, ElementsAre(SensorId("base"), SensorId("left")));
-  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kFail);
-}
-
-TEST(Exchanged, ACameraIsNeverTakenForALidar) {
-  Drawn drawn = WithReference();
-  drawn.Add("front", SensorKind::kCamera, kLeft, kRight);
-  drawn.Add("low", SensorKind::kLidar, kRight, kLeft);
-  const std::vector<RootCause> causes = drawn.Causes();
-  ASSERT_THAT(causes, SizeIs(1));
-  EXPECT_EQ(causes[0].kind, CauseKind::kFarFromNominal);
-}
+const Se3 kLeft = At({1, 0.211, 0.5});
 
 TEST(FarFromNominal, OneSensorWarnsWithHowFar) {
   Drawn drawn = WithReference();
-  drawn.Add("lidar_vertical", SensorKind::kLidar, At({0, 0, 1}), At({0.221, 0, 1}, 3 * kDegree));
+  drawn.Add("lidar_vertical", SensorKind::kLidar, At({0, 0, 1}), At({0.621, 0, 1}, 3 * kDegree));
   drawn.Add("front", SensorKind::kCamera, kLeft, kLeft);
   const RootCause cause = drawn.Causes().at(0);
-  EXPECT_EQ(cause.said.why, "lidar_vertical sits 221 mm and 3 deg from where the drawing has it");
+  EXPECT_EQ(cause.said.why, "lidar_vertical sits 621 mm and 3 deg from where the drawing has it");
   EXPECT_EQ(cause.said.what_to_do,
             "Check the name and the mount of lidar_vertical, or correct its T_ref_nominal in session.yaml");
   EXPECT_EQ(drawn.Judge().level, VerdictLevel::kWarn);
-  EXPECT_THAT(drawn.Judge().why, StartsWith("lidar_vertical sits 221 mm"));
+  EXPECT_THAT(drawn.Judge().why, StartsWith("lidar_vertical sits 621 mm"));
 }
 
 TEST(FarFromNominal, ATurnAloneIsEnough) {
   Drawn drawn = WithReference();
-  drawn.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0, 0, 0}, 6 * kDegree));
-  EXPECT_EQ(drawn.Causes().at(0).said.why, "rear sits 0 mm and 6 deg from where the drawing has it");
+  drawn.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0, 0, 0}, 11 * kDegree));
+  EXPECT_EQ(drawn.Causes().at(0).said.why, "rear sits 0 mm and 11 deg from where the drawing has it");
   Drawn less = WithReference();
-  less.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0.04, 0, 0}, 4 * kDegree));
+  less.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0.49, 0, 0}, 9 * kDegree));
   EXPECT_THAT(less.Causes(), SizeIs(0));
 }
 
 TEST(FarFromNominal, WhatIsKnownNoBetterIsNotFar) {
-  for (const auto& [sigma_m, causes] : {std::pair{0.021, 0U}, {0.019, 1U}}) {
+  for (const auto& [sigma_m, causes] : {std::pair{0.121, 0U}, {0.119, 1U}}) {
     Drawn drawn = WithReference();
-    drawn.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0.1, 0, 0}), sigma_m);
+    drawn.Add("rear", SensorKind::kCamera, kLeft, kLeft * At({0.6, 0, 0}), sigma_m);
     EXPECT_THAT(drawn.Causes(), SizeIs(causes)) << sigma_m;
   }
 }
 
 TEST(FarFromNominal, SeveralAreOneLineAndAllOfThemTellOfTheReference) {
   Drawn drawn = WithReference();
-  drawn.Add("a", SensorKind::kCamera, At({1, 0, 0}), At({1.1, 0, 0}));
-  drawn.Add("b", SensorKind::kCamera, At({0, 1, 0}), At({0, 1.3, 0}));
-  EXPECT_EQ(drawn.Causes().at(0).said.why, "b and a sit elsewhere than the drawing has them, b by 300 mm and 0 deg");
+  drawn.Add("a", SensorKind::kCamera, At({1, 0, 0}), At({1.6, 0, 0}));
+  drawn.Add("b", SensorKind::kCamera, At({0, 1, 0}), At({0, 1.8, 0}));
+  EXPECT_EQ(drawn.Causes().at(0).said.why, "b and a sit elsewhere than the drawing has them, b by 800 mm and 0 deg");
   EXPECT_THAT(drawn.Causes().at(0).said.what_to_do, StartsWith("Check their names and their mounts"));
-  drawn.Add("c", SensorKind::kLidar, At({0, 0, 1}), At({0, 0.2, 1}));
+  drawn.Add("c", SensorKind::kLidar, At({0, 0, 1}), At({0, 0.7, 1}));
   ASSERT_THAT(drawn.Causes(), SizeIs(1));
   EXPECT_EQ(drawn.Causes().at(0).said.what_to_do, "Check the name and the mount of base, from which all are measured");
 }
 
-TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
+// A robot in which all is well but the drawing of "top", which is found at the reference.
+struct RoughlyDrawn {
   Rig rig;
-  for (Edge& edge : rig.edges) edge.session = SessionId(std::string(64, '1'));
   Visit visit{StereoBoard()};
-  for (const char* name : {"left", "right", "top"}) visit.AddSensor(name, SensorKind::kCamera);
-  for (Sensor& sensor : visit.header.sensors) sensor.T_ref_nominal = Se3();
-  visit.header.sensors[2].T_ref_nominal = At({0.5, 0, 0});
-  rig.solution.residuals[1] = ResidualOf(rig.edges[1], 0.03);  // right - top
-  const Verdict around = Assess(rig.edges, rig.solution, {}, {}, {}, visit.Headers());
-  EXPECT_EQ(around.level, VerdictLevel::kFail);
-  EXPECT_THAT(around.why,
-              StartsWith("top sits 500 mm and 0 deg from where the drawing has it; also, right and top do not "
-                         "fit the other measurements: 30 mm, 0 deg off"));
-  rig.solution.residuals[1] = ResidualOf(rig.edges[1], 0.0005);
-  rig.solution.residuals[0] = ResidualOf(rig.edges[0], 0.03);  // left - right
-  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {}, visit.Headers()).why, Not(HasSubstr("drawing")));
+
+  explicit RoughlyDrawn(const Se3& top) {
+    for (Edge& edge : rig.edges) edge.session = visit.session;
+    for (const char* name : {"left", "right", "top"}) visit.AddSensor(name, SensorKind::kCamera);
+    for (Sensor& sensor : visit.header.sensors) sensor.T_ref_nominal = Se3();
+    visit.header.sensors[2].T_ref_nominal = top;
+  }
+  [[nodiscard]] Verdict Judge() const { return Assess(rig.edges, rig.solution, {}, {}, {}, visit.Headers()); }
+};
+
+// docs/session-format.md asks for no more of a drawing.
+TEST(FarFromNominal, ADrawingThatIsRightToHalfAMetreAndTenDegreesIsNoWarning) {
+  EXPECT_EQ(RoughlyDrawn(At({0.3, 0, 0}, 8 * kDegree)).Judge().level, VerdictLevel::kPass);
+  const Verdict worse = RoughlyDrawn(At({0.6, 0, 0})).Judge();
+  EXPECT_EQ(worse.level, VerdictLevel::kWarn);
+  EXPECT_EQ(worse.why, "top sits 600 mm and 0 deg from where the drawing has it.");
+}
+
+TEST(FarFromNominal, IsSaidFirstWhereEdgesDisagreeAroundIt) {
+  for (const auto& [far_m, told] : {std::pair{0.6, "600 mm"}, {0.1, "100 mm"}}) {
+    RoughlyDrawn robot(At({far_m, 0, 0}));
+    std::vector<EdgeResidual>& residuals = robot.rig.solution.residuals;
+    residuals[1] = ResidualOf(robot.rig.edges[1], 0.03);  // right - top
+    const Verdict around = robot.Judge();
+    EXPECT_EQ(around.level, VerdictLevel::kFail);
+    EXPECT_THAT(around.why, StartsWith(std::string("top sits ") + told +
+                                       " and 0 deg from where the drawing has it; also, right and top do not fit the "
+                                       "other measurements: 30 mm, 0 deg off"));
+    residuals[1] = ResidualOf(robot.rig.edges[1], 0.0005);
+    residuals[0] = ResidualOf(robot.rig.edges[0], 0.03);  // left - right
+    EXPECT_THAT(robot.Judge().why, Not(HasSubstr("drawing")));
+  }
+}
+
+TEST(FarFromNominal, ADrawingThatIsRightIsNotNamedWhereEdgesDisagree) {
+  RoughlyDrawn robot(At({0.04, 0, 0}, 4 * kDegree));
+  robot.rig.solution.residuals[1] = ResidualOf(robot.rig.edges[1], 0.03);
+  EXPECT_THAT(robot.Judge().why, StartsWith("right and top do not fit"));
 }
 
 TEST(FarFromNominal, DrawingsOfPastSessionsAndOfOtherReferencesDoNotCount) {
   Drawn drawn = WithReference();
-  drawn.Add("rear", SensorKind::kCamera, kLeft, kRight);
+  const Se3 found = At({1, -0.4, 0.5});
+  drawn.Add("rear", SensorKind::kCamera, kLeft, found);
   ASSERT_THAT(drawn.Causes(), SizeIs(1));
   SessionHeaders headers = drawn.visit.Headers();
   SessionHeader& newer = headers[SessionId(std::string(64, '2'))];
   newer = drawn.visit.header;
   newer.captured_at.ns += 1;
-  newer.sensors[1].T_ref_nominal = kRight;
+  newer.sensors[1].T_ref_nominal = found;
   std::vector<Edge> edges = drawn.visit.edges;
   EXPECT_THAT(FindRootCauses(edges, drawn.solution, headers, {}), SizeIs(1)) << "no edge is of the newer one";
   edges.push_back(edges.front());
