@@ -135,38 +135,68 @@ struct OpenRig {
     edges.push_back(edge);
     for (const int axis : axes) solution.poses[1].unobservable_basis.push_back(Vector6d::Unit(axis));
   }
+  [[nodiscard]] PartialPose Told(const SessionHeaders& headers) const {
+    return PartialPoseOf(solution.poses[1], edges, solution, headers);
+  }
   [[nodiscard]] PartialPose Told(SensorKind reference) const {
     Visit visit(StereoBoard());
     visit.AddSensor("left", reference);
-    return PartialPoseOf(solution.poses[1], edges, solution, visit.Headers());
+    return Told(visit.Headers());
   }
 };
 
-TEST(PartialPoses, NameTheAxisOfTheRobotInTheReference) {
+TEST(PartialPoses, NameTheAxisOfTheRobotWhereABodyIsTheReference) {
   Se3 upright;  // x of the sensor is up
   upright.q = Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitY());
-  EXPECT_EQ(OpenRig(upright, {tangent::kX}).Told(SensorKind::kLidar).open, "the height");
-  EXPECT_EQ(OpenRig({}, {tangent::kX}).Told(SensorKind::kLidar).open, "the forward position");
-  EXPECT_EQ(OpenRig({}, {tangent::kY}).Told(SensorKind::kLidar).open, "the sideways position");
-  EXPECT_EQ(OpenRig({}, {tangent::kRz}).Told(SensorKind::kLidar).open, "the yaw");
-  EXPECT_EQ(OpenRig(At({0, 0, 0}, 8 * kDegree), {tangent::kX}).Told(SensorKind::kLidar).open, "the forward position");
-  EXPECT_EQ(OpenRig(At({0, 0, 0}, 12 * kDegree), {tangent::kX}).Told(SensorKind::kLidar).open, "one direction");
+  const SensorKind body = SensorKind::kTracker;
+  EXPECT_EQ(OpenRig(upright, {tangent::kX}).Told(body).open, "the height");
+  EXPECT_EQ(OpenRig({}, {tangent::kX}).Told(body).open, "the forward position");
+  EXPECT_EQ(OpenRig({}, {tangent::kY}).Told(SensorKind::kPoseStream).open, "the sideways position");
+  EXPECT_EQ(OpenRig({}, {tangent::kRz}).Told(body).open, "the yaw");
+  EXPECT_EQ(OpenRig({}, {tangent::kRz}).Told(body).frame, "");
+  EXPECT_EQ(OpenRig(At({0, 0, 0}, 8 * kDegree), {tangent::kX}).Told(body).open, "the forward position");
+  EXPECT_EQ(OpenRig(At({0, 0, 0}, 12 * kDegree), {tangent::kX}).Told(body).open, "one direction");
 }
 
-TEST(PartialPoses, ACameraLooksAlongItsZ) {
-  EXPECT_EQ(OpenRig({}, {tangent::kZ}).Told(SensorKind::kCamera).open, "the forward position");
-  EXPECT_EQ(OpenRig({}, {tangent::kX}).Told(SensorKind::kCamera).open, "the sideways position");
-  EXPECT_EQ(OpenRig({}, {tangent::kY}).Told(SensorKind::kCamera).open, "the height");
-  EXPECT_EQ(OpenRig({}, {tangent::kRy}).Told(SensorKind::kCamera).open, "the yaw");
+// A camera may look up, and a lidar lie on its side.
+TEST(PartialPoses, NameTheAxisOfTheReferenceWhereNothingTellsHowItIsMounted) {
+  const PartialPose of_camera = OpenRig({}, {tangent::kZ}).Told(SensorKind::kCamera);
+  EXPECT_EQ(of_camera.open, "the position along z");
+  EXPECT_EQ(of_camera.frame, "the frame of left (x right, y down, z along its view)");
+  const PartialPose of_lidar = OpenRig({}, {tangent::kX, tangent::kRy}).Told(SensorKind::kLidar);
+  EXPECT_EQ(of_lidar.open, "the position along x and the turn about y");
+  EXPECT_EQ(of_lidar.frame, "the frame of left");
+  const PartialPose askew = OpenRig(At({0, 0, 0}, 45 * kDegree), {tangent::kX}).Told(SensorKind::kLidar);
+  EXPECT_EQ(askew.open, "one direction");
+  EXPECT_EQ(askew.frame, "") << "it names no axis";
+  EXPECT_FALSE(RobotAxes(SensorId("left"), {}));
+}
+
+TEST(PartialPoses, ADrawnBodyTellsHowACameraIsMounted) {
+  Visit visit(StereoBoard());
+  visit.AddSensor("left", SensorKind::kCamera);
+  visit.AddSensor("body", SensorKind::kTracker);
+  const OpenRig rig({}, {tangent::kZ});
+  EXPECT_EQ(rig.Told(visit.Headers()).open, "the position along z") << "the body is not drawn";
+  Se3& T_camera_body = visit.header.sensors[1].T_ref_nominal.emplace();
+  T_camera_body.q = (Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished();  // the camera looks ahead
+  EXPECT_EQ(rig.Told(visit.Headers()).open, "the forward position");
+  T_camera_body.q.setIdentity();  // up
+  EXPECT_EQ(rig.Told(visit.Headers()).open, "the height");
+  visit.AddSensor("odometry", SensorKind::kPoseStream);
+  visit.header.sensors[2].T_ref_nominal = T_camera_body;
+  visit.header.sensors[1].T_ref_nominal->q = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(rig.Told(visit.Headers()).open, "the height")
+      << "odometry is held for upright sooner than a tracker's body";
 }
 
 TEST(PartialPoses, TellHowWellTheRestIsKnown) {
-  const PartialPose one = OpenRig(At({0.3, 0, 0}, 0.4), {tangent::kZ}).Told(SensorKind::kLidar);
+  const PartialPose one = OpenRig(At({0.3, 0, 0}, 0.4), {tangent::kZ}).Told(SensorKind::kTracker);
   ASSERT_TRUE(one.sigma_m && one.sigma_rad);
   EXPECT_NEAR(*one.sigma_m, 1e-3, 1e-9);
   EXPECT_NEAR(*one.sigma_rad, 1e-3, 1e-9);
   EXPECT_FALSE(one.several);
-  const PartialPose two = OpenRig({}, {tangent::kX, tangent::kZ}).Told(SensorKind::kLidar);
+  const PartialPose two = OpenRig({}, {tangent::kX, tangent::kZ}).Told(SensorKind::kTracker);
   EXPECT_EQ(two.open, "the forward position and the height");
   EXPECT_TRUE(two.several && two.sigma_m);
   EXPECT_FALSE(OpenRig({}, {tangent::kRz}).Told(SensorKind::kLidar).sigma_m);
@@ -176,13 +206,17 @@ TEST(PartialPoses, TellHowWellTheRestIsKnown) {
 }
 
 TEST(PartialPoses, AreAResultInTheVerdict) {
-  OpenRig rig({}, {tangent::kZ});
+  const OpenRig rig({}, {tangent::kZ});
   const Verdict verdict = Assess(rig.edges, rig.solution);
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
-  EXPECT_EQ(verdict.why, "The height of rear was not measured; the rest was, to 1 mm and 0.057 deg.");
+  EXPECT_EQ(verdict.why,
+            "The position along z of rear in the frame of left was not measured; the rest was, to 1 mm and 0.057 deg.");
   EXPECT_EQ(verdict.what_to_do, "Capture rear again, with boards and motion in every direction.");
+  Visit visit(StereoBoard());
+  visit.AddSensor("left", SensorKind::kTracker);
+  const OpenRig level({}, {tangent::kX, tangent::kY});
   EXPECT_THAT(
-      Assess(OpenRig({}, {tangent::kX, tangent::kY}).edges, OpenRig({}, {tangent::kX, tangent::kY}).solution).why,
+      Assess(level.edges, level.solution, {}, {}, {}, visit.Headers()).why,
       StartsWith("The forward position and the sideways position of rear were not measured; the rest was, to 1 mm"));
 }
 
