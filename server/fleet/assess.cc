@@ -96,7 +96,7 @@ std::set<SensorId> AccusedSensors(const std::vector<Edge>& edges, const GraphSol
 // What may be behind accusations stands before and after them.
 std::vector<Finding> FindFailing(const std::vector<Edge>& edges, const GraphSolution& judged, const Policy& policy,
                                  const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-                                 const std::vector<RootCause>& causes) {
+                                 const SessionHeaders& headers, const std::vector<RootCause>& causes) {
   const std::vector<Finding> accusations = FindAccusations(edges, judged, policy, captured_at);
   if (accusations.empty()) return FindMisplaced(causes, {});
   const std::set<SensorId> accused = AccusedSensors(edges, judged);
@@ -104,6 +104,7 @@ std::vector<Finding> FindFailing(const std::vector<Edge>& edges, const GraphSolu
   if (const auto worst = MostContradicting(edges, judged, policy))
     around.insert({worst->edge->frame_a, worst->edge->frame_b});
   std::vector<Finding> failing = FindMisplaced(causes, around);
+  if (auto off = FindOffNominal(edges, judged, headers, causes, around)) failing.push_back(std::move(*off));
   failing.insert(failing.end(), accusations.begin(), accusations.end());
   if (auto lens = FindLensBehind(estimates, accused)) failing.push_back(std::move(*lens));
   return failing;
@@ -140,7 +141,8 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (const auto unsettled = FindUnsettled(solution)) return say(VerdictLevel::kUnknown, {*unsettled});
   if (const auto moved = FindMovedBetween(solution, captured_at)) return say(VerdictLevel::kFail, {*moved});
   const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
-  if (const auto failing = FindFailing(edges, judged, policy, captured_at, estimates, causes); !failing.empty())
+  if (const auto failing = FindFailing(edges, judged, policy, captured_at, estimates, headers, causes);
+      !failing.empty())
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return say(VerdictLevel::kUnknown, unknown);

@@ -1,9 +1,9 @@
 // Judges a robot's revision: verdict with one plain sentence why and one what to do.
 //
-// Severity, worst first, and what decides: fail (an edge contradicts the others, or two sensors are exchanged), unknown
-// (a sensor without a pose, or no settled solution), warn (failed edges, uncertain sensors, nothing that checks the
-// result), pass. The worst that applies is the verdict; of several reasons of one level all are named, causes first:
-// failures that have one in common (root_causes.h) are told by it alone.
+// Severity, worst first, and what decides: fail (an edge contradicts the others, or two sensors are exchanged and a third
+// bears it out), unknown (a sensor without a pose, or no settled solution), warn (failed edges, uncertain sensors, a
+// sensor far from the drawing, nothing that checks the result), pass. The worst that applies is the verdict; of several
+// reasons of one level all are named, causes first: failures that have one in common (root_causes.h) are told by it alone.
 #pragma once
 
 #include <map>

@@ -84,6 +84,22 @@ std::optional<Blind> BlindEndOf(const Edge& edge) {
   return blind;
 }
 
+SessionHeaders WithoutPast(const SessionHeaders& headers, const std::vector<Edge>& edges) {
+  SessionHeaders current;
+  for (const Edge& edge : edges)
+    if (const auto header = headers.find(edge.session); header != headers.end() && !IsPast(edge))
+      current.insert(*header);
+  return current;
+}
+
+std::vector<const SessionHeader*> NewestFirst(const SessionHeaders& headers) {
+  std::vector<const SessionHeader*> newest;
+  for (const auto& [session, header] : headers) newest.push_back(&header);
+  std::stable_sort(newest.begin(), newest.end(),
+                   [](const SessionHeader* x, const SessionHeader* y) { return x->captured_at > y->captured_at; });
+  return newest;
+}
+
 const Sensor* SensorOf(const SessionHeaders& headers, const Edge& edge, const SensorId& sensor) {
   const auto header = headers.find(edge.session);
   return header == headers.end() ? nullptr : rigcal::SensorOf(header->second, sensor);

@@ -49,6 +49,9 @@ struct Blind {
 };
 [[nodiscard]] std::optional<Blind> BlindEndOf(const Edge& edge);
 
+// Those of sessions that something measured is of: what nothing was measured in any more says nothing of the rig.
+[[nodiscard]] SessionHeaders WithoutPast(const SessionHeaders& headers, const std::vector<Edge>& edges);
+[[nodiscard]] std::vector<const SessionHeader*> NewestFirst(const SessionHeaders& headers);
 // As the edge's session lists it; null where that is not known.
 [[nodiscard]] const Sensor* SensorOf(const SessionHeaders& headers, const Edge& edge, const SensorId& sensor);
 // By that, or by the edge's method where both its sensors are of one kind.

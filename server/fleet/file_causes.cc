@@ -5,12 +5,15 @@
 
 #include "server/fleet/root_causes.h"
 #include "server/fleet/wording.h"
+#include "server/model/method.h"
 
 namespace rigcal::fleet {
 namespace {
 
 // A session with fewer captures is short, whatever its boards show.
 constexpr double kCapturesOfSession = 10;
+// A sensor that sees a board in less of what it recorded almost never does.
+constexpr double kAlmostNeverRatio = 0.1;
 
 std::string CountOf(double count) { return std::to_string(static_cast<long>(count)); }
 
@@ -41,10 +44,38 @@ bool FailedForLoss(const Edge& edge, Loss loss) {
   return loss == Loss::kNoBoard ? FailedFor(edge, {"too_few_captures"}) : SawTooLittle(edge);
 }
 
+bool SeesAlmostNothing(const Blind& blind) {
+  const auto method = MethodNamed(blind.end.edge->method);
+  const double least = method ? static_cast<double>(RowOf(*method).captures_least) : 0.0;
+  return blind.sight.with_board < std::max(least, kAlmostNeverRatio * blind.sight.readable());
+}
+
+bool HasGoodEdge(const CauseSearch& search, const EdgeEnd& end) {
+  return std::any_of(search.edges.begin(), search.edges.end(), [&](const Edge& edge) {
+    return edge.state == EdgeState::kGood && edge.session == end.edge->session && IsEndOf(edge, end.sensor);
+  });
+}
+
+// Most files of the one are of captures that the other has none of: neither lost any.
+bool RecordedApart(const Blind& blind) {
+  for (const EdgeEnd& other : EndsOf(*blind.end.edge))
+    if (const auto sight = SightOf(other); sight && other.sensor != blind.end.sensor)
+      return 2 * (sight->captures - sight->files) > blind.sight.files;
+  return false;
+}
+
+// Where sensors look all around, each sees the board in a part of the captures, and that a pair sees it in too few
+// together is said by the pair.
+bool IsToBlame(const CauseSearch& search, const Blind& blind, Loss loss) {
+  if (blind.sight.LargestLoss() != loss) return false;
+  if (loss == Loss::kNoFile) return !RecordedApart(blind);
+  return loss == Loss::kUnreadable || (SeesAlmostNothing(blind) && !HasGoodEdge(search, blind.end));
+}
+
 std::map<SensorId, BlindSensor> TakeBlind(CauseSearch& search, Loss loss) {
   const std::vector<const Edge*> taken = search.Take([&](const Edge& edge) {
     const auto blind = FailedForLoss(edge, loss) ? BlindEndOf(edge) : std::nullopt;
-    return blind && blind->sight.LargestLoss() == loss;
+    return blind && IsToBlame(search, *blind, loss);
   });
   std::map<SensorId, BlindSensor> by_sensor;
   for (const Edge* edge : taken) {

@@ -49,38 +49,57 @@ std::optional<Tied> TieOf(const SensorPose& pose, const std::vector<Edge>& edges
   return best;
 }
 
-// Columns: forward, left and up of the robot in the reference's frame.
-Eigen::Matrix3d RobotAxes(const SensorId& reference, const SessionHeaders& headers) {
-  for (const auto& [session, header] : headers)
-    if (const Sensor* sensor = rigcal::SensorOf(header, reference); sensor && sensor->kind == SensorKind::kCamera)
-      return (Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished();
-  return Eigen::Matrix3d::Identity();
+// Axes that directions are told by.
+struct NamedAxes {
+  Eigen::Matrix3d R_ref_axes = Eigen::Matrix3d::Identity();
+  std::array<const char*, 6> names = {};  // by the tangent's indices
+  std::string frame;                      // as PartialPose::frame
+};
+
+std::string FrameOf(const SensorId& reference, const SessionHeaders& headers) {
+  const std::string frame = "the frame of " + reference.str();
+  for (const SessionHeader* header : NewestFirst(headers))
+    if (const Sensor* sensor = rigcal::SensorOf(*header, reference); sensor && sensor->kind == SensorKind::kCamera)
+      return frame + " (x right, y down, z along its view)";
+  return frame;
+}
+
+NamedAxes AxesToTell(const SensorId& reference, const SessionHeaders& headers) {
+  if (const auto R_ref_robot = RobotAxes(reference, headers))
+    return {*R_ref_robot,
+            {"the forward position", "the sideways position", "the height", "the roll", "the pitch", "the yaw"},
+            ""};
+  return {Eigen::Matrix3d::Identity(),
+          {"the position along x", "the position along y", "the position along z", "the turn about x",
+           "the turn about y", "the turn about z"},
+          FrameOf(reference, headers)};
 }
 
 // Empty: along no axis.
-std::string NameOfDirection(const Vector6d& direction, const Eigen::Matrix3d& R_robot_sensor) {
-  constexpr std::array kPositions = {"the forward position", "the sideways position", "the height"};
-  constexpr std::array kTurns = {"the roll", "the pitch", "the yaw"};
+std::string NameOfDirection(const Vector6d& direction, const NamedAxes& axes, const Eigen::Matrix3d& R_ref_sensor) {
   const Eigen::Vector3d shift = direction.head<3>(), turn = direction.tail<3>();
   if (shift.norm() > kNothing && turn.norm() > kNothing) return "";
   const bool turns = turn.norm() > kNothing;
-  const Eigen::Vector3d line = (R_robot_sensor * (turns ? turn : shift)).normalized();
+  const Eigen::Vector3d line = (axes.R_ref_axes.transpose() * R_ref_sensor * (turns ? turn : shift)).normalized();
   Eigen::Index axis = 0;
   if (!(line.cwiseAbs().maxCoeff(&axis) >= kAlongAxis)) return "";
-  return (turns ? kTurns : kPositions)[static_cast<std::size_t>(axis)];
+  return axes.names.at(static_cast<std::size_t>(axis + (turns ? 3 : 0)));
 }
 
 std::string CountedDirections(std::size_t count) {
   return count == 1 ? "one direction" : std::to_string(count) + " directions";
 }
 
-std::string NamesOfOpen(const SensorPose& pose, const Eigen::Matrix3d& R_robot_sensor) {
+// Empty: not each of them is along an axis of its own.
+std::vector<std::string> NamesOfOpen(const SensorPose& pose, const NamedAxes& axes,
+                                     const Eigen::Matrix3d& R_ref_sensor) {
   std::vector<std::string> names;
-  for (const Vector6d& direction : pose.unobservable_basis) names.push_back(NameOfDirection(direction, R_robot_sensor));
+  for (const Vector6d& direction : pose.unobservable_basis)
+    names.push_back(NameOfDirection(direction, axes, R_ref_sensor));
   std::vector<std::string> sorted = names;
   std::sort(sorted.begin(), sorted.end());
   const bool told = !sorted.front().empty() && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-  return told ? List(names) : CountedDirections(names.size());
+  return told ? names : std::vector<std::string>{};
 }
 
 double LargestSigma(const Eigen::Matrix3d& covariance) {
@@ -103,7 +122,30 @@ void FillSigmas(const SensorPose& pose, const Tied& tied, PartialPose& partial) 
   partial.sigma_rad = LargestSigma(tied.covariance.bottomRightCorner<3, 3>());
 }
 
+// Of a session, in the reference's frame.
+std::optional<Se3> BodyIn(const SessionHeader& header, const SensorId& reference, SensorKind kind) {
+  const Sensor* from = rigcal::SensorOf(header, reference);
+  for (const Sensor& sensor : header.sensors)
+    if (from && sensor.kind == kind)
+      if (const auto T_ref_body = NominalPose(header, *from, sensor)) return T_ref_body;
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<Eigen::Matrix3d> RobotAxes(const SensorId& reference, const SessionHeaders& headers) {
+  const auto is_body = [](const Sensor& sensor) {
+    return sensor.kind == SensorKind::kPoseStream || sensor.kind == SensorKind::kTracker;
+  };
+  const std::vector<const SessionHeader*> newest = NewestFirst(headers);
+  for (const SessionHeader* header : newest)
+    if (const Sensor* sensor = rigcal::SensorOf(*header, reference); sensor && is_body(*sensor))
+      return Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  for (const SensorKind kind : {SensorKind::kPoseStream, SensorKind::kTracker})
+    for (const SessionHeader* header : newest)
+      if (const auto T_ref_body = BodyIn(*header, reference, kind)) return T_ref_body->R();
+  return std::nullopt;
+}
 
 PartialPose PartialPoseOf(const SensorPose& pose, const std::vector<Edge>& edges, const GraphSolution& solution,
                           const SessionHeaders& headers) {
@@ -111,13 +153,15 @@ PartialPose PartialPoseOf(const SensorPose& pose, const std::vector<Edge>& edges
   partial.sensor = pose.sensor;
   const std::size_t count = pose.unobservable_basis.size();
   partial.several = count > 1;
+  partial.open = CountedDirections(count);
   const auto tie = TieOf(pose, edges, solution);
   const SensorPose* reference = ReferenceOf(solution);
-  if (!tie || reference == nullptr) {
-    partial.open = CountedDirections(count);
-    return partial;
+  if (!tie || reference == nullptr) return partial;
+  const NamedAxes axes = AxesToTell(reference->sensor, headers);
+  if (const auto names = NamesOfOpen(pose, axes, tie->T_ref_sensor.R()); !names.empty()) {
+    partial.open = List(names);
+    partial.frame = axes.frame;
   }
-  partial.open = NamesOfOpen(pose, RobotAxes(reference->sensor, headers).transpose() * tie->T_ref_sensor.R());
   FillSigmas(pose, *tie, partial);
   return partial;
 }

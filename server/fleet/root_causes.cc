@@ -3,19 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "server/model/past.h"
-
 namespace rigcal::fleet {
 namespace {
-
-// Sessions that nothing was measured in any more say nothing of the rig.
-SessionHeaders WithoutPast(const SessionHeaders& headers, const std::vector<Edge>& edges) {
-  SessionHeaders current;
-  for (const Edge& edge : edges)
-    if (const auto header = headers.find(edge.session); header != headers.end() && !IsPast(edge))
-      current.insert(*header);
-  return current;
-}
 
 bool IsWorse(const RootCause& x, const RootCause& y) {
   const bool x_exchanged = x.kind == CauseKind::kExchanged, y_exchanged = y.kind == CauseKind::kExchanged;

@@ -13,7 +13,7 @@
 namespace rigcal::fleet {
 
 enum class CauseKind {
-  kExchanged,        // two sensors sit where the drawing has the other
+  kExchanged,        // two sensors sit where the drawing has the other, and others bear it out
   kFilesMissing,     // a sensor without files of most captures
   kFilesUnreadable,  // a sensor most of whose files cannot be read
   kBoardCounts,      // a board that no camera finds in any picture
@@ -21,9 +21,10 @@ enum class CauseKind {
   kLensModel,        // a camera that another lens model fits
   kBoardTilt,        // boards that all face one way
   kBoardPlaces,      // boards in a part of the picture only
-  kBoardUnseen,      // a sensor that sees no board in most of its files
+  kBoardUnseen,      // a sensor that sees a board in almost none of its files, and that nothing ties in its session
   kShortSession,     // a session of a few captures
-  kFarFromNominal,   // sensors that are not where the drawing has them
+  kFarFromNominal,   // sensors that are not where the drawing has them; or two that sit where it has the other, for
+                     // which it may be to blame as well
   kNotMeasured       // sensors that no edge names
 };
 
@@ -69,7 +70,7 @@ struct CauseSearch {
 // One per kind of cause, in the order in which they are asked: what is certain before what it may look like.
 void FindFileCauses(CauseSearch& search);      // kFilesMissing, kFilesUnreadable
 void FindBoardCounts(CauseSearch& search);     // kBoardCounts
-void FindExchanged(CauseSearch& search);       // kExchanged
+void FindExchanged(CauseSearch& search);       // kExchanged, kFarFromNominal of two
 void FindBoardSizes(CauseSearch& search);      // kBoardSize
 void FindLensModels(CauseSearch& search);      // kLensModel
 void FindAlikeBoards(CauseSearch& search);     // kBoardTilt, kBoardPlaces

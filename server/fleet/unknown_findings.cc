@@ -46,6 +46,7 @@ std::optional<Finding> WhyOpen(const std::vector<Edge>& edges) {
 // Sensors of which the same is open.
 struct AlikeOpen {
   std::vector<SensorId> sensors;
+  std::string frame;
   bool several = false, told = true;  // how well the rest of each is known is told
   double sigma_m = 0.0, sigma_rad = 0.0;
 };
@@ -55,6 +56,7 @@ std::map<std::string, AlikeOpen> OpenAlike(const std::vector<PartialPose>& parti
   for (const PartialPose& one : partial) {
     AlikeOpen& group = alike[one.open];
     group.sensors.push_back(one.sensor);
+    group.frame = one.frame;
     group.several = one.several;
     group.told = group.told && one.sigma_m && one.sigma_rad;
     group.sigma_m = std::max(group.sigma_m, one.sigma_m.value_or(0.0));
@@ -69,7 +71,7 @@ Finding OpenDirections(const std::vector<PartialPose>& partial, const std::vecto
   std::vector<SensorId> sensors;
   for (const auto& [open, group] : OpenAlike(partial)) {
     finding.why += (finding.why.empty() ? "" : "; ") + open + " of " + List(group.sensors) +
-                   (group.several ? " were not measured" : " was not measured");
+                   (group.frame.empty() ? "" : " in " + group.frame) + (group.several ? " were not measured" : " was not measured");
     if (reason && sensors.empty()) finding.why += ", as " + reason->why;
     finding.why += "; the rest was" + (group.told ? ", to " + SigmaText(group.sigma_m, group.sigma_rad) : "");
     sensors.insert(sensors.end(), group.sensors.begin(), group.sensors.end());

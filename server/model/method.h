@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,16 +22,20 @@ struct MethodRow {
   SensorKind a, b;                 // of its sensors, in the order of SensorKind
   std::string_view residual_unit;  // of a capture's rms: "px" | "m"
   bool board_stands_still;         // during the session
+  std::size_t captures_least;      // in which both have to see what it goes by; 0: it does not go by captures
 };
 
 inline constexpr std::array<MethodRow, 7> kMethods = {{
-    {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false},
-    {Method::kNonOverlapping, "non_overlapping", "non-overlapping", SensorKind::kCamera, SensorKind::kCamera, "m", true},
-    {Method::kLidarCamera, "lidar_camera", "lidar-camera", SensorKind::kCamera, SensorKind::kLidar, "m", false},
-    {Method::kLidarLidar, "lidar_lidar", "lidar-lidar", SensorKind::kLidar, SensorKind::kLidar, "m", false},
-    {Method::kTrackerCamera, "tracker_camera", "tracker-camera", SensorKind::kCamera, SensorKind::kTracker, "m", true},
-    {Method::kTrackerLidar, "tracker_lidar", "tracker-lidar", SensorKind::kLidar, SensorKind::kTracker, "m", true},
-    {Method::kPoseStreams, "pose_streams", "pose streams", SensorKind::kPoseStream, SensorKind::kPoseStream, "m", false},
+    {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false, 3},
+    {Method::kNonOverlapping, "non_overlapping", "non-overlapping", SensorKind::kCamera, SensorKind::kCamera, "m", true,
+     4},
+    {Method::kLidarCamera, "lidar_camera", "lidar-camera", SensorKind::kCamera, SensorKind::kLidar, "m", false, 4},
+    {Method::kLidarLidar, "lidar_lidar", "lidar-lidar", SensorKind::kLidar, SensorKind::kLidar, "m", false, 1},
+    {Method::kTrackerCamera, "tracker_camera", "tracker-camera", SensorKind::kCamera, SensorKind::kTracker, "m", true,
+     4},
+    {Method::kTrackerLidar, "tracker_lidar", "tracker-lidar", SensorKind::kLidar, SensorKind::kTracker, "m", true, 4},
+    {Method::kPoseStreams, "pose_streams", "pose streams", SensorKind::kPoseStream, SensorKind::kPoseStream, "m", false,
+     0},
 }};
 static_assert([] {
   for (std::size_t i = 0; i < kMethods.size(); ++i)

@@ -2,6 +2,7 @@
 
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/selection.h"
+#include "server/calib/stereo/same_pictures.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {
@@ -100,6 +101,23 @@ TEST(Diagnosis, AFailedEdgeCountsWhatItsFilesHold) {
   }
   EXPECT_FALSE(edge.figures.contains("files_unreadable_a"));
   EXPECT_EQ(edge.captures.at(4).capture.str(), "004");
+}
+
+// Captures that were left out come back into the list, before those of which figures tell the places.
+TEST(Diagnosis, TheFirstUnreadableFileStaysTheSameBesideOneAndTheSamePicture) {
+  StereoProblem problem = Usual(6);
+  for (const std::size_t k : {3U, 4U, 5U})
+    problem.captures[k].b = BoardView{false, "the picture cannot be decoded", TargetId("board"), 0, 0, {}};
+  problem.captures[5].a = problem.captures[5].b;
+  const std::vector<CaptureId> same = {CaptureId("000"), CaptureId("002")};
+  LeaveOut(same, problem);
+  Edge edge = EstimateEdge(problem);
+  TellLeftOut(same, edge);
+  ASSERT_EQ(edge.state, EdgeState::kFailed);
+  ASSERT_EQ(edge.captures.size(), 6U);
+  EXPECT_EQ(edge.figures.at("first_unreadable_b_idx"), 3);
+  EXPECT_EQ(edge.figures.at("first_unreadable_a_idx"), 5);
+  EXPECT_EQ(edge.captures.at(3).capture.str(), "003");
 }
 
 BoardView LegacyView() {

@@ -228,8 +228,8 @@ TEST(Assess, ADirectionThatTheMotionLeavesOpenIsToldByTheMotion) {
   const Verdict verdict = rig.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
   EXPECT_EQ(verdict.why,
-            "The height of rear and arm was not measured, as the robot was turned about one axis only; the rest was, to "
-            "1.4 mm and 0.081 deg.");
+            "The position along z of rear and arm in the frame of left was not measured, as the robot was turned about "
+            "one axis only; the rest was, to 1.4 mm and 0.081 deg.");
   EXPECT_EQ(verdict.what_to_do, "Use ramps for planar_motion.");
   rig.edges.push_back(FailedEdge('g', "top", "lidar"));
   rig.solution.poses.push_back(PoseOf("lidar", false));

@@ -10,24 +10,8 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
-
-const RootCause* Find(const std::vector<RootCause>& causes, CauseKind kind) {
-  const auto found =
-      std::find_if(causes.begin(), causes.end(), [&](const RootCause& cause) { return cause.kind == kind; });
-  return found == causes.end() ? nullptr : &*found;
-}
-
-// The only one.
-RootCause OneCause(const Visit& visit, CauseKind kind) {
-  const std::vector<RootCause> causes = visit.Causes();
-  EXPECT_THAT(causes, SizeIs(1));
-  const RootCause* cause = Find(causes, kind);
-  EXPECT_NE(cause, nullptr) << (causes.empty() ? "no cause" : causes.front().said.why);
-  return cause ? *cause : RootCause();
-}
 
 TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
   Visit visit(StereoBoard());
@@ -64,64 +48,13 @@ TEST(BoardCounts, OfAMarkerBoardBeforeOneCameraTheDictionaryCountsToo) {
 TEST(BoardCounts, ABoardThatAnybodyFindsIsCountedRight) {
   Visit visit(StereoBoard());
   visit.AddStereos({{"left", "BB.........."}, {"rear", "............"}, {"right", "............"}});
-  EXPECT_EQ(Find(visit.Causes(), CauseKind::kBoardCounts), nullptr);
+  EXPECT_EQ(CauseOfKind(visit.Causes(), CauseKind::kBoardCounts), nullptr);
   Visit measured(StereoBoard());
   measured.AddStereos({{"left", "............"}, {"rear", "............"}});
   measured.AddSensor("top", SensorKind::kLidar);
   measured.AddGood("left", "top");
   measured.edges.back().method = "lidar_camera";
-  EXPECT_EQ(Find(measured.Causes(), CauseKind::kBoardCounts), nullptr);
-}
-
-TEST(MissingFiles, AreToldByTheirNumber) {
-  Visit visit(StereoBoard());
-  const Letters all(15, 'B'), some = "BB....         ";
-  for (const char* other : {"front", "left", "right"}) visit.AddStereo("left_front", some, other, all);
-  const RootCause cause = OneCause(visit, CauseKind::kFilesMissing);
-  EXPECT_THAT(cause.edges, SizeIs(3));
-  EXPECT_THAT(cause.sensors, ElementsAre(SensorId("left_front")));
-  EXPECT_EQ(cause.said.why, "left_front has files for 6 of 15 captures");
-  EXPECT_EQ(cause.said.what_to_do, "Copy what is missing into left_front/, or take these captures again");
-}
-
-TEST(MissingFiles, OfALidarExplainItsPairsWithOthersToo) {
-  Visit visit(LidarBoard());
-  visit.AddLidarCamera("front", "BBBBBBBB", "top", "        ");
-  visit.AddSensor("low", SensorKind::kLidar);
-  visit.AddFailed("low", "top", "lidar_lidar", "no_common_clouds", {{"captures_total", 8}});
-  const RootCause cause = OneCause(visit, CauseKind::kFilesMissing);
-  EXPECT_THAT(cause.edges, SizeIs(2));
-  EXPECT_EQ(cause.said.why, "top has no files");
-}
-
-TEST(MissingFiles, OfATrackerAreItsPoses) {
-  Visit visit(StereoBoard());
-  visit.AddSensor("body", SensorKind::kTracker);
-  visit.AddSensor("front", SensorKind::kCamera);
-  visit.AddFailed(
-      "front", "body", "tracker_camera", "too_few_captures",
-      {{"captures_total", 40}, {"files_a", 40}, {"files_with_board_a", 31}, {"files_b", 3}, {"files_with_board_b", 3}});
-  const RootCause cause = OneCause(visit, CauseKind::kFilesMissing);
-  EXPECT_EQ(cause.said.why, "body has poses for 3 of 40 captures");
-  EXPECT_THAT(cause.said.what_to_do, HasSubstr("into body/poses.csv"));
-}
-
-TEST(UnreadableFiles, AreCountedAndTheFirstIsNamed) {
-  Visit visit(StereoBoard());
-  visit.AddStereo("front", "B.xx.x", "left", "BBBBBB");
-  visit.AddStereo("rear", "BBBBBB", "front", "B.xx.x");
-  const RootCause cause = OneCause(visit, CauseKind::kFilesUnreadable);
-  EXPECT_THAT(cause.edges, SizeIs(2));
-  EXPECT_THAT(cause.captures, ElementsAre(CaptureId("002")));
-  EXPECT_EQ(cause.said.why, "3 of 6 pictures of front cannot be read, the first is 002");
-  EXPECT_EQ(cause.said.what_to_do, "Copy them again from where they were recorded, or take these captures again");
-}
-
-TEST(UnreadableFiles, OfALidarAreClouds) {
-  Visit visit(LidarBoard());
-  visit.AddLidarCamera("front", "BBBBBBBB", "top", "xBB.xxxx");
-  EXPECT_EQ(OneCause(visit, CauseKind::kFilesUnreadable).said.why,
-            "5 of 8 clouds of top cannot be read, the first is 000");
+  EXPECT_EQ(CauseOfKind(measured.Causes(), CauseKind::kBoardCounts), nullptr);
 }
 
 TEST(BoardSize, PairsThatAgreeOnAnotherSizeAreOneLine) {
@@ -227,41 +160,7 @@ TEST(BoardPlaces, AreToldOfCameras) {
   EXPECT_EQ(cause.said.what_to_do, "Hold it in all corners of the picture, near and far: 8 more captures");
 }
 
-TEST(UnseenBoard, IsToldOfTheSensorThatSeesItSeldom) {
-  Visit visit(StereoBoard());
-  visit.AddStereo("left", "BBBBBBBBBBBB", "rear", "............");
-  visit.AddStereo("rear", "............", "right", "BBBBBBBBBBBB");
-  const RootCause cause = OneCause(visit, CauseKind::kBoardUnseen);
-  EXPECT_THAT(cause.edges, SizeIs(2));
-  EXPECT_EQ(cause.said.why, "rear sees board calib in none of 12 pictures");
-  EXPECT_EQ(cause.said.what_to_do, "Show the whole board to rear, sharp and evenly lit, in 8 more captures");
-}
-
-TEST(UnseenBoard, OfALidarMayBeAPlateOfAnotherSize) {
-  Visit visit(LidarBoard());
-  visit.AddLidarCamera("front", "BBBBBBBB", "top", "BB......");
-  const RootCause cause = OneCause(visit, CauseKind::kBoardUnseen);
-  EXPECT_EQ(cause.said.why, "top sees board wall in 2 of 8 clouds");
-  EXPECT_THAT(cause.said.what_to_do, HasSubstr("and check its plate_size_m"));
-}
-
-TEST(UnseenBoard, CamerasThatLookDifferentWaysAreNotAccused) {
-  Visit visit(StereoBoard());
-  visit.AddStereo("left", "BBB.........", "rear", "...BBB......");
-  EXPECT_THAT(visit.Causes(), SizeIs(0));
-}
-
-TEST(ShortSession, IsToldWithItsCaptures) {
-  Visit cameras(StereoBoard());
-  cameras.AddStereos({{"left", "BB"}, {"rear", "BB"}, {"right", "BB"}});
-  const RootCause cause = OneCause(cameras, CauseKind::kShortSession);
-  EXPECT_THAT(cause.edges, SizeIs(3));
-  EXPECT_EQ(cause.said.why, "the session of 2026-01-31 has 2 captures only");
-  Visit lidar(LidarBoard());
-  lidar.AddLidarCamera("front", "BBB", "top", "BBB");
-  EXPECT_EQ(OneCause(lidar, CauseKind::kShortSession).said.why, "the session of 2026-01-31 has 3 captures only");
-}
-
+// Of captures of which each sensor has a file. The first sees the board in `of_a` of them, the second in `of_b`.
 TEST(NotMeasured, SensorsOfTheListThatNoEdgeNames) {
   Visit visit(StereoBoard());
   visit.AddGood("left", "right");
@@ -312,7 +211,8 @@ TEST(Mixed, SensorsThatACauseLeavesWithoutAPoseFollowFromIt) {
   Visit visit(StereoBoard());
   visit.AddStereo("left", "BBBBBBBBBBBB", "rear", "............");
   visit.AddGood("left", "right");
-  visit.AddGood("rear", "mast");  // hangs on it
+  visit.AddGood("rear", "mast");  // hangs on it, since another session
+  visit.edges.back().session = SessionId(std::string(64, '2'));
   const Verdict lost = visit.Judge(SolutionOf({"left", "right"}, {"mast", "rear"}));
   EXPECT_EQ(lost.level, VerdictLevel::kUnknown);
   EXPECT_EQ(lost.why, "rear sees board calib in none of 12 pictures; so the poses of mast and rear are not known.");
@@ -321,6 +221,39 @@ TEST(Mixed, SensorsThatACauseLeavesWithoutAPoseFollowFromIt) {
   EXPECT_THAT(both.why,
               HasSubstr("mast and rear are not known; also, the pose of low is not known: no good edge ties it "
                         "to left."));
+}
+
+// What has nothing to do with a sensor's pose is not said to be why it is not known.
+TEST(Mixed, WhatIsNotKnownStandsBesideTheCauseThatItIsLostTo) {
+  Visit visit(StereoBoard());
+  visit.AddStereo("front", "            ", "right", "BBBBBBBBBBBB");
+  visit.AddStereo("front", "            ", "rear", "BBBBBBBBBBBB");
+  visit.AddFailed("left", "right", "stereo", "high_residual", {{"rms_as_fisheye_kb4_a_px", 0.2}});
+  visit.AddSensor("left", SensorKind::kCamera);
+  for (const char* camera : {"left", "right"}) visit.AddGood("rear", camera);
+  const Verdict verdict = visit.Judge(SolutionOf({"rear", "right", "left"}, {"front"}));
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.why,
+            "front has no files; so the pose of front is not known; also, the lens of left is not pinhole_radtan: as "
+            "fisheye_kb4 it fits to 0.2 px.");
+}
+
+// However the causes are sorted, a sensor is lost to the one that names it.
+TEST(Mixed, EachCauseTellsWhatIsLostToIt) {
+  Visit visit(StereoBoard());
+  for (const char* camera : {"front", "left", "rear"}) visit.AddSensor(camera, SensorKind::kCamera);
+  for (const char* other : {"front", "rear", "right"}) {
+    visit.AddFailed("left", other, "stereo", "high_residual", {{"rms_as_fisheye_kb4_a_px", 0.2}});
+    visit.AddSensor(other, SensorKind::kCamera);
+  }
+  visit.AddStereo("front", "            ", "right", "BBBBBBBBBBBB");
+  visit.AddStereo("front", "            ", "rear", "BBBBBBBBBBBB");
+  visit.AddGood("rear", "right");
+  visit.AddGood("left", "low");
+  EXPECT_EQ(
+      visit.Judge(SolutionOf({"rear", "right"}, {"front", "left", "low"})).why,
+      "The lens of left is not pinhole_radtan: as fisheye_kb4 it fits to 0.2 px; so the poses of left and low are "
+      "not known; also, front has no files; so the pose of front is not known.");
 }
 
 TEST(OpenFailures, ArePairsThatNothingMeasuredSince) {
@@ -344,8 +277,8 @@ TEST(RootCauses, WithoutHeadersOrFiguresAreFewerAndNeverWrong) {
   Visit visit(StereoBoard());
   visit.AddStereos({{"left", "............"}, {"rear", "............"}});
   const std::vector<RootCause> causes = FindRootCauses(visit.edges, {}, {}, {});
-  EXPECT_EQ(Find(causes, CauseKind::kBoardCounts), nullptr) << "nobody says which board it is";
-  const RootCause* unseen = Find(causes, CauseKind::kBoardUnseen);
+  EXPECT_EQ(CauseOfKind(causes, CauseKind::kBoardCounts), nullptr) << "nobody says which board it is";
+  const RootCause* unseen = CauseOfKind(causes, CauseKind::kBoardUnseen);
   ASSERT_NE(unseen, nullptr);
   EXPECT_EQ(unseen->said.why, "left sees a board in none of 12 pictures");
   visit.edges.front().figures.clear();

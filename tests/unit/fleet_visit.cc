@@ -1,5 +1,8 @@
 #include "tests/unit/fleet_visit.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "server/calib/lidar_camera/lidar_camera.h"
@@ -126,6 +129,20 @@ std::vector<RootCause> Visit::Causes(const GraphSolution& solution) const {
 
 Verdict Visit::Judge(const GraphSolution& solution) const {
   return Assess(edges, solution, {}, Times(), {}, Headers());
+}
+
+const RootCause* CauseOfKind(const std::vector<RootCause>& causes, CauseKind kind) {
+  const auto found =
+      std::find_if(causes.begin(), causes.end(), [&](const RootCause& cause) { return cause.kind == kind; });
+  return found == causes.end() ? nullptr : &*found;
+}
+
+RootCause OneCause(const Visit& visit, CauseKind kind) {
+  const std::vector<RootCause> causes = visit.Causes();
+  EXPECT_EQ(causes.size(), 1U);
+  const RootCause* cause = CauseOfKind(causes, kind);
+  EXPECT_NE(cause, nullptr) << (causes.empty() ? "no cause" : causes.front().said.why);
+  return cause ? *cause : RootCause();
 }
 
 Target StereoBoard() {

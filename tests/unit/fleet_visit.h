@@ -40,6 +40,11 @@ struct Visit {
   [[nodiscard]] Verdict Judge(const GraphSolution& solution) const;
 };
 
+// Null: none is of this kind.
+[[nodiscard]] const RootCause* CauseOfKind(const std::vector<RootCause>& causes, CauseKind kind);
+// The only one of a visit; the test fails where there is another.
+[[nodiscard]] RootCause OneCause(const Visit& visit, CauseKind kind);
+
 // "calib", 9 x 6 corners of 30 mm: of stereo pairs; "wall", 7 x 5 corners of 100 mm: of lidars and cameras.
 [[nodiscard]] Target StereoBoard();
 [[nodiscard]] Target LidarBoard();

@@ -8,14 +8,21 @@
 
 namespace rigcal::calib {
 
+static_assert(RowOf(Method::kStereo).captures_least == kCapturesMin);
+static_assert(RowOf(Method::kLidarCamera).captures_least == kLidarCapturesMin);
+static_assert(RowOf(Method::kTrackerLidar).captures_least == kTrackerLidarMin);
+static_assert(RowOf(Method::kNonOverlapping).captures_least == kHandEyeMin);
+static_assert(RowOf(Method::kTrackerCamera).captures_least == kHandEyeMin);
+
 CapturesNeeded NeededBy(Method method) {
+  const std::size_t least = RowOf(method).captures_least;
   switch (method) {
-    case Method::kStereo: return {kCapturesMin, kCapturesEnough};
-    case Method::kLidarCamera: return {kLidarCapturesMin, kLidarCapturesEnough};
-    case Method::kLidarLidar: return {1, kCloudsEnough};
-    case Method::kTrackerLidar: return {kTrackerLidarMin, kTrackerLidarEnough};
+    case Method::kStereo: return {least, kCapturesEnough};
+    case Method::kLidarCamera: return {least, kLidarCapturesEnough};
+    case Method::kLidarLidar: return {least, kCloudsEnough};
+    case Method::kTrackerLidar: return {least, kTrackerLidarEnough};
     case Method::kNonOverlapping:
-    case Method::kTrackerCamera: return {kHandEyeMin, kHandEyeEnough};
+    case Method::kTrackerCamera: return {least, kHandEyeEnough};
     case Method::kPoseStreams: return {};
   }
   return {};
