@@ -13,7 +13,6 @@
 #include "server/pipeline/robot_state.h"
 #include "server/pipeline/run_edge_job.h"
 #include "server/pipeline/session_refinement.h"
-#include "server/pipeline/summaries.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/worker.h"
 #include "storage/edges.h"
@@ -343,9 +342,11 @@ bool RefreshOthers(const StepContext& context) {
   constexpr int kSummariesOfStep = 64;
   const Claim claim(context.claims, kSummaries);
   if (!claim.taken()) return false;
-  const Result<int> refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep);
+  SummaryTurn alone;
+  SummaryTurn& turn = context.summaries == nullptr ? alone : *context.summaries;
+  const auto refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep, turn);
   if (!refreshed) LogError(refreshed.error());
-  return refreshed && *refreshed == kSummariesOfStep;
+  return refreshed && refreshed->more;
 }
 
 Result<StepResult> DoNext(const StepContext& context) {

@@ -14,6 +14,7 @@
 #include "server/model/robot_state.h"
 #include "server/pipeline/live_graphs.h"
 #include "server/pipeline/missing_report.h"
+#include "server/pipeline/summaries.h"
 #include "server/pipeline/worker_pool.h"
 #include "storage/store.h"
 
@@ -56,6 +57,7 @@ struct StepContext {
   calib::CameraMemory& cameras;
   UndrawnReports* undrawn = nullptr;  // none: nobody asks why
   WorkerPool* workers = nullptr;      // none: jobs, refinements and reports are done by the calling thread
+  SummaryTurn* summaries = nullptr;   // used by one thread at a time; none: each step begins with the first robot
 };
 
 struct StepResult {

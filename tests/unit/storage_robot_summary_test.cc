@@ -270,6 +270,20 @@ TEST_F(RobotSummaryTest, TheNumbersOfARobotAreThoseOfItsTables) {
   EXPECT_EQ(CountEdges(store_, RobotId("nobody"), 2).value(), 0);
 }
 
+TEST_F(RobotSummaryTest, ThoseThatWaitComeInTurn) {
+  for (const char* name : {"b", "a", "d", "c"}) ASSERT_TRUE(AppendRobot(store_, RobotId(name), {1}));
+  const auto names = [&](int max, const std::string& after) {
+    std::string text;
+    const std::vector<WaitingSummary> waiting = LoadWaitingSummaries(store_, max, RobotId(after)).value();
+    for (const WaitingSummary& one : waiting) text += one.robot.str();
+    return text;
+  };
+  EXPECT_EQ(names(3, ""), "abc");
+  EXPECT_EQ(names(3, "b"), "cda");
+  EXPECT_EQ(names(9, "bb"), "cdab");
+  EXPECT_EQ(names(2, "d"), "ab");
+}
+
 // Version 15, which knew no summaries. The numbers of its edges have gaps: it was of version 4 once.
 std::string StoreOfVersion15() {
   std::string sql;
