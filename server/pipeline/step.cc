@@ -10,7 +10,6 @@
 #include "server/pipeline/retention.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
-#include "server/pipeline/robot_state.h"
 #include "server/pipeline/run_edge_job.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/pipeline/validity.h"
@@ -164,8 +163,7 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int6
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
                           formats::WriteRevisionEvent(revision, usable));
-  RIGCAL_ASSIGN(const auto state, LoadRobotState(context.store, robot));
-  if (state) context.announcer.state(*state);
+  context.announcer.state(robot);
   return {};
 }
 

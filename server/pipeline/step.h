@@ -11,7 +11,6 @@
 
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/model/robot_state.h"
 #include "server/pipeline/live_graphs.h"
 #include "server/pipeline/missing_report.h"
 #include "server/pipeline/summaries.h"
@@ -44,8 +43,8 @@ class Claims {
 struct Announcer {
   std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)>
       event;
-  // After each new revision, whatever its verdict.
-  std::function<void(const RobotState&)> state;
+  // After each new revision, whatever its verdict: what the robot was told (robot_state.h) is out of date.
+  std::function<void(const RobotId&)> state;
 };
 
 struct StepContext {
