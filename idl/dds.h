@@ -114,6 +114,7 @@ class Origins {
  private:
   std::unordered_map<dds_instance_handle_t, SampleOrigin> by_publication_;
 };
+Status WithdrawInstance(dds_entity_t writer, const void* sample, const char* topic);
 Status ForgetInstance(dds_entity_t writer, const void* sample);
 std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader);
 bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant);
@@ -157,6 +158,11 @@ class Writer {
   // Whether any reader matched that is none of `others` (NewReaders::OfMany).
   [[nodiscard]] bool HasReaderBeside(const std::set<dds_instance_handle_t>& others) const {
     return internal::HasReaderBeside(entity_.get(), others);
+  }
+  // Takes back what was told under the sample's key, by whatever writer: its instance is disposed of, and of a topic
+  // that is kept for late joiners these are told so too. kBusy as of Write.
+  [[nodiscard]] Status Withdraw(const T& sample) {
+    return internal::WithdrawInstance(entity_.get(), &sample, InfoOf<T>().name);
   }
   // Drops what is kept for late joiners under the sample's key: they hear nothing of it.
   [[nodiscard]] Status Forget(const T& sample) { return internal::ForgetInstance(entity_.get(), &sample); }

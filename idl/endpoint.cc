@@ -92,6 +92,10 @@ Status WriteSample(dds_entity_t writer, const void* sample, const char* topic) {
   return Written(dds_write(writer, sample), topic);
 }
 
+Status WithdrawInstance(dds_entity_t writer, const void* sample, const char* topic) {
+  return Written(dds_dispose(writer, sample), topic);
+}
+
 Status ForgetInstance(dds_entity_t writer, const void* sample) {
   dds_dispose(writer, sample);
   const dds_return_t code = dds_unregister_instance(writer, sample);

@@ -119,7 +119,7 @@ Status RobotWriters::Withdraw(const RobotId& robot, const std::set<SensorId>& se
   for (const SensorId& sensor : sensors) {
     rigcal_wire_Calibration key{};
     RIGCAL_TRY(FillKey(robot, sensor, key));
-    RIGCAL_TRY(calibrations_.Forget(key));
+    RIGCAL_TRY(calibrations_.Withdraw(key));
     told_sensors_.erase(sensor);
   }
   return {};
@@ -128,7 +128,8 @@ Status RobotWriters::Withdraw(const RobotId& robot, const std::set<SensorId>& se
 Status RobotWriters::TellPoses(const RobotState& state) {
   if (state.calibration) return TellCalibration(state.newest.robot, *state.calibration);
   told_calibration_ = 0;
-  const std::set<SensorId> gone = told_sensors_;
+  std::set<SensorId> gone = told_sensors_;
+  gone.insert(state.withdrawn.begin(), state.withdrawn.end());
   return Withdraw(state.newest.robot, gone);
 }
 

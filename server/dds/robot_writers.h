@@ -19,8 +19,8 @@ class RobotWriters {
   // Drops the receipt that is kept for who comes later.
   void Forget(const wire::Receipt& receipt);
   void Send(const Announcement& announcement, std::uint64_t sequence_number);
-  // From one thread. What these writers told of sensors that are not in the calibration is taken back. After an error all of it is
-  // told again.
+  // From one thread. What was told of sensors that are not in the calibration is taken back, by these writers and, where there is no
+  // calibration to use, also by those of an earlier run. Who joins later is told as much. After an error all of it is told again.
   [[nodiscard]] Status Tell(const RobotState& state);
 
   // Whether anybody reads of the robot beside `others`, who read of many.

@@ -139,7 +139,7 @@ TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
       });
 }
 
-// While somebody listens the writers keep what was told: who joins then hears the newest, and nothing that was withdrawn.
+// While somebody listens the writers keep what was told: who joins then hears the newest, and that the rest was withdrawn.
 TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
   Holder robot(options_.participant);
   StoreAndTell(StateOf(3, kPass, {PoseOf("left"), PoseOf("right")}));
@@ -149,7 +149,22 @@ TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
   StoreAndTell(StateOf(5, kPass, {PoseOf("right")}));
   EXPECT_EQ(robot.Await({{"left", 0}, {"right", 5}}), (Holder::Held{{"left", 0}, {"right", 5}}));
   Holder late(options_.participant);
-  EXPECT_EQ(late.Await({{"right", 5}}), (Holder::Held{{"right", 5}}));
+  EXPECT_EQ(late.Await({{"left", 0}, {"right", 5}}), (Holder::Held{{"left", 0}, {"right", 5}}));
+}
+
+// As after a kill between the commit of a revision and its announcement: nobody else knows what the robot holds.
+TEST_F(AnnounceTest, WhatAnEarlierServerToldIsTakenBack) {
+  Holder robot(options_.participant);
+  StoreAndTell(StateOf(3, kPass, {PoseOf("left"), PoseOf("right")}));
+  EXPECT_EQ(robot.Await({{"left", 3}, {"right", 3}}), (Holder::Held{{"left", 3}, {"right", 3}}));
+  StopServer();
+  RobotState remounted = StateOf(4, kFail, {});
+  remounted.withdrawn = {SensorId("left"), SensorId("right")};
+  StoreState(remounted);
+  StartServer();
+  EXPECT_EQ(robot.Await({{"left", 0}, {"right", 0}}), (Holder::Held{{"left", 0}, {"right", 0}}));
+  Holder back(options_.participant);  // one that was cut off meanwhile
+  EXPECT_EQ(back.Await({{"left", 0}, {"right", 0}}), (Holder::Held{{"left", 0}, {"right", 0}}));
 }
 
 // Another revision is stored, and told of, while what was stored before is loaded for who just came.

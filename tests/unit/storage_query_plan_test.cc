@@ -90,6 +90,7 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadRevision(store_, kRobot, 0));
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 0));
   EXPECT_TRUE(LoadUsableRevision(store_, kRobot, 0));
+  EXPECT_EQ(LoadNewestGood(store_, kRobot, 1).value(), 1);
   EXPECT_EQ(CountEdges(store_, kRobot, LoadEdgeWatermark(store_, kRobot).value()).value(), 3);
   EXPECT_TRUE(LoadRevisionPoses(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
