@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -98,7 +99,10 @@ Result<Entity> OpenWriter(const Participant&, dds_entity_t parent, const TopicIn
                           const std::vector<std::string>& partitions);
 Result<Entity> OpenPublisher(const Participant&, const std::string& partition);
 Status WriteSample(dds_entity_t writer, const void* sample, const char* topic);
-// Takes up to `max` samples; calls body for each valid one.
+// Takes up to `max` samples; calls body for each, also for what only says how its instance is (info.valid_data is
+// false).
+Result<int> TakeNews(dds_entity_t reader, int max, const std::function<void(const void*, const dds_sample_info_t&)>&);
+// The same; calls body for each valid one.
 Result<int> TakeSamples(dds_entity_t reader, int max,
                         const std::function<void(const void*, const dds_sample_info_t&)>&);
 // Who writes to one reader. Asks discovery once per publication, then remembers it. A publication that is gone already
@@ -110,9 +114,11 @@ class Origins {
  private:
   std::unordered_map<dds_instance_handle_t, SampleOrigin> by_publication_;
 };
+Status WithdrawInstance(dds_entity_t writer, const void* sample, const char* topic);
 Status ForgetInstance(dds_entity_t writer, const void* sample);
 std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader);
 bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant);
+bool HasReaderBeside(dds_entity_t writer, const std::set<dds_instance_handle_t>& others);
 void ClearMatch(dds_entity_t endpoint);  // so that a wait set sleeps again
 int MatchedCount(dds_entity_t endpoint, bool is_writer);
 Status WaitForMatch(dds_entity_t endpoint, bool is_writer, std::chrono::milliseconds timeout);
@@ -149,7 +155,16 @@ class Writer {
     return internal::WriteSample(entity_.get(), &sample, InfoOf<T>().name);
   }
   [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(entity_.get(), true); }
-  // Drops what is kept for late joiners under the sample's key.
+  // Whether any reader matched that is none of `others` (NewReaders::OfMany).
+  [[nodiscard]] bool HasReaderBeside(const std::set<dds_instance_handle_t>& others) const {
+    return internal::HasReaderBeside(entity_.get(), others);
+  }
+  // Takes back what was told under the sample's key, by whatever writer: its instance is disposed of, and of a topic
+  // that is kept for late joiners these are told so too. kBusy as of Write.
+  [[nodiscard]] Status Withdraw(const T& sample) {
+    return internal::WithdrawInstance(entity_.get(), &sample, InfoOf<T>().name);
+  }
+  // Drops what is kept for late joiners under the sample's key: they hear nothing of it.
   [[nodiscard]] Status Forget(const T& sample) { return internal::ForgetInstance(entity_.get(), &sample); }
   // True if a reader of that participant (SampleOrigin::participant) matched: what is written now reaches it.
   [[nodiscard]] bool HasReaderOf(dds_instance_handle_t participant) const {

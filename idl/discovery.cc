@@ -21,6 +21,13 @@ std::vector<std::string> PartitionsOf(const dds_qos_t* qos) {
 
 }  // namespace internal
 
+namespace {
+
+// The two that partitions are matched by.
+bool HasWildcard(const std::string& partition) { return partition.find_first_of("*?") != std::string::npos; }
+
+}  // namespace
+
 Result<Entity> OpenBuiltin(const Participant& participant, dds_entity_t topic) {
   Entity entity(dds_create_reader(participant.get(), topic, nullptr, nullptr));
   if (entity.get() < 0)
@@ -37,11 +44,15 @@ Result<NewReaders> NewReaders::Open(const Participant& participant) {
 
 Result<std::vector<std::string>> NewReaders::TakePartitions(const std::vector<std::string>& topics) {
   std::vector<std::string> partitions;
-  RIGCAL_TRY(internal::TakeSamples(subscriptions_.get(), INT_MAX, [&](const void* sample, const dds_sample_info_t& info) {
+  RIGCAL_TRY(internal::TakeNews(subscriptions_.get(), INT_MAX, [&](const void* sample, const dds_sample_info_t& info) {
+    if (info.instance_state != DDS_ALIVE_INSTANCE_STATE) of_many_.erase(info.instance_handle);
+    if (info.instance_state != DDS_ALIVE_INSTANCE_STATE || !info.valid_data) return;
     const auto& reader = *static_cast<const dds_builtintopic_endpoint_t*>(sample);
-    if (info.instance_state != DDS_ALIVE_INSTANCE_STATE || reader.topic_name == nullptr) return;
-    if (std::find(topics.begin(), topics.end(), reader.topic_name) == topics.end()) return;
-    for (std::string& partition : internal::PartitionsOf(reader.qos)) partitions.push_back(std::move(partition));
+    if (reader.topic_name == nullptr || std::find(topics.begin(), topics.end(), reader.topic_name) == topics.end()) return;
+    for (std::string& partition : internal::PartitionsOf(reader.qos)) {
+      if (HasWildcard(partition)) of_many_.insert(info.instance_handle);
+      partitions.push_back(std::move(partition));
+    }
   }));
   return partitions;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include "idl/dds.h"
@@ -48,6 +49,14 @@ Result<Entity> Checked(dds_entity_t handle, const TopicInfo& info, std::uint32_t
   return entity;
 }
 
+Status Written(dds_return_t code, const char* topic) {
+  if (code == DDS_RETCODE_OK) return {};
+  if (code == DDS_RETCODE_TIMEOUT)
+    return Fail(ErrorCode::kBusy, std::string(topic) + ": a reader did not take in time", "Try again");
+  return Fail(ErrorCode::kInternal, std::string(topic) + ": DDS could not write: " + dds_strretcode(-code),
+              "A fault in Rigcal or too little memory: report it with the log");
+}
+
 }  // namespace
 
 Result<Entity> OpenReader(const Participant& participant, const TopicInfo& info,
@@ -80,12 +89,11 @@ Result<Entity> OpenPublisher(const Participant& participant, const std::string& 
 }
 
 Status WriteSample(dds_entity_t writer, const void* sample, const char* topic) {
-  const dds_return_t code = dds_write(writer, sample);
-  if (code == DDS_RETCODE_OK) return {};
-  if (code == DDS_RETCODE_TIMEOUT)
-    return Fail(ErrorCode::kBusy, std::string(topic) + ": a reader did not take in time", "Try again");
-  return Fail(ErrorCode::kInternal, std::string(topic) + ": DDS could not write: " + dds_strretcode(-code),
-              "A fault in Rigcal or too little memory: report it with the log");
+  return Written(dds_write(writer, sample), topic);
+}
+
+Status WithdrawInstance(dds_entity_t writer, const void* sample, const char* topic) {
+  return Written(dds_dispose(writer, sample), topic);
 }
 
 Status ForgetInstance(dds_entity_t writer, const void* sample) {
@@ -96,8 +104,8 @@ Status ForgetInstance(dds_entity_t writer, const void* sample) {
               "A fault in Rigcal or too little memory: report it with the log");
 }
 
-Result<int> TakeSamples(dds_entity_t reader, int max,
-                        const std::function<void(const void*, const dds_sample_info_t&)>& body) {
+Result<int> TakeNews(dds_entity_t reader, int max,
+                     const std::function<void(const void*, const dds_sample_info_t&)>& body) {
   std::array<void*, kTakeMax> samples{};
   std::array<dds_sample_info_t, kTakeMax> infos;
   int taken = 0;
@@ -108,13 +116,19 @@ Result<int> TakeSamples(dds_entity_t reader, int max,
     if (count < 0)
       return Fail(ErrorCode::kInternal, std::string("DDS could not take: ") + dds_strretcode(-count),
                   "A fault in Rigcal or too little memory: report it with the log");
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-      if (infos[i].valid_data) body(samples[i], infos[i]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) body(samples[i], infos[i]);
     if (count > 0) dds_return_loan(reader, samples.data(), count);
     taken += count;
     if (count < wanted) break;
   }
   return taken;
+}
+
+Result<int> TakeSamples(dds_entity_t reader, int max,
+                        const std::function<void(const void*, const dds_sample_info_t&)>& body) {
+  return TakeNews(reader, max, [&](const void* sample, const dds_sample_info_t& info) {
+    if (info.valid_data) body(sample, info);
+  });
 }
 
 const SampleOrigin& Origins::Of(dds_entity_t reader, dds_instance_handle_t publication) {
@@ -146,6 +160,14 @@ bool HasReaderOf(dds_entity_t writer, dds_instance_handle_t participant) {
     if (data != nullptr && data->participant_instance_handle == participant) return true;
   }
   return false;
+}
+
+bool HasReaderBeside(dds_entity_t writer, const std::set<dds_instance_handle_t>& others) {
+  std::vector<dds_instance_handle_t> readers(static_cast<std::size_t>(MatchedCount(writer, true)));
+  if (readers.size() > others.size()) return true;
+  const dds_return_t count = dds_get_matched_subscriptions(writer, readers.data(), readers.size());
+  readers.resize(std::min(readers.size(), static_cast<std::size_t>(std::max(count, 0))));
+  return std::any_of(readers.begin(), readers.end(), [&](dds_instance_handle_t one) { return others.count(one) == 0; });
 }
 
 // A mask that names a status of the other kind of endpoint is refused whole.

@@ -49,7 +49,7 @@ pipeline::Announcer AnnouncerTo(dds::Service& service) {
                                const std::string& json) {
     service.Announce({robot, kind, subject, SystemClock().Now(), json});
   };
-  announcer.state = [&service](const RobotState& state) { service.Tell(state); };
+  announcer.state = [&service](const RobotId& robot) { service.Tell(robot); };
   return announcer;
 }
 

@@ -228,7 +228,10 @@ Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<E
 
 Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark) {
   return Load<std::int64_t>(store, "edges of robot " + robot.str(), [&]() -> Result<std::int64_t> {
-    Query query(store, "SELECT count(*) FROM counted_edge WHERE robot_id = ? AND number <= ?");
+    // Newer ones are few, all of a robot's are many.
+    Query query(store,
+                "SELECT a.edges - (SELECT count(*) FROM counted_edge c WHERE c.robot_id = a.robot_id AND c.number > ?2) "
+                "FROM summary_arrivals a WHERE a.robot_id = ?1");
     return query.Bind(robot, watermark).Step() ? query.Int(0) : 0;
   });
 }

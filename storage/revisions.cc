@@ -136,6 +136,15 @@ Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& 
   });
 }
 
+Result<int> LoadNewestGood(Store& store, const RobotId& robot, int number) {
+  return Load<int>(store, RevisionsSubject(robot), [&]() -> Result<int> {
+    Query query(store,
+                "SELECT number FROM revision WHERE robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') "
+                "ORDER BY number DESC LIMIT 1");
+    return query.Bind(robot, number).Step() ? static_cast<int>(query.Int(0)) : 0;
+  });
+}
+
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before, std::int64_t limit) {
   return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
     Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");

@@ -51,13 +51,15 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   return summary;
 }
 
-Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max) {
+Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max, const RobotId& after) {
   using Waiting = std::vector<WaitingSummary>;
   return Load<Waiting>(store, "summaries to make", [&]() -> Result<Waiting> {
-    Query query(store, "SELECT robot_id, changes FROM waiting_summary ORDER BY robot_id LIMIT ?");
-    query.Bind(max);
     Waiting waiting;
-    while (query.Step()) waiting.push_back(WaitingOf(query));
+    for (const char* where : {"robot_id > ?", "robot_id <= ?"}) {
+      Query query(store, "SELECT robot_id, changes FROM waiting_summary WHERE " + std::string(where) + " ORDER BY robot_id LIMIT ?");
+      query.Bind(after, max - static_cast<int>(waiting.size()));
+      while (query.Step()) waiting.push_back(WaitingOf(query));
+    }
     return waiting;
   });
 }

@@ -14,7 +14,8 @@ struct WaitingSummary {
   RobotId robot;
   std::int64_t changes = 0;
 };
-[[nodiscard]] Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max);
+// Up to `max` of those that wait, by id: those after `after`, then the first ones.
+[[nodiscard]] Result<std::vector<WaitingSummary>> LoadWaitingSummaries(Store& store, int max, const RobotId& after = {});
 [[nodiscard]] Result<std::optional<WaitingSummary>> LoadWaitingSummary(Store& store, const RobotId& robot);
 // Stores what was worked out in a snapshot in which the robot had so many `changes`; a no-op where that is older than what is
 // stored. A robot that changed since then waits on. `validity.overdue` is not stored.

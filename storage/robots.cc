@@ -16,8 +16,8 @@ Status AppendRobot(Store& store, const RobotId& robot, Stamp now) {
 Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot) {
   return Load<std::optional<RobotRow>>(store, "robot " + robot.str(), [&]() -> Result<std::optional<RobotRow>> {
     Query query(store,
-                "SELECT robot_id, first_seen_ns, (SELECT count(*) FROM session s WHERE s.robot_id = r.robot_id), "
-                "(SELECT count(*) FROM counted_edge c WHERE c.robot_id = r.robot_id) FROM robot r WHERE robot_id = ?");
+                "SELECT r.robot_id, r.first_seen_ns, a.sessions, a.edges FROM robot r "
+                "JOIN summary_arrivals a ON a.robot_id = r.robot_id WHERE r.robot_id = ?");
     if (!query.Bind(robot).Step()) return std::nullopt;
     return RobotRow{query.IdAt<RobotId>(0), query.Time(1), query.Int(2), query.Int(3)};
   });

@@ -53,12 +53,7 @@ struct Order {
   std::function<void(Result<std::string>)> answer;
 };
 
-// Somebody began to read of a robot: its stored state is to be told.
-struct RobotMet {
-  RobotId robot;
-};
-
-using Arrival = std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal, Order, RobotMet>;
+using Arrival = std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal, Order>;
 
 // Memory it holds while it waits.
 [[nodiscard]] std::int64_t BytesOf(const Arrival& arrival);

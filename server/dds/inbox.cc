@@ -3,7 +3,6 @@
 namespace rigcal::dds {
 
 bool Inbox::Fits(const Arrival& arrival, std::int64_t bytes) {
-  if (std::holds_alternative<RobotMet>(arrival)) return true;
   if (all_bytes_ + bytes > limits_.all_bytes || queue_.size() >= limits_.items) return false;
   const auto* chunk = std::get_if<ChunkBytes>(&arrival);
   if (chunk == nullptr) return true;

@@ -22,8 +22,7 @@ class Inbox {
   explicit Inbox(const Limits& limits) : limits_(limits) {}
 
   // Never waits. A chunk beyond the limits becomes a DiscardedChunk; anything else beyond them is dropped, as clients
-  // repeat what is not answered; a RobotMet never, there are no more than robots with writers. False if the arrival was discarded
-  // or dropped.
+  // repeat what is not answered. False if the arrival was discarded or dropped.
   bool Offer(Arrival arrival);
   // About `bytes_max` bytes of arrivals in order, orders first, or fewer; waits for the first or for Wake. What it gave
   // counts against the limits until Release.

@@ -54,9 +54,10 @@ Result<bool> Intake::TakeAll() {
   return any;
 }
 
-// Who may soon push, or listens, reads of its robot first.
+// Who may soon push, or listens, reads of its robot first. Who reads of many robots at once is noted as such, whatever the wildcard.
 Status Intake::MeetRobots() {
   RIGCAL_ASSIGN(const auto partitions, listeners_.TakePartitions(Outbox::Topics()));
+  outbox_->NoteReadersOfMany(listeners_.OfMany());
   for (const std::string& partition : partitions)
     if (const auto robot = RobotOfPartition(partition)) outbox_->Meet(*robot);
   outbox_->CloseQuiet();

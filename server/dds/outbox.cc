@@ -5,10 +5,8 @@
 namespace rigcal::dds {
 namespace {
 
-constexpr std::size_t kLiveRobotsMax = 16'000;  // a participant may have 16,382 publishers
 constexpr std::size_t kFinishedReceiptsMax = 4'096;
 constexpr std::chrono::seconds kQuietFor{5}, kLookEvery{1};
-const RobotId kNoRobot("!");  // no robot may be called that
 
 }  // namespace
 
@@ -19,45 +17,76 @@ const std::vector<std::string>& Outbox::Topics() {
   return topics;
 }
 
+void Outbox::NoteReadersOfMany(const std::set<dds_instance_handle_t>& readers) {
+  const std::lock_guard lock(mutex_);
+  if (of_many_ != readers) of_many_ = readers;
+}
+
+bool Outbox::IsHeardOf(const RobotId& robot) {
+  const std::lock_guard lock(mutex_);
+  return !of_many_.empty() || listened_to_.count(robot) > 0;
+}
+
 Outbox::Writers Outbox::Find(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
-  const auto known = robots_.find(robot);
-  return known == robots_.end() ? nullptr : known->second;
+  const auto known = listened_to_.find(robot);
+  return known == listened_to_.end() ? nullptr : known->second.writers;
 }
 
 Outbox::Writers Outbox::Opened(const RobotId& robot) {
-  const std::lock_guard lock(mutex_);
-  const auto known = robots_.find(robot);
-  if (known != robots_.end()) return known->second;
-  if (robots_.size() >= kLiveRobotsMax) {
-    LogWarn("robot " + robot.str() + ": " + std::to_string(kLiveRobotsMax) + " robots are listened to already, this one is not answered");
-    return nullptr;
-  }
   auto opened = RobotWriters::Open(participant_, robot);
-  if (!opened) {
-    LogError(opened.error());
-    return nullptr;
-  }
-  met_(robot);
-  return robots_.emplace(robot, std::move(*opened)).first->second;
+  if (opened) return std::move(*opened);
+  LogError(opened.error());
+  return nullptr;
 }
 
-Outbox::Writers Outbox::Heard(const RobotId& robot) {
-  if (Writers writers = Find(robot)) return writers;
-  {
-    const std::lock_guard lock(mutex_);
-    if (of_all_ == nullptr) {
-      auto opened = RobotWriters::Open(participant_, kNoRobot);
-      if (!opened) LogError(opened.error());
-      if (opened) of_all_ = std::move(*opened);
+// Once, until there is room again.
+void Outbox::WarnFull(const std::string& warning) {
+  if (!full_) LogWarn(warning);
+  full_ = true;
+}
+
+// DDS tells of a reader before it has matched it with writers that are there: they must not end before it does, as nobody tells of
+// that reader again.
+Outbox::Writers Outbox::ListenedTo(const RobotId& robot) {
+  const std::lock_guard lock(mutex_);
+  auto known = listened_to_.find(robot);
+  if (known == listened_to_.end()) {
+    if (listened_to_.size() >= limits_.listened_to) {
+      WarnFull("robot " + robot.str() + ": " + std::to_string(limits_.listened_to) + " robots are listened to already, this one is not answered");
+      return nullptr;
     }
-    if (of_all_ == nullptr || !of_all_->HasReaders()) return nullptr;
+    const auto heard = with_news_.extract(robot);
+    Writers writers = heard ? heard.mapped().writers : Opened(robot);
+    if (writers == nullptr) return nullptr;
+    known = listened_to_.emplace(robot, Live{std::move(writers), {}}).first;
+    met_(robot);
   }
-  return Opened(robot);
+  known->second.quiet_since = now_();
+  return known->second.writers;
+}
+
+Outbox::Writers Outbox::WithNews(const RobotId& robot) {
+  const std::lock_guard lock(mutex_);
+  if (const auto known = listened_to_.find(robot); known != listened_to_.end()) return known->second.writers;
+  if (of_many_.empty()) return nullptr;
+  auto known = with_news_.find(robot);
+  if (known == with_news_.end()) {
+    if (with_news_.size() >= limits_.with_news) {
+      WarnFull("robot " + robot.str() + ": " + std::to_string(limits_.with_news) +
+               " robots have news at once, who reads of many robots does not hear of this one");
+      return nullptr;
+    }
+    Writers writers = Opened(robot);
+    if (writers == nullptr) return nullptr;
+    known = with_news_.emplace(robot, Live{std::move(writers), {}}).first;
+  }
+  known->second.quiet_since = now_();
+  return known->second.writers;
 }
 
 void Outbox::Send(const RobotId& partition, wire::Receipt receipt) {
-  const Writers writers = Opened(partition);
+  const Writers writers = ListenedTo(partition);
   if (writers == nullptr) return;
   receipt.sequence_number = ++sequence_number_;
   writers->Send(receipt);
@@ -82,25 +111,34 @@ void Outbox::ForgetOldest(const RobotId& partition, const wire::Receipt& receipt
 }
 
 void Outbox::Send(const Announcement& announcement) {
-  if (const Writers writers = Heard(announcement.robot)) writers->Send(announcement, ++sequence_number_);
+  if (const Writers writers = WithNews(announcement.robot)) writers->Send(announcement, ++sequence_number_);
 }
 
-void Outbox::Tell(const RobotState& state) {
-  if (const Writers writers = Heard(state.newest.robot)) writers->Tell(state);
+Status Outbox::Tell(const RobotState& state) {
+  const Writers writers = WithNews(state.newest.robot);
+  return writers == nullptr ? Status() : writers->Tell(state);
+}
+
+void Outbox::EndQuiet(Robots& robots, Time now, std::vector<Writers>& ended) {
+  for (auto one = robots.begin(); one != robots.end();) {
+    const bool quiet = one->second.quiet_since + kQuietFor < now;
+    if (quiet) ended.push_back(std::move(one->second.writers));
+    one = quiet ? robots.erase(one) : std::next(one);
+  }
 }
 
 // What is ended ends outside the lock: DDS may wait for others then.
 void Outbox::CloseQuiet() {
-  const auto now = std::chrono::steady_clock::now();
+  const Time now = now_();
   if (now < next_look_) return;
   next_look_ = now + kLookEvery;
   std::vector<Writers> ended;
   const std::lock_guard lock(mutex_);
-  for (auto one = robots_.begin(); one != robots_.end();) {
-    const bool quiet = one->second->QuietSince(now) + kQuietFor < now;
-    if (quiet) ended.push_back(std::move(one->second));
-    one = quiet ? robots_.erase(one) : std::next(one);
-  }
+  for (auto& [robot, live] : listened_to_)
+    if (live.writers->HasReaderBeside(of_many_)) live.quiet_since = now;
+  EndQuiet(listened_to_, now, ended);
+  EndQuiet(with_news_, now, ended);
+  if (!ended.empty()) full_ = false;
 }
 
 }  // namespace rigcal::dds

@@ -61,13 +61,6 @@ void Recorder::CarryOut(const Order& order) {
   order.answer(std::move(done->document));
 }
 
-// Who reads of a robot is told what is stored, as soon as it is known to read.
-void Recorder::TellStored(const RobotId& robot) {
-  const auto state = callbacks_.state_of(stores_.takes, robot);
-  if (!state) return LogError(state.error());
-  if (*state) outbox_.Tell(**state);
-}
-
 void Recorder::Take(Arrival arrival) {
   if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(std::move(*chunk));
   if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(std::move(*item));
@@ -76,7 +69,6 @@ void Recorder::Take(Arrival arrival) {
   if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return sessions_.Take(*discarded);
   if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
   if (const auto* order = std::get_if<Order>(&arrival)) return CarryOut(*order);
-  if (const auto* met = std::get_if<RobotMet>(&arrival)) return TellStored(met->robot);
 }
 
 // While somebody asks, one robot's flood leaves processors and disk to the answers: the next round begins no earlier

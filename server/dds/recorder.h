@@ -27,7 +27,6 @@ class Recorder {
   void Take(Arrival arrival);
   void Answer(const Refusal& refusal);
   void CarryOut(const Order& order);
-  void TellStored(const RobotId& robot);
   [[nodiscard]] Time TakeRound();
   void CommitDue();
 

@@ -59,11 +59,10 @@ RobotWriters::RobotWriters(wire::Publisher publisher, wire::Writer<rigcal_wire_R
       receipts_(std::move(receipts)),
       events_(std::move(events)),
       calibrations_(std::move(calibrations)),
-      statuses_(std::move(statuses)),
-      quiet_since_(std::chrono::steady_clock::now()) {}
+      statuses_(std::move(statuses)) {}
 
-Result<std::shared_ptr<RobotWriters>> RobotWriters::Open(const wire::Participant& participant, const RobotId& partition) {
-  RIGCAL_ASSIGN(auto publisher, wire::Publisher::Open(participant, wire::RobotPartition(partition)));
+Result<std::shared_ptr<RobotWriters>> RobotWriters::Open(const wire::Participant& participant, const RobotId& robot) {
+  RIGCAL_ASSIGN(auto publisher, wire::Publisher::Open(participant, wire::RobotPartition(robot)));
   RIGCAL_ASSIGN(auto receipts, wire::Writer<rigcal_wire_Receipt>::Open(participant, publisher));
   RIGCAL_ASSIGN(auto events, wire::Writer<rigcal_wire_Event>::Open(participant, publisher));
   RIGCAL_ASSIGN(auto calibrations, wire::Writer<rigcal_wire_Calibration>::Open(participant, publisher));
@@ -73,7 +72,6 @@ Result<std::shared_ptr<RobotWriters>> RobotWriters::Open(const wire::Participant
 }
 
 void RobotWriters::Send(const wire::Receipt& receipt) {
-  quiet_since_ = std::chrono::steady_clock::now();  // its reader may not be known yet
   const auto owned = wire::ToReceipt(receipt);
   if (!owned) return LogError(owned.error());
   LogFailure(receipts_.Write(owned->sample));
@@ -90,61 +88,61 @@ void RobotWriters::Send(const Announcement& announcement, std::uint64_t sequence
   LogFailure(events_.Write(sample));
 }
 
-void RobotWriters::TellStatus(const RobotState& state) {
+Status RobotWriters::TellStatus(const RobotState& state) {
   rigcal_wire_RobotStatus sample{};
-  const auto fill = [&]() -> Status {
-    RIGCAL_TRY(Put(state.newest.robot.str(), sample.robot_id, "robot_id"));
-    return Put(NameOf(state.newest.verdict.level), sample.verdict, "verdict");
-  };
-  if (const Status filled = fill(); !filled) return LogError(filled.error());
+  RIGCAL_TRY(Put(state.newest.robot.str(), sample.robot_id, "robot_id"));
+  RIGCAL_TRY(Put(NameOf(state.newest.verdict.level), sample.verdict, "verdict"));
   sample.revision = static_cast<std::uint32_t>(state.newest.number);
   sample.why = Borrow(state.newest.verdict.why);
   sample.edges = static_cast<std::uint32_t>(state.edges);
   sample.stamp_ns = state.newest.created_at.ns;
-  LogFailure(statuses_.Write(sample));
+  return statuses_.Write(sample);
 }
 
-void RobotWriters::TellCalibration(const RobotId& robot, const RobotState::Calibration& calibration) {
-  if (calibration.revision.number == told_calibration_) return;
-  std::set<SensorId> told;
+Status RobotWriters::TellCalibration(const RobotId& robot, const RobotState::Calibration& calibration) {
+  if (calibration.revision.number == told_calibration_) return {};
+  told_calibration_ = 0;
+  std::set<SensorId> gone = told_sensors_;
   for (const SensorPose& pose : calibration.poses) {
     rigcal_wire_Calibration sample{};
-    if (const Status filled = FillCalibration(robot, calibration, pose, sample); !filled) return LogError(filled.error());
-    LogFailure(calibrations_.Write(sample));
-    told.insert(pose.sensor);
+    RIGCAL_TRY(FillCalibration(robot, calibration, pose, sample));
+    RIGCAL_TRY(calibrations_.Write(sample));
+    told_sensors_.insert(pose.sensor);
+    gone.erase(pose.sensor);
   }
-  Withdraw(robot, told);
-  told_sensors_ = std::move(told);
+  RIGCAL_TRY(Withdraw(robot, gone));
   told_calibration_ = calibration.revision.number;
+  return {};
 }
 
-void RobotWriters::Withdraw(const RobotId& robot, const std::set<SensorId>& kept) {
-  for (const SensorId& sensor : told_sensors_) {
-    if (kept.contains(sensor)) continue;
+Status RobotWriters::Withdraw(const RobotId& robot, const std::set<SensorId>& sensors) {
+  for (const SensorId& sensor : sensors) {
     rigcal_wire_Calibration key{};
-    if (const Status filled = FillKey(robot, sensor, key); !filled) return LogError(filled.error());
-    LogFailure(calibrations_.Forget(key));
+    RIGCAL_TRY(FillKey(robot, sensor, key));
+    RIGCAL_TRY(calibrations_.Withdraw(key));
+    told_sensors_.erase(sensor);
   }
-  told_sensors_.clear();
-  told_calibration_ = 0;
+  return {};
 }
 
-void RobotWriters::Tell(const RobotState& state) {
-  const std::lock_guard lock(mutex_);
-  if (state.newest.number < told_revision_) return;
-  told_revision_ = state.newest.number;
-  TellStatus(state);
+Status RobotWriters::TellPoses(const RobotState& state) {
   if (state.calibration) return TellCalibration(state.newest.robot, *state.calibration);
-  Withdraw(state.newest.robot, {});
+  told_calibration_ = 0;
+  std::set<SensorId> gone = told_sensors_;
+  gone.insert(state.withdrawn.begin(), state.withdrawn.end());
+  return Withdraw(state.newest.robot, gone);
 }
 
-bool RobotWriters::HasReaders() const {
-  return receipts_.MatchedReaders() + events_.MatchedReaders() + calibrations_.MatchedReaders() + statuses_.MatchedReaders() > 0;
+// A reader of one topic that does not take keeps no other from being told.
+Status RobotWriters::Tell(const RobotState& state) {
+  const Status poses = TellPoses(state);
+  const Status status = TellStatus(state);
+  return poses ? status : poses;
 }
 
-RobotWriters::Time RobotWriters::QuietSince(Time now) {
-  if (HasReaders()) quiet_since_ = now;
-  return quiet_since_;
+bool RobotWriters::HasReaderBeside(const std::set<dds_instance_handle_t>& others) const {
+  return receipts_.HasReaderBeside(others) || events_.HasReaderBeside(others) || calibrations_.HasReaderBeside(others) ||
+         statuses_.HasReaderBeside(others);
 }
 
 }  // namespace rigcal::dds

@@ -7,6 +7,7 @@
 #include "server/dds/intake.h"
 #include "server/dds/recorder.h"
 #include "server/dds/requests.h"
+#include "server/dds/teller.h"
 
 namespace rigcal::dds {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::chrono::seconds kTurnWithin{
     30};  // each goes round once per second at least, unless the disk holds it up
 
 constexpr int kAnsweringThreads = 4;
-constexpr std::chrono::seconds kAnsweredWithin{90};
+constexpr std::chrono::seconds kAnsweredWithin{90}, kToldWithin{90};
 
 std::uint64_t NewIncarnation() {
   std::random_device random;
@@ -35,13 +36,14 @@ struct Service::Impl {
   wire::Participant participant;
   Callbacks callbacks;
   Inbox inbox{{limits::InForce().window_bytes, limits::InForce().intake_bytes, kInboxItemsMax}};
-  Outbox outbox{participant, [this](const RobotId& robot) { static_cast<void>(inbox.Offer(RobotMet{robot})); }};
+  Outbox outbox{participant, [this](const RobotId& robot) { teller->TellSoon(robot); }};
   LastQuestion asked;
   Vitals alone{SystemClock()};
   std::unique_ptr<Requests> requests;
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Intake> intake;
-  std::thread thread_d, thread_w, thread_q;
+  std::unique_ptr<Teller> teller;
+  std::thread thread_d, thread_w, thread_t, thread_q;
 };
 
 Status Service::Impl::Open(const Options& options) {
@@ -59,6 +61,9 @@ Status Service::Impl::Open(const Options& options) {
   recorder =
       std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox, callbacks,
                                  clock, asked, NewIncarnation(), vitals.Expect("recorder", kTurnWithin));
+  RIGCAL_ASSIGN(storage::Store told_store, storage::Store::Open(options.folder));
+  teller =
+      std::make_unique<Teller>(std::move(told_store), outbox, callbacks, vitals.Expect("robot states", kToldWithin));
   RIGCAL_ASSIGN(Intake opened, Intake::Open(participant, outbox, inbox, vitals.Expect("intake", kTurnWithin)));
   intake = std::make_unique<Intake>(std::move(opened));
   return {};
@@ -66,6 +71,7 @@ Status Service::Impl::Open(const Options& options) {
 
 void Service::Impl::Start() {
   thread_w = std::thread([this] { recorder->Run(); });
+  thread_t = std::thread([this] { teller->Run(); });
   thread_q = std::thread([this] { requests->Run(); });
   thread_d = std::thread([this] { intake->Run(); });
 }
@@ -74,7 +80,8 @@ Service::Impl::~Impl() {
   if (intake) intake->Stop();
   inbox.Stop();
   if (requests) requests->Stop();
-  for (std::thread* thread : {&thread_d, &thread_w, &thread_q})
+  if (teller) teller->Stop();
+  for (std::thread* thread : {&thread_d, &thread_w, &thread_t, &thread_q})
     if (thread->joinable()) thread->join();
 }
 
@@ -93,6 +100,6 @@ Result<Service> Service::Start(const Options& options, Callbacks callbacks) {
 
 void Service::Announce(const Announcement& announcement) { impl_->outbox.Send(announcement); }
 
-void Service::Tell(const RobotState& state) { impl_->outbox.Tell(state); }
+void Service::Tell(const RobotId& robot) { impl_->teller->TellNext(robot); }
 
 }  // namespace rigcal::dds

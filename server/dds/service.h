@@ -1,7 +1,7 @@
 // The whole DDS edge of rigcald: readers, recorder, requests, writers. Owns its threads:
 //   D takes everything at once (a reader that stops taking stalls every topic of the process) and never waits;
-//   W records: files, one transaction per batch, then receipts; carries out orders;   Q takes requests and sends the
-//   answers that others work out.
+//   W records: files, one transaction per batch, then receipts; carries out orders;   T tells what is stored of robots to
+//   those who read of them;   Q takes requests and sends the answers that others work out.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ struct Options {
   wire::ParticipantOptions participant;
   std::filesystem::path folder;  // of the store: the service opens its own connections
   const Clock* clock = nullptr;
-  Vitals* vitals = nullptr;  // told how D, W and Q are; none: nobody asks
+  Vitals* vitals = nullptr;  // told how D, W, T and Q are; none: nobody asks
 };
 
 struct Callbacks {
@@ -34,7 +34,7 @@ struct Callbacks {
   std::function<bool(const std::string& verb)> is_order = [](const std::string&) { return false; };
   std::function<Result<OrderDone>(storage::Store& store, const std::string& verb, const std::string& json)> carry_out =
       {};
-  // What is stored of a robot that somebody began to read of; nothing: no revision. Called from thread W.
+  // What is stored of a robot that somebody reads of; nothing: no revision. Called from thread T, which tries again after an error.
   std::function<Result<std::optional<RobotState>>(storage::Store& store, const RobotId&)> state_of =
       [](storage::Store&, const RobotId&) { return std::optional<RobotState>(); };
   // Something durable arrived that may mean work (session closed, edges stored). Called from thread W; must not block.
@@ -57,10 +57,11 @@ class Service {
   Service(Service&&) noexcept;
   Service& operator=(Service&&) noexcept;
 
-  // Both go to those who read of the robot now; who comes later is told its state, and no events of before.
+  // To those who read of the robot now; who comes later is told its state, and no events of before.
   void Announce(const Announcement& announcement);
-  // The robot's one line, and the poses for it to use. Without these, what was told of sensors is taken back.
-  void Tell(const RobotState& state);
+  // There is a new revision of the robot: those who read of it are told soon what is stored, its one line and the poses for it to
+  // use. Without these, what was told of sensors is taken back. Never blocks.
+  void Tell(const RobotId& robot);
 
  private:
   struct Impl;

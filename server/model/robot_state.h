@@ -18,6 +18,9 @@ struct RobotState {
     std::vector<SensorPose> poses;
   };
   std::optional<Calibration> calibration;  // of the newest revision that may be used; absent: there is none
+  // Where there is none: sensors of which poses may have been told before, in this run of the server or an earlier one.
+  // Sorted.
+  std::vector<SensorId> withdrawn = {};
 };
 
 }  // namespace rigcal

@@ -1,5 +1,7 @@
 #include "server/pipeline/robot_state.h"
 
+#include <set>
+
 #include "server/formats/documents.h"
 #include "server/pipeline/validity.h"
 #include "storage/edges.h"
@@ -8,6 +10,7 @@
 namespace rigcal::pipeline {
 namespace {
 
+// Of revision `number`, its document read into what is told.
 Result<RobotState::Calibration> LoadCalibration(storage::Store& store, const RobotId& robot, int number) {
   RIGCAL_ASSIGN(auto revision, storage::LoadRevision(store, robot, number));
   if (!revision)
@@ -18,17 +21,42 @@ Result<RobotState::Calibration> LoadCalibration(storage::Store& store, const Rob
   return RobotState::Calibration{std::move(*revision), document.reference, std::move(document.solution.poses)};
 }
 
+// Poses of these may be with readers. Whoever told them may have ended before it could take them back, or before it
+// told a later revision of fewer sensors: those that the newest revision knows of are taken back too.
+Result<std::vector<SensorId>> LoadWithdrawn(storage::Store& store, const Revision& newest) {
+  RIGCAL_ASSIGN(const int told, storage::LoadNewestGood(store, newest.robot, newest.number));
+  if (told == 0) return std::vector<SensorId>();
+  std::set<SensorId> sensors;
+  for (const int number : {told, newest.number}) {
+    RIGCAL_ASSIGN(const auto calibration, LoadCalibration(store, newest.robot, number));
+    for (const SensorPose& pose : calibration.poses) sensors.insert(pose.sensor);
+  }
+  return std::vector<SensorId>(sensors.begin(), sensors.end());
+}
+
+Result<RobotState> LoadStateOf(storage::Store& store, Revision newest) {
+  RobotState state;
+  RIGCAL_ASSIGN(state.edges, storage::CountEdges(store, newest.robot, newest.edge_watermark));
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, newest));
+  if (usable) {
+    RIGCAL_ASSIGN(state.calibration, LoadCalibration(store, newest.robot, usable->number));
+  } else {
+    RIGCAL_ASSIGN(state.withdrawn, LoadWithdrawn(store, newest));
+  }
+  state.newest = std::move(newest);
+  return state;
+}
+
 }  // namespace
 
 Result<std::optional<RobotState>> LoadRobotState(storage::Store& store, const RobotId& robot) {
-  RobotState state;
-  RIGCAL_ASSIGN(auto newest, storage::LoadRevisionSummary(store, robot, 0));
-  if (!newest) return std::nullopt;
-  state.newest = std::move(*newest);
-  RIGCAL_ASSIGN(state.edges, storage::CountEdges(store, robot, state.newest.edge_watermark));
-  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, state.newest));
-  if (!usable) return state;
-  RIGCAL_ASSIGN(state.calibration, LoadCalibration(store, robot, usable->number));
+  std::optional<RobotState> state;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(auto newest, storage::LoadRevisionSummary(store, robot, 0));
+    if (!newest) return {};
+    RIGCAL_ASSIGN(state, LoadStateOf(store, std::move(*newest)));
+    return {};
+  }));
   return state;
 }
 

@@ -8,7 +8,7 @@
 
 namespace rigcal::pipeline {
 
-// Nothing of a robot without a revision.
+// As of one snapshot. Nothing of a robot without a revision.
 [[nodiscard]] Result<std::optional<RobotState>> LoadRobotState(storage::Store& store, const RobotId& robot);
 
 }  // namespace rigcal::pipeline

@@ -33,6 +33,7 @@ struct Runner::Impl {
   LiveGraphs live;
   Claims claims;
   calib::CameraMemory cameras;
+  SummaryTurn summaries;
   std::optional<WorkerPool> workers;
   std::vector<storage::Store> stores;
   std::optional<storage::Store> own_store;
@@ -49,7 +50,8 @@ struct Runner::Impl {
     std::uint64_t seen = 0;
     while (Seen(seen)) {
       part.Turn();
-      const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn, workers ? &*workers : nullptr});
+      const auto result = Step({store, *options.clock, live, claims, announcer, cameras, options.undrawn,
+                                workers ? &*workers : nullptr, &summaries});
       if (!result) LogError(result.error());
       if (result && result->worked) Signal();  // its robot may be free for another thread now
       if (result && (result->worked || LookForReports(store))) continue;

@@ -10,10 +10,8 @@
 #include "server/pipeline/retention.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
-#include "server/pipeline/robot_state.h"
 #include "server/pipeline/run_edge_job.h"
 #include "server/pipeline/session_refinement.h"
-#include "server/pipeline/summaries.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/worker.h"
 #include "storage/edges.h"
@@ -165,8 +163,7 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int6
   RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
                           formats::WriteRevisionEvent(revision, usable));
-  RIGCAL_ASSIGN(const auto state, LoadRobotState(context.store, robot));
-  if (state) context.announcer.state(*state);
+  context.announcer.state(robot);
   return {};
 }
 
@@ -343,9 +340,11 @@ bool RefreshOthers(const StepContext& context) {
   constexpr int kSummariesOfStep = 64;
   const Claim claim(context.claims, kSummaries);
   if (!claim.taken()) return false;
-  const Result<int> refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep);
+  SummaryTurn alone;
+  SummaryTurn& turn = context.summaries == nullptr ? alone : *context.summaries;
+  const auto refreshed = RefreshSummaries(context.store, context.clock, kSummariesOfStep, turn);
   if (!refreshed) LogError(refreshed.error());
-  return refreshed && *refreshed == kSummariesOfStep;
+  return refreshed && refreshed->more;
 }
 
 Result<StepResult> DoNext(const StepContext& context) {

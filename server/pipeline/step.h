@@ -11,9 +11,9 @@
 
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/model/robot_state.h"
 #include "server/pipeline/live_graphs.h"
 #include "server/pipeline/missing_report.h"
+#include "server/pipeline/summaries.h"
 #include "server/pipeline/worker_pool.h"
 #include "storage/store.h"
 
@@ -43,8 +43,8 @@ class Claims {
 struct Announcer {
   std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)>
       event;
-  // After each new revision, whatever its verdict.
-  std::function<void(const RobotState&)> state;
+  // After each new revision, whatever its verdict: what the robot was told (robot_state.h) is out of date.
+  std::function<void(const RobotId&)> state;
 };
 
 struct StepContext {
@@ -56,6 +56,7 @@ struct StepContext {
   calib::CameraMemory& cameras;
   UndrawnReports* undrawn = nullptr;  // none: nobody asks why
   WorkerPool* workers = nullptr;      // none: jobs, refinements and reports are done by the calling thread
+  SummaryTurn* summaries = nullptr;   // used by one thread at a time; none: each step begins with the first robot
 };
 
 struct StepResult {

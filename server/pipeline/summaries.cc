@@ -29,17 +29,45 @@ Result<RobotSummary> SummaryOrWhyNot(storage::Store& store, const RobotId& robot
   return unreadable;
 }
 
-Result<std::vector<MadeSummary>> MakeWaiting(storage::Store& store, Stamp now, int max) {
+struct UnmadeSummary {
+  RobotId robot;
+  Error error;
+};
+
+struct WaitingMade {
   std::vector<MadeSummary> made;
+  std::vector<UnmadeSummary> unmade;
+  RobotId last;       // of those that were taken up
+  bool full = false;  // there may be more
+};
+
+// What is damaged of one robot is no other's matter; where the store is held, it is held for all.
+Result<WaitingMade> MakeWaiting(storage::Store& store, Stamp now, int max, const RobotId& after) {
+  WaitingMade done;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_ASSIGN(const auto waiting, storage::LoadWaitingSummaries(store, max));
+    RIGCAL_ASSIGN(const auto waiting, storage::LoadWaitingSummaries(store, max, after));
+    done.full = static_cast<int>(waiting.size()) == max;
     for (const storage::WaitingSummary& one : waiting) {
-      RIGCAL_ASSIGN(auto summary, SummaryOrWhyNot(store, one.robot, now));
-      made.push_back({std::move(summary), one.changes});
+      auto summary = SummaryOrWhyNot(store, one.robot, now);
+      done.last = one.robot;
+      if (summary)
+        done.made.push_back({std::move(*summary), one.changes});
+      else if (summary.error().code == ErrorCode::kBusy)
+        return Fail(summary.error());
+      else
+        done.unmade.push_back({one.robot, summary.error()});
     }
     return {};
   }));
-  return made;
+  return done;
+}
+
+void TakeTurn(const WaitingMade& done, SummaryTurn& turn) {
+  turn.after = done.last;
+  for (const MadeSummary& one : done.made) turn.unmade.erase(one.summary.robot);
+  for (const auto& [robot, error] : done.unmade)
+    if (turn.unmade.insert(robot).second)
+      LogError({error.code, "lists do not show what is new of robot " + robot.str() + ": " + error.what, error.cure});
 }
 
 Status Keep(storage::Store& store, const std::vector<MadeSummary>& made) {
@@ -75,10 +103,11 @@ void PutIn(std::vector<RobotSummary> newer, const RobotId& after, std::optional<
 
 }  // namespace
 
-Result<int> RefreshSummaries(storage::Store& store, const Clock& clock, int max) {
-  RIGCAL_ASSIGN(const auto made, MakeWaiting(store, clock.Now(), max));
-  if (!made.empty()) RIGCAL_TRY(store.Write([&] { return Keep(store, made); }));
-  return static_cast<int>(made.size());
+Result<RefreshedSummaries> RefreshSummaries(storage::Store& store, const Clock& clock, int max, SummaryTurn& turn) {
+  RIGCAL_ASSIGN(const WaitingMade done, MakeWaiting(store, clock.Now(), max, turn.after));
+  TakeTurn(done, turn);
+  if (!done.made.empty()) RIGCAL_TRY(store.Write([&] { return Keep(store, done.made); }));
+  return RefreshedSummaries{static_cast<int>(done.made.size()), done.full && !done.made.empty()};
 }
 
 Status RefreshSummary(storage::Store& store, const Clock& clock, const RobotId& robot) {
@@ -94,19 +123,20 @@ Status RefreshSummary(storage::Store& store, const Clock& clock, const RobotId& 
 }
 
 void RefreshAllSummaries(storage::Store& store, const Clock& clock) {
-  Result<int> refreshed = kAtOnceMax;
+  SummaryTurn turn;
+  Result<RefreshedSummaries> refreshed = RefreshedSummaries{0, true};
   int all = 0;
-  for (; refreshed && *refreshed == kAtOnceMax; all += refreshed.value_or(0))
-    refreshed = RefreshSummaries(store, clock, kAtOnceMax);
+  for (; refreshed && refreshed->more; all += refreshed ? refreshed->made : 0)
+    refreshed = RefreshSummaries(store, clock, kAtOnceMax, turn);
   if (!refreshed) LogError(refreshed.error());
   if (all > 0) LogInfo("the summaries of " + std::to_string(all) + " robots were worked out");
 }
 
 std::vector<RobotSummary> FreshenSummaries(storage::Store& store, const Clock& clock) {
-  auto made = MakeWaiting(store, clock.Now(), kFreshenedMax);
+  auto done = MakeWaiting(store, clock.Now(), kFreshenedMax, RobotId());
   std::vector<RobotSummary> not_kept;
-  if (!made || made->empty() || store.WriteSoon([&] { return Keep(store, *made); })) return not_kept;
-  for (MadeSummary& one : *made) not_kept.push_back(std::move(one.summary));  // the next one keeps them
+  if (!done || done->made.empty() || store.WriteSoon([&] { return Keep(store, done->made); })) return not_kept;
+  for (MadeSummary& one : done->made) not_kept.push_back(std::move(one.summary));  // the next one keeps them
   return not_kept;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "server/formats/parameters.h"
@@ -11,8 +12,18 @@
 
 namespace rigcal::pipeline {
 
-// Up to `max` of those that wait; how many it took up.
-[[nodiscard]] Result<int> RefreshSummaries(storage::Store& store, const Clock& clock, int max);
+// Whose summaries are worked out next, from one time to the next.
+struct SummaryTurn {
+  RobotId after;             // who was taken up last: the others come before it comes again
+  std::set<RobotId> unmade;  // robots whose summary a fault of the store or of ours has prevented; it was logged
+};
+struct RefreshedSummaries {
+  int made = 0;
+  bool more = false;  // some were made, and more wait
+};
+// Up to `max` of those that wait. A robot whose summary cannot be made waits on, and keeps no other waiting; it is logged once. An
+// error is the store's as a whole.
+[[nodiscard]] Result<RefreshedSummaries> RefreshSummaries(storage::Store& store, const Clock& clock, int max, SummaryTurn& turn);
 // That of one robot, if it waits.
 [[nodiscard]] Status RefreshSummary(storage::Store& store, const Clock& clock, const RobotId& robot);
 // All that wait, before anybody is served: after a migration those of the whole fleet. What fails is logged, and waits on.

@@ -1,5 +1,10 @@
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <climits>
+#include <future>
+#include <utility>
+
 #include "tests/unit/dds_fixture.h"
 
 namespace rigcal::dds {
@@ -24,6 +29,12 @@ class Listener {
       count -= Must(reader_.Take(count, [&](const T& sample, const wire::SampleOrigin&) { body(sample); }));
     }
   }
+  // What comes within that time.
+  template <typename Body>
+  void TakeFor(milliseconds patience, const Body& body) {
+    if (!Must(waitset_.Wait(patience))) return;
+    Must(reader_.Take(INT_MAX, [&](const T& sample, const wire::SampleOrigin&) { body(sample); }));
+  }
 
  private:
   wire::Participant participant_;
@@ -31,7 +42,39 @@ class Listener {
   wire::WaitSet waitset_;
 };
 
+// What a robot's computer holds of its calibration: the revision of each sensor's pose; 0: it was taken back.
+class Holder {
+ public:
+  using Held = std::map<std::string, std::uint32_t>;
+  explicit Holder(const wire::ParticipantOptions& options)
+      : participant_(Must(wire::Participant::Open(options))),
+        reader_(Must(wire::Reader<rigcal_wire_Calibration>::Open(participant_, {"robot/mapper-01"}))),
+        waitset_(Must(wire::WaitSet::Open(participant_))) {
+    Must(waitset_.Attach(reader_.get()));
+  }
+  // Until it holds that, or too long has passed; what it holds.
+  const Held& Await(const Held& wanted) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (held_ != wanted && std::chrono::steady_clock::now() < deadline) {
+      static_cast<void>(Must(waitset_.Wait(milliseconds(200))));
+      Must(wire::internal::TakeNews(reader_.get(), INT_MAX, [&](const void* sample, const dds_sample_info_t& info) {
+        const auto& pose = *static_cast<const rigcal_wire_Calibration*>(sample);
+        if (info.instance_state == DDS_NOT_ALIVE_DISPOSED_INSTANCE_STATE) held_[pose.sensor_id] = 0;
+        else if (info.valid_data) held_[pose.sensor_id] = pose.revision;
+      }));
+    }
+    return held_;
+  }
+
+ private:
+  wire::Participant participant_;
+  wire::Reader<rigcal_wire_Calibration> reader_;
+  wire::WaitSet waitset_;
+  Held held_;
+};
+
 const RobotId kMapper("mapper-01");
+const Verdict kPass{VerdictLevel::kPass, "why", "do"}, kFail{VerdictLevel::kFail, "why", "do"};
 
 SensorPose PoseOf(const char* sensor) {
   SensorPose pose;
@@ -96,43 +139,92 @@ TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
       });
 }
 
-// While somebody listens the writers keep what was told: who joins then hears the newest, and nothing that was withdrawn.
+// While somebody listens the writers keep what was told: who joins then hears the newest, and that the rest was withdrawn.
 TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
-  const Verdict pass{VerdictLevel::kPass, "why", "do"};
-  Listener<rigcal_wire_RobotStatus> keeps_it_open(options_.participant, "robot/mapper-01");
-  keeps_it_open.WaitForServer();
-  StoreAndTell(StateOf(3, pass, {PoseOf("left"), PoseOf("right")}));
-  StoreAndTell(StateOf(4, {VerdictLevel::kFail, "why", "do"}, {}));
-  StoreAndTell(StateOf(5, pass, {PoseOf("right")}));
-  std::map<std::string, std::uint32_t> heard;
-  Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01")
-      .Take(1, [&](const rigcal_wire_Calibration& sample) { heard[sample.sensor_id] = sample.revision; });
-  EXPECT_EQ(heard, (std::map<std::string, std::uint32_t>{{"right", 5}}));
+  Holder robot(options_.participant);
+  StoreAndTell(StateOf(3, kPass, {PoseOf("left"), PoseOf("right")}));
+  EXPECT_EQ(robot.Await({{"left", 3}, {"right", 3}}), (Holder::Held{{"left", 3}, {"right", 3}}));
+  StoreAndTell(StateOf(4, kFail, {}));
+  EXPECT_EQ(robot.Await({{"left", 0}, {"right", 0}}), (Holder::Held{{"left", 0}, {"right", 0}}));
+  StoreAndTell(StateOf(5, kPass, {PoseOf("right")}));
+  EXPECT_EQ(robot.Await({{"left", 0}, {"right", 5}}), (Holder::Held{{"left", 0}, {"right", 5}}));
+  Holder late(options_.participant);
+  EXPECT_EQ(late.Await({{"left", 0}, {"right", 5}}), (Holder::Held{{"left", 0}, {"right", 5}}));
 }
 
-// Two threads may tell: what one of them loaded before the other's revision changes nothing.
-TEST_F(AnnounceTest, AnOlderStateIsNotTold) {
-  const Verdict pass{VerdictLevel::kPass, "why", "do"};
+// As after a kill between the commit of a revision and its announcement: nobody else knows what the robot holds.
+TEST_F(AnnounceTest, WhatAnEarlierServerToldIsTakenBack) {
+  Holder robot(options_.participant);
+  StoreAndTell(StateOf(3, kPass, {PoseOf("left"), PoseOf("right")}));
+  EXPECT_EQ(robot.Await({{"left", 3}, {"right", 3}}), (Holder::Held{{"left", 3}, {"right", 3}}));
+  StopServer();
+  RobotState remounted = StateOf(4, kFail, {});
+  remounted.withdrawn = {SensorId("left"), SensorId("right")};
+  StoreState(remounted);
+  StartServer();
+  EXPECT_EQ(robot.Await({{"left", 0}, {"right", 0}}), (Holder::Held{{"left", 0}, {"right", 0}}));
+  Holder back(options_.participant);  // one that was cut off meanwhile
+  EXPECT_EQ(back.Await({{"left", 0}, {"right", 0}}), (Holder::Held{{"left", 0}, {"right", 0}}));
+}
+
+// Another revision is stored, and told of, while what was stored before is loaded for who just came.
+TEST_F(AnnounceTest, NothingOlderIsToldAfterwards) {
+  std::atomic<bool> is_first = true;
+  state_of_ = [&](const RobotId& robot) {
+    auto loaded = LoadState(robot);
+    if (is_first.exchange(false)) StoreAndTell(StateOf(4, kPass, {PoseOf("right")}));
+    return loaded;
+  };
+  StoreState(StateOf(3, kPass, {PoseOf("right")}));
   Listener<rigcal_wire_RobotStatus> listener(options_.participant, "robot/mapper-01");
-  listener.WaitForServer();
-  server_->Tell(StateOf(4, pass, {PoseOf("right")}));
-  server_->Tell(StateOf(3, pass, {PoseOf("right")}));
-  std::vector<std::uint32_t> heard;
+  std::vector<std::uint32_t> heard = {0};
   const auto note = [&](const rigcal_wire_RobotStatus& status) { heard.push_back(status.revision); };
-  listener.Take(1, note);
-  server_->Tell(StateOf(5, pass, {PoseOf("right")}));
-  listener.Take(1, note);
-  EXPECT_EQ(heard, (std::vector<std::uint32_t>{4, 5}));
+  while (heard.back() < 4) listener.Take(1, note);
+  StoreAndTell(StateOf(5, kPass, {PoseOf("right")}));
+  while (heard.back() < 5) listener.Take(1, note);
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end())) << testing::PrintToString(heard);
 }
 
-// Who reads of all robots at once hears of each that has news, though none of them has a reader of its own.
-TEST_F(AnnounceTest, WhoListensToTheFleetHearsOfEachRobotWithNews) {
-  Listener<rigcal_wire_RobotStatus> listener(options_.participant, "robot/*");
-  server_->Tell(StateOf(1, {VerdictLevel::kPass, "why", "do"}, {}));  // nobody may be known to listen yet
+TEST_F(AnnounceTest, WhatCannotBeLoadedIsToldOnceItCan) {
+  std::atomic<int> loads = 0;
+  state_of_ = [&](const RobotId& robot) -> Result<std::optional<RobotState>> {
+    if (++loads == 1) return Fail(ErrorCode::kBusy, "another process holds the database", "Wait");
+    return LoadState(robot);
+  };
+  StoreState(StateOf(3, kPass, {PoseOf("right")}));
+  Listener<rigcal_wire_RobotStatus>(options_.participant, "robot/mapper-01")
+      .Take(1, [](const rigcal_wire_RobotStatus& status) { EXPECT_EQ(status.revision, 3u); });
+  EXPECT_EQ(loads, 2);
+}
+
+TEST_F(AnnounceTest, ReceiptsDoNotWaitForStatesToBeLoaded) {
+  std::promise<void> loaded;
+  state_of_ = [&, may_end = loaded.get_future().share()](const RobotId& robot) {
+    may_end.wait();
+    return LoadState(robot);
+  };
+  Listener<rigcal_wire_RobotStatus> listener(options_.participant, "robot/mapper-02");
   listener.WaitForServer();
-  StoreAndTell(StateOf(2, {VerdictLevel::kPass, "why", "do"}, {}));
-  std::uint32_t heard = 0;
-  while (heard < 2) listener.Take(1, [&](const rigcal_wire_RobotStatus& status) { heard = status.revision; });
+  const Session session = MakeSession("mapper-01", {1000}, 1);
+  Client client = MakeClient("mapper-01");
+  EXPECT_EQ(client.Push(session).state, wire::ReceiptState::kClosed);
+  loaded.set_value();
+}
+
+// Who reads of many robots at once hears of each that has news, though none of them has a reader of its own.
+TEST_F(AnnounceTest, WhoListensToManyRobotsHearsOfEachWithNews) {
+  int revision = 0;
+  for (const char* robots : {"robot/mapper-*", "robot/mapper-0?", "robot/*"}) {
+    Listener<rigcal_wire_RobotStatus> listener(options_.participant, robots);
+    const int first = revision + 1;
+    int heard = 0;
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (heard < first && std::chrono::steady_clock::now() < deadline) {  // the server may not know of it yet
+      StoreAndTell(StateOf(++revision, kPass, {}));
+      listener.TakeFor(milliseconds(50), [&](const auto& status) { heard = static_cast<int>(status.revision); });
+    }
+    EXPECT_GE(heard, first) << robots;
+  }
 }
 
 }  // namespace

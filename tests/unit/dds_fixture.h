@@ -242,11 +242,7 @@ class ServiceTest : public testing::Test {
     callbacks.carry_out = [this](storage::Store&, const std::string& verb, const std::string& json) {
       return carry_out_(verb, json);
     };
-    callbacks.state_of = [this](storage::Store&, const RobotId& robot) -> Result<std::optional<RobotState>> {
-      const std::lock_guard lock(mutex_);
-      const auto found = states_.find(robot);
-      return found == states_.end() ? std::nullopt : std::optional(found->second);
-    };
+    callbacks.state_of = [this](storage::Store&, const RobotId& robot) { return state_of_(robot); };
     callbacks.work_arrived = [this](const RobotId& robot) {
       const std::lock_guard lock(mutex_);
       work_.push_back(robot);
@@ -257,11 +253,17 @@ class ServiceTest : public testing::Test {
   Client MakeClient(const std::string& robot) { return Client(options_.participant, RobotId(robot)); }
   // As when a revision was stored.
   void StoreAndTell(const RobotState& state) {
-    {
-      const std::lock_guard lock(mutex_);
-      states_[state.newest.robot] = state;
-    }
-    server_->Tell(state);
+    StoreState(state);
+    server_->Tell(state.newest.robot);
+  }
+  void StoreState(const RobotState& state) {
+    const std::lock_guard lock(mutex_);
+    states_[state.newest.robot] = state;
+  }
+  Result<std::optional<RobotState>> LoadState(const RobotId& robot) {
+    const std::lock_guard lock(mutex_);
+    const auto found = states_.find(robot);
+    return found == states_.end() ? std::nullopt : std::optional(found->second);
   }
   std::vector<RobotId> Work() {
     const std::lock_guard lock(mutex_);
@@ -276,6 +278,7 @@ class ServiceTest : public testing::Test {
       [](const std::string& verb, const std::string& json) -> Result<OrderDone> {
     return OrderDone{RobotId("mapper-01"), "done " + verb + json};
   };
+  std::function<Result<std::optional<RobotState>>(const RobotId&)> state_of_ = [this](const RobotId& robot) { return LoadState(robot); };
   std::mutex mutex_;
   std::vector<RobotId> work_;
   std::map<RobotId, RobotState> states_;  // stored

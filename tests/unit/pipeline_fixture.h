@@ -13,9 +13,11 @@
 
 #include "server/base/sha256.h"
 #include "server/formats/documents.h"
+#include "server/pipeline/robot_state.h"
 #include "server/pipeline/step.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
+#include "storage/revisions.h"
 #include "storage/sessions.h"
 #include "tests/unit/recordings.h"
 
@@ -39,9 +41,9 @@ class PipelineTest : public testing::Test {
     announcer_.event = [this](const RobotId&, const std::string& kind, const std::string&, const std::string& json) {
       events_.push_back({kind, json});
     };
-    announcer_.state = [this](const RobotState& state) {
-      states_.push_back(state);
-      revisions_.push_back(storage::LoadRevision(*store_, state.newest.robot, state.newest.number).value().value());
+    announcer_.state = [this](const RobotId& robot) {
+      states_.push_back(LoadRobotState(*store_, robot).value().value());
+      revisions_.push_back(storage::LoadRevision(*store_, robot, states_.back().newest.number).value().value());
       if (const auto document = formats::ReadRevisionDocument(revisions_.back().document)) poses_ = document->solution.poses;
     };
   }
@@ -151,7 +153,7 @@ class PipelineTest : public testing::Test {
   std::vector<std::pair<std::string, std::string>> events_;
   std::vector<Revision> revisions_;
   std::vector<SensorPose> poses_;       // of the newest of them
-  std::vector<RobotState> states_;      // as told
+  std::vector<RobotState> states_;      // as they are told after each revision
 };
 
 // A finished edge between two sensors with T_a_b = a shift along x and equal, independent errors.

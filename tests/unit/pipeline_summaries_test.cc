@@ -9,6 +9,7 @@
 #include "server/pipeline/session_refinement.h"
 #include "server/pipeline/summaries.h"
 #include "storage/attempts.h"
+#include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/robot_summary.h"
 #include "storage/standing.h"
@@ -181,6 +182,43 @@ TEST_F(SummariesTest, OneRobotThatCannotBeReadKeepsNoOtherWaiting) {
   EXPECT_THAT(robots[0]["verdict"]["why"].get<std::string>(), HasSubstr("What is stored of it cannot be read: "));
   EXPECT_EQ(robots[1]["verdict"]["why"], "There is no revision yet.");
   EXPECT_EQ(Waiting(), 0u);
+}
+
+// Of robots whose page of the database is damaged, say: nothing is known of them then, and all of that is logged once.
+TEST_F(SummariesTest, RobotsThatAFaultKeepsFromBeingSummedUpKeepNoOtherWaiting) {
+  constexpr int kBroken = 70;  // more than are taken up at once
+  Revision revision;
+  revision.digest = Sha256Of("{}");
+  revision.document = "{}";
+  ASSERT_TRUE(store_->Write([&]() -> Status {
+    for (int i = 0; i < kBroken; ++i) {
+      revision.robot = RobotId("broken-" + std::to_string(10 + i));
+      RIGCAL_TRY(storage::AppendRevision(*store_, revision));
+      RIGCAL_TRY(storage::AppendWorstEdge(*store_, {revision.robot, 1}, {SensorId("a"), SensorId("b"), 1.5}));
+    }
+    return storage::AppendRobot(*store_, RobotId("well"), clock_.now);
+  }));
+  store_->database().exec(
+      "ALTER TABLE revision_worst_edge RENAME TO readable_worst_edge; CREATE VIEW revision_worst_edge AS "
+      "SELECT robot_id, revision_number, frame_a, frame_b, abs(revision_number - 9223372036854775807 - 2) AS residual_ratio "
+      "FROM readable_worst_edge");
+  ASSERT_EQ(LoadRobotSummary(*store_, RobotId("broken-10"), clock_.now).error().code, ErrorCode::kStorage);
+  SummaryTurn turn;
+  const auto first = RefreshSummaries(*store_, clock_, 64, turn);
+  ASSERT_TRUE(first) << Sentence(first.error());
+  EXPECT_EQ(first->made, 0);
+  EXPECT_FALSE(first->more) << "or it would never come to rest";
+  const auto second = RefreshSummaries(*store_, clock_, 64, turn);
+  ASSERT_TRUE(second) << Sentence(second.error());
+  EXPECT_EQ(second->made, 1);
+  ASSERT_EQ(Stored().size(), 1u);
+  EXPECT_EQ(Stored().front().robot, RobotId("well"));
+  EXPECT_EQ(turn.unmade.size(), std::size_t{kBroken});
+  EXPECT_EQ(Waiting(), std::size_t{kBroken});
+  store_->database().exec("DROP VIEW revision_worst_edge; ALTER TABLE readable_worst_edge RENAME TO revision_worst_edge");
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(RefreshSummaries(*store_, clock_, 64, turn));
+  EXPECT_EQ(Waiting(), 0u);
+  EXPECT_TRUE(turn.unmade.empty());
 }
 
 TEST_F(SummariesTest, ListsAreAskedForInParts) {

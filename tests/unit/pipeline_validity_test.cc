@@ -101,6 +101,7 @@ TEST_F(ValidityTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
   StepAll();
   ASSERT_FALSE(IsUsable(revisions_.back().verdict));
   EXPECT_EQ(InUse(), 0);
+  EXPECT_TRUE(states_.back().withdrawn.empty()) << "nothing was ever told";
   EXPECT_TRUE(Ask("show")["usable"].is_null());
   const std::string none = "There is no earlier calibration to fall back to.";
   EXPECT_NE(Page("/robots/r/").find(none), std::string::npos);
@@ -108,15 +109,35 @@ TEST_F(ValidityTest, AFirstRevisionThatFailsHasNothingToFallBackTo) {
   EXPECT_EQ(InUse(), 0);
 }
 
-// Its poses are those of a rig that is no more.
+// Its poses are those of a rig that is no more: they are taken back, by whichever server tells that.
 TEST_F(ValidityTest, WhatWasSolvedBeforeARemountIsNoFallback) {
   PushGood();
+  EXPECT_TRUE(states_.back().withdrawn.empty());
   clock_.now.ns += kDay_ns;
   StoreSession("r", {{"left/01.png", "no picture"}, {"right/01.png", "nor this"}}, {SensorId("right")});
   StepAll();
   ASSERT_FALSE(IsUsable(revisions_.back().verdict)) << revisions_.back().verdict.why;
   EXPECT_TRUE(Ask("show")["usable"].is_null());
   EXPECT_EQ(InUse(), 0);
+  for (const char* sensor : {"a", "b", "c"})
+    EXPECT_EQ(std::count(states_.back().withdrawn.begin(), states_.back().withdrawn.end(), SensorId(sensor)), 1) << sensor;
+}
+
+// What counted in it does no more, so that the newest revision does not even name some of its sensors.
+TEST_F(ValidityTest, WhatWasToldOfEdgesThatAreRetiredIsTakenBack) {
+  std::vector<Edge> edges = Closing("r", 2.0), more = Closing("r", 2.0);
+  more[0].frame_a = SensorId("c"), more[0].frame_b = SensorId("d");
+  more.resize(1);
+  AssignPushedIds(more);
+  StoreEdges(edges);
+  StoreEdges(more);
+  StepAll();
+  ASSERT_EQ(InUse(), 1) << revisions_.back().verdict.why;
+  ASSERT_TRUE(storage::RetireEdge(*store_, more[0].id, {clock_.now, "Ada", "of another robot"}));
+  for (const Edge& edge : edges) ASSERT_TRUE(storage::RetireEdge(*store_, edge.id, {clock_.now, "Ada", "typed wrong"}));
+  StepAll();
+  ASSERT_EQ(InUse(), 0) << revisions_.back().verdict.why;
+  EXPECT_EQ(states_.back().withdrawn, (std::vector<SensorId>{SensorId("a"), SensorId("b"), SensorId("c"), SensorId("d")}));
 }
 
 TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {

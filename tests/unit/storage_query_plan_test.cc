@@ -44,6 +44,15 @@ class QueryPlanTest : public StoreTest {
     return scanned;
   }
 
+  // Steps of all statements since this was asked last.
+  std::int64_t Steps() {
+    std::int64_t steps = 0;
+    sqlite3* database = store_.database().getHandle();
+    for (sqlite3_stmt* one = sqlite3_next_stmt(database, nullptr); one != nullptr; one = sqlite3_next_stmt(database, one))
+      steps += sqlite3_stmt_status(one, SQLITE_STMTSTATUS_VM_STEP, 1);
+    return steps;
+  }
+
   std::string PlanOf(const std::string& sql) {
     std::string plan;
     SQLite::Statement query(store_.database(), "EXPLAIN QUERY PLAN " + sql);
@@ -81,6 +90,8 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadRevision(store_, kRobot, 0));
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 0));
   EXPECT_TRUE(LoadUsableRevision(store_, kRobot, 0));
+  EXPECT_EQ(LoadNewestGood(store_, kRobot, 1).value(), 1);
+  EXPECT_EQ(CountEdges(store_, kRobot, LoadEdgeWatermark(store_, kRobot).value()).value(), 3);
   EXPECT_TRUE(LoadRevisionPoses(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
   EXPECT_TRUE(LoadStandingWatermark(store_, kRobot));
@@ -109,6 +120,22 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+// How many sessions and edges it has is asked with every summary.
+TEST_F(QueryPlanTest, TheNumbersOfARobotCostTheSameWhateverItsHistory) {
+  const auto cost = [&](std::int64_t edges) {
+    (void)Steps();
+    EXPECT_EQ(LoadRobot(store_, kRobot)->value().edges, edges);
+    EXPECT_EQ(CountEdges(store_, kRobot, 1'000'000).value(), edges);
+    return Steps();
+  };
+  const std::int64_t with_few = cost(3);
+  EXPECT_GT(with_few, 0);
+  for (int i = 3; i < 300; ++i) ASSERT_TRUE(AppendEdge(store_, MakeEdge(i), {1}));
+  for (std::size_t payloads = 3; payloads < 50; ++payloads) AppendOpenSession(store_, payloads);
+  EXPECT_EQ(cost(300), with_few);
+  EXPECT_EQ(LoadRobot(store_, kRobot)->value().sessions, 48);
 }
 
 // Nor does what open pages ask every second, a part of the list, or the queues' heads.

@@ -235,6 +235,55 @@ TEST_F(RobotSummaryTest, TheSizeOfTheFleetIsThatOfItsTables) {
   expect(2, 2, 3, 0);
 }
 
+TEST_F(RobotSummaryTest, TheNumbersOfARobotAreThoseOfItsTables) {
+  const auto expect = [&](const RobotId& robot, std::int64_t sessions, std::int64_t edges) {
+    const RobotRow row = LoadRobot(store_, robot).value().value();
+    EXPECT_EQ(row.sessions, sessions) << robot.str();
+    EXPECT_EQ(row.edges, edges) << robot.str();
+    EXPECT_EQ(CountEdges(store_, robot, LoadEdgeWatermark(store_, robot).value()).value(), edges) << robot.str();
+  };
+  const RobotId other("other");
+  const BatchId batch(DigestOf("batch").str());
+  for (int again = 0; again < 2; ++again) {
+    AppendOpenSession(store_, 1);
+    AppendOpenSession(store_, 1, other);
+    AppendOpenSession(store_, 2, other);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(AppendEdge(store_, MakeEdge(i), {1}));
+  }
+  const auto append = [&](int item) {
+    return store_.Write([&]() -> Status {
+      RIGCAL_TRY(AppendBatch(store_, other, batch, 2, {2}));
+      return AppendBatchItem(store_, batch, item, MakeEdge(item, other), {2});
+    });
+  };
+  ASSERT_TRUE(append(0));
+  expect(kRobot, 1, 3);
+  expect(other, 2, 0);  // the batch is not whole
+  ASSERT_TRUE(append(1));
+  ASSERT_FALSE(store_.Write([&]() -> Status {
+    RIGCAL_TRY(AppendEdge(store_, MakeEdge(4), {1}));
+    return Fail(ErrorCode::kInternal, "rolled back", "");
+  }));
+  expect(kRobot, 1, 3);
+  expect(other, 2, 2);
+  EXPECT_EQ(CountEdges(store_, kRobot, 2).value(), 2);
+  EXPECT_EQ(CountEdges(store_, RobotId("nobody"), 2).value(), 0);
+}
+
+TEST_F(RobotSummaryTest, ThoseThatWaitComeInTurn) {
+  for (const char* name : {"b", "a", "d", "c"}) ASSERT_TRUE(AppendRobot(store_, RobotId(name), {1}));
+  const auto names = [&](int max, const std::string& after) {
+    std::string text;
+    const std::vector<WaitingSummary> waiting = LoadWaitingSummaries(store_, max, RobotId(after)).value();
+    for (const WaitingSummary& one : waiting) text += one.robot.str();
+    return text;
+  };
+  EXPECT_EQ(names(3, ""), "abc");
+  EXPECT_EQ(names(3, "b"), "cda");
+  EXPECT_EQ(names(9, "bb"), "cdab");
+  EXPECT_EQ(names(2, "d"), "ab");
+}
+
 // Version 15, which knew no summaries. The numbers of its edges have gaps: it was of version 4 once.
 std::string StoreOfVersion15() {
   std::string sql;
@@ -264,6 +313,10 @@ TEST(RobotSummaryMigration, AllRobotsOfVersion15Wait) {
   EXPECT_EQ(size.robots, 2);
   EXPECT_EQ(size.sessions, 1);
   EXPECT_EQ(size.edges, 2);
+  const RobotRow r = LoadRobot(*store, RobotId("r")).value().value(), s = LoadRobot(*store, RobotId("s")).value().value();
+  EXPECT_EQ(r.sessions, 1);
+  EXPECT_EQ(r.edges, 2);
+  EXPECT_EQ(s.sessions + s.edges, 0);
   EXPECT_TRUE(LoadSummaries(*store, RobotId(), std::nullopt, kNow)->empty());
   ASSERT_TRUE(ReplaceSummary(*store, MakeSummary(RobotId("r"), 1), (*waiting)[0].changes));
   EXPECT_EQ(LoadWaitingSummaries(*store, 100)->size(), 1u);
