@@ -12,8 +12,8 @@ namespace rigcal {
 
 inline constexpr double kNearPoint_m = 2.0;
 
-// Standard deviation, in the direction in which it is largest, of where a point is projected that the camera has at this
-// place: very far away, and kNearPoint_m away. Absent where no ray of the lens leads to the place.
+// Standard deviation, in the direction in which it is largest, of where a point is projected that the camera has at
+// this place: very far away, and kNearPoint_m away. Absent where no ray of the lens leads to the place.
 struct PointSigma {
   std::optional<double> far_px, near_px;
 };

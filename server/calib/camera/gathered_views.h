@@ -38,11 +38,11 @@ struct GatheredViews {
 // CameraFit::implied_motion: K of xi = K db, the one motion xi of all boards in the camera's frame that keeps every
 // corner where it was, as far as one motion can, when the intrinsics change by db:
 //   xi = argmin sum_k |J_k db + A_k xi|^2 over the corners k,  K = -(sum A_k^T A_k)^-1 sum A_k^T J_k,
-// with J_k the derivative of the corner's pixel by the intrinsics and A_k that by xi, T_cam_board <- Exp(xi) T_cam_board.
-// As A_k = (derivative by the right tangent at the board) Ad(T_cam_board^-1), both sums are those of the views' moments.
-// It is the K of mrcal's "Projection uncertainty: cross-reprojection" (T_r+r, one camera; mrcal 3.0), without the term of
-// the corners' own noise: that is independent of db and moves all points as one body, so it belongs to the camera's
-// pose and not to its lens. Without columns where the views do not tell it.
+// with J_k the derivative of the corner's pixel by the intrinsics and A_k that by xi, T_cam_board <- Exp(xi)
+// T_cam_board. As A_k = (derivative by the right tangent at the board) Ad(T_cam_board^-1), both sums are those of the
+// views' moments. It is the K of mrcal's "Projection uncertainty: cross-reprojection" (T_r+r, one camera; mrcal 3.0),
+// without the term of the corners' own noise: that is independent of db and moves all points as one body, so it belongs
+// to the camera's pose and not to its lens. Without columns where the views do not tell it.
 [[nodiscard]] Eigen::MatrixXd ImpliedMotion(const GatheredViews& gathered);
 
 }  // namespace rigcal::calib

@@ -34,8 +34,8 @@ std::vector<FarPoint> PointsOf(const CameraFit& before, const Coverage& seen_bef
       const double n0 = seen_before.At(column, row), n1 = seen_now.At(column, row);
       const Eigen::Vector2d uv_px(MiddleOf(column, before.width_px, seen_before.columns),
                                   MiddleOf(row, before.height_px, seen_before.rows));
-      points.push_back({uv_px, Unproject(before.intrinsics.model, intrinsics, uv_px),
-                        n0 > 0 && n1 > 0 ? n0 * n1 / (n0 + n1) : 0.0});
+      points.push_back(
+          {uv_px, Unproject(before.intrinsics.model, intrinsics, uv_px), n0 > 0 && n1 > 0 ? n0 * n1 / (n0 + n1) : 0.0});
       weights += points.back().weight;
     }
   if (!(weights > 0))

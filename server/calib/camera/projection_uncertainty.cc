@@ -19,8 +19,8 @@ std::optional<double> WorstDirection(const Eigen::Matrix2d& variance) {
   return std::sqrt(std::max(largest, 0.0));
 }
 
-std::optional<double> SigmaOfPoint(const CameraFit& fit, const IntrinsicsVector& intrinsics, const Eigen::Vector3d& p_cam,
-                                   const PointMotion& motion) {
+std::optional<double> SigmaOfPoint(const CameraFit& fit, const IntrinsicsVector& intrinsics,
+                                   const Eigen::Vector3d& p_cam, const PointMotion& motion) {
   const Projection at = Project(fit.intrinsics.model, intrinsics, p_cam);
   if (!at.in_front) return std::nullopt;
   const Eigen::Matrix<double, 2, Eigen::Dynamic> P =
@@ -46,8 +46,8 @@ std::optional<ProjectionUncertainty> UncertaintyOfProjections(const CameraFit& f
   ProjectionUncertainty map{coverage.columns, coverage.rows, {}, {}};
   for (int row = 0; row < map.rows; ++row)
     for (int column = 0; column < map.columns; ++column)
-      map.fields.push_back(SigmaAt(fit, intrinsics,
-                                   {MiddleOf(column, fit.width_px, map.columns), MiddleOf(row, fit.height_px, map.rows)}));
+      map.fields.push_back(SigmaAt(
+          fit, intrinsics, {MiddleOf(column, fit.width_px, map.columns), MiddleOf(row, fit.height_px, map.rows)}));
   map.middle = SigmaAt(fit, intrinsics, {MiddleOf(0, fit.width_px, 1), MiddleOf(0, fit.height_px, 1)});
   return map;
 }
