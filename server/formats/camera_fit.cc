@@ -95,7 +95,8 @@ void ReadCovariance(const JsonField& field, CameraFit& fit) {
   const std::size_t count = 4 + fit.intrinsics.distortion.size();
   const auto columns = static_cast<Eigen::Index>(count);
   const std::vector<JsonField> rows = motion->Items(6);
-  if (covariance->Items(kDistortionMax + 4).size() != count) return covariance->Refuse("must have a row for every value");
+  if (covariance->Items(kDistortionMax + 4).size() != count)
+    return covariance->Refuse("must have a row for every value");
   if (rows.size() != 6) return motion->Refuse("must have 6 rows");
   fit.covariance = ReadLowerTriangle(*covariance);
   fit.implied_motion = Eigen::MatrixXd::Zero(6, columns);

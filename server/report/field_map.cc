@@ -126,6 +126,11 @@ std::optional<double> MiddleValue(const FieldMap& map) {
   return field < map.value_px.size() ? map.value_px[field] : std::nullopt;
 }
 
+std::string PixelsText(double value_px) {
+  constexpr double kLeast_px = 0.001;
+  return value_px < kLeast_px ? "below " + Significant(kLeast_px, 1) + " px" : Significant(value_px, 2) + " px";
+}
+
 void FillFieldMap(Dictionary& parent, const FieldMap& map, const std::string& label) {
   Dictionary* drawing = parent.AddIncludeDictionary("FIELD_MAP");
   drawing->SetFilename("field_map.tpl");

@@ -35,6 +35,9 @@ struct WorstField {
 // Of the field that holds the middle of the picture.
 [[nodiscard]] std::optional<double> MiddleValue(const FieldMap& map);
 
+// "0.41 px", "below 0.001 px".
+[[nodiscard]] std::string PixelsText(double value_px);
+
 // {{>FIELD_MAP}} of `parent`, with `label` as its text alternative.
 void FillFieldMap(Dictionary& parent, const FieldMap& map, const std::string& label);
 

@@ -44,12 +44,12 @@ DistanceMap MapOf(const CameraReport& camera, const std::string& title, const st
 }
 
 std::string FiguresText(const DistanceMap& one) {
-  std::string text = one.middle_px ? Significant(*one.middle_px, 2) + " px in the middle" : "no ray in the middle";
+  std::string text = one.middle_px ? PixelsText(*one.middle_px) + " in the middle" : "no ray in the middle";
   if (const auto worst = WorstOf(one.map))
-    text += ", at most " + Significant(worst->value_px, 2) + " px (" + worst->where + ")";
+    text += ", at most " + PixelsText(worst->value_px) + " (" + worst->where + ")";
   const auto of_seen = WorstOf(one.map, one.map.seen);
   if (of_seen && std::find(one.map.seen.begin(), one.map.seen.end(), false) != one.map.seen.end())
-    text += "; where corners were seen, at most " + Significant(of_seen->value_px, 2) + " px";
+    text += "; where corners were seen, at most " + PixelsText(of_seen->value_px);
   return text;
 }
 

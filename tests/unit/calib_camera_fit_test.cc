@@ -100,8 +100,7 @@ TEST(CameraFitOf, SigmaIsWhatLeavingPicturesOutDoes) {
   ASSERT_EQ(fit.sigma.size(), 9U);
   ASSERT_TRUE(fit.sigma_by_jackknife);
   ASSERT_EQ(fit.covariance.rows(), 9);
-  for (int i = 0; i < 9; ++i)
-    EXPECT_DOUBLE_EQ(std::sqrt(fit.covariance(i, i)), fit.sigma[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < 9; ++i) EXPECT_DOUBLE_EQ(std::sqrt(fit.covariance(i, i)), fit.sigma[static_cast<std::size_t>(i)]);
   std::vector<Eigen::Vector4d> without;
   for (std::size_t k = 0; k < problem.views.size(); ++k) {
     CameraProblem fewer = problem;

@@ -100,9 +100,13 @@ TEST(HostileTextElsewhere, FleetAndRobotPage) {
   row.worst = WorstEdge{SensorId(kHostile), SensorId(kHostile), 1.0};
   FleetCounts fleet;
   fleet.robots = 1;
-  ExpectHarmless(RenderFleet(fleet, {{row}, 1, 1, 1}, Stamp{2}, {kHostile, kHostile, kHostile, true, 1}).value(), "fleet");
+  ExpectHarmless(RenderFleet(fleet, {{row}, 1, 1, 1}, Stamp{2}, {kHostile, kHostile, kHostile, true, 1}).value(),
+                 "fleet");
   const SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
-  ExpectHarmless(RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2}).value(), "robot");
+  ExpectHarmless(
+      RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2})
+          .value(),
+      "robot");
 }
 
 TEST(HostileTextElsewhere, SessionPage) {
@@ -125,6 +129,18 @@ TEST(HostileTextElsewhere, Comparison) {
   revision->solution.poses[1].sensor = SensorId(kHostile);
   revision->edges[0].method = kHostile;
   ExpectHarmless(RenderCompare({RobotId(kHostile), {1, revision}, {2, revision}, 2}).value(), "compare");
+  CompareInput input{RobotId("r"),
+                     {1, std::make_shared<formats::RevisionInput>()},
+                     {2, std::make_shared<formats::RevisionInput>()},
+                     2};
+  LensChange change;
+  change.camera = SensorId(kHostile);
+  input.lenses = {{change}, {}, {}};
+  ExpectHarmless(RenderCompare(input).value(), "changed lens");
+  input.lenses = {{}, {SensorId(kHostile)}, {}};
+  ExpectHarmless(RenderCompare(input).value(), "same lens");
+  input.lenses = {{}, {}, {{SensorId(kHostile), "why"}}};
+  ExpectHarmless(RenderCompare(input).value(), "lens not compared");
 }
 
 // A spreadsheet runs what begins like a formula.
