@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "server/report/certificate.h"
 #include "server/report/page_data.h"
 #include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
@@ -124,6 +125,27 @@ TEST(HostileTextElsewhere, SessionPage) {
   ExpectHarmless(RenderSession(input).value(), "session");
 }
 
+TEST(HostileTextElsewhere, Certificate) {
+  for (const auto& set : std::vector<void (*)(ReportInput&)>{
+           [](ReportInput& in) { in.revision.robot = RobotId(kHostile); },
+           [](ReportInput& in) { in.revision.verdict.why = kHostile; },
+           [](ReportInput& in) { in.revision.solution.poses[1].sensor = SensorId(kHostile); },
+           [](ReportInput& in) { in.software_version = kHostile; },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, kHostile, "", {}, 1}};
+           },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, "", kHostile, {}, 1}};
+           },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, "", "", {kHostile}, 1}};
+           }}) {
+    ReportInput input = SampleReport();
+    set(input);
+    ExpectHarmless(RenderCertificate(input).value(), "certificate");
+  }
+}
+
 TEST(HostileTextElsewhere, Comparison) {
   auto revision = std::make_shared<formats::RevisionInput>(SampleReport().revision);
   revision->solution.poses[1].sensor = SensorId(kHostile);
@@ -167,7 +189,7 @@ TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
     EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
     ++templates;
   }
-  EXPECT_EQ(templates, 17);
+  EXPECT_EQ(templates, 18);
 }
 
 TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {
