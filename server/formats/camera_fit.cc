@@ -30,6 +30,15 @@ void WriteNumbers(JsonWriter& out, const char* key, const std::vector<double>& v
   });
 }
 
+void WriteRows(JsonWriter& out, const char* key, const Eigen::MatrixXd& matrix) {
+  out.List(key, [&] {
+    for (const auto& row : matrix.rowwise())
+      out.List([&] {
+        for (const double value : row) out.Number(value);
+      });
+  });
+}
+
 void WriteView(JsonWriter& out, const ViewFit& view) {
   out.Text("capture", view.capture.str());
   out.Number("distance_m", view.distance_m);
@@ -42,9 +51,11 @@ void WriteIntrinsics(JsonWriter& out, const CameraFit& fit) {
   if (fit.source == IntrinsicsSource::kNone) return out.Null("intrinsics");
   const CameraIntrinsics& values = fit.intrinsics;
   out.Object("intrinsics", [&] {
+    WriteLowerTriangle(out, "covariance", fit.covariance);
     out.Text("model", NameOf(values.model));
     WriteNumbers(out, "distortion", values.distortion);
     WriteNumbers(out, "f_c_px", {values.fx_px, values.fy_px, values.cx_px, values.cy_px});
+    WriteRows(out, "implied_motion", fit.implied_motion);
     WriteNumbers(out, "sigma", fit.sigma);
     out.Flag("sigma_by_jackknife", fit.sigma_by_jackknife);
     out.Text("source", NameOfSource(fit.source));
@@ -77,6 +88,25 @@ ViewFit ReadView(const JsonField& field) {
   return view;
 }
 
+// As documents of before do not have them.
+void ReadCovariance(const JsonField& field, CameraFit& fit) {
+  const auto covariance = field.Find("covariance"), motion = field.Find("implied_motion");
+  if (!covariance || !motion || covariance->Items(kDistortionMax + 4).empty()) return;
+  const std::size_t count = 4 + fit.intrinsics.distortion.size();
+  const auto columns = static_cast<Eigen::Index>(count);
+  const std::vector<JsonField> rows = motion->Items(6);
+  if (covariance->Items(kDistortionMax + 4).size() != count)
+    return covariance->Refuse("must have a row for every value");
+  if (rows.size() != 6) return motion->Refuse("must have 6 rows");
+  fit.covariance = ReadLowerTriangle(*covariance);
+  fit.implied_motion = Eigen::MatrixXd::Zero(6, columns);
+  Eigen::VectorXd values(columns);
+  for (Eigen::Index row = 0; row < 6; ++row) {
+    rows[static_cast<std::size_t>(row)].Numbers(values.data(), count);
+    fit.implied_motion.row(row) = values.transpose();
+  }
+}
+
 void ReadIntrinsics(const JsonField& field, CameraFit& fit) {
   const std::string source = field.At("source").Text();
   if (source != "given" && source != "refined" && source != "estimated")
@@ -97,6 +127,7 @@ void ReadIntrinsics(const JsonField& field, CameraFit& fit) {
   if (!fit.sigma.empty() && fit.sigma.size() != 4 + values.distortion.size())
     field.Refuse("must have a sigma for every value, or none");
   fit.sigma_by_jackknife = field.At("sigma_by_jackknife").Flag();
+  ReadCovariance(field, fit);
 }
 
 }  // namespace

@@ -104,6 +104,7 @@ void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
       WriteMatrix(out, "covariance", pose.covariance);
       WriteSigmas(out, pose.covariance);
       out.Text("sigma_source", SigmaSourceOf(pose));
+      if (pose.dof > 0 && (pose.by_jackknife || pose.fused)) out.Number("dof", pose.dof);
       WriteFused(out, pose);
     } else {
       for (const char* key : {"T_ref_sensor", "covariance", "sigma_source"}) out.Null(key);
@@ -123,6 +124,7 @@ SensorPose ReadSensorPose(const JsonField& field) {
   if (!pose.known) return pose;
   pose.T_ref_sensor = ReadPose(field.At("T_ref_sensor"), kUnitTolerance);
   pose.covariance = ReadMatrix(field.At("covariance"));
+  if (const auto dof = field.Find("dof")) pose.dof = dof->Number();
   pose.fused = ReadFused(field);
   if (const auto analytic = field.Find("analytic")) {
     pose.by_jackknife = true;

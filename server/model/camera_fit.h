@@ -35,6 +35,12 @@ struct CameraFit {
   // fx fy cx cy and the distortion's, in its order; empty: not known.
   std::vector<double> sigma;
   bool sigma_by_jackknife = false;  // false: given, or the model's
+  // Of the same values in the same order: `sigma` is the square root of its diagonal. Without rows: not known, or none.
+  Eigen::MatrixXd covariance;
+  // How all boards together seem to have moved when the intrinsics change, as the corners see it: T_cam_board becomes
+  // Exp(implied_motion * change) * T_cam_board. 6 rows (m, rad; axes of the camera), a column for each intrinsic. There
+  // with `covariance`, else empty.
+  Eigen::MatrixXd implied_motion;
   std::vector<ViewFit> views;
 };
 

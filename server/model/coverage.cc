@@ -43,6 +43,8 @@ int FieldOf(double at_px, int size_px, int fields) {
   return std::clamp(static_cast<int>(std::floor(std::clamp(part, 0.0, 1e6))), 0, fields - 1);
 }
 
+double MiddleOf(int field, int size_px, int fields) { return (field + 0.5) * size_px / std::max(fields, 1) - 0.5; }
+
 Coverage CoverageOf(const CameraFit& fit) {
   Coverage coverage;
   coverage.columns = kColumns;

@@ -29,6 +29,8 @@ inline constexpr double kFlatTilt_rad = 0.26, kSameDistance_ratio = 1.2;
 // Of `size_px` pixels in a row, in `fields` of equal size: the one that a corner lies in. A corner beyond the picture's
 // edge counts to the field there. Pixel 0 reaches from -0.5 to 0.5.
 [[nodiscard]] int FieldOf(double at_px, int size_px, int fields);
+// Where the middle of a field is: FieldOf the other way round.
+[[nodiscard]] double MiddleOf(int field, int size_px, int fields);
 // So many rows make fields of so many columns about square.
 [[nodiscard]] int RowsFor(const CameraFit& fit, int columns);
 

@@ -6,6 +6,7 @@
 
 #include "server/base/log.h"
 #include "server/pipeline/attempt.h"
+#include "server/report/certificate.h"
 #include "storage/attempts.h"
 
 namespace rigcal::pipeline {
@@ -36,7 +37,7 @@ Result<std::ptrdiff_t> QueuedOf(storage::Store& store, const RobotId& robot) {
 // True if it was not to be drawn before.
 Result<bool> Queue(storage::Store& store, const storage::RevisionKey& key) {
   RIGCAL_ASSIGN(const bool is_new, storage::QueuePublication(store, key));
-  if (is_new) LogInfo(ReportOf(key) + " is not in " + store.ReportFolder().string() + " any more: it is drawn again");
+  if (is_new) LogInfo(ReportOf(key) + " is not whole in " + store.ReportFolder().string() + ": it is drawn again");
   return is_new;
 }
 
@@ -81,7 +82,8 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
     return {ErrorCode::kNotFound, key.robot.str() + " has no revision " + std::to_string(key.number),
             "See the robot's own page for those that it has."};
   if (IsThere(store, key, file)) return Being(key, "drawn");  // it came since it was missed
-  if (IsThere(store, key))
+  const bool lacks_certificate = IsThere(store, key) && file == report::kCertificateFile;
+  if (IsThere(store, key) && !lacks_certificate)
     return {ErrorCode::kNotFound, ReportOf(key) + " has no file " + file, "Start at the report's first page."};
   if (const auto why = undrawn.Find(key))
     return {ErrorCode::kNotFound, ReportOf(key) + " could not be drawn: " + why->what, why->cure};
@@ -92,6 +94,7 @@ Error WhyMissing(storage::Store& store, const UndrawnReports& undrawn, const sto
   const auto is_new = Queue(store, key);
   if (!is_new) return is_new.error();
   if (*is_new && drawn_soon) drawn_soon();
+  if (lacks_certificate) return Being(key, "drawn again, as an older version drew it without its certificate");
   const auto published = storage::IsPublished(store, key);
   return published && *published ? Being(key, "drawn again, as its folder was gone") : Being(key, "drawn");
 }

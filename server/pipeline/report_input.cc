@@ -4,6 +4,7 @@
 #include <set>
 
 #include "server/base/version.h"
+#include "server/calib/camera/projection_uncertainty.h"
 #include "server/fleet/assess.h"
 #include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
@@ -97,6 +98,7 @@ void TakeCameras(storage::Store& store, report::ReportInput& input) {
   std::map<SessionId, Stamp> captured_at;
   for (const report::SessionFacts& session : input.sessions) captured_at.emplace(session.id, session.captured_at);
   input.cameras = LoadFits(store, report::ChooseFits(input.revision, captured_at));
+  for (report::CameraReport& camera : input.cameras) camera.uncertainty = calib::UncertaintyOfProjections(camera.fit);
 }
 
 }  // namespace
@@ -114,6 +116,8 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
+  const fleet::Policy policy;
+  input.sigma_limits = report::SigmaLimits{policy.sigma_max_m, policy.sigma_max_rad};
   TakeCameras(store, input);
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
   return input;

@@ -9,6 +9,7 @@
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
 #include "server/pipeline/asked.h"
+#include "server/pipeline/compared_lenses.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
@@ -166,8 +167,8 @@ Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
   return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
 }
 
-// What tells how many pixels a movement is: figures and evidence of its edges.
-Result<report::SolvedRevision> WithFocalLengths(const AnswerContext& context, const ParsedRevision& parsed) {
+// What tells of its cameras: figures and evidence of its edges.
+Result<report::SolvedRevision> WithCameras(const AnswerContext& context, const ParsedRevision& parsed) {
   if (parsed.document->whole) return report::SolvedRevision{parsed.summary.number, parsed.document};
   RIGCAL_ASSIGN(auto whole, WithWholeEdges(context.store, parsed.summary.number, *parsed.document, Blocks::kLeftOut));
   return report::SolvedRevision{parsed.summary.number, std::make_shared<const formats::RevisionInput>(std::move(whole))};
@@ -184,9 +185,10 @@ Result<PageText> ComparePage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("b", std::max(input.newest - 1, 1)));
   RIGCAL_ASSIGN(const ParsedRevision first, context.revisions.Load(context.store, robot, std::min(before, now)));
   RIGCAL_ASSIGN(const ParsedRevision second, context.revisions.Load(context.store, robot, std::max(before, now)));
-  input.before = {first.summary.number, first.document};
-  RIGCAL_ASSIGN(input.now, WithFocalLengths(context, second));
+  RIGCAL_ASSIGN(input.before, WithCameras(context, first));
+  RIGCAL_ASSIGN(input.now, WithCameras(context, second));
   RIGCAL_ASSIGN(input.captured_at, CapturedAt(context, input));
+  input.lenses = CompareLenses(context.store, input.before, input.now, input.captured_at);
   RIGCAL_ASSIGN(std::string body, report::RenderCompare(input));
   return PageText{std::move(body), kHtmlType};
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "server/formats/documents.h"
 #include "server/model/camera_fit.h"
+#include "server/model/projection_map.h"
 
 namespace rigcal::report {
 
@@ -23,6 +25,7 @@ struct CameraReport {
   CameraFit fit;
   EdgeId edge;
   Digest document;
+  std::optional<ProjectionUncertainty> uncertainty = {};  // absent: the fit has no covariance
 };
 
 }  // namespace rigcal::report

@@ -4,20 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "server/report/field_map.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
 namespace {
 
-constexpr double kMapWidth = 360.0;
 constexpr std::array<int, 5> kLevels = {1, 3, 6, 12, 24};  // corners of a field, at least
 
 // Drawing units per pixel; the picture is kMapWidth wide.
 double ScaleOf(const CameraFit& fit) { return fit.width_px > 0 ? kMapWidth / fit.width_px : 1.0; }
-
-std::string ShapeText(const CameraFit& fit) {
-  return Fixed(fit.height_px > 0 ? std::clamp(ScaleOf(fit) * fit.height_px, 40.0, 720.0) : 240.0, 0);
-}
 
 // One decimal at most, without a trailing zero: what a path needs.
 std::string Short(double value) {
@@ -99,7 +95,7 @@ void FillCoverage(Dictionary& section, const CameraFit& fit) {
   const Coverage coverage = CoverageOf(fit);
   section.SetValue("COLUMNS", std::to_string(coverage.columns));
   section.SetValue("ROWS", std::to_string(coverage.rows));
-  section.SetValue("MAP_HEIGHT", ShapeText(fit));
+  section.SetValue("MAP_HEIGHT", MapHeightText(fit.width_px, fit.height_px));
   section.SetValue("COVERED", Fixed(100 * coverage.share_ratio, 0));
   for (std::size_t level = 0; level < kLevels.size(); ++level) {
     const std::string number = std::to_string(level + 1);
@@ -122,7 +118,7 @@ void FillVectors(Dictionary& section, const CameraFit& fit, const ResidualShape&
   const auto [usual, far] = VectorsOf(fit, 3 * shape.sigma_px);
   const std::vector<Vector> shown = Thinned(usual), shown_far = Thinned(far);
   Dictionary* vectors = section.AddSectionDictionary("VECTORS");
-  vectors->SetValue("MAP_HEIGHT", ShapeText(fit));
+  vectors->SetValue("MAP_HEIGHT", MapHeightText(fit.width_px, fit.height_px));
   vectors->SetValue("MAGNIFIED", Significant(magnified, 1));
   vectors->SetValue("USUAL", PathOf(shown, scale, magnified));
   if (!far.empty()) ShowValue(*vectors, "FAR", "D", PathOf(shown_far, scale, magnified));

@@ -8,6 +8,7 @@
 #include "server/report/camera_views.h"
 #include "server/report/figure_words.h"
 #include "server/report/text.h"
+#include "server/report/uncertainty_section.h"
 
 namespace rigcal::report {
 namespace {
@@ -144,6 +145,7 @@ void FillSection(Dictionary& section, const ReportInput& input, const CameraRepo
   FillCoverage(section, fit);
   FillResiduals(section, fit, shape);
   FillStand(section, fit);
+  FillUncertainty(section, camera);
   FillIntrinsics(section, fit);
 }
 

@@ -9,6 +9,7 @@
 #include "server/report/choices.h"
 #include "server/report/edge_moves.h"
 #include "server/report/figure_words.h"
+#include "server/report/lens_section.h"
 #include "server/report/moved_text.h"
 #include "server/report/robot_pages.h"
 #include "server/report/sigmas.h"
@@ -139,6 +140,7 @@ Result<std::string> RenderCompare(const CompareInput& input) {
   const std::vector<EdgeMove> edges = EdgeMoves(*input.before.revision, *input.now.revision, input.captured_at);
   FillWhatMoved(page, input, changes, edges);
   FillSensors(page, input, changes);
+  FillLenses(page, input.lenses);
   FillEdges(page, edges);
   AddScript(page, "../../" + AssetPath("tables.js"));
   return Expand("compare.tpl", page);

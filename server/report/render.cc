@@ -6,6 +6,7 @@
 #include "server/report/assets.h"
 #include "server/report/banner.h"
 #include "server/report/camera_section.h"
+#include "server/report/certificate.h"
 #include "server/report/change_section.h"
 #include "server/report/drawing.h"
 #include "server/report/edge_section.h"
@@ -90,7 +91,9 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillClouds(page, input.clouds);
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));
+  RIGCAL_ASSIGN(std::string certificate, RenderCertificate(input));
   return std::map<std::string, std::string>{{"index.html", std::move(html)},
+                                            {kCertificateFile, std::move(certificate)},
                                             {"revision.json", document},
                                             {"edges.csv", EdgeCsv(input, edges)},
                                             {"data.js", PageData(input, edges)},

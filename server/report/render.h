@@ -30,6 +30,10 @@ struct SessionFacts {
 struct EdgeLimit {
   double statistic = 0.0, limit = 0.0;
 };
+// A sensor that is less certain than this, along or about any axis, one sigma, is too uncertain.
+struct SigmaLimits {
+  double m = 0.0, rad = 0.0;
+};
 struct PastRevision {
   int number = 0;
   formats::RevisionInput revision;
@@ -55,10 +59,11 @@ struct ReportInput {
   std::optional<PastRevision> previous;
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured
   std::optional<UsableRevision> usable;  // what to use where this one is not to be used
+  std::optional<SigmaLimits> sigma_limits;
 };
 
-// File name (relative, '/'-separated) -> contents: index.html, revision.json (= document), edges.csv, style.css, and
-// data.js (what scripts draw, as a script, because a page from disk may not fetch). Pipeline adds the pictures that the
+// File name (relative, '/'-separated) -> contents: index.html, certificate.html (certificate.h), revision.json (=
+// document), edges.csv, style.css, and data.js (what scripts draw, as a script, because a page from disk may not fetch). Pipeline adds the pictures that the
 // page names ("evidence/<digest>.<suffix>") and the scripts ("assets/...", assets.h).
 [[nodiscard]] Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input,
                                                                         const std::string& document);

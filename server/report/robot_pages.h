@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/model/projection_map.h"
 #include "server/model/standing.h"
 #include "server/report/render.h"
 
@@ -45,11 +46,17 @@ struct SolvedRevision {
 };
 [[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
 
+struct ComparedLenses {
+  std::vector<LensChange> changes;                             // of cameras whose intrinsics differ
+  std::vector<SensorId> same;                                  // cameras whose intrinsics do not
+  std::vector<std::pair<SensorId, std::string>> not_compared;  // and why: "nothing was kept of it in revision 2"
+};
 struct CompareInput {
   RobotId robot;
   SolvedRevision before, now;
   int newest = 0;  // revisions 1 to this are to choose from
   std::map<SessionId, Stamp> captured_at = {};
+  ComparedLenses lenses = {};
 };
 [[nodiscard]] Result<std::string> RenderCompare(const CompareInput& input);
 

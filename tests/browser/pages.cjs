@@ -5,10 +5,10 @@ const { accessible, assert, close, colors, drawn, facts, open, picture, withBrow
 const at = (path) => facts.address + path;
 
 async function everyPage(browser) {
-  const paths = ["/", "/?q=rover&sort=edges&order=down", "/robots/rover/", "/robots/rover/revisions/2/", "/robots/rover/compare?a=2&b=1", "/robots/broken/revisions/1/", "/experiments/", "/experiments/noise_whitening/"];
+  const paths = ["/", "/?q=rover&sort=edges&order=down", "/robots/rover/", "/robots/rover/revisions/2/", "/robots/rover/revisions/2/certificate.html", "/robots/rover/compare?a=2&b=1", "/robots/broken/revisions/1/", "/experiments/", "/experiments/noise_whitening/"];
   if (facts.pictures) {
     const reply = await (await fetch(at("/api/v1/sessions?robot=stereo"))).json();
-    paths.push("/robots/stereo/revisions/1/", "/robots/stereo/", `/robots/stereo/sessions/${reply.sessions[0].session}/`);
+    paths.push("/robots/stereo/revisions/1/", "/robots/stereo/revisions/1/certificate.html", "/robots/stereo/", `/robots/stereo/sessions/${reply.sessions[0].session}/`);
   }
   for (const path of paths) {
     const page = await open(browser, at(path));
@@ -172,7 +172,7 @@ async function cameras(browser) {
   if (!facts.pictures) return;
   const page = await open(browser, at("/robots/stereo/revisions/1/"), { javaScriptEnabled: false });
   const one = page.locator("details.camera").first();
-  for (const part of [".heat5, .heat4, .heat3", ".usual", ".normal", ".compass .dot", ".values dd"])
+  for (const part of [".heat5, .heat4, .heat3", ".usual", ".normal", ".compass .dot", ".certainty .map", ".values dd"])
     assert.ok(await one.locator(part).first().isVisible(), part);
   const reply = await fetch(new URL(await one.locator("a[download]").getAttribute("href"), page.url()));
   const fit = await reply.json();
@@ -269,6 +269,25 @@ async function paper(browser) {
   await page.emulateMedia({ media: "screen" });
   await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
   assert.strictEqual(await color("text"), dark, "the screen is as it was");
+  await close(page);
+}
+
+// One side of A4, also with names that are far too long; an old one tells that there is a newer revision.
+async function certificate(browser) {
+  const page = await open(browser, at("/robots/rover/"));
+  await page.click("a:text-is('Certificate to print')");
+  await page.waitForURL(/\/revisions\/2\/certificate\.html$/);
+  for (const robot of facts.pictures ? ["rover/revisions/2", "stereo/revisions/1"] : ["rover/revisions/2"]) {
+    await page.goto(at(`/robots/${robot}/certificate.html`));
+    const sheets = (await page.pdf({ preferCSSPageSize: true })).toString("latin1").match(/\/Type \/Page\b/g);
+    assert.strictEqual(sheets.length, 1, "sheets of " + robot);
+    assert.ok((await page.textContent(".signature")).includes("Signature"));
+  }
+  await page.goto(at("/robots/rover/revisions/1/certificate.html"));
+  await page.click("header a:text-is('Open revision 2')");
+  await page.waitForURL(at("/robots/rover/revisions/2/"));
+  await page.click("header a:has-text('Certificate')");
+  await page.waitForURL(at("/robots/rover/revisions/2/certificate.html"));
   await close(page);
 }
 
@@ -398,7 +417,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, moved, oldReport, overdue, errors, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, moved, oldReport, overdue, errors, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, certificate, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

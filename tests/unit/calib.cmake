@@ -1,6 +1,6 @@
 rigcal_test(calib_test COMPUTES
   SOURCES unit/calib_derivative_test.cc unit/calib_estimate_test.cc unit/calib_diagnosis_test.cc unit/calib_start_test.cc
-          unit/calib_projection_test.cc unit/calib_camera_fit_test.cc unit/calib_virtual_pair.cc
+          unit/calib_projection_test.cc unit/calib_projection_map_test.cc unit/calib_camera_fit_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_joint_test COMPUTES
   SOURCES unit/calib_joint_test.cc unit/calib_joint_bursts_test.cc unit/calib_joint_moves_test.cc unit/calib_lens_misfit_test.cc bench/joint_session.cc bench/feature_session.cc

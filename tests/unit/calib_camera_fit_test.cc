@@ -99,6 +99,8 @@ TEST(CameraFitOf, SigmaIsWhatLeavingPicturesOutDoes) {
   const CameraFit fit = FitOf(problem, whole->intrinsics, whole->T_cam_board);
   ASSERT_EQ(fit.sigma.size(), 9U);
   ASSERT_TRUE(fit.sigma_by_jackknife);
+  ASSERT_EQ(fit.covariance.rows(), 9);
+  for (int i = 0; i < 9; ++i) EXPECT_DOUBLE_EQ(std::sqrt(fit.covariance(i, i)), fit.sigma[static_cast<std::size_t>(i)]);
   std::vector<Eigen::Vector4d> without;
   for (std::size_t k = 0; k < problem.views.size(); ++k) {
     CameraProblem fewer = problem;
@@ -127,6 +129,8 @@ TEST(CameraFitOf, FewPicturesGiveTheModelsSigmaAndGivenIntrinsicsTheirOwn) {
   EXPECT_FALSE(few.sigma_by_jackknife);
   ASSERT_EQ(few.sigma.size(), 9U);
   EXPECT_GT(few.sigma[0], 0.0);
+  EXPECT_EQ(few.implied_motion.rows(), 6);
+  EXPECT_EQ(few.implied_motion.cols(), 9);
   problem.camera.intrinsics = pair.a;
   problem.camera.intrinsics_sigma = std::vector<double>(9, 0.5);
   const CameraFit given = FitOf(problem, pair.a, estimate->T_cam_board);
@@ -138,7 +142,9 @@ TEST(CameraFitOf, FewPicturesGiveTheModelsSigmaAndGivenIntrinsicsTheirOwn) {
   problem.camera.intrinsics_sigma->at(1) = 0;
   EXPECT_EQ(FitOf(problem, pair.a, estimate->T_cam_board).sigma[1], 0);
   problem.camera.intrinsics_sigma.reset();
-  EXPECT_TRUE(FitOf(problem, pair.a, estimate->T_cam_board).sigma.empty());
+  const CameraFit exact = FitOf(problem, pair.a, estimate->T_cam_board);
+  EXPECT_TRUE(exact.sigma.empty());
+  EXPECT_EQ(exact.covariance.size() + exact.implied_motion.size(), 0);
 }
 
 }  // namespace

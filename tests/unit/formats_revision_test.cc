@@ -190,6 +190,19 @@ TEST(RevisionDocument, AnUnknownSensorHasNoNumbers) {
   EXPECT_NEAR(sensors[1]["covariance"][1][3].get<double>(), -2e-7, 1e-20);
 }
 
+// Behind covariances that are estimated; an analytic one has none.
+TEST(RevisionDocument, DegreesOfFreedomComeBack) {
+  RevisionInput input = SampleRevision();
+  SensorPose& lidar = input.solution.poses[1];
+  lidar.dof = 14.25;
+  EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["sensors"][1].contains("dof"));
+  lidar.by_jackknife = true, lidar.covariance_analytic = lidar.covariance;
+  const std::string text = WriteRevisionDocument(input);
+  EXPECT_EQ(json::parse(text)["sensors"][1]["dof"], 14.25);
+  EXPECT_EQ(ReadRevisionDocument(text)->solution.poses[1].dof, 14.25);
+  EXPECT_EQ(ReadRevisionDocument(text)->solution.poses[0].dof, 0.0);
+}
+
 TEST(RevisionDocument, WhatIsFreeComesBack) {
   RevisionInput input = SampleRevision();
   EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["sensors"][2].contains("unobservable_basis"));

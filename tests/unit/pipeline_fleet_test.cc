@@ -164,7 +164,7 @@ TEST_F(FleetPageTest, ResidualsOfRealPicturesReachThePage) {
   StepAll();
   std::stringstream page;
   page << std::ifstream(store_->ReportFolder() / "r" / "1" / "index.html").rdbuf();
-  for (const char* part : {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "sigma from a jackknife"})
+  for (const char* part : {"class=\"usual\"", "class=\"normal\"", "class=\"compass\"", "sigma from a jackknife", "A point 2 m away"})
     EXPECT_NE(page.str().find(part), std::string::npos) << part;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "server/report/certificate.h"
 #include "server/report/page_data.h"
 #include "server/report/robot_pages.h"
 #include "tests/unit/report_sample.h"
@@ -100,9 +101,13 @@ TEST(HostileTextElsewhere, FleetAndRobotPage) {
   row.worst = WorstEdge{SensorId(kHostile), SensorId(kHostile), 1.0};
   FleetCounts fleet;
   fleet.robots = 1;
-  ExpectHarmless(RenderFleet(fleet, {{row}, 1, 1, 1}, Stamp{2}, {kHostile, kHostile, kHostile, true, 1}).value(), "fleet");
+  ExpectHarmless(RenderFleet(fleet, {{row}, 1, 1, 1}, Stamp{2}, {kHostile, kHostile, kHostile, true, 1}).value(),
+                 "fleet");
   const SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
-  ExpectHarmless(RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2}).value(), "robot");
+  ExpectHarmless(
+      RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2})
+          .value(),
+      "robot");
 }
 
 TEST(HostileTextElsewhere, SessionPage) {
@@ -120,11 +125,44 @@ TEST(HostileTextElsewhere, SessionPage) {
   ExpectHarmless(RenderSession(input).value(), "session");
 }
 
+TEST(HostileTextElsewhere, Certificate) {
+  for (const auto& set : std::vector<void (*)(ReportInput&)>{
+           [](ReportInput& in) { in.revision.robot = RobotId(kHostile); },
+           [](ReportInput& in) { in.revision.verdict.why = kHostile; },
+           [](ReportInput& in) { in.revision.solution.poses[1].sensor = SensorId(kHostile); },
+           [](ReportInput& in) { in.software_version = kHostile; },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, kHostile, "", {}, 1}};
+           },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, "", kHostile, {}, 1}};
+           },
+           [](ReportInput& in) {
+             in.sessions = {{in.revision.edges[0].session, Stamp{1}, "", "", {kHostile}, 1}};
+           }}) {
+    ReportInput input = SampleReport();
+    set(input);
+    ExpectHarmless(RenderCertificate(input).value(), "certificate");
+  }
+}
+
 TEST(HostileTextElsewhere, Comparison) {
   auto revision = std::make_shared<formats::RevisionInput>(SampleReport().revision);
   revision->solution.poses[1].sensor = SensorId(kHostile);
   revision->edges[0].method = kHostile;
   ExpectHarmless(RenderCompare({RobotId(kHostile), {1, revision}, {2, revision}, 2}).value(), "compare");
+  CompareInput input{RobotId("r"),
+                     {1, std::make_shared<formats::RevisionInput>()},
+                     {2, std::make_shared<formats::RevisionInput>()},
+                     2};
+  LensChange change;
+  change.camera = SensorId(kHostile);
+  input.lenses = {{change}, {}, {}};
+  ExpectHarmless(RenderCompare(input).value(), "changed lens");
+  input.lenses = {{}, {SensorId(kHostile)}, {}};
+  ExpectHarmless(RenderCompare(input).value(), "same lens");
+  input.lenses = {{}, {}, {{SensorId(kHostile), "why"}}};
+  ExpectHarmless(RenderCompare(input).value(), "lens not compared");
 }
 
 // A spreadsheet runs what begins like a formula.
@@ -151,7 +189,7 @@ TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
     EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
     ++templates;
   }
-  EXPECT_EQ(templates, 16);
+  EXPECT_EQ(templates, 18);
 }
 
 TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {

@@ -28,7 +28,7 @@ std::string RowOf(const std::string& page, const std::string& heading) {
 
 TEST(ReportRevision, FolderHasPageDocumentAndStyle) {
   const auto files = RenderRevision(SampleReport(), "{\"robot\":1}").value();
-  ASSERT_EQ(files.size(), 5U);
+  ASSERT_EQ(files.size(), 6U);
   EXPECT_THAT(files.at("data.js"), ::testing::StartsWith("window.rigcal = {"));
   EXPECT_THAT(files.at("edges.csv"), ::testing::StartsWith("frame_a,frame_b,state,"));
   EXPECT_EQ(files.at("revision.json"), "{\"robot\":1}");

@@ -18,7 +18,7 @@ function linkTo(revision) {
 }
 
 export async function tellOfNewer() {
-  const here = location.pathname.match(/\/robots\/([^/]+)\/revisions\/(\d+)\/(index\.html)?$/);
+  const here = location.pathname.match(/\/robots\/([^/]+)\/revisions\/(\d+)\/((index|certificate)\.html)?$/);
   const header = document.querySelector("main > header");
   if (!here || !header) return watchOverdue(0);
   let ahead_ms = 0;

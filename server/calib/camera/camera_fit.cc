@@ -1,8 +1,8 @@
 #include "server/calib/camera/camera_fit.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
+#include "server/calib/camera/gathered_views.h"
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/projection.h"
 #include "server/calib/camera/seen_corners.h"
@@ -14,108 +14,29 @@ namespace {
 
 constexpr std::size_t kViewsForJackknife = 5;
 
-using IntrinsicsMatrix = Eigen::MatrixXd;
-
-// What one view says of the intrinsics once its board's pose is eliminated.
-struct ViewSays {
-  IntrinsicsMatrix normal;
-  Eigen::VectorXd gradient;
-};
-
-struct Gathered {
-  std::vector<ViewSays> views;
-  IntrinsicsMatrix normal;
-  Eigen::VectorXd gradient;
-  double ssr_px2 = 0.0;
-  std::size_t numbers = 0;  // two per corner
-};
-
-ViewSays Reduced(const ViewMoments& moments, int count) {
-  const Matrix6d inverse = Matrix6d(moments.normal.bottomRightCorner<6, 6>()).inverse();
-  const Eigen::MatrixXd mixed = moments.normal.topRightCorner(count, 6);
-  return {moments.normal.topLeftCorner(count, count) - mixed * inverse * mixed.transpose(),
-          moments.gradient.head(count) - mixed * (inverse * moments.gradient.tail<6>())};
-}
-
-void Add(const ViewMoments& moments, std::size_t corners, int count, Gathered& gathered) {
-  ViewSays says = Reduced(moments, count);
-  gathered.normal += says.normal;
-  gathered.gradient += says.gradient;
-  gathered.ssr_px2 += moments.ssr_px2;
-  gathered.numbers += 2 * corners;
-  gathered.views.push_back(std::move(says));
-}
-
-// Scaled to a unit diagonal: focal lengths and distortion differ by many orders of magnitude. Not finite where a
-// direction is open.
-Eigen::VectorXd SolveScaled(const IntrinsicsMatrix& normal, const Eigen::VectorXd& right) {
-  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-  const IntrinsicsMatrix scaled = scale.asDiagonal() * normal * scale.asDiagonal();
-  return scale.cwiseProduct(scaled.fullPivLu().solve(scale.cwiseProduct(right)));
-}
-
-std::vector<double> Finite(const Eigen::VectorXd& variances) {
-  if (!variances.allFinite() || !(variances.minCoeff() >= 0)) return {};
-  const Eigen::VectorXd sigma = variances.cwiseSqrt();
+std::vector<double> SigmaOf(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   return {sigma.begin(), sigma.end()};
 }
 
-std::vector<double> ModelSigma(const Gathered& gathered) {
-  const auto count = gathered.normal.rows();
-  const double dof = static_cast<double>(gathered.numbers) - 6.0 * static_cast<double>(gathered.views.size()) -
-                     static_cast<double>(count);
-  if (!(dof > 0)) return {};
-  Eigen::VectorXd variances(count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    variances[i] = gathered.ssr_px2 / dof * SolveScaled(gathered.normal, Eigen::VectorXd::Unit(count, i))[i];
-  return Finite(variances);
+Eigen::MatrixXd EstimatedCovariance(const GatheredViews& gathered, bool by_jackknife) {
+  return by_jackknife ? CovarianceByJackknife(gathered) : CovarianceByModel(gathered);
 }
 
-std::vector<double> JackknifeSigma(const Gathered& gathered) {
-  const auto m = static_cast<double>(gathered.views.size());
-  IntrinsicsMatrix moved(gathered.normal.rows(), static_cast<Eigen::Index>(gathered.views.size()));
-  for (std::size_t i = 0; i < gathered.views.size(); ++i)
-    moved.col(static_cast<Eigen::Index>(i)) =
-        -SolveScaled(gathered.normal - gathered.views[i].normal, gathered.gradient - gathered.views[i].gradient);
-  const Eigen::VectorXd mean = moved.rowwise().mean();
-  return Finite((m - 1) / m * (moved.colwise() - mean).rowwise().squaredNorm());
-}
-
-// Of the views and of what was given together. What was given where the views leave no scatter.
-std::vector<double> RefinedSigma(const Sensor& camera, const Gathered& gathered) {
-  const std::vector<double>& given = *camera.intrinsics_sigma;
-  const Eigen::Index count = gathered.normal.rows();
-  const double dof = static_cast<double>(gathered.numbers) - 6.0 * static_cast<double>(gathered.views.size());
-  if (!(dof > 0) || !(gathered.ssr_px2 > 0)) return given;
-  IntrinsicsMatrix information = gathered.normal * (dof / gathered.ssr_px2);
-  for (const int i : HeldOf(camera)) {
-    information.row(i).setZero();
-    information.col(i).setZero();
-    information(i, i) = 1;
-  }
-  Eigen::VectorXd variances = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    if (const double sigma = given[static_cast<std::size_t>(i)]; sigma > 0) information(i, i) += 1 / (sigma * sigma);
-  for (Eigen::Index i = 0; i < count; ++i)
-    if (given[static_cast<std::size_t>(i)] > 0)
-      variances[i] = SolveScaled(information, Eigen::VectorXd::Unit(count, i))[i];
-  return Finite(variances);
-}
-
-void SetSigma(const Sensor& camera, const Gathered& gathered, CameraFit& fit) {
-  if (RefinesIntrinsics(camera)) {
-    fit.source = IntrinsicsSource::kRefined;
-    fit.sigma = RefinedSigma(camera, gathered);
-    return;
-  }
-  if (camera.intrinsics) {
+void SetSigma(const Sensor& camera, const GatheredViews& gathered, CameraFit& fit) {
+  if (HoldsIntrinsics(camera)) {
     fit.source = IntrinsicsSource::kGiven;
     fit.sigma = camera.intrinsics_sigma.value_or(std::vector<double>());
     return;
   }
-  fit.source = IntrinsicsSource::kEstimated;
-  fit.sigma_by_jackknife = gathered.views.size() >= kViewsForJackknife;
-  fit.sigma = fit.sigma_by_jackknife ? JackknifeSigma(gathered) : ModelSigma(gathered);
+  const bool refines = RefinesIntrinsics(camera);
+  fit.source = refines ? IntrinsicsSource::kRefined : IntrinsicsSource::kEstimated;
+  fit.sigma_by_jackknife = !refines && gathered.views.size() >= kViewsForJackknife;
+  fit.covariance =
+      refines ? CovarianceWithGiven(camera, gathered) : EstimatedCovariance(gathered, fit.sigma_by_jackknife);
+  fit.sigma = SigmaOf(fit.covariance);
+  fit.implied_motion = ImpliedMotion(gathered);
+  if (fit.covariance.size() == 0 || fit.implied_motion.size() == 0) fit.covariance = fit.implied_motion = {};
 }
 
 // The board's normal that points to the camera, against the line of sight.
@@ -161,10 +82,9 @@ CameraFit FitOf(const CameraProblem& problem, const CameraIntrinsics& intrinsics
   fit.camera = problem.camera.id;
   fit.intrinsics = intrinsics;
   const CameraModel model = intrinsics.model;
-  const int count = IntrinsicsCount(model);
   const IntrinsicsVector values = VectorOf(intrinsics);
   const std::vector<Eigen::Vector3d> points = TargetPoints(problem.board);
-  Gathered gathered{{}, IntrinsicsMatrix::Zero(count, count), Eigen::VectorXd::Zero(count), 0.0, 0};
+  GatheredViews gathered(model);
   for (const auto& [capture, seen_view] : problem.views) {
     const auto pose = T_cam_board.find(capture);
     if (pose == T_cam_board.end() || !WhyUnusable(seen_view, problem.board).empty()) continue;
@@ -175,7 +95,7 @@ CameraFit FitOf(const CameraProblem& problem, const CameraIntrinsics& intrinsics
     if (!view || !moments) continue;
     view->capture = capture;
     SetSize(seen_view, fit);
-    Add(*moments, seen.size(), count, gathered);
+    gathered.Add(*moments, seen.size());
     fit.views.push_back(std::move(*view));
   }
   SetSigma(problem.camera, gathered, fit);

@@ -63,6 +63,22 @@
 </div>
 {{/WORST_VIEWS}}
 {{#UNSOLVED}}<p class="hint">The camera was not solved: there are no residuals to draw.</p>{{/UNSOLVED}}
+{{#UNCERTAINTY}}
+<h3>How certain projections are <span class="soft">one &sigma;, in the direction that is known worst</span></h3>
+<div class="plots camera-plots certainty">
+{{#MAP}}
+<figure class="plot tall">
+<figcaption><strong>{{TITLE}}</strong> {{FIGURES}}</figcaption>
+{{>FIELD_MAP}}
+</figure>
+{{/MAP}}
+</div>
+<p class="hint">By the covariance of the intrinsics. What a small turn and shift of the camera would make good at all corners does not count: it belongs to the camera's pose.{{#HATCHED}} Where fields are hatched the lens is a guess: hold the board there in the next session.{{/HATCHED}}</p>
+{{/UNCERTAINTY}}
+{{#NO_UNCERTAINTY}}
+<h3>How certain projections are</h3>
+<p class="hint">{{TEXT}}</p>
+{{/NO_UNCERTAINTY}}
 {{#INTRINSICS}}
 <h3>Intrinsics <span class="soft">{{MODEL}}; {{SIGMA_FROM}}</span></h3>
 <dl class="values">{{#VALUE}}<div><dt>{{NAME}}</dt><dd>{{VALUE}} {{UNIT}} <span class="soft">{{SIGMA}}</span></dd></div>{{/VALUE}}</dl>

@@ -33,6 +33,27 @@
 <p class="hint">In &sigma;: the worst of the six axes; from 3 on the sensor moved. &sigma;: the larger one of both revisions, along the sensor's own axes. Pixels: how far the image of a point 10 m ahead of a camera moves, by turn and shift, at most.</p>
 </section>
 {{/SENSORS}}
+{{#LENSES}}
+<section class="card">
+<h2 id="lenses">Lenses <span class="soft">where the same far point is projected, by the intrinsics of both revisions; the farthest off first</span></h2>
+{{#EXPLAINED}}
+<p class="hint lead">The turn of the camera that explains most of it is taken out: where a lens points is a matter of the camera's pose. A lens that nobody touched changes by what its map in the report leaves open. More than that: its focus was moved, or one of the two sessions has poor pictures. Compare what the two reports say of the camera.</p>
+<div class="plots camera-plots certainty">
+{{/EXPLAINED}}
+{{#LENS}}
+<figure class="plot tall">
+<figcaption><strong>{{CAMERA}}</strong> {{SHIFT}}; a turn by {{TURN}} deg is taken out</figcaption>
+{{>FIELD_MAP}}
+</figure>
+{{/LENS}}
+{{#EXPLAINED}}</div>{{/EXPLAINED}}
+{{#MORE_LENSES}}<p class="hint">{{COUNT}} more changed by less than these.</p>{{/MORE_LENSES}}
+{{#SAME}}<p class="hint">The same intrinsics in both: <bdi>{{NAMES}}</bdi>.</p>{{/SAME}}
+{{#NOT_COMPARED}}<p class="hint"><bdi>{{CAMERA}}</bdi> is not compared: {{WHY}}.</p>
+{{/NOT_COMPARED}}
+{{#MORE_NOT_COMPARED}}<p class="hint">{{COUNT}} more are not compared, either.</p>{{/MORE_NOT_COMPARED}}
+</section>
+{{/LENSES}}
 <section class="card">
 <h2 id="edges">Measurements <span class="soft">of each pair, the newest of both revisions; the farthest in &sigma; first</span></h2>
 <div class="scroll" tabindex="0" role="region" aria-labelledby="edges">
