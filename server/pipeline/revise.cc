@@ -6,6 +6,7 @@
 
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
+#include "server/fleet/told_causes.h"
 #include "server/formats/documents.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/insight.h"
@@ -200,6 +201,10 @@ storage::MergeStep MergeOlder(const RobotId& robot, RobotEdges& loaded) {
   return step;
 }
 
+std::vector<fleet::RootCause> CausesIn(const formats::RevisionInput& input, const RobotEdges& loaded) {
+  return fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at);
+}
+
 // What is told of the graph and judged.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting, JointPoses& poses) {
   RobotGraph loaded = GraphOf(edges, robot, true);
@@ -214,6 +219,7 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
                                     : fleet::Assess(loaded.edges, input.solution, {}, edges.captured_at,
                                                     edges.refined.estimates, edges.headers);
   input.edges = std::move(loaded.edges);
+  if (pairs_waiting == 0) input.causes = fleet::ToldCauses(CausesIn(input, edges));
   return input;
 }
 
