@@ -51,9 +51,9 @@ std::string SentenceFrom(std::string text, const std::vector<SensorId>& sensors)
 
 template <typename AnId>
 void AddNames(const std::vector<AnId>& ids, std::string& key) {
-  constexpr std::size_t kNamesMax = 4;
-  for (std::size_t i = 0; i < std::min(ids.size(), kNamesMax); ++i) key += " " + ids[i].str();
-  if (ids.size() > kNamesMax) key += " +" + std::to_string(ids.size() - kNamesMax);
+  constexpr std::size_t kNamesInKeyMax = 4;
+  for (std::size_t i = 0; i < std::min(ids.size(), kNamesInKeyMax); ++i) key += " " + ids[i].str();
+  if (ids.size() > kNamesInKeyMax) key += " +" + std::to_string(ids.size() - kNamesInKeyMax);
 }
 
 // What is done about these is the same, whichever sensors they failed.
