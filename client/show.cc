@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/cause_list.h"
 #include "client/edge_table.h"
 #include "client/insight_table.h"
 #include "client/pose_text.h"
@@ -27,16 +28,20 @@ void PrintPoses(const Document& revision, std::ostream& out) {
   table.Print(out);
 }
 
-void PrintShow(const Document& document, std::ostream& out) {
+void PrintShow(const Document& document, bool whole, std::ostream& out) {
   const Document revision = document["document"];
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
   PrintVerdict(revision["verdict"], document, out);
+  PrintCauses(revision["causes"], out);
   PrintGlobalError(revision, out);
   PrintDiagnoses(revision["diagnoses"], out);
   PrintPoses(revision, out);
   out << "\nEdges\n";
-  PrintEdges(revision["edges"].Items(), out);
+  if (whole)
+    PrintEdges(revision["edges"].Items(), out);
+  else
+    PrintEdgesByCause(revision["causes"], revision["edges"].Items(), out);
   PrintInfluence(revision, out);
   PrintLoops(revision, out);
 }
@@ -50,21 +55,24 @@ struct ShowOptions {
 ExitCode RunShow(const Context& context, const ShowOptions& options) {
   std::vector<Field> parameters = {{"robot", options.robot}};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
-  if (options.whole) parameters.push_back(Field::Raw("whole", "true"));
-  return Answer(context, {"show", JsonObject(parameters), PrintShow,
+  if (options.whole && context.json) parameters.push_back(Field::Raw("whole", "true"));
+  const auto print = [&](const Document& document, std::ostream& out) { PrintShow(document, options.whole, out); };
+  return Answer(context, {"show", JsonObject(parameters), print,
                           [](const Document& document) { return Judge(document["document"]["verdict"], document); }});
 }
 
 }  // namespace
 
 void AddShow(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, poses with sigma, edges, loops");
+  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, causes, poses with sigma, edges, loops");
   auto options = std::make_shared<ShowOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  verb->add_flag("--whole", options->whole, "With --json: every edge with its captures, evidence, information and covariance");
+  verb->add_flag("--whole", options->whole,
+                 "Each failed pair with its own reason; with --json: every edge with its captures, evidence, information "
+                 "and covariance");
   verb->footer(std::string(kVerdictCodes) +
                "Examples:\n"
                "  rigcal show mapper-01\n"

@@ -23,6 +23,26 @@ Result<std::optional<WorstEdge>> LoadWorstEdge(Store& store, const RevisionKey& 
   });
 }
 
+Status AppendCauseKeys(Store& store, const RevisionKey& key, const std::vector<std::string>& causes) {
+  return store.connection().Append("causes of robot " + key.robot.str(), [&]() -> Status {
+    for (const std::string& cause : causes)
+      Query(store, "INSERT INTO revision_cause VALUES (?, ?, ?)").Bind(key.robot, key.number, cause).Run();
+    return {};
+  });
+}
+
+Result<std::vector<std::string>> LoadCauseKeys(Store& store, const RevisionKey& key) {
+  using Keys = std::vector<std::string>;
+  return Load<Keys>(store, "causes of robot " + key.robot.str(), [&]() -> Result<Keys> {
+    Query query(store,
+                "SELECT cause_key FROM revision_cause WHERE robot_id = ? AND revision_number = ? ORDER BY cause_key");
+    query.Bind(key.robot, key.number);
+    Keys keys;
+    while (query.Step()) keys.push_back(query.Text(0));
+    return keys;
+  });
+}
+
 Result<std::map<SessionId, SessionFacts>> LoadSessionFacts(Store& store, const std::vector<SessionId>& sessions) {
   using Facts = std::map<SessionId, SessionFacts>;
   return Load<Facts>(store, "results of sessions", [&]() -> Result<Facts> {

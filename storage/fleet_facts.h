@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "server/model/robot_summary.h"
@@ -15,6 +16,11 @@ namespace rigcal::storage {
 
 // Nothing checks an edge of the revision, or it was not kept: none.
 [[nodiscard]] Result<std::optional<WorstEdge>> LoadWorstEdge(Store& store, const RevisionKey& key);
+
+// Keys of a revision's causes (server/model/cause.h), each once. Call inside the Write that appends it.
+[[nodiscard]] Status AppendCauseKeys(Store& store, const RevisionKey& key, const std::vector<std::string>& causes);
+// Sorted; none of a revision from before they were kept.
+[[nodiscard]] Result<std::vector<std::string>> LoadCauseKeys(Store& store, const RevisionKey& key);
 
 // What the pairs of a session gave.
 struct SessionFacts {

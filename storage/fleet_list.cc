@@ -9,20 +9,38 @@
 namespace rigcal::storage {
 namespace {
 
-// ?1: what was calibrated before is overdue; ?2: the choice; ?3: a session before is long ago; ?4: sigmas from which an edge is
-// off; ?5, ?6: the first word and the others.
+// ?1, ?2, ?3: what was calibrated before is overdue, or will be this week, or by the end of the next; ?4: the choice;
+// ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8, ?9: the first word and the
+// others.
 const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns < ?1))";
+const std::string kIsDueThisWeek = "(revision_number > 0 AND calibrated_ns >= ?1 AND calibrated_ns < ?2)";
+const std::string kIsDueNextWeek = "(revision_number > 0 AND calibrated_ns >= ?2 AND calibrated_ns < ?3)";
+const std::string kIsDueLater = "(revision_number > 0 AND calibrated_ns >= ?3)";
 const std::string kIsLike =
-    "CASE ?2 WHEN '' THEN 1 WHEN 'overdue' THEN " + kIsOverdue +
-    " WHEN 'off' THEN worst_ratio >= ?4 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?3 "
-    "ELSE verdict = ?2 END";
-constexpr const char* kHasWords =
-    " AND instr(search, ?5) > 0 AND (?6 = '' OR NOT EXISTS "
-    "(SELECT 1 FROM json_each(?6, '$.words') AS word WHERE instr(search, word.value) = 0))";
+    "CASE ?4 WHEN '' THEN 1 WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
+    " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
+    " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
+    "ELSE verdict = ?4 END AND "
+    "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7))";
 
-// What is overdue may be relied on no more than a warning allows: it goes before those.
-const std::string kUrgency = "CASE verdict WHEN 'fail' THEN 1 - " + kIsOverdue + " WHEN 'unknown' THEN 3 - " + kIsOverdue +
-                             " WHEN 'warn' THEN 6 - 2 * " + kIsOverdue + " ELSE 7 - 2 * " + kIsOverdue + " END";
+// "overdue" stands in a row, but comes with the time.
+std::string HasWord(const std::string& word) {
+  return "(instr(search, " + word + ") > 0 OR (" + word + " = 'overdue' AND " + kIsOverdue + "))";
+}
+const std::string kHasWords = " AND " + HasWord("?8") +
+                              " AND (?9 = '' OR NOT EXISTS (SELECT 1 FROM json_each(?9, '$.words') AS word WHERE NOT " +
+                              HasWord("word.value") + "))";
+
+// What is overdue may be relied on no more than a warning allows: it goes before those. Of what passes that goes first
+// which is due by the end of next week.
+const std::string kUrgency = "CASE verdict WHEN 'fail' THEN 1 - " + kIsOverdue + " WHEN 'unknown' THEN 3 - " +
+                             kIsOverdue + " WHEN 'warn' THEN 6 - 2 * " + kIsOverdue + " ELSE CASE WHEN " + kIsOverdue +
+                             " THEN 5 WHEN calibrated_ns < ?3 THEN 7 ELSE 8 END END";
+
+void BindDue(Query& query, Stamp now) {
+  const std::int64_t this_week_ns = NextMonday(now).ns;
+  query.Bind(now.ns - kDefaultMaxAge_ns, this_week_ns - kDefaultMaxAge_ns, this_week_ns + kWeek_ns - kDefaultMaxAge_ns);
+}
 
 // A number to sort by, the smallest first.
 std::string SortKeyOf(const std::string& sort) {
@@ -64,10 +82,10 @@ class Matches {
     return query.Step() ? static_cast<std::size_t>(query.Int(0)) : 0;
   }
 
-  std::vector<std::int64_t> NumbersOf(std::size_t page) {
-    Query query(store_, "SELECT number " + From() + OrderOf(asked_) + " LIMIT " + std::to_string(kFleetRowsMax) + " OFFSET ?");
+  std::vector<std::int64_t> Numbers(std::int64_t max, std::size_t skipped) {
+    Query query(store_, "SELECT number " + From() + OrderOf(asked_) + " LIMIT ? OFFSET ?");
     Bind(query);
-    query.Bind((page - 1) * kFleetRowsMax);
+    query.Bind(max, skipped);
     std::vector<std::int64_t> numbers;
     while (query.Step()) numbers.push_back(query.Int(0));
     return numbers;
@@ -78,7 +96,8 @@ class Matches {
     return "FROM summary_robot WHERE " + kIsLike + (words_.empty() ? "" : kHasWords);
   }
   void Bind(Query& query) const {
-    query.Bind(now_.ns - kDefaultMaxAge_ns, asked_.verdict, now_.ns - kQuiet_ns, kOff_sigmas);
+    BindDue(query, now_);
+    query.Bind(asked_.verdict, now_.ns - kQuiet_ns, kOff_sigmas, asked_.cause);
     if (!words_.empty()) query.Bind(words_.front(), OtherWords(words_));
   }
 
@@ -88,6 +107,11 @@ class Matches {
   std::vector<std::string> words_;
 };
 
+std::optional<RobotSummary> LoadRow(Store& store, std::int64_t number, Stamp now) {
+  Query query(store, std::string("SELECT ") + kSummaryColumns + " FROM summary_robot WHERE number = ?");
+  return query.Bind(number).Step() ? std::optional(SummaryOf(query, now)) : std::nullopt;
+}
+
 }  // namespace
 
 Result<FleetCounts> CountFleet(Store& store, Stamp now) {
@@ -95,10 +119,13 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     Query query(store, "SELECT count(*), count(*) FILTER (WHERE " + kIsOverdue +
                            "), coalesce(sum(sessions), 0), coalesce(sum(edges), 0), coalesce(sum(jobs_waiting), 0), "
                            "count(*) FILTER (WHERE verdict = 'fail'), count(*) FILTER (WHERE verdict = 'unknown'), "
-                           "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass') "
-                           "FROM summary_robot");
+                           "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass'), "
+                           "count(*) FILTER (WHERE " +
+                           kIsDueThisWeek + "), count(*) FILTER (WHERE " + kIsDueNextWeek +
+                           "), count(*) FILTER (WHERE " + kIsDueLater + ") FROM summary_robot");
     FleetCounts counts;
-    if (!query.Bind(now.ns - kDefaultMaxAge_ns).Step()) return counts;
+    BindDue(query, now);
+    if (!query.Step()) return counts;
     counts.robots = query.Int(0);
     counts.overdue = query.Int(1);
     counts.sessions = query.Int(2);
@@ -108,6 +135,10 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                        {VerdictLevel::kUnknown, query.Int(6)},
                        {VerdictLevel::kWarn, query.Int(7)},
                        {VerdictLevel::kPass, query.Int(8)}};
+    counts.due_this_week = query.Int(9);
+    counts.due_next_week = query.Int(10);
+    counts.due_later = query.Int(11);
+    RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));
     return counts;
   });
 }
@@ -119,11 +150,32 @@ Result<FleetPage> LoadFleetPage(Store& store, const FleetQuery& asked, Stamp now
     page.matches = matches.Count();
     page.pages = std::max<std::size_t>(1, (page.matches + kFleetRowsMax - 1) / kFleetRowsMax);
     page.page = std::clamp<std::size_t>(asked.page, 1, page.pages);
-    for (const std::int64_t number : matches.NumbersOf(page.page)) {
-      Query query(store, std::string("SELECT ") + kSummaryColumns + " FROM summary_robot WHERE number = ?");
-      if (query.Bind(number).Step()) page.rows.push_back(SummaryOf(query, now));
-    }
+    for (const std::int64_t number : matches.Numbers(kFleetRowsMax, (page.page - 1) * kFleetRowsMax))
+      if (auto row = LoadRow(store, number, now)) page.rows.push_back(std::move(*row));
     return page;
+  });
+}
+
+Status ForEachRobot(Store& store, const FleetQuery& asked, Stamp now,
+                    const std::function<void(const RobotSummary&)>& take) {
+  return store.connection().Load("list of robots", [&]() -> Status {
+    constexpr std::int64_t kAll = -1;
+    for (const std::int64_t number : Matches(store, asked, now).Numbers(kAll, 0))
+      if (const auto row = LoadRow(store, number, now)) take(*row);
+    return {};
+  });
+}
+
+Result<std::vector<CauseCount>> LoadCauseCounts(Store& store, std::size_t max) {
+  using Counts = std::vector<CauseCount>;
+  return Load<Counts>(store, "causes that robots have in common", [&]() -> Result<Counts> {
+    Query query(
+        store,
+        "SELECT cause_key, robots FROM summary_cause_count WHERE robots > 0 ORDER BY robots DESC, cause_key LIMIT ?");
+    query.Bind(max);
+    Counts counts;
+    while (query.Step()) counts.push_back({query.Text(0), query.Int(1)});
+    return counts;
   });
 }
 

@@ -19,14 +19,14 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
   Query(store,
         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, last_session_ns, "
         "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, worst_frame_a, "
-        "worst_frame_b, verdict_why, verdict_what_to_do, given_up) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
       .Bind(usable ? std::optional(usable->number) : std::nullopt, usable ? std::optional(usable->created_at) : std::nullopt)
       .Bind(worst ? worst->frame_a.str() : Text(), worst ? worst->frame_b.str() : Text())
-      .Bind(summary.verdict.why, summary.verdict.what_to_do, validity.given_up)
+      .Bind(summary.verdict.why, summary.verdict.what_to_do, validity.given_up, ListOfKeys(summary.causes))
       .Run();
 }
 
@@ -48,6 +48,7 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   summary.jobs_waiting = query.Int(12);
   if (!query.IsNull(13)) summary.last_session_at = query.Time(13);
   if (!query.IsNull(16)) summary.worst = WorstEdge{query.IdAt<SensorId>(14), query.IdAt<SensorId>(15), query.Real(16)};
+  summary.causes = KeysOfList(query.Text(17));
   return summary;
 }
 

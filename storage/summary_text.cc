@@ -24,6 +24,13 @@ std::string_view NumberAt(std::string_view text, std::size_t at) {
   return text.substr(at, end - at);
 }
 
+// As pages have it: "warn" is in it.
+std::string WordOf(VerdictLevel level) { return level == VerdictLevel::kWarn ? "warning" : NameOf(level); }
+
+void AddDate(const std::optional<Stamp>& at, std::string& text) {
+  if (at) text += " " + DayText(*at) + " " + ToIso(*at).substr(0, 10);
+}
+
 }  // namespace
 
 // A number is a digit, as it stands among other characters; then its length, then itself. '\x01' comes before all that ids hold:
@@ -46,8 +53,15 @@ std::string NameKeyOf(const RobotId& robot) {
 }
 
 std::string SearchTextOf(const RobotSummary& summary) {
-  std::string text = summary.robot.str() + " " + NameOf(summary.verdict.level) + " " + summary.verdict.why;
+  const Verdict& verdict = summary.verdict;
+  std::string text = summary.robot.str() + " " + WordOf(verdict.level) + " " + verdict.why + " " + verdict.what_to_do;
   if (summary.worst) text += " " + summary.worst->frame_a.str() + " " + summary.worst->frame_b.str();
+  for (const std::string& cause : summary.causes) text += " " + cause;
+  AddDate(summary.validity.calibrated_at, text);
+  AddDate(ValidUntil(summary.validity.calibrated_at), text);
+  AddDate(summary.last_session_at, text);
+  if (summary.revision > 0) text += " revision " + std::to_string(summary.revision);
+  text += " " + std::to_string(summary.sessions) + " sessions " + std::to_string(summary.edges) + " edges";
   return Lowered(std::move(text));
 }
 
@@ -61,6 +75,23 @@ std::vector<std::string> SearchWordsOf(const std::string& search) {
       words.push_back(std::exchange(word, {}));
   }
   return words;
+}
+
+std::string ListOfKeys(const std::vector<std::string>& keys) {
+  std::string list = "[";
+  for (const std::string& key : keys) list += (list.size() == 1 ? "\"" : ",\"") + key + "\"";
+  return list + "]";
+}
+
+std::vector<std::string> KeysOfList(const std::string& list) {
+  std::vector<std::string> keys;
+  for (std::size_t open = list.find('"'); open != std::string::npos;) {
+    const std::size_t close = list.find('"', open + 1);
+    if (close == std::string::npos) break;
+    keys.push_back(list.substr(open + 1, close - open - 1));
+    open = list.find('"', close + 1);
+  }
+  return keys;
 }
 
 }  // namespace rigcal::storage

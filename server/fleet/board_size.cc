@@ -114,6 +114,7 @@ void FindBoardSizes(CauseSearch& search) {
       for (const Edge* edge : search.Take([&](const Edge& one) { return MayFollow(search, one, board_key); }))
         edges.push_back(edge);
     RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
+    cause.trait = *ratio > 0 ? "larger" : "smaller";
     cause.said = WrongSize(CandidatesOf(search, scales.front()), std::get<2>(key), *ratio, scales.size());
     search.causes.push_back(std::move(cause));
   }

@@ -30,6 +30,7 @@ RootCause WrongLens(const CauseSearch& search, const SensorId& camera, const Ben
   RootCause cause{CauseKind::kLensModel, {camera}, {}, {}, bent.edges, {}, kPushAgain};
   const Sensor* listed = SensorOf(search.headers, *bent.lens.edge, camera);
   const std::string name = camera.str(), model = NameOf(bent.lens.model);
+  cause.trait = model;
   cause.said = {"the lens of " + name + (listed ? " is not " + NameOf(listed->camera_model) : " has another model") +
                     ": as " + model + " it fits to " + TwoDigits(bent.lens.rms_px, "px"),
                 "Give " + name + " `model: " + model + "` in session.yaml"};

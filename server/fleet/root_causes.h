@@ -35,7 +35,8 @@ struct RootCause {
   std::vector<CaptureId> captures;  // likewise: the first whose file cannot be read
   std::vector<EdgeId> edges;        // that it explains, of FindOpenFailures(); none: it failed no pair
   Finding said;
-  std::string command;  // to copy when it is done; empty: none
+  std::string command;     // to copy when it is done; empty: none
+  std::string trait = {};  // tells it from others of its kind about the same: "larger"; a word, or empty
 };
 
 // Sensors that are exchanged first, then by the number of edges that a cause explains. An edge has one cause, but where

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/model/cause.h"
 #include "server/model/edge.h"
 #include "server/model/graph.h"
 #include "server/model/session.h"
@@ -26,7 +27,7 @@ namespace rigcal::formats {
 // Ids are assigned (AssignPushedIds). The error names the edge by its position and field.
 [[nodiscard]] Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& robot);
 
-// A revision's canonical document: sensors, edges, residuals, verdict; neither number nor time, and the same bytes
+// A revision's canonical document: sensors, edges, residuals, verdict, causes; neither number nor time, and the same bytes
 // for the same edges whatever the order in which they arrived. Format 2 refers to its edges (edge_reference.h).
 struct RevisionInput {
   RobotId robot;
@@ -35,6 +36,7 @@ struct RevisionInput {
   GraphSolution solution;
   Verdict verdict;
   bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/whole_revision.h)
+  std::vector<Cause> causes = {};  // those that fail most pairs first
 };
 [[nodiscard]] std::string WriteRevisionDocument(const RevisionInput& input);
 // Format 1: the same with every detail of the edges but block vectors. `input` must be whole.

@@ -2,6 +2,7 @@
 #include <climits>
 
 #include "server/base/limits.h"
+#include "server/formats/cause_fields.h"
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/edge_reference.h"
@@ -212,6 +213,7 @@ std::string WriteInFormat(const RevisionInput& input, int format) {
     out.Text("robot", input.robot.str());
     input.reference.empty() ? out.Null("reference") : out.Text("reference", input.reference.str());
     WriteVerdict(out, "verdict", input.verdict);
+    WriteCauses(out, input.causes);
     WriteSolution(out, input.solution);
     WriteRevisionEdges(out, input, format);
   });
@@ -243,6 +245,7 @@ Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
   input.robot = ReadId<RobotId>(root.At("robot"));
   if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
   input.verdict = ReadVerdict(root.At("verdict"));
+  input.causes = ReadCauses(root);
   input.solution = ReadSolution(root);
   ReadRevisionEdges(root.At("edges"), input);
   RIGCAL_TRY(document.status());

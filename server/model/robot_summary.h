@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "server/base/ids.h"
 #include "server/base/stamp.h"
@@ -28,6 +30,7 @@ struct RobotSummary {
   std::int64_t jobs_waiting = 0;              // pairs to be calibrated
   std::optional<Stamp> last_session_at = {};  // captured; of those that came whole the newest; absent: none did
   std::optional<WorstEdge> worst = {};        // of that revision; absent: nothing checks an edge, or it was not kept
+  std::vector<std::string> causes = {};       // of that revision: keys of cause.h, sorted; each is of some characters of ids
 };
 
 }  // namespace rigcal

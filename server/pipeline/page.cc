@@ -7,6 +7,7 @@
 #include "server/pipeline/robot_pages.h"
 #include "server/pipeline/summaries.h"
 #include "server/report/assets.h"
+#include "server/report/fleet_csv.h"
 #include "server/report/render.h"
 #include "storage/fleet_list.h"
 
@@ -16,6 +17,7 @@ namespace {
 constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kJson = "application/json; charset=utf-8";
+constexpr const char* kCsv = "text/csv; charset=utf-8";
 
 Result<FleetQuery> FleetQueryOf(const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
@@ -25,6 +27,7 @@ Result<FleetQuery> FleetQueryOf(const std::string& query) {
   asked.verdict = parameters.Text("verdict").value_or("");
   asked.sort = parameters.Text("sort").value_or("");
   asked.descending = parameters.Text("order") == "down";
+  asked.cause = parameters.Text("cause").value_or("");
   RIGCAL_ASSIGN(const std::int64_t page, parameters.IntegerOr("page", 1));
   asked.page = static_cast<std::size_t>(std::max<std::int64_t>(page, 1));
   return asked;
@@ -44,6 +47,16 @@ Result<PageText> Fleet(const AnswerContext& context, const std::string& query) {
   const std::size_t experiments = ListExperiments(context.store.folder()).size();
   RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, list, now, asked, experiments));
   return PageText{std::move(body), kHtml};
+}
+
+// The whole of what a list shows a page of.
+Result<PageText> FleetAsCsv(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const FleetQuery asked, FleetQueryOf(query));
+  static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
+  std::string text = report::FleetCsvHeading();
+  const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot); };
+  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
+  return PageText{std::move(text), kCsv};
 }
 
 Result<PageText> Script(const std::string& name) {
@@ -84,6 +97,7 @@ PageText Healthz(const AnswerContext& context) {
 Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
   const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/";
   if (path == "/") return Fleet(context, query);
+  if (path == "/fleet.csv") return FleetAsCsv(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);

@@ -6,6 +6,7 @@
 
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
+#include "server/fleet/told_causes.h"
 #include "server/formats/documents.h"
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/insight.h"
@@ -217,6 +218,13 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   return input;
 }
 
+// What failed pairs have in common goes into the revision; its keys, by which robots are counted, come back.
+std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionInput& input) {
+  const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at);
+  input.causes = fleet::ToldCauses(causes);
+  return fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
+}
+
 }  // namespace
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
@@ -235,7 +243,9 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   const storage::MergeStep merge = MergeOlder(robot, loaded);
   revision.calibrated_at = CalibratedAt(loaded.current.edges, loaded.measured_at, merge.merged);
   JointPoses poses;
-  const formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
+  formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
+  std::vector<std::string> cause_keys;
+  if (pairs_waiting == 0) cause_keys = TakeCauses(loaded, input);
 
   const auto worst = WorstEdgeOf(input);
   revision.verdict = input.verdict;
@@ -248,6 +258,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
+    RIGCAL_TRY(storage::AppendCauseKeys(store, key, cause_keys));
     if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));

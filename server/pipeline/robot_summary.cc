@@ -39,6 +39,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   summary.verdict = revision.verdict;
   RIGCAL_ASSIGN(summary.validity, LoadValidity(store, revision, now));
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
+  RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
   if (!summary.validity.calculating) return {};
   // What arrived since is told once it is in a revision: one page shows the numbers of one revision.
   RIGCAL_ASSIGN(summary.edges, storage::CountEdges(store, revision.robot, revision.edge_watermark));

@@ -122,6 +122,19 @@ std::string RmsText(const ResidualShape& shape) {
   return shape.numbers > 0 ? Significant(shape.sigma_px * std::sqrt(2.0), 3) : std::string();
 }
 
+// In the fold, and in its title for those who do not open it.
+void FillAdvice(Dictionary& section, const std::vector<CameraAdvice>& advice) {
+  if (advice.empty()) return;
+  Dictionary *warned = section.AddSectionDictionary("WARNED"), *box = section.AddSectionDictionary("ADVICE");
+  warned->SetValue("COUNT", Count(advice.size(), "warning", "warnings"));
+  std::string figures;
+  for (const CameraAdvice& one : advice) {
+    figures += (figures.empty() ? "" : ", ") + one.figure;
+    ShowValue(*box, "ONE", "TEXT", one.text);
+  }
+  warned->SetValue("FIGURES", figures);
+}
+
 void FillSection(Dictionary& section, const ReportInput& input, const CameraReport& camera, bool open) {
   const CameraFit& fit = camera.fit;
   const ResidualShape shape = ShapeOf(fit);
@@ -139,7 +152,7 @@ void FillSection(Dictionary& section, const ReportInput& input, const CameraRepo
     from->SetValue("METHOD", MethodText(edge->method));
     FillWorstViews(section, fit, *edge, std::set<Digest>(input.evidence.begin(), input.evidence.end()));
   }
-  if (const std::string advice = AdviceOf(fit); !advice.empty()) ShowValue(section, "ADVICE", "TEXT", advice);
+  FillAdvice(section, AdviceOf(fit));
   if (const std::string others = OtherEdgesText(input, camera); !others.empty())
     ShowValue(section, "OTHERS", "TEXT", others);
   FillCoverage(section, fit);

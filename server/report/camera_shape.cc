@@ -96,19 +96,22 @@ std::size_t CornersOf(const CameraFit& fit) {
   return corners;
 }
 
-std::string AdviceOf(const CameraFit& fit) {
-  std::string advice;
+std::vector<CameraAdvice> AdviceOf(const CameraFit& fit) {
+  std::vector<CameraAdvice> advice;
+  const bool given = fit.source == IntrinsicsSource::kGiven;
   const std::string sides = JoinedSides(CoverageOf(fit).margin_ratio);
-  if (!sides.empty() && fit.source != IntrinsicsSource::kGiven)
-    advice += "No corner near these sides of the picture: " + sides +
-              ". Lens distortion there is a guess: hold the board there, too. ";
+  if (!sides.empty() && !given)
+    advice.push_back({"empty: " + sides, "No corner near these sides of the picture: " + sides +
+                                             ". Lens distortion there is a guess: hold the board there, too."});
   const Stand stand = StandOf(fit);
-  if (stand.views == 0 || fit.source == IntrinsicsSource::kGiven) return advice;
+  if (stand.views == 0 || given) return advice;
+  const std::string tilt = Fixed(stand.largest_tilt_rad * kDegPerRad, 0) + " deg";
   if (stand.largest_tilt_rad < kFlatTilt_rad)
-    advice += "No board was tilted by more than " + Fixed(stand.largest_tilt_rad * kDegPerRad, 0) +
-              " deg: tilt it by 20 to 45 deg, each way, to pin the focal length. ";
+    advice.push_back({"tilt up to " + tilt, "No board was tilted by more than " + tilt +
+                                                ": tilt it by 20 to 45 deg, each way, to pin the focal length."});
   if (stand.farthest_m < kSameDistance_ratio * stand.nearest_m)
-    advice += "All boards were at about one distance: vary it. ";
+    advice.push_back({"distances " + Significant(stand.nearest_m, 2) + " to " + Significant(stand.farthest_m, 2) + " m",
+                      "All boards were at about one distance: vary it."});
   return advice;
 }
 

@@ -37,7 +37,11 @@ struct Stand {
 [[nodiscard]] Stand StandOf(const CameraFit& fit);
 
 [[nodiscard]] std::size_t CornersOf(const CameraFit& fit);
-// What a technician should do about where the boards were; empty: nothing.
-[[nodiscard]] std::string AdviceOf(const CameraFit& fit);
+// What a technician should do about where the boards were.
+struct CameraAdvice {
+  std::string figure;  // what is wrong, in its number: "tilt up to 9 deg"
+  std::string text;
+};
+[[nodiscard]] std::vector<CameraAdvice> AdviceOf(const CameraFit& fit);
 
 }  // namespace rigcal::report

@@ -27,6 +27,22 @@ void FillDiagnoses(Dictionary& section, const Edge& edge) {
   }
 }
 
+bool IsMetric(const Edge& edge) { return ResidualUnitOf(edge.method) == "m"; }
+
+// A closed fold says that something yellow is in it, and how bad its worst capture is.
+void FillWarned(Dictionary& section, const Edge& edge) {
+  const std::size_t warnings = WarningsOf(edge);
+  if (warnings == 0) return;
+  Dictionary* warned = section.AddSectionDictionary("WARNED");
+  warned->SetValue("COUNT", Count(warnings, "warning", "warnings"));
+  double worst = 0.0;
+  for (const CaptureResidual& capture : edge.captures)
+    if (capture.used) worst = std::max(worst, capture.rms);
+  if (worst > 0)
+    ShowValue(*warned, "WORST", "TEXT",
+              Significant(worst * (IsMetric(edge) ? 1e3 : 1), 2) + (IsMetric(edge) ? " mm" : " px"));
+}
+
 void FillPose(Dictionary& section, const Edge& edge) {
   Dictionary* pose = section.AddSectionDictionary("POSE");
   pose->SetValue("FROM", edge.frame_a.str());
@@ -109,8 +125,6 @@ void FillUnused(Dictionary& notes, const Edge& edge) {
   FillLeftOut(notes, left_out);
 }
 
-bool IsMetric(const Edge& edge) { return ResidualUnitOf(edge.method) == "m"; }
-
 // Residuals as people read them: millimetres or pixels.
 std::vector<CaptureResidual> Shown(const Edge& edge) {
   std::vector<CaptureResidual> captures = edge.captures;
@@ -183,6 +197,8 @@ std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
 
 }  // namespace
 
+std::size_t WarningsOf(const Edge& edge) { return edge.state == EdgeState::kGood ? edge.diagnoses.size() : 0; }
+
 void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownEdge& shown,
                      const std::set<Digest>& stored, std::size_t pictures_max, bool open) {
   const Edge& edge = *shown.edge;
@@ -196,6 +212,7 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   section.SetValue("ID", edge.id.str());
   section.SetValue("PROVENANCE", ProvenanceOf(input, edge));
   if (open) section.ShowSection("OPEN");
+  FillWarned(section, edge);
   FillDiagnoses(section, edge);
   if (!failed) FillPose(section, edge);
   FillFigures(section, edge);

@@ -127,13 +127,23 @@ void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, 
   ShowValue(row, "FAILED", "WHY", edge.diagnoses.empty() ? "no reason was given" : edge.diagnoses.front().what);
 }
 
+void FillGroupRow(Dictionary& row, const EdgeGroup& group) {
+  Dictionary* name = row.AddSectionDictionary(group.anchor.empty() ? "PLAIN" : "LINK");
+  name->SetValue("ANCHOR", group.anchor);
+  name->SetValue("COUNT", Count(group.pairs, "pair", "pairs"));
+  row.SetValue("WHY", group.cause->why);
+  FillPairs(row, group.edges);
+}
+
 }  // namespace
 
-void FillEdges(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges) {
+void FillEdges(Dictionary& page, const ReportInput& input, const EdgesByCause& edges) {
   const Judged judged{ContradictionsOf(input.revision.solution.suspects), UncheckedEdges(input.revision.solution)};
-  for (std::size_t i = 0; i < std::min(edges.size(), kEdgeRowsMax); ++i)
-    FillRow(*page.AddSectionDictionary("EDGE"), input, edges[i], judged);
-  if (edges.size() > kEdgeRowsMax) ShowValue(page, "MORE_EDGES", "COUNT", std::to_string(edges.size() - kEdgeRowsMax));
+  for (const EdgeGroup& group : edges.groups) FillGroupRow(*page.AddSectionDictionary("EDGE_GROUP"), group);
+  const std::size_t alone = edges.others.size();
+  for (std::size_t i = 0; i < std::min(alone, kEdgeRowsMax); ++i)
+    FillRow(*page.AddSectionDictionary("EDGE"), input, *edges.others[i], judged);
+  if (alone > kEdgeRowsMax) ShowValue(page, "MORE_EDGES", "COUNT", std::to_string(alone - kEdgeRowsMax));
   if (const std::string& why_not = input.revision.solution.influences.why_not; !why_not.empty())
     ShowValue(page, "NO_EDGE_INFLUENCE", "TEXT", why_not);
   if (input.revision.solution.dof <= 0)

@@ -6,9 +6,11 @@
 #include "server/report/age.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
+#include "server/report/cause_words.h"
 #include "server/report/render.h"
 #include "server/report/sigmas.h"
 #include "server/report/text.h"
+#include "server/report/work_lists.h"
 
 namespace rigcal::report {
 
@@ -61,6 +63,7 @@ void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
     ShowValue(row, "WORKING", "TEXT",
               Count(static_cast<std::size_t>(robot.jobs_waiting), "pair", "pairs") + " being calibrated");
   row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(*robot.validity.calibrated_at, now));
+  if (!IsNever(robot)) ShowValue(row, "DUE", "DAY", DayText(*ValidUntil(robot.validity.calibrated_at)));
   row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
   FillWorst(row, robot.worst);
   row.SetValue("SESSIONS", std::to_string(robot.sessions));
@@ -71,12 +74,15 @@ void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   revision->SetValue("ROBOT", robot.robot.str());
 }
 
-constexpr std::array<std::pair<const char*, const char*>, 8> kChoices = {{{"", "all"},
+constexpr std::array<std::pair<const char*, const char*>, 11> kChoices = {{{"", "all"},
                                                                           {"fail", "fail"},
                                                                           {"unknown", "unknown"},
                                                                           {"warn", "warn"},
                                                                           {"pass", "pass"},
                                                                           {"overdue", "overdue"},
+                                                                          {"this_week", "due this week"},
+                                                                          {"next_week", "due next week"},
+                                                                          {"later", "due later"},
                                                                           {"off", "an edge beyond 3 \xCF\x83"},
                                                                           {"quiet", "no session for 30 days"}}};
 constexpr std::array<std::pair<const char*, const char*>, 8> kColumns = {{{"robot", "Robot"},
@@ -92,6 +98,7 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   list.SetValue("SEARCH", query.search);
   list.SetValue("SORT", query.sort);
   list.SetValue("ORDER", query.descending ? "down" : "");
+  if (!query.cause.empty()) ShowValue(list, "CAUSE", "KEY", query.cause);
   for (const auto& [value, name] : kChoices) {
     Dictionary* choice = list.AddSectionDictionary("CHOICE");
     choice->SetValue("VALUE", value);
@@ -100,13 +107,24 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   }
 }
 
-// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE.
+// The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE, and CAUSE with its KEY.
 void FillAddress(Dictionary& link, const FleetQuery& query) {
   link.SetValue("SEARCH", query.search);
   link.SetValue("VERDICT", query.verdict);
   link.SetValue("SORT", query.sort);
   link.SetValue("ORDER", query.descending ? "down" : "");
   link.SetValue("PAGE", std::to_string(query.page));
+  if (!query.cause.empty()) ShowValue(link, "CAUSE", "KEY", query.cause);
+}
+
+// What is shown is of one cause: which, and the way back.
+void FillOnly(Dictionary& list, FleetQuery query) {
+  if (query.cause.empty()) return;
+  Dictionary* only = list.AddSectionDictionary("ONLY");
+  only->SetValue("TEXT", CauseText(query.cause));
+  query.cause.clear();
+  query.page = 1;
+  FillAddress(*only, query);
 }
 
 bool IsNumber(std::string_view column) { return column == "revision" || column == "sessions" || column == "edges"; }
@@ -154,10 +172,13 @@ Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list,
     return Expand("fleet.tpl", page);
   }
   FillSummary(page, fleet);
+  FillWorkLists(page, fleet);
   Dictionary* robots = page.AddSectionDictionary("ROBOTS");
   FillForm(*robots, query);
   FillColumns(*robots, query);
+  FillOnly(*robots, query);
   FillPager(*robots, query, fleet, list);
+  FillAddress(*robots->AddSectionDictionary("CSV"), query);
   for (const RobotSummary& row : list.rows) FillRow(*robots->AddSectionDictionary("ROW"), row, now);
   return Expand("fleet.tpl", page);
 }

@@ -1,16 +1,14 @@
 #include "server/report/render.h"
 
-#include <set>
-
 #include "report_embedded.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
 #include "server/report/camera_section.h"
+#include "server/report/cause_section.h"
 #include "server/report/certificate.h"
 #include "server/report/change_section.h"
+#include "server/report/detail_sections.h"
 #include "server/report/drawing.h"
-#include "server/report/edge_section.h"
-#include "server/report/edge_state.h"
 #include "server/report/fused_section.h"
 #include "server/report/key_figures.h"
 #include "server/report/loop_section.h"
@@ -39,55 +37,25 @@ void FillDrawing(Dictionary& page, const formats::RevisionInput& revision, const
   page.SetValue("GRAPH_NOTE", FillGraph(*svg, revision, edges));
 }
 
-std::string EarlierText(std::size_t count) {
-  return Count(count, "edge", "edges") + " of earlier visits: pictures and captures are in the reports of those visits, linked " +
-         "from the table of edges.";
-}
-
-void FillSections(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges) {
-  constexpr std::size_t kOpenMax = 8;  // more sections than this start folded, failed ones aside
-  const std::set<Digest> stored(input.evidence.begin(), input.evidence.end());
-  std::size_t detailed = 0, earlier = 0, left = 0, shown_sections = 0;
-  for (const ShownEdge& shown : edges) detailed += shown.detailed ? 1 : 0;
-  if (detailed > 0) page.ShowSection("DETAILS");
-  const std::size_t pictures_max = detailed > kManySections ? kPicturesPerEdgeMax / 2 : kPicturesPerEdgeMax;
-  for (const ShownEdge& shown : edges) {
-    const Edge& edge = *shown.edge;
-    if (shown.detailed_in != 0) {
-      ++earlier;
-      continue;
-    }
-    if (!shown.detailed) {
-      left += edge.captures.empty() && edge.evidence.empty() && edge.diagnoses.empty() ? 0 : 1;
-      continue;
-    }
-    const bool failed = HasFailed(edge);
-    Dictionary* section = page.AddSectionDictionary("DETAIL_SECTION")->AddIncludeDictionary("DETAIL");
-    section->SetFilename("edge.tpl");
-    FillEdgeSection(*section, input, shown, stored, pictures_max,
-                    detailed <= kOpenMax || (failed && shown_sections++ < kOpenMax));
-  }
-  if (earlier > 0) ShowValue(page, "EARLIER_DETAILS", "TEXT", EarlierText(earlier));
-  if (left > 0) ShowValue(page, "MORE_DETAILS", "COUNT", std::to_string(left));
-}
-
 }  // namespace
 
 Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input, const std::string& document) {
   const auto edges = InOrder(input.revision, input.detailed_in);
+  const EdgesByCause by_cause = GroupByCause(input.revision, edges);
   Dictionary page("revision");
   FillTitle(page, input);
   FillBanner(page, input.revision.verdict, {input.calibrated_at, false, input.usable, false});
+  FillCauses(page, input.revision.causes, edges);
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges);
   FillChanges(page, input);
   FillDrawing(page, input.revision, edges);
   FillPoses(page, input.revision);
   FillFused(page, input.revision);
-  FillEdges(page, input, edges);
+  FillEdges(page, input, by_cause);
   FillLoops(page, input.revision);
   FillCameras(page, input);
-  FillSections(page, input, edges);
+  FillDetails(page, input, by_cause);
   FillClouds(page, input.clouds);
   FillProvenance(page, input);
   RIGCAL_ASSIGN(std::string html, Expand("revision.tpl", page));

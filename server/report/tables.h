@@ -3,13 +3,15 @@
 
 #include <vector>
 
+#include "server/report/cause_groups.h"
 #include "server/report/edge_order.h"
 #include "server/report/page.h"
 
 namespace rigcal::report {
 
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision);
-void FillEdges(Dictionary& page, const ReportInput& input, const std::vector<ShownEdge>& edges);
+// A row for those that one cause explains.
+void FillEdges(Dictionary& page, const ReportInput& input, const EdgesByCause& edges);
 void FillClouds(Dictionary& page, const CloudSection& section);
 void FillProvenance(Dictionary& page, const ReportInput& input);
 

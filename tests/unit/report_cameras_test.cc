@@ -67,16 +67,19 @@ TEST(CameraShape, EmptySidesAreNamedEachByItself) {
   EXPECT_NEAR(margins(-0.5, 959.5, -0.5, 899.5)[1], 0.2, 1e-9);
   EXPECT_NEAR(margins(-0.5, 1199.5, 179.5, 899.5)[2], 0.2, 1e-9);
   EXPECT_NEAR(margins(-0.5, 1199.5, -0.5, 719.5)[3], 0.2, 1e-9);
-  const std::string advice = AdviceOf(FitWith({ViewWith({{-0.5, 179.5}, {1199.5, 899.5}}, {0, 0})}));
-  EXPECT_THAT(advice, HasSubstr("top (20 %)"));
-  EXPECT_THAT(advice, Not(HasSubstr("left")));
+  const auto advice = AdviceOf(FitWith({ViewWith({{-0.5, 179.5}, {1199.5, 899.5}}, {0, 0})}));
+  ASSERT_FALSE(advice.empty());
+  EXPECT_EQ(advice[0].figure, "empty: top (20 %)");
+  EXPECT_THAT(advice[0].text, HasSubstr("top (20 %)"));
+  EXPECT_THAT(advice[0].text, Not(HasSubstr("left")));
 }
 
 TEST(CameraShape, GivenIntrinsicsNeedNoAdviceAboutPictures) {
   CameraFit fit = FitWith({ViewWith({{600, 450}, {610, 450}}, {0, 0})});
-  EXPECT_THAT(AdviceOf(fit), HasSubstr("Lens distortion"));
+  ASSERT_FALSE(AdviceOf(fit).empty());
+  EXPECT_THAT(AdviceOf(fit)[0].text, HasSubstr("Lens distortion"));
   fit.source = IntrinsicsSource::kGiven;
-  EXPECT_EQ(AdviceOf(fit), "");
+  EXPECT_TRUE(AdviceOf(fit).empty());
 }
 
 // The histogram of normal residuals is the normal curve: 20,000 numbers, 6 standard deviations of a bin.

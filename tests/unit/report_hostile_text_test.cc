@@ -47,6 +47,14 @@ INSTANTIATE_TEST_SUITE_P(
         Field{"verdict_what_to_do", [](ReportInput& in) { in.revision.verdict.what_to_do = kHostile; }},
         Field{"diagnosis_what", [](ReportInput& in) { in.revision.edges.back().diagnoses[0].what = kHostile; }},
         Field{"diagnosis_cure", [](ReportInput& in) { in.revision.edges.back().diagnoses[0].cure = kHostile; }},
+        Field{"cause",
+              [](ReportInput& in) {
+                Cause cause;
+                cause.why = cause.what_to_do = cause.command = kHostile;
+                cause.edges = {in.revision.edges[4].id, in.revision.edges[5].id};
+                in.revision.edges[4].state = EdgeState::kFailed;
+                in.revision.causes = {cause};
+              }},
         Field{"graph_note",
               [](ReportInput& in) {
                 in.revision.solution.diagnoses = {{"c", kHostile, kHostile}};

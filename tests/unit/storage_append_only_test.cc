@@ -58,6 +58,7 @@ class AppendOnlyTest : public StoreTest {
       JointPoses poses{SensorId("left"), {{SensorId("left"), {}}}, {{{SensorId("right")}, Eigen::MatrixXd::Identity(6, 6)}}};
       RIGCAL_TRY(AppendRevisionPoses(store_, {kRobot, number}, poses));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
+      RIGCAL_TRY(AppendCauseKeys(store_, {kRobot, number}, {"board_unseen rear"}));
       MergedEdge merged;
       merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
       merged.constants["board"] = {Vector6d::Ones()};

@@ -94,20 +94,22 @@ TEST_F(FleetListTest, ANumberStandsAmongOtherCharactersAsADigit) {
   EXPECT_THAT(Names({"", "", "robot", false, 1}), ElementsAre("a-1", "a.1", "a0", "a00", "a1", "aB", "a_1", "ab"));
 }
 
-// What is overdue goes before what only warns.
+// What is overdue goes before what only warns, and what is due soon before what passes.
 TEST_F(FleetListTest, TheMostUrgentIsFirst) {
   std::vector<RobotSummary> robots = {Robot("pass", VerdictLevel::kPass),       Robot("warn", VerdictLevel::kWarn),
                                       Robot("unknown", VerdictLevel::kUnknown), Robot("fail", VerdictLevel::kFail)};
   for (const RobotSummary& current : std::vector(robots))
     robots.push_back(Overdue("late-" + current.robot.str(), current.verdict.level));
+  robots.push_back(Robot("z-soon", VerdictLevel::kPass));
+  robots.back().validity.calibrated_at = Stamp{kNow.ns - kDefaultMaxAge_ns};  // overdue from now on
   robots.push_back(Robot("new", VerdictLevel::kUnknown));
   robots.back().revision = 0;
   robots.back().validity.calibrated_at.reset();
   Append(robots);
   EXPECT_THAT(Names({}), ElementsAre("late-fail", "fail", "late-unknown", "new", "unknown", "late-warn", "late-pass",
-                                     "warn", "pass"));
-  EXPECT_THAT(Names({"", "", "urgency", true, 1}), ElementsAre("pass", "warn", "late-pass", "late-warn", "new", "unknown",
-                                                               "late-unknown", "fail", "late-fail"));
+                                     "warn", "z-soon", "pass"));
+  EXPECT_THAT(Names({"", "", "urgency", true, 1}), ElementsAre("pass", "z-soon", "warn", "late-pass", "late-warn",
+                                                               "new", "unknown", "late-unknown", "fail", "late-fail"));
   EXPECT_THAT(Names({"", "overdue", "robot", false, 1}),
               ElementsAre("late-fail", "late-pass", "late-unknown", "late-warn"));
 }

@@ -64,6 +64,7 @@ class QueryPlanTest : public StoreTest {
     for (const WaitingSummary& one : waiting) {
       RobotSummary summary;
       summary.robot = one.robot;
+      summary.causes = {"board_unseen rear", "short_session"};
       ASSERT_TRUE(ReplaceSummary(store_, summary, one.changes));
     }
   }
@@ -118,6 +119,7 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_FALSE(FindRobotOfMerged(store_, ids.front())->has_value());
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
@@ -147,6 +149,7 @@ TEST_F(QueryPlanTest, PartsOfTheFleetDoNotScan) {
   EXPECT_EQ(LoadNewestRevisions(store_, RobotId("b"), 1)->size(), 1u);
   EXPECT_TRUE(CountJobs(store_));
   EXPECT_TRUE(LoadWaitingSummaries(store_, 64)->empty());
+  EXPECT_EQ(LoadCauseCounts(store_, 20)->size(), 2u);
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
@@ -157,10 +160,24 @@ TEST_F(QueryPlanTest, TheListOfAllRobotsIsSortedWithoutItsWords) {
   for (const char* sort : {"", "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"})
     for (const bool descending : {false, true})
       EXPECT_EQ(LoadFleetPage(store_, {"", "", sort, descending, 1}, {1})->rows.size(), 4u);
+  EXPECT_EQ(LoadFleetPage(store_, {"", "", "", false, 1, "short_session"}, {1})->rows.size(), 4u);
   const std::map<std::string, int> scanned = Scanned();
   EXPECT_FALSE(scanned.empty());
-  for (const auto& [sql, steps] : scanned)
+  for (const auto& [sql, steps] : scanned) {
     EXPECT_NE(PlanOf(sql).find("COVERING INDEX summary_robot_sorted"), std::string::npos) << sql << ": " << PlanOf(sql);
+    EXPECT_EQ(PlanOf(sql).find("SCAN summary_cause"), std::string::npos) << sql << ": " << PlanOf(sql);
+  }
+}
+
+// What is replaced when something of a robot changed costs the same in any fleet.
+TEST_F(QueryPlanTest, ASummaryIsReplacedWithoutAScan) {
+  SumUpAll();
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(7), {1}));
+  (void)Scanned();
+  SumUpAll();
+  std::map<std::string, int> scanned = Scanned();
+  std::erase_if(scanned, [](const auto& one) { return one.first.find("FROM waiting_summary") != std::string::npos; });  // a queue
+  for (const auto& [sql, steps] : scanned) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
 // The test sees a scan where there is one.

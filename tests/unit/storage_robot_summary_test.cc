@@ -31,6 +31,7 @@ RobotSummary MakeSummary(const RobotId& robot, int revision) {
   summary.sessions = 13, summary.edges = 17, summary.jobs_waiting = 19;
   summary.last_session_at = Stamp{23};
   summary.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
+  summary.causes = {"board_unseen rear", "failed_pair left mast"};
   return summary;
 }
 
@@ -85,6 +86,7 @@ TEST_F(RobotSummaryTest, WhateverASummarySaysMakesItsRobotWait) {
     return {};
   });
   ExpectWaits("its worst edge", [&] { return AppendWorstEdge(store_, {kRobot, 1}, {pair.a, pair.b, 1.5}); });
+  ExpectWaits("its causes", [&] { return AppendCauseKeys(store_, {kRobot, 1}, {"short_session"}); });
 }
 
 TEST_F(RobotSummaryTest, AnAttemptAtARevisionThatEndsWithoutOneIsAChange) {
@@ -147,6 +149,7 @@ TEST_F(RobotSummaryTest, AllOfASummaryComesBack) {
   EXPECT_EQ(summary.worst->frame_a, SensorId("left"));
   EXPECT_EQ(summary.worst->frame_b, SensorId("mast"));
   EXPECT_EQ(summary.worst->in_sigmas, 4.25);
+  EXPECT_EQ(summary.causes, made.causes);
 }
 
 TEST_F(RobotSummaryTest, OverdueIsAsOfTheQuestion) {

@@ -18,7 +18,7 @@ export function addContents() {
 
 export function addOpenAll(heading) {
   if (!heading) return;
-  const sections = () => [...document.querySelectorAll("main > details.edge:not(.camera)")];
+  const sections = () => [...document.querySelectorAll("details.edge:not(.camera)")];
   const bar = document.createElement("p");
   bar.className = "bar";
   for (const [text, open] of [["Open all", true], ["Close all", false]]) {
@@ -31,11 +31,13 @@ export function addOpenAll(heading) {
   heading.after(bar);
 }
 
-// A link to a section opens it: else it would lead to a closed heading.
+// A link to a section opens it, and the fold that it is in: else it would lead to a closed heading.
 export function openTarget() {
   const target = location.hash.length > 1 && document.getElementById(location.hash.slice(1));
-  const section = target && target.closest("details");
-  if (!section || section.open) return;
-  section.open = true;
-  target.scrollIntoView();
+  let opened = false;
+  for (let fold = target && target.closest("details"); fold; fold = fold.parentElement.closest("details")) {
+    opened ||= !fold.open;
+    fold.open = true;
+  }
+  if (opened) target.scrollIntoView();
 }

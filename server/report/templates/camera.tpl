@@ -1,8 +1,8 @@
 {{%AUTOESCAPE context="HTML"}}
 <details class="card edge camera"{{#OPEN}} open{{/OPEN}}>
-<summary><h2>{{CAMERA}}</h2> <span class="soft">{{SUMMARY}}</span></summary>
+<summary><h2>{{CAMERA}}</h2> <span class="soft">{{SUMMARY}}</span>{{#WARNED}} <span class="badge warn">{{COUNT}}</span> <span class="soft">{{FIGURES}}</span>{{/WARNED}}</summary>
 <div id="{{ANCHOR}}" class="body">
-{{#ADVICE}}<div class="diagnosis warn"><p class="what">{{TEXT}}</p></div>{{/ADVICE}}
+{{#ADVICE}}<div class="diagnosis warn">{{#ONE}}<p class="what">{{TEXT}}</p>{{/ONE}}</div>{{/ADVICE}}
 <div class="plots camera-plots">
 <figure class="plot tall">
 <figcaption><strong>Where corners were seen</strong> {{COVERED}} % of the fields of the picture have one</figcaption>

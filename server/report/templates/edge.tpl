@@ -1,6 +1,6 @@
 {{%AUTOESCAPE context="HTML"}}
 <details class="card edge {{STATE}}"{{#OPEN}} open{{/OPEN}}>
-<summary><h2>{{FROM}} &rarr; {{TO}}</h2> <span class="badge {{LEVEL}}">{{STATE}}</span> <span class="soft"><bdi>{{METHOD}}</bdi></span></summary>
+<summary><h2>{{FROM}} &rarr; {{TO}}</h2> <span class="badge {{LEVEL}}">{{STATE}}</span> <span class="soft"><bdi>{{METHOD}}</bdi></span>{{#WARNED}} <span class="badge warn">{{COUNT}}</span>{{#WORST}} <span class="soft">worst capture {{TEXT}}</span>{{/WORST}}{{/WARNED}}</summary>
 <div id="{{ANCHOR}}" class="body">
 {{#DIAGNOSES}}
 <div class="diagnosis {{LEVEL}}">

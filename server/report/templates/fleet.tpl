@@ -6,27 +6,54 @@
 <h1>Fleet</h1>
 <p class="meta" id="summary" data-fresh>{{SUMMARY}}{{#PART}} &middot; <a href="?verdict={{VALUE}}">{{TEXT}}</a>{{/PART}}{{#EXPERIMENTS}} &middot; <a href="experiments/">{{COUNT}}</a>{{/EXPERIMENTS}}</p>
 </header>
+<div id="work" data-fresh>
+{{#WORK}}
+<section class="card work" aria-label="Work lists">
+{{#CAUSES}}
+<div>
+<h2>By cause</h2>
+<ul>
+{{#ITEM}}<li><a href="?cause={{KEY}}">{{TEXT}}</a>: {{ROBOTS}}</li>
+{{/ITEM}}
+{{#MORE}}<li class="soft">others on fewer robots: <a href="fleet.csv" download>all robots as CSV</a></li>{{/MORE}}
+</ul>
+</div>
+{{/CAUSES}}
+{{#WEEKS}}
+<div>
+<h2>By due week</h2>
+<ul>
+{{#ITEM}}<li><a href="?verdict={{VALUE}}">{{TEXT}}</a>: {{ROBOTS}}</li>
+{{/ITEM}}
+</ul>
+</div>
+{{/WEEKS}}
+</section>
+{{/WORK}}
+</div>
 {{#ROBOTS}}
 <form class="search" role="search" action="./" method="get">
 <label>Search <input type="search" name="q" value="{{SEARCH}}"></label>
 <label>Show <select name="verdict">{{#CHOICE}}<option value="{{VALUE}}"{{#CHOSEN}} selected{{/CHOSEN}}>{{NAME}}</option>{{/CHOICE}}</select></label>
-<input type="hidden" name="sort" value="{{SORT}}"><input type="hidden" name="order" value="{{ORDER}}">
+<input type="hidden" name="sort" value="{{SORT}}"><input type="hidden" name="order" value="{{ORDER}}">{{#CAUSE}}<input type="hidden" name="cause" value="{{KEY}}">{{/CAUSE}}
 <button>Show</button>
 </form>
 <section class="card" id="live" data-fresh data-live="api/v1/live">
+{{#ONLY}}<p class="only">{{TEXT}} <a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}">all causes</a></p>{{/ONLY}}
 <p class="count" role="status">{{COUNT}}</p>
 <div class="scroll" tabindex="0" role="region" aria-label="Robots">
 <table class="list fleet">
-<thead><tr>{{#COLUMN}}<th scope="col"{{#NUMERIC}} class="num"{{/NUMERIC}}{{#SORTED}} aria-sort="{{DIRECTION}}"{{/SORTED}}><a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}">{{NAME}} <span aria-hidden="true">{{ARROW}}</span></a></th>{{/COLUMN}}</tr></thead>
+<thead><tr>{{#COLUMN}}<th scope="col"{{#NUMERIC}} class="num"{{/NUMERIC}}{{#SORTED}} aria-sort="{{DIRECTION}}"{{/SORTED}}><a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}{{#CAUSE}}&amp;cause={{KEY}}{{/CAUSE}}">{{NAME}} <span aria-hidden="true">{{ARROW}}</span></a></th>{{/COLUMN}}</tr></thead>
 <tbody>
 {{#ROW}}
-<tr{{#OVERDUE}} class="overdue"{{/OVERDUE}}><th scope="row"><a href="robots/{{ROBOT}}/">{{ROBOT}}</a></th><td class="text verdict">{{#OVERDUE}}<span class="badge fail">overdue</span> {{/OVERDUE}}{{#LATER}}<template data-from="{{UNTIL}}"><span class="badge fail">overdue</span> </template>{{/LATER}}<span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY:x-typed}}</span>{{#DO}} <span class="do" dir="auto">{{WHAT_TO_DO:x-typed}}</span>{{/DO}}{{#KEEP}} <span class="do">{{TEXT}}</span>{{/KEEP}}</td><td class="text" data-label="Calibrated">{{AGE}}</td><td class="text" data-label="Last session">{{LAST}}{{#WORKING}} <span class="busy">{{TEXT}}</span>{{/WORKING}}</td><td class="text" data-label="Worst edge">{{#WORST}}<span class="badge {{LEVEL}}">{{SIGMAS}} &sigma;</span> <span class="pair">{{FROM}} &rarr; {{TO}}</span>{{/WORST}}{{#NO_WORST}}<span class="soft">not known</span>{{/NO_WORST}}</td><td data-label="Revision">{{#REVISION}}<a href="robots/{{ROBOT}}/revisions/{{NUMBER}}/">{{NUMBER}}</a>{{/REVISION}}{{#NO_REVISION}}none{{/NO_REVISION}}</td><td data-label="Sessions">{{SESSIONS}}</td><td data-label="Edges">{{EDGES}}</td></tr>
+<tr{{#OVERDUE}} class="overdue"{{/OVERDUE}}><th scope="row"><a href="robots/{{ROBOT}}/">{{ROBOT}}</a></th><td class="text verdict">{{#OVERDUE}}<span class="badge fail">overdue</span> {{/OVERDUE}}{{#LATER}}<template data-from="{{UNTIL}}"><span class="badge fail">overdue</span> </template>{{/LATER}}<span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY:x-typed}}</span>{{#DO}} <span class="do" dir="auto">{{WHAT_TO_DO:x-typed}}</span>{{/DO}}{{#KEEP}} <span class="do">{{TEXT}}</span>{{/KEEP}}</td><td class="text" data-label="Calibrated">{{AGE}}{{#DUE}} <span class="soft">due {{DAY}}</span>{{/DUE}}</td><td class="text" data-label="Last session">{{LAST}}{{#WORKING}} <span class="busy">{{TEXT}}</span>{{/WORKING}}</td><td class="text" data-label="Worst edge">{{#WORST}}<span class="badge {{LEVEL}}">{{SIGMAS}} &sigma;</span> <span class="pair">{{FROM}} &rarr; {{TO}}</span>{{/WORST}}{{#NO_WORST}}<span class="soft">not known</span>{{/NO_WORST}}</td><td data-label="Revision">{{#REVISION}}<a href="robots/{{ROBOT}}/revisions/{{NUMBER}}/">{{NUMBER}}</a>{{/REVISION}}{{#NO_REVISION}}none{{/NO_REVISION}}</td><td data-label="Sessions">{{SESSIONS}}</td><td data-label="Edges">{{EDGES}}</td></tr>
 {{/ROW}}
 </tbody>
 </table>
 </div>
 {{#NOTHING}}<p class="hint">No robot is like that. <a href="./">Show all robots</a></p>{{/NOTHING}}
-{{#PAGER}}<nav class="pager" aria-label="Pages">{{#BEFORE}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}">Previous</a>{{/BEFORE}} <span>page {{PAGE}} of {{PAGES}}</span> {{#NEXT}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}">Next</a>{{/NEXT}}</nav>{{/PAGER}}
+{{#PAGER}}<nav class="pager" aria-label="Pages">{{#BEFORE}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}{{#CAUSE}}&amp;cause={{KEY}}{{/CAUSE}}">Previous</a>{{/BEFORE}} <span>page {{PAGE}} of {{PAGES}}</span> {{#NEXT}}<a href="?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}&amp;page={{PAGE}}{{#CAUSE}}&amp;cause={{KEY}}{{/CAUSE}}">Next</a>{{/NEXT}}</nav>{{/PAGER}}
+{{#CSV}}<p class="downloads"><a class="button" href="fleet.csv?q={{SEARCH}}&amp;verdict={{VERDICT}}&amp;sort={{SORT}}&amp;order={{ORDER}}{{#CAUSE}}&amp;cause={{KEY}}{{/CAUSE}}" download>This list as CSV</a></p>{{/CSV}}
 </section>
 {{/ROBOTS}}
 {{#EMPTY}}

@@ -9,6 +9,9 @@
 <p class="meta">Solved {{TIME}} <a class="screen" href="certificate.html">Certificate to print</a></p>
 </header>
 {{>BANNER}}
+{{#CAUSES_SECTION}}
+{{>CAUSES}}
+{{/CAUSES_SECTION}}
 {{#NOTES}}
 <ul class="notes">
 {{#NOTE}}<li dir="auto">{{WHAT:x-typed}} <span class="cure">{{CURE:x-typed}}</span></li>
@@ -101,6 +104,9 @@
 <tr><th scope="col" data-column="0">Edge</th><th scope="col" class="text" data-column="1">State</th><th scope="col" class="text" data-column="2">Method</th><th scope="col" data-column="3">Captures</th><th scope="col" data-column="4">Residual, mm: x / y / z<br>deg: rx / ry / rz</th><th scope="col" data-column="5">Residual<br>in &sigma;</th><th scope="col" data-column="6">T&sup2;<br>(limit)</th><th scope="col" class="sigma" data-column="7">&sigma;, mm: x / y / z<br>deg: rx / ry / rz</th><th scope="col" data-column="8">Without the edge<br>mm / deg / &sigma;</th><th scope="col" data-column="9">Capture that<br>counts, mm</th></tr>
 </thead>
 <tbody>
+{{#EDGE_GROUP}}
+<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{COUNT}}</a>{{/LINK}}{{#PLAIN}}{{COUNT}}{{/PLAIN}}</th><td class="text"><span class="badge fail">failed</span></td><td class="text" colspan="8" data-v=""><span dir="auto">{{WHY:x-typed}}</span><details class="words"><summary>Which pairs</summary>{{>PAIRS}}</details></td></tr>
+{{/EDGE_GROUP}}
 {{#EDGE}}
 <tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#EARLIER}}<a href="../{{REVISION}}/#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a> <span class="soft">rev. {{REVISION}}</span>{{/EARLIER}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}</td>{{/FAILED}}</tr>
 {{/EDGE}}
@@ -128,9 +134,20 @@
 {{#CAMERAS_SECTION}}
 {{>CAMERAS}}
 {{/CAMERAS_SECTION}}
-{{#DETAILS}}<h2 class="part" id="details" data-part="Each edge">Each edge <span class="soft">open one to see what stands behind it</span></h2>
+{{#DETAILS}}<h2 class="part" id="details" data-part="Each edge">Each edge <span class="soft">open one to see what stands behind it</span>{{#WARNED}} <span class="badge warn">{{TEXT}}</span>{{/WARNED}}</h2>
 <p class="paper">Only what was open on the screen is printed here.</p>
 {{/DETAILS}}
+{{#DETAIL_GROUP}}
+<details class="card edge failed group">
+<summary><span class="badge fail">{{COUNT}}</span> <h2 dir="auto">{{WHY:x-typed}}</h2></summary>
+<div id="{{ANCHOR}}" class="body">
+<p class="cure" dir="auto">{{WHAT_TO_DO:x-typed}}</p>
+{{#GROUPED}}
+{{>DETAIL}}
+{{/GROUPED}}
+</div>
+</details>
+{{/DETAIL_GROUP}}
 {{#DETAIL_SECTION}}
 {{>DETAIL}}
 {{/DETAIL_SECTION}}

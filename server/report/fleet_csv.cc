@@ -1,0 +1,40 @@
+#include "server/report/fleet_csv.h"
+
+#include "server/report/cause_words.h"
+#include "server/report/page_data.h"
+#include "server/report/text.h"
+
+namespace rigcal::report {
+namespace {
+
+std::string TimeField(const std::optional<Stamp>& at) { return "," + (at ? ToIso(*at) : std::string()); }
+
+std::string WorstFields(const std::optional<WorstEdge>& worst) {
+  if (!worst) return ",,,";
+  return "," + CsvField(worst->frame_a.str()) + "," + CsvField(worst->frame_b.str()) + "," + Fixed(worst->in_sigmas, 3);
+}
+
+std::string CausesField(const std::vector<std::string>& causes) {
+  std::string text;
+  for (const std::string& cause : causes) text += (text.empty() ? "" : "; ") + CauseText(cause);
+  return "," + CsvField(text);
+}
+
+}  // namespace
+
+std::string FleetCsvHeading() {
+  return "robot,verdict,overdue,valid_until,calibrated_at,last_session_at,revision,sessions,edges,pairs_waiting,"
+         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do\r\n";
+}
+
+std::string FleetCsvRow(const RobotSummary& robot) {
+  const Validity& validity = robot.validity;
+  return CsvField(robot.robot.str()) + "," + NameOf(robot.verdict.level) + "," + (validity.overdue ? "yes" : "no") +
+         TimeField(ValidUntil(validity.calibrated_at)) + TimeField(validity.calibrated_at) +
+         TimeField(robot.last_session_at) + "," + (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," +
+         std::to_string(robot.sessions) + "," + std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) +
+         WorstFields(robot.worst) + CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," +
+         CsvField(robot.verdict.what_to_do) + "\r\n";
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,14 @@
+// The list of robots as a spreadsheet takes it: a heading, and a row for each.
+#pragma once
+
+#include <string>
+
+#include "server/model/robot_summary.h"
+
+namespace rigcal::report {
+
+[[nodiscard]] std::string FleetCsvHeading();
+// Times in UTC; empty where nothing is known.
+[[nodiscard]] std::string FleetCsvRow(const RobotSummary& robot);
+
+}  // namespace rigcal::report
