@@ -98,7 +98,7 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   list.SetValue("SEARCH", query.search);
   list.SetValue("SORT", query.sort);
   list.SetValue("ORDER", query.descending ? "down" : "");
-  if (!query.cause.empty()) ShowValue(list, "CAUSE", "KEY", query.cause);
+  if (!query.cause.empty()) ShowValue(list, "CAUSE", "KEY", InAddress(query.cause));
   for (const auto& [value, name] : kChoices) {
     Dictionary* choice = list.AddSectionDictionary("CHOICE");
     choice->SetValue("VALUE", value);
@@ -114,7 +114,7 @@ void FillAddress(Dictionary& link, const FleetQuery& query) {
   link.SetValue("SORT", query.sort);
   link.SetValue("ORDER", query.descending ? "down" : "");
   link.SetValue("PAGE", std::to_string(query.page));
-  if (!query.cause.empty()) ShowValue(link, "CAUSE", "KEY", query.cause);
+  if (!query.cause.empty()) ShowValue(link, "CAUSE", "KEY", InAddress(query.cause));
 }
 
 // What is shown is of one cause: which, and the way back.

@@ -110,6 +110,11 @@ std::string FigureValue(const std::string& figure, double value) {
   return !unit || number == kNotKnown ? number : number + std::string(unit->shown);
 }
 
+std::string InAddress(std::string words) {
+  std::replace(words.begin(), words.end(), ' ', '+');
+  return words;
+}
+
 std::string Count(std::size_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }

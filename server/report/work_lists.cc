@@ -16,7 +16,7 @@ void FillByCause(Dictionary& work, const std::vector<CauseCount>& causes) {
   Dictionary* list = work.AddSectionDictionary("CAUSES");
   for (std::size_t i = 0; i < std::min(causes.size(), kCausesListedMax); ++i) {
     Dictionary* item = list->AddSectionDictionary("ITEM");
-    item->SetValue("KEY", causes[i].key);
+    item->SetValue("KEY", InAddress(causes[i].key));
     item->SetValue("TEXT", CauseText(causes[i].key));
     item->SetValue("ROBOTS", RobotsText(causes[i].robots));
   }
