@@ -98,7 +98,7 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
   list.SetValue("SEARCH", query.search);
   list.SetValue("SORT", query.sort);
   list.SetValue("ORDER", query.descending ? "down" : "");
-  if (!query.cause.empty()) ShowValue(list, "CAUSE", "KEY", InAddress(query.cause));
+  if (!query.cause.empty()) ShowValue(list, "CAUSE", "KEY", query.cause);
   for (const auto& [value, name] : kChoices) {
     Dictionary* choice = list.AddSectionDictionary("CHOICE");
     choice->SetValue("VALUE", value);
