@@ -68,20 +68,8 @@ void SetSharpness(const Pictures& pictures, CameraFound& found) {
     if (edge.edge_px >= BlurredFrom_px(found.width_px, *found.edge_px)) found.blurred.push_back(edge);
 }
 
-calib::CameraViews ViewsForStart(const calib::CameraProblem& problem) {
-  calib::CameraViews views;
-  views.model = calib::ModelOf(problem.camera);
-  views.corners_board = TargetPoints(problem.board);
-  for (const auto& [capture, view] : problem.views) {
-    if (!calib::WhyUnusable(view, problem.board).empty()) continue;
-    views.width_px = view.image_width_px, views.height_px = view.image_height_px;
-    views.seen.push_back(calib::SeenIn(view, problem.board));
-  }
-  return views;
-}
-
 CameraFit Rough(const calib::CameraProblem& problem) {
-  const calib::CameraViews views = ViewsForStart(problem);
+  const calib::CameraViews views = calib::ViewsOf(problem);
   if (views.seen.empty()) return calib::SeenBy(problem);
   const calib::IntrinsicsVector intrinsics =
       problem.camera.intrinsics ? calib::VectorOf(*problem.camera.intrinsics) : calib::RoughIntrinsics(views);

@@ -8,6 +8,9 @@ rigcal_test(calib_joint_test COMPUTES
 rigcal_test(calib_models_test COMPUTES
   SOURCES unit/calib_capture_blocks_test.cc unit/calib_pair_captures_test.cc unit/calib_models_test.cc unit/calib_symmetry_test.cc unit/calib_camera_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
+rigcal_test(calib_lens_choice_test COMPUTES
+  SOURCES unit/calib_lens_choice_test.cc unit/calib_virtual_pair.cc
+  DEPS rigcal_calib)
 rigcal_test(calib_given_intrinsics_test COMPUTES
   SOURCES unit/calib_given_intrinsics_test.cc unit/calib_virtual_pair.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)

@@ -269,7 +269,7 @@ OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const Camera
 OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const CameraEstimate* start) {
   auto estimate = Estimated(problem, start);
   if (!estimate && start == nullptr)
-    return tl::unexpected(WithLensAsCure(std::move(estimate.error()), {{"", problem}}));
+    return tl::unexpected(WithLensAsCure(TiltOrLens(problem, std::move(estimate.error())), {{"", problem}}));
   return estimate;
 }
 

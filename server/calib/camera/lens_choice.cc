@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "server/calib/camera/focal_trials.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/robust.h"
+#include "server/calib/core/selection.h"
 
 namespace rigcal::calib {
 namespace {
@@ -16,8 +18,11 @@ constexpr std::size_t kViewsTried = 30;
 constexpr double kClearlyBetterRatio = 0.5, kAlikeRatio = 1.1;
 // Of those that fit alike the one that only adds terms to the camera's own, then those with fewer ways to go wrong.
 constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4, CameraModel::kPinholeRational};
-constexpr std::array kLensCodes = {"high_residual", "ill_conditioned", "no_convergence", "no_intrinsics",
-                                   "distortion_not_observable"};
+constexpr std::array kLensCodes = {"high_residual",  "ill_conditioned",           "no_convergence",
+                                   "no_intrinsics",  "distortion_not_observable", "too_few_captures",
+                                   "no_common_view", "inconsistent_captures",     "ambiguous_pose"};
+constexpr const char *kNoTiltCode = "no_tilt", *kNoStartCode = "no_intrinsics",
+                     *kSuspectedCode = "lens_model_suspected";
 
 std::string PixelsText(double value_px) { return Formatted("%.2f px", value_px); }
 
@@ -33,6 +38,21 @@ CameraProblem SomeViews(const CameraProblem& problem) {
 double RmsOf_px(const CameraProblem& problem, CameraModel model) {
   const auto estimate = EstimateCameraAs(problem, model);
   return estimate ? estimate->rms_px : std::numeric_limits<double>::infinity();
+}
+
+// Boards that are not tilted fit a lens of their own with almost any focal length. One that they do not fit with any
+// is not theirs, and how they are tilted cannot be told by it. Zero: nothing can be held against it.
+double OwnRmsOf_px(const CameraProblem& problem, CameraModel own) {
+  const auto estimate = EstimateCameraAs(problem, own);
+  if (estimate) return estimate->rms_px;
+  const std::string& code = estimate.error().code;
+  if (code != kNoTiltCode && code != kNoStartCode) return std::numeric_limits<double>::infinity();
+  const double least_px = LeastRmsOverFocals_px(ViewsOf(problem));
+  return std::isfinite(least_px) || code == kNoStartCode ? least_px : 0.0;
+}
+
+std::string FigureOf(const BetterLens& lens, const std::string& side) {
+  return "rms_as_" + NameOf(lens.model) + side + "_px";
 }
 
 std::string CureOf(const BetterLens& lens) {
@@ -68,10 +88,10 @@ std::optional<BetterLens> FindBetterLens(const CameraProblem& problem) {
     others.push_back({problem.camera.id, model, RmsOf_px(tried, model)});
     least_px = std::min(least_px, others.back().rms_px);
   }
-  const double high_px = HighRms_px(tried.views.front().second.image_width_px);
-  if (!(least_px <= kClearlyBetterRatio * std::min(RmsOf_px(tried, own), high_px))) return std::nullopt;
+  const double high_px = HighRms_px(tried.views.front().second.image_width_px), own_px = OwnRmsOf_px(tried, own);
+  if (!(least_px <= kClearlyBetterRatio * std::min(own_px, high_px))) return std::nullopt;
   BetterLens chosen = Chosen(others, least_px, own);
-  chosen.own_rms_px = FitRms_px(tried, own);
+  chosen.own_rms_px = std::isfinite(own_px) ? own_px : FitRms_px(tried, own);
   return chosen;
 }
 
@@ -82,14 +102,25 @@ Diagnosis WithLensAsCure(Diagnosis diagnosis, const std::map<std::string, Camera
     const auto lens = FindBetterLens(camera);
     if (!lens) continue;
     cure += (cure.empty() ? "" : " ") + CureOf(*lens);
-    diagnosis.figures["rms_as_" + NameOf(lens->model) + side + "_px"] = lens->rms_px;
+    diagnosis.figures[FigureOf(*lens, side)] = lens->rms_px;
   }
   if (!cure.empty()) diagnosis.cure = std::move(cure);
   return diagnosis;
 }
 
+Diagnosis TiltOrLens(const CameraProblem& problem, Diagnosis diagnosis) {
+  const auto lens = diagnosis.code == kNoTiltCode ? FindBetterLens(problem) : std::nullopt;
+  if (!lens) return diagnosis;
+  return {kSuspectedCode,
+          Worded("The lens of {} is not {}: another model fits its corners better, so how the boards were tilted "
+                 "cannot be told by this one.",
+                 {problem.camera.id, NameOf(problem.camera.camera_model)}),
+          CureOf(*lens),
+          {{FigureOf(*lens, ""), lens->rms_px}}};
+}
+
 Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens) {
-  return {"lens_model_suspected",
+  return {kSuspectedCode,
           Worded("{} fits its corners to {} rms with the lens model {}; another one fits them better.",
                  {problem.camera.id, PixelsText(rms_px), NameOf(problem.camera.camera_model)}),
           CureOf(lens)};

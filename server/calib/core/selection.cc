@@ -177,4 +177,17 @@ CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>
   return views;
 }
 
+CameraViews ViewsOf(const CameraProblem& problem) {
+  CameraViews views;
+  views.model = ModelOf(problem.camera);
+  views.corners_board = TargetPoints(problem.board);
+  for (const auto& [capture, view] : problem.views) {
+    if (!WhyUnusable(view, problem.board).empty()) continue;
+    views.width_px = view.image_width_px;
+    views.height_px = view.image_height_px;
+    views.seen.push_back(SeenIn(view, problem.board));
+  }
+  return views;
+}
+
 }  // namespace rigcal::calib

@@ -43,6 +43,9 @@ void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointP
 [[nodiscard]] CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used,
                                   std::optional<BoardView> StereoCapture::*camera);
 
+// The usable ones of a camera by itself, for its own model.
+[[nodiscard]] CameraViews ViewsOf(const CameraProblem& problem);
+
 // The points that both show are at the same places (0.5 px rms), in one of the orientations in which the board looks
 // alike.
 [[nodiscard]] bool ShowSame(const BoardView& left, const BoardView& right, const Target& board);

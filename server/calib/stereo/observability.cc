@@ -7,6 +7,7 @@
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/given_intrinsics.h"
+#include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/selection.h"
@@ -74,7 +75,7 @@ void CheckTilt(const StereoProblem& problem, const std::vector<std::size_t>& use
     const Sensor& sensor = SensorOf(problem, camera);
     if (sensor.intrinsics) continue;
     if (auto no_tilt = WhyNoTilt(sensor.id, ViewsOf(problem, used, camera)))
-      diagnoses.push_back(OfSide(std::move(*no_tilt), side));
+      diagnoses.push_back(OfSide(TiltOrLens(CameraOf(problem, camera), std::move(*no_tilt)), side));
   }
 }
 

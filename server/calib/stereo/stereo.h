@@ -45,7 +45,7 @@ struct StereoEstimate {
 };
 
 // Is it solvable? Empty: yes. Otherwise why not: too few captures with both views, board not found in ..., all boards
-// parallel to the image (no tilt), one camera's intrinsics not observable, ...
+// parallel to the image (no tilt) or only by a lens model that is not the camera's, ...
 [[nodiscard]] std::vector<Diagnosis> Observability(const StereoProblem& problem);
 // Pure; deterministic for any thread count. `start` warm-starts the refinement (jackknife).
 [[nodiscard]] Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start = nullptr);
