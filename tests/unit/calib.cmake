@@ -46,7 +46,8 @@ rigcal_program(hand_eye_simulation
   SOURCES bench/hand_eye_simulation.cc unit/calib_virtual_motion.cc
   DEPS rigcal_calib)
 rigcal_test(calib_hand_eye_test COMPUTES
-  SOURCES unit/calib_hand_eye_test.cc unit/calib_hand_eye_statistics_test.cc unit/calib_virtual_motion.cc
+  SOURCES unit/calib_hand_eye_test.cc unit/calib_hand_eye_statistics_test.cc unit/calib_board_scale_test.cc
+          unit/calib_virtual_motion.cc
   DEPS rigcal_calib)
 rigcal_test(calib_tracker_lidar_test COMPUTES
   SOURCES unit/calib_tracker_lidar_test.cc unit/calib_virtual_planes.cc unit/calib_virtual_motion.cc

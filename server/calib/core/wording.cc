@@ -103,6 +103,19 @@ Diagnosis CloudsUnreadable(const SensorId& lidar, const MissedCaptures& missed) 
   return {"cloud_unreadable", UnreadableText("cloud", lidar, missed), kCopyAgain};
 }
 
+Diagnosis OtherBoardSize(const Target& board, double ratio, double sigma_ratio, const std::string& witnesses,
+                         const std::string& yardstick) {
+  const auto mm = [](double value_m) { return Formatted("%.2f", 1e3 * value_m); };
+  return {
+      "board_size_suspected",
+      Worded("The size of target '{}' seems to be {} % {} than given: {} agree with {} mm (+- {}) instead of {} mm.",
+             {board.id, Formatted("%.2f", 100 * std::abs(ratio)), ratio > 0 ? "larger" : "smaller", witnesses,
+              mm(board.square_m * (1 + ratio)), mm(board.square_m * sigma_ratio), mm(board.square_m)}),
+      Worded("Measure the board across many squares and correct its size in session.yaml; if it is right, the "
+             "camera's focal length or the {}'s scale is wrong.",
+             {yardstick})};
+}
+
 Diagnosis IntrinsicsTakenAsExact(const SensorId& camera) {
   return {"intrinsics_taken_as_exact",
           Worded("The intrinsics of {} are given without an uncertainty and taken as exact.", {camera}),

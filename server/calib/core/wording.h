@@ -11,6 +11,7 @@
 #include "server/base/ids.h"
 #include "server/base/result.h"
 #include "server/model/diagnosis.h"
+#include "server/model/target.h"
 
 namespace rigcal::calib {
 
@@ -69,6 +70,10 @@ inline constexpr const char* kDriveElsewhere = "Drive the robot to different pla
 // "picture_unreadable", "cloud_unreadable": files that hold none; a board was not even looked for.
 [[nodiscard]] Diagnosis Unreadable(const SensorId& camera, const MissedCaptures& missed);
 [[nodiscard]] Diagnosis CloudsUnreadable(const SensorId& lidar, const MissedCaptures& missed);
+// "board_size_suspected": larger than given by `ratio`, as `witnesses` ("picture and cloud") agree with; else the scale
+// of `yardstick` ("lidar") may be wrong.
+[[nodiscard]] Diagnosis OtherBoardSize(const Target& board, double ratio, double sigma_ratio,
+                                       const std::string& witnesses, const std::string& yardstick);
 // Notes on a good edge.
 [[nodiscard]] Diagnosis IntrinsicsTakenAsExact(const SensorId& camera);
 [[nodiscard]] Diagnosis RangeTakenAsExact(const SensorId& lidar);

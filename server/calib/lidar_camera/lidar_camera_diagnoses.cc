@@ -125,16 +125,8 @@ Diagnosis CapturesDisagree(const LidarCameraProblem& problem, const std::vector<
 }
 
 Diagnosis BoardSizeSuspected(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate) {
-  const double fitted_m = problem.board.square_m * (1 + estimate.board_scale_ratio);
-  return {"board_size_suspected",
-          Worded("The size of {} seems to be {} % {} than given: picture and cloud agree with {} mm (+- {}) instead of "
-                 "{} mm.",
-                 {BoardOf(problem), Formatted("%.2f", 100 * std::abs(estimate.board_scale_ratio)),
-                  estimate.board_scale_ratio > 0 ? "larger" : "smaller", Formatted("%.2f", 1e3 * fitted_m),
-                  Formatted("%.2f", 1e3 * problem.board.square_m * estimate.board_scale_sigma_ratio),
-                  Formatted("%.2f", 1e3 * problem.board.square_m)}),
-          "Measure the board across many squares and correct its size in session.yaml; if it is right, the camera's "
-          "focal length or the lidar's scale is wrong."};
+  return OtherBoardSize(problem.board, estimate.board_scale_ratio, estimate.board_scale_sigma_ratio,
+                        "picture and cloud", "lidar");
 }
 
 Diagnosis BoardSizeTakenAsExact(const LidarCameraProblem& problem) {

@@ -67,7 +67,7 @@ OrDiagnosis<HandEyeResult> ResultOf(const HandEyeProblem& problem, const HandEye
   HandEyeResult result{EstimateOf(work), std::move(uncertainty->X), OpenDirections(problem, work.reach), {}, {}};
   if (work.camera_a) result.camera_a = work.camera_a->camera;
   if (work.camera_b) result.camera_b = work.camera_b->camera;
-  if (work.estimates_offset) result.estimate.offset_sigma_s = uncertainty->offset_sigma_s;
+  if (work.asked == Asked::kClockOffset) result.estimate.offset_sigma_s = uncertainty->asked_sigma;
   AddDisagreement(problem.a, work.camera_a, result.notes);
   AddDisagreement(problem.b, work.camera_b, result.notes);
   return result;
@@ -81,6 +81,7 @@ OrDiagnosis<HandEyeResult> FromCaptures(const HandEyeProblem& problem) {
     return tl::unexpected(MotionsContradict(problem, work->captures.size()));
   auto result = ResultOf(problem, *work, {});
   if (!result) return result;
+  result->estimate.board_scale = FitBoardScale(problem, *work);
   std::vector<CaptureId> contradicting;
   for (std::size_t k = 0; k < work->captures.size(); ++k)
     if (!work->problem.used[k]) contradicting.push_back(work->captures[k]);
@@ -134,14 +135,14 @@ OrDiagnosis<HandEyeResult> FromStreams(const HandEyeProblem& problem) {
     return tl::unexpected(NoCommonTime(problem, clocks ? clocks->correlation_ratio : 0.0));
   double offset_s = clocks->offset_s;
   HandEyeWork work;
-  work.estimates_offset = true;
+  work.asked = Asked::kClockOffset;
   for (int round = 0; round < kOffsetRoundsMax; ++round) {
     SetSamples(PosesInCommon(a, b, offset_s), work);
     if (work.captures.size() < kStreamSamplesMin)
       return tl::unexpected(
           TooFewSamples(problem, work.captures.size(), kStreamSamplesMin, SecondsInCommon(a, b, offset_s)));
     if (auto fitted = FitMotion(problem, work); !fitted) return tl::unexpected(fitted.error());
-    const double shift_s = work.state.shared_b[kStreamOffset];
+    const double shift_s = AskedOf(work, work.state);
     offset_s += shift_s;
     if (std::abs(shift_s) < kOffsetSame_s) break;
   }

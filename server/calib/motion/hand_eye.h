@@ -40,6 +40,13 @@ struct SideNoise {
   double factor = 1.0;  // of a camera: on the variance that its corners let expect
 };
 
+// How much larger than given the squares of a camera's board are by the metres of a tracker.
+struct BoardScale {
+  double ratio = 0.0, sigma_ratio = 0.0;
+  // By more than a hundredth and four sigmas, those of the size as given included.
+  [[nodiscard]] bool Contradicts(const Target& board) const;
+};
+
 struct HandEyeEstimate {
   Se3 T_a_b, T_world_a_world_b;
   MotionReach reach;
@@ -48,6 +55,7 @@ struct HandEyeEstimate {
   std::map<CaptureId, std::string> unused;         // why, in words
   double rms_m = 0.0, rms_rad = 0.0;               // of the residuals
   std::optional<double> offset_s, offset_sigma_s;  // of pose streams: t_a = t_b + offset
+  std::optional<BoardScale> board_scale;           // of a camera and a tracker, where their motion tells it
   std::size_t captures = 0;                        // used; of streams: samples
 };
 

@@ -1,5 +1,3 @@
-#include "server/calib/motion/hand_eye_work.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,6 +5,7 @@
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/wording.h"
+#include "server/calib/motion/hand_eye_work.h"
 #include "server/calib/motion/stream_motion.h"
 
 namespace rigcal::calib {
@@ -98,6 +97,11 @@ Diagnosis HighMotionResidual(const HandEyeProblem& problem, const HandEyeEstimat
                  {PairOf(problem), MillimetresText(estimate.rms_m), DegreesOf(estimate.rms_rad)}),
           "Check that boards and tracker stood still, the boards' sizes, and that given intrinsics belong to these "
           "cameras."};
+}
+
+Diagnosis MotionOfOtherSize(const HandEyeProblem& problem, const BoardScale& scale) {
+  return OtherBoardSize(*SideWithBoard(problem).board, scale.ratio, scale.sigma_ratio,
+                        "the motions of " + PairOf(problem), "tracker");
 }
 
 Diagnosis NoMotion(const HandEyeProblem& problem) {

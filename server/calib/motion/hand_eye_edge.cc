@@ -62,7 +62,13 @@ void AddNoise(const std::string& side, const SideNoise& noise, Edge& edge) {
   edge.figures["noise_" + side + "_rad"] = noise.rotation_rad;
 }
 
-void AddFigures(const HandEyeEstimate& estimate, Edge& edge) {
+void AddBoardScale(const HandEyeProblem& problem, const BoardScale& scale, Edge& edge) {
+  edge.figures["board_scale_ratio"] = scale.ratio;
+  edge.figures["board_scale_sigma_ratio"] = scale.sigma_ratio;
+  edge.figures["board_square_m"] = SideWithBoard(problem).board->square_m;
+}
+
+void AddFigures(const HandEyeProblem& problem, const HandEyeEstimate& estimate, Edge& edge) {
   edge.figures[estimate.offset_s ? "samples_used" : "captures_used"] = static_cast<double>(estimate.captures);
   edge.figures["motion_rms_m"] = estimate.rms_m;
   edge.figures["motion_rms_rad"] = estimate.rms_rad;
@@ -70,6 +76,7 @@ void AddFigures(const HandEyeEstimate& estimate, Edge& edge) {
   AddNoise("b", estimate.noise_b, edge);
   AddMotionFigures(estimate.reach, edge);
   if (estimate.reach.open.cols() > 0) AddAxisFigures(estimate.reach.axis_a, edge);
+  if (estimate.board_scale) AddBoardScale(problem, *estimate.board_scale, edge);
   if (estimate.offset_s) edge.figures["clock_offset_s"] = *estimate.offset_s;
   if (estimate.offset_sigma_s) edge.figures["clock_offset_sigma_s"] = *estimate.offset_sigma_s;
 }
@@ -98,15 +105,23 @@ std::vector<CameraFit> FitsOf(const HandEyeProblem& problem, const HandEyeResult
   return fits;
 }
 
+// Solved, and not believed.
+std::optional<Diagnosis> WhyRefused(const HandEyeProblem& problem, const HandEyeEstimate& estimate) {
+  if (estimate.board_scale && estimate.board_scale->Contradicts(*SideWithBoard(problem).board))
+    return MotionOfOtherSize(problem, *estimate.board_scale);
+  if (!(estimate.rms_m <= kHighRms_m && estimate.rms_rad <= kHighRms_rad)) return HighMotionResidual(problem, estimate);
+  return std::nullopt;
+}
+
 Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   if (fits) *fits = FitsOf(problem, nullptr);
   auto result = EstimateHandEye(problem);
   if (!result) return FailedEdge(problem, result.error());
   if (fits) *fits = FitsOf(problem, &*result);
   const HandEyeEstimate& estimate = result->estimate;
-  if (!(estimate.rms_m <= kHighRms_m && estimate.rms_rad <= kHighRms_rad)) {
-    Edge edge = FailedEdge(problem, HighMotionResidual(problem, estimate));
-    AddFigures(estimate, edge);
+  if (const auto refused = WhyRefused(problem, estimate)) {
+    Edge edge = FailedEdge(problem, *refused);
+    AddFigures(problem, estimate, edge);
     return edge;
   }
   Edge edge = Good(estimate.T_a_b, std::move(result->uncertainty), std::move(result->notes), EdgeOf(problem));
@@ -115,7 +130,7 @@ Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   Append(TakenAsExact(problem), edge.diagnoses);
   Append(MissedViews(problem), edge.diagnoses);
   AddCaptures(problem, estimate, edge);
-  AddFigures(estimate, edge);
+  AddFigures(problem, estimate, edge);
   return edge;
 }
 

@@ -61,24 +61,26 @@ Result<Se3> SolvedPose(const MotionProblem& problem, const MotionState& start) {
   return solution.state.X;
 }
 
-// `offset_s`: where the offset of the clocks comes to lie, if one is estimated.
-Result<Se3> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& offset_s) {
+// `asked`: where what is asked for beside it comes to lie.
+Result<Se3> WithoutBlockOf(const HandEyeWork& work, const Block& block, double& asked) {
   MotionProblem problem = work.problem;
   for (const std::size_t k : block.poses) problem.used[k] = 0;
   if (!block.captures.empty()) SetShared(work, block.captures, problem);
   RIGCAL_ASSIGN(const MotionSolution solution, SolveMotion(problem, work.state));
-  if (work.estimates_offset) offset_s = solution.state.shared_b[kStreamOffset];
+  asked = AskedOf(work, solution.state);
   return solution.state.X;
 }
 
 // The jackknife's, or the model's where it is larger.
-double OffsetSigma(const std::vector<double>& offsets_s, double model_sigma_s) {
-  const auto m = static_cast<double>(offsets_s.size());
-  if (m < 2) return model_sigma_s;
-  double mean_s = 0, sum_s2 = 0;
-  for (const double offset_s : offsets_s) mean_s += offset_s / m;
-  for (const double offset_s : offsets_s) sum_s2 += (offset_s - mean_s) * (offset_s - mean_s);
-  return std::max(std::sqrt((m - 1) / m * sum_s2), model_sigma_s);
+double AskedSigma(const HandEyeWork& work, const std::vector<double>& asked) {
+  if (work.asked == Asked::kNothing) return 0.0;
+  const double model = work.asked == Asked::kBoardSizeA ? work.fit.last_sigma_a : work.fit.last_sigma_b;
+  const auto m = static_cast<double>(asked.size());
+  if (m < 2) return model;
+  double mean = 0, sum = 0;
+  for (const double one : asked) mean += one / m;
+  for (const double one : asked) sum += (one - mean) * (one - mean);
+  return std::max(std::sqrt((m - 1) / m * sum), model);
 }
 
 // A board that is larger than given puts its camera farther away.
@@ -132,15 +134,15 @@ Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const H
   const std::vector<Block> blocks = block_of_pose.empty() ? BlocksOf(problem, work) : PartsOf(work, block_of_pose);
   const std::size_t carrying = CarryingBlocks(blocks);
   std::vector<BlockVector> vectors;
-  std::vector<double> offsets_s;
+  std::vector<double> asked;
   if (carrying >= kHandEyeForJackknife) {
     std::vector<std::string> ids;
     for (const Block& block : blocks) ids.push_back(block.id);
-    offsets_s.resize(blocks.size());
-    const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], offsets_s[i]); };
+    asked.resize(blocks.size());
+    const auto without = [&](std::size_t i) { return WithoutBlockOf(work, blocks[i], asked[i]); };
     RIGCAL_ASSIGN(vectors, LeaveOneOut(ids, work.state.X, without));
   }
-  MotionUncertainty uncertainty{{}, work.estimates_offset ? OffsetSigma(offsets_s, work.fit.offset_sigma_s) : 0.0};
+  MotionUncertainty uncertainty{{}, AskedSigma(work, asked)};
   RIGCAL_ASSIGN(uncertainty.X, UncertaintyAlong(work.problem.free, CapturesPart(problem, work, contributions),
                                                 std::move(vectors), std::move(contributions), carrying));
   return uncertainty;

@@ -76,6 +76,13 @@ SidePose Scaled(SidePose pose, const SideFactor& factor) {
   return pose;
 }
 
+// By what the poses share beyond what is known of: apart from the motion nothing tells it.
+void Widen(MotionSide& side) {
+  const Eigen::Index count = side.poses.front().d_shared.cols();
+  side.information.conservativeResizeLike(SharedMatrix::Zero(count, count));
+  side.gradient.conservativeResizeLike(SharedVector::Zero(count));
+}
+
 }  // namespace
 
 OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem) {
@@ -120,7 +127,9 @@ void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, Moti
   };
   fill(work.camera_a, &MotionChoice::a, work.factor_a.translation, problem.a);
   fill(work.camera_b, &MotionChoice::b, work.factor_b.translation, problem.b);
-  if (!work.estimates_offset) return;
+  if (work.asked == Asked::kBoardSizeA) Widen(problem.a);
+  if (work.asked == Asked::kBoardSizeB) Widen(problem.b);
+  if (work.asked != Asked::kClockOffset) return;
   // A drift is small until the poses say otherwise; of the offset nothing is known.
   problem.b.information = SharedMatrix::Zero(kStreamShared, kStreamShared);
   problem.b.information.diagonal().head<3>().setConstant(1 / (kDriftSigma_m * kDriftSigma_m));
@@ -138,6 +147,12 @@ MotionNoise NoiseOf(const MotionProblem& problem) {
     count += 1;
   }
   return {std::sqrt(variance[0] / std::max(1.0, count)), std::sqrt(variance[1] / std::max(1.0, count))};
+}
+
+double AskedOf(const HandEyeWork& work, const MotionState& state) {
+  if (work.asked == Asked::kNothing) return 0.0;
+  const SharedVector& shared = work.asked == Asked::kBoardSizeA ? state.shared_a : state.shared_b;
+  return shared[shared.size() - 1];
 }
 
 namespace {
@@ -232,7 +247,7 @@ void FindReach(const HandEyeProblem& problem, HandEyeWork& work) {
   const MotionKind before = work.reach.kind;
   const bool first = work.reach.free.cols() == 0;
   MotionNoise noise = NoiseOf(work.problem);
-  if (work.estimates_offset) noise.noises = kStreamNoises;
+  if (work.asked == Asked::kClockOffset) noise.noises = kStreamNoises;
   work.reach = ReachOf(used, work.state.X, noise);
   if (first || work.reach.kind != before)
     HoldOpen(problem, work);

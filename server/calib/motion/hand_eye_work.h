@@ -17,7 +17,11 @@ constexpr std::size_t kHandEyeMin = 4;           // captures of both
 constexpr std::size_t kHandEyeForJackknife = 5;  // fewer: the uncertainty is the model's
 constexpr std::size_t kHandEyeEnough = 10;       // fewer: a note says so
 
-constexpr int kStreamShared = 4, kStreamOffset = 3;  // count, and where the offset stands
+constexpr int kStreamShared = 4;
+
+// What is asked for beside X and Z, as the last shared parameter of a side: of pose streams the offset of their clocks
+// (b), of a camera how much larger its board is than given.
+enum class Asked { kNothing, kClockOffset, kBoardSizeA, kBoardSizeB };
 
 // On the variances that a side's source lets expect.
 struct SideFactor {
@@ -28,9 +32,8 @@ struct HandEyeWork {
   std::vector<CaptureId> captures;
   std::vector<MotionCandidates> candidates;  // side by side with the captures; covariances as their sources say
   std::optional<CameraMotion> camera_a, camera_b;
-  // Of pose streams side b shares how far its world drifts from the middle of the recording to its end, and the offset
-  // of the clocks.
-  bool estimates_offset = false;
+  // Of pose streams side b shares how far its world drifts from the middle of the recording to its end, too.
+  Asked asked = Asked::kNothing;
   std::map<CaptureId, std::string> unused;
   SideFactor factor_a, factor_b;
   std::vector<MotionChoice> choices;
@@ -47,14 +50,27 @@ void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, Moti
 // Chooses, solves, finds the noise and what contradicts, until nothing changes. Poses that contradict are not used.
 [[nodiscard]] OrDiagnosis<void> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
 [[nodiscard]] MotionNoise NoiseOf(const MotionProblem& problem);
+// Zero where nothing is asked for.
+[[nodiscard]] double AskedOf(const HandEyeWork& work, const MotionState& state);
 
 struct MotionUncertainty {
-  Uncertainty X;                // along the free directions
-  double offset_sigma_s = 0.0;  // where an offset is estimated
+  Uncertainty X;             // along the free directions
+  double asked_sigma = 0.0;  // of what is asked for beside it
 };
 // `block_of_pose`: which poses are left out together, ascending; empty: each by itself.
 [[nodiscard]] Result<MotionUncertainty> JackknifeMotion(const HandEyeProblem& problem, const HandEyeWork& work,
                                                         const std::vector<std::size_t>& block_of_pose);
+
+// board_scale.cc: of a camera and a tracker, from what FitMotion() made of them.
+//
+// A camera measures its way in squares of its board: where these are larger by r than given, it is (1 + r) times as far
+// from the board's origin as it seems, and A_k X = Z B_k holds with that on its side; of the motion from one capture to
+// another, with the camera as b, (R_A - I) t_X = (1 + r) R_X t_B - t_A. r is one more unknown of the same problem, its
+// sigma by the same blocks. Given focal lengths are not relied on, as wrong ones make a camera's way longer, too.
+// Nothing where both sides are of one kind, where captures are few, or where the motion does not tell.
+[[nodiscard]] std::optional<BoardScale> FitBoardScale(const HandEyeProblem& problem, const HandEyeWork& work);
+// Of a camera and a tracker, the camera.
+[[nodiscard]] const HandEyeSide& SideWithBoard(const HandEyeProblem& problem);
 
 // hand_eye_diagnoses.cc: the sentences. Each names the sensors and captures it is about, and what to do.
 //
@@ -70,6 +86,7 @@ struct MotionUncertainty {
 [[nodiscard]] Diagnosis CapturesContradict(const HandEyeProblem& problem, const std::vector<CaptureId>& captures);
 [[nodiscard]] Diagnosis MotionNotSolvable(const HandEyeProblem& problem, const Error& error);
 [[nodiscard]] Diagnosis HighMotionResidual(const HandEyeProblem& problem, const HandEyeEstimate& estimate);
+[[nodiscard]] Diagnosis MotionOfOtherSize(const HandEyeProblem& problem, const BoardScale& scale);
 [[nodiscard]] Diagnosis NoMotion(const HandEyeProblem& problem);
 // Codes "planar_motion", "turning_on_the_spot", "pure_translation", "straight_line": notes on a good edge that say
 // which direction is not known. Nothing where all are.

@@ -267,7 +267,8 @@ Result<MotionFit> FitOf(const MotionProblem& problem, const MotionState& state) 
                          scale.asDiagonal();
   MotionFit fit;
   fit.C_X = C.topLeftCorner(at.z, at.z);
-  if (problem.b.SharedCount() > 0) fit.offset_sigma_s = std::sqrt(C(at.size - 1, at.size - 1));
+  if (problem.a.SharedCount() > 0) fit.last_sigma_a = std::sqrt(C(at.b - 1, at.b - 1));
+  if (problem.b.SharedCount() > 0) fit.last_sigma_b = std::sqrt(C(at.size - 1, at.size - 1));
   const bool split_a = IsSplit(problem.a), split_b = IsSplit(problem.b);
   for (const BodyNormal& n : reduced.bodies) {
     AddFit(n.a, n, C, split_a, fit.a);

@@ -10,9 +10,9 @@
 
 namespace rigcal::calib {
 
-// What a side's poses share and what is estimated with them: a camera's intrinsics; how one stream's world drifts
-// against the other's, and the offset of their clocks.
-constexpr int kSharedMax = 12;
+// What a side's poses share and what is estimated with them: a camera's intrinsics and the size of its board; how one
+// stream's world drifts against the other's, and the offset of their clocks.
+constexpr int kSharedMax = 14;
 using SharedVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSharedMax, 1>;
 using SharedMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSharedMax, kSharedMax>;
 using SharedJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kSharedMax>;
@@ -73,8 +73,8 @@ struct SideFit {
   double redundancy[2] = {0, 0};  // their expectation if the covariances are right
 };
 struct MotionFit {
-  Eigen::MatrixXd C_X;          // covariance of X along the free directions
-  double offset_sigma_s = 0.0;  // of the last shared parameter of b, if there is one
+  Eigen::MatrixXd C_X;                            // covariance of X along the free directions
+  double last_sigma_a = 0.0, last_sigma_b = 0.0;  // of the last shared parameter of each side, if there is one
   SideFit a, b;
 };
 // Fails where a free direction is not observable.
