@@ -1,4 +1,5 @@
-// A board whose squares are measured wrong in session.yaml: lidars see how large it is.
+// A board whose squares are measured wrong in session.yaml: lidars see how large it is, and how far a camera moved
+// before it is known by a tracker.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,8 +33,15 @@ std::optional<Scale> ScaleOf(const Edge& edge) {
 // Boards of one session and one given size that pairs cannot be told apart by.
 using BoardKey = std::tuple<SessionId, std::vector<TargetId>, double>;
 
+// Boards that its camera may have looked at.
+std::vector<const Target*> BoardsBefore(const CauseSearch& search, const Edge& edge) {
+  const std::array<EdgeEnd, 2> ends = EndsOf(edge);
+  const bool is_b = KindOf(search.headers, edge, ends[1].sensor) == SensorKind::kCamera;
+  return BoardsOf(search.headers, ends[is_b ? 1 : 0]);
+}
+
 std::vector<const Target*> CandidatesOf(const CauseSearch& search, const Scale& scale) {
-  std::vector<const Target*> boards = BoardsOf(search.headers, EndsOf(*scale.edge)[0]);
+  std::vector<const Target*> boards = BoardsBefore(search, *scale.edge);
   std::erase_if(boards, [&](const Target* board) { return std::abs(board->square_m - scale.square_m) > 1e-9; });
   return boards;
 }
@@ -66,14 +74,31 @@ std::optional<double> AgreedRatio(const std::vector<Scale>& scales) {
   return agree ? std::optional(mean) : std::nullopt;
 }
 
+bool IsBy(const Edge& edge, Method method) { return edge.method == rigcal::NameOf(method); }
+
+// By the pairs of one method alone.
+struct Witness {
+  std::vector<Scale> scales;
+  std::optional<double> ratio;
+};
+
+Witness WitnessOf(const std::vector<Scale>& scales, Method method) {
+  Witness witness;
+  for (const Scale& scale : scales)
+    if (IsBy(*scale.edge, method)) witness.scales.push_back(scale);
+  if (!witness.scales.empty()) witness.ratio = AgreedRatio(witness.scales);
+  return witness;
+}
+
 bool IsSuspected(const Edge& edge) { return FailedFor(edge, {"board_size_suspected"}); }
 
 // Failures that a wrong size makes of pairs that could not work it out themselves.
 bool MayFollow(const CauseSearch& search, const Edge& edge, const BoardKey& key) {
-  if (edge.session != std::get<0>(key) || edge.method != rigcal::NameOf(Method::kLidarCamera)) return false;
-  if (!FailedFor(edge, {"high_residual", "range_bias_suspected"})) return false;
+  if (edge.session != std::get<0>(key) || !(IsBy(edge, Method::kLidarCamera) || IsBy(edge, Method::kTrackerCamera)))
+    return false;
+  if (!FailedFor(edge, {"high_residual", "range_bias_suspected", "contradicting_motion"})) return false;
   const std::vector<TargetId>& boards = std::get<1>(key);
-  const std::vector<const Target*> candidates = BoardsOf(search.headers, EndsOf(edge)[0]);
+  const std::vector<const Target*> candidates = BoardsBefore(search, edge);
   return !candidates.empty() && std::all_of(candidates.begin(), candidates.end(), [&](const Target* board) {
     return std::find(boards.begin(), boards.end(), board->id) != boards.end();
   });
@@ -85,16 +110,59 @@ std::string SquareText(double square_m) {
   return text.data();
 }
 
-Finding WrongSize(const std::vector<const Target*>& boards, double square_m, double ratio, std::size_t pairs) {
+bool HaveTags(const std::vector<const Target*>& boards) { return !boards.empty() && IsTagGrid(boards.front()->kind); }
+
+std::string SquaresOf(const std::vector<const Target*>& boards) {
   std::string names;
   for (const Target* board : boards) names += (names.empty() ? "" : " or ") + BoardName(*board);
-  const bool tags = !boards.empty() && IsTagGrid(boards.front()->kind);
-  const std::string seen = std::to_string(pairs) + (pairs == 1 ? " pair sees it " : " pairs see it ") +
+  return std::string("the ") + (HaveTags(boards) ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names);
+}
+
+// As session.yaml has it.
+std::string SizeEntry(const std::vector<const Target*>& boards, double square_m) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), square_m < 0.05 ? "%.5f" : "%.4f", square_m);
+  return std::string("`") + (HaveTags(boards) ? "tag_size_m: " : "square_size_m: ") + text.data() + "`";
+}
+
+std::string PairsText(std::size_t pairs) { return std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs"); }
+
+Finding WrongSize(const std::vector<const Target*>& boards, double square_m, double ratio, std::size_t pairs) {
+  const std::string seen = PairsText(pairs) + (pairs == 1 ? " sees it " : " see it ") +
                            TwoDigits(100 * std::abs(ratio), "%") + (ratio > 0 ? " larger" : " smaller");
-  return {std::string("the ") + (tags ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names) +
-              " are probably " + SquareText(square_m * (1 + ratio)) + ", not " + SquareText(square_m) + " (" + seen +
-              ")",
-          "Measure one with a caliper and correct session.yaml"};
+  return {
+      SquaresOf(boards) + " are probably " + SquareText(square_m * (1 + ratio)) + ", not " + SquareText(square_m) +
+          " (" + seen + ")",
+      "Measure one with a caliper and correct session.yaml, probably to " + SizeEntry(boards, square_m * (1 + ratio))};
+}
+
+Finding DisputedSize(const std::vector<const Target*>& boards, double square_m, const Witness& lidars,
+                     const Witness& trackers) {
+  const auto said = [&](const Witness& witness) {
+    return SquareText(square_m * (1 + *witness.ratio)) + " (" + PairsText(witness.scales.size()) + ")";
+  };
+  return {SquaresOf(boards) + " are " + said(lidars) + " by lidars and " + said(trackers) +
+              " by trackers, which do not agree; they are given as " + SquareText(square_m),
+          "Measure one with a caliper and correct session.yaml, or the scale of what differs from it"};
+}
+
+std::vector<const Edge*> TakeSuspected(CauseSearch& search, const std::vector<Scale>& scales) {
+  return search.Take([&](const Edge& edge) {
+    return IsSuspected(edge) &&
+           std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) { return scale.edge == &edge; });
+  });
+}
+
+// Lidars that agree with each other, and trackers likewise, but not both together.
+void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Scale>& scales) {
+  const Witness lidars = WitnessOf(scales, Method::kLidarCamera), trackers = WitnessOf(scales, Method::kTrackerCamera);
+  if (!lidars.ratio || !trackers.ratio) return;
+  const std::vector<const Edge*> edges = TakeSuspected(search, scales);
+  if (edges.empty()) return;
+  RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
+  cause.trait = "disputed";
+  cause.said = DisputedSize(CandidatesOf(search, scales.front()), std::get<2>(key), lidars, trackers);
+  search.causes.push_back(std::move(cause));
 }
 
 }  // namespace
@@ -102,12 +170,11 @@ Finding WrongSize(const std::vector<const Target*>& boards, double square_m, dou
 void FindBoardSizes(CauseSearch& search) {
   for (const auto& [key, scales] : ScalesOf(search)) {
     const auto ratio = AgreedRatio(scales);
-    if (!ratio) continue;
-    const auto& of_key = scales;
-    const auto of_board = [&](const Edge& edge) {
-      return std::any_of(of_key.begin(), of_key.end(), [&](const Scale& scale) { return scale.edge == &edge; });
-    };
-    std::vector<const Edge*> edges = search.Take([&](const Edge& edge) { return IsSuspected(edge) && of_board(edge); });
+    if (!ratio) {
+      AddDisputed(search, key, scales);
+      continue;
+    }
+    std::vector<const Edge*> edges = TakeSuspected(search, scales);
     if (edges.empty()) continue;
     const auto& board_key = key;
     if (edges.size() > 1)

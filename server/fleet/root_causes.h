@@ -17,7 +17,7 @@ enum class CauseKind {
   kFilesMissing,     // a sensor without files of most captures
   kFilesUnreadable,  // a sensor most of whose files cannot be read
   kBoardCounts,      // a board that no camera finds in any picture
-  kBoardSize,        // a board that lidars and cameras together see larger or smaller than given
+  kBoardSize,        // a board that cameras together with lidars or trackers see larger or smaller than given
   kLensModel,        // a camera that another lens model fits
   kBoardTilt,        // boards that all face one way
   kBoardPlaces,      // boards in a part of the picture only

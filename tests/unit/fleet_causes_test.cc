@@ -74,7 +74,8 @@ TEST(BoardSize, PairsThatAgreeOnAnotherSizeAreOneLine) {
   EXPECT_THAT(cause.boards, ElementsAre(TargetId("calib")));
   EXPECT_EQ(cause.said.why,
             "the squares of board calib are probably 92.70 mm, not 90.00 mm (3 pairs see it 3 % larger)");
-  EXPECT_EQ(cause.said.what_to_do, "Measure one with a caliper and correct session.yaml");
+  EXPECT_EQ(cause.said.what_to_do,
+            "Measure one with a caliper and correct session.yaml, probably to `square_size_m: 0.0927`");
 }
 
 TEST(BoardSize, OfTheEstimatorsOwnPairs) {

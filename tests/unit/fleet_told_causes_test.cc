@@ -37,7 +37,8 @@ TEST(ToldCauses, AreSentencesWithTheCommandBesideThem) {
   EXPECT_THAT(causes[0].edges, ElementsAre(visit.edges[0].id, visit.edges[1].id));
   EXPECT_EQ(causes[0].why,
             "The squares of board calib are probably 30.90 mm, not 30.00 mm (2 pairs see it 3 % larger).");
-  EXPECT_EQ(causes[0].what_to_do, "Measure one with a caliper and correct session.yaml.");
+  EXPECT_EQ(causes[0].what_to_do,
+            "Measure one with a caliper and correct session.yaml, probably to `square_size_m: 0.03090`.");
   EXPECT_EQ(causes[0].command, "rigcal push FOLDER");
 }
 
