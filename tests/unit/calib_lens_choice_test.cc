@@ -84,6 +84,16 @@ TEST(LensOrTilt, FrontalBoardsBeforeAFisheyeMayBeOfAnyLens) {
   EXPECT_EQ(estimate.error().code, "no_tilt");
 }
 
+// Boards in the middle of the picture leave a rational lens open, which any lens fits as well: none is better.
+TEST(LensOrTilt, ALensThatItsViewsLeaveOpenIsNotCalledAnother) {
+  VirtualPair pair;
+  pair.a.model = CameraModel::kPinholeRational;
+  pair.a.distortion.resize(8);
+  const auto estimate = EstimateCamera(CameraOf(Photographed(pair, TiltedBoards(8), 0.2, 3), &StereoCapture::a));
+  ASSERT_FALSE(estimate);
+  EXPECT_TRUE(estimate.error().figures.empty()) << estimate.error().code << ": " << estimate.error().cure;
+}
+
 TEST(FocalTrials, FindWhatFrontalBoardsLeaveOfTheLens) {
   const auto views = [](const StereoProblem& problem) { return ViewsOf(CameraOf(problem, &StereoCapture::a)); };
   EXPECT_LT(LeastRmsOverFocals_px(views(Photographed(VirtualPair(), FrontalBoards(0.0), 0, 1))), 0.001);

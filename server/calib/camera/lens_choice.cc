@@ -40,13 +40,13 @@ double RmsOf_px(const CameraProblem& problem, CameraModel model) {
   return estimate ? estimate->rms_px : std::numeric_limits<double>::infinity();
 }
 
-// Boards that are not tilted fit a lens of their own with almost any focal length. One that they do not fit with any
-// is not theirs, and how they are tilted cannot be told by it. Zero: nothing can be held against it.
+// Refused or not. Boards that are not tilted fit a lens of their own with almost any focal length: one that they do not
+// fit with any is not theirs, and how they are tilted cannot be told by it. Zero: nothing can be held against it.
 double OwnRmsOf_px(const CameraProblem& problem, CameraModel own) {
   const auto estimate = EstimateCameraAs(problem, own);
   if (estimate) return estimate->rms_px;
   const std::string& code = estimate.error().code;
-  if (code != kNoTiltCode && code != kNoStartCode) return std::numeric_limits<double>::infinity();
+  if (code != kNoTiltCode && code != kNoStartCode) return FitRms_px(problem, own);
   const double least_px = LeastRmsOverFocals_px(ViewsOf(problem));
   return std::isfinite(least_px) || code == kNoStartCode ? least_px : 0.0;
 }
@@ -91,7 +91,7 @@ std::optional<BetterLens> FindBetterLens(const CameraProblem& problem) {
   const double high_px = HighRms_px(tried.views.front().second.image_width_px), own_px = OwnRmsOf_px(tried, own);
   if (!(least_px <= kClearlyBetterRatio * std::min(own_px, high_px))) return std::nullopt;
   BetterLens chosen = Chosen(others, least_px, own);
-  chosen.own_rms_px = std::isfinite(own_px) ? own_px : FitRms_px(tried, own);
+  chosen.own_rms_px = own_px;
   return chosen;
 }
 
