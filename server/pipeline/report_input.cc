@@ -116,8 +116,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
-  const fleet::Policy policy;
-  input.sigma_limits = report::SigmaLimits{policy.sigma_max_m, policy.sigma_max_rad};
+  input.sigma_limits = report::SigmaLimits{kDefaultTolerance.m, kDefaultTolerance.rad};
   TakeCameras(store, input);
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
   return input;
