@@ -9,9 +9,9 @@
 namespace rigcal::storage {
 namespace {
 
-// ?1: what was calibrated before is overdue; ?2: the choice; ?3: a session before is long ago; ?4: sigmas from which an edge is
-// off; ?5, ?6: the first word and the others.
-const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns < ?1))";
+// ?1: what is valid until before that is overdue; ?2: the choice; ?3: a session before is long ago; ?4: sigmas from
+// which an edge is off; ?5, ?6: the first word and the others.
+const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
 const std::string kIsLike =
     "CASE ?2 WHEN '' THEN 1 WHEN 'overdue' THEN " + kIsOverdue +
     " WHEN 'off' THEN worst_ratio >= ?4 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?3 "
@@ -78,7 +78,7 @@ class Matches {
     return "FROM summary_robot WHERE " + kIsLike + (words_.empty() ? "" : kHasWords);
   }
   void Bind(Query& query) const {
-    query.Bind(now_.ns - kDefaultMaxAge_ns, asked_.verdict, now_.ns - kQuiet_ns, kOff_sigmas);
+    query.Bind(now_, asked_.verdict, now_.ns - kQuiet_ns, kOff_sigmas);
     if (!words_.empty()) query.Bind(words_.front(), OtherWords(words_));
   }
 
@@ -98,7 +98,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                            "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass') "
                            "FROM summary_robot");
     FleetCounts counts;
-    if (!query.Bind(now.ns - kDefaultMaxAge_ns).Step()) return counts;
+    if (!query.Bind(now).Step()) return counts;
     counts.robots = query.Int(0);
     counts.overdue = query.Int(1);
     counts.sessions = query.Int(2);
@@ -131,7 +131,8 @@ Result<FleetSize> LoadFleetSize(Store& store) {
   return Load<FleetSize>(store, "size of the fleet", [&]() -> Result<FleetSize> {
     Query query(store,
                 "SELECT robots, sessions, edges, (SELECT count(*) FROM waiting_revision) + "
-                "(SELECT count(*) FROM waiting_publication) FROM summary_fleet WHERE only_row = 1");
+                "(SELECT count(*) FROM waiting_verdict) + (SELECT count(*) FROM waiting_publication) "
+                "FROM summary_fleet WHERE only_row = 1");
     if (!query.Step()) return FleetSize{};
     return FleetSize{query.Int(0), query.Int(1), query.Int(2), query.Int(3)};
   });

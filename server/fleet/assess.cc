@@ -123,12 +123,12 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
                                   const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
                                   const std::vector<RootCause>& causes, bool pairs_disagree) {
   std::vector<Finding> warnings = FindingsOf(causes, [](const RootCause&) { return true; });
-  for (Finding& other :
-       Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
-                FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
-                FindUncertainSensors(solution, policy), FindUncheckedEdges(edges, solution),
-                FindUntestable(edges, solution, policy), FindUnrefined(estimates, captured_at),
-                FindUnseenMoves(estimates, policy, captured_at), FindUncheckedSensors(edges, solution)}))
+  for (Finding& other : Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
+                                 FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
+                                 FindUncertainSensors(solution, policy), FindFewCaptures(edges, policy),
+                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
+                                 FindUnrefined(estimates, captured_at), FindUnseenMoves(estimates, policy, captured_at),
+                                 FindUncheckedSensors(edges, solution)}))
     warnings.push_back(std::move(other));
   return warnings;
 }

@@ -110,7 +110,6 @@ Collected SmallOf(const std::vector<Edge>& edges, const GraphSolution& solution,
 Collected LargeEdges(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
   Collected large;
   for (const TestedEdge& one : TestEdges(edges, solution, policy)) {
-    if (one.ratio > 1.0) continue;
     const Vector6d off = OffByOthers(solution, one.edge->id).value_or(one.residual->e);
     const PoseLimit limit = LimitsOfEdge(policy, *one.edge).tolerance;
     if (IsBeyond(off, limit)) large.Add({PairDiffers(one.edge->frame_a, one.edge->frame_b), off, limit});
@@ -122,7 +121,7 @@ Collected LargeLoops(const GraphSolution& solution, const Policy& policy) {
   Collected large;
   for (const CycleResidual& loop : solution.cycles.worst) {
     const PoseLimit limit = LimitsOfLoop(policy, loop.sensors).tolerance;
-    if (loop.limit > 0.0 && !loop.fails() && IsBeyond(loop.e, limit)) large.Add({LoopIsOpen(loop), loop.e, limit});
+    if (loop.limit > 0.0 && IsBeyond(loop.e, limit)) large.Add({LoopIsOpen(loop), loop.e, limit});
   }
   return large;
 }
@@ -173,8 +172,8 @@ std::optional<Finding> FindLargeDisagreements(const std::vector<Edge>& edges, co
   if (large.Largest() == nullptr) large = LargeLoops(solution, policy);
   const Disagreement* largest = large.Largest();
   if (largest == nullptr) return std::nullopt;
-  return Finding{largest->what + OffText(largest->off) + large.AndMore() +
-                     ": it may be chance, but is more than the tolerance of " + LimitText(largest->limit),
+  return Finding{largest->what + OffText(largest->off) + large.AndMore() + ", more than the tolerance of " +
+                     LimitText(largest->limit),
                  "Capture these sensors again, nearer and from more places, until they agree"};
 }
 

@@ -132,6 +132,26 @@ std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures)
   return Finding{"the calibration of " + List(names) + " failed", cure};
 }
 
+std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy) {
+  if (!policy.captures_min) return std::nullopt;
+  std::map<std::pair<SensorId, SensorId>, std::int64_t> most;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood) continue;
+    const auto used =
+        std::count_if(edge.captures.begin(), edge.captures.end(), [](const auto& one) { return one.used; });
+    std::int64_t& known = most[PairOf(edge)];
+    known = std::max<std::int64_t>(known, edge.captures.empty() ? *policy.captures_min : used);
+  }
+  std::vector<std::string> names;
+  for (const auto& [pair, used] : most)
+    if (used < *policy.captures_min) names.push_back(pair.first.str() + " - " + pair.second.str());
+  if (names.empty()) return std::nullopt;
+  const std::string wanted = std::to_string(*policy.captures_min);
+  return Finding{
+      List(names) + (names.size() == 1 ? " was" : " were") + " measured from fewer than " + wanted + " captures",
+      "Take " + wanted + " captures or more of each pair"};
+}
+
 std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
   std::vector<std::pair<double, const SensorPose*>> uncertain;
   for (const SensorPose& pose : solution.poses) {

@@ -90,6 +90,8 @@ struct Contradiction {
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
 // Pairs that were measured before one of their sensors was remounted, and not since.
 [[nodiscard]] std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges);
+// Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many.
+[[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
 [[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges,

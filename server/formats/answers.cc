@@ -16,7 +16,7 @@ void WriteAge(JsonWriter& out, const std::optional<Stamp>& since, Stamp now) {
 
 void WriteValidity(JsonWriter& out, const Validity& validity) {
   WriteStamp(out, "calibrated_at", validity.calibrated_at);
-  WriteStamp(out, "valid_until", ValidUntil(validity.calibrated_at));
+  WriteStamp(out, "valid_until", ValidUntil(validity));
   out.Flag("overdue", validity.overdue);
   WriteUsable(out, validity.usable);
   out.Flag("calculating", validity.calculating);
@@ -239,18 +239,18 @@ std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vect
   });
 }
 
-std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
+std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns, Stamp now,
                      const std::optional<RobotId>& next) {
   const auto write_row = [&](JsonWriter& out, const RobotSummary& robot) {
     const std::optional<Stamp>& calibrated_at = robot.validity.calibrated_at;
     out.Text("robot", robot.robot.str());
     WriteStamp(out, "calibrated_at", calibrated_at);
     WriteAge(out, calibrated_at, now);
-    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns, now));
+    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns.value_or(robot.validity.max_age_ns), now));
     WriteVerdict(out, "verdict", robot.verdict);
   };
   return WriteObject([&](JsonWriter& out) {
-    out.Integer("max_age_ns", max_age_ns);
+    max_age_ns ? out.Integer("max_age_ns", *max_age_ns) : out.Null("max_age_ns");
     out.Text("now", ToIso(now));
     out.List("robots", [&] {
       for (const RobotSummary& robot : robots) out.Object([&] { write_row(out, robot); });

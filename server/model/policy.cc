@@ -12,13 +12,7 @@ void Overlay(const std::optional<T>& narrow, std::optional<T>& wide) {
 }
 
 void OverlayWords(const LimitWords& narrow, LimitWords& wide) {
-  Overlay(narrow.tolerance_m, wide.tolerance_m);
-  Overlay(narrow.tolerance_rad, wide.tolerance_rad);
-  Overlay(narrow.tolerance_px_at_10_m, wide.tolerance_px_at_10_m);
-  Overlay(narrow.moved_min_m, wide.moved_min_m);
-  Overlay(narrow.moved_min_rad, wide.moved_min_rad);
-  Overlay(narrow.unseen_move_m, wide.unseen_move_m);
-  Overlay(narrow.unseen_move_rad, wide.unseen_move_rad);
+  for (const LimitName& one : kLimitNames) Overlay(narrow.*one.value, wide.*one.value);
 }
 
 void Apply(const LimitWords& words, PoseLimits& limits) {

@@ -4,8 +4,8 @@
 // default. The same value is one document, and the sum of those for all robots, for a rig model and for one robot.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <span>
@@ -48,6 +48,23 @@ struct LimitWords {
   std::optional<double> tolerance_px_at_10_m = {};
   friend bool operator==(const LimitWords&, const LimitWords&) = default;
 };
+
+// The words by name: as people write them ("tolerance_mm") and as they are kept ("tolerance_m").
+struct LimitName {
+  const char *name = "", *written = "", *kept = "";  // the last two: units
+  double divisor = 1.0;                              // from what is written to what is kept
+  std::optional<double> LimitWords::*value = nullptr;
+  bool of_pairs = false;  // has a meaning for a pair, too
+};
+inline constexpr double kDegreesOfRadian = 57.29577951308232;
+inline constexpr std::array<LimitName, 7> kLimitNames = {
+    {{"tolerance", "mm", "m", 1000, &LimitWords::tolerance_m, true},
+     {"tolerance", "deg", "rad", kDegreesOfRadian, &LimitWords::tolerance_rad, true},
+     {"tolerance", "px_at_10_m", "px_at_10_m", 1, &LimitWords::tolerance_px_at_10_m, false},
+     {"moved_min", "mm", "m", 1000, &LimitWords::moved_min_m, true},
+     {"moved_min", "deg", "rad", kDegreesOfRadian, &LimitWords::moved_min_rad, true},
+     {"unseen_move", "mm", "m", 1000, &LimitWords::unseen_move_m, false},
+     {"unseen_move", "deg", "rad", kDegreesOfRadian, &LimitWords::unseen_move_rad, false}}};
 
 struct Policy {
   LimitWords all;                          // of all sensors

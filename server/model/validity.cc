@@ -9,9 +9,9 @@ bool IsUsable(const Verdict& verdict) {
   return verdict.level == VerdictLevel::kPass || verdict.level == VerdictLevel::kWarn;
 }
 
-std::optional<Stamp> ValidUntil(const std::optional<Stamp>& calibrated_at) {
-  if (!calibrated_at) return std::nullopt;
-  return Stamp{calibrated_at->ns + kDefaultMaxAge_ns};
+std::optional<Stamp> ValidUntil(const Validity& validity) {
+  if (!validity.calibrated_at) return std::nullopt;
+  return Stamp{validity.calibrated_at->ns + validity.max_age_ns};
 }
 
 bool IsOverdue(const std::optional<Stamp>& calibrated_at, std::int64_t max_age_ns, Stamp now) {

@@ -28,7 +28,7 @@ void FillBadge(Dictionary& row, VerdictLevel level) {
 }
 
 void FillOverdue(Dictionary& row, const Validity& validity) {
-  const auto valid_until = ValidUntil(validity.calibrated_at);
+  const auto valid_until = ValidUntil(validity);
   if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", OverdueText(valid_until));
   if (!valid_until) return;
   Dictionary* later = row.AddSectionDictionary("LATER");
@@ -40,7 +40,7 @@ namespace {
 
 void FillValidity(Dictionary& banner, const Verdict& verdict, const Validity& validity) {
   FillOverdue(banner, validity);
-  const auto valid_until = ValidUntil(validity.calibrated_at);
+  const auto valid_until = ValidUntil(validity);
   if (!IsUsable(verdict)) return ShowValue(banner, "KEEP", "TEXT", KeepText(validity.usable));
   if (valid_until && !validity.overdue) ShowValue(banner, "VALID", "TEXT", ValidText(*valid_until));
 }

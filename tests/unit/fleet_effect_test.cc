@@ -103,10 +103,7 @@ TEST(Effect, AndByAWarning) {
 
 TEST(Effect, WhatMayBeChanceButIsTooMuchIsNamedWithItsTolerance) {
   const Verdict verdict = OffBy(0.025, 0.0, 0.1).Judge();
-  EXPECT_EQ(
-      verdict.why,
-      "right and top differ by 25 mm and 0 deg: it may be chance, but is more than the tolerance of 5 mm and 0.29 "
-      "deg.");
+  EXPECT_EQ(verdict.why, "right and top differ by 25 mm and 0 deg, more than the tolerance of 5 mm and 0.29 deg.");
   EXPECT_EQ(verdict.what_to_do, "Capture these sensors again, nearer and from more places, until they agree.");
 }
 
@@ -132,6 +129,39 @@ TEST(Effect, TheLimitsOfThePairHold) {
   EXPECT_EQ(Assess(rig.edges, rig.solution, policy).level, VerdictLevel::kFail);
   policy.pairs[{SensorId("right"), SensorId("top")}].tolerance_m = 0.03;
   EXPECT_EQ(Assess(coarse.edges, coarse.solution, policy).level, VerdictLevel::kPass);
+}
+
+// However large a move the policy takes for none.
+TEST(Effect, WhatIsBeyondTheToleranceIsNoPass) {
+  const Rig rig = OffBy(0.008, 0.0, 4.0);
+  Policy policy;
+  policy.all.moved_min_m = 0.01;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, policy).level, VerdictLevel::kWarn);
+}
+
+TEST(Effect, AToleranceIsOfEachSensor) {
+  Rig rig;
+  rig.solution.poses[2].covariance(0, 0) = 1e-4;  // top: 10 mm
+  Policy policy;
+  policy.sensors[SensorId("top")].tolerance_m = 0.02;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, policy).level, VerdictLevel::kPass);
+  policy.sensors[SensorId("top")].tolerance_m = 0.008;
+  EXPECT_THAT(Assess(rig.edges, rig.solution, policy).why,
+              HasSubstr("The pose of top is known to 10 mm and 0.057 deg only (8 mm and 0.29 deg wanted)"));
+}
+
+TEST(Effect, APairOfFewCapturesWarnsWhereThePolicyWantsMore) {
+  Rig rig;
+  for (int k = 0; k < 9; ++k) rig.edges[0].captures.push_back({CaptureId("c" + std::to_string(k)), 0.2, k > 0, ""});
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  Policy policy;
+  policy.captures_min = 8;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, policy).level, VerdictLevel::kPass) << "as many as are wanted";
+  policy.captures_min = 9;
+  const Verdict verdict = Assess(rig.edges, rig.solution, policy);
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why, "left - right was measured from fewer than 9 captures.");
+  EXPECT_EQ(verdict.what_to_do, "Take 9 captures or more of each pair.");
 }
 
 TEST(Effect, SuspectsAndTwoPosesThatAreSmallAccuseNobody) {

@@ -10,6 +10,7 @@
 #include "storage/fleet_list.h"
 #include "storage/jobs.h"
 #include "storage/merged_edges.h"
+#include "storage/policies.h"
 #include "storage/query.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
@@ -119,6 +120,10 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
+  EXPECT_TRUE(LoadRigModel(store_, kRobot));
+  EXPECT_TRUE(LoadPolicyWatermark(store_));
+  for (const PolicyPlace& place : {PolicyPlace{}, PolicyPlace{PolicyScope::kRobot, kRobot.str()}})
+    EXPECT_TRUE(LoadPolicy(store_, place));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
@@ -147,6 +152,7 @@ TEST_F(QueryPlanTest, PartsOfTheFleetDoNotScan) {
   EXPECT_EQ(LoadNewestRevisions(store_, RobotId("b"), 1)->size(), 1u);
   EXPECT_TRUE(CountJobs(store_));
   EXPECT_TRUE(LoadWaitingSummaries(store_, 64)->empty());
+  EXPECT_TRUE(LoadRobotsToJudge(store_, RobotId("b"), 64)->empty());
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
