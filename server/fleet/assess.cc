@@ -6,6 +6,7 @@
 
 #include "server/fleet/cause_findings.h"
 #include "server/fleet/effect.h"
+#include "server/fleet/wording.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -83,6 +84,17 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   return suspects;
 }
 
+// Names the sensors that have no pose, where others have one beside the reference.
+Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution) {
+  std::set<SensorId> known, unknown;
+  for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
+  for (const Edge& edge : edges)
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (!known.contains(sensor)) unknown.insert(sensor);
+  if (known.size() > 1) verdict.unverified = List(std::vector<SensorId>(unknown.begin(), unknown.end()));
+  return verdict;
+}
+
 // Edges that do not agree, and loops of them that do not close.
 std::vector<Finding> FindAccusations(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                                      const SessionTimes& captured_at) {
@@ -154,7 +166,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
-    return say(VerdictLevel::kUnknown, unknown);
+    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));

@@ -4,6 +4,7 @@
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
+#include "server/model/drive_rule.h"
 
 namespace rigcal::formats {
 namespace {
@@ -23,12 +24,21 @@ void WriteValidity(JsonWriter& out, const Validity& validity) {
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
 }
 
+void WriteDrive(JsonWriter& out, const Verdict& verdict, const Validity& validity) {
+  const DriveRule drive = DriveRuleOf(verdict, validity);
+  out.Object("drive", [&] {
+    out.Text("rule", drive.rule);
+    WriteStamp(out, "until", drive.until);
+  });
+}
+
 void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
   out.Object([&] {
     out.Text("robot", robot.robot.str());
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
     WriteValidity(out, robot.validity);
+    WriteDrive(out, robot.verdict, robot.validity);
     WriteAge(out, robot.validity.calibrated_at, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
@@ -148,6 +158,7 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
+    WriteDrive(out, revision.verdict, validity);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     out.Null("document");
@@ -183,6 +194,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteSigmas(out, answer.covariance);
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
+    WriteDrive(out, answer.verdict, answer.validity);
   });
 }
 

@@ -26,8 +26,6 @@ std::string DayText(Stamp stamp) {
          " " + std::to_string(static_cast<int>(date.year()));
 }
 
-std::string ValidText(Stamp valid_until) { return "Valid until " + DayText(valid_until) + "."; }
-
 std::string OverdueText(const std::optional<Stamp>& valid_until) {
   if (!valid_until) return "Overdue: nothing of this robot is calibrated. Calibrate it before it is relied on.";
   return "Overdue since " + DayText(*valid_until) + ". Calibrate the robot again before it is relied on.";

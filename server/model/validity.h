@@ -36,7 +36,6 @@ struct Validity {
 
 // For people: "31 Jan 2026", in UTC; and sentences.
 [[nodiscard]] std::string DayText(Stamp stamp);
-[[nodiscard]] std::string ValidText(Stamp valid_until);
 [[nodiscard]] std::string OverdueText(const std::optional<Stamp>& valid_until);
 // Of a revision that is neither pass nor warn.
 [[nodiscard]] std::string KeepText(const std::optional<UsableRevision>& usable);

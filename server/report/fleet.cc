@@ -51,7 +51,8 @@ void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
 
 void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
-  FillOverdue(row, robot.validity);
+  FillOverdue(row, robot.verdict, robot.validity);
+  FillDrive(row, robot.verdict, robot.validity);
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
   if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())

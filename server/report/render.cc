@@ -77,7 +77,9 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   const auto edges = InOrder(input.revision, input.detailed_in);
   Dictionary page("revision");
   FillTitle(page, input);
-  FillBanner(page, input.revision.verdict, {input.calibrated_at, false, input.usable, false});
+  Validity validity{input.calibrated_at, false, input.usable, false};
+  validity.max_age_ns = input.max_age_ns;
+  FillBanner(page, input.revision.verdict, validity);
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges);
   FillChanges(page, input);

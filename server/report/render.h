@@ -58,6 +58,7 @@ struct ReportInput {
   std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured
+  std::int64_t max_age_ns = kDefaultMaxAge_ns;  // how old that may become
   std::optional<UsableRevision> usable;  // what to use where this one is not to be used
   std::optional<SigmaLimits> sigma_limits;
 };
