@@ -57,6 +57,8 @@ struct PolicyAnswer {
 [[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
 // verb set_policy: how many robots wait to be judged anew by it.
 [[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
+// Of `rigcal policy check`: a file alone.
+[[nodiscard]] std::string WritePolicyCheck(const std::string& file, const Policy& policy);
 
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,

@@ -50,9 +50,19 @@ std::string WritePolicy(const PolicyAnswer& answer) {
 
 std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting) {
   return WriteObject([&](JsonWriter& out) {
+    const bool of_robot = set.place.scope == PolicyScope::kRobot;
+    of_robot ? out.Text("robot", set.place.subject) : out.Null("robot");
     out.Object("set", [&] { WritePolicyVersion(out, set); });
     out.Integer("robots_waiting", robots_waiting);
-    out.Flag("revision_follows", set.place.scope == PolicyScope::kRobot && robots_waiting > 0);
+    out.Flag("revision_follows", of_robot && robots_waiting > 0);
+  });
+}
+
+std::string WritePolicyCheck(const std::string& file, const Policy& policy) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("file", file);
+    out.Object("limits", [&] { WriteLimitsInForce(out, policy); });
+    out.Object("policy", [&] { WritePolicyMembers(out, {policy, "", 0, 0, 0, 0}); });
   });
 }
 

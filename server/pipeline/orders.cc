@@ -84,12 +84,6 @@ Result<OrderDone> RetireOne(storage::Store& store, const Clock& clock, const Par
   return OrderDone{edge->robot, formats::WriteRetired(*edge, retired)};
 }
 
-Result<OrderDone> SetAPolicy(storage::Store& store, const Clock& clock, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const Word word, WordOf(parameters, clock));
-  RIGCAL_TRY(RequiredText(parameters, "reason", "Say why these limits."));
-  return SetPolicy(store, parameters, word);
-}
-
 }  // namespace
 
 bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "retire" || verb == "set_policy"; }
@@ -97,7 +91,7 @@ bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "ret
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
-  if (verb == "set_policy") return SetAPolicy(store, clock, parameters);
+  if (verb == "set_policy") return SetPolicy(store, clock, parameters);
   return verb == "retire" ? RetireOne(store, clock, parameters) : Restore(store, clock, parameters);
 }
 

@@ -63,6 +63,12 @@ bool SaysPixels(const Policy& policy) {
                      [](const auto& one) { return one.second.tolerance_px_at_10_m.has_value(); });
 }
 
+Result<std::string> WordNamed(const Parameters& parameters, const std::string& name, const std::string& cure) {
+  const auto text = parameters.Text(name);
+  if (text && text->find_first_not_of(' ') != std::string::npos) return *text;
+  return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", cure);
+}
+
 // A rig model is named freely, in one line.
 Result<PolicyPlace> ModelNamed(const std::string& model) {
   constexpr std::size_t kModelBytesMax = 1024;
@@ -107,7 +113,10 @@ Result<std::string> TellPolicy(storage::Store& store, const Parameters& paramete
   return formats::WritePolicy({place, holding.in_force, holding.set});
 }
 
-Result<OrderDone> SetPolicy(storage::Store& store, const Parameters& parameters, const Word& word) {
+Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock, const Parameters& parameters) {
+  Word word{clock.Now(), "", ""};
+  RIGCAL_ASSIGN(word.who, WordNamed(parameters, "who", "Say who sets it."));
+  RIGCAL_ASSIGN(word.reason, WordNamed(parameters, "reason", "Say why these limits."));
   RIGCAL_ASSIGN(const PolicyPlace place, PlaceAsked(store, parameters));
   const std::string text = parameters.Text("text").value_or("");
   RIGCAL_TRY(formats::ReadPolicy(text, "the policy of " + TextOf(place)));

@@ -26,9 +26,9 @@ void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
 // Verb policy: `robot`, or `model`, or neither for the fleet: what holds, and who set it.
 [[nodiscard]] Result<std::string> TellPolicy(storage::Store& store, const formats::Parameters& parameters);
 
-// Order set_policy: `text` (YAML), `reason`, and `robot`, or `model`, or neither for the fleet. The robots that it is
-// for wait to be judged anew.
-[[nodiscard]] Result<OrderDone> SetPolicy(storage::Store& store, const formats::Parameters& parameters,
-                                          const Word& word);
+// Order set_policy: `text` (YAML), `who`, `reason`, and `robot`, or `model`, or neither for the fleet. The robots that
+// it is for wait to be judged anew.
+[[nodiscard]] Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock,
+                                          const formats::Parameters& parameters);
 
 }  // namespace rigcal::pipeline
