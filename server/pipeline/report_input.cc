@@ -117,7 +117,6 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
-  input.sigma_limits = report::SigmaLimits{kDefaultTolerance.m, kDefaultTolerance.rad};
   TakeCameras(store, input);
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
   return input;

@@ -107,10 +107,8 @@ Figure WorstSensorFigure(const formats::RevisionInput& revision) {
   if (!worst) return {"Worst sensor", "none known", "warn", {counts}};
   const Vector6d sigma = worst->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   std::string limit_mm, limit_deg;
-  if (revision.policy) {
-    const PoseLimit limit = LimitsOf(revision.policy->policy, worst->sensor).tolerance;
-    limit_mm = " (limit " + SigmaMm(limit.m) + " mm)", limit_deg = " (limit " + SigmaDeg(limit.rad) + " deg)";
-  }
+  if (const auto limit = ToleranceOf(revision, worst->sensor))
+    limit_mm = " (limit " + SigmaMm(limit->m) + " mm)", limit_deg = " (limit " + SigmaDeg(limit->rad) + " deg)";
   return {"Worst sensor",
           worst->sensor.str(),
           "",

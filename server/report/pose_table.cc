@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/report/sigmas.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 #include "server/report/unknown.h"
@@ -15,9 +16,8 @@ std::string SigmaText(const Matrix6d& covariance, int axis) {
 
 // What the sigmas are held against; of before policies nobody kept it.
 std::string LimitOf(const formats::RevisionInput& revision, const SensorId& sensor) {
-  if (!revision.policy) return "";
-  const PoseLimit limit = LimitsOf(revision.policy->policy, sensor).tolerance;
-  return SigmaMm(limit.m) + " mm, " + SigmaDeg(limit.rad) + " deg";
+  const auto limit = ToleranceOf(revision, sensor);
+  return limit ? SigmaMm(limit->m) + " mm, " + SigmaDeg(limit->rad) + " deg" : "";
 }
 
 void FillKnown(Dictionary& row, const SensorPose& pose, bool is_reference, const std::string& limit) {

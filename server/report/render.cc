@@ -77,9 +77,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   const auto edges = InOrder(input.revision, input.detailed_in);
   Dictionary page("revision");
   FillTitle(page, input);
-  Validity validity{input.calibrated_at, false, input.usable, false};
-  validity.max_age_ns = input.max_age_ns;
-  FillBanner(page, input.revision.verdict, validity);
+  FillBanner(page, input.revision.verdict, ValidityOf(input));
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges);
   FillChanges(page, input);
@@ -100,6 +98,12 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
                                             {"edges.csv", EdgeCsv(input, edges)},
                                             {"data.js", PageData(input, edges)},
                                             {"style.css", StyleSheet()}};
+}
+
+Validity ValidityOf(const ReportInput& input) {
+  Validity validity{input.calibrated_at, false, input.usable, false};
+  validity.max_age_ns = input.max_age_ns;
+  return validity;
 }
 
 std::string StyleSheet() { return std::string(embedded::kstyle_css) + std::string(embedded::kreport_css); }
