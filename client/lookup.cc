@@ -26,6 +26,7 @@ void PrintLookup(const Document& document, std::ostream& out) {
   out << "sigma deg  " << Triple(document["sigma_rad"], kDegPerRad, 5) << "  (about x y z of " << b << ")\n";
   out << "covariance (x y z rx ry rz of " << b << "; m, rad; T * Exp(xi))\n";
   PrintMatrix(document["covariance"], " ", out);
+  PrintDrive(document, out);
   PrintVerdict(document["verdict"], document, out);
 }
 

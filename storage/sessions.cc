@@ -86,6 +86,11 @@ void InsertListed(Store& store, std::int64_t session_number) {
         "json_each(session.manifest, '$.remounted') AS sensor WHERE number = ?")
       .Bind(session_number)
       .Run();
+  Query(store,
+        "INSERT INTO session_model SELECT robot_id, captured_ns, number, json_extract(manifest, '$.rig_model') "
+        "FROM session WHERE number = ? AND json_extract(manifest, '$.rig_model') <> ''")
+      .Bind(session_number)
+      .Run();
 }
 
 void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {

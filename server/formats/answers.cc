@@ -4,6 +4,7 @@
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
+#include "server/model/drive_rule.h"
 
 namespace rigcal::formats {
 namespace {
@@ -16,11 +17,19 @@ void WriteAge(JsonWriter& out, const std::optional<Stamp>& since, Stamp now) {
 
 void WriteValidity(JsonWriter& out, const Validity& validity) {
   WriteStamp(out, "calibrated_at", validity.calibrated_at);
-  WriteStamp(out, "valid_until", ValidUntil(validity.calibrated_at));
+  WriteStamp(out, "valid_until", ValidUntil(validity));
   out.Flag("overdue", validity.overdue);
   WriteUsable(out, validity.usable);
   out.Flag("calculating", validity.calculating);
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
+}
+
+void WriteDrive(JsonWriter& out, const Verdict& verdict, const Validity& validity) {
+  const DriveRule drive = DriveRuleOf(verdict, validity);
+  out.Object("drive", [&] {
+    out.Text("rule", drive.rule);
+    WriteStamp(out, "until", drive.until);
+  });
 }
 
 void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
@@ -29,6 +38,7 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
     WriteValidity(out, robot.validity);
+    WriteDrive(out, robot.verdict, robot.validity);
     WriteAge(out, robot.validity.calibrated_at, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
@@ -148,6 +158,7 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
+    WriteDrive(out, revision.verdict, validity);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     out.Null("document");
@@ -183,6 +194,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteSigmas(out, answer.covariance);
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
+    WriteDrive(out, answer.verdict, answer.validity);
   });
 }
 
@@ -239,18 +251,18 @@ std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vect
   });
 }
 
-std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
+std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns, Stamp now,
                      const std::optional<RobotId>& next) {
   const auto write_row = [&](JsonWriter& out, const RobotSummary& robot) {
     const std::optional<Stamp>& calibrated_at = robot.validity.calibrated_at;
     out.Text("robot", robot.robot.str());
     WriteStamp(out, "calibrated_at", calibrated_at);
     WriteAge(out, calibrated_at, now);
-    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns, now));
+    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns.value_or(robot.validity.max_age_ns), now));
     WriteVerdict(out, "verdict", robot.verdict);
   };
   return WriteObject([&](JsonWriter& out) {
-    out.Integer("max_age_ns", max_age_ns);
+    max_age_ns ? out.Integer("max_age_ns", *max_age_ns) : out.Null("max_age_ns");
     out.Text("now", ToIso(now));
     out.List("robots", [&] {
       for (const RobotSummary& robot : robots) out.Object([&] { write_row(out, robot); });

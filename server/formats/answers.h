@@ -11,6 +11,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
 #include "server/model/validity.h"
@@ -46,6 +47,18 @@ struct SessionAnswer {
 [[nodiscard]] std::string WriteRestored(const SessionAnswer& session, bool has_edges);
 // verb retire: the edge as it is shown from now on.
 [[nodiscard]] std::string WriteRetired(const Edge& edge, const Standing& retired);
+
+// verb policy: what holds, and who set it, the widest first.
+struct PolicyAnswer {
+  PolicyPlace place;
+  PolicyInForce in_force;
+  std::vector<PolicyVersion> set;
+};
+[[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
+// verb set_policy: how many robots wait to be judged anew by it.
+[[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
+// Of `rigcal policy check`: a file alone.
+[[nodiscard]] std::string WritePolicyCheck(const std::string& file, const Policy& policy);
 
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
@@ -104,9 +117,10 @@ struct LiveAnswer {
 // verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
 [[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
 
-// verb due: every robot, or a part of them; overdue = older than max_age_ns, or never calibrated.
-[[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
-                                   const std::optional<RobotId>& next = std::nullopt);
+// verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
+// calibrated.
+[[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns,
+                                   Stamp now, const std::optional<RobotId>& next = std::nullopt);
 
 // A payload that the server's disk has not kept, and that was not sent again yet.
 struct LostFileAnswer {

@@ -8,6 +8,7 @@
 #include "server/formats/edge_reference.h"
 #include "server/formats/insight_fields.h"
 #include "server/formats/json_values.h"
+#include "server/formats/policy_fields.h"
 #include "server/formats/suspects_fields.h"
 
 namespace rigcal::formats {
@@ -96,10 +97,19 @@ void WriteBasis(JsonWriter& out, const std::vector<Vector6d>& basis) {
   });
 }
 
-void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
+// What its sigmas are held against.
+void WriteTolerance(JsonWriter& out, const SensorId& sensor, const std::optional<PolicyInForce>& policy) {
+  if (!policy) return;
+  const PoseLimit tolerance = LimitsOf(policy->policy, sensor).tolerance;
+  out.Number("tolerance_m", tolerance.m);
+  out.Number("tolerance_rad", tolerance.rad);
+}
+
+void WriteSensorPose(JsonWriter& out, const SensorPose& pose, const std::optional<PolicyInForce>& policy) {
   out.Object([&] {
     out.Text("id", pose.sensor.str());
     out.Flag("known", pose.known);
+    WriteTolerance(out, pose.sensor, policy);
     if (pose.known) {
       WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
       WriteMatrix(out, "covariance", pose.covariance);
@@ -158,7 +168,8 @@ void WriteRevisionEdges(JsonWriter& out, const RevisionInput& input, int format)
   });
 }
 
-void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
+void WriteSolution(JsonWriter& out, const RevisionInput& input) {
+  const GraphSolution& solution = input.solution;
   out.Flag("converged", solution.converged);
   out.Integer("iterations", solution.iterations);
   out.Number("cost", solution.cost);
@@ -166,7 +177,7 @@ void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
   WriteGlobalErrors(out, solution.before, solution.after);
   WriteDiagnoses(out, "diagnoses", solution.diagnoses);
   out.List("sensors", [&] {
-    for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose);
+    for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose, input.policy);
   });
   WriteSuspects(out, "suspects", solution.suspects);
   WriteInfluenceState(out, "influence", solution.influences);
@@ -214,7 +225,8 @@ std::string WriteInFormat(const RevisionInput& input, int format) {
     input.reference.empty() ? out.Null("reference") : out.Text("reference", input.reference.str());
     WriteVerdict(out, "verdict", input.verdict);
     WriteCauses(out, input.causes);
-    WriteSolution(out, input.solution);
+    if (input.policy) out.Object("policy", [&] { WritePolicyMembers(out, *input.policy); });
+    WriteSolution(out, input);
     WriteRevisionEdges(out, input, format);
   });
 }
@@ -246,6 +258,7 @@ Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
   if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
   input.verdict = ReadVerdict(root.At("verdict"));
   input.causes = ReadCauses(root);
+  if (const auto policy = root.Find("policy")) input.policy = ReadPolicyMembers(*policy);
   input.solution = ReadSolution(root);
   ReadRevisionEdges(root.At("edges"), input);
   RIGCAL_TRY(document.status());

@@ -13,6 +13,7 @@
 #include "server/model/edge.h"
 #include "server/model/insight.h"
 #include "server/model/suspects.h"
+#include "server/model/validity.h"
 
 namespace rigcal {
 
@@ -134,6 +135,8 @@ struct Revision {
   std::int64_t edge_watermark = 0;      // the store's row number of the newest edge that it contains
   std::int64_t standing_watermark = 0;  // likewise, of the robot's newest standing that it counts
   std::optional<Stamp> calibrated_at = {};  // newest capture of its good edges (of pushed ones: stored); absent: none
+  // By what it was judged: the number of the newest policy of all (policy_version.h), and the age that it allows.
+  std::int64_t policy_watermark = 0, max_age_ns = kDefaultMaxAge_ns;
 };
 
 }  // namespace rigcal

@@ -14,6 +14,7 @@
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/names.h"
+#include "server/pipeline/policies.h"
 #include "server/pipeline/report_files.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
@@ -185,6 +186,10 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   return formats::WriteStatus(answer, now);
 }
 
+Result<std::string> TellPolicyAsked(const AnswerContext& context, const Parameters& parameters) {
+  return TellPolicy(context.store, parameters);
+}
+
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   if (!robot.empty()) RIGCAL_TRY(KnownRobot(context.store, parameters));
@@ -213,11 +218,12 @@ Result<std::string> FileOfReport(const AnswerContext& context, const Parameters&
 }
 
 Result<std::string> Due(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", kDefaultMaxAge_ns));
+  RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", 0));
   if (max_age_ns < 0)
     return Fail(ErrorCode::kInvalidInput, "the parameter 'max_age_ns' is negative", "Give an age such as 90d.");
   RIGCAL_ASSIGN(const RobotList list, LoadRobotList(context.store, context.clock, parameters));
-  return formats::WriteDue(list.robots, max_age_ns, context.clock.Now(), list.next);
+  const auto asked = parameters.Text("max_age_ns") ? std::optional(max_age_ns) : std::nullopt;
+  return formats::WriteDue(list.robots, asked, context.clock.Now(), list.next);
 }
 
 Status TakeLostFiles(storage::Store& store, formats::HealthAnswer& answer) {
@@ -250,6 +256,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"sensor_names", TellSensorNames},
       {"known_robot", TellKnownRobot},
       {"status", OfStatus},
+      {"policy", TellPolicyAsked},
       {"due", Due},
       {"health", Health},
       {"live", Live},

@@ -4,6 +4,7 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/policies.h"
 #include "server/pipeline/robot_rows.h"
 #include "storage/edges.h"
 #include "storage/standing.h"
@@ -85,11 +86,12 @@ Result<OrderDone> RetireOne(storage::Store& store, const Clock& clock, const Par
 
 }  // namespace
 
-bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "retire"; }
+bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "retire" || verb == "set_policy"; }
 
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
+  if (verb == "set_policy") return SetPolicy(store, clock, parameters);
   return verb == "retire" ? RetireOne(store, clock, parameters) : Restore(store, clock, parameters);
 }
 

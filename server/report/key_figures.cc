@@ -106,11 +106,14 @@ Figure WorstSensorFigure(const formats::RevisionInput& revision) {
   const SensorPose* worst = LeastCertain(revision);
   if (!worst) return {"Worst sensor", "none known", "warn", {counts}};
   const Vector6d sigma = worst->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  std::string limit_mm, limit_deg;
+  if (const auto limit = ToleranceOf(revision, worst->sensor))
+    limit_mm = " (limit " + SigmaMm(limit->m) + " mm)", limit_deg = " (limit " + SigmaDeg(limit->rad) + " deg)";
   return {"Worst sensor",
           worst->sensor.str(),
           "",
-          {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm, \xC2\xB1 " + SigmaDeg(sigma.tail<3>().maxCoeff()) +
-               " deg (1 \xCF\x83)",
+          {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm" + limit_mm + ", \xC2\xB1 " +
+               SigmaDeg(sigma.tail<3>().maxCoeff()) + " deg" + limit_deg + " (1 \xCF\x83)",
            counts}};
 }
 

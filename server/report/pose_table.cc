@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/report/sigmas.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 #include "server/report/unknown.h"
@@ -13,7 +14,13 @@ std::string SigmaText(const Matrix6d& covariance, int axis) {
   return axis < tangent::kRotation ? SigmaMm(std::sqrt(variance)) : SigmaDeg(std::sqrt(variance));
 }
 
-void FillKnown(Dictionary& row, const SensorPose& pose, bool is_reference) {
+// What the sigmas are held against; of before policies nobody kept it.
+std::string LimitOf(const formats::RevisionInput& revision, const SensorId& sensor) {
+  const auto limit = ToleranceOf(revision, sensor);
+  return limit ? SigmaMm(limit->m) + " mm, " + SigmaDeg(limit->rad) + " deg" : "";
+}
+
+void FillKnown(Dictionary& row, const SensorPose& pose, bool is_reference, const std::string& limit) {
   Dictionary* known = row.AddSectionDictionary("KNOWN");
   const Eigen::Vector3d& p = pose.T_ref_sensor.p_m;
   const RollPitchYaw angles = RollPitchYawOf(pose.T_ref_sensor.q);
@@ -24,6 +31,7 @@ void FillKnown(Dictionary& row, const SensorPose& pose, bool is_reference) {
   known->SetValue("PITCH", Deg(angles.pitch));
   known->SetValue("YAW", Deg(angles.yaw));
   if (is_reference) return known->ShowSection("FIXED");
+  known->SetValue("LIMIT", limit);
   for (int axis = 0; axis < 6; ++axis) ShowValue(*known, "SIGMA", "VALUE", SigmaText(pose.covariance, axis));
 }
 
@@ -36,7 +44,7 @@ void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
     Dictionary* row = page.AddSectionDictionary("POSE");
     row->SetValue("SENSOR", poses[i].sensor.str());
     if (poses[i].known)
-      FillKnown(*row, poses[i], poses[i].sensor == revision.reference);
+      FillKnown(*row, poses[i], poses[i].sensor == revision.reference, LimitOf(revision, poses[i].sensor));
     else
       ShowValue(*row, "UNKNOWN", "WHY", why.at(poses[i].sensor));
   }

@@ -72,6 +72,7 @@ TEST(Assess, SensorsThatNoGoodEdgeTiesAreNamed) {
   EXPECT_EQ(one.level, VerdictLevel::kUnknown);
   EXPECT_EQ(one.why, "The pose of lidar is not known: no good edge ties it to left.");
   EXPECT_EQ(one.what_to_do, "Capture lidar together with sensors that are known.");
+  EXPECT_EQ(one.unverified, "lidar");
   rig.edges.push_back(FailedEdge('e', "arm", "lidar"));
   rig.solution.poses.push_back(PoseOf("arm", false));
   EXPECT_THAT(rig.Judge().why, HasSubstr("The poses of lidar and arm are not known: no good edge ties them"));
@@ -105,6 +106,7 @@ TEST(Assess, AnUnsettledGraphIsUnknown) {
 TEST(Assess, NothingOrOnlyFailuresIsUnknown) {
   EXPECT_EQ(Assess({}, {}).level, VerdictLevel::kUnknown);
   EXPECT_THAT(Assess({}, {}).why, HasSubstr("Nothing has been calibrated yet"));
+  EXPECT_EQ(Assess({}, {}).unverified, "") << "all of it";
   EXPECT_THAT(Assess({FailedEdge('a', "left", "right")}, {}).why, HasSubstr("Every calibration failed"));
 }
 

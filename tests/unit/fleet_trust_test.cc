@@ -117,7 +117,7 @@ TEST(Trust, AnOpenLoopOfEstimatedEdgesIsNamedByItsOwnTest) {
   EXPECT_THAT(chain.Judge().what_to_do, HasSubstr("`rigcal push FOLDER --remounted SENSOR` of the later one"));
   chain.solution.cycles.worst = {Loop(39.0, 40.0)};
   chain.solution.cycles.failing = 0;
-  EXPECT_EQ(chain.Judge().level, VerdictLevel::kPass);
+  EXPECT_EQ(chain.Judge().level, VerdictLevel::kWarn) << "10 mm and 2 deg, though it may be chance";
 }
 
 TEST(Trust, ASensorOnASingleEdgeIsUnchecked) {
