@@ -44,22 +44,22 @@ Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings, co
   return verdict;
 }
 
-// Claims no more agreement than was tested. `remarks`: what is told though it decides nothing.
+// Claims no more agreement than was tested. `remarks`: what is told though it decides nothing, first, as it is news.
 Verdict Pass(const std::string& untested, const std::string& remarks, const std::string& noticed) {
-  std::string why = "Every sensor is known well enough";
+  std::string why = remarks + "Every sensor is known well enough";
   if (remarks.empty())
     why += untested.empty() ? " and the edges agree with each other"
                             : " and each edge passes its own test against the others; " + untested;
-  why += "." + remarks;
+  why += ".";
   if (!noticed.empty()) why += " " + noticed;
   return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
 }
 
-// A sentence each, after others.
+// A sentence each, with a blank behind it.
 std::string Remarks(std::initializer_list<std::string> texts, const std::set<std::string>& names) {
   std::string remarks;
   for (const std::string& text : texts)
-    if (!text.empty()) remarks += " " + Capitalised(text, names) + ".";
+    if (!text.empty()) remarks += Capitalised(text, names) + ". ";
   return remarks;
 }
 
@@ -170,11 +170,14 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
-  const std::string remarks =
-      Remarks({SmallDisagreements(edges, judged, policy), SmallMoves(estimates, solution, policy, captured_at)}, names);
-  if (warnings.empty()) return Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution));
-  Verdict verdict = say(VerdictLevel::kWarn, warnings);
-  verdict.why += remarks;
+  const auto held_back = FindHeldBack(solution);
+  const std::string remarks = Remarks({held_back ? held_back->why : "", SmallDisagreements(edges, judged, policy),
+                                       SmallMoves(estimates, solution, policy, captured_at)},
+                                      names);
+  Verdict verdict = warnings.empty() ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
+                                     : say(VerdictLevel::kWarn, warnings);
+  if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
+  if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
   return verdict;
 }
 

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "server/fleet/findings.h"
 #include "server/fleet/wording.h"
@@ -94,6 +96,26 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
   finding.what_to_do = "Was " + List(names) + " moved after " + NameOfSession(first.last_before, captured_at) +
                        "? Yes: `rigcal push FOLDER --remounted " + flags + "` of the session of " +
                        NameOfSession(first.first_after, captured_at) + ". No: tighten the mount, capture again";
+  return finding;
+}
+
+std::optional<Finding> FindHeldBack(const GraphSolution& solution) {
+  const FusedSessions& fused = solution.fused;
+  std::map<std::pair<SensorId, SensorId>, std::vector<std::string>> captures;
+  std::set<SensorId> sensors;
+  for (const FusedSessions::HeldBack& look : fused.held_back) {
+    if (fused.sessions.empty() || look.session != fused.sessions.front()) continue;
+    captures[{look.sensor, look.against}].push_back(look.capture.str());
+    sensors.insert(look.sensor);
+  }
+  if (captures.empty()) return std::nullopt;
+  Finding finding;
+  for (const auto& [who, names] : captures)
+    finding.why += (finding.why.empty() ? "" : "; ") + std::string("what ") + who.first.str() + " saw in capture " +
+                   List(names) + " contradicts " + (who.second.empty() ? "the rest" : who.second.str()) +
+                   " and was left out";
+  const std::vector<SensorId> all(sensors.begin(), sensors.end());
+  finding.what_to_do = "Check that " + List(all) + " and the others take their pictures at the same moment";
   return finding;
 }
 

@@ -172,6 +172,21 @@ TEST(Trust, EdgesWhoseErrorsAreAllSharedAreUnchecked) {
   EXPECT_THAT(verdict.why, HasSubstr("Nothing checks left - right, right - top and left - top"));
 }
 
+TEST(Trust, AHeldBackPictureIsToldFirstAndDecidesNothing) {
+  Chain chain = Triangle(39, 0.0005);
+  const SessionId newest(std::string(64, '2')), older(std::string(64, '1'));
+  chain.solution.fused.sessions = {newest, older};
+  chain.solution.fused.held_back = {{older, SensorId("right"), CaptureId("03")}};
+  EXPECT_THAT(chain.Judge().why, Not(HasSubstr("left out"))) << "of an older session it is no news";
+  chain.solution.fused.held_back.push_back({newest, SensorId("left"), CaptureId("07")});
+  const Verdict verdict = chain.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_EQ(verdict.why,
+            "What left saw in capture 07 contradicts the rest and was left out. Every sensor is known well enough.");
+  EXPECT_EQ(verdict.what_to_do,
+            "Check that left and the others take their pictures at the same moment; calibrate again when it is due.");
+}
+
 TEST(Trust, OnlyWhatWasTestedIsClaimed) {
   Chain chain = Triangle(39, 0.0005);
   EXPECT_THAT(chain.Judge().why, HasSubstr("the edges agree with each other."));
