@@ -14,18 +14,30 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kAlongAxis = 0.98480775301220802;  // the cosine of 10 degrees
-constexpr double kNothing = 1e-3;                   // m per rad or m, and the other way round
+// What goes with an open turn or shift and is next to nothing: a sensor 1 mm beside the axis; what noise makes of a level
+// floor, on which the height of a sensor is open.
+constexpr double kShiftPerTurn_m = 1e-3, kTurnPerShift_rad = 1e-2;
+constexpr double kSameLine = 1e-3;
 constexpr std::array<const char*, 6> kAxisNames = {"forward", "sideways", "height", "roll", "pitch", "yaw"};
 constexpr std::array<const char*, 6> kFrameAxes = {"x", "y", "z", "rx", "ry", "rz"};
+
+// The shift (turn) of an open direction; nothing where there is none to speak of.
+std::optional<Vector3d> LineOf(const Vector6d& direction, int start) {
+  const bool turn = start == tangent::kRotation;
+  const Vector3d part = direction.segment<3>(start), other = direction.segment<3>(turn ? tangent::kTranslation : tangent::kRotation);
+  const double size = part.norm(), least = (turn ? kTurnPerShift_rad : kShiftPerTurn_m) * other.norm();
+  if (!(size > least) || !std::isfinite(size)) return std::nullopt;
+  return part.normalized();
+}
 
 // On what the shifts (turns) among the open directions span, in the frame of the pose.
 Matrix3d ProjectorOnOpen(const std::vector<Vector6d>& open, int start, const Matrix3d& R_frame_sensor) {
   Matrix3d P = Matrix3d::Zero();
   for (const Vector6d& direction : open) {
-    const Vector3d part = direction.segment<3>(start);
-    if (const double size = part.norm(); !(size > kNothing) || !std::isfinite(size)) continue;
-    const Vector3d line = R_frame_sensor * part.normalized(), rest = line - P * line;
-    if (rest.norm() > kNothing) P += rest.normalized() * rest.normalized().transpose();
+    const auto in_sensor = LineOf(direction, start);
+    if (!in_sensor) continue;
+    const Vector3d line = R_frame_sensor * *in_sensor, rest = line - P * line;
+    if (rest.norm() > kSameLine) P += rest.normalized() * rest.normalized().transpose();
   }
   return P;
 }

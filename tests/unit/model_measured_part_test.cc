@@ -116,6 +116,15 @@ TEST(AxesOf, AShiftThatIsOpenTogetherWithATurnMakesBothOpen) {
   EXPECT_NEAR(axes[1].sigma_m.value(), 0.001, 1e-9);
 }
 
+// What noise couples with a height is no turn, whichever of its numbers is 1.
+TEST(AxesOf, NextToNothingBesideAShiftIsNoTurn) {
+  const Vector6d noisy = Along(0.052, 0.035, 1, 2e-3, 1e-3, -3e-3);
+  for (const Vector6d& direction : {noisy, Vector6d(noisy / 3e-3)}) EXPECT_THAT(Open(Told({direction})), ElementsAre("height"));
+  EXPECT_THAT(Open(Told({Along(0, 0, 1, 0, 0, 0.02)})), ElementsAre("height", "yaw"));
+  EXPECT_THAT(Open(Told({Along(0, 5e-4, 0, 0, 0, 1)})), ElementsAre("yaw"));
+  EXPECT_THAT(Open(Told({Along(0, 2e-3, 0, 0, 0, 1)})), ElementsAre("sideways", "yaw"));
+}
+
 TEST(AxesOf, WithoutTheRobotsAxesThoseOfTheFrameHaveTheirNames) {
   const std::vector<AxisResult> axes = AxesOf({}, CovarianceWithout({Along(0, 0, 1)}), {Along(0, 0, 1)}, std::nullopt);
   std::vector<std::string> names;

@@ -83,7 +83,8 @@ TEST_F(MeasuredPartTest, ALookupWithAnOpenDirectionIsNoWholeAnswer) {
   const json part = open["measured_part"];
   EXPECT_THAT(NotMeasured(part), testing::ElementsAre("height"));
   EXPECT_NEAR(part["axes"][0]["position_m"].get<double>(), 1.5, 1e-9);
-  EXPECT_NEAR(part["axes"][0]["sigma_m"].get<double>(), std::sqrt(3e-6), 1e-9);
+  // Three edges, and how front is pitched over the 0.7 m up to rear.
+  EXPECT_NEAR(part["axes"][0]["sigma_m"].get<double>(), std::sqrt(3e-6 + 0.49e-6), 1e-9);
   EXPECT_NEAR(part["covariance"][2][2].get<double>(), 0.0, 1e-18);
 }
 
