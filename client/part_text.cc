@@ -106,7 +106,9 @@ void PrintPart(const Document& told, const Document& robot_axes, std::ostream& o
 void PrintParts(const Document& revision, std::ostream& out) {
   for (const Document& sensor : revision["sensors"].Items()) {
     if (!IsInPart(sensor)) continue;
-    out << '\n' << PartSentence(sensor, sensor["id"].Text("?")) << '\n';
+    const bool by_robot = !revision["robot_axes"].IsNull();
+    const std::string whose = sensor["id"].Text("?") + (by_robot ? "" : " in the frame of " + revision["reference"].Text("?"));
+    out << '\n' << PartSentence(sensor, whose) << '\n';
     PrintPart(sensor, revision["robot_axes"], out);
   }
 }

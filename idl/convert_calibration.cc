@@ -30,7 +30,7 @@ Result<rigcal_wire_MeasuredAxis> ToAxis(const AxisResult& axis) {
   return sample;
 }
 
-Status FillPart(const SensorPose& pose, const Eigen::Matrix3d& R_ref_robot, PartMemory& memory) {
+Status FillPart(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot, PartMemory& memory) {
   FillPose(pose.measured_part->T_ref_sensor, pose.measured_part->covariance, memory.part.p_m, memory.part.q_xyzw,
            memory.part.covariance);
   for (const Vector6d& direction : pose.unobservable_basis)

@@ -95,7 +95,7 @@ void WritePoseInPart(JsonWriter& out, const LookupAnswer& answer) {
   for (const char* key : {"T_a_b", "covariance"}) out.Null(key);
   WriteNoSigmas(out);
   WriteOpenDirections(out, answer.unobservable_basis);
-  if (answer.R_a_robot) WriteRobotAxes(out, *answer.R_a_robot);
+  WriteRobotAxes(out, answer.R_a_robot);
   out.Object("measured_part", [&] {
     WritePose(out, "T_a_b", answer.T_a_b);
     WriteMatrix(out, "covariance", answer.covariance);

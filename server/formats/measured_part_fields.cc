@@ -44,10 +44,11 @@ void WriteAxes(JsonWriter& out, const std::vector<AxisResult>& axes) {
   });
 }
 
-void WriteRobotAxes(JsonWriter& out, const Eigen::Matrix3d& R_frame_robot) {
+void WriteRobotAxes(JsonWriter& out, const std::optional<Eigen::Matrix3d>& R_frame_robot) {
+  if (!R_frame_robot) return;
   out.Object("robot_axes", [&] {
     for (std::size_t k = 0; k < kRobotAxes.size(); ++k)
-      WriteTriple(out, kRobotAxes[k], R_frame_robot.col(static_cast<Eigen::Index>(k)));
+      WriteTriple(out, kRobotAxes[k], R_frame_robot->col(static_cast<Eigen::Index>(k)));
   });
 }
 
@@ -63,7 +64,7 @@ Eigen::Matrix3d ReadRobotAxes(const JsonField& field) {
   return R;
 }
 
-void WriteMeasuredPart(JsonWriter& out, const SensorPose& pose, const Eigen::Matrix3d& R_ref_robot) {
+void WriteMeasuredPart(JsonWriter& out, const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot) {
   if (pose.known || !pose.measured_part) return;
   out.Object("measured_part", [&] {
     WritePose(out, "T_ref_sensor", pose.measured_part->T_ref_sensor);

@@ -11,12 +11,12 @@ namespace rigcal::formats {
 void WriteOpenDirections(JsonWriter& out, const std::vector<Vector6d>& open);
 // "axes" of a measured part.
 void WriteAxes(JsonWriter& out, const std::vector<AxisResult>& axes);
-// "robot_axes": columns forward, left, up.
-void WriteRobotAxes(JsonWriter& out, const Eigen::Matrix3d& R_frame_robot);
+// "robot_axes": columns forward, left, up; nothing where they are not known.
+void WriteRobotAxes(JsonWriter& out, const std::optional<Eigen::Matrix3d>& R_frame_robot);
 [[nodiscard]] Eigen::Matrix3d ReadRobotAxes(const JsonField& field);
 
 // "measured_part" of a sensor; nothing where it has none.
-void WriteMeasuredPart(JsonWriter& out, const SensorPose& pose, const Eigen::Matrix3d& R_ref_robot);
+void WriteMeasuredPart(JsonWriter& out, const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot);
 // Of a sensor whose open directions are read; its axes are worked out anew.
 [[nodiscard]] std::optional<MeasuredPart> ReadMeasuredPart(const JsonField& sensor, const std::vector<Vector6d>& open);
 

@@ -86,7 +86,7 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   return fused;
 }
 
-void WriteSensorPose(JsonWriter& out, const SensorPose& pose, const Eigen::Matrix3d& R_ref_robot) {
+void WriteSensorPose(JsonWriter& out, const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot) {
   out.Object([&] {
     out.Text("id", pose.sensor.str());
     out.Flag("known", pose.known);

@@ -146,8 +146,8 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int nu
 // The robot's axes in the frame of a sensor; nothing where a turn of it was not measured.
 std::optional<Eigen::Matrix3d> RobotAxesIn(const GraphSolution& solution, const SensorId& sensor) {
   const SensorPose& pose = PoseOf(solution, sensor);
-  if (pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot))) return std::nullopt;
-  return Eigen::Matrix3d(pose.Placed()->R().transpose() * solution.R_ref_robot);
+  if (!solution.R_ref_robot || pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot))) return std::nullopt;
+  return Eigen::Matrix3d(pose.Placed()->R().transpose() * *solution.R_ref_robot);
 }
 
 Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) {

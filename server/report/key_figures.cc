@@ -105,7 +105,7 @@ std::string KnownCounts(const std::vector<SensorPose>& poses) {
 }
 
 // Nobody measured a direction of it, and it is not among those of which nothing is known.
-Figure InPartFigure(const SensorPose& pose, const Eigen::Matrix3d& R_ref_robot, const std::string& counts) {
+Figure InPartFigure(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot, const std::string& counts) {
   std::string open;
   for (const std::string& name : NamesOfOpen(AxesOf(pose, R_ref_robot), pose.unobservable_basis.size()))
     open += (open.empty() ? "" : ", ") + name;

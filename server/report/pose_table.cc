@@ -43,7 +43,7 @@ void FillShift(Dictionary& part, const AxisResult& axis, const std::string& labe
 }
 
 // What was held is no result: no cell has it.
-void FillPart(Dictionary& row, const SensorPose& pose, const Eigen::Matrix3d& R_ref_robot) {
+void FillPart(Dictionary& row, const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot) {
   Dictionary* part = row.AddSectionDictionary("PART");
   const std::vector<AxisResult> axes = AxesOf(pose, R_ref_robot);
   const bool turned = TurnsMeasured(axes);
@@ -76,7 +76,7 @@ void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
     else
       ShowValue(*row, "UNKNOWN", "WHY", why.at(poses[i].sensor));
   }
-  if (any_in_part) page.ShowSection("ANY_IN_PART");
+  if (any_in_part) ShowValue(page, "IN_PART", "WHOSE", revision.solution.R_ref_robot ? "the robot" : revision.reference.str());
   if (poses.size() > kPoseRowsMax) ShowValue(page, "MORE_POSES", "COUNT", std::to_string(poses.size() - kPoseRowsMax));
 }
 

@@ -51,8 +51,9 @@ TEST(PartText, ShowTellsEachAxisOfASensorInPart) {
   const std::string known = R"({"id":"base","known":true,"T_ref_sensor":{"p_m":[0,0,0],"q_xyzw":[0,0,0,1]},"sigma_m":[0,0,0],"sigma_rad":[0,0,0]})";
   const std::string part = R"({"id":"lidar","T_ref_sensor":null,)" + kOpen + R"("measured_part":{"T_ref_sensor":)" + kHeld + R"(,"axes":)" + kAxes + "}}";
   const std::string lost = R"({"id":"top","known":false,"T_ref_sensor":null})";
-  FakeServer server("r", Always(R"({"robot":"r","revision":3,"document":{"reference":"base","verdict":{"level":"unknown"},"sensors":[)" +
-                                known + "," + part + "," + lost + R"(],"edges":[]}})"));
+  const std::string sensors = R"(,"reference":"base","verdict":{"level":"unknown"},"sensors":[)" + known + "," + part + "," + lost + R"(],"edges":[]}})";
+  const std::string axes = R"("robot_axes":{"forward":[1,0,0],"left":[0,1,0],"up":[0,0,1]})";
+  FakeServer server("r", Always(R"({"robot":"r","revision":3,"document":{)" + axes + sensors));
   const Ran ran = Rigcal({"show", "r"});
   EXPECT_EQ(ran.code, 6) << ran.err;
   EXPECT_THAT(ran.out, testing::ContainsRegex("lidar +height not measured +0.000 0.000 0.000\n"));
@@ -87,6 +88,17 @@ TEST(PartText, SeveralAxesAreListedAndATurnThatIsOpenHasNoAngles) {
   EXPECT_EQ(PartSentence(told, "lidar"), "The forward position and the yaw of lidar were not measured; the rest is good to 12 mm.");
   EXPECT_EQ(OpenText(told), "forward and yaw not measured");
   EXPECT_EQ(PartRpyText(told, 3), "-");
+}
+
+TEST(PartText, WithoutTheRobotsAxesTheFrameIsNamed) {
+  std::ostringstream out;
+  PrintParts(Document::Parse(R"({"reference":"base","sensors":[{"id":"lidar",)" + kOpen +
+                                 R"("measured_part":{"axes":[{"name":"z","direction":[0,0,1],"position_m":null,"sigma_m":null},)"
+                                 R"({"name":"rx","direction":[1,0,0],"sigma_rad":0.0003}]}}]})",
+                             "revision")
+                 .value(),
+             out);
+  EXPECT_THAT(out.str(), HasSubstr("The position along z of lidar in the frame of base was not measured; the rest is good to 0.017 deg.\n"));
 }
 
 TEST(PartText, AnOlderServersSensorIsUnknownAsBefore) {

@@ -157,7 +157,7 @@ TEST_F(AnnounceTest, APoseInPartIsToldAsSuch) {
     EXPECT_EQ(part.p_m[0], 1.0);
     ASSERT_EQ(part.axes._length, 6u);
     EXPECT_NEAR(part.axes._buffer[0].sigma_m, 2e-3, 1e-12);
-    EXPECT_STREQ(part.axes._buffer[2].name, "height");
+    EXPECT_STREQ(part.axes._buffer[2].name, "z");
     EXPECT_FALSE(part.axes._buffer[2].measured);
   });
   EXPECT_EQ(heard, 1);

@@ -21,7 +21,7 @@ RevisionInput OpenRevision() {
   pose.measured_part->T_ref_sensor.p_m = {0.25, -0.5, 1.5};
   const Vector6d variance = (Vector6d() << 1e-6, 0, 9e-6, 4e-8, 1e-8, 16e-8).finished();
   pose.measured_part->covariance = variance.asDiagonal();
-  input.solution.R_ref_robot << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  input.solution.R_ref_robot = (Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished();
   return input;
 }
 
@@ -61,6 +61,16 @@ TEST(MeasuredPartDocument, ComesBackWithTheSameBytes) {
     EXPECT_EQ(read->solution.R_ref_robot, input.solution.R_ref_robot);
     EXPECT_EQ(whole ? WriteWholeRevisionDocument(*read) : WriteRevisionDocument(*read), text);
   }
+}
+
+TEST(MeasuredPartDocument, WithoutTheRobotsAxesItTellsThoseOfTheReference) {
+  RevisionInput input = OpenRevision();
+  input.solution.R_ref_robot.reset();
+  const json document = json::parse(WriteRevisionDocument(input));
+  EXPECT_FALSE(document.contains("robot_axes"));
+  EXPECT_TRUE(AxisNamed(document["sensors"][2]["measured_part"], "y")["sigma_m"].is_null());
+  EXPECT_EQ(AxisNamed(document["sensors"][2]["measured_part"], "z")["position_m"], 1.5);
+  EXPECT_FALSE(ReadRevisionDocument(WriteRevisionDocument(input))->solution.R_ref_robot);
 }
 
 TEST(MeasuredPartDocument, IsAbsentWhereNothingIsKnownInPart) {
@@ -106,7 +116,7 @@ TEST(MeasuredPartDocument, ALookupThatIsOpenHasNoWholePose) {
   EXPECT_EQ(AxisNamed(document["measured_part"], "forward")["sigma_m"], 1e-3);
   EXPECT_TRUE(document.contains("robot_axes"));
   answer.R_a_robot.reset();
-  EXPECT_TRUE(json::parse(WriteLookup(answer))["measured_part"]["axes"][0]["name"].is_null());
+  EXPECT_EQ(json::parse(WriteLookup(answer))["measured_part"]["axes"][0]["name"], "x");
   EXPECT_FALSE(json::parse(WriteLookup(answer)).contains("robot_axes"));
 }
 

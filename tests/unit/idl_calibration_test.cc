@@ -12,7 +12,7 @@ RobotState::Calibration SampleCalibration() {
   calibration.revision.created_at = Stamp{7};
   calibration.revision.verdict.level = VerdictLevel::kWarn;
   calibration.reference = SensorId("left");
-  calibration.R_ref_robot << 0, -1, 0, 0, 0, -1, 1, 0, 0;  // a camera looks along its z
+  calibration.R_ref_robot = (Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished();  // it looks along its z
   return calibration;
 }
 

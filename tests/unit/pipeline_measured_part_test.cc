@@ -58,18 +58,41 @@ TEST_F(MeasuredPartTest, TheDocumentTellsEachAxisOfTheSensor) {
   StoreEdges(LevelFloor());
   StepAll();
   ASSERT_EQ(revisions_.size(), 1u);
-  EXPECT_EQ(revisions_[0].verdict.why, "The height of lidar and rear was not measured; the rest was, to 1.5 mm and 0.081 deg.");
+  EXPECT_EQ(revisions_[0].verdict.why,
+            "The position along z of lidar and rear in the frame of base was not measured; the rest was, to 1.5 mm and 0.081 deg.");
   const json lidar = Sensor("lidar"), part = lidar["measured_part"];
   EXPECT_EQ(lidar["known"], false);
   EXPECT_TRUE(lidar["T_ref_sensor"].is_null() && lidar["sigma_m"].is_null());
-  EXPECT_THAT(NotMeasured(part), testing::ElementsAre("height"));
+  EXPECT_THAT(NotMeasured(part), testing::ElementsAre("z"));
   EXPECT_NEAR(part["axes"][0]["position_m"].get<double>(), 2.0, 1e-9);
   EXPECT_NEAR(part["axes"][0]["sigma_m"].get<double>(), 1e-3, 1e-9);
   EXPECT_TRUE(part["axes"][2]["position_m"].is_null());
   EXPECT_NEAR(part["T_ref_sensor"]["p_m"][2].get<double>(), 0.7, 1e-9);
   EXPECT_EQ(part["sigma_source"], "analytic");
-  EXPECT_THAT(NotMeasured(Sensor("rear")["measured_part"]), testing::ElementsAre("height"));
+  EXPECT_THAT(NotMeasured(Sensor("rear")["measured_part"]), testing::ElementsAre("z"));
   EXPECT_FALSE(Sensor("front").contains("measured_part"));
+}
+
+// Odometry tells which way the robot looks: so a height is called that.
+TEST_F(MeasuredPartTest, ABodyThatASessionHasNamesTheAxes) {
+  Manifest manifest;
+  manifest.header.robot = RobotId("r");
+  manifest.header.reference = SensorId("base");
+  manifest.header.captured_at = clock_.now;
+  for (const auto& [name, kind] : {std::pair("base", SensorKind::kPoseStream), std::pair("lidar", SensorKind::kLidar)}) {
+    rigcal::Sensor& sensor = manifest.header.sensors.emplace_back();
+    sensor.id = SensorId(name);
+    sensor.kind = kind;
+  }
+  std::vector<Edge> edges = LevelFloor();
+  edges[1].session = Close(manifest);
+  edges[1].id = EstimatedEdgeId(edges[1].robot, edges[1].session, edges[1].method, edges[1].frame_a, edges[1].frame_b);
+  StoreEdges(edges);
+  StepAll();
+  EXPECT_THAT(revisions_.back().verdict.why, testing::StartsWith("The height of lidar and rear was not measured"));
+  EXPECT_THAT(NotMeasured(Sensor("lidar")["measured_part"]), testing::ElementsAre("height"));
+  EXPECT_THAT(NotMeasured(Lookup("front", "rear")["measured_part"]), testing::ElementsAre("height"));
+  EXPECT_TRUE(Lookup("front", "rear").contains("robot_axes"));
 }
 
 TEST_F(MeasuredPartTest, ALookupWithAnOpenDirectionIsNoWholeAnswer) {
@@ -81,7 +104,7 @@ TEST_F(MeasuredPartTest, ALookupWithAnOpenDirectionIsNoWholeAnswer) {
   ASSERT_EQ(open["unobservable_basis"].size(), 1u);
   EXPECT_NEAR(open["unobservable_basis"][0][2].get<double>(), 1.0, 1e-9);
   const json part = open["measured_part"];
-  EXPECT_THAT(NotMeasured(part), testing::ElementsAre("height"));
+  EXPECT_THAT(NotMeasured(part), testing::ElementsAre("z"));
   EXPECT_NEAR(part["axes"][0]["position_m"].get<double>(), 1.5, 1e-9);
   // Three edges, and how front is pitched over the 0.7 m up to rear.
   EXPECT_NEAR(part["axes"][0]["sigma_m"].get<double>(), std::sqrt(3e-6 + 0.49e-6), 1e-9);

@@ -12,6 +12,7 @@ using ::testing::Not;
 // The height of top, open as a robot on a level floor leaves it; no other sensor is without a pose.
 ReportInput InPart() {
   ReportInput input = SampleReport();
+  input.revision.solution.R_ref_robot = Eigen::Matrix3d::Identity();
   auto& poses = input.revision.solution.poses;
   poses.pop_back();
   SensorPose& top = poses[4];
@@ -39,8 +40,16 @@ TEST(ReportPart, EachAxisHasItsSigmaOrIsNotMeasured) {
   EXPECT_THAT(row, HasSubstr("<div>roll 0.011</div><div>pitch 0.011</div><div>yaw 0.011</div>"));
   EXPECT_THAT(row, Not(HasSubstr("777")));  // what was held is no result
   EXPECT_THAT(row, Not(HasSubstr("unknown")));
-  EXPECT_THAT(page, HasSubstr("along and about the robot's own axes"));
-  EXPECT_THAT(PageOf(SampleReport()), Not(HasSubstr("along and about the robot's own axes")));
+  EXPECT_THAT(page, HasSubstr("along and about the axes of <bdi>the robot</bdi>"));
+  EXPECT_THAT(PageOf(SampleReport()), Not(HasSubstr("along and about the axes")));
+}
+
+TEST(ReportPart, WithoutTheRobotsAxesTheReferencesAreNamed) {
+  ReportInput input = InPart();
+  input.revision.solution.R_ref_robot.reset();
+  const std::string page = PageOf(input);
+  EXPECT_THAT(RowOf(page, "top"), HasSubstr("<div>x 100.00</div><div>y -200.00</div><div>z not measured</div>"));
+  EXPECT_THAT(page, HasSubstr("along and about the axes of <bdi>front_left</bdi>"));
 }
 
 TEST(ReportPart, ATurnThatIsOpenHasNoAngles) {

@@ -87,7 +87,7 @@
 </tbody>
 </table>
 </div>
-{{#ANY_IN_PART}}<p class="hint">Of a sensor of which not everything was measured, position and &sigma; are along and about the robot's own axes, as near to these as what was measured lies.</p>{{/ANY_IN_PART}}
+{{#IN_PART}}<p class="hint">Of a sensor of which not everything was measured, position and &sigma; are along and about the axes of <bdi>{{WHOSE}}</bdi>, as near to these as what was measured lies.</p>{{/IN_PART}}
 {{#MORE_POSES}}<p class="hint">{{COUNT}} more sensors are in <a href="revision.json">revision.json</a>.</p>{{/MORE_POSES}}
 <p class="hint">Rotation R = Rz(yaw) Ry(pitch) Rx(roll). &sigma; is one standard deviation along the sensor's own axes.</p>
 </section>
