@@ -6,6 +6,7 @@
 #include "client/cause_list.h"
 #include "client/edge_table.h"
 #include "client/insight_table.h"
+#include "client/part_text.h"
 #include "client/pose_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -30,13 +31,14 @@ void PrintPoses(const Document& revision, std::ostream& out) {
                {"sigma deg", Align::kRight}});
   for (const Document& sensor : revision["sensors"].Items()) {
     const Document pose = sensor["T_ref_sensor"];
-    const bool known = sensor["known"].Flag();
-    table.Add(
-        {sensor["id"].Text("?"), known ? Triple(pose["p_m"], kMmPerM, 2) : "unknown", known ? RpyText(pose, 3) : "",
-         known ? WithLimit(Triple(sensor["sigma_m"], kMmPerM, 3), sensor["tolerance_m"], kMmPerM) : "",
-         known ? WithLimit(Triple(sensor["sigma_rad"], kDegPerRad, 4), sensor["tolerance_rad"], kDegPerRad) : ""});
+    const bool known = sensor["known"].Flag(), in_part = IsInPart(sensor);
+    table.Add({sensor["id"].Text("?"), known ? Triple(pose["p_m"], kMmPerM, 2) : in_part ? OpenText(sensor) : "unknown",
+               known ? RpyText(pose, 3) : in_part ? PartRpyText(sensor, 3) : "",
+               known ? WithLimit(Triple(sensor["sigma_m"], kMmPerM, 3), sensor["tolerance_m"], kMmPerM) : "",
+               known ? WithLimit(Triple(sensor["sigma_rad"], kDegPerRad, 4), sensor["tolerance_rad"], kDegPerRad) : ""});
   }
   table.Print(out);
+  PrintParts(revision, out);
 }
 
 void PrintShow(const Document& document, bool whole, std::ostream& out) {

@@ -115,7 +115,7 @@ std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const Gr
   std::vector<PartialPose> partial;
   for (const SensorPose& pose : solution.poses)
     if (!pose.known && !pose.unobservable_basis.empty())
-      partial.push_back(PartialPoseOf(pose, edges, solution, headers));
+      partial.push_back(PartialPoseOf(pose, solution, headers));
   std::vector<SensorId> apart = ApartSensors(edges, solution);
   std::erase_if(apart, [&](const SensorId& sensor) { return explained.contains(sensor); });
   std::vector<Finding> findings;

@@ -4,6 +4,7 @@
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
+#include "server/formats/measured_part_fields.h"
 #include "server/model/drive_rule.h"
 
 namespace rigcal::formats {
@@ -90,6 +91,25 @@ template <typename AnId>
 void WriteNames(JsonWriter& out, std::string_view key, const std::vector<AnId>& names) {
   out.List(key, [&] {
     for (const AnId& name : names) out.Text(name.str());
+  });
+}
+
+void WriteWholePose(JsonWriter& out, const LookupAnswer& answer) {
+  WritePose(out, "T_a_b", answer.T_a_b);
+  WriteMatrix(out, "covariance", answer.covariance);
+  WriteSigmas(out, answer.covariance);
+}
+
+// Who wants a whole pose finds none.
+void WritePoseInPart(JsonWriter& out, const LookupAnswer& answer) {
+  for (const char* key : {"T_a_b", "covariance"}) out.Null(key);
+  WriteNoSigmas(out);
+  WriteOpenDirections(out, answer.unobservable_basis);
+  WriteRobotAxes(out, answer.R_a_robot);
+  out.Object("measured_part", [&] {
+    WritePose(out, "T_a_b", answer.T_a_b);
+    WriteMatrix(out, "covariance", answer.covariance);
+    WriteAxes(out, AxesOf(answer.T_a_b, answer.covariance, answer.unobservable_basis, answer.R_a_robot));
   });
 }
 
@@ -189,9 +209,8 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteRevisionNumber(out, answer.revision);
     out.Text("frame_a", answer.frame_a.str());
     out.Text("frame_b", answer.frame_b.str());
-    WritePose(out, "T_a_b", answer.T_a_b);
-    WriteMatrix(out, "covariance", answer.covariance);
-    WriteSigmas(out, answer.covariance);
+    out.Flag("known", answer.unobservable_basis.empty());
+    answer.unobservable_basis.empty() ? WriteWholePose(out, answer) : WritePoseInPart(out, answer);
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
     WriteDrive(out, answer.verdict, answer.validity);

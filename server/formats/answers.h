@@ -77,6 +77,8 @@ struct LookupAnswer {
   SensorId frame_a, frame_b;
   Se3 T_a_b;
   Matrix6d covariance = Matrix6d::Zero();  // right tangent at b
+  std::vector<Vector6d> unobservable_basis = {};  // likewise; directions that nobody measured: then it is no whole pose
+  std::optional<Eigen::Matrix3d> R_a_robot = {};  // as GraphSolution::R_ref_robot, in a; nothing: not known
   Verdict verdict;                         // of the revision
   Validity validity;
 };

@@ -109,15 +109,25 @@ Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision
   return {};
 }
 
+const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) {
+  return *std::find_if(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) { return pose.sensor == sensor; });
+}
+
+// What is known in part is as the graph of pairs has it: then the other pose is that of the same graph.
+void TakePosesByPairs(GraphSolution& solution) {
+  for (SensorPose& pose : solution.poses)
+    if (pose.fused) pose.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
+}
+
+bool HasJackknife(const SensorPose& pose) { return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife); }
+
 // From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
-// and for the reason why a pose is not known.
-Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const RobotId& robot, int number, const SensorId& a,
-                                            const SensorId& b) {
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, number));
-  const formats::RevisionInput& told = *revision.document;
-  RIGCAL_TRY(CheckSensors(robot, told, {a, b}));
+// of a pose that is known in part, and for the reason why one is not known. `told`: the document; it has both sensors.
+Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number, const formats::RevisionInput& told,
+                                            const SensorId& a, const SensorId& b) {
   if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
-  RIGCAL_ASSIGN(const formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
+  RIGCAL_ASSIGN(formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
+  if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known) TakePosesByPairs(document.solution);
   Graph graph = graph::GraphOf(document.edges, document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
@@ -125,12 +135,33 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
   RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
   const auto& poses = document.solution.poses;
   graph::GraphJackknife jackknife;
-  if (std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; })) {
+  if (std::any_of(poses.begin(), poses.end(), HasJackknife)) {
     RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, BlocksOfWhole(context.store, document, number));
     jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
   }
   if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
-  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b) : analytic;
+  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b, analytic.unobservable_basis)
+                             : analytic;
+}
+
+// The robot's axes in the frame of a sensor; nothing where a turn of it was not measured.
+std::optional<Eigen::Matrix3d> RobotAxesIn(const GraphSolution& solution, const SensorId& sensor) {
+  const SensorPose& pose = PoseOf(solution, sensor);
+  if (!solution.R_ref_robot || pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot))) return std::nullopt;
+  return Eigen::Matrix3d(pose.Placed()->R().transpose() * *solution.R_ref_robot);
+}
+
+Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) {
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, answer.robot, answer.revision));
+  const formats::RevisionInput& told = *revision.document;
+  RIGCAL_TRY(CheckSensors(answer.robot, told, {answer.frame_a, answer.frame_b}));
+  RIGCAL_ASSIGN(const graph::RelativePose relative,
+                DerivedRelative(context, answer.revision, told, answer.frame_a, answer.frame_b));
+  answer.T_a_b = relative.T_A_B;
+  answer.covariance = relative.covariance;
+  answer.unobservable_basis = relative.unobservable_basis;
+  answer.R_a_robot = RobotAxesIn(told.solution, answer.frame_a);
+  return {};
 }
 
 // What the newest revision says: an edge that arrived since plays no part.
@@ -140,17 +171,17 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
   RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, 0));
   RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(context.store, {robot, revision.number}));
-  std::optional<graph::RelativePose> relative = poses ? graph::RelativeOf(*poses, a, b) : std::nullopt;
-  if (!relative) {
-    RIGCAL_ASSIGN(relative, DerivedRelative(context, robot, revision.number, a, b));
-  }
   formats::LookupAnswer answer;
   answer.robot = robot;
   answer.revision = revision.number;
   answer.frame_a = a;
   answer.frame_b = b;
-  answer.T_a_b = relative->T_A_B;
-  answer.covariance = relative->covariance;
+  if (const auto kept = poses ? graph::RelativeOf(*poses, a, b) : std::nullopt) {
+    answer.T_a_b = kept->T_A_B;
+    answer.covariance = kept->covariance;
+  } else {
+    RIGCAL_TRY(TakeDerived(context, answer));
+  }
   answer.verdict = revision.verdict;
   RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));
   return formats::WriteLookup(answer);

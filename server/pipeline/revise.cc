@@ -6,6 +6,7 @@
 
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
+#include "server/fleet/partial_poses.h"
 #include "server/fleet/told_causes.h"
 #include "server/formats/documents.h"
 #include "server/graph/graph_jackknife.h"
@@ -213,6 +214,7 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.reference = loaded.graph.reference;
   HonestSolution honest = SolveHonestly(loaded);
   input.solution = std::move(honest.solution);
+  input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
   poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)

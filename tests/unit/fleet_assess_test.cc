@@ -217,6 +217,8 @@ Edge OpenEdge(char letter, const std::string& a, const std::string& b, const std
 SensorPose OpenPose(const std::string& name) {
   SensorPose pose = PoseOf(name, false);
   pose.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  pose.measured_part = MeasuredPart{};
+  pose.measured_part->covariance = 2e-6 * (Matrix6d::Identity() - pose.unobservable_basis[0] * pose.unobservable_basis[0].transpose());
   return pose;
 }
 

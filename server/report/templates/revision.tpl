@@ -82,11 +82,12 @@
 </thead>
 <tbody>
 {{#POSE}}
-<tr><th scope="row">{{SENSOR}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#SIGMA}}<td class="sigma">{{VALUE}}</td>{{/SIGMA}}{{#FIXED}}<td class="sigma text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}<td class="text limit">{{LIMIT}}</td>{{/KNOWN}}{{#UNKNOWN}}<td class="text" colspan="13"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
+<tr><th scope="row">{{SENSOR}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#SIGMA}}<td class="sigma">{{VALUE}}</td>{{/SIGMA}}{{#FIXED}}<td class="sigma text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}<td class="text limit">{{LIMIT}}</td>{{/KNOWN}}{{#PART}}<td class="text" colspan="3">{{#AT}}<div>{{LABEL}} {{VALUE}}</div>{{/AT}}</td>{{#TURNED}}<td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{/TURNED}}{{#TURN_OPEN}}<td class="text" colspan="3">{{#OF}}<div>{{LABEL}} {{VALUE}}</div>{{/OF}}</td>{{/TURN_OPEN}}<td class="sigma text" colspan="3">{{#SIGMA_MM}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_MM}}</td><td class="sigma text" colspan="3">{{#SIGMA_DEG}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_DEG}}</td><td class="text limit">{{LIMIT}}</td>{{/PART}}{{#UNKNOWN}}<td class="text" colspan="13"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
 {{/POSE}}
 </tbody>
 </table>
 </div>
+{{#IN_PART}}<p class="hint">Of a sensor of which not everything was measured, position and &sigma; are along and about the axes of <bdi>{{WHOSE}}</bdi>, as near to these as what was measured lies.</p>{{/IN_PART}}
 {{#MORE_POSES}}<p class="hint">{{COUNT}} more sensors are in <a href="revision.json">revision.json</a>.</p>{{/MORE_POSES}}
 <p class="hint">Rotation R = Rz(yaw) Ry(pitch) Rx(roll). &sigma; is one standard deviation along the sensor's own axes.</p>
 </section>
