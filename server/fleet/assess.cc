@@ -170,7 +170,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
-  const auto held_back = FindHeldBack(solution);
+  const auto held_back = FindHeldBack(solution, headers);
   const std::string remarks = Remarks({held_back ? held_back->why : "", SmallDisagreements(edges, judged, policy),
                                        SmallMoves(estimates, solution, policy, captured_at)},
                                       names);

@@ -52,9 +52,10 @@ struct Contradiction {
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
-// What sensors saw in single captures of the newest session that contradicts what was seen besides, as a picture of another
-// instant does: it counts for next to nothing, so no pose suffers.
-[[nodiscard]] std::optional<Finding> FindHeldBack(const GraphSolution& solution);
+// What cameras saw in single captures of the newest session that contradicts what was seen besides, as a picture of another
+// instant does: it counts for next to nothing, so no pose suffers. Of a lidar a board among other surfaces is left out in sound
+// sessions, too: no news.
+[[nodiscard]] std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers);
 // The newest session, where it says enough to be refined as a whole and could not be.
 [[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,
                                                    const SessionTimes& captured_at);

@@ -99,21 +99,26 @@ std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Pol
   return finding;
 }
 
-std::optional<Finding> FindHeldBack(const GraphSolution& solution) {
+std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers) {
   const FusedSessions& fused = solution.fused;
-  std::map<std::pair<SensorId, SensorId>, std::vector<std::string>> captures;
+  const auto newest = fused.sessions.empty() ? headers.end() : headers.find(fused.sessions.front());
+  if (newest == headers.end()) return std::nullopt;
+  std::map<std::pair<SensorId, SensorId>, std::set<std::string>> captures;
   std::set<SensorId> sensors;
   for (const FusedSessions::HeldBack& look : fused.held_back) {
-    if (fused.sessions.empty() || look.session != fused.sessions.front()) continue;
-    captures[{look.sensor, look.against}].push_back(look.capture.str());
+    const Sensor* sensor = rigcal::SensorOf(newest->second, look.sensor);
+    if (look.session != newest->first || sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
+    captures[{look.sensor, look.against}].insert(look.capture.str());
     sensors.insert(look.sensor);
   }
   if (captures.empty()) return std::nullopt;
   Finding finding;
-  for (const auto& [who, names] : captures)
+  for (const auto& [who, names] : captures) {
+    const std::vector<std::string> saw(names.begin(), names.end());
+    const std::string against = who.second.empty() ? "the rest" : who.second.str();
     finding.why += (finding.why.empty() ? "" : "; ") + std::string("what ") + who.first.str() + " saw in capture " +
-                   List(names) + " contradicts " + (who.second.empty() ? "the rest" : who.second.str()) +
-                   " and was left out";
+                   List(saw) + " contradicts " + against + " and was left out";
+  }
   const std::vector<SensorId> all(sensors.begin(), sensors.end());
   finding.what_to_do = "Check that " + List(all) + " and the others take their pictures at the same moment";
   return finding;

@@ -176,10 +176,16 @@ TEST(Trust, AHeldBackPictureIsToldFirstAndDecidesNothing) {
   Chain chain = Triangle(39, 0.0005);
   const SessionId newest(std::string(64, '2')), older(std::string(64, '1'));
   chain.solution.fused.sessions = {newest, older};
-  chain.solution.fused.held_back = {{older, SensorId("right"), CaptureId("03")}};
-  EXPECT_THAT(chain.Judge().why, Not(HasSubstr("left out"))) << "of an older session it is no news";
-  chain.solution.fused.held_back.push_back({newest, SensorId("left"), CaptureId("07")});
-  const Verdict verdict = chain.Judge();
+  SessionHeader header;
+  for (const char* name : {"left", "right"}) header.sensors.emplace_back().id = SensorId(name);
+  header.sensors.emplace_back().id = SensorId("top");
+  header.sensors.back().kind = SensorKind::kLidar;
+  const auto judge = [&] { return Assess(chain.edges, chain.solution, {}, {}, {}, {{newest, header}, {older, header}}); };
+  chain.solution.fused.held_back = {{older, SensorId("right"), CaptureId("03")}, {newest, SensorId("top"), CaptureId("06")}};
+  EXPECT_THAT(judge().why, Not(HasSubstr("left out"))) << "of an older session, and of a lidar, it is no news";
+  for (int board = 0; board < 2; ++board)
+    chain.solution.fused.held_back.push_back({newest, SensorId("left"), CaptureId("07")});
+  const Verdict verdict = judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kPass);
   EXPECT_EQ(verdict.why,
             "What left saw in capture 07 contradicts the rest and was left out. Every sensor is known well enough.");
