@@ -13,12 +13,14 @@ namespace rigcal {
 // the revision, with this as its only diagnosis; the store keeps it as it was measured.
 inline constexpr std::string_view kRetiredCode = "retired", kSupersededCode = "superseded",
                                   kRemountedCode = "remounted";
+// Whether a diagnosis has one of these codes; whether an edge has such a diagnosis and is failed.
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);
 
 // Code of the only diagnosis of an edge that failed because the server's disk has not kept a file of its session. When
 // that was sent again, the pair is run again: its edge then has the id RepeatedEdgeId (edge.h) of this one.
 inline constexpr std::string_view kFileLostCode = "file_lost";
+// Whether the edge waits for a file to be sent again.
 [[nodiscard]] bool FailedForLostFile(const Edge& edge);
 
 // Once, where it belongs among those that are named: in which order they are does not make another session.
