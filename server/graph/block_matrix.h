@@ -27,6 +27,7 @@ struct BlockMatrix {
   using Block = Eigen::Matrix<double, B, B>;
   std::vector<Block> diagonal, off_diagonal;
 
+  // All blocks of the pattern, zero.
   void SetZero(const BlockPattern& pattern) {
     diagonal.assign(static_cast<std::size_t>(pattern.block_count), Block::Zero());
     off_diagonal.assign(pattern.off_diagonal.size(), Block::Zero());
@@ -48,9 +49,9 @@ class BlockCholesky {
   [[nodiscard]] virtual std::vector<Block> InverseDiagonal() = 0;
 };
 
-// Null if the factor would need more than kFactorBytesMax. `blocks_dense_max`: up to this many blocks it is dense.
 constexpr int kBlocksDenseMax = 40;
 constexpr std::size_t kFactorBytesMax = std::size_t{2} << 30;
+// Null if the factor would need more than kFactorBytesMax. `blocks_dense_max`: up to this many blocks it is dense.
 template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);

@@ -20,6 +20,7 @@ class CliqueTree {
     Matrix6d U_i, U_j;
   };
 
+  // As if made anew: no edges, no blocks, and the counts below at zero.
   void Clear();
   // An edge under its number, and blocks that have none yet. The factor knows it after Renew.
   void Take(std::size_t number, const Edge& edge);
