@@ -22,6 +22,7 @@ class MemoryBudget {
     // Calls `give_back` once, when it goes; a share that was moved from calls nothing.
     explicit Share(GiveBack give_back) : give_back_(std::move(give_back)) {}
     ~Share();
+    // Takes the bytes over.
     Share(Share&& other) noexcept : give_back_(std::exchange(other.give_back_, nullptr)) {}
     Share& operator=(Share&&) = delete;
 

@@ -85,6 +85,7 @@ struct Supernodes {
   std::vector<int> supernode_of_col;
   std::vector<int> position;  // where a row or column of the matrix comes in the factor
 
+  // How many supernodes.
   [[nodiscard]] int count() const { return static_cast<int>(first_col.size()) - 1; }
 };
 
@@ -94,9 +95,11 @@ struct Supernode {
   const int* rows = nullptr;
   std::size_t start = 0;
 
+  // Of its rows, how many lie below its own triangle, and which: in the order of the factor.
   [[nodiscard]] int below() const { return row_count - col_count; }
   [[nodiscard]] const int* rows_below() const { return rows + col_count; }
 };
+// `s` from 0 to count() - 1; valid as long as `supernodes` is.
 [[nodiscard]] Supernode SliceOf(const Supernodes& supernodes, int s);
 
 // Symbolic analysis by CHOLMOD on the pattern of blocks, then every block spread to block_size rows and columns.

@@ -44,6 +44,7 @@ class CliqueTree {
   [[nodiscard]] double Reduce(const Eigen::VectorXd& x);
   void Finish(Eigen::VectorXd& x);
 
+  // Blocks that have been taken, with edges or without any more.
   [[nodiscard]] int block_count() const { return static_cast<int>(owner_.size()); }
   // Of all calls since Clear: products of blocks, and columns renewed.
   [[nodiscard]] double products() const { return products_; }

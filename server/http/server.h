@@ -37,6 +37,7 @@ class Server {
   // stops, with all its connections, when it goes.
   [[nodiscard]] static Result<Server> Start(const Options& options, Answer answer);
   ~Server();
+  // A server that was moved from serves nothing: the other goes on.
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;
   [[nodiscard]] int port() const;  // that which was bound, also where 0 was asked for
