@@ -24,6 +24,7 @@ struct WhatCounts {
   std::map<EdgeId, Standing> retired;
   std::vector<Remount> remounts;
 };
+// Three readings: call it inside one Read for one moment's truth.
 [[nodiscard]] Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot);
 // True: of what has left the window an edge was retired, a session superseded or restored, or a sensor remounted, after the newest
 // revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.

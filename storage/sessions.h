@@ -53,13 +53,13 @@ struct SessionRow {
 // kConflict while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
-// Sensors that closed sessions of the robot name as remounted, the earliest captured first; superseded sessions do not
-// count.
 struct Remount {
   SensorId sensor;
   SessionId session;
   Stamp captured_at;
 };
+// Sensors that closed sessions of the robot name as remounted, the earliest captured first; superseded sessions do not
+// count.
 [[nodiscard]] Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot);
 
 // All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
@@ -70,6 +70,7 @@ struct RobotRow {
   Stamp first_seen_at;
   std::int64_t sessions = 0, edges = 0;
 };
+// A no-op if the robot is known; its name must be a robot's name.
 [[nodiscard]] Status AppendRobot(Store& store, const RobotId& robot, Stamp now);
 // Nothing of a robot that is not known.
 [[nodiscard]] Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot);
