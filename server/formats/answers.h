@@ -39,6 +39,7 @@ struct SessionAnswer {
   std::optional<Superseding> superseded_by = {};  // absent: current, or not closed
   std::vector<SessionId> supersedes = {};
 };
+// A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
                                        const std::vector<Edge>& edges);
@@ -54,6 +55,7 @@ struct PolicyAnswer {
   PolicyInForce in_force;
   std::vector<PolicyVersion> set;
 };
+// Limits as they hold after all that was set, then every version.
 [[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
 // verb set_policy: how many robots wait to be judged anew by it.
 [[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
@@ -82,6 +84,7 @@ struct LookupAnswer {
   Verdict verdict;                         // of the revision
   Validity validity;
 };
+// "known" is true of a whole pose only; one in part has what was measured, axis by axis.
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
 
 // verb status
@@ -101,6 +104,7 @@ struct StatusAnswer {
   std::string http_address;         // of the reports; empty: none
   std::optional<Error> problem;     // why the server cannot store or answer
 };
+// Ages are as of `now`.
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);
 
 // verb live: changes whenever something arrived or was finished, and at no other time.
@@ -111,6 +115,7 @@ struct LiveAnswer {
   int revision = 0;             // of one robot; 0: none yet
   std::vector<SessionAnswer> open_sessions;
 };
+// With no time in it, so that the same state is the same text.
 [[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
 
 // verbs robot_names, sensor_names; `more`: there are others.
@@ -146,6 +151,7 @@ struct HealthAnswer {
   std::vector<LostFileAnswer> first_lost_files;
   [[nodiscard]] std::optional<Error> problem() const;  // the first of the parts
 };
+// "state" is "failing" where a part has a problem, else "ok".
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);
 
 // {"error": {"code", "what", "cure"}}: what a failed request answers.
