@@ -150,12 +150,17 @@ Result<Awaited> Await(const Context& context, const PushOptions& options, const 
   return awaited;
 }
 
+Status CheckMeant(const Context& context, const SessionToPush& session, Connection& connection) {
+  RIGCAL_TRY(CheckNewRobot(connection, session.robot, context.timeout));
+  return CheckWhoseFiles(connection, session.robot, session.payloads, context.timeout);
+}
+
 Status RunPush(Context& context, const PushOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
-  if (!options.new_robot) RIGCAL_TRY(CheckNewRobot(watch.connection(), folder.session.robot, context.timeout));
+  if (!options.new_robot) RIGCAL_TRY(CheckMeant(context, folder.session, watch.connection()));
   RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, folder));
   SaySent(context, summary);
   if (options.no_wait) {

@@ -43,9 +43,9 @@ void PrintPoses(const Document& revision, std::ostream& out) {
 
 void PrintShow(const Document& document, bool whole, std::ostream& out) {
   const Document revision = document["document"];
-  PrintDrive(document, out);
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
+  PrintDrive(document, out);
   PrintVerdict(revision["verdict"], document, out);
   PrintCauses(revision["causes"], out);
   PrintGlobalError(revision, out);

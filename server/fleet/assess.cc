@@ -167,6 +167,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
+  if (const auto few = SensorsOfFewCaptures(edges, solution); !few.empty()) {
+    Verdict verdict = say(VerdictLevel::kUnknown, {FewCapturesBehind(few, edges)});
+    verdict.unverified = List(few);
+    return verdict;
+  }
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));

@@ -270,6 +270,17 @@ std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vect
   });
 }
 
+std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Integer("asked", static_cast<std::int64_t>(asked));
+    out.Integer("files", another ? static_cast<std::int64_t>(another->files) : 0);
+    if (!another) return;
+    out.Text("robot", another->robot.str());
+    out.Text("session", another->session.str());
+    out.Text("captured_at", ToIso(another->captured_at));
+  });
+}
+
 std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns, Stamp now,
                      const std::optional<RobotId>& next) {
   const auto write_row = [&](JsonWriter& out, const RobotSummary& robot) {

@@ -119,6 +119,15 @@ struct LiveAnswer {
 // verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
 [[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
 
+// verb known_files: of the files asked for, those of another robot's session.
+struct FilesOfAnother {
+  RobotId robot;
+  SessionId session;
+  Stamp captured_at;
+  std::size_t files = 0;
+};
+[[nodiscard]] std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another);
+
 // verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
 // calibrated.
 [[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns,

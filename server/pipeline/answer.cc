@@ -286,6 +286,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"robot_names", TellRobotNames},
       {"sensor_names", TellSensorNames},
       {"known_robot", TellKnownRobot},
+      {"known_files", TellKnownFiles},
       {"status", OfStatus},
       {"policy", TellPolicyAsked},
       {"due", Due},

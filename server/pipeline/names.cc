@@ -1,6 +1,7 @@
 #include "server/pipeline/names.h"
 
 #include <set>
+#include <sstream>
 
 #include "server/base/limits.h"
 #include "server/base/near_names.h"
@@ -35,6 +36,18 @@ Result<std::set<SensorId>> LoadSensorNames(storage::Store& store, const RobotId&
   return sensors;
 }
 
+Result<std::set<Digest>> DigestsIn(const std::string& text) {
+  std::set<Digest> digests;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    RIGCAL_ASSIGN(Digest digest, Digest::Parse(word));
+    digests.insert(std::move(digest));
+  }
+  if (!digests.empty() && digests.size() <= limits::kDigestsAskedMax) return digests;
+  return Fail(ErrorCode::kInvalidInput, "the parameter 'digests' has " + std::to_string(digests.size()) + " digests",
+              "Ask for 1 to " + std::to_string(limits::kDigestsAskedMax) + " at once, with blanks between them.");
+}
+
 }  // namespace
 
 Result<std::string> TellRobotNames(const AnswerContext& context, const Parameters& parameters) {
@@ -62,6 +75,15 @@ Result<std::string> TellKnownRobot(const AnswerContext& context, const Parameter
   RIGCAL_ASSIGN(auto near, LoadNearRobots(context.store, robot));
   std::erase_if(near, [&](const RobotId& one) { return !IsSlip(robot.str(), one.str()); });
   return formats::WriteKnownRobot(robot, false, near);
+}
+
+Result<std::string> TellKnownFiles(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
+  RIGCAL_ASSIGN(const std::set<Digest> digests, DigestsIn(parameters.Text("digests").value_or("")));
+  RIGCAL_ASSIGN(const auto held, storage::LoadHeldByAnother(context.store, robot, digests));
+  if (!held) return formats::WriteKnownFiles(digests.size(), std::nullopt);
+  return formats::WriteKnownFiles(digests.size(),
+                                  formats::FilesOfAnother{held->robot, held->session, held->captured_at, held->contents});
 }
 
 }  // namespace rigcal::pipeline

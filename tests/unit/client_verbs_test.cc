@@ -222,7 +222,7 @@ FakeServer::AnswerTo CalibratedServer(std::atomic<int>& session_questions) {
              (is_done ? edge : "") + "]}";
     }
     if (verb == "status") return R"({"http_address":"http://127.0.0.1:8420","robots":[{"robot":"r1","revision":1}]})";
-    if (verb == "known_robot") return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
+    if (verb == "known_robot" || verb == "known_files") return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
     EXPECT_EQ(verb, "show");
     EXPECT_EQ(json, R"({"robot":"r1","revision":1})");
     return R"({"robot":"r1","revision":1,"age_ns":1,"digest":"d","document":{"verdict":{"level":"pass","why":"all agree"},"edges":[)" +
@@ -284,7 +284,7 @@ TEST(Verbs, PushJsonIsOneDocument) {
   EXPECT_EQ((*document)["report"].Text(), "http://127.0.0.1:8420/robots/r1/revisions/1/");
 }
 
-TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherTheRobotIsKnown) {
+TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherRobotAndFilesAreKnown) {
   SessionFolder folder;
   folder.WriteSession("r1", 2, 1000);
   std::set<std::string> asked;
@@ -295,7 +295,26 @@ TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherTheRobotIsKnown) {
   EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
   EXPECT_EQ(server.requests_seen, 0);
   EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait"}).code, 0);
-  EXPECT_EQ(asked, std::set<std::string>{R"(known_robot{"robot":"r1"})"});
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_EQ(*asked.rbegin(), R"(known_robot{"robot":"r1"})");
+  EXPECT_EQ(asked.begin()->rfind(R"(known_files{"digests":")", 0), 0u) << *asked.begin();
+}
+
+TEST(Verbs, PushOfAnotherRobotsFilesSendsNothingUnlessItIsMeant) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  FakeServer server("r1", [&](const std::string& verb, const std::string&) -> Result<std::string> {
+    if (verb == "known_robot") return R"({"known":true,"robot":"r1","slip_of":[]})";
+    return R"({"asked":4,"files":2,"robot":"r2","session":"0123456789abcdef0123","captured_at":"2026-08-01T10:00:00Z"})";
+  });
+  const Ran ran = Rigcal({"push", folder.path().string(), "--no-wait"});
+  EXPECT_EQ(ran.code, 4);
+  EXPECT_NE(ran.err.find("2 of 4 files looked at are the same as in the session of robot r2 of 1 Aug 2026 "
+                         "(0123456789abcdef), not of 'r1'. Correct `robot:` in session.yaml"),
+            std::string::npos)
+      << ran.err;
+  EXPECT_EQ(server.SubjectsSeen(), std::set<std::string>{}) << "nothing was sent";
+  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
 }
 
 TEST(Verbs, APushForAMisspeltRobotSendsNothing) {

@@ -133,7 +133,7 @@ TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   EXPECT_EQ(document["published"], true);
   EXPECT_EQ(document["overdue"], true);
   EXPECT_EQ(document["valid_until"], "2026-05-01T12:00:00Z");
-  EXPECT_EQ(document["drive"], (json{{"rule", "Overdue since 1 May 2026: capture again"}, {"until", nullptr}}));
+  EXPECT_EQ(document["drive"], (json{{"rule", "Not verified: do not rely on it, overdue since 1 May 2026; capture again"}, {"until", nullptr}}));
   EXPECT_EQ(document["usable"]["revision"], 3);
   EXPECT_EQ(document["calculating"], false);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));

@@ -164,7 +164,7 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   EXPECT_NE(page.find("<section class=\"banner " + NameOf(revisions_[0].verdict.level) + " overdue\""),
             std::string::npos);
   EXPECT_EQ(page.find("OK to drive"), std::string::npos);
-  EXPECT_EQ(Ask("show")["drive"]["rule"], "Overdue since " + DayText(until) + ": capture again");
+  EXPECT_EQ(Ask("show")["drive"]["rule"], "Not verified: do not rely on it, overdue since " + DayText(until) + "; capture again");
   EXPECT_LT(fleet.find("<span class=\"badge warn\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
 }
 

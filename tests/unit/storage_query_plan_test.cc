@@ -102,6 +102,7 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadMergedEdges(store_, kRobot));
   EXPECT_TRUE(IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   EXPECT_TRUE(LoadListedSensors(store_, kRobot));
+  EXPECT_TRUE(LoadHeldByAnother(store_, RobotId("b"), {Digest(std::string(64, 'a'))}));
   EXPECT_TRUE(LoadCapturedAt(store_, kRobot));
   EXPECT_TRUE(LoadEarliestClosed(store_, kRobot));
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
