@@ -113,11 +113,11 @@ std::string KeysOf(const Map& map) {
   return ListOf(keys);
 }
 
-// Of sessions, whether an edge is in no window.
-bool AnyOfSessionsOutside(Store& store, const RobotId& robot) {
+// Of edges that have a date, those of sessions and some pushed ones, whether any is in no window.
+bool AnyDatedOutside(Store& store, const RobotId& robot) {
   return Query(store,
                "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
-               "e.session_id IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+               "coalesce(e.session_id, e.measured_ns) IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
                "w.edge_number = c.edge_number) LIMIT 1")
       .Bind(robot)
       .Step();
@@ -127,7 +127,7 @@ bool AnyOfSessionsOutside(Store& store, const RobotId& robot) {
 std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts) {
   std::string basis = OutsideOf(store, robot, "session_id", KeysOf(counts.superseded)) +
                       OutsideOf(store, robot, "edge_id", KeysOf(counts.retired));
-  if (!counts.remounts.empty() && AnyOfSessionsOutside(store, robot))
+  if (!counts.remounts.empty() && AnyDatedOutside(store, robot))
     for (const Remount& remount : counts.remounts) basis += remount.session.str() + " " + remount.sensor.str() + "\n";
   return basis.empty() ? "" : Sha256Of(basis).str();
 }

@@ -23,7 +23,7 @@ namespace rigcal::formats {
 [[nodiscard]] Result<Edge> ReadEdge(std::string_view text);
 
 // A file of finished edges for `rigcal push-edges` (docs/edges-format.md):
-// {"format": 1, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?, "dof"?, ...}]}.
+// {"format": 1, "measured_at"?, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?, ...}]}.
 // Ids are assigned (AssignPushedIds). The error names the edge by its position and field.
 [[nodiscard]] Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& robot);
 

@@ -49,9 +49,11 @@ Status MakePastWhatWasRemounted(storage::Store& store, const std::vector<storage
     if (!edge.session.empty()) sessions.insert(edge.session);
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, {sessions.begin(), sessions.end()}, all));
   for (Edge& edge : edges)
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
-        MakePast(*remount, edge);
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) {
+      const auto* remount =
+          edge.measured_at ? remounts.After(*edge.measured_at, sensor) : remounts.After(edge.session, sensor);
+      if (remount != nullptr && edge.state == EdgeState::kGood) MakePast(*remount, edge);
+    }
   return {};
 }
 

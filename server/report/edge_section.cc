@@ -187,7 +187,9 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
   if (IsMergedOfSessions(edge)) return "Of this pair, what the sessions before the newest ones say together.";
   if (IsMerged(edge)) return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
-  if (edge.session.empty()) return "Pushed as a finished result.";
+  if (edge.session.empty())
+    return edge.measured_at ? "Pushed as a finished result, measured " + TimeText(*edge.measured_at) + "."
+                            : "Pushed as a finished result.";
   const auto facts = std::find_if(input.sessions.begin(), input.sessions.end(),
                                   [&](const SessionFacts& session) { return session.id == edge.session; });
   const std::string id = ShortDigest(edge.session.str());
