@@ -5,7 +5,8 @@
 namespace rigcal {
 
 bool MeansPast(std::string_view diagnosis_code) {
-  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode || diagnosis_code == kRetiredCode;
+  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode || diagnosis_code == kRetiredCode ||
+         diagnosis_code == kSensorRetiredCode;
 }
 
 bool IsPast(const Edge& edge) {

@@ -11,6 +11,7 @@
 #include "server/report/edge_state.h"
 #include "server/report/figure_words.h"
 #include "server/report/influence.h"
+#include "server/report/retired_section.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -215,6 +216,7 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   section.SetValue("PROVENANCE", ProvenanceOf(input, edge));
   if (open) section.ShowSection("OPEN");
   FillWarned(section, edge);
+  if (HasWayOut(edge) && input.revision.edges.size() <= kWaysOutMax) FillRetire(section, RetireCommand(edge.id));
   FillDiagnoses(section, edge);
   if (!failed) FillPose(section, edge);
   FillFigures(section, edge);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/report/retired_section.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 #include "server/report/unknown.h"
@@ -27,11 +28,22 @@ void FillKnown(Dictionary& row, const SensorPose& pose, bool is_reference) {
   for (int axis = 0; axis < 6; ++axis) ShowValue(*known, "SIGMA", "VALUE", SigmaText(pose.covariance, axis));
 }
 
+// How each sensor is taken out; of very many, how any is.
+void FillWaysOut(Dictionary& page, const formats::RevisionInput& revision) {
+  const auto& poses = revision.solution.poses;
+  if (poses.empty()) return;
+  Dictionary* ways = page.AddSectionDictionary("WAYS_OUT");
+  if (poses.size() > kWaysOutMax) return FillRetire(*ways, RetireCommand(revision.robot, SensorId("SENSOR")));
+  for (const SensorPose& pose : poses) FillRetire(*ways, RetireCommand(revision.robot, pose.sensor));
+}
+
 }  // namespace
 
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
   const auto why = WhyUnknown(revision);
   const auto& poses = revision.solution.poses;
+  FillGone(page, revision.robot, revision.retired);
+  FillWaysOut(page, revision);
   for (std::size_t i = 0; i < std::min(poses.size(), kPoseRowsMax); ++i) {
     Dictionary* row = page.AddSectionDictionary("POSE");
     row->SetValue("SENSOR", poses[i].sensor.str());

@@ -4,7 +4,7 @@
 #include "server/pipeline/revise.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {
@@ -69,6 +69,21 @@ TEST_F(MergedHistoryTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
   for (int week = 21; week < 24; ++week) Week(week);
   ExpectSamePoses(Whole(ids_[2]), newest_.solution);
   EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size() + 1);  // it stays on the page, with its reason
+}
+
+TEST_F(MergedHistoryTest, EdgesOfASensorThatIsGoneLeaveTheWindowAndComeBackWithIt) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  ASSERT_TRUE(storage::RetireSensor(*store_, kOld, SensorId("c"), {clock_.now, "Ada", "taken off"}));
+  Week(20);
+  EXPECT_EQ(newest_.solution.poses.size(), 2u);
+  EXPECT_EQ(newest_.edges.size(), 9 + 2 * 8u);  // of each pair of it the newest stay, as past
+  Week(21);
+  EXPECT_EQ(newest_.edges.size(), 9 + 2 * 8u);
+  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld, *storage::LoadWhatCounts(*store_, kOld)));
+  ASSERT_TRUE(storage::RestoreSensor(*store_, kOld, SensorId("c"), {clock_.now, "Ada", "back"}));
+  Week(22);
+  ExpectSamePoses(Whole(), newest_.solution);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size());
 }
 
 // Which are the newest is told by when they were measured, not by when they came.

@@ -6,6 +6,7 @@
 #include "server/pipeline/validity.h"
 #include "storage/attempts.h"
 #include "storage/edges.h"
+#include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/standing.h"
 #include "tests/unit/pipeline_fixture.h"

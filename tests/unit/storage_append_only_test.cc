@@ -4,7 +4,7 @@
 #include "server/formats/documents.h"
 #include "storage/attempts.h"
 #include "storage/fleet_facts.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"
 #include "storage/revision_poses.h"

@@ -12,7 +12,7 @@
 #include "storage/fleet_list.h"
 #include "storage/robot_summary.h"
 #include "storage/session_estimates.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {

@@ -1,0 +1,29 @@
+// A word about what counts, as a row of the table standing. For storage/*.cc only.
+#pragma once
+
+#include "server/base/text.h"
+#include "server/model/standing.h"
+#include "storage/query.h"
+
+namespace rigcal::storage {
+
+// Columns number, how, at_ns, who, reason, from `column` on.
+[[nodiscard]] inline Standing StandingAt(const Query& query, int column) {
+  return {query.Int(column),
+          query.Text(column + 1),
+          {query.Time(column + 2), query.Text(column + 3), query.Text(column + 4)}};
+}
+
+[[nodiscard]] inline Status CheckWord(const Word& word) {
+  constexpr std::size_t kWordBytesMax = 500;
+  for (const std::string* text : {&word.who, &word.reason})
+    if (text->size() > kWordBytesMax || !IsPrintableUtf8(*text))
+      return Fail(ErrorCode::kInvalidInput, Quoted(*text) + " is not one line of readable text",
+                  "Use at most " + std::to_string(kWordBytesMax) + " bytes of UTF-8 without control characters.");
+  return {};
+}
+
+// For the audit.
+[[nodiscard]] inline std::string Because(const Word& word) { return word.reason.empty() ? "" : ": " + word.reason; }
+
+}  // namespace rigcal::storage
