@@ -22,7 +22,6 @@ void AddOrderOptions(CLI::App& verb, OrderOptions& options);
 
 struct OrderToGive {
   std::string verb;
-  std::string subject;  // the parameter that has the id
   std::function<void(const Document& done, std::ostream&)> print;
 };
 // Sets the exit code by the verdict of that revision.

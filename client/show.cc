@@ -5,6 +5,7 @@
 #include "client/edge_table.h"
 #include "client/insight_table.h"
 #include "client/pose_text.h"
+#include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -26,6 +27,8 @@ void PrintPoses(const Document& revision, std::ostream& out) {
                known ? Triple(sensor["sigma_rad"], kDegPerRad, 4) : ""});
   }
   table.Print(out);
+  for (const Document& gone : revision["retired_sensors"].Items())
+    out << RetiredSensorText(revision["robot"].Text("?"), gone) << '\n';
 }
 
 void PrintShow(const Document& document, bool whole, std::ostream& out) {
