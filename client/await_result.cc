@@ -123,7 +123,8 @@ Status ResultWatch::LookAt(std::int64_t newest, State& state) {
   state.settled_revision = settled ? newest : 0;
   state.result.has_revision = state.finished =
       (again || HoldsAll(revision, state.place.edges)) &&
-      state.result.show["standing"].Integer().value_or(0) >= state.place.standing;
+      state.result.show["standing"].Integer().value_or(0) >= state.place.standing &&
+      revision["policy"]["versions"]["robot"].Integer().value_or(0) >= state.place.policy;
   if (settled && !state.finished) state.looked_at_revision = 0;
   return {};
 }

@@ -25,6 +25,7 @@ struct AwaitPlace {
   std::int64_t standing = 0;    // that the revision must count (docs/api.md); a session's own is added as it is known
   std::string where;
   std::int64_t give_up_ns = 60'000'000'000;
+  std::int64_t policy = 0;  // version of the robot's own that must have judged the revision
 };
 
 struct Awaited {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 good, 1 verdict fail, 2 usage, 3 no server answers, 4 input refused, 5 verdict warn or calibration\n"
-    "overdue, 6 verdict unknown. A verdict is told by push, push-edges, show, lookup and `status ROBOT`.\n"
+    "overdue, 6 verdict unknown. A verdict is told by push, push-edges, show, lookup and status, of several robots the "
+    "worst.\n"
     "Examples:\n"
     "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"
     "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
@@ -52,7 +53,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
-    AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion};
+    AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion, AddPolicy};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

@@ -17,7 +17,8 @@ bool AnyOverdue(const Document& document) {
 void PrintDue(const Document& document, std::ostream& out) {
   if (!AnyOverdue(document)) {
     out << "No robot is overdue: " << document["robots"].size() << " known, all calibrated within "
-        << AgeOf(document["max_age_ns"]) << ".\n";
+        << (document["max_age_ns"].IsNull() ? "the time that their policies allow" : AgeOf(document["max_age_ns"]))
+        << ".\n";
     return;
   }
   Table table({{"OVERDUE"}, {"CALIBRATED"}, {"AGE", Align::kRight}, {"VERDICT"}});
@@ -28,23 +29,30 @@ void PrintDue(const Document& document, std::ostream& out) {
   table.Print(out);
 }
 
+ExitCode AskDue(const Context& context, const std::string& parameters) {
+  return Answer(context, {"due", parameters, PrintDue, [](const Document& document) {
+                            return AnyOverdue(document) ? ExitCode::kVerdictFail : ExitCode::kGood;
+                          }});
+}
+
+// Without an age the policy of each robot decides.
 ExitCode RunDue(const Context& context, const std::string& max_age) {
+  if (max_age.empty()) return AskDue(context, "{}");
   const auto max_age_ns = ParseDuration(max_age);
   if (!max_age_ns) {
     Report(max_age_ns.error(), context);
     return ExitCode::kUsage;
   }
-  return Answer(context, {"due", JsonObject({{"max_age_ns", *max_age_ns}}), PrintDue, [](const Document& document) {
-                            return AnyOverdue(document) ? ExitCode::kVerdictFail : ExitCode::kGood;
-                          }});
+  return AskDue(context, JsonObject({{"max_age_ns", *max_age_ns}}));
 }
 
 }  // namespace
 
 void AddDue(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("due", "List the robots whose calibration is older than an age");
-  auto max_age = std::make_shared<std::string>("90d");
-  verb->add_option("--max-age", *max_age, "Oldest age that is good: 90d, 12h, 30m, 45s (default 90d)")
+  auto max_age = std::make_shared<std::string>();
+  verb->add_option("--max-age", *max_age,
+                   "Oldest age that is good: 90d, 12h, 30m, 45s (default: as the policies say, else 90d)")
       ->type_name("AGE");
   verb->footer(
       "A robot that was never calibrated is overdue. Exit code 1 if any is; --json lists all robots.\n"

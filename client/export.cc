@@ -17,7 +17,7 @@ struct ExportOptions {
 
 struct Exported {
   std::int64_t revision = 0;
-  std::size_t edges = 0, sensors = 0;
+  std::size_t edges = 0, sensors = 0, in_part = 0;
 };
 
 Result<Exported> Export(const Context& context, const ExportOptions& options) {
@@ -33,10 +33,20 @@ Result<Exported> Export(const Context& context, const ExportOptions& options) {
     return Fail(ErrorCode::kUnsupported, "the server's document has no information matrices", "Install a newer rigcald.");
   RIGCAL_ASSIGN(const std::string g2o, formats::WriteG2o(revision.edges, revision.solution.poses, revision.reference));
   RIGCAL_TRY(WriteDurably(options.out, g2o));
-  Exported exported{shown["revision"].Integer().value_or(0), 0, 0};
+  Exported exported{shown["revision"].Integer().value_or(0)};
   for (const Edge& edge : revision.edges) exported.edges += edge.state == EdgeState::kGood ? 1 : 0;
-  for (const SensorPose& pose : revision.solution.poses) exported.sensors += pose.known ? 1 : 0;
+  for (const SensorPose& pose : revision.solution.poses) {
+    exported.sensors += pose.known ? 1 : 0;
+    exported.in_part += pose.measured_part ? 1 : 0;
+  }
   return exported;
+}
+
+void PrintExported(const Exported& exported, const std::string& file, std::ostream& out) {
+  out << file << ": " << exported.edges << " edges and " << exported.sensors << " poses of revision " << exported.revision << '\n';
+  if (exported.in_part > 0)
+    out << "beside them " << exported.in_part << (exported.in_part == 1 ? " pose" : " poses")
+        << " of which not every direction was measured: a comment before each in the file says which\n";
 }
 
 ExitCode RunExport(const Context& context, const ExportOptions& options) {
@@ -47,11 +57,11 @@ ExitCode RunExport(const Context& context, const ExportOptions& options) {
                                {"file", options.out},
                                {"revision", exported->revision},
                                {"robot", options.robot},
-                               {"sensors", static_cast<std::int64_t>(exported->sensors)}})
+                               {"sensors", static_cast<std::int64_t>(exported->sensors)},
+                               {"sensors_in_part", static_cast<std::int64_t>(exported->in_part)}})
                 << std::endl;
   else
-    context.out << options.out << ": " << exported->edges << " edges and " << exported->sensors << " poses of revision "
-                << exported->revision << '\n';
+    PrintExported(*exported, options.out, context.out);
   return ExitCode::kGood;
 }
 
@@ -68,7 +78,8 @@ void AddExport(CLI::App& app, Context& context) {
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   verb->footer(
-      "Good edges with their information, and the solved poses. `rigcal push-edges` reads it back, number by number.\n"
+      "Good edges with their information, and the solved poses; before one of which a direction was not measured a comment "
+      "says so. `rigcal push-edges` reads it back, number by number.\n"
       "Examples:\n"
       "  rigcal export mapper-01 --out mapper-01.g2o\n"
       "  rigcal export mapper-01 --revision 3 --out before.g2o\n");

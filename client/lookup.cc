@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/part_text.h"
 #include "client/pose_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -14,11 +15,8 @@ std::string QuaternionText(const Document& q_xyzw) {
   return text;
 }
 
-void PrintLookup(const Document& document, std::ostream& out) {
-  const std::string a = Plain(document["frame_a"].Text("?")), b = Plain(document["frame_b"].Text("?"));
+void PrintPose(const Document& document, const std::string& b, std::ostream& out) {
   const Document pose = document["T_a_b"];
-  out << "T_" << a << "_" << b << "  pose of " << b << " in " << a << ", robot " << Plain(document["robot"].Text("?"))
-      << ", revision " << CountOf(document["revision"]) << '\n';
   out << "p mm       " << Triple(pose["p_m"], kMmPerM, 3) << '\n';
   out << "q_xyzw     " << QuaternionText(pose["q_xyzw"]) << '\n';
   out << "rpy deg    " << RpyText(pose, 4) << "  (R = Rz(yaw) Ry(pitch) Rx(roll))\n";
@@ -26,7 +24,28 @@ void PrintLookup(const Document& document, std::ostream& out) {
   out << "sigma deg  " << Triple(document["sigma_rad"], kDegPerRad, 5) << "  (about x y z of " << b << ")\n";
   out << "covariance (x y z rx ry rz of " << b << "; m, rad; T * Exp(xi))\n";
   PrintMatrix(document["covariance"], " ", out);
+}
+
+void PrintPoseInPart(const Document& document, const std::string& a, const std::string& b, std::ostream& out) {
+  out << PartSentence(document, b + " in " + a) << '\n';
+  out << "rpy deg    " << PartRpyText(document, 4) << "  (R = Rz(yaw) Ry(pitch) Rx(roll))\n";
+  out << "along and about directions in " << a << '\n';
+  PrintPart(document, document["robot_axes"], out);
+}
+
+void PrintLookup(const Document& document, std::ostream& out) {
+  const std::string a = Plain(document["frame_a"].Text("?")), b = Plain(document["frame_b"].Text("?"));
+  out << "T_" << a << "_" << b << "  pose of " << b << " in " << a << ", robot " << Plain(document["robot"].Text("?"))
+      << ", revision " << CountOf(document["revision"]) << '\n';
+  IsInPart(document) ? PrintPoseInPart(document, a, b, out) : PrintPose(document, b, out);
+  PrintDrive(document, out);
   PrintVerdict(document["verdict"], document, out);
+}
+
+// Without a whole pose there is no result to go by, whatever the verdict lets pass.
+ExitCode JudgeLookup(const Document& document) {
+  const ExitCode code = Judge(document["verdict"], document);
+  return document["known"].Flag(true) || code == ExitCode::kVerdictFail ? code : ExitCode::kVerdictUnknown;
 }
 
 struct LookupOptions {
@@ -35,8 +54,7 @@ struct LookupOptions {
 
 ExitCode RunLookup(const Context& context, const LookupOptions& options) {
   const std::string parameters = JsonObject({{"robot", options.robot}, {"a", options.a}, {"b", options.b}});
-  return Answer(context, {"lookup", parameters, PrintLookup,
-                          [](const Document& document) { return Judge(document["verdict"], document); }});
+  return Answer(context, {"lookup", parameters, PrintLookup, JudgeLookup});
 }
 
 }  // namespace
@@ -48,6 +66,7 @@ void AddLookup(CLI::App& app, Context& context) {
   verb->add_option("A", options->a, "Sensor in whose frame the pose is given")->required();
   verb->add_option("B", options->b, "Sensor whose pose it is")->required();
   verb->footer("p_A = T_A_B * p_B. " + std::string(kVerdictCodes) +
+               "6 also where a direction of the pose was not measured: then it is told what was, and --json has T_a_b null.\n"
                "Examples:\n"
                "  rigcal lookup mapper-01 front_left lidar\n"
                "  rigcal lookup mapper-01 front_left lidar --json\n");

@@ -105,6 +105,10 @@ class TypedWords {
     if (kind == "DIR") next.kind = NextWord::Kind::kFolders;
     if (kind == "SHELL")
       for (const char* shell : kShells) Add(shell, "", next);
+    if (kind == "ACTION")
+      for (const char* action : kPolicyActions) Add(action, "", next);
+    if (kind == "WHAT" && !positional_.empty())
+      next.kind = positional_.front() == "show" ? NextWord::Kind::kRobots : NextWord::Kind::kFiles;
     if ((kind == "A" || kind == "B") && !positional_.empty()) {
       next.kind = NextWord::Kind::kSensors;
       next.subject = positional_.front();

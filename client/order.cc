@@ -10,14 +10,14 @@
 #include "client/push_result.h"
 
 namespace rigcal::client {
-namespace {
 
-// Who works at this machine.
 std::string LoginName() {
   for (const char* variable : {"LOGNAME", "USER"})
     if (const char* name = std::getenv(variable); name != nullptr && *name != 0) return name;
   return "user " + std::to_string(geteuid());
 }
+
+namespace {
 
 std::string ParametersOf(const OrderOptions& options) {
   std::vector<Field> fields = {{"thing", options.id}, {"who", options.who.empty() ? LoginName() : options.who}};
@@ -40,7 +40,8 @@ Result<Awaited> AwaitRevision(const Context& context, const OrderOptions& option
                    {},
                    holder["standing"]["number"].Integer().value_or(0),
                    WhereText(context.dds),
-                   std::llround(options.give_up_s * 1e9)};
+                   std::llround(options.give_up_s * 1e9),
+                   done["set"]["version"].Integer().value_or(0)};
   return watch.Await(std::move(place), {{}, [&](const std::string& line) { context.err << line << std::endl; }});
 }
 
@@ -61,6 +62,10 @@ void AddOrderOptions(CLI::App& verb, OrderOptions& options) {
 
 Status GiveOrder(Context& context, const OrderToGive& order, const OrderOptions& options) {
   RIGCAL_ASSIGN(const std::string text, AskOnce(context, order.verb, ParametersOf(options)));
+  return FollowOrder(context, order, options, text);
+}
+
+Status FollowOrder(Context& context, const OrderToGive& order, const OrderOptions& options, const std::string& text) {
   RIGCAL_ASSIGN(const Document done, Document::Parse(text, "the server's answer to '" + order.verb + "'"));
   if (!context.json) order.print(done, context.out);
   Awaited awaited;

@@ -17,6 +17,8 @@ struct OrderOptions {
   double give_up_s = 60.0;
   bool no_wait = false;
 };
+// Who works at this machine.
+[[nodiscard]] std::string LoginName();
 // --by, --robot, --no-wait, --timeout-total.
 void AddOrderOptions(CLI::App& verb, OrderOptions& options);
 
@@ -24,7 +26,11 @@ struct OrderToGive {
   std::string verb;
   std::function<void(const Document& done, std::ostream&)> print;
 };
-// Sets the exit code by the verdict of that revision.
+// What follows the answer `text` to an order: it is told, and the revision waited for. Sets the exit code by its
+// verdict.
+[[nodiscard]] Status FollowOrder(Context& context, const OrderToGive& order, const OrderOptions& options,
+                                 const std::string& text);
+// Asks for it first.
 [[nodiscard]] Status GiveOrder(Context& context, const OrderToGive& order, const OrderOptions& options);
 
 }  // namespace rigcal::client

@@ -30,7 +30,9 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   }
   const Document revision = awaited.show["document"];
   const std::string robot = Plain(awaited.show["robot"].Text("?"));
-  out << "\n" << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
+  out << '\n';
+  PrintDrive(awaited.show, out);
+  out << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
   PrintVerdict(revision["verdict"], awaited.show, out);
   PrintGlobalError(revision, out);
   const auto edges = revision["edges"].Items();

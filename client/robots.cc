@@ -32,11 +32,12 @@ void PrintRobots(const Document& document, const PartOptions& options, std::ostr
                {"AGE", Align::kRight},
                {"SESSIONS", Align::kRight},
                {"EDGES", Align::kRight},
-               {"JOBS", Align::kRight}});
+               {"JOBS", Align::kRight},
+               {"DRIVE"}});
   for (const Document& row : document["robots"].Items())
     table.Add({row["robot"].Text("?"), OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
                CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["sessions"]), CountOf(row["edges"]),
-               CountOf(row["jobs_waiting"])});
+               CountOf(row["jobs_waiting"]), DriveText(row)});
   table.Print(out);
   const std::string next = Plain(document["next"].Text());
   if (!next.empty()) out << "More: rigcal robots --limit " << options.limit << " --after " << next << '\n';

@@ -1,9 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
 #include <memory>
 
 #include "client/cause_list.h"
 #include "client/edge_table.h"
 #include "client/insight_table.h"
+#include "client/part_text.h"
 #include "client/pose_text.h"
 #include "client/standing_text.h"
 #include "client/table.h"
@@ -11,6 +14,14 @@
 
 namespace rigcal::client {
 namespace {
+
+// "0.100 0.200 0.300 (limit 5)": of a server that says what they are held against.
+std::string WithLimit(const std::string& sigmas, const Document& limit, double scale) {
+  if (!limit.Number()) return sigmas;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), " (limit %.3g)", *limit.Number() * scale);
+  return sigmas + text.data();
+}
 
 void PrintPoses(const Document& revision, std::ostream& out) {
   out << "\nPoses in " << Plain(revision["reference"].Text("?")) << '\n';
@@ -21,18 +32,21 @@ void PrintPoses(const Document& revision, std::ostream& out) {
                {"sigma deg", Align::kRight}});
   for (const Document& sensor : revision["sensors"].Items()) {
     const Document pose = sensor["T_ref_sensor"];
-    const bool known = sensor["known"].Flag();
-    table.Add({sensor["id"].Text("?"), known ? Triple(pose["p_m"], kMmPerM, 2) : "unknown",
-               known ? RpyText(pose, 3) : "", known ? Triple(sensor["sigma_m"], kMmPerM, 3) : "",
-               known ? Triple(sensor["sigma_rad"], kDegPerRad, 4) : ""});
+    const bool known = sensor["known"].Flag(), in_part = IsInPart(sensor);
+    table.Add({sensor["id"].Text("?"), known ? Triple(pose["p_m"], kMmPerM, 2) : in_part ? OpenText(sensor) : "unknown",
+               known ? RpyText(pose, 3) : in_part ? PartRpyText(sensor, 3) : "",
+               known ? WithLimit(Triple(sensor["sigma_m"], kMmPerM, 3), sensor["tolerance_m"], kMmPerM) : "",
+               known ? WithLimit(Triple(sensor["sigma_rad"], kDegPerRad, 4), sensor["tolerance_rad"], kDegPerRad) : ""});
   }
   table.Print(out);
+  PrintParts(revision, out);
   for (const Document& gone : revision["retired_sensors"].Items())
     out << RetiredSensorText(revision["robot"].Text("?"), gone) << '\n';
 }
 
 void PrintShow(const Document& document, bool whole, std::ostream& out) {
   const Document revision = document["document"];
+  PrintDrive(document, out);
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
   PrintVerdict(revision["verdict"], document, out);

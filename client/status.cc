@@ -1,5 +1,8 @@
 #include <CLI/CLI.hpp>
+#include <array>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "client/table.h"
 #include "client/verbs.h"
@@ -23,16 +26,43 @@ void PrintOpenBatches(const Document& document, std::ostream& out) {
     out << "! " << OpenBatchText(batch) << "\n  -> " << kCompleteBatch << '\n';
 }
 
-void PrintStatus(const Document& document, std::ostream& out) {
+// "3 robots: 1 do not drive, 2 OK to drive".
+void PrintCounts(const std::vector<Document>& rows, std::ostream& out) {
+  constexpr std::array<std::pair<ExitCode, const char*>, 4> kKinds = {{{ExitCode::kVerdictFail, "do not drive"},
+                                                                       {ExitCode::kVerdictUnknown, "not verified"},
+                                                                       {ExitCode::kVerdictWarn, "warn or overdue"},
+                                                                       {ExitCode::kGood, "OK to drive"}}};
+  std::map<ExitCode, int> counts;
+  for (const Document& row : rows) ++counts[Judge(row["verdict"], row)];
+  out << rows.size() << (rows.size() == 1 ? " robot:" : " robots:");
+  const char* between = " ";
+  for (const auto& [code, words] : kKinds)
+    if (counts[code] > 0) out << std::exchange(between, ", ") << counts[code] << ' ' << words;
+  out << '\n';
+}
+
+// What may be driven comes first: of one robot its rule, of several how many there are of each kind.
+void PrintStatus(const Document& document, bool of_one, std::ostream& out) {
+  const std::vector<Document> rows = document["robots"].Items();
+  if (of_one && !rows.empty()) PrintDrive(rows.front(), out);
+  if (!of_one && !rows.empty()) PrintCounts(rows, out);
   PrintServer(document, out);
   PrintOpenBatches(document, out);
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
   Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
-  for (const Document& row : document["robots"].Items())
+  for (const Document& row : rows) {
+    const std::string drive = of_one ? "" : DriveText(row);
     table.Add({row["robot"].Text("?"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
-               OverdueBefore(row) + VerdictText(row["verdict"])});
+               drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"])});
+  }
   table.Print(out);
+}
+
+ExitCode JudgeAll(const Document& document) {
+  ExitCode worst = ExitCode::kGood;
+  for (const Document& row : document["robots"].Items()) worst = Worse(worst, Judge(row["verdict"], row));
+  return worst;
 }
 
 }  // namespace
@@ -41,20 +71,16 @@ void AddStatus(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("status", "Show what the server is doing, and each robot's verdict in words");
   auto robot = std::make_shared<std::string>();
   verb->add_option("ROBOT", *robot, "Only this robot");
-  verb->footer("Of one robot: " + std::string(kVerdictCodes) +
-               "Of all robots 0, whatever their verdicts.\n"
+  verb->footer(std::string(kVerdictCodes) +
+               "Of several robots that of the worst: fail, unknown, warn, pass. Without any robot 0.\n"
                "Examples:\n"
                "  rigcal status\n"
-               "  rigcal status mapper-01\n"
-               "  rigcal status --timeout 1 && echo a server is there\n");
+               "  rigcal status mapper-01\n");
   verb->callback([&context, robot] {
-    const std::string parameters = robot->empty() ? "{}" : JsonObject({{"robot", *robot}});
-    const auto judge = [](const Document& document) {
-      const Document row = document["robots"][std::size_t{0}];
-      return Judge(row["verdict"], row);
-    };
-    context.exit_code = robot->empty() ? Answer(context, {"status", parameters, PrintStatus, {}})
-                                       : Answer(context, {"status", parameters, PrintStatus, judge});
+    const bool of_one = !robot->empty();
+    const std::string parameters = of_one ? JsonObject({{"robot", *robot}}) : "{}";
+    const auto print = [of_one](const Document& document, std::ostream& out) { PrintStatus(document, of_one, out); };
+    context.exit_code = Answer(context, {"status", parameters, print, JudgeAll});
   });
 }
 

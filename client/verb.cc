@@ -1,5 +1,7 @@
 #include "client/verb.h"
 
+#include <array>
+
 #include "client/table.h"
 #include "server/base/stamp.h"
 #include "server/formats/answers.h"
@@ -55,18 +57,30 @@ std::optional<Stamp> StampOf(const Document& text) {
 
 }  // namespace
 
+ExitCode Worse(ExitCode a, ExitCode b) {
+  constexpr std::array kFromTheWorst = {ExitCode::kVerdictFail, ExitCode::kVerdictUnknown, ExitCode::kVerdictWarn};
+  for (const ExitCode code : kFromTheWorst)
+    if (a == code || b == code) return code;
+  return a;
+}
+
+std::string DriveText(const Document& document) {
+  const std::string rule = Plain(document["drive"]["rule"].Text());
+  return rule.empty() ? "" : rule + ".";
+}
+
+void PrintDrive(const Document& document, std::ostream& out) {
+  if (const std::string text = DriveText(document); !text.empty()) out << text << '\n';
+}
+
 // What an older server's documents lack is not told.
-std::string ValidityText(const Document& verdict, const Document& validity) {
-  const VerdictLevel level = VerdictLevelOf(verdict["level"].Text());
-  if (level == VerdictLevel::kFail || level == VerdictLevel::kUnknown) {
-    if (!validity.Has("usable")) return "";
-    const Document usable = validity["usable"];
-    const auto created_at = StampOf(usable["created_at"]);
-    if (!created_at) return KeepText(std::nullopt);
-    return KeepText(UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
-  }
-  const auto valid_until = StampOf(validity["valid_until"]);
-  return valid_until && !validity["overdue"].Flag() ? ValidText(*valid_until) : "";
+std::string FallbackText(const Document& verdict, const Document& validity) {
+  const Verdict told{VerdictLevelOf(verdict["level"].Text()), "", ""};
+  if (IsUsable(told) || !validity.Has("usable")) return "";
+  const Document usable = validity["usable"];
+  const auto created_at = StampOf(usable["created_at"]);
+  if (!created_at) return KeepText(std::nullopt);
+  return KeepText(UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
 }
 
 std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }
@@ -83,9 +97,10 @@ std::string VerdictText(const Document& verdict) {
 }
 
 void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out) {
-  if (validity["overdue"].Flag()) out << OverdueText(StampOf(validity["valid_until"])) << '\n';
+  const bool in_rule = IsUsable({VerdictLevelOf(verdict["level"].Text()), "", ""}) && !DriveText(validity).empty();
+  if (validity["overdue"].Flag() && !in_rule) out << OverdueText(StampOf(validity["valid_until"])) << '\n';
   out << "verdict  " << VerdictText(verdict) << '\n';
-  if (const std::string text = ValidityText(verdict, validity); !text.empty()) out << "         " << text << '\n';
+  if (const std::string text = FallbackText(verdict, validity); !text.empty()) out << "         " << text << '\n';
   if (validity["calculating"].Flag()) out << "         " << kCalculatingText << '\n';
   if (const std::string text = Plain(validity["given_up"].Text()); !text.empty()) out << "         " << text << '\n';
 }

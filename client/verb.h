@@ -44,11 +44,18 @@ ExitCode Answer(const Context& context, const Question& question);
 [[nodiscard]] ExitCode Judge(const Document& verdict, const Document& validity);
 // For the help of each verb that ends with Judge.
 inline constexpr const char* kVerdictCodes = "Exit code: 0 pass, 1 fail, 5 warn or overdue, 6 unknown.\n";
-// "pass" or "fail: why. What to do."; before it that the calibration is overdue, after it until when it is valid, or
-// what to use instead, and that a newer one is on its way. `validity`: the members of docs/api.md that `show` has.
+// Of several robots the worst.
+[[nodiscard]] ExitCode Worse(ExitCode a, ExitCode b);
+// "OK to drive until 20 Feb 2027.", "Do not drive.", as the server says it; empty where it does not. `document` is one
+// of docs/api.md that has `drive`.
+[[nodiscard]] std::string DriveText(const Document& document);
+// That on a line of its own, if there is any.
+void PrintDrive(const Document& document, std::ostream& out);
+// "pass" or "fail: why. What to do."; after it what to use instead, and that a newer one is on its way; before it that
+// it is overdue, where the drive rule does not say so. `validity`: the members of docs/api.md that `show` has.
 void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out);
-// "Valid until 20 Feb 2027.", "Keep using revision 4 of 12 Mar 2026 meanwhile.", ...; or empty.
-[[nodiscard]] std::string ValidityText(const Document& verdict, const Document& validity);
+// "Keep using revision 4 of 12 Mar 2026 meanwhile.", ... of a fail and of what is not known; else empty.
+[[nodiscard]] std::string FallbackText(const Document& verdict, const Document& validity);
 // "overdue, " where it is so, for what is told of a robot in one line.
 [[nodiscard]] std::string OverdueBefore(const Document& validity);
 [[nodiscard]] std::string VerdictText(const Document& verdict);

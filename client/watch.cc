@@ -36,7 +36,7 @@ std::string DoneText(const Document& data) {
 }
 
 std::string VerdictAndKeep(const Document& data) {
-  const std::string keep = ValidityText(data["verdict"], data);
+  const std::string keep = FallbackText(data["verdict"], data);
   return VerdictText(data["verdict"]) + (keep.empty() ? "" : " " + keep);
 }
 

@@ -10,6 +10,7 @@
 
 #include "rigcal.h"
 #include "server/model/edge.h"
+#include "server/model/robot_state.h"
 
 namespace rigcal::wire {
 
@@ -31,6 +32,12 @@ struct BatchItem {
 [[nodiscard]] Result<Owned<rigcal_wire_PairwiseResult>> ToPairwiseResult(const BatchItem& item);
 // Checks everything incl. that edge_id, content and robot belong together.
 [[nodiscard]] Result<BatchItem> FromPairwiseResult(const rigcal_wire_PairwiseResult& sample);
+
+// What a robot is told of one of its sensors. A pose that is not known is the identity without covariance; what of it was
+// measured stands beside it.
+[[nodiscard]] Result<Owned<rigcal_wire_Calibration>> ToCalibration(const RobotId& robot,
+                                                                   const RobotState::Calibration& calibration,
+                                                                   const SensorPose& pose);
 
 // A receipt as a value.
 enum class ReceiptState { kNeedManifest, kReceiving, kClosed, kRefused };

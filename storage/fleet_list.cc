@@ -9,13 +9,13 @@
 namespace rigcal::storage {
 namespace {
 
-// ?1, ?2, ?3: what was calibrated before is overdue, or will be this week, or by the end of the next; ?4: the choice;
+// ?1, ?2, ?3: what is valid until before is overdue, or will be this week, or by the end of the next; ?4: the choice;
 // ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8, ?9: the first word and the
 // others.
-const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns < ?1))";
-const std::string kIsDueThisWeek = "(revision_number > 0 AND calibrated_ns >= ?1 AND calibrated_ns < ?2)";
-const std::string kIsDueNextWeek = "(revision_number > 0 AND calibrated_ns >= ?2 AND calibrated_ns < ?3)";
-const std::string kIsDueLater = "(revision_number > 0 AND calibrated_ns >= ?3)";
+const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
+const std::string kIsDueThisWeek = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND calibrated_ns + max_age_ns < ?2)";
+const std::string kIsDueNextWeek = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?2 AND calibrated_ns + max_age_ns < ?3)";
+const std::string kIsDueLater = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?3)";
 const std::string kIsLike =
     "CASE ?4 WHEN '' THEN 1 WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
     " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
@@ -35,11 +35,11 @@ const std::string kHasWords = " AND " + HasWord("?8") +
 // which is due by the end of next week.
 const std::string kUrgency = "CASE verdict WHEN 'fail' THEN 1 - " + kIsOverdue + " WHEN 'unknown' THEN 3 - " +
                              kIsOverdue + " WHEN 'warn' THEN 6 - 2 * " + kIsOverdue + " ELSE CASE WHEN " + kIsOverdue +
-                             " THEN 5 WHEN calibrated_ns < ?3 THEN 7 ELSE 8 END END";
+                             " THEN 5 WHEN calibrated_ns + max_age_ns < ?3 THEN 7 ELSE 8 END END";
 
 void BindDue(Query& query, Stamp now) {
   const std::int64_t this_week_ns = NextMonday(now).ns;
-  query.Bind(now.ns - kDefaultMaxAge_ns, this_week_ns - kDefaultMaxAge_ns, this_week_ns + kWeek_ns - kDefaultMaxAge_ns);
+  query.Bind(now.ns, this_week_ns, this_week_ns + kWeek_ns);
 }
 
 // A number to sort by, the smallest first.
@@ -183,7 +183,8 @@ Result<FleetSize> LoadFleetSize(Store& store) {
   return Load<FleetSize>(store, "size of the fleet", [&]() -> Result<FleetSize> {
     Query query(store,
                 "SELECT robots, sessions, edges, (SELECT count(*) FROM waiting_revision) + "
-                "(SELECT count(*) FROM waiting_publication) FROM summary_fleet WHERE only_row = 1");
+                "(SELECT count(*) FROM waiting_verdict) + (SELECT count(*) FROM waiting_publication) "
+                "FROM summary_fleet WHERE only_row = 1");
     if (!query.Step()) return FleetSize{};
     return FleetSize{query.Int(0), query.Int(1), query.Int(2), query.Int(3)};
   });

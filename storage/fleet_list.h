@@ -22,7 +22,7 @@ namespace rigcal::storage {
 // Of what is stored, not of summaries; the same cost whatever the number of robots.
 struct FleetSize {
   std::int64_t robots = 0, sessions = 0, edges = 0;  // edges that count
-  std::int64_t unfinished = 0;                       // robots to solve and reports to publish
+  std::int64_t unfinished = 0;                       // robots to solve or to judge, and reports to publish
 };
 [[nodiscard]] Result<FleetSize> LoadFleetSize(Store& store);
 

@@ -1,6 +1,7 @@
 #include "storage/retired.h"
 
 #include "storage/revisions.h"
+#include "storage/standing.h"
 #include "storage/standing_row.h"
 
 namespace rigcal::storage {

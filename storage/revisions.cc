@@ -17,11 +17,15 @@ std::string PublicationSubject(const RevisionKey& key) {
 }
 
 const std::string kColumns =
-    "robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
+    "revision.robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
     "(SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = revision.robot_id AND "
     "s.revision_number = revision.number), "
     "(SELECT calibrated_ns FROM revision_calibrated c "
-    "WHERE c.robot_id = revision.robot_id AND c.revision_number = revision.number) ";
+    "WHERE c.robot_id = revision.robot_id AND c.revision_number = revision.number), "
+    "judged.policy_watermark, judged.max_age_ns, judged.unverified ";
+const std::string kFrom =
+    "FROM revision LEFT JOIN revision_judgement judged "
+    "ON judged.robot_id = revision.robot_id AND judged.revision_number = revision.number ";
 
 Revision RevisionOf(const Query& query) {
   Revision revision;
@@ -33,6 +37,10 @@ Revision RevisionOf(const Query& query) {
   revision.digest = query.IdAt<Digest>(7);
   revision.standing_watermark = query.Int(8);  // NULL reads as 0
   if (!query.IsNull(9)) revision.calibrated_at = query.Time(9);
+  if (query.IsNull(10)) return revision;  // of before policies
+  revision.policy_watermark = query.Int(10);
+  revision.max_age_ns = query.Int(11);
+  revision.verdict.unverified = query.Text(12);
   return revision;
 }
 
@@ -64,10 +72,10 @@ std::string DocumentSubject(const RobotId& robot, int number) {
   return "the document of revision " + std::to_string(number) + " of robot " + robot.str();
 }
 
-// Column 10: compressed; 11: as revisions of before have it.
+// Column 13: compressed; 14: as revisions of before have it.
 Result<std::string> DocumentOf(const Query& query, const std::string& subject) {
-  if (!query.IsNull(10)) return Decompress(subject, query.Text(10), limits::kRevisionBytesMax);
-  std::string text = query.Text(11);
+  if (!query.IsNull(13)) return Decompress(subject, query.Text(13), limits::kRevisionBytesMax);
+  std::string text = query.Text(14);
   if (text.empty()) return Fail(ErrorCode::kStorage, subject + " is missing", "Restore the database from a backup.");
   return text;
 }
@@ -85,8 +93,14 @@ void Insert(Store& store, const Revision& revision, int number, const Blob& docu
     Query(store, "INSERT INTO revision_calibrated VALUES (?, ?, ?)")
         .Bind(revision.robot, number, *revision.calibrated_at)
         .Run();
+  Query(store, "INSERT INTO revision_judgement VALUES (?, ?, ?, ?, ?)")
+      .Bind(revision.robot, number, revision.policy_watermark, revision.max_age_ns, revision.verdict.unverified)
+      .Run();
   Query(store, "INSERT INTO waiting_publication VALUES (?, ?)").Bind(revision.robot, number).Run();
   UpdateWaiting(store, revision.robot);
+  Query(store, "DELETE FROM waiting_verdict WHERE robot_id = ? AND policy_number <= ?")
+      .Bind(revision.robot, revision.policy_watermark)
+      .Run();
 }
 
 }  // namespace
@@ -105,7 +119,8 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
     Query query(store, "SELECT " + kColumns +
                            ", (SELECT zstd FROM revision_document d WHERE d.robot_id = revision.robot_id AND "
-                           "d.revision_number = revision.number), document FROM revision WHERE robot_id = ? AND number = ?");
+                           "d.revision_number = revision.number), document " +
+                           kFrom + "WHERE revision.robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     Revision revision = RevisionOf(query);
     RIGCAL_ASSIGN(revision.document, DocumentOf(query, DocumentSubject(robot, revision.number)));
@@ -115,7 +130,7 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
 
 Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number = ?");
+    Query query(store, "SELECT " + kColumns + kFrom + "WHERE revision.robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     return RevisionOf(query);
   });
@@ -138,8 +153,8 @@ std::string CountsNothingRetired(const std::string& counted, const std::string& 
 
 Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, "SELECT " + kColumns +
-                           "FROM revision WHERE robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') AND " +
+    Query query(store, "SELECT " + kColumns + kFrom +
+                           "WHERE revision.robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') AND " +
                            CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
                            CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
                                                 "JOIN counted_edge c ON c.edge_number = e.number",
@@ -161,7 +176,8 @@ Result<int> LoadNewestGood(Store& store, const RobotId& robot, int number) {
 
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before, std::int64_t limit) {
   return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
-    Query query(store, "SELECT " + kColumns + "FROM revision WHERE robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");
+    Query query(store, "SELECT " + kColumns + kFrom +
+                           "WHERE revision.robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");
     query.Bind(robot, before > 0 ? before : std::numeric_limits<int>::max(), limit);
     std::vector<Revision> revisions;
     while (query.Step()) revisions.push_back(RevisionOf(query));
@@ -199,7 +215,8 @@ Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId&
 
 Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
   return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
-    return Query(store, kUnsolved).Bind(robot).Step();
+    return Query(store, kUnsolved).Bind(robot).Step() ||
+           Query(store, "SELECT 1 FROM waiting_verdict WHERE robot_id = ?").Bind(robot).Step();
   });
 }
 
@@ -216,7 +233,9 @@ Result<std::optional<Stamp>> LoadUnsolvedSince(Store& store, const RobotId& robo
 
 Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store) {
   return Load<std::vector<RobotId>>(store, "robots to solve", [&]() -> Result<std::vector<RobotId>> {
-    Query query(store, "SELECT robot_id FROM waiting_revision ORDER BY robot_id");
+    Query query(store,
+                "SELECT robot_id FROM waiting_revision UNION SELECT robot_id FROM waiting_verdict WHERE of_robot = 1 "
+                "ORDER BY robot_id");
     std::vector<RobotId> robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));
     return robots;

@@ -31,9 +31,10 @@ namespace rigcal::storage {
 // Of each of the sessions with edges that began to count up to `watermark`: the first revision that has all of these.
 [[nodiscard]] Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId& robot, std::int64_t watermark,
                                                                   const std::vector<SessionId>& sessions);
-// Robots with edges whose newest edge or newest standing (standing.h) is not in their newest revision, or that have
-// none.
+// Robots with edges whose newest edge, newest standing (standing.h) or own policy is not in their newest revision, or
+// that have none.
 [[nodiscard]] Result<std::vector<RobotId>> LoadUnsolvedRobots(Store& store);
+// Likewise, or that a policy of its fleet or rig model is not in it (policies.h).
 [[nodiscard]] Result<bool> IsUnsolved(Store& store, const RobotId& robot);
 // When the oldest edge of the robot that is in no revision was stored; nothing: there is none.
 [[nodiscard]] Result<std::optional<Stamp>> LoadUnsolvedSince(Store& store, const RobotId& robot);

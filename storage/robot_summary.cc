@@ -19,14 +19,16 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
   Query(store,
         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, last_session_ns, "
         "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, worst_frame_a, "
-        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
-      .Bind(usable ? std::optional(usable->number) : std::nullopt, usable ? std::optional(usable->created_at) : std::nullopt)
+      .Bind(usable ? std::optional(usable->number) : std::nullopt,
+            usable ? std::optional(usable->created_at) : std::nullopt)
       .Bind(worst ? worst->frame_a.str() : Text(), worst ? worst->frame_b.str() : Text())
       .Bind(summary.verdict.why, summary.verdict.what_to_do, validity.given_up, ListOfKeys(summary.causes))
+      .Bind(validity.max_age_ns, summary.verdict.unverified)
       .Run();
 }
 
@@ -36,10 +38,11 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   RobotSummary summary;
   summary.robot = query.IdAt<RobotId>(0);
   summary.revision = static_cast<int>(query.Int(1));
-  summary.verdict = {VerdictLevelOf(query.Text(2)), query.Text(3), query.Text(4)};
+  summary.verdict = {VerdictLevelOf(query.Text(2)), query.Text(3), query.Text(4), query.Text(19)};
   Validity& validity = summary.validity;
   if (!query.IsNull(5)) validity.calibrated_at = query.Time(5);
-  validity.overdue = summary.revision > 0 && IsOverdue(validity.calibrated_at, kDefaultMaxAge_ns, now);
+  validity.max_age_ns = query.Int(18);
+  validity.overdue = summary.revision > 0 && IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
   if (!query.IsNull(6)) validity.usable = UsableRevision{static_cast<int>(query.Int(6)), query.Time(7)};
   validity.calculating = query.Int(8) != 0;
   validity.given_up = query.Text(9);

@@ -87,6 +87,11 @@ void InsertListed(Store& store, std::int64_t session_number) {
       .Bind(session_number)
       .Run();
   Query(store,
+        "INSERT INTO session_model SELECT robot_id, captured_ns, number, json_extract(manifest, '$.rig_model') "
+        "FROM session WHERE number = ? AND json_extract(manifest, '$.rig_model') <> ''")
+      .Bind(session_number)
+      .Run();
+  Query(store,
         "INSERT INTO session_reference SELECT number, json_extract(manifest, '$.reference') FROM session "
         "WHERE number = ? AND json_extract(manifest, '$.reference') IS NOT NULL")
       .Bind(session_number)

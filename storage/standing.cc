@@ -92,6 +92,15 @@ Result<std::vector<AnId>> FindIds(Store& store, const std::string& kind, const s
 
 }  // namespace
 
+Status CheckWord(const Word& word) {
+  constexpr std::size_t kWordBytesMax = 500;
+  for (const std::string* text : {&word.who, &word.reason})
+    if (text->size() > kWordBytesMax || !IsPrintableUtf8(*text))
+      return Fail(ErrorCode::kInvalidInput, Quoted(*text) + " is not one line of readable text",
+                  "Use at most " + std::to_string(kWordBytesMax) + " bytes of UTF-8 without control characters.");
+  return {};
+}
+
 Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now) {
   return store.connection().Append(StandingSubject("session " + id.str()), [&]() -> Status {
     InsertCurrent(store, id, "pushed", {now, "robot " + robot.str(), ""});

@@ -12,6 +12,9 @@
 
 namespace rigcal::storage {
 
+// kInvalidInput unless both texts are one printable line each, of at most 500 bytes.
+[[nodiscard]] Status CheckWord(const Word& word);
+
 // A session that is being closed is current. For CloseSession.
 [[nodiscard]] Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now);
 // The closed session is current from now on: what it repeats or is repeated by is superseded by it. False, and a no-op,

@@ -1,7 +1,6 @@
 // A word about what counts, as a row of the table standing. For storage/*.cc only.
 #pragma once
 
-#include "server/base/text.h"
 #include "server/model/standing.h"
 #include "storage/query.h"
 
@@ -12,15 +11,6 @@ namespace rigcal::storage {
   return {query.Int(column),
           query.Text(column + 1),
           {query.Time(column + 2), query.Text(column + 3), query.Text(column + 4)}};
-}
-
-[[nodiscard]] inline Status CheckWord(const Word& word) {
-  constexpr std::size_t kWordBytesMax = 500;
-  for (const std::string* text : {&word.who, &word.reason})
-    if (text->size() > kWordBytesMax || !IsPrintableUtf8(*text))
-      return Fail(ErrorCode::kInvalidInput, Quoted(*text) + " is not one line of readable text",
-                  "Use at most " + std::to_string(kWordBytesMax) + " bytes of UTF-8 without control characters.");
-  return {};
 }
 
 // For the audit.

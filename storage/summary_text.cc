@@ -58,7 +58,7 @@ std::string SearchTextOf(const RobotSummary& summary) {
   if (summary.worst) text += " " + summary.worst->frame_a.str() + " " + summary.worst->frame_b.str();
   for (const std::string& cause : summary.causes) text += " " + cause;
   AddDate(summary.validity.calibrated_at, text);
-  AddDate(ValidUntil(summary.validity.calibrated_at), text);
+  AddDate(ValidUntil(summary.validity), text);
   AddDate(summary.last_session_at, text);
   if (summary.revision > 0) text += " revision " + std::to_string(summary.revision);
   text += " " + std::to_string(summary.sessions) + " sessions " + std::to_string(summary.edges) + " edges";

@@ -7,7 +7,7 @@
 #include "client/pose_text.h"
 #include "client/table.h"
 #include "server/calib/core/wording.h"
-#include "server/fleet/assess.h"
+#include "server/model/policy.h"
 
 namespace rigcal::check {
 namespace {
@@ -71,16 +71,15 @@ double LargestSigma(const Edge& edge, int first_axis) {
 // Sigma falls with the root of the captures.
 std::optional<Advice> TooRough(const PairFound& pair) {
   if (pair.method != Method::kStereo || !pair.IsWhole()) return std::nullopt;
-  const fleet::Policy policy;
   const double sigma_m = LargestSigma(*pair.edge, 0), sigma_rad = LargestSigma(*pair.edge, 3);
-  const double excess = std::max(sigma_m / policy.sigma_max_m, sigma_rad / policy.sigma_max_rad);
+  const double excess = std::max(sigma_m / kDefaultTolerance.m, sigma_rad / kDefaultTolerance.rad);
   if (!(excess > 1)) return std::nullopt;
   const double more = std::ceil(static_cast<double>(pair.both) * std::min(excess * excess - 1, 1.0));
   return Advice{{PairText(pair.pair)},
                 "known to " + client::Fixed(client::kMmPerM * sigma_m, 1) + " mm and " +
                     client::Fixed(client::kDegPerRad * sigma_rad, 2) + " deg only, " +
-                    client::Fixed(client::kMmPerM * policy.sigma_max_m, 0) + " mm and " +
-                    client::Fixed(client::kDegPerRad * policy.sigma_max_rad, 2) +
+                    client::Fixed(client::kMmPerM * kDefaultTolerance.m, 0) + " mm and " +
+                    client::Fixed(client::kDegPerRad * kDefaultTolerance.rad, 2) +
                     " deg are wanted: hold the board nearer, tilted to all sides, in all parts of both pictures",
                 Urgency::kRough,
                 static_cast<std::size_t>(more)};

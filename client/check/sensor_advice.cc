@@ -11,7 +11,7 @@ namespace {
 using calib::CountText;
 using client::Fixed;
 
-// Of a focal length, 1 sigma: 5 mm at a metre, the fleet's limit for a sensor (fleet::Policy).
+// Of a focal length, 1 sigma: 5 mm at a metre, the default tolerance of a sensor (policy.h).
 constexpr double kFocalSigmaMax_ratio = 0.005;
 // Fewer of the fields of the picture with a corner: the lens is told in its middle only.
 constexpr double kCoveredMin_ratio = 0.5;

@@ -31,26 +31,6 @@ Status FillKey(const RobotId& robot, const SensorId& sensor, rigcal_wire_Calibra
   return Put(sensor.str(), sample.sensor_id, "sensor_id");
 }
 
-void FillPose(const SensorPose& pose, rigcal_wire_Calibration& sample) {
-  const Se3 T_ref_sensor = pose.known ? pose.T_ref_sensor : Se3{};
-  sample.known = pose.known;
-  for (int i = 0; i < 3; ++i) sample.p_m[i] = T_ref_sensor.p_m[i];
-  for (int i = 0; i < 4; ++i) sample.q_xyzw[i] = T_ref_sensor.q.coeffs()[i];
-  for (int row = 0; row < 6; ++row)
-    for (int col = 0; col < 6; ++col) sample.covariance[6 * row + col] = pose.known ? pose.covariance(row, col) : 0.0;
-}
-
-Status FillCalibration(const RobotId& robot, const RobotState::Calibration& calibration, const SensorPose& pose,
-                       rigcal_wire_Calibration& sample) {
-  RIGCAL_TRY(FillKey(robot, pose.sensor, sample));
-  RIGCAL_TRY(Put(calibration.reference.str(), sample.reference_id, "reference_id"));
-  RIGCAL_TRY(Put(NameOf(calibration.revision.verdict.level), sample.verdict, "verdict"));
-  sample.revision = static_cast<std::uint32_t>(calibration.revision.number);
-  sample.stamp_ns = calibration.revision.created_at.ns;
-  FillPose(pose, sample);
-  return {};
-}
-
 }  // namespace
 
 RobotWriters::RobotWriters(wire::Publisher publisher, wire::Writer<rigcal_wire_Receipt> receipts, wire::Writer<rigcal_wire_Event> events,
@@ -104,9 +84,8 @@ Status RobotWriters::TellCalibration(const RobotId& robot, const RobotState::Cal
   told_calibration_ = 0;
   std::set<SensorId> gone = told_sensors_;
   for (const SensorPose& pose : calibration.poses) {
-    rigcal_wire_Calibration sample{};
-    RIGCAL_TRY(FillCalibration(robot, calibration, pose, sample));
-    RIGCAL_TRY(calibrations_.Write(sample));
+    RIGCAL_ASSIGN(const auto owned, wire::ToCalibration(robot, calibration, pose));
+    RIGCAL_TRY(calibrations_.Write(owned.sample));
     told_sensors_.insert(pose.sensor);
     gone.erase(pose.sensor);
   }

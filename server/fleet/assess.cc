@@ -5,6 +5,9 @@
 #include <set>
 
 #include "server/fleet/cause_findings.h"
+#include "server/fleet/effect.h"
+#include "server/fleet/wording.h"
+#include "server/model/past.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -42,15 +45,23 @@ Verdict VerdictFrom(VerdictLevel level, const std::vector<Finding>& findings, co
   return verdict;
 }
 
-// Claims no more agreement than was tested.
-Verdict Pass(const std::string& untested, const std::string& noticed) {
-  std::string why = untested.empty()
-                        ? "Every sensor is known well enough and the edges agree with each other."
-                        : "Every sensor is known well enough and each edge passes its own test against the "
-                          "others; " +
-                              untested + ".";
+// Claims no more agreement than was tested. `remarks`: what is told though it decides nothing, first, as it is news.
+Verdict Pass(const std::string& untested, const std::string& remarks, const std::string& noticed) {
+  std::string why = remarks + "Every sensor is known well enough";
+  if (remarks.empty())
+    why += untested.empty() ? " and the edges agree with each other"
+                            : " and each edge passes its own test against the others; " + untested;
+  why += ".";
   if (!noticed.empty()) why += " " + noticed;
   return {VerdictLevel::kPass, why, "Nothing; calibrate again when it is due."};
+}
+
+// A sentence each, with a blank behind it.
+std::string Remarks(std::initializer_list<std::string> texts, const std::set<std::string>& names) {
+  std::string remarks;
+  for (const std::string& text : texts)
+    if (!text.empty()) remarks += Capitalised(text, names) + ". ";
+  return remarks;
 }
 
 std::vector<Finding> Collect(std::initializer_list<std::optional<Finding>> candidates) {
@@ -72,6 +83,17 @@ std::vector<Finding> FindContradictions(const std::vector<Edge>& edges, const Gr
   if (suspects.empty() && contradiction)
     suspects.push_back(DoNotFit(contradiction->edge->frame_a, contradiction->edge->frame_b, contradiction->e));
   return suspects;
+}
+
+// Names the sensors that have no pose, where others have one beside the reference.
+Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const GraphSolution& solution) {
+  std::set<SensorId> known, unknown;
+  for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
+  for (const Edge& edge : edges)
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+      if (!known.contains(sensor) && !IsOfGoneSensor(edge)) unknown.insert(sensor);
+  if (known.size() > 1) verdict.unverified = List(std::vector<SensorId>(unknown.begin(), unknown.end()));
+  return verdict;
 }
 
 // Edges that do not agree, and loops of them that do not close.
@@ -114,12 +136,12 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
                                   const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
                                   const std::vector<RootCause>& causes, bool pairs_disagree) {
   std::vector<Finding> warnings = FindingsOf(causes, [](const RootCause&) { return true; });
-  for (Finding& other :
-       Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
-                FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
-                FindUncertainSensors(solution, policy), FindUncheckedEdges(edges, solution),
-                FindUntestable(edges, solution, policy), FindUnrefined(estimates, captured_at),
-                FindUnseenMoves(estimates, policy, captured_at), FindUncheckedSensors(edges, solution)}))
+  for (Finding& other : Collect({FindMovedBoards(estimates, captured_at), FindLensMisfits(estimates, pairs_disagree),
+                                 FindFailedEdges(UnexplainedFailures(edges, captured_at, causes)), FindPastPairs(edges),
+                                 FindUncertainSensors(solution, policy), FindFewCaptures(edges, policy),
+                                 FindUncheckedEdges(edges, solution), FindUntestable(edges, solution, policy),
+                                 FindUnrefined(estimates, captured_at), FindUnseenMoves(estimates, policy, captured_at),
+                                 FindUncheckedSensors(edges, solution)}))
     warnings.push_back(std::move(other));
   return warnings;
 }
@@ -136,20 +158,28 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at);
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
-  if (const auto moved = FindMovedWithin(estimates, captured_at)) return say(VerdictLevel::kFail, {*moved});
+  if (const auto moved = FindMovedWithin(estimates, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});
   // Residuals that are no optimum blame no edge.
   if (const auto unsettled = FindUnsettled(solution)) return say(VerdictLevel::kUnknown, {*unsettled});
-  if (const auto moved = FindMovedBetween(solution, captured_at)) return say(VerdictLevel::kFail, {*moved});
+  if (const auto moved = FindMovedBetween(solution, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});
   const GraphSolution judged = WithoutRefinedPairs(edges, solution, policy, estimates);
-  if (const auto failing = FindFailing(edges, judged, policy, captured_at, estimates, headers, causes);
+  if (const auto failing = FindFailing(edges, WithoutSmall(judged, policy), policy, captured_at, estimates, headers, causes);
       !failing.empty())
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
-    return say(VerdictLevel::kUnknown, unknown);
-  const bool pairs_disagree = !FindAccusations(edges, solution, policy, captured_at).empty();
-  const auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
-  if (!warnings.empty()) return say(VerdictLevel::kWarn, warnings);
-  return Pass(UntestedLoops(edges, solution), SmallestMoveNoticed(estimates, solution));
+    return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
+  const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
+  auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
+  if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
+  const auto held_back = FindHeldBack(solution, headers);
+  const std::string remarks = Remarks({held_back ? held_back->why : "", SmallDisagreements(edges, judged, policy),
+                                       SmallMoves(estimates, solution, policy, captured_at)},
+                                      names);
+  Verdict verdict = warnings.empty() ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))
+                                     : say(VerdictLevel::kWarn, warnings);
+  if (!warnings.empty() && !remarks.empty()) verdict.why += " " + remarks.substr(0, remarks.size() - 1);
+  if (held_back && warnings.empty()) verdict.what_to_do = held_back->what_to_do + "; calibrate again when it is due.";
+  return verdict;
 }
 
 }  // namespace rigcal::fleet

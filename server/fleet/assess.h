@@ -4,6 +4,8 @@
 // bears it out), unknown (a sensor without a pose, or no settled solution), warn (failed edges, uncertain sensors, a
 // sensor far from the drawing, nothing that checks the result), pass. The worst that applies is the verdict; of several
 // reasons of one level all are named, causes first: failures that have one in common (root_causes.h) are told by it alone.
+// What contradicts fails where it is both more than chance and more than the policy's least move; less than that is told,
+// and more than its tolerance warns even where it may be chance (effect.h).
 #pragma once
 
 #include <map>
@@ -11,21 +13,11 @@
 
 #include "server/base/stamp.h"
 #include "server/model/graph.h"
+#include "server/model/policy.h"
 #include "server/model/session.h"
 #include "server/model/session_estimate.h"
 
 namespace rigcal::fleet {
-
-struct Policy {
-  double sigma_max_m = 0.005;  // a sensor less certain than this (any axis, 1 sigma) is a warning
-  double sigma_max_rad = 0.005;
-  double residual_max_m = 0.05;  // an edge too poorly known to be tested, but off by more than this, fails
-  double residual_max_rad = 0.05;
-  double residual_probability =
-      0.999;  // an edge beyond this quantile (Hotelling or chi-square) fails, corrected for the number of edges
-  double unseen_move_max_m = 0.005;      // a session in which a sensor could have moved by more, unseen, is a warning
-  double unseen_move_max_rad = 0.00524;  // 0.3 deg
-};
 
 // Uses T^2 limits where a covariance was estimated from blocks, chi-square where it is known. No loop in the graph
 // means that nothing checks the result: warn. Edges in loops that nothing checks (see UncheckedEdges), or that cannot

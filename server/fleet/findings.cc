@@ -5,11 +5,12 @@
 #include <map>
 #include <set>
 
-#include "server/model/merged_edge.h"
 #include "server/fleet/bridges.h"
+#include "server/fleet/effect.h"
 #include "server/fleet/wording.h"
 #include "server/math/statistics.h"
 #include "server/math/tangent.h"
+#include "server/model/merged_edge.h"
 #include "server/model/past.h"
 #include "server/model/unchecked.h"
 
@@ -18,12 +19,11 @@ namespace {
 
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
-// How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limits.
+// How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limit.
 double RatioOf(const EdgeResidual& residual, const EdgeTest& test, const Policy& policy) {
   if (!residual.in_solution) return 0.0;
   if (test.limit > 0.0) return test.statistic / test.limit;
-  return std::max(residual.e.head<3>().norm() / policy.residual_max_m,
-                  residual.e.tail<3>().norm() / policy.residual_max_rad);
+  return TimesLimit(residual.e, ResidualMaxOf(policy));
 }
 
 // Independent edges of known information.
@@ -74,7 +74,8 @@ std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges, c
     const auto found = by_id.find(residual.edge);
     if (found == by_id.end()) continue;
     const double ratio = RatioOf(residual, TestResidual(*found->second, residual, edge_count, policy), policy);
-    if (ratio > worst_ratio) worst = Contradiction{found->second, residual.e}, worst_ratio = ratio;
+    if (ratio > worst_ratio && !IsSmall(*found->second, solution, policy))
+      worst = Contradiction{found->second, residual.e}, worst_ratio = ratio;
   }
   return worst;
 }
@@ -131,13 +132,33 @@ std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures)
   return Finding{"the calibration of " + List(names) + " failed", cure};
 }
 
+std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy) {
+  if (!policy.captures_min) return std::nullopt;
+  std::map<std::pair<SensorId, SensorId>, std::int64_t> most;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood) continue;
+    const auto used =
+        std::count_if(edge.captures.begin(), edge.captures.end(), [](const auto& one) { return one.used; });
+    std::int64_t& known = most[PairOf(edge)];
+    known = std::max<std::int64_t>(known, edge.captures.empty() ? *policy.captures_min : used);
+  }
+  std::vector<std::string> names;
+  for (const auto& [pair, used] : most)
+    if (used < *policy.captures_min) names.push_back(pair.first.str() + " - " + pair.second.str());
+  if (names.empty()) return std::nullopt;
+  const std::string wanted = std::to_string(*policy.captures_min);
+  return Finding{
+      List(names) + (names.size() == 1 ? " was" : " were") + " measured from fewer than " + wanted + " captures",
+      "Take " + wanted + " captures or more of each pair"};
+}
+
 std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
   std::vector<std::pair<double, const SensorPose*>> uncertain;
   for (const SensorPose& pose : solution.poses) {
     if (!pose.known) continue;
     const Vector6d sigma = pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-    const double ratio =
-        std::max(sigma.head<3>().maxCoeff() / policy.sigma_max_m, sigma.tail<3>().maxCoeff() / policy.sigma_max_rad);
+    const PoseLimit wanted = LimitsOf(policy, pose.sensor).tolerance;
+    const double ratio = std::max(sigma.head<3>().maxCoeff() / wanted.m, sigma.tail<3>().maxCoeff() / wanted.rad);
     if (ratio > 1.0) uncertain.emplace_back(ratio, &pose);
   }
   if (uncertain.empty()) return std::nullopt;
@@ -149,7 +170,7 @@ std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const
   const std::string known = sensors.size() == 1 ? "the pose of " + names + " is known to "
                                                 : "the poses of " + names + " are known, at worst, to ";
   return Finding{known + SigmaText(sigma.head<3>().maxCoeff(), sigma.tail<3>().maxCoeff()) + " only (" +
-                     SigmaText(policy.sigma_max_m, policy.sigma_max_rad) + " wanted)",
+                     LimitText(LimitsOf(policy, sensors.front()).tolerance) + " wanted)",
                  "Capture " + names + " at more distances and tilts"};
 }
 
@@ -201,14 +222,19 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
                  "Take 20 captures or more of each pair"};
 }
 
+bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+  return solution.dof > 0 && CostIsChiSquare(edges) &&
+         solution.cost > ChiSquareQuantile(policy.residual_probability, solution.dof);
+}
+
 std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                      const Policy& policy) {
   if (solution.dof <= 0) return std::nullopt;
   if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles, edges);
+  if (!IsCostBeyondChance(edges, solution, policy) || AllIsSmall(edges, solution, policy)) return std::nullopt;
   const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
-  if (solution.cost <= limit) return std::nullopt;
-  return Finding{"the loops of edges do not close within their sigmas (weighted cost " + LimitText(solution.cost) +
-                     " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + LimitText(limit) + ")",
+  return Finding{"the loops of edges do not close within their sigmas (weighted cost " + PlainNumber(solution.cost) +
+                     " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + PlainNumber(limit) + ")",
                  "Capture the pair again that is off by most sigmas"};
 }
 

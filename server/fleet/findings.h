@@ -14,7 +14,8 @@ struct Finding {
   std::string what_to_do;
 };
 
-// The edge that contradicts the others most, and by how much.
+// The edge that contradicts the others most, and by how much. What is off by so little that it does not matter
+// (effect.h) contradicts nothing.
 struct Contradiction {
   const Edge* edge = nullptr;
   Vector6d e = Vector6d::Zero();
@@ -23,14 +24,18 @@ struct Contradiction {
                                                              const GraphSolution& solution, const Policy& policy);
 // Two sensors whose edge the others contradict.
 [[nodiscard]] Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e);
-// Sensors that had two poses during the newest session in which one had.
+// Sensors that had two poses during the newest session in which one had, by more than the policy's least move.
 [[nodiscard]] std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates,
-                                                     const SessionTimes& captured_at);
+                                                     const Policy& policy, const SessionTimes& captured_at);
 // Boards that were moved during the newest session that was refined, though its pairs take them to stand still.
 [[nodiscard]] std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates,
                                                      const SessionTimes& captured_at);
-// Sensors that sat elsewhere from one session on.
-[[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const SessionTimes& captured_at);
+// Sensors that sat elsewhere from one session on, by more than the policy's least move.
+[[nodiscard]] std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
+                                                      const SessionTimes& captured_at);
+// The first of those moves, within a session or between two, that are no more than that; without a stop, empty of none.
+[[nodiscard]] std::string SmallMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
+                                     const Policy& policy, const SessionTimes& captured_at);
 // What pairs contradict each other in, less where all of them are of sessions that were refined as a whole: whether one rig
 // is behind these is asked of all that their sensors saw at once, and what their pairs say enters no pose. What is off by
 // more than the policy's plain limits stays all the same, but where a board moved that its pairs took to stand still.
@@ -47,6 +52,10 @@ struct Contradiction {
 // each.
 [[nodiscard]] std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates,
                                                      const Policy& policy, const SessionTimes& captured_at);
+// What cameras saw in single captures of the newest session that contradicts what was seen besides, as a picture of another
+// instant does: it counts for next to nothing, so no pose suffers. Of a lidar a board among other surfaces is left out in sound
+// sessions, too: no news.
+[[nodiscard]] std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers);
 // The newest session, where it says enough to be refined as a whole and could not be.
 [[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,
                                                    const SessionTimes& captured_at);
@@ -64,9 +73,12 @@ struct Contradiction {
 // Edges that something checks, but whose covariance comes from too few captures for a test of their residual.
 [[nodiscard]] std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                     const Policy& policy);
-// Loops that do not close, also where each edge alone hides it. Where every information is known and no session is
-// shared: the weighted cost is beyond chi-square for its degrees of freedom. Where information was estimated, or
-// captures are shared, the cost is no chi-square: then the loop that is furthest beyond the limit of its own test.
+// Independent edges of known information whose weighted cost is beyond chi-square for its degrees of freedom. Where
+// information was estimated, or captures are shared, the cost is no chi-square.
+[[nodiscard]] bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                      const Policy& policy);
+// Loops that do not close, also where each edge alone hides it, by the cost where it is chi-square and something is off
+// by enough to matter; else the loop that is furthest beyond the limit of its own test.
 [[nodiscard]] std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                    const Policy& policy);
 // Half a sentence where only edges were tested, one by one, and no loop; empty where loops were.
@@ -82,6 +94,8 @@ struct Contradiction {
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
 // Pairs that were measured before one of their sensors was remounted, and not since.
 [[nodiscard]] std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges);
+// Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many.
+[[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
 // Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
 [[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges,

@@ -21,12 +21,11 @@ struct PartialPose {
   std::string open;
   std::string frame;     // whose axes `open` names, "the frame of left"; empty: the robot's, or it names none
   bool several = false;  // that it names
-  // Of what is told, 1 sigma, the worst axis; nothing where no one edge ties the sensor to a known one by all of it, or
-  // where a rotation is open.
+  // Of what was measured, 1 sigma, the worst axis; nothing where no shift (turn) was.
   std::optional<double> sigma_m, sigma_rad;
 };
 // `pose` is not known and has open directions.
-[[nodiscard]] PartialPose PartialPoseOf(const SensorPose& pose, const std::vector<Edge>& edges,
-                                        const GraphSolution& solution, const SessionHeaders& headers);
+[[nodiscard]] PartialPose PartialPoseOf(const SensorPose& pose, const GraphSolution& solution,
+                                        const SessionHeaders& headers);
 
 }  // namespace rigcal::fleet

@@ -44,7 +44,7 @@ GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSol
   if (refined.empty()) return solution;
   const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
   const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {
-    bool small = e.head<3>().norm() <= policy.residual_max_m && e.tail<3>().norm() <= policy.residual_max_rad;
+    bool small = !IsBeyond(e, ResidualMaxOf(policy));
     for (const std::vector<EdgeId>& ids : groups)
       for (const EdgeId& id : ids) {
         if (!refined.contains(id)) return false;

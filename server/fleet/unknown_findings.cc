@@ -82,8 +82,6 @@ Finding OpenDirections(const std::vector<PartialPose>& partial, const std::vecto
   return finding;
 }
 
-bool IsOfGoneSensor(const Edge& edge) { return IsPast(edge) && edge.diagnoses.front().code == kSensorRetiredCode; }
-
 // Without a pose, and without directions that would be known. Nobody asks for sensors that are gone from the robot.
 std::vector<SensorId> ApartSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
   std::vector<SensorId> apart;
@@ -118,7 +116,7 @@ std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const Gr
   std::vector<PartialPose> partial;
   for (const SensorPose& pose : solution.poses)
     if (!pose.known && !pose.unobservable_basis.empty())
-      partial.push_back(PartialPoseOf(pose, edges, solution, headers));
+      partial.push_back(PartialPoseOf(pose, solution, headers));
   std::vector<SensorId> apart = ApartSensors(edges, solution);
   std::erase_if(apart, [&](const SensorId& sensor) { return explained.contains(sensor); });
   std::vector<Finding> findings;

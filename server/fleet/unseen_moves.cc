@@ -36,9 +36,10 @@ std::vector<std::string> WithoutSession(const std::vector<Unseen>& told, const G
   return untold;
 }
 
-// Times the tolerance, whichever of the two is exceeded more.
-double TimesTheTolerance(const SmallestMove& move, const Policy& policy) {
-  return std::max(move.m / policy.unseen_move_max_m, move.rad / policy.unseen_move_max_rad);
+// Times what the policy allows, whichever of the two is exceeded more.
+double TimesAllowed(const Unseen& one, const Policy& policy) {
+  const PoseLimit allowed = LimitsOf(policy, one.sensor).unseen_move;
+  return std::max(one.move.m / allowed.m, one.move.rad / allowed.rad);
 }
 
 bool IsAnyMove(const SmallestMove& move) { return move.m >= kAnyMove_m || move.rad >= kAnyMove_rad; }
@@ -56,12 +57,11 @@ double TimesTheCaptures(double told, double tolerance, double least) {
 std::string MorePlaces(const Unseen& worst, const Policy& policy) {
   const std::string seen = std::to_string(worst.move.captures), places = " places that " + worst.sensor.str() + " sees";
   if (IsAnyMove(worst.move)) return "Capture more than " + seen + places;
-  if (policy.unseen_move_max_m <= kMovedMin_m || policy.unseen_move_max_rad <= kMovedMin_rad)
+  const PoseLimit allowed = LimitsOf(policy, worst.sensor).unseen_move;
+  if (allowed.m <= kMovedMin_m || allowed.rad <= kMovedMin_rad)
     return "Allow a larger unseen bump: one below 1 mm and 1 mrad is not told";
-  const double times =
-      std::max(TimesTheCaptures(std::max(worst.move.m, policy.unseen_move_max_m), policy.unseen_move_max_m, kMovedMin_m),
-               TimesTheCaptures(std::max(worst.move.rad, policy.unseen_move_max_rad), policy.unseen_move_max_rad,
-                                kMovedMin_rad));
+  const double times = std::max(TimesTheCaptures(std::max(worst.move.m, allowed.m), allowed.m, kMovedMin_m),
+                                TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
   return "Capture at least " + std::to_string(static_cast<long>(std::ceil(worst.move.captures * times))) + places +
          ", not " + seen;
 }
@@ -71,11 +71,10 @@ std::string MorePlaces(const Unseen& worst, const Policy& policy) {
 std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates, const Policy& policy,
                                        const SessionTimes& captured_at) {
   std::vector<Unseen> unseen = NewestMovesOf(estimates);
-  std::erase_if(unseen, [&](const Unseen& one) { return TimesTheTolerance(one.move, policy) <= 1; });
+  std::erase_if(unseen, [&](const Unseen& one) { return TimesAllowed(one, policy) <= 1; });
   if (unseen.empty()) return std::nullopt;
-  std::stable_sort(unseen.begin(), unseen.end(), [&](const Unseen& x, const Unseen& y) {
-    return TimesTheTolerance(x.move, policy) > TimesTheTolerance(y.move, policy);
-  });
+  std::stable_sort(unseen.begin(), unseen.end(),
+                   [&](const Unseen& x, const Unseen& y) { return TimesAllowed(x, policy) > TimesAllowed(y, policy); });
   const Unseen worst = unseen.front();
   std::vector<std::string> names;
   for (const Unseen& one : unseen)

@@ -33,7 +33,7 @@ std::string TwoDigits(double value, const char* unit) {
   return Rounded(std::abs(value) < 9.95 ? "%.2g %s" : "%.0f %s", value, unit);
 }
 
-std::string LimitText(double value) {
+std::string PlainNumber(double value) {
   std::string text = Number(value, "");
   text.pop_back();
   return text;
@@ -65,6 +65,8 @@ std::string OffList(const Vector6d& e) { return LengthOf(e) + ", " + AngleOf(e);
 std::string SigmaText(double sigma_m, double sigma_rad) {
   return TwoDigits(1e3 * sigma_m, "mm") + " and " + TwoDigits(kDegreesPerRadian * sigma_rad, "deg");
 }
+
+std::string LimitText(const PoseLimit& limit) { return SigmaText(limit.m, limit.rad); }
 
 namespace {
 

@@ -7,12 +7,13 @@
 
 #include "server/base/stamp.h"
 #include "server/model/edge.h"
+#include "server/model/policy.h"
 
 namespace rigcal::fleet {
 
 [[nodiscard]] std::string Number(double value, const char* unit);     // three digits and the unit
 [[nodiscard]] std::string TwoDigits(double value, const char* unit);  // of what is itself an estimate, a sigma
-[[nodiscard]] std::string LimitText(double value);                 // without a unit
+[[nodiscard]] std::string PlainNumber(double value);                  // without a unit
 // "a", "a and b", "a, b and c", "a, b, c, d, e, f and 3 more".
 [[nodiscard]] std::string List(const std::vector<std::string>& names);
 [[nodiscard]] std::string List(const std::vector<SensorId>& sensors);
@@ -23,6 +24,7 @@ namespace rigcal::fleet {
 [[nodiscard]] std::string OffList(const Vector6d& e);
 // "5 mm and 0.29 deg", of sigmas.
 [[nodiscard]] std::string SigmaText(double sigma_m, double sigma_rad);
+[[nodiscard]] std::string LimitText(const PoseLimit& limit);
 
 // As people know a session: by its time ("2026-01-31 12:00 UTC"; where only the day was given, "2026-01-31"); where that
 // is not known by its id, where it is the same of two by both.

@@ -4,6 +4,8 @@
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
+#include "server/formats/measured_part_fields.h"
+#include "server/model/drive_rule.h"
 
 namespace rigcal::formats {
 namespace {
@@ -16,11 +18,19 @@ void WriteAge(JsonWriter& out, const std::optional<Stamp>& since, Stamp now) {
 
 void WriteValidity(JsonWriter& out, const Validity& validity) {
   WriteStamp(out, "calibrated_at", validity.calibrated_at);
-  WriteStamp(out, "valid_until", ValidUntil(validity.calibrated_at));
+  WriteStamp(out, "valid_until", ValidUntil(validity));
   out.Flag("overdue", validity.overdue);
   WriteUsable(out, validity.usable);
   out.Flag("calculating", validity.calculating);
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
+}
+
+void WriteDrive(JsonWriter& out, const Verdict& verdict, const Validity& validity) {
+  const DriveRule drive = DriveRuleOf(verdict, validity);
+  out.Object("drive", [&] {
+    out.Text("rule", drive.rule);
+    WriteStamp(out, "until", drive.until);
+  });
 }
 
 void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
@@ -29,6 +39,7 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
     WriteValidity(out, robot.validity);
+    WriteDrive(out, robot.verdict, robot.validity);
     WriteAge(out, robot.validity.calibrated_at, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
@@ -80,6 +91,25 @@ template <typename AnId>
 void WriteNames(JsonWriter& out, std::string_view key, const std::vector<AnId>& names) {
   out.List(key, [&] {
     for (const AnId& name : names) out.Text(name.str());
+  });
+}
+
+void WriteWholePose(JsonWriter& out, const LookupAnswer& answer) {
+  WritePose(out, "T_a_b", answer.T_a_b);
+  WriteMatrix(out, "covariance", answer.covariance);
+  WriteSigmas(out, answer.covariance);
+}
+
+// Who wants a whole pose finds none.
+void WritePoseInPart(JsonWriter& out, const LookupAnswer& answer) {
+  for (const char* key : {"T_a_b", "covariance"}) out.Null(key);
+  WriteNoSigmas(out);
+  WriteOpenDirections(out, answer.unobservable_basis);
+  WriteRobotAxes(out, answer.R_a_robot);
+  out.Object("measured_part", [&] {
+    WritePose(out, "T_a_b", answer.T_a_b);
+    WriteMatrix(out, "covariance", answer.covariance);
+    WriteAxes(out, AxesOf(answer.T_a_b, answer.covariance, answer.unobservable_basis, answer.R_a_robot));
   });
 }
 
@@ -160,6 +190,7 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
+    WriteDrive(out, revision.verdict, validity);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     out.Null("document");
@@ -190,11 +221,11 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteRevisionNumber(out, answer.revision);
     out.Text("frame_a", answer.frame_a.str());
     out.Text("frame_b", answer.frame_b.str());
-    WritePose(out, "T_a_b", answer.T_a_b);
-    WriteMatrix(out, "covariance", answer.covariance);
-    WriteSigmas(out, answer.covariance);
+    out.Flag("known", answer.unobservable_basis.empty());
+    answer.unobservable_basis.empty() ? WriteWholePose(out, answer) : WritePoseInPart(out, answer);
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
+    WriteDrive(out, answer.verdict, answer.validity);
   });
 }
 
@@ -251,18 +282,18 @@ std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vect
   });
 }
 
-std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
+std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns, Stamp now,
                      const std::optional<RobotId>& next) {
   const auto write_row = [&](JsonWriter& out, const RobotSummary& robot) {
     const std::optional<Stamp>& calibrated_at = robot.validity.calibrated_at;
     out.Text("robot", robot.robot.str());
     WriteStamp(out, "calibrated_at", calibrated_at);
     WriteAge(out, calibrated_at, now);
-    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns, now));
+    out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns.value_or(robot.validity.max_age_ns), now));
     WriteVerdict(out, "verdict", robot.verdict);
   };
   return WriteObject([&](JsonWriter& out) {
-    out.Integer("max_age_ns", max_age_ns);
+    max_age_ns ? out.Integer("max_age_ns", *max_age_ns) : out.Null("max_age_ns");
     out.Text("now", ToIso(now));
     out.List("robots", [&] {
       for (const RobotSummary& robot : robots) out.Object([&] { write_row(out, robot); });

@@ -11,6 +11,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
 #include "server/model/validity.h"
@@ -51,6 +52,18 @@ struct SessionAnswer {
 [[nodiscard]] std::string WriteStandingOfSensor(const RobotId& robot, const SensorId& sensor,
                                                 const std::optional<Standing>& standing, bool has_edges);
 
+// verb policy: what holds, and who set it, the widest first.
+struct PolicyAnswer {
+  PolicyPlace place;
+  PolicyInForce in_force;
+  std::vector<PolicyVersion> set;
+};
+[[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
+// verb set_policy: how many robots wait to be judged anew by it.
+[[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
+// Of `rigcal policy check`: a file alone.
+[[nodiscard]] std::string WritePolicyCheck(const std::string& file, const Policy& policy);
+
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
                                      const std::vector<EdgeResidual>& residuals, const NextPage& next = {});
@@ -68,6 +81,8 @@ struct LookupAnswer {
   SensorId frame_a, frame_b;
   Se3 T_a_b;
   Matrix6d covariance = Matrix6d::Zero();  // right tangent at b
+  std::vector<Vector6d> unobservable_basis = {};  // likewise; directions that nobody measured: then it is no whole pose
+  std::optional<Eigen::Matrix3d> R_a_robot = {};  // as GraphSolution::R_ref_robot, in a; nothing: not known
   Verdict verdict;                         // of the revision
   Validity validity;
 };
@@ -108,9 +123,10 @@ struct LiveAnswer {
 // verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
 [[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
 
-// verb due: every robot, or a part of them; overdue = older than max_age_ns, or never calibrated.
-[[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::int64_t max_age_ns, Stamp now,
-                                   const std::optional<RobotId>& next = std::nullopt);
+// verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
+// calibrated.
+[[nodiscard]] std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std::int64_t> max_age_ns,
+                                   Stamp now, const std::optional<RobotId>& next = std::nullopt);
 
 // A payload that the server's disk has not kept, and that was not sent again yet.
 struct LostFileAnswer {

@@ -10,6 +10,7 @@
 #include "server/model/cause.h"
 #include "server/model/edge.h"
 #include "server/model/graph.h"
+#include "server/model/policy_version.h"
 #include "server/model/session.h"
 #include "server/model/standing.h"
 
@@ -36,6 +37,7 @@ struct RevisionInput {
   std::vector<Edge> edges;  // good and failed, sorted by id
   GraphSolution solution;
   Verdict verdict;
+  std::optional<PolicyInForce> policy = {};  // that judged it; absent: it is from before there were any
   std::vector<RetiredSensor> retired = {};  // sorted by sensor; in the document only where there is any
   bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first

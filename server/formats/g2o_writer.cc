@@ -39,9 +39,14 @@ class G2oText {
     }
   }
 
-  void Pose(const SensorPose& pose) {
-    text_ += "VERTEX_SE3:QUAT " + vertices_.at(pose.sensor);
-    Numbers(pose.T_ref_sensor);
+  void Pose(const SensorId& sensor, const Se3& T_ref_sensor) {
+    text_ += "VERTEX_SE3:QUAT " + vertices_.at(sensor);
+    Numbers(T_ref_sensor);
+    text_ += '\n';
+  }
+  void NotMeasured(const SensorId& sensor, const Vector6d& direction) {
+    text_ += "# vertex " + vertices_.at(sensor) + " holds, not measured (its own x y z in m, rx ry rz in rad):";
+    for (const double value : direction) Number(value);
     text_ += '\n';
   }
   void Fix(const SensorId& sensor) {
@@ -84,8 +89,11 @@ Result<std::string> WriteG2o(const std::vector<Edge>& edges, const std::vector<S
   if (good.empty())
     return Fail(ErrorCode::kNotFound, "there is no good edge to write", "Push a session or finished edges first.");
   G2oText writer(SensorsToWrite(good, poses));
-  for (const SensorPose& pose : poses)
-    if (pose.known) writer.Pose(pose);
+  for (const SensorPose& pose : poses) {
+    if (pose.Placed() == nullptr) continue;
+    for (const Vector6d& direction : pose.unobservable_basis) writer.NotMeasured(pose.sensor, direction);
+    writer.Pose(pose.sensor, *pose.Placed());
+  }
   writer.Fix(reference);
   for (const Edge& edge : good) writer.Measured(edge);
   return writer.Finish();

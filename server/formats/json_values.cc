@@ -71,6 +71,7 @@ void WriteStamp(JsonWriter& out, std::string_view key, const std::optional<Stamp
 void WriteVerdict(JsonWriter& out, std::string_view key, const Verdict& verdict) {
   out.Object(key, [&] {
     out.Text("level", NameOf(verdict.level));
+    if (!verdict.unverified.empty()) out.Text("unverified", verdict.unverified);
     out.Text("what_to_do", verdict.what_to_do);
     out.Text("why", verdict.why);
   });
@@ -165,7 +166,9 @@ Se3 ReadPose(const JsonField& field, double tolerance) {
 }
 
 Verdict ReadVerdict(const JsonField& field) {
-  return {VerdictLevelOf(field.At("level").Text()), field.At("why").Text(), field.At("what_to_do").Text()};
+  const auto unverified = field.Find("unverified");
+  return {VerdictLevelOf(field.At("level").Text()), field.At("why").Text(), field.At("what_to_do").Text(),
+          unverified ? unverified->Text() : ""};
 }
 
 std::vector<Diagnosis> ReadDiagnoses(const JsonField& field) {

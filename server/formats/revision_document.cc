@@ -9,6 +9,8 @@
 #include "server/formats/edge_reference.h"
 #include "server/formats/insight_fields.h"
 #include "server/formats/json_values.h"
+#include "server/formats/measured_part_fields.h"
+#include "server/formats/policy_fields.h"
 #include "server/formats/suspects_fields.h"
 
 namespace rigcal::formats {
@@ -86,21 +88,20 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   return fused;
 }
 
-// Only where it is known.
-void WriteBasis(JsonWriter& out, const std::vector<Vector6d>& basis) {
-  if (basis.empty()) return;
-  out.List("unobservable_basis", [&] {
-    for (const Vector6d& direction : basis)
-      out.List([&] {
-        for (const double value : direction) out.Number(value);
-      });
-  });
+// What its sigmas are held against.
+void WriteTolerance(JsonWriter& out, const SensorId& sensor, const std::optional<PolicyInForce>& policy) {
+  if (!policy) return;
+  const PoseLimit tolerance = LimitsOf(policy->policy, sensor).tolerance;
+  out.Number("tolerance_m", tolerance.m);
+  out.Number("tolerance_rad", tolerance.rad);
 }
 
-void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
+void WriteSensorPose(JsonWriter& out, const SensorPose& pose, const std::optional<PolicyInForce>& policy,
+                     const std::optional<Eigen::Matrix3d>& R_ref_robot) {
   out.Object([&] {
     out.Text("id", pose.sensor.str());
     out.Flag("known", pose.known);
+    WriteTolerance(out, pose.sensor, policy);
     if (pose.known) {
       WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
       WriteMatrix(out, "covariance", pose.covariance);
@@ -111,7 +112,8 @@ void WriteSensorPose(JsonWriter& out, const SensorPose& pose) {
     } else {
       for (const char* key : {"T_ref_sensor", "covariance", "sigma_source"}) out.Null(key);
       WriteNoSigmas(out);
-      WriteBasis(out, pose.unobservable_basis);
+      if (!pose.unobservable_basis.empty()) WriteOpenDirections(out, pose.unobservable_basis);
+      WriteMeasuredPart(out, pose, R_ref_robot);
     }
     WriteAnalytic(out, pose);
   });
@@ -123,7 +125,10 @@ SensorPose ReadSensorPose(const JsonField& field) {
   pose.known = field.At("known").Flag();
   if (const auto basis = field.Find("unobservable_basis"))
     for (const JsonField& direction : basis->Items(6)) pose.unobservable_basis.push_back(ReadVector(direction));
-  if (!pose.known) return pose;
+  if (!pose.known) {
+    pose.measured_part = ReadMeasuredPart(field, pose.unobservable_basis);
+    return pose;
+  }
   pose.T_ref_sensor = ReadPose(field.At("T_ref_sensor"), kUnitTolerance);
   pose.covariance = ReadMatrix(field.At("covariance"));
   if (const auto dof = field.Find("dof")) pose.dof = dof->Number();
@@ -159,7 +164,8 @@ void WriteRevisionEdges(JsonWriter& out, const RevisionInput& input, int format)
   });
 }
 
-void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
+void WriteSolution(JsonWriter& out, const RevisionInput& input) {
+  const GraphSolution& solution = input.solution;
   out.Flag("converged", solution.converged);
   out.Integer("iterations", solution.iterations);
   out.Number("cost", solution.cost);
@@ -167,8 +173,10 @@ void WriteSolution(JsonWriter& out, const GraphSolution& solution) {
   WriteGlobalErrors(out, solution.before, solution.after);
   WriteDiagnoses(out, "diagnoses", solution.diagnoses);
   out.List("sensors", [&] {
-    for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose);
+    for (const SensorPose& pose : solution.poses) WriteSensorPose(out, pose, input.policy, solution.R_ref_robot);
   });
+  const auto in_part = [](const SensorPose& pose) { return pose.measured_part.has_value(); };
+  if (std::any_of(solution.poses.begin(), solution.poses.end(), in_part)) WriteRobotAxes(out, solution.R_ref_robot);
   WriteSuspects(out, "suspects", solution.suspects);
   WriteInfluenceState(out, "influence", solution.influences);
   WriteCycles(out, "cycles", solution.cycles);
@@ -201,6 +209,7 @@ GraphSolution ReadSolution(const JsonField& root) {
   solution.diagnoses = ReadDiagnoses(root.At("diagnoses"));
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     solution.poses.push_back(ReadSensorPose(sensor));
+  if (const auto axes = root.Find("robot_axes")) solution.R_ref_robot = ReadRobotAxes(*axes);
   if (const auto suspects = root.Find("suspects")) solution.suspects = ReadSuspects(*suspects);
   if (const auto influence = root.Find("influence")) solution.influences = ReadInfluenceState(*influence);
   if (const auto cycles = root.Find("cycles")) solution.cycles = ReadCycles(*cycles);
@@ -226,7 +235,8 @@ std::string WriteInFormat(const RevisionInput& input, int format) {
     WriteVerdict(out, "verdict", input.verdict);
     WriteCauses(out, input.causes);
     if (!input.retired.empty()) WriteRetiredSensors(out, input.retired);
-    WriteSolution(out, input.solution);
+    if (input.policy) out.Object("policy", [&] { WritePolicyMembers(out, *input.policy); });
+    WriteSolution(out, input);
     WriteRevisionEdges(out, input, format);
   });
 }
@@ -259,6 +269,7 @@ Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
   input.verdict = ReadVerdict(root.At("verdict"));
   input.causes = ReadCauses(root);
   input.retired = ReadRetiredSensors(root);
+  if (const auto policy = root.Find("policy")) input.policy = ReadPolicyMembers(*policy);
   input.solution = ReadSolution(root);
   ReadRevisionEdges(root.At("edges"), input);
   RIGCAL_TRY(document.status());

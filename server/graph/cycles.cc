@@ -9,6 +9,7 @@
 #include "server/graph/insight.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
+#include "server/model/session_estimate.h"
 
 namespace rigcal::graph {
 namespace {
@@ -316,6 +317,19 @@ bool WorseThan(const CycleResidual& a, const CycleResidual& b) {
   return key(a) != key(b) ? key(a) < key(b) : a.edges < b.edges;
 }
 
+// Many loops may fail by a hair that is beyond chance: of the `failing` first that which is most open is the last one
+// kept.
+void KeepMostOpen(std::size_t kept, std::int64_t failing, std::vector<CycleResidual>& cycles) {
+  if (kept == 0 || failing <= static_cast<std::int64_t>(kept)) return;
+  const auto openness = [](const CycleResidual& cycle) {
+    return std::max(cycle.e.head<3>().norm() / kMovedMin_m, cycle.e.tail<3>().norm() / kMovedMin_rad);
+  };
+  const auto most = std::max_element(cycles.begin(), cycles.begin() + failing,
+                                     [&](const auto& a, const auto& b) { return openness(a) < openness(b); });
+  const auto last = cycles.begin() + static_cast<std::ptrdiff_t>(kept) - 1;
+  if (most > last) std::iter_swap(most, last);
+}
+
 void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, Cycles& judged) {
   judged.examined = static_cast<std::int64_t>(cycles.size());
   Limits limits(std::count_if(cycles.begin(), cycles.end(), [](const auto& cycle) { return cycle.tested; }));
@@ -325,6 +339,7 @@ void KeepWorst(std::vector<CycleResidual>& cycles, const CycleOptions& options, 
     judged.failing += cycle.fails() ? 1 : 0;
   }
   std::sort(cycles.begin(), cycles.end(), WorseThan);
+  KeepMostOpen(options.worst_max, judged.failing, cycles);
   cycles.resize(std::min(cycles.size(), options.worst_max));
   judged.worst = std::move(cycles);
 }

@@ -26,9 +26,17 @@ Vector6d Pull(const Matrix6d& Omega, const EdgeCheck& check) {
   return F * own.eigenvectors() * parts;
 }
 
-// x without the edge, less x with it: P J^T Omega (I - S Omega)^-1 e.
-Eigen::VectorXd MoveWithout(const Constraint& c, const EdgeCheck& check, const Eigen::MatrixXd& P) {
-  const Vector6d pull = Pull(c.Omega, check);
+// (I - S Omega)^-1 e, but for what the edge leaves open: there it disagrees with nobody.
+Vector6d OffOf(const Constraint& c, const EdgeCheck& check, const Vector6d& pull) {
+  const Vector6d off = check.jacobian.e + check.C_prediction * pull;
+  if (c.rank == 6) return off;
+  const auto open = Observable(c.Omega).unobservable_basis;
+  return off - open * (open.transpose() * off);
+}
+
+// x without the edge, less x with it: P J^T pull.
+Eigen::VectorXd MoveWithout(const Constraint& c, const EdgeCheck& check, const Vector6d& pull,
+                            const Eigen::MatrixXd& P) {
   Eigen::VectorXd move = Eigen::VectorXd::Zero(P.rows());
   if (c.i > 0) move += P.middleCols<6>(6 * (c.i - 1)) * (check.jacobian.J_i.transpose() * pull);
   if (c.j > 0) move += P.middleCols<6>(6 * (c.j - 1)) * (check.jacobian.J_j.transpose() * pull);
@@ -84,7 +92,10 @@ EdgeInfluence InfluenceOf(const Constraint& constraint, const EdgeCheck& check, 
   EdgeInfluence influence;
   influence.checked = check.rank > 0;
   influence.t_squared = check.t_squared;
-  if (influence.checked) FindMostMoved(rulers, MoveWithout(constraint, check, P), influence);
+  if (!influence.checked) return influence;
+  const Vector6d pull = Pull(constraint.Omega, check);
+  influence.off = OffOf(constraint, check, pull);
+  FindMostMoved(rulers, MoveWithout(constraint, check, pull, P), influence);
   return influence;
 }
 

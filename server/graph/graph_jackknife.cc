@@ -140,12 +140,12 @@ void FillSensors(const JackknifeWork& work, const GraphSolution& solution, const
   const std::size_t count = work.graph.sensors.size();
   jackknife.sensors = work.graph.sensors;
   jackknife.row_of_sensor.assign(count, -1);
-  jackknife.known.assign(count, false);
+  jackknife.placed.assign(count, false);
   jackknife.dof.assign(count, 0.0);
   for (std::size_t s = 0; s < count; ++s) {
     const int vertex = work.problem.vertex_of_sensor[s];
-    jackknife.known[s] = vertex >= 0 && solution.poses[s].known;
-    if (!jackknife.known[s] || vertex == 0) continue;
+    jackknife.placed[s] = vertex >= 0 && solution.poses[s].Placed() != nullptr;
+    if (!jackknife.placed[s] || vertex == 0) continue;
     jackknife.row_of_sensor[s] = 6 * (vertex - 1);
     jackknife.dof[s] = accumulator.PoseDof(jackknife.row_of_sensor[s]);
   }
@@ -156,13 +156,13 @@ bool Usable(const Graph& graph, const Problem& problem, const GraphSolution& sol
          solution.poses.size() == graph.sensors.size() && solution.residuals.size() == graph.edges.size();
 }
 
-Result<std::size_t> FindKnown(const GraphJackknife& jackknife, const SensorId& sensor) {
+Result<std::size_t> FindPlaced(const GraphJackknife& jackknife, const SensorId& sensor) {
   const auto found = std::find(jackknife.sensors.begin(), jackknife.sensors.end(), sensor);
   if (found == jackknife.sensors.end())
     return Fail(ErrorCode::kNotFound, "sensor " + sensor.str() + " has no jackknife covariance in this graph",
                 "Check the name; sessions with block vectors are needed.");
   const auto index = static_cast<std::size_t>(found - jackknife.sensors.begin());
-  if (!jackknife.known[index])
+  if (!jackknife.placed[index])
     return Fail(ErrorCode::kInvalidInput, "the pose of sensor " + sensor.str() + " is not known in this solution",
                 "Add an edge that connects it with the reference.");
   return index;
@@ -209,19 +209,22 @@ GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
 }
 
 Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorId& sensor) {
-  RIGCAL_ASSIGN(const std::size_t index, FindKnown(jackknife, sensor));
+  RIGCAL_ASSIGN(const std::size_t index, FindPlaced(jackknife, sensor));
   return Symmetrized(Block(jackknife, index, index));
 }
 
 Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution, const SensorId& a,
-                                    const SensorId& b) {
-  RIGCAL_ASSIGN(const std::size_t index_a, FindKnown(jackknife, a));
-  RIGCAL_ASSIGN(const std::size_t index_b, FindKnown(jackknife, b));
+                                         const SensorId& b, const std::vector<Vector6d>& open) {
+  RIGCAL_ASSIGN(const std::size_t index_a, FindPlaced(jackknife, a));
+  RIGCAL_ASSIGN(const std::size_t index_b, FindPlaced(jackknife, b));
   RelativePose relative;
   if (a == b) return relative;
-  relative.T_A_B = (solution.poses[index_a].T_ref_sensor.Inverse() * solution.poses[index_b].T_ref_sensor).Normalized();
-  relative.covariance = RelativeCovariance(relative.T_A_B, Block(jackknife, index_a, index_a),
-                                           Block(jackknife, index_b, index_b), Block(jackknife, index_a, index_b));
+  relative.T_A_B = (solution.poses[index_a].Placed()->Inverse() * *solution.poses[index_b].Placed()).Normalized();
+  relative.covariance = CovarianceAcross(
+      RelativeCovariance(relative.T_A_B, Block(jackknife, index_a, index_a), Block(jackknife, index_b, index_b),
+                         Block(jackknife, index_a, index_b)),
+      BasisOf(open));
+  relative.unobservable_basis = open;
   return relative;
 }
 
@@ -231,6 +234,11 @@ void ApplyJackknifeCovariance(const Graph& graph, const GraphJackknife& jackknif
     SensorPose& pose = solution.poses[s];
     const auto honest = SensorCovariance(jackknife, pose.sensor);
     if (!honest || pose.sensor == graph.reference) continue;
+    if (pose.measured_part) {
+      pose.measured_part->covariance = CovarianceAcross(*honest, BasisOf(pose.unobservable_basis));
+      pose.measured_part->by_jackknife = true;
+      continue;
+    }
     pose.covariance_analytic = pose.covariance;
     pose.covariance = *honest;
     pose.by_jackknife = true;

@@ -43,9 +43,9 @@ struct GraphJackknife {
   // kJackknifeSensorsMax sensors, or no solution to build on.
   bool available = false;
   std::vector<SensorId> sensors;              // as Graph::sensors
-  std::vector<int> row_of_sensor;             // first row in `joint`; -1: the reference, or not known
-  std::vector<bool> known;                    // the reference too
-  Eigen::MatrixXd joint;                      // of all known sensors' poses, right tangents
+  std::vector<int> row_of_sensor;             // first row in `joint`; -1: the reference, or not placed
+  std::vector<bool> placed;                   // known, whole or in part; the reference too
+  Eigen::MatrixXd joint;                      // of all placed sensors' poses, right tangents; what is open is held
   std::vector<double> dof;                    // behind a sensor's covariance (PooledDof); 0: nothing estimated
   std::vector<ResidualCovariance> residuals;  // in the order of GraphSolution::residuals
 };
@@ -54,11 +54,12 @@ constexpr int kJackknifeSensorsMax = 500;
 [[nodiscard]] GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
                                             const BlocksByEdge& blocks);
 
-// Zero for the reference. kNotFound if the sensor is not in the graph, kInvalidInput if its pose is not known.
+// Zero for the reference. kNotFound if the sensor is not in the graph, kInvalidInput if nothing of its pose is known.
 [[nodiscard]] Result<Matrix6d> SensorCovariance(const GraphJackknife& jackknife, const SensorId& sensor);
-// Of T_A_B with cross terms, right tangent at B, at the poses of `solution`.
+// Of T_A_B with cross terms, right tangent at B, at the poses of `solution`. `open`: what Relative says is open of it.
 [[nodiscard]] Result<RelativePose> RelativeByJackknife(const GraphJackknife& jackknife, const GraphSolution& solution,
-                                                       const SensorId& a, const SensorId& b);
+                                                       const SensorId& a, const SensorId& b,
+                                                       const std::vector<Vector6d>& open = {});
 // Puts the jackknife's covariances and T^2 of the residuals into the solution; the analytic ones are kept beside them.
 void ApplyJackknifeCovariance(const Graph& graph, const GraphJackknife& jackknife, GraphSolution& solution);
 

@@ -27,11 +27,11 @@ Result<std::size_t> FindSensor(const Graph& graph, const SensorId& sensor) {
   return static_cast<std::size_t>(index);
 }
 
-Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& solution, std::size_t sensor) {
+Result<const Se3*> FindPlaced(const Graph& graph, const GraphSolution& solution, std::size_t sensor) {
   const SensorId& id = graph.sensors[sensor];
   const auto pose = std::find_if(solution.poses.begin(), solution.poses.end(),
                                  [&id](const SensorPose& candidate) { return candidate.sensor == id; });
-  if (pose != solution.poses.end() && pose->known) return &*pose;
+  if (pose != solution.poses.end() && pose->Placed() != nullptr) return pose->Placed();
   const std::string prefix = "sensor " + id.str() + " ";
   const auto why = std::find_if(solution.diagnoses.begin(), solution.diagnoses.end(),
                                 [&prefix](const Diagnosis& d) { return d.what.find(prefix) != std::string::npos; });
@@ -40,10 +40,9 @@ Result<const SensorPose*> FindKnown(const Graph& graph, const GraphSolution& sol
               "Add an edge that connects it with " + graph.reference.str() + ".");
 }
 
-// Columns of H^-1 at a solution, six per vertex; the reference's are zero. Nothing where H cannot be factored.
-std::optional<MatrixXd> InverseColumns(const Graph& graph, const Problem& problem, const GraphSolution& solution,
-                                       const std::vector<int>& vertices) {
-  const auto cholesky = FactorAt(problem, SolvedPoses(graph, problem, solution));
+// Columns of H^-1, six per vertex; the reference's are zero. Nothing where H cannot be factored.
+std::optional<MatrixXd> InverseColumns(const Problem& problem, const Poses& T_ref, const std::vector<int>& vertices) {
+  const auto cholesky = FactorAt(problem, T_ref);
   if (cholesky == nullptr) return std::nullopt;
   MatrixXd columns = MatrixXd::Zero(6 * problem.free_count(), static_cast<Eigen::Index>(6 * vertices.size()));
   for (std::size_t k = 0; k < vertices.size(); ++k)
@@ -68,7 +67,7 @@ std::optional<JointCovariance> AnalyticJoint(const Graph& graph, const GraphSolu
     vertices.push_back(index < 0 ? -1 : problem.vertex_of_sensor[static_cast<std::size_t>(index)]);
     if (vertices.back() <= 0) return std::nullopt;
   }
-  const auto columns = InverseColumns(graph, problem, solution, vertices);
+  const auto columns = InverseColumns(problem, SolvedPoses(graph, problem, solution), vertices);
   if (!columns) return std::nullopt;
   JointCovariance joint{sensors, MatrixXd(columns->cols(), columns->cols())};
   for (std::size_t k = 0; k < sensors.size(); ++k)
@@ -102,15 +101,16 @@ int RowOf(const JointPoses& poses, const JointCovariance& covariance, const Sens
 Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution, const SensorId& a, const SensorId& b) {
   RIGCAL_ASSIGN(const std::size_t sensor_a, FindSensor(graph, a));
   RIGCAL_ASSIGN(const std::size_t sensor_b, FindSensor(graph, b));
-  RIGCAL_ASSIGN(const SensorPose* pose_a, FindKnown(graph, solution, sensor_a));
-  RIGCAL_ASSIGN(const SensorPose* pose_b, FindKnown(graph, solution, sensor_b));
+  RIGCAL_ASSIGN(const Se3* T_ref_a, FindPlaced(graph, solution, sensor_a));
+  RIGCAL_ASSIGN(const Se3* T_ref_b, FindPlaced(graph, solution, sensor_b));
   if (a == b) return RelativePose{};
   const Problem problem = MakeProblem(graph);
   const int vertex_a = problem.vertex_of_sensor[sensor_a], vertex_b = problem.vertex_of_sensor[sensor_b];
   if (vertex_a < 0 || vertex_b < 0)
     return Fail(ErrorCode::kInvalidInput, "sensors " + a.str() + " and " + b.str() + " are not connected in this graph",
                 "Solve the graph again with the edges that it has now.");
-  const auto columns = InverseColumns(graph, problem, solution, {vertex_a, vertex_b});
+  const Poses T_ref = SolvedPoses(graph, problem, solution);
+  const auto columns = InverseColumns(problem, T_ref, {vertex_a, vertex_b});
   if (!columns)
     return Fail(
         ErrorCode::kInvalidInput,
@@ -120,8 +120,11 @@ Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution,
   const auto block = [&columns](int vertex, int of) -> Matrix6d {
     return vertex > 0 ? Matrix6d(columns->block<6, 6>(6 * (vertex - 1), 6 * of)) : Matrix6d(Matrix6d::Zero());
   };
-  return RelativeBetween(pose_a->T_ref_sensor, pose_b->T_ref_sensor, block(vertex_a, 0), block(vertex_b, 1),
-                         block(vertex_a, 1));
+  RelativePose relative = RelativeBetween(*T_ref_a, *T_ref_b, block(vertex_a, 0), block(vertex_b, 1), block(vertex_a, 1));
+  const FreeBasis open = Reduced(FreeBetween(Observe(problem, T_ref), vertex_a, vertex_b, relative.T_A_B));
+  relative.covariance = CovarianceAcross(relative.covariance, open);
+  relative.unobservable_basis = ColumnsOf(open);
+  return relative;
 }
 
 JointPoses FusedPosesOf(const GraphSolution& solution, const SensorId& reference) {

@@ -130,12 +130,11 @@ std::vector<Pin> ChoosePins(const MatrixXd& null_vectors, const Bodies& bodies) 
   return pins;
 }
 
-// What a vertex takes of its body's free motions, in metres and radians. Null vectors have unit length over all bodies;
-// a body that is held shows in them only as much as the tolerance lets through.
-FreeBasis FreeDirections(const MatrixXd& body_null, const Se3& T_vertex_body, const Vector6d& scale, double tolerance) {
-  const double visible = std::clamp(kNoiseFactor * std::sqrt(tolerance), 1e-5, 0.1);
-  const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * Adjoint(T_vertex_body) * scale.asDiagonal() * body_null;
-  return scale.asDiagonal() * RangeOf(scaled, visible);
+// What of these motions, in metres and radians, is more than noise. Null vectors have unit length over all bodies; a body
+// that is held shows in them only as much as the tolerance lets through.
+FreeBasis FreeDirections(const FreeBasis& motions, const Observability& observability) {
+  const Vector6d& scale = observability.scale;
+  return scale.asDiagonal() * RangeOf(scale.cwiseInverse().asDiagonal() * motions, observability.visible);
 }
 
 // Everything outside the reference's body, held as a whole.
@@ -182,20 +181,31 @@ Observability Observe(const Problem& problem, const Poses& T_ref) {
   const int free_bodies = static_cast<int>(bodies.first_vertex.size()) - 1;
   if (free_bodies == 0) return result;
   if (free_bodies > kBodiesMax) return LeaveUnjudged(problem, bodies, result), result;
-  const Vector6d scale = ScaleOf(TypicalLength_m(problem));
+  result.scale = ScaleOf(TypicalLength_m(problem));
   const double tolerance = Tolerance(problem, T_ref);
-  const MatrixXd null_vectors = NullVectors(GeometryMatrix(problem, T_ref, bodies, scale), tolerance);
+  result.visible = std::clamp(kNoiseFactor * std::sqrt(tolerance), 1e-5, 0.1);
+  const MatrixXd null_vectors = NullVectors(GeometryMatrix(problem, T_ref, bodies, result.scale), tolerance);
   result.nullity = static_cast<int>(null_vectors.cols());
   if (result.nullity == 0) return result;
   result.pins = ChoosePins(null_vectors, bodies);
+  result.motion_of_vertex.assign(result.free_of_vertex.size(), FreeBasis::Zero(6, result.nullity));
   for (std::size_t v = 0; v < result.free_of_vertex.size(); ++v) {
     const int body = bodies.body_of_vertex[v];
     if (body == 0) continue;
     const Se3& T_ref_body = T_ref[static_cast<std::size_t>(bodies.first_vertex[static_cast<std::size_t>(body)])];
-    result.free_of_vertex[v] =
-        FreeDirections(null_vectors.middleRows(6 * (body - 1), 6), T_ref[v].Inverse() * T_ref_body, scale, tolerance);
+    result.motion_of_vertex[v] = Adjoint(T_ref[v].Inverse() * T_ref_body) * result.scale.asDiagonal() *
+                                 null_vectors.middleRows(6 * (body - 1), 6);
+    result.free_of_vertex[v] = FreeDirections(result.motion_of_vertex[v], result);
   }
   return result;
+}
+
+FreeBasis FreeBetween(const Observability& observability, int i, int j, const Se3& T_i_j) {
+  if (observability.motion_of_vertex.empty()) return FreeBasis(6, 0);
+  const auto& motions = observability.motion_of_vertex;
+  const FreeBasis apart =
+      motions[static_cast<std::size_t>(j)] - Adjoint(T_i_j.Inverse()) * motions[static_cast<std::size_t>(i)];
+  return FreeDirections(apart, observability);
 }
 
 std::unique_ptr<BlockCholesky<6>> FactorAt(const Problem& problem, const Poses& T_ref) {
@@ -229,6 +239,18 @@ FreeBasis Reduced(FreeBasis basis) {
   }
   constexpr double kRounding = 1e-9;
   return (basis.array().abs() < kRounding).select(0.0, basis);
+}
+
+std::vector<Vector6d> ColumnsOf(const FreeBasis& basis) {
+  std::vector<Vector6d> directions;
+  for (Eigen::Index k = 0; k < basis.cols(); ++k) directions.emplace_back(basis.col(k));
+  return directions;
+}
+
+FreeBasis BasisOf(const std::vector<Vector6d>& directions) {
+  FreeBasis basis(6, static_cast<Eigen::Index>(directions.size()));
+  for (std::size_t k = 0; k < directions.size(); ++k) basis.col(static_cast<Eigen::Index>(k)) = directions[k];
+  return basis;
 }
 
 std::string NameDirections(const FreeBasis& basis) {

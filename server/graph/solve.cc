@@ -86,11 +86,6 @@ Settled Settle(const Problem& problem, const Poses& start, BlockCholesky<6>& cho
   return settled;
 }
 
-void TakeBasis(const FreeBasis& free, SensorPose& pose) {
-  const FreeBasis basis = Reduced(free);
-  for (Eigen::Index k = 0; k < basis.cols(); ++k) pose.unobservable_basis.emplace_back(basis.col(k));
-}
-
 void FillPoses(const Graph& graph, const Problem& problem, const Settled& settled, GraphSolution& solution) {
   for (std::size_t s = 0; s < graph.sensors.size(); ++s) {
     SensorPose& pose = solution.poses[s];
@@ -102,7 +97,7 @@ void FillPoses(const Graph& graph, const Problem& problem, const Settled& settle
     if (pose.known) {
       pose.T_ref_sensor = settled.optimum.T_ref[static_cast<std::size_t>(vertex)];
     } else {
-      if (settled.observability.judged) TakeBasis(free, pose);
+      if (settled.observability.judged) pose.unobservable_basis = ColumnsOf(Reduced(free));
       solution.diagnoses.push_back(settled.observability.judged ? NotObservable(pose.sensor, graph.reference, free)
                                                                 : NotJudged(pose.sensor));
     }
@@ -114,6 +109,13 @@ void ForgetPoses(const Graph& graph, GraphSolution& solution) {
     pose.known = pose.sensor == graph.reference;
     pose.T_ref_sensor = Se3();
   }
+}
+
+// Of a sensor whose edges leave some directions open, and not all: the free motions are held in the marginal.
+void TakeMeasuredPart(const Se3& T_ref, const Matrix6d& marginal, SensorPose& pose) {
+  const FreeBasis open = BasisOf(pose.unobservable_basis);
+  if (open.cols() == 0 || open.cols() == 6) return;
+  pose.measured_part = MeasuredPart{T_ref, CovarianceAcross(marginal, open)};
 }
 
 void FillMarginals(const Graph& graph, const Problem& problem, const Settled& settled, BlockCholesky<6>& cholesky,
@@ -130,7 +132,10 @@ void FillMarginals(const Graph& graph, const Problem& problem, const Settled& se
   }
   for (std::size_t v = 1; v < problem.sensor_of_vertex.size(); ++v) {
     SensorPose& pose = solution.poses[problem.sensor_of_vertex[v]];
-    if (pose.known) pose.covariance = Symmetrized(marginals[v - 1]);
+    if (pose.known)
+      pose.covariance = Symmetrized(marginals[v - 1]);
+    else
+      TakeMeasuredPart(settled.optimum.T_ref[v], marginals[v - 1], pose);
   }
 }
 

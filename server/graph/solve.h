@@ -15,15 +15,19 @@ struct SolveOptions {
 };
 
 // Canonical batch solve: spanning tree of the most certain edges, then Gauss-Newton with Levenberg-Marquardt fallback.
-// Sensors that are not connected to the reference come back with known = false and a diagnosis; nothing is invented.
+// Sensors that are not connected to the reference, or of which directions are open, come back with known = false and a
+// diagnosis; of the latter the measured part, where `marginals` are asked for.
 [[nodiscard]] GraphSolution Solve(const Graph& graph, const SolveOptions& options = {});
 
 // T_A_B with its 6x6 covariance (right tangent at B) at a solution, by solving for the two sensors' columns only.
 struct RelativePose {
   Se3 T_A_B;
   Matrix6d covariance = Matrix6d::Zero();
+  // Directions that no edge measured, right tangent at B: there T_A_B is as it was held, and the covariance has nothing.
+  std::vector<Vector6d> unobservable_basis = {};
 };
-// kNotFound if a sensor is not in the graph; kInvalidInput with a sentence if A and B are not connected.
+// Of sensors whose poses are known, whole or in part: two that are open in the same way may be known to each other. kNotFound
+// if a sensor is not in the graph; kInvalidInput with a sentence if nothing is known of one, or A and B are not connected.
 [[nodiscard]] Result<RelativePose> Relative(const Graph& graph, const GraphSolution& solution, const SensorId& a,
                                             const SensorId& b);
 

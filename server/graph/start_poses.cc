@@ -185,14 +185,14 @@ std::optional<Poses> ChordalPoses(const Problem& problem) {
 }
 
 Poses SolvedPoses(const Graph& graph, const Problem& problem, const GraphSolution& solution) {
-  std::map<SensorId, const Se3*> known;
+  std::map<SensorId, const Se3*> solved;
   for (const SensorPose& pose : solution.poses)
-    if (pose.known) known.emplace(pose.sensor, &pose.T_ref_sensor);
+    if (pose.Placed() != nullptr) solved.emplace(pose.sensor, pose.Placed());
   Poses T_ref(static_cast<std::size_t>(problem.vertex_count));
   std::vector<bool> placed(T_ref.size(), false);
   for (std::size_t v = 0; v < T_ref.size(); ++v) {
-    const auto found = known.find(graph.sensors[problem.sensor_of_vertex[v]]);
-    placed[v] = found != known.end();
+    const auto found = solved.find(graph.sensors[problem.sensor_of_vertex[v]]);
+    placed[v] = found != solved.end();
     if (placed[v]) T_ref[v] = *found->second;
   }
   return T_ref.empty() ? T_ref : GrowTree(problem, std::move(T_ref), std::move(placed));

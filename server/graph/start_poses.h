@@ -16,7 +16,7 @@ namespace rigcal::graph {
 // linear system cannot be factored.
 [[nodiscard]] std::optional<Poses> ChordalPoses(const Problem& problem);
 
-// A solution's, by vertex of `problem`. Sensors that it does not know hang on the known ones by their best edges.
+// A solution's, by vertex of `problem`. Sensors that it knows nothing of hang on the others by their best edges.
 [[nodiscard]] Poses SolvedPoses(const Graph& graph, const Problem& problem, const GraphSolution& solution);
 
 }  // namespace rigcal::graph

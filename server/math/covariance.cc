@@ -111,6 +111,14 @@ ObservableSubspace Observable(const Matrix6d& Omega, double relative_tolerance) 
   return result;
 }
 
+Matrix6d CovarianceAcross(const Matrix6d& covariance, const Basis& open) {
+  if (open.cols() == 0) return covariance;
+  Basis along, across;
+  Split(open, along, across);
+  const Matrix6d P = across * across.transpose();
+  return Symmetrized(P * covariance * P);
+}
+
 bool IsPositiveSemidefinite(const Matrix6d& Omega) {
   if (!Omega.allFinite()) return false;
   const double rounding = kRoundingRatio * Omega.cwiseAbs().maxCoeff();

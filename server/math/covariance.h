@@ -27,6 +27,9 @@ struct ObservableSubspace {
 // Eigen-decomposition after scaling rows and columns to unit diagonal (m against rad); an eigenvalue below
 // `relative_tolerance` times the largest counts as zero.
 [[nodiscard]] ObservableSubspace Observable(const Matrix6d& Omega, double relative_tolerance = 1e-12);
+// Covariance of what lies at right angles to the columns of `open` (any number, independent), in m and rad: nothing along
+// these. Right where nothing but a motion along them was held while it was worked out.
+[[nodiscard]] Matrix6d CovarianceAcross(const Matrix6d& covariance, const Eigen::Matrix<double, 6, Eigen::Dynamic>& open);
 // Finite, symmetric to 1e-9 and smallest eigenvalue >= -1e-9 of the largest, both judged with rows and columns scaled to
 // unit diagonal, so that metres do not hide what is wrong with the radians. Rounding noise, 1e-14 of the largest entry,
 // is forgiven.

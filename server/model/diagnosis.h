@@ -22,6 +22,8 @@ struct Verdict {
   VerdictLevel level = VerdictLevel::kUnknown;
   std::string why;         // one plain sentence
   std::string what_to_do;  // one plain sentence
+  // Of an unknown one: the sensors that are not to be relied on, as a sentence names them; empty: all of the robot.
+  std::string unverified = {};
 };
 [[nodiscard]] std::string NameOf(VerdictLevel level);
 [[nodiscard]] VerdictLevel VerdictLevelOf(const std::string& name);

@@ -12,7 +12,9 @@
 #include "server/model/diagnosis.h"
 #include "server/model/edge.h"
 #include "server/model/insight.h"
+#include "server/model/measured_part.h"
 #include "server/model/suspects.h"
+#include "server/model/validity.h"
 
 namespace rigcal {
 
@@ -56,7 +58,15 @@ struct SensorPose {
   // sensor, metres and radians; each has a coordinate of its own that is 1 in it and 0 in the others.
   std::vector<Vector6d> unobservable_basis = {};
   std::optional<FusedPose> fused = {};  // present: T_ref_sensor, covariance and dof are the fused ones
+  // If not known, but for directions that are open: what was measured of it by pairs. Who needs a whole pose goes by `known`.
+  std::optional<MeasuredPart> measured_part = {};
+  // Where the sensor was put: along what is open held, not measured. Null: not even part of its pose is known.
+  [[nodiscard]] const Se3* Placed() const {
+    return known ? &T_ref_sensor : measured_part ? &measured_part->T_ref_sensor : nullptr;
+  }
 };
+// Six results of a pose that is known, whole or in part; else none. `R_ref_robot`: GraphSolution's.
+[[nodiscard]] std::vector<AxisResult> AxesOf(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot);
 
 // Where the sigmas of a known pose come from, as documents name it.
 [[nodiscard]] inline std::string_view SigmaSourceOf(const SensorPose& pose) {
@@ -120,6 +130,8 @@ struct GraphSolution {
   Influences influences;               // likewise
   Cycles cycles;                       // likewise
   FusedSessions fused;                 // likewise; residuals and errors are the graph's all the same
+  // Columns: forward, left and up of the robot in the reference's frame; nothing: not known. Names of axes come from it.
+  std::optional<Eigen::Matrix3d> R_ref_robot = {};
 };
 
 // A numbered, stored, solved state. `document` is canonical JSON: same edges that count, same bytes; it does not hold its
@@ -134,6 +146,8 @@ struct Revision {
   std::int64_t edge_watermark = 0;      // the store's row number of the newest edge that it contains
   std::int64_t standing_watermark = 0;  // likewise, of the robot's newest standing that it counts
   std::optional<Stamp> calibrated_at = {};  // newest capture of its good edges (of pushed ones: stored); absent: none
+  // By what it was judged: the number of the newest policy of all (policy_version.h), and the age that it allows.
+  std::int64_t policy_watermark = 0, max_age_ns = kDefaultMaxAge_ns;
 };
 
 }  // namespace rigcal

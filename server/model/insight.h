@@ -17,6 +17,9 @@ struct EdgeInfluence {
   SensorId most_moved;               // by leaving the edge out, in its sigmas; empty: no sensor
   Vector6d move = Vector6d::Zero();  // Log(T_with^-1 T_without) of that sensor, right tangent
   double move_sigmas = 0.0;          // sqrt(move^T C^-1 move), C the sensor's covariance with the edge
+  // What the others say, less what the edge says: Log(T_a_b_measured^-1 T_a_b_others), right tangent at b, without the
+  // directions in which nothing checks it. Not part of documents, which have the verdict.
+  Vector6d off = Vector6d::Zero();
 };
 
 struct Influences {
@@ -43,7 +46,8 @@ struct Cycles {
   std::string why_not;  // a sentence, where all or some were left out
   std::int64_t examined = 0, failing = 0;
   std::int64_t tested = 0;  // those that have a limit
-  std::vector<CycleResidual> worst;  // furthest beyond its limit first; those without a test last
+  // Furthest beyond its limit first; those without a test last. Of those that fail the most open one is among them.
+  std::vector<CycleResidual> worst;
 };
 
 }  // namespace rigcal

@@ -16,6 +16,7 @@ struct RobotState {
     Revision revision;  // without its document
     SensorId reference;
     std::vector<SensorPose> poses;
+    std::optional<Eigen::Matrix3d> R_ref_robot = {};  // GraphSolution's
   };
   std::optional<Calibration> calibration;  // of the newest revision that may be used; absent: there is none
   // Where there is none: sensors of which poses may have been told before, in this run of the server or an earlier one.

@@ -9,9 +9,9 @@ bool IsUsable(const Verdict& verdict) {
   return verdict.level == VerdictLevel::kPass || verdict.level == VerdictLevel::kWarn;
 }
 
-std::optional<Stamp> ValidUntil(const std::optional<Stamp>& calibrated_at) {
-  if (!calibrated_at) return std::nullopt;
-  return Stamp{calibrated_at->ns + kDefaultMaxAge_ns};
+std::optional<Stamp> ValidUntil(const Validity& validity) {
+  if (!validity.calibrated_at) return std::nullopt;
+  return Stamp{validity.calibrated_at->ns + validity.max_age_ns};
 }
 
 bool IsOverdue(const std::optional<Stamp>& calibrated_at, std::int64_t max_age_ns, Stamp now) {
@@ -25,8 +25,6 @@ std::string DayText(Stamp stamp) {
   return std::to_string(static_cast<unsigned>(date.day())) + " " + kMonths[static_cast<unsigned>(date.month()) - 1] +
          " " + std::to_string(static_cast<int>(date.year()));
 }
-
-std::string ValidText(Stamp valid_until) { return "Valid until " + DayText(valid_until) + "."; }
 
 std::string OverdueText(const std::optional<Stamp>& valid_until) {
   if (!valid_until) return "Overdue: nothing of this robot is calibrated. Calibrate it before it is relied on.";

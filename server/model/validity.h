@@ -9,7 +9,7 @@
 
 namespace rigcal {
 
-// A calibration older than this is overdue (`rigcal due` takes a limit of its own).
+// A calibration older than this is overdue, unless a policy says otherwise.
 inline constexpr std::int64_t kDefaultMaxAge_ns = 90LL * 24 * 3600 * 1'000'000'000;
 
 // A revision whose verdict is pass or warn.
@@ -22,20 +22,20 @@ struct UsableRevision {
 struct Validity {
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured; absent: it counts nothing
   bool overdue = false;                  // now
-  std::optional<UsableRevision> usable;  // the newest; absent: there is none to fall back to
+  std::optional<UsableRevision> usable = {};  // the newest; absent: there is none to fall back to
   bool calculating = false;              // something arrived that the newest revision does not hold
   std::string given_up = {};             // a sentence with the cure, where that could not be solved; then not calculating
+  std::int64_t max_age_ns = kDefaultMaxAge_ns;  // of the policy that judged the revision
 };
 
 [[nodiscard]] bool IsUsable(const Verdict& verdict);
-// The moment from which a calibration of that date is overdue.
-[[nodiscard]] std::optional<Stamp> ValidUntil(const std::optional<Stamp>& calibrated_at);
+// The moment from which it is overdue; absent: it counts nothing.
+[[nodiscard]] std::optional<Stamp> ValidUntil(const Validity& validity);
 // What was never calibrated is overdue.
 [[nodiscard]] bool IsOverdue(const std::optional<Stamp>& calibrated_at, std::int64_t max_age_ns, Stamp now);
 
 // For people: "31 Jan 2026", in UTC; and sentences.
 [[nodiscard]] std::string DayText(Stamp stamp);
-[[nodiscard]] std::string ValidText(Stamp valid_until);
 [[nodiscard]] std::string OverdueText(const std::optional<Stamp>& valid_until);
 // Of a revision that is neither pass nor warn.
 [[nodiscard]] std::string KeepText(const std::optional<UsableRevision>& usable);

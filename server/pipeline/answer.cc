@@ -14,6 +14,7 @@
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/names.h"
+#include "server/pipeline/policies.h"
 #include "server/pipeline/report_files.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
@@ -115,15 +116,25 @@ Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision
   return {};
 }
 
+const SensorPose& PoseOf(const GraphSolution& solution, const SensorId& sensor) {
+  return *std::find_if(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) { return pose.sensor == sensor; });
+}
+
+// What is known in part is as the graph of pairs has it: then the other pose is that of the same graph.
+void TakePosesByPairs(GraphSolution& solution) {
+  for (SensorPose& pose : solution.poses)
+    if (pose.fused) pose.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
+}
+
+bool HasJackknife(const SensorPose& pose) { return pose.by_jackknife || (pose.measured_part && pose.measured_part->by_jackknife); }
+
 // From the revision's own document and block vectors: of a revision from before its poses were kept, of very many sensors,
-// and for the reason why a pose is not known.
-Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const RobotId& robot, int number, const SensorId& a,
-                                            const SensorId& b) {
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, number));
-  const formats::RevisionInput& told = *revision.document;
-  RIGCAL_TRY(CheckSensors(robot, told, {a, b}));
+// of a pose that is known in part, and for the reason why one is not known. `told`: the document; it has both sensors.
+Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, int number, const formats::RevisionInput& told,
+                                            const SensorId& a, const SensorId& b) {
   if (const auto fused = graph::RelativeOf(graph::FusedPosesOf(told.solution, told.reference), a, b)) return *fused;
-  RIGCAL_ASSIGN(const formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
+  RIGCAL_ASSIGN(formats::RevisionInput document, WithWholeEdges(context.store, number, told, Blocks::kLoaded));
+  if (!PoseOf(told.solution, a).known || !PoseOf(told.solution, b).known) TakePosesByPairs(document.solution);
   Graph graph = graph::GraphOf(document.edges, document.reference);
   graph.reference = document.reference;
   graph.sensors.clear();
@@ -131,12 +142,33 @@ Result<graph::RelativePose> DerivedRelative(const AnswerContext& context, const 
   RIGCAL_ASSIGN(const graph::RelativePose analytic, graph::Relative(graph, document.solution, a, b));
   const auto& poses = document.solution.poses;
   graph::GraphJackknife jackknife;
-  if (std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.by_jackknife; })) {
+  if (std::any_of(poses.begin(), poses.end(), HasJackknife)) {
     RIGCAL_ASSIGN(const graph::BlocksByEdge blocks, BlocksOfWhole(context.store, document, number));
     jackknife = graph::JackknifeGraph(graph, document.solution, blocks);
   }
   if (const auto relative = graph::RelativeOf(graph::JointPosesOf(graph, document.solution, jackknife), a, b)) return *relative;
-  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b) : analytic;
+  return jackknife.available ? graph::RelativeByJackknife(jackknife, document.solution, a, b, analytic.unobservable_basis)
+                             : analytic;
+}
+
+// The robot's axes in the frame of a sensor; nothing where a turn of it was not measured.
+std::optional<Eigen::Matrix3d> RobotAxesIn(const GraphSolution& solution, const SensorId& sensor) {
+  const SensorPose& pose = PoseOf(solution, sensor);
+  if (!solution.R_ref_robot || pose.Placed() == nullptr || !TurnsMeasured(AxesOf(pose, solution.R_ref_robot))) return std::nullopt;
+  return Eigen::Matrix3d(pose.Placed()->R().transpose() * *solution.R_ref_robot);
+}
+
+Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) {
+  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, answer.robot, answer.revision));
+  const formats::RevisionInput& told = *revision.document;
+  RIGCAL_TRY(CheckSensors(answer.robot, told, {answer.frame_a, answer.frame_b}));
+  RIGCAL_ASSIGN(const graph::RelativePose relative,
+                DerivedRelative(context, answer.revision, told, answer.frame_a, answer.frame_b));
+  answer.T_a_b = relative.T_A_B;
+  answer.covariance = relative.covariance;
+  answer.unobservable_basis = relative.unobservable_basis;
+  answer.R_a_robot = RobotAxesIn(told.solution, answer.frame_a);
+  return {};
 }
 
 // What the newest revision says: an edge that arrived since plays no part.
@@ -146,17 +178,17 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
   RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, 0));
   RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(context.store, {robot, revision.number}));
-  std::optional<graph::RelativePose> relative = poses ? graph::RelativeOf(*poses, a, b) : std::nullopt;
-  if (!relative) {
-    RIGCAL_ASSIGN(relative, DerivedRelative(context, robot, revision.number, a, b));
-  }
   formats::LookupAnswer answer;
   answer.robot = robot;
   answer.revision = revision.number;
   answer.frame_a = a;
   answer.frame_b = b;
-  answer.T_a_b = relative->T_A_B;
-  answer.covariance = relative->covariance;
+  if (const auto kept = poses ? graph::RelativeOf(*poses, a, b) : std::nullopt) {
+    answer.T_a_b = kept->T_A_B;
+    answer.covariance = kept->covariance;
+  } else {
+    RIGCAL_TRY(TakeDerived(context, answer));
+  }
   answer.verdict = revision.verdict;
   RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));
   return formats::WriteLookup(answer);
@@ -192,6 +224,10 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   return formats::WriteStatus(answer, now);
 }
 
+Result<std::string> TellPolicyAsked(const AnswerContext& context, const Parameters& parameters) {
+  return TellPolicy(context.store, parameters);
+}
+
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   if (!robot.empty()) RIGCAL_TRY(KnownRobot(context.store, parameters));
@@ -220,11 +256,12 @@ Result<std::string> FileOfReport(const AnswerContext& context, const Parameters&
 }
 
 Result<std::string> Due(const AnswerContext& context, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", kDefaultMaxAge_ns));
+  RIGCAL_ASSIGN(const std::int64_t max_age_ns, parameters.IntegerOr("max_age_ns", 0));
   if (max_age_ns < 0)
     return Fail(ErrorCode::kInvalidInput, "the parameter 'max_age_ns' is negative", "Give an age such as 90d.");
   RIGCAL_ASSIGN(const RobotList list, LoadRobotList(context.store, context.clock, parameters));
-  return formats::WriteDue(list.robots, max_age_ns, context.clock.Now(), list.next);
+  const auto asked = parameters.Text("max_age_ns") ? std::optional(max_age_ns) : std::nullopt;
+  return formats::WriteDue(list.robots, asked, context.clock.Now(), list.next);
 }
 
 Status TakeLostFiles(storage::Store& store, formats::HealthAnswer& answer) {
@@ -257,6 +294,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"sensor_names", TellSensorNames},
       {"known_robot", TellKnownRobot},
       {"status", OfStatus},
+      {"policy", TellPolicyAsked},
       {"due", Due},
       {"health", Health},
       {"live", Live},

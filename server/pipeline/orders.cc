@@ -3,6 +3,7 @@
 #include "server/formats/answers.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/next_reference.h"
+#include "server/pipeline/policies.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/subject.h"
@@ -72,11 +73,12 @@ Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const Senso
 
 }  // namespace
 
-bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "retire"; }
+bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "retire" || verb == "set_policy"; }
 
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
+  if (verb == "set_policy") return SetPolicy(store, clock, parameters);
   RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
   OrderDone done;
   RIGCAL_TRY(store.Write([&]() -> Status {

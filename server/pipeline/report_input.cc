@@ -110,14 +110,13 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   input.digest = revision.digest;
   input.software_version = std::string(Version());
   input.calibrated_at = revision.calibrated_at;
+  input.max_age_ns = revision.max_age_ns;
   RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision));
   RIGCAL_ASSIGN(input.revision, LoadWholeRevision(store, revision, Blocks::kLoaded));
   TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
   TakeLimits(input);
-  const fleet::Policy policy;
-  input.sigma_limits = report::SigmaLimits{policy.sigma_max_m, policy.sigma_max_rad};
   TakeCameras(store, input);
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));
   return input;

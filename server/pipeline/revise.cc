@@ -6,6 +6,7 @@
 
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
+#include "server/fleet/partial_poses.h"
 #include "server/fleet/told_causes.h"
 #include "server/formats/documents.h"
 #include "server/graph/graph_jackknife.h"
@@ -17,6 +18,7 @@
 #include "server/graph/solve.h"
 #include "server/model/past.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/policies.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
 #include "storage/edges.h"
@@ -118,6 +120,7 @@ struct RobotEdges {
   std::vector<RetiredSensor> gone;
   SensorId reference;
   std::int64_t watermark = 0, standing_watermark = 0;
+  PolicyInForce policy;
 };
 
 Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, RobotEdges& loaded) {
@@ -151,8 +154,10 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) 
     RIGCAL_TRY(LoadHeaders(store, loaded.current.edges, loaded.headers));
     RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
     for (const storage::SessionRow& session : open) loaded.unfinished.insert(session.id);
+    RIGCAL_ASSIGN(loaded.policy, LoadPolicyInForce(store, {PolicyScope::kRobot, robot.str()}));
     return {};
   }));
+  TakeFocals(store, loaded.current.edges, loaded.headers, loaded.captured_at, loaded.policy.policy);
   return loaded;
 }
 
@@ -220,11 +225,13 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.retired = edges.gone;
   HonestSolution honest = SolveHonestly(loaded);
   input.solution = std::move(honest.solution);
+  input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
   poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
-                                    : fleet::Assess(loaded.edges, input.solution, {}, edges.captured_at,
-                                                    edges.refined.estimates, edges.headers);
+                                    : fleet::Assess(loaded.edges, input.solution, edges.policy.policy,
+                                                    edges.captured_at, edges.refined.estimates, edges.headers);
+  input.policy = edges.policy;
   input.edges = std::move(loaded.edges);
   return input;
 }
@@ -264,6 +271,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.digest = Sha256Of(revision.document);
   revision.edge_watermark = loaded.watermark;
   revision.standing_watermark = loaded.standing_watermark;
+  if (pairs_waiting == 0) revision.policy_watermark = loaded.policy.watermark;  // else it is still to be judged
+  revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
     const storage::RevisionKey key{robot, revision.number};

@@ -18,7 +18,8 @@ Result<RobotState::Calibration> LoadCalibration(storage::Store& store, const Rob
                 "See its revisions with: rigcal show " + robot.str());
   RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(revision->document));
   revision->document.clear();
-  return RobotState::Calibration{std::move(*revision), document.reference, std::move(document.solution.poses)};
+  return RobotState::Calibration{std::move(*revision), document.reference, std::move(document.solution.poses),
+                                 document.solution.R_ref_robot};
 }
 
 // Poses of these may be with readers. Whoever told them may have ended before it could take them back, or before it

@@ -16,6 +16,7 @@
 #include "server/pipeline/worker.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
+#include "storage/policies.h"
 #include "storage/revisions.h"
 #include "storage/standing.h"
 
@@ -226,10 +227,10 @@ void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
   if (stamp && (!result.wake_at || *stamp < *result.wake_at)) result.wake_at = stamp;
 }
 
-Result<StepResult> ReviseNext(const StepContext& context) {
+// The first of these that nobody works on and that is due.
+StepResult ReviseOneOf(const StepContext& context, const std::vector<RobotId>& robots) {
   StepResult result;
-  RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(context.store));
-  for (const RobotId& robot : unsolved) {
+  for (const RobotId& robot : robots) {
     const Claim claim(context.claims, robot);
     if (!claim.taken()) continue;
     const Result<bool> revised = Guarded([&] { return WorkOn(context, robot); });
@@ -238,6 +239,25 @@ Result<StepResult> ReviseNext(const StepContext& context) {
     if (result.worked) return result;
   }
   return result;
+}
+
+Result<StepResult> ReviseNext(const StepContext& context) {
+  RIGCAL_ASSIGN(const auto unsolved, storage::LoadUnsolvedRobots(context.store));
+  return ReviseOneOf(context, unsolved);
+}
+
+// Robots for which a policy of their fleet or rig model was set: there may be very many of them.
+Result<StepResult> JudgeNext(const StepContext& context) {
+  constexpr int kAtOnce = 64;
+  StepResult result;
+  for (RobotId after;;) {
+    RIGCAL_ASSIGN(const auto waiting, storage::LoadRobotsToJudge(context.store, after, kAtOnce));
+    const StepResult some = ReviseOneOf(context, waiting);
+    WakeBy(some.wake_at, result);
+    result.worked = some.worked;
+    if (result.worked || waiting.size() < kAtOnce) return result;
+    after = waiting.back();
+  }
 }
 
 // A session is told of when the first of its pairs is taken up: then it came whole and is on disk.
@@ -357,6 +377,8 @@ Result<StepResult> DoNext(const StepContext& context) {
   if (ran.worked) return ran;
   RIGCAL_ASSIGN(const bool again, PublishBegunBefore(context));
   if (again) return StepResult{true, std::nullopt};
+  RIGCAL_ASSIGN(const StepResult judged, JudgeNext(context));
+  if (judged.worked) return judged;
   if (!published) return Fail(published.error());
   WakeBy(context.claims.NextRestEnd(), revised);
   return revised;

@@ -65,10 +65,11 @@ struct StepResult {
 };
 
 // In this order: publish a revision; revise a robot whose burst is over (no job of it waits, or an edge has waited long
-// for its revision); run one edge job, of the robots that have any in turn. What was begun before and
-// not finished, by death of the process or a fault of ours, comes after its like, is begun kAttemptsMax times, and then
-// passed over: a job as a failed edge, a report without its clouds. After each, some summaries that wait are worked out; as long
-// as there are more of them it has worked.
+// for its revision); run one edge job, of the robots that have any in turn; judge a robot anew for which a policy of
+// its fleet or rig model was set, one of its own being told to the second. What was begun before and not finished, by
+// death of the process or a fault of ours, comes after its like, is begun kAttemptsMax times, and then passed over: a
+// job as a failed edge, a report without its clouds. After each, some summaries that wait are worked out; as long as
+// there are more of them it has worked.
 [[nodiscard]] Result<StepResult> Step(const StepContext& context);
 
 }  // namespace rigcal::pipeline

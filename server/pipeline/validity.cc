@@ -83,7 +83,8 @@ Status LoadWhatIsNew(storage::Store& store, const RobotId& robot, Validity& vali
 Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, Stamp now) {
   Validity validity;
   validity.calibrated_at = revision.calibrated_at;
-  validity.overdue = IsOverdue(validity.calibrated_at, kDefaultMaxAge_ns, now);
+  validity.max_age_ns = revision.max_age_ns;
+  validity.overdue = IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
   RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision));
   RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
   return validity;

@@ -1,5 +1,6 @@
 #include "server/report/banner.h"
 
+#include "server/model/drive_rule.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -27,25 +28,33 @@ void FillBadge(Dictionary& row, VerdictLevel level) {
   row.SetValue("WORD", VerdictWord(level));
 }
 
-void FillOverdue(Dictionary& row, const Validity& validity) {
-  const auto valid_until = ValidUntil(validity.calibrated_at);
-  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", OverdueText(valid_until));
-  if (!valid_until) return;
-  Dictionary* later = row.AddSectionDictionary("LATER");
-  later->SetValue("UNTIL", ToIso(*valid_until));
-  later->SetValue("TEXT", OverdueText(valid_until));
-}
-
 namespace {
 
-void FillValidity(Dictionary& banner, const Verdict& verdict, const Validity& validity) {
-  FillOverdue(banner, validity);
-  const auto valid_until = ValidUntil(validity.calibrated_at);
-  if (!IsUsable(verdict)) return ShowValue(banner, "KEEP", "TEXT", KeepText(validity.usable));
-  if (valid_until && !validity.overdue) ShowValue(banner, "VALID", "TEXT", ValidText(*valid_until));
+// What is said of it once it is overdue: what else it is changes no rule.
+std::string LateText(const Verdict& verdict, Validity validity) {
+  if (!IsUsable(verdict)) return OverdueText(ValidUntil(validity));
+  validity.overdue = true;
+  return DriveRuleOf(verdict, validity).rule + ".";
 }
 
 }  // namespace
+
+void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity) {
+  const auto valid_until = ValidUntil(validity);
+  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", LateText(verdict, validity));
+  if (!valid_until) return;
+  Dictionary* later = row.AddSectionDictionary("LATER");
+  later->SetValue("UNTIL", ToIso(*valid_until));
+  later->SetValue("TEXT", LateText(verdict, validity));
+}
+
+void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity) {
+  if (validity.overdue && IsUsable(verdict)) return;
+  const DriveRule drive = DriveRuleOf(verdict, validity);
+  Dictionary* section = row.AddSectionDictionary("DRIVE");
+  section->SetValue("TEXT", drive.rule + ".");
+  if (drive.until) section->ShowSection("ENDS");
+}
 
 void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision) {
   Dictionary* banner = page.AddIncludeDictionary("BANNER");
@@ -54,7 +63,10 @@ void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validi
   banner->SetValue("ICON", IconOf(verdict.level));
   banner->SetValue("WHY", verdict.why.empty() ? "There is no verdict yet." : verdict.why);
   if (!verdict.what_to_do.empty()) ShowValue(*banner, "DO", "WHAT_TO_DO", verdict.what_to_do);
-  if (has_revision) FillValidity(*banner, verdict, validity);
+  FillDrive(*banner, verdict, validity);
+  if (!has_revision) return;
+  FillOverdue(*banner, verdict, validity);
+  if (!IsUsable(verdict)) ShowValue(*banner, "KEEP", "TEXT", KeepText(validity.usable));
 }
 
 }  // namespace rigcal::report

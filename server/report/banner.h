@@ -6,12 +6,14 @@
 
 namespace rigcal::report {
 
-// With until when it is valid, that it is overdue, and what to use where it failed. A page that is made once knows no
+// The drive rule first; with that it is overdue, and what to use where it failed. A page that is made once knows no
 // now: it carries the words for later, and a script shows them when their time has come (web-static/overdue.js).
 // `has_revision`: false for a robot of which there is nothing yet.
 void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision = true);
-// OVERDUE, or LATER with UNTIL: the words "overdue" of a row.
-void FillOverdue(Dictionary& row, const Validity& validity);
+// OVERDUE, or LATER with UNTIL: what is said once it is overdue.
+void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity);
+// DRIVE, with ENDS where time ends it; not of what OVERDUE tells.
+void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity);
 // LEVEL (class) and WORD of a small verdict badge.
 void FillBadge(Dictionary& row, VerdictLevel level);
 

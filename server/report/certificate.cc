@@ -94,7 +94,7 @@ void FillCertificateHead(Dictionary& page, const ReportInput& input) {
   Verdict verdict = input.revision.verdict;
   verdict.why = FirstSentences(verdict.why, kVerdictBytesMax);
   verdict.what_to_do = FirstSentences(verdict.what_to_do, kCureBytesMax);
-  FillBanner(page, verdict, {input.calibrated_at, false, input.usable, false});
+  FillBanner(page, verdict, ValidityOf(input));
   AddScript(page, AssetPath("tables.js"));
 }
 

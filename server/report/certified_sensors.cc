@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/math/statistics.h"
+#include "server/report/sigmas.h"
 #include "server/report/text.h"
 #include "server/report/unknown.h"
 
@@ -24,22 +25,23 @@ struct CertifiedSensor {
   const SensorPose* pose = nullptr;
   bool is_reference = false;
   std::optional<double> sigma_m, sigma_rad, k;
-  std::optional<bool> within = {};  // the limits; absent: there are none to hold it against
+  std::optional<PoseLimit> limit;   // of sigma; absent: there is none to hold it against
+  std::optional<bool> within = {};  // that limit
 };
 
-std::optional<bool> IsWithin(const CertifiedSensor& sensor, const std::optional<SigmaLimits>& limits) {
-  if (!limits || sensor.is_reference || !sensor.pose->known || !sensor.sigma_m || !sensor.sigma_rad)
-    return std::nullopt;
-  return *sensor.sigma_m <= limits->m && *sensor.sigma_rad <= limits->rad;
+std::optional<bool> IsWithin(const CertifiedSensor& sensor) {
+  if (!sensor.limit || !sensor.sigma_m || !sensor.sigma_rad) return std::nullopt;
+  return *sensor.sigma_m <= sensor.limit->m && *sensor.sigma_rad <= sensor.limit->rad;
 }
 
 CertifiedSensor CertifiedOf(const SensorPose& pose, const ReportInput& input) {
-  CertifiedSensor sensor{&pose, pose.sensor == input.revision.reference, {}, {}, {}, {}};
+  CertifiedSensor sensor{&pose, pose.sensor == input.revision.reference, {}, {}, {}, {}, {}};
   if (!pose.known || sensor.is_reference) return sensor;
   sensor.sigma_m = WorstAxisSigma(pose, tangent::kTranslation);
   sensor.sigma_rad = WorstAxisSigma(pose, tangent::kRotation);
   sensor.k = CoverageFactor(pose);
-  sensor.within = IsWithin(sensor, input.sigma_limits);
+  sensor.limit = ToleranceOf(input.revision, pose.sensor);
+  sensor.within = IsWithin(sensor);
   return sensor;
 }
 
@@ -48,10 +50,10 @@ std::vector<CertifiedSensor> SensorsToCertify(const ReportInput& input) {
   std::vector<CertifiedSensor> sensors;
   for (const SensorPose& pose : input.revision.solution.poses) sensors.push_back(CertifiedOf(pose, input));
   if (sensors.size() <= kCertifiedSensorsMax) return sensors;
-  const SigmaLimits scale = input.sigma_limits.value_or(SigmaLimits{1.0, 1.0});
   const auto doubt = [&](const CertifiedSensor& sensor) {
     if (sensor.is_reference) return -1.0;
     if (!sensor.sigma_m || !sensor.sigma_rad) return HUGE_VAL;
+    const PoseLimit scale = sensor.limit.value_or(PoseLimit{1.0, 1.0});
     return std::max(*sensor.sigma_m / scale.m, *sensor.sigma_rad / scale.rad);
   };
   std::stable_sort(sensors.begin(), sensors.end(),
@@ -74,16 +76,14 @@ void FillCertainty(Dictionary& row, const CertifiedSensor& sensor) {
   Dictionary* certainty = row.AddSectionDictionary("CERTAINTY");
   certainty->SetValue("SIGMA_MM", sensor.sigma_m ? SigmaMm(*sensor.sigma_m) : "not known");
   certainty->SetValue("SIGMA_DEG", sensor.sigma_rad ? SigmaDeg(*sensor.sigma_rad) : "not known");
+  if (sensor.limit) {
+    ShowValue(*certainty, "LIMIT_MM", "VALUE", SigmaMm(sensor.limit->m));
+    ShowValue(*certainty, "LIMIT_DEG", "VALUE", SigmaDeg(sensor.limit->rad));
+  }
   certainty->SetValue("K", sensor.k ? Fixed(*sensor.k, 2) : none);
   certainty->SetValue("U_MM", sensor.k && sensor.sigma_m ? SigmaMm(*sensor.k * *sensor.sigma_m) : none);
   certainty->SetValue("U_DEG", sensor.k && sensor.sigma_rad ? SigmaDeg(*sensor.k * *sensor.sigma_rad) : none);
   certainty->SetValue("WITHIN", !sensor.within ? none : *sensor.within ? "yes" : "no");
-}
-
-void FillSigmaLimits(Dictionary& page, const ReportInput& input) {
-  if (!input.sigma_limits) return;
-  ShowValue(page, "LIMIT_MM", "VALUE", SigmaMm(input.sigma_limits->m));
-  ShowValue(page, "LIMIT_DEG", "VALUE", SigmaDeg(input.sigma_limits->rad));
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ std::optional<double> CoverageFactor(const SensorPose& pose) {
 }
 
 void FillCertifiedSensors(Dictionary& page, const ReportInput& input) {
-  FillSigmaLimits(page, input);
+  if (input.revision.policy) page.ShowSection("LIMITS");
   const auto why = WhyUnknown(input.revision);
   const std::vector<CertifiedSensor> sensors = SensorsToCertify(input);
   for (std::size_t i = 0; i < std::min(sensors.size(), kCertifiedSensorsMax); ++i) {

@@ -53,7 +53,8 @@ void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
 
 void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
-  FillOverdue(row, robot.validity);
+  FillOverdue(row, robot.verdict, robot.validity);
+  FillDrive(row, robot.verdict, robot.validity);
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
   if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())
@@ -63,7 +64,7 @@ void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
     ShowValue(row, "WORKING", "TEXT",
               Count(static_cast<std::size_t>(robot.jobs_waiting), "pair", "pairs") + " being calibrated");
   row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(*robot.validity.calibrated_at, now));
-  if (!IsNever(robot)) ShowValue(row, "DUE", "DAY", DayText(*ValidUntil(robot.validity.calibrated_at)));
+  if (!IsNever(robot)) ShowValue(row, "DUE", "DAY", DayText(*ValidUntil(robot.validity)));
   row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
   FillWorst(row, robot.worst);
   row.SetValue("SESSIONS", std::to_string(robot.sessions));

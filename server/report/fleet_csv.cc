@@ -30,7 +30,7 @@ std::string FleetCsvHeading() {
 std::string FleetCsvRow(const RobotSummary& robot) {
   const Validity& validity = robot.validity;
   return CsvField(robot.robot.str()) + "," + NameOf(robot.verdict.level) + "," + (validity.overdue ? "yes" : "no") +
-         TimeField(ValidUntil(validity.calibrated_at)) + TimeField(validity.calibrated_at) +
+         TimeField(ValidUntil(validity)) + TimeField(validity.calibrated_at) +
          TimeField(robot.last_session_at) + "," + (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," +
          std::to_string(robot.sessions) + "," + std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) +
          WorstFields(robot.worst) + CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," +

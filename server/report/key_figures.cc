@@ -96,21 +96,40 @@ const SensorPose* LeastCertain(const formats::RevisionInput& revision) {
   return worst;
 }
 
+std::string KnownCounts(const std::vector<SensorPose>& poses) {
+  const auto known = std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.known; });
+  const auto in_part = std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.measured_part.has_value(); });
+  const auto unknown = static_cast<std::ptrdiff_t>(poses.size()) - known - in_part;
+  return std::to_string(known) + " known, " + (in_part > 0 ? std::to_string(in_part) + " in part, " : "") +
+         std::to_string(unknown) + " unknown";
+}
+
+// Nobody measured a direction of it, and it is not among those of which nothing is known.
+Figure InPartFigure(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot, const std::string& counts) {
+  std::string open;
+  for (const std::string& name : NamesOfOpen(AxesOf(pose, R_ref_robot), pose.unobservable_basis.size()))
+    open += (open.empty() ? "" : ", ") + name;
+  return {"Worst sensor", pose.sensor.str(), "warn", {open + " not measured", counts}};
+}
+
 Figure WorstSensorFigure(const formats::RevisionInput& revision) {
   const auto& poses = revision.solution.poses;
-  const auto known = static_cast<std::size_t>(
-      std::count_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.known; }));
-  const std::string counts = std::to_string(known) + " known, " + std::to_string(poses.size() - known) + " unknown";
-  const auto lost = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return !pose.known; });
+  const std::string counts = KnownCounts(poses);
+  const auto lost = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return pose.Placed() == nullptr; });
   if (lost != poses.end()) return {"Worst sensor", lost->sensor.str(), "warn", {"its pose is not known", counts}};
+  const auto in_part = std::find_if(poses.begin(), poses.end(), [](const SensorPose& pose) { return !pose.known; });
+  if (in_part != poses.end()) return InPartFigure(*in_part, revision.solution.R_ref_robot, counts);
   const SensorPose* worst = LeastCertain(revision);
   if (!worst) return {"Worst sensor", "none known", "warn", {counts}};
   const Vector6d sigma = worst->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  std::string limit_mm, limit_deg;
+  if (const auto limit = ToleranceOf(revision, worst->sensor))
+    limit_mm = " (limit " + SigmaMm(limit->m) + " mm)", limit_deg = " (limit " + SigmaDeg(limit->rad) + " deg)";
   return {"Worst sensor",
           worst->sensor.str(),
           "",
-          {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm, \xC2\xB1 " + SigmaDeg(sigma.tail<3>().maxCoeff()) +
-               " deg (1 \xCF\x83)",
+          {"\xC2\xB1 " + SigmaMm(sigma.head<3>().maxCoeff()) + " mm" + limit_mm + ", \xC2\xB1 " +
+               SigmaDeg(sigma.tail<3>().maxCoeff()) + " deg" + limit_deg + " (1 \xCF\x83)",
            counts}};
 }
 

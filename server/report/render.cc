@@ -44,7 +44,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   const EdgesByCause by_cause = GroupByCause(input.revision, edges);
   Dictionary page("revision");
   FillTitle(page, input);
-  FillBanner(page, input.revision.verdict, {input.calibrated_at, false, input.usable, false});
+  FillBanner(page, input.revision.verdict, ValidityOf(input));
   FillCauses(page, input.revision.causes, edges);
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges);
@@ -66,6 +66,12 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
                                             {"edges.csv", EdgeCsv(input, edges)},
                                             {"data.js", PageData(input, edges)},
                                             {"style.css", StyleSheet()}};
+}
+
+Validity ValidityOf(const ReportInput& input) {
+  Validity validity{input.calibrated_at, false, input.usable, false};
+  validity.max_age_ns = input.max_age_ns;
+  return validity;
 }
 
 std::string StyleSheet() { return std::string(embedded::kstyle_css) + std::string(embedded::kreport_css); }

@@ -30,10 +30,6 @@ struct SessionFacts {
 struct EdgeLimit {
   double statistic = 0.0, limit = 0.0;
 };
-// A sensor that is less certain than this, along or about any axis, one sigma, is too uncertain.
-struct SigmaLimits {
-  double m = 0.0, rad = 0.0;
-};
 struct PastRevision {
   int number = 0;
   formats::RevisionInput revision;
@@ -58,9 +54,11 @@ struct ReportInput {
   std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured
+  std::int64_t max_age_ns = kDefaultMaxAge_ns;  // how old that may become
   std::optional<UsableRevision> usable;  // what to use where this one is not to be used
-  std::optional<SigmaLimits> sigma_limits;
 };
+// Of its revision; a page that is made once knows no now, so that it is never overdue.
+[[nodiscard]] Validity ValidityOf(const ReportInput& input);
 
 // File name (relative, '/'-separated) -> contents: index.html, certificate.html (certificate.h), revision.json (=
 // document), edges.csv, style.css, and data.js (what scripts draw, as a script, because a page from disk may not fetch). Pipeline adds the pictures that the

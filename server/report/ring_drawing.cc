@@ -116,7 +116,7 @@ void DrawNode(Ring& ring, const SensorPose& pose, bool is_reference, const Eigen
   node->SetValue("R", ring.named ? "9" : "4");
   node->SetValue("RIM", ring.named ? "2" : "1");
   node->SetValue("FILL", pose.known ? kKnownFill : kUnknownFill);
-  node->SetValue("TITLE", pose.sensor.str() + (pose.known ? "" : ": unknown"));
+  node->SetValue("TITLE", pose.sensor.str() + (pose.known ? "" : pose.measured_part ? ": known in part" : ": unknown"));
   if (is_reference) ShowValue(*node, "HALO", "R", ring.named ? "13" : "7");
   if (ring.named) DrawName(*node, pose.sensor.str(), place, place - centre, state);
 }

@@ -6,6 +6,11 @@
 
 namespace rigcal::report {
 
+std::optional<PoseLimit> ToleranceOf(const formats::RevisionInput& revision, const SensorId& sensor) {
+  if (!revision.policy) return std::nullopt;
+  return LimitsOf(revision.policy->policy, sensor).tolerance;
+}
+
 const char* SigmasClass(double in_sigmas) {
   if (in_sigmas < 1.0) return "fit0";
   if (in_sigmas < 2.0) return "fit1";

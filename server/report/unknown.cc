@@ -5,6 +5,7 @@
 
 #include "server/model/past.h"
 #include "server/report/edge_state.h"
+#include "server/report/text.h"
 
 namespace rigcal::report {
 namespace {
@@ -48,6 +49,20 @@ std::string Listed(const std::set<SensorId>& sensors) {
   return text;
 }
 
+// "the height was not measured; the rest is good to 0.66 mm and 0.11 deg"
+std::string WhatWasMeasured(const SensorPose& pose, const std::optional<Eigen::Matrix3d>& R_ref_robot) {
+  const std::size_t open_count = pose.unobservable_basis.size();
+  const std::vector<AxisResult> axes = AxesOf(pose, R_ref_robot);
+  const std::vector<std::string> names = NamesOfOpen(axes, open_count);
+  std::string open;
+  for (const std::string& name : names) open += (open.empty() ? "" : ", ") + InSentence(name);
+  const RestSigma rest = WorstSigmaOf(axes);
+  std::string sigmas = rest.m ? SigmaMm(*rest.m) + " mm" : "";
+  if (rest.rad) sigmas += (sigmas.empty() ? "" : " and ") + SigmaDeg(*rest.rad) + " deg";
+  return open + (names.size() > 1 || open_count > 1 ? " were" : " was") + " not measured" +
+         (sigmas.empty() ? "" : "; the rest is good to " + sigmas);
+}
+
 }  // namespace
 
 std::map<SensorId, std::string> WhyUnknown(const formats::RevisionInput& revision) {
@@ -57,7 +72,9 @@ std::map<SensorId, std::string> WhyUnknown(const formats::RevisionInput& revisio
   std::map<SensorId, std::string> why;
   for (const SensorPose& pose : revision.solution.poses) {
     if (pose.known) continue;
-    if (reached.count(pose.sensor) > 0)
+    if (pose.measured_part)
+      why[pose.sensor] = WhatWasMeasured(pose, revision.solution.R_ref_robot);
+    else if (reached.count(pose.sensor) > 0)
       why[pose.sensor] = "its edges leave a direction of its pose free";
     else if (const auto linked = good.find(pose.sensor); linked != good.end())
       why[pose.sensor] = "it is joined only to " + Listed(linked->second) + ", which no good edge joins to " +

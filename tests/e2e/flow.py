@@ -14,7 +14,7 @@ from measures.server import ANSWERED, Server  # noqa: E402,F401
 
 SKIPPED = 77
 NOT_FAILED = (0, 5, 6)  # how a verb ends that told a verdict other than fail
-TELLING = ("push", "push-edges", "show", "lookup", "restore", "retire")
+TELLING = ("push", "push-edges", "show", "lookup", "restore", "retire", "status")
 
 
 class Flow:

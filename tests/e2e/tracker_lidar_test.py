@@ -1,11 +1,39 @@
 """A virtual robot with a lidar and a tracked body before five boards: pushed as a folder, calibrated by the service,
-against its truth; and the same robot on a level floor."""
+against its truth; and the same robot on a level floor, of which the height is told as not measured and the rest as a result."""
+import json
+import re
+
 from flow import Flow, check
 from measures import tracker_lidar_sessions
 
 
 def sigmas_of(edge, error):
     return [abs(e) / s for e, s in zip(error["e"], edge["sigma_m"] + edge["sigma_rad"])]
+
+
+def true_position_of_body(visit):
+    return [float(number) for number in re.search(r"body:\n.*\n +T_ref_sensor: {p_m: \[([^]]*)\]", (visit / "truth.yaml").read_text()).group(1).split(",")]
+
+
+def check_what_was_measured(flow, level):
+    """On a level floor, in the frame of the lidar: all but the height, as good as it says."""
+    shown = json.loads(flow.rigcal("show", level.name, "--json", exit_code=6).stdout)["document"]
+    body = next(sensor for sensor in shown["sensors"] if sensor["id"] == "body")
+    check(body["known"] is False and body["T_ref_sensor"] is None, "no whole pose: %r" % body)
+    axes = {axis["name"]: axis for axis in body["measured_part"]["axes"]}
+    check(axes["height"]["sigma_m"] is None and axes["height"]["position_m"] is None, "the height has no number: %r" % axes["height"])
+    truth = true_position_of_body(level)
+    for name in ("forward", "sideways"):
+        off_m = axes[name]["position_m"] - sum(u * v for u, v in zip(axes[name]["direction"], truth))
+        check(abs(off_m) < 4 * axes[name]["sigma_m"] < 0.01, "%s is off by %.2f mm: %r" % (name, 1e3 * off_m, axes[name]))
+    check(all(0 < axes[name]["sigma_rad"] < 0.01 for name in ("roll", "pitch", "yaw")), "turns: %r" % axes)
+    text = flow.rigcal("show", level.name, exit_code=6).stdout
+    check("The height of body was not measured; the rest is good to" in text and "height not measured" in text, "in words: " + text)
+    told = json.loads(flow.rigcal("lookup", level.name, "body", "lidar_vertical", "--json", exit_code=6).stdout)
+    check(told["known"] is False and told["T_a_b"] is None and len(told["unobservable_basis"]) == 1, "lookup: %r" % told)
+    check("height of lidar_vertical in body" in flow.rigcal("lookup", level.name, "body", "lidar_vertical", exit_code=6).stdout, "and in words")
+    flow.rigcal("export", level.name, "--out", flow.folder / "level.g2o")
+    check("not measured" in (flow.folder / "level.g2o").read_text(), "the file says so")
 
 
 def main():
@@ -35,7 +63,9 @@ def main():
         along = abs(sum(u * v for u, v in zip(upright, edge["unobservable_basis"][0][:3])))
         check(along > 0.9994, "the open direction is within 2 deg of upright: %r" % edge["unobservable_basis"])
         check("planar_motion" in [diagnosis["code"] for diagnosis in edge["diagnoses"]], "words: %r" % edge["diagnoses"])
+        check_what_was_measured(flow, level)
         page = flow.get("/robots/%s/revisions/1/" % level.name)
+        check("<div>height not measured</div>" in page, "the page's table of sensors says so")
         check("tracker-lidar" in page and "turned about one axis only" in page, "the report says so")
     print("tracker-lidar: good")
 

@@ -8,6 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const SensorPose& pose : revision->solution.poses) {
     fuzz::RequireFinite(pose.T_ref_sensor.p_m, "position");
     fuzz::RequireFinite(pose.covariance, "covariance");
+    if (pose.measured_part) fuzz::RequireFinite(pose.measured_part->covariance, "covariance of a part");
   }
   for (const Edge& edge : revision->edges)
     if (edge.state == EdgeState::kGood) fuzz::CheckUncertainty(edge.uncertainty);

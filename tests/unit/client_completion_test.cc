@@ -43,6 +43,8 @@ TEST(Completion, OfVerbsWithTheirMeaning) {
               ElementsAre("lookup\tPrint the pose of sensor B in sensor A with its 6x6 covariance"));
   EXPECT_THAT(WordsAfter({"push"}), ElementsAre("push", "push-edges"));
   EXPECT_THAT(WordsAfter({""}), Contains("simulate"));
+  EXPECT_THAT(WordsAfter({"policy", ""}), ElementsAre("show", "check", "set"));
+  EXPECT_THAT(WordsAfter({"policy", "check", ""}), ElementsAre(":files"));
   EXPECT_THAT(WordsAfter({""}), Not(Contains("complete-words")));
   EXPECT_THAT(WordsAfter({"--domain", "3", "stat"}), ElementsAre("status"));
   EXPECT_THAT(WordsAfter({}), Contains("show"));

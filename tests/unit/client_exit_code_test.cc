@@ -10,6 +10,7 @@ struct Case {
   const char* level;
   bool overdue = false;
   int code = 0;
+  const char* rule = "Drive as you like";  // as the server says it
 };
 constexpr Case kCases[] = {{"pass", false, 0},    {"pass", true, 5},    {"warn", false, 5},
                            {"warn", true, 5},     {"fail", false, 1},   {"fail", true, 1},
@@ -25,7 +26,7 @@ FakeServer::AnswerTo Telling(const Case& told, const std::string& edge_id = "e1"
   const std::string verdict = std::string(R"("verdict":{"level":")") + told.level + R"(","why":"so it is"})";
   const std::string validity =
       std::string(R"("calibrated_at":"2026-11-22T08:00:00Z","valid_until":"2027-02-20T08:00:00Z","overdue":)") +
-      (told.overdue ? "true" : "false") +
+      (told.overdue ? "true" : "false") + R"(,"drive":{"rule":")" + told.rule + R"(","until":null})" +
       R"(,"calculating":false,"usable":{"revision":4,"created_at":"2026-03-12T08:00:00Z"})";
   return [=](const std::string& verb, const std::string&) -> Result<std::string> {
     if (verb == "session") return R"({"session":{"jobs_waiting":0,"jobs_total":1},"edges":[)" + EdgeRow(edge_id) + "]}";
@@ -55,7 +56,7 @@ TEST(ExitCode, OfEveryVerbThatTellsTheVerdictOfARobot) {
         EXPECT_EQ(ran.code, told.code) << words.front() << " of " << told.level << "\n" << ran.out << ran.err;
       }
     EXPECT_EQ(Rigcal({"robots"}).code, 0) << "lists many";
-    EXPECT_EQ(Rigcal({"status"}).code, 0) << "lists many";
+    EXPECT_EQ(Rigcal({"status"}).code, told.code) << "of all";
   }
 }
 
@@ -99,27 +100,68 @@ TEST(ExitCode, OfAComparisonWhoseSigmasAreNotKnownIsUnknown) {
   EXPECT_EQ(Rigcal({"compare", "r1", "--with", "1", "--sigmas-max", "3"}).code, 6);
 }
 
-TEST(Validity, OverdueIsSaidFirst) {
-  FakeServer server("r1", Telling({"pass", true, 5}));
-  const std::string overdue = "Overdue since 20 Feb 2027. Calibrate the robot again before it is relied on.";
+TEST(ExitCode, OfStatusIsThatOfTheWorstRobot) {
+  const auto row = [](const char* level, bool overdue = false) {
+    return std::string(R"({"robot":"r1","overdue":)") + (overdue ? "true" : "false") + R"(,"verdict":{"level":")" +
+           level + R"("}})";
+  };
+  const auto code = [](const std::string& rows) {
+    FakeServer server("r1", Always(R"({"robots":[)" + rows + "]}"));
+    return Rigcal({"status"}).code;
+  };
+  EXPECT_EQ(code(""), 0);
+  EXPECT_EQ(code(row("pass") + "," + row("pass")), 0);
+  EXPECT_EQ(code(row("pass") + "," + row("pass", true)), 5);
+  EXPECT_EQ(code(row("warn") + "," + row("unknown") + "," + row("pass")), 6);
+  EXPECT_EQ(code(row("unknown") + "," + row("fail") + "," + row("warn")), 1);
+}
+
+TEST(Drive, TheRuleIsTheFirstLine) {
+  const Case told{"fail", false, 1, "Do not drive"};
+  FakeServer server("r1", Telling(told));
   const std::string shown = Rigcal({"show", "r1"}).out;
-  EXPECT_EQ(shown.find("r1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\n" + overdue + "\nverdict  pass"), 0U)
+  EXPECT_EQ(shown.find("Do not drive.\nr1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\nverdict  fail"), 0U)
       << shown;
-  EXPECT_EQ(shown.find("Valid until"), std::string::npos) << shown;
+  EXPECT_EQ(Rigcal({"status", "r1"}).out.find("Do not drive.\n"), 0U);
+  const std::string all = Rigcal({"status"}).out;
+  EXPECT_EQ(all.find("1 robot: 1 do not drive\n"), 0U) << all;
+  EXPECT_NE(all.find("Do not drive. fail: so it is."), std::string::npos) << all;
+  EXPECT_NE(Rigcal({"robots"}).out.find("Do not drive."), std::string::npos);
+  SessionFolder folder;
+  folder.WriteSession("r1", 1, 100);
+  const std::string pushed = Rigcal({"push", folder.path().string()}).out;
+  EXPECT_LT(pushed.find("\nDo not drive.\nr1, revision 5\n"), pushed.find("verdict  fail")) << pushed;
+}
+
+TEST(Drive, EachLimitStandsBesideItsSigma) {
+  FakeServer server(
+      "r1",
+      Always(R"({"robot":"r1","revision":1,"document":{"verdict":{"level":"pass"},"reference":"a","sensors":[)"
+             R"({"id":"b","known":true,"tolerance_m":0.005,"tolerance_rad":0.005,"sigma_m":[0.0004,0.0002,0.0001],)"
+             R"("sigma_rad":[0.001,0.001,0.001],"T_ref_sensor":{"p_m":[1,0,0],"q_xyzw":[0,0,0,1]}}]}})"));
+  const std::string shown = Rigcal({"show", "r1"}).out;
+  EXPECT_NE(shown.find("0.400 0.200 0.100 (limit 5)"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("(limit 0.286)"), std::string::npos) << shown;
+}
+
+TEST(Validity, OverdueIsSaidFirst) {
+  const std::string overdue = "Overdue since 20 Feb 2027: capture again.";
+  FakeServer server("r1", Telling({"pass", true, 5, "Overdue since 20 Feb 2027: capture again"}));
+  const std::string shown = Rigcal({"show", "r1"}).out;
+  EXPECT_EQ(shown.find(overdue + "\nr1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\nverdict  pass"), 0U)
+      << shown;
   EXPECT_NE(Rigcal({"robots"}).out.find("overdue, pass"), std::string::npos);
-  EXPECT_NE(Rigcal({"status"}).out.find("overdue, pass"), std::string::npos);
+  EXPECT_NE(Rigcal({"status"}).out.find("1 robot: 1 warn or overdue"), std::string::npos);
   EXPECT_NE(Rigcal({"lookup", "r1", "a", "b"}).out.find(overdue + "\nverdict"), std::string::npos);
 }
 
-TEST(Validity, UntilWhenAPassIsValidAndWhatToKeepWhereThereIsNone) {
-  {
-    FakeServer server("r1", Telling({"pass", false, 0}));
-    EXPECT_NE(Rigcal({"show", "r1"}).out.find("Valid until 20 Feb 2027."), std::string::npos);
-  }
-  FakeServer server("r1", Telling({"fail", false, 1}));
+TEST(Validity, OfAFailThatItIsOverdueIsSaidToo) {
+  FakeServer server("r1", Telling({"fail", true, 1, "Do not drive"}));
   const std::string shown = Rigcal({"show", "r1"}).out;
+  EXPECT_NE(shown.find("Overdue since 20 Feb 2027. Calibrate the robot again before it is relied on.\nverdict  fail"),
+            std::string::npos)
+      << shown;
   EXPECT_NE(shown.find("Keep using revision 4 of 12 Mar 2026 meanwhile."), std::string::npos) << shown;
-  EXPECT_EQ(shown.find("Valid until"), std::string::npos) << shown;
 }
 
 TEST(Validity, NothingToFallBackToAndANewerOneOnItsWay) {

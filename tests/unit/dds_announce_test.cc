@@ -139,6 +139,30 @@ TEST_F(AnnounceTest, LateJoinersGetTheCalibration) {
       });
 }
 
+// Who needs a whole pose finds none; what was measured stands beside it.
+TEST_F(AnnounceTest, APoseInPartIsToldAsSuch) {
+  SensorPose pose = PoseOf("lidar");
+  pose.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  pose.measured_part = MeasuredPart{};
+  pose.measured_part->T_ref_sensor.p_m = {1, 2, 3};
+  pose.measured_part->covariance(0, 0) = 4e-6;
+  StoreAndTell(StateOf(3, {VerdictLevel::kWarn, "why", "do"}, {pose}));
+  int heard = 0;
+  Listener<rigcal_wire_Calibration>(options_.participant, "robot/mapper-01").Take(1, [&](const rigcal_wire_Calibration& sample) {
+    ++heard;
+    EXPECT_FALSE(sample.known);
+    EXPECT_EQ(sample.p_m[0], 0.0);
+    ASSERT_EQ(sample.measured_part._length, 1u);
+    const rigcal_wire_MeasuredPart& part = sample.measured_part._buffer[0];
+    EXPECT_EQ(part.p_m[0], 1.0);
+    ASSERT_EQ(part.axes._length, 6u);
+    EXPECT_NEAR(part.axes._buffer[0].sigma_m, 2e-3, 1e-12);
+    EXPECT_STREQ(part.axes._buffer[2].name, "z");
+    EXPECT_FALSE(part.axes._buffer[2].measured);
+  });
+  EXPECT_EQ(heard, 1);
+}
+
 // While somebody listens the writers keep what was told: who joins then hears the newest, and that the rest was withdrawn.
 TEST_F(AnnounceTest, LateJoinersGetNothingThatWasWithdrawn) {
   Holder robot(options_.participant);

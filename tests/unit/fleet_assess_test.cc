@@ -53,6 +53,7 @@ TEST(Assess, ASensorThatIsGoneIsNotMissed) {
   rig.edges.push_back(FailedEdge('e', "left", "rear"));
   EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
   EXPECT_THAT(rig.Judge().why, Not(HasSubstr("mast")));
+  EXPECT_EQ(rig.Judge().unverified, "rear");
 }
 
 TEST(Assess, NothingIsKnownWhereAllIsPast) {
@@ -82,6 +83,7 @@ TEST(Assess, SensorsThatNoGoodEdgeTiesAreNamed) {
   EXPECT_EQ(one.level, VerdictLevel::kUnknown);
   EXPECT_EQ(one.why, "The pose of lidar is not known: no good edge ties it to left.");
   EXPECT_EQ(one.what_to_do, "Capture lidar together with sensors that are known.");
+  EXPECT_EQ(one.unverified, "lidar");
   rig.edges.push_back(FailedEdge('e', "arm", "lidar"));
   rig.solution.poses.push_back(PoseOf("arm", false));
   EXPECT_THAT(rig.Judge().why, HasSubstr("The poses of lidar and arm are not known: no good edge ties them"));
@@ -115,6 +117,7 @@ TEST(Assess, AnUnsettledGraphIsUnknown) {
 TEST(Assess, NothingOrOnlyFailuresIsUnknown) {
   EXPECT_EQ(Assess({}, {}).level, VerdictLevel::kUnknown);
   EXPECT_THAT(Assess({}, {}).why, HasSubstr("Nothing has been calibrated yet"));
+  EXPECT_EQ(Assess({}, {}).unverified, "") << "all of it";
   EXPECT_THAT(Assess({FailedEdge('a', "left", "right")}, {}).why, HasSubstr("Every calibration failed"));
 }
 
@@ -225,6 +228,8 @@ Edge OpenEdge(char letter, const std::string& a, const std::string& b, const std
 SensorPose OpenPose(const std::string& name) {
   SensorPose pose = PoseOf(name, false);
   pose.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  pose.measured_part = MeasuredPart{};
+  pose.measured_part->covariance = 2e-6 * (Matrix6d::Identity() - pose.unobservable_basis[0] * pose.unobservable_basis[0].transpose());
   return pose;
 }
 

@@ -23,13 +23,16 @@ TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
   EXPECT_THAT(cause.sensors, SizeIs(7));
   EXPECT_THAT(cause.boards, ElementsAre(TargetId("calib")));
   EXPECT_EQ(cause.said.why, "no camera found board calib with 9 x 6 inner corners in any of 105 pictures");
-  EXPECT_EQ(cause.said.what_to_do, "Count the corners or tags of board calib and correct session.yaml");
+  EXPECT_EQ(cause.said.what_to_do,
+            "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
+            "session.yaml");
   EXPECT_EQ(cause.command, "rigcal push FOLDER");
   const Verdict verdict = visit.Judge({});
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
   EXPECT_EQ(verdict.why, "No camera found board calib with 9 x 6 inner corners in any of 105 pictures.");
   EXPECT_EQ(verdict.what_to_do,
-            "Count the corners or tags of board calib and correct session.yaml, then `rigcal push FOLDER`.");
+            "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
+            "session.yaml, then `rigcal push FOLDER`.");
 }
 
 TEST(BoardCounts, OfAMarkerBoardBeforeOneCameraTheDictionaryCountsToo) {
@@ -42,7 +45,7 @@ TEST(BoardCounts, OfAMarkerBoardBeforeOneCameraTheDictionaryCountsToo) {
   const RootCause cause = OneCause(visit, CauseKind::kBoardCounts);
   EXPECT_THAT(cause.edges, SizeIs(2));
   EXPECT_EQ(cause.said.why, "front found board wall with 7 x 5 tags in none of 8 pictures");
-  EXPECT_THAT(cause.said.what_to_do, HasSubstr("board wall, check its dictionary, and correct session.yaml"));
+  EXPECT_THAT(cause.said.what_to_do, HasSubstr("board wall in it? Count its tags, check its dictionary and correct both in session.yaml"));
 }
 
 TEST(BoardCounts, ABoardThatAnybodyFindsIsCountedRight) {

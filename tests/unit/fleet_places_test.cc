@@ -133,10 +133,11 @@ struct OpenRig {
     for (const int axis : axes) Omega(axis, axis) = 0.0;
     edge.uncertainty = FromInformation(Omega, UncertaintySource::kGiven, 0);
     edges.push_back(edge);
+    solution.poses[1].measured_part = MeasuredPart{T_left_rear, edge.uncertainty.covariance};
     for (const int axis : axes) solution.poses[1].unobservable_basis.push_back(Vector6d::Unit(axis));
   }
   [[nodiscard]] PartialPose Told(const SessionHeaders& headers) const {
-    return PartialPoseOf(solution.poses[1], edges, solution, headers);
+    return PartialPoseOf(solution.poses[1], solution, headers);
   }
   [[nodiscard]] PartialPose Told(SensorKind reference) const {
     Visit visit(StereoBoard());
@@ -199,10 +200,13 @@ TEST(PartialPoses, TellHowWellTheRestIsKnown) {
   const PartialPose two = OpenRig({}, {tangent::kX, tangent::kZ}).Told(SensorKind::kTracker);
   EXPECT_EQ(two.open, "the forward position and the height");
   EXPECT_TRUE(two.several && two.sigma_m);
-  EXPECT_FALSE(OpenRig({}, {tangent::kRz}).Told(SensorKind::kLidar).sigma_m);
-  OpenRig apart({}, {tangent::kZ});
-  apart.edges.clear();  // tied by others that are not known
-  EXPECT_EQ(apart.Told(SensorKind::kLidar).open, "one direction");
+  const PartialPose turn = OpenRig({}, {tangent::kRz}).Told(SensorKind::kTracker);
+  EXPECT_EQ(turn.open, "the yaw");
+  EXPECT_TRUE(turn.sigma_m && turn.sigma_rad);
+  EXPECT_FALSE(OpenRig({}, {tangent::kX, tangent::kY, tangent::kZ}).Told(SensorKind::kLidar).sigma_m);
+  OpenRig without({}, {tangent::kZ});
+  without.solution.poses[1].measured_part.reset();
+  EXPECT_EQ(without.Told(SensorKind::kLidar).open, "one direction");
 }
 
 TEST(PartialPoses, AreAResultInTheVerdict) {

@@ -119,6 +119,7 @@ TEST(AssessSuspects, TwoPosesAreSettledByWhatTellsThemApart) {
   TwoPoses two;
   two.sensor = SensorId("top");
   two.group_a = {rig.edges[1].id}, two.group_b = {rig.edges[2].id};
+  two.difference << 0.04, 0, 0, 0, 0, 0;
   rig.solution.suspects.two_poses.push_back(two);
   rig.edges[1].session = SessionId(std::string(64, 'a'));
   EXPECT_THAT(rig.Judge().what_to_do, HasSubstr("edges without a session have no date"));

@@ -4,7 +4,7 @@ rigcal_test(formats_edge_test SOURCES unit/formats_edge_test.cc DEPS rigcal_form
 rigcal_test(formats_session_estimate_test SOURCES unit/formats_session_estimate_test.cc DEPS rigcal_formats)
 rigcal_test(formats_camera_fit_test SOURCES unit/formats_camera_fit_test.cc DEPS rigcal_formats)
 rigcal_test(formats_edge_file_test SOURCES unit/formats_edge_file_test.cc DEPS rigcal_formats)
-rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc unit/formats_causes_test.cc DEPS rigcal_formats)
+rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc unit/formats_measured_part_test.cc unit/formats_causes_test.cc DEPS rigcal_formats)
 rigcal_test(formats_answers_test SOURCES unit/formats_answers_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_yaml_test SOURCES unit/formats_session_yaml_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_folder_test SOURCES unit/formats_session_folder_test.cc DEPS rigcal_formats)
@@ -19,3 +19,4 @@ rigcal_test(formats_cloud_pcl_test SOURCES unit/formats_cloud_pcl_test.cc DEPS r
 set_target_properties(formats_cloud_pcl_test PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # Qt asks for -fPIC
 target_include_directories(formats_cloud_pcl_test SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
 rigcal_test(formats_limits_text_test SOURCES unit/formats_limits_text_test.cc DEPS rigcal_formats)
+rigcal_test(formats_policy_test SOURCES unit/formats_policy_test.cc DEPS rigcal_formats)

@@ -25,7 +25,9 @@ SessionAnswer SampleSession() {
 TEST(Answers, Robots) {
   EXPECT_EQ(WriteRobots({SampleRobot()}, kNow),
             "{\"robots\":[{\"age_ns\":86400000000000,\"calculating\":true,\"calibrated_at\":\"2026-01-31T12:00:00Z\","
-            "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\",\"sessions\":2,"
+            "\"drive\":{\"rule\":\"OK to drive until 1 May 2026\",\"until\":\"2026-05-01T12:00:00Z\"},"
+            "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\","
+            "\"sessions\":2,"
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
             "\"valid_until\":\"2026-05-01T12:00:00Z\",\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\","
             "\"why\":\"All is well.\"}}]}");
@@ -131,6 +133,7 @@ TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   EXPECT_EQ(document["published"], true);
   EXPECT_EQ(document["overdue"], true);
   EXPECT_EQ(document["valid_until"], "2026-05-01T12:00:00Z");
+  EXPECT_EQ(document["drive"], (json{{"rule", "Overdue since 1 May 2026: capture again"}, {"until", nullptr}}));
   EXPECT_EQ(document["usable"]["revision"], 3);
   EXPECT_EQ(document["calculating"], false);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));
@@ -165,8 +168,10 @@ TEST(Answers, LookupHasTheVarianceOfOneAxisThere) {
   answer.frame_b = SensorId("right");
   answer.T_a_b.p_m = {0.1, 0.2, 0.3};
   answer.covariance(tangent::kRx, tangent::kRx) = 4e-4;
-  answer.verdict = kPass;
+  answer.verdict = {VerdictLevel::kUnknown, "Why.", "What.", "right"};
   const json document = json::parse(WriteLookup(answer));
+  EXPECT_EQ(document["drive"]["rule"], "Not verified: do not rely on right");
+  EXPECT_EQ(document["verdict"]["unverified"], "right");
   EXPECT_EQ(document["covariance"][3][3], 4e-4);
   EXPECT_EQ(document["covariance"][4][4], 0.0);
   EXPECT_EQ(document["sigma_rad"], json::parse("[0.02, 0.0, 0.0]"));
@@ -184,6 +189,16 @@ TEST(Answers, DueCountsFromTheLimit) {
   EXPECT_FALSE(overdue(kDayBefore, day_ns));
   EXPECT_TRUE(overdue(kDayBefore, day_ns - 1));
   EXPECT_TRUE(overdue(std::nullopt, day_ns));
+}
+
+TEST(Answers, DueWithoutALimitGoesByThePolicyOfEachRobot) {
+  RobotSummary robot = SampleRobot();
+  for (const std::int64_t more_ns : {0, -1}) {
+    robot.validity.max_age_ns = kNow.ns - kDayBefore.ns + more_ns;
+    const json document = json::parse(WriteDue({robot}, std::nullopt, kNow));
+    EXPECT_TRUE(document["max_age_ns"].is_null());
+    EXPECT_EQ(document["robots"][0]["overdue"], more_ns < 0);
+  }
 }
 
 TEST(Answers, Status) {

@@ -15,7 +15,7 @@ rigcal_test(graph_numbers_test COMPUTES
 
 rigcal_test(graph_honesty_test COMPUTES
   SOURCES unit/graph_jackknife_test.cc unit/graph_joint_poses_test.cc unit/graph_weights_test.cc unit/graph_suspects_test.cc unit/graph_insight_test.cc
-          unit/graph_fuse_sessions_test.cc unit/graph_merge_edges_test.cc unit/graph_merge_sessions_test.cc
+          unit/graph_measured_part_test.cc unit/graph_fuse_sessions_test.cc unit/graph_merge_edges_test.cc unit/graph_merge_sessions_test.cc
   DEPS rigcal_graph rigcal_formats)
 rigcal_test(graph_property_test COMPUTES
   SOURCES unit/graph_property_test.cc

@@ -22,6 +22,9 @@ inline bool SameBytes(const GraphSolution& a, const GraphSolution& b) {
         std::memcmp(T.q.coeffs().data(), U.q.coeffs().data(), 32) != 0)
       return false;
     if (std::memcmp(a.poses[k].covariance.data(), b.poses[k].covariance.data(), 288) != 0) return false;
+    const auto &part = a.poses[k].measured_part, &other = b.poses[k].measured_part;
+    if (part.has_value() != other.has_value()) return false;
+    if (part && (part->T_ref_sensor != other->T_ref_sensor || part->covariance != other->covariance)) return false;
   }
   for (std::size_t k = 0; k < a.residuals.size(); ++k)
     if (a.residuals[k].edge != b.residuals[k].edge ||

@@ -178,6 +178,24 @@ TEST(G2oWriter, NamesBecomeNumbersAndFailedEdgesStayOut) {
   EXPECT_EQ(WriteG2o({failed}, {}, SensorId()).error().code, ErrorCode::kNotFound);
 }
 
+TEST(G2oWriter, APoseInPartSaysWhatOfItWasNotMeasured) {
+  Edge edge;
+  edge.frame_a = SensorId("0"), edge.frame_b = SensorId("1");
+  edge.uncertainty = FromInformation(4.0 * Matrix6d::Identity(), UncertaintySource::kGiven, 0);
+  edge.state = EdgeState::kGood;
+  SensorPose part;
+  part.sensor = SensorId("1");
+  part.measured_part = MeasuredPart{};
+  part.measured_part->T_ref_sensor.p_m = {1.0, 2.0, 0.7};
+  part.unobservable_basis = {Vector6d::Unit(tangent::kZ)};
+  const std::string text = WriteG2o({edge}, {{SensorId("0"), true, Se3()}, part}, SensorId("0")).value();
+  EXPECT_EQ(text.substr(0, text.find("FIX")),
+            "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"
+            "# vertex 1 holds, not measured (its own x y z in m, rx ry rz in rad): 0 0 1 0 0 0\n"
+            "VERTEX_SE3:QUAT 1 1 2 0.7 0 0 0 1\n");
+  EXPECT_EQ(ReadG2o(text, RobotId("r"))->T_world_vertex.at(SensorId("1")).p_m.z(), 0.7);
+}
+
 TEST(G2o, NearlyUnitQuaternionsAreNormalisedAndRankDeficientInformationIsKept) {
   const Result<G2oFile> file =
       ReadG2o(EdgeLine("0 1", "0 0 0 1.0005", "1 0 0 0 0 0 0 0 0 0 0 1 0 0 0 4 0 0 4 0 4"), kRobot);

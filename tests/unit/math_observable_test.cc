@@ -73,6 +73,20 @@ TEST(Observable, NothingIsNothing) {
   }
 }
 
+// Two directions of mixed units: what is left has nothing along them, and the rest as it was.
+TEST(CovarianceAcross, KeepsWhatIsAtRightAnglesToWhatIsOpen) {
+  const Matrix6d C = Diagonal(1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> open(6, 2);
+  open.col(0) = Vector6d::Unit(tangent::kZ);
+  open.col(1) = Vector6d::Unit(tangent::kRz) + 0.3 * Vector6d::Unit(tangent::kX);
+  const Matrix6d across = CovarianceAcross(C, open);
+  EXPECT_LT((across * open).norm(), 1e-20);
+  Vector6d seen = Vector6d::Unit(tangent::kX) - 0.3 * Vector6d::Unit(tangent::kRz);
+  for (const Vector6d& direction : {seen, Vector6d(Vector6d::Unit(tangent::kY)), Vector6d(Vector6d::Unit(tangent::kRx))})
+    EXPECT_NEAR(direction.dot(across * direction), direction.dot(C * direction), 1e-18);
+  EXPECT_EQ(CovarianceAcross(C, open.leftCols(0)), C);
+}
+
 TEST(IsPositiveSemidefinite, Judges) {
   EXPECT_TRUE(IsPositiveSemidefinite(Matrix6d::Zero()));
   EXPECT_TRUE(IsPositiveSemidefinite(Diagonal(1, 1, 0, 1, 1, 1)));

@@ -15,11 +15,13 @@ TEST(Validity, ADayIsThatOfUtc) {
 
 TEST(Validity, ValidForNinetyDaysAndOverdueAfterThem) {
   const Stamp measured = At("2026-11-22T08:00:00Z"), until = At("2027-02-20T08:00:00Z");
-  EXPECT_EQ(ValidUntil(measured), until);
+  EXPECT_EQ(ValidUntil(Validity{measured}), until);
+  EXPECT_EQ(ValidUntil(Validity{measured, false, {}, false, "", 30LL * 86'400'000'000'000}),
+            At("2026-12-22T08:00:00Z"));
   EXPECT_FALSE(IsOverdue(measured, kDefaultMaxAge_ns, until));
   EXPECT_TRUE(IsOverdue(measured, kDefaultMaxAge_ns, Stamp{until.ns + 1}));
   EXPECT_TRUE(IsOverdue(std::nullopt, kDefaultMaxAge_ns, until));
-  EXPECT_EQ(ValidUntil(std::nullopt), std::nullopt);
+  EXPECT_EQ(ValidUntil(Validity{}), std::nullopt);
 }
 
 TEST(Validity, OnlyPassAndWarnAreUsable) {

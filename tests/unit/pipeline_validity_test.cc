@@ -145,13 +145,16 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   PushGood();
   const Stamp until{clock_.now.ns + kDefaultMaxAge_ns};
   const std::string report = Report(1);
-  EXPECT_NE(report.find("Valid until " + DayText(until) + "."), std::string::npos) << "for readers without a script";
+  EXPECT_NE(report.find("<p class=\"drive until\" dir=\"auto\">OK to drive"), std::string::npos)
+      << "for readers without a script";
+  EXPECT_NE(report.find(" " + DayText(until) + ".</p>"), std::string::npos);
   EXPECT_NE(
       report.find("<template data-from=\"" + ToIso(until) + "\"><p class=\"late\">Overdue since " + DayText(until)),
       std::string::npos);
   clock_.now = until;
   EXPECT_EQ(Row()["overdue"], false);
-  EXPECT_NE(Page("/robots/r/").find("Valid until " + DayText(until)), std::string::npos);
+  EXPECT_NE(Page("/robots/r/").find("OK to drive"), std::string::npos);
+  EXPECT_EQ(Row()["drive"]["until"], ToIso(until));
   clock_.now.ns += 1;
   EXPECT_EQ(Row()["overdue"], true);
   EXPECT_EQ(Ask("show")["overdue"], true);
@@ -161,8 +164,9 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   EXPECT_LT(page.find("Overdue since " + DayText(until)), page.find("class=\"word\""));
   EXPECT_NE(page.find("<section class=\"banner " + NameOf(revisions_[0].verdict.level) + " overdue\""),
             std::string::npos);
-  EXPECT_EQ(page.find("Valid until"), std::string::npos);
-  EXPECT_LT(fleet.find("<span class=\"badge fail\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
+  EXPECT_EQ(page.find("OK to drive"), std::string::npos);
+  EXPECT_EQ(Ask("show")["drive"]["rule"], "Overdue since " + DayText(until) + ": capture again");
+  EXPECT_LT(fleet.find("<span class=\"badge warn\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
 }
 
 TEST_F(ValidityTest, AGraphThatWasGivenUpIsToldWithItsCure) {

@@ -16,7 +16,8 @@ using ::testing::Not;
 // With sessions, a rig and degrees of freedom behind one sensor: sigma 0.28 mm and 0.0321 deg at worst.
 ReportInput Sample() {
   ReportInput input = SampleReport();
-  input.sigma_limits = SigmaLimits{0.001, 0.005};
+  input.revision.policy = PolicyInForce{};
+  input.revision.policy->policy.all.tolerance_m = 0.001;
   input.calibrated_at = *ParseIso("2026-01-30T09:30:00Z");
   SensorPose& right = input.revision.solution.poses[1];
   right.by_jackknife = true, right.dof = 10.0;
@@ -56,13 +57,12 @@ TEST(Certificate, TellsPosesWithLimitsAndIntervals) {
             "<th "
             "scope=\"row\">front_right</th><td>83.18</td><td>0.40</td><td>-1.20</td><td>0.000</td><td>0.000</"
             "td><td>0.498</td>"
-            "<td>0.28</td><td>0.032</td><td>2.23</td><td>0.62</td><td>0.071</td><td>yes</td>");
-  EXPECT_THAT(page, HasSubstr("mm (1.0)"));
-  EXPECT_THAT(page, HasSubstr("deg (0.29)"));
+            "<td>0.28 (1.0)</td><td>0.032 (0.29)</td><td>2.23</td><td>0.62</td><td>0.071</td><td>yes</td>");
+  EXPECT_THAT(page, HasSubstr("&sigma; (limit)"));
   // 1.1 mm times 1.4, above the limit of 1 mm; degrees of freedom not known.
   EXPECT_THAT(
       RowOf(page, "lidar"),
-      HasSubstr("<td>1.5</td><td>0.18</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>no</td>"));
+      HasSubstr("<td>1.5 (1.0)</td><td>0.18 (0.29)</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>\xE2\x80\x93</td><td>no</td>"));
   EXPECT_THAT(page, HasSubstr("these are not known"));
   EXPECT_THAT(RowOf(page, "front_left"), HasSubstr("reference: fixed"));
   EXPECT_THAT(RowOf(page, "tracker"), HasSubstr("unknown"));
@@ -78,9 +78,25 @@ TEST(Certificate, CoverageFactorIsStudents) {
   }
 }
 
+TEST(Certificate, BeginsWithTheDriveRule) {
+  ReportInput input = Sample();
+  input.max_age_ns = 10LL * 86'400'000'000'000;
+  const std::string page = CertificateOf(input);
+  EXPECT_THAT(page, HasSubstr("OK to drive; repeat the session for front_left and rear"));
+  EXPECT_THAT(page, HasSubstr(" by 9 Feb 2026.</p>"));
+  EXPECT_LT(page.find("OK to drive"), page.find("class=\"word\""));
+}
+
+TEST(Certificate, EachSensorHasItsOwnLimit) {
+  ReportInput input = Sample();
+  input.revision.policy->policy.sensors[SensorId("lidar")].tolerance_m = 0.01;
+  EXPECT_THAT(RowOf(CertificateOf(input), "lidar"), HasSubstr("<td>1.5 (10)</td>"));
+  EXPECT_THAT(RowOf(CertificateOf(input), "lidar"), HasSubstr("<td>yes</td>"));
+}
+
 TEST(Certificate, WithoutLimitsNothingIsHeldAgainstThem) {
   ReportInput input = Sample();
-  input.sigma_limits.reset();
+  input.revision.policy.reset();
   const std::string page = CertificateOf(input);
   EXPECT_THAT(page, Not(HasSubstr("(limit)")));
   EXPECT_THAT(RowOf(page, "front_right"), HasSubstr("<td>0.071</td><td>\xE2\x80\x93</td>"));

@@ -50,6 +50,10 @@ TEST(ReportFleet, RowsWithAgeAndLinks) {
   EXPECT_THAT(page, HasSubstr("href=\"robots/late/revisions/4/\""));
   EXPECT_THAT(page, HasSubstr("href=\"robots/bad/\""));
   EXPECT_THAT(page, HasSubstr(AgeText(3 * kDay_ns) + " ago"));
+  EXPECT_THAT(page, HasSubstr("<strong class=\"drive\" dir=\"auto\">Do not drive.</strong>"));
+  EXPECT_THAT(page, HasSubstr("<strong class=\"drive\">Overdue since 10 Jul 1970: capture again.</strong>"));
+  EXPECT_THAT(page, HasSubstr("<strong class=\"drive until\" dir=\"auto\">OK to drive until 10 Jul 1970.</strong>"));
+  EXPECT_THAT(page, Not(HasSubstr("badge fail\">overdue"))) << "amber";
   EXPECT_THAT(page, HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "
                               "<a href=\"?verdict=fail\">1 fail</a> &middot; <a href=\"?verdict=pass\">2 pass</a>"));
 }

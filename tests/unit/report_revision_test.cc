@@ -43,6 +43,24 @@ TEST(ReportRevision, VerdictSaysWhyAndWhatToDo) {
   EXPECT_THAT(banner, HasSubstr("Repeat the session for front_left and rear"));
 }
 
+TEST(ReportRevision, TheDriveRuleComesFirstAndLimitsStandBesideSigmas) {
+  ReportInput input = SampleReport();
+  input.calibrated_at = *ParseIso("2026-11-22T08:00:00Z");
+  input.revision.verdict = {VerdictLevel::kPass, "All is well.", "Nothing."};
+  std::string banner = Between(PageOf(input), "<section class=\"banner pass\"", "</section>");
+  EXPECT_LT(banner.find("OK to drive until 20 Feb 2027."), banner.find("class=\"word\""));
+  input.max_age_ns = 10LL * 86'400'000'000'000;
+  EXPECT_THAT(PageOf(input), HasSubstr("OK to drive until 2 Dec 2026."));
+  EXPECT_THAT(RowOf(PageOf(input), "front_right"), HasSubstr("<td class=\"text limit\"></td>")) << "nobody kept it";
+  input.revision.policy = PolicyInForce{};
+  input.revision.policy->policy.sensors[SensorId("front_right")].tolerance_m = 0.002;
+  EXPECT_THAT(RowOf(PageOf(input), "front_right"), HasSubstr("<td class=\"text limit\">2.0 mm, 0.29 deg</td>"));
+  std::erase_if(input.revision.solution.poses, [](const SensorPose& pose) { return !pose.known; });
+  EXPECT_TRUE(PageOf(input).find(" mm (limit 5.0 mm), ") != std::string::npos) << "of the worst sensor";
+  input.revision.verdict.level = VerdictLevel::kFail;
+  EXPECT_THAT(PageOf(input), HasSubstr("<p class=\"drive\" dir=\"auto\">Do not drive.</p>"));
+}
+
 TEST(ReportRevision, PastEdgesComeLastAndHaveNotFailed) {
   ReportInput input = SampleReport();
   const std::string before = PageOf(input);

@@ -4,9 +4,10 @@
 #include "server/formats/documents.h"
 #include "storage/attempts.h"
 #include "storage/fleet_facts.h"
-#include "storage/retired.h"
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"
+#include "storage/policies.h"
+#include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
@@ -68,6 +69,7 @@ class AppendOnlyTest : public StoreTest {
       estimate.reference = SensorId("left");
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
+      RIGCAL_TRY(AppendPolicy(store_, {}, "tolerance_mm: 4", {{6}, "Ada", "new mounts"}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }

@@ -10,6 +10,7 @@
 #include "storage/fleet_list.h"
 #include "storage/jobs.h"
 #include "storage/merged_edges.h"
+#include "storage/policies.h"
 #include "storage/query.h"
 #include "storage/retired.h"
 #include "storage/revision_poses.h"
@@ -130,6 +131,10 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
+  EXPECT_TRUE(LoadRigModel(store_, kRobot));
+  EXPECT_TRUE(LoadPolicyWatermark(store_));
+  for (const PolicyPlace& place : {PolicyPlace{}, PolicyPlace{PolicyScope::kRobot, kRobot.str()}})
+    EXPECT_TRUE(LoadPolicy(store_, place));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
@@ -159,6 +164,7 @@ TEST_F(QueryPlanTest, PartsOfTheFleetDoNotScan) {
   EXPECT_TRUE(CountJobs(store_));
   EXPECT_TRUE(LoadWaitingSummaries(store_, 64)->empty());
   EXPECT_EQ(LoadCauseCounts(store_, 20)->size(), 2u);
+  EXPECT_TRUE(LoadRobotsToJudge(store_, RobotId("b"), 64)->empty());
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 

@@ -10,6 +10,7 @@
 #include "storage/attempts.h"
 #include "storage/fleet_facts.h"
 #include "storage/fleet_list.h"
+#include "storage/policies.h"
 #include "storage/robot_summary.h"
 #include "storage/session_estimates.h"
 #include "storage/retired.h"
@@ -83,6 +84,11 @@ TEST_F(RobotSummaryTest, WhateverASummarySaysMakesItsRobotWait) {
   ExpectWaits("a word about what counts", [&] { return RetireEdge(store_, edge.id, {{8}, "Ada", "typed wrong"}); });
   ExpectWaits("a revision", [&]() -> Status {
     RIGCAL_TRY(AppendRevision(store_, MakeRevision(1)));
+    return {};
+  });
+  ExpectWaits("a policy that waits for it", [&]() -> Status {
+    RIGCAL_TRY(
+        AppendPolicy(store_, {PolicyScope::kRobot, kRobot.str()}, "tolerance_mm: 4", {{9}, "Ada", "new mounts"}));
     return {};
   });
   ExpectWaits("its worst edge", [&] { return AppendWorstEdge(store_, {kRobot, 1}, {pair.a, pair.b, 1.5}); });

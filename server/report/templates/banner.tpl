@@ -3,10 +3,10 @@
 <svg class="icon" viewBox="0 0 24 24" aria-hidden="true"><path class="verdict" d="{{ICON}}"/><path class="late" d="M12 3.5L22 20.5H2ZM12 10v4.5M12 17.4v.1"/></svg>
 <div>
 {{#OVERDUE}}<p class="late">{{TEXT}}</p>{{/OVERDUE}}{{#LATER}}<template data-from="{{UNTIL}}"><p class="late">{{TEXT}}</p></template>{{/LATER}}
+{{#DRIVE}}<p class="drive{{#ENDS}} until{{/ENDS}}" dir="auto">{{TEXT:x-typed}}</p>{{/DRIVE}}
 <p class="word">{{WORD}}</p>
 <p class="why" dir="auto">{{WHY:x-typed}}</p>
 {{#DO}}<p class="do" dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
 {{#KEEP}}<p class="keep">{{TEXT}}</p>{{/KEEP}}
-{{#VALID}}<p class="until">{{TEXT}}</p>{{/VALID}}
 </div>
 </section>

@@ -13,12 +13,12 @@
 <div class="scroll" tabindex="0" role="region" aria-labelledby="sensors">
 <table>
 <thead>
-<tr><th rowspan="2" scope="col">Sensor</th><th colspan="3" scope="colgroup">Position, mm</th><th colspan="3" scope="colgroup">Rotation, deg</th><th colspan="2" scope="colgroup">&sigma;{{#LIMIT_MM}} (limit){{/LIMIT_MM}}</th><th rowspan="2" scope="col">k</th><th colspan="2" scope="colgroup">U = k &sigma;</th><th rowspan="2" scope="col">Within<br>limits</th></tr>
-<tr><th scope="col">x</th><th scope="col">y</th><th scope="col">z</th><th scope="col">roll</th><th scope="col">pitch</th><th scope="col">yaw</th><th scope="col">mm{{#LIMIT_MM}} ({{VALUE}}){{/LIMIT_MM}}</th><th scope="col">deg{{#LIMIT_DEG}} ({{VALUE}}){{/LIMIT_DEG}}</th><th scope="col">mm</th><th scope="col">deg</th></tr>
+<tr><th rowspan="2" scope="col">Sensor</th><th colspan="3" scope="colgroup">Position, mm</th><th colspan="3" scope="colgroup">Rotation, deg</th><th colspan="2" scope="colgroup">&sigma;{{#LIMITS}} (limit){{/LIMITS}}</th><th rowspan="2" scope="col">k</th><th colspan="2" scope="colgroup">U = k &sigma;</th><th rowspan="2" scope="col">Within<br>limits</th></tr>
+<tr><th scope="col">x</th><th scope="col">y</th><th scope="col">z</th><th scope="col">roll</th><th scope="col">pitch</th><th scope="col">yaw</th><th scope="col">mm</th><th scope="col">deg</th><th scope="col">mm</th><th scope="col">deg</th></tr>
 </thead>
 <tbody>
 {{#SENSOR}}
-<tr><th scope="row">{{NAME}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#CERTAINTY}}<td>{{SIGMA_MM}}</td><td>{{SIGMA_DEG}}</td><td>{{K}}</td><td>{{U_MM}}</td><td>{{U_DEG}}</td><td>{{WITHIN}}</td>{{/CERTAINTY}}{{#FIXED}}<td class="text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}{{/KNOWN}}{{#UNKNOWN}}<td class="text" colspan="12"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
+<tr><th scope="row">{{NAME}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#CERTAINTY}}<td>{{SIGMA_MM}}{{#LIMIT_MM}} ({{VALUE}}){{/LIMIT_MM}}</td><td>{{SIGMA_DEG}}{{#LIMIT_DEG}} ({{VALUE}}){{/LIMIT_DEG}}</td><td>{{K}}</td><td>{{U_MM}}</td><td>{{U_DEG}}</td><td>{{WITHIN}}</td>{{/CERTAINTY}}{{#FIXED}}<td class="text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}{{/KNOWN}}{{#UNKNOWN}}<td class="text" colspan="12"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
 {{/SENSOR}}
 </tbody>
 </table>

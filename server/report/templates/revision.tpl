@@ -77,16 +77,17 @@
 <div class="scroll" tabindex="0" role="region" aria-labelledby="poses">
 <table>
 <thead>
-<tr><th rowspan="2" scope="col">Sensor</th><th colspan="3" scope="colgroup">Position, mm</th><th colspan="3" scope="colgroup">Rotation, deg</th><th colspan="3" scope="colgroup" class="sigma">&sigma;, mm</th><th colspan="3" scope="colgroup" class="sigma">&sigma;, deg</th></tr>
+<tr><th rowspan="2" scope="col">Sensor</th><th colspan="3" scope="colgroup">Position, mm</th><th colspan="3" scope="colgroup">Rotation, deg</th><th colspan="3" scope="colgroup" class="sigma">&sigma;, mm</th><th colspan="3" scope="colgroup" class="sigma">&sigma;, deg</th><th rowspan="2" scope="col" class="text">Limit of &sigma;</th></tr>
 <tr><th scope="col">x</th><th scope="col">y</th><th scope="col">z</th><th scope="col">roll</th><th scope="col">pitch</th><th scope="col">yaw</th><th scope="col" class="sigma">x</th><th scope="col" class="sigma">y</th><th scope="col" class="sigma">z</th><th scope="col" class="sigma">rx</th><th scope="col" class="sigma">ry</th><th scope="col" class="sigma">rz</th></tr>
 </thead>
 <tbody>
 {{#POSE}}
-<tr><th scope="row">{{SENSOR}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#SIGMA}}<td class="sigma">{{VALUE}}</td>{{/SIGMA}}{{#FIXED}}<td class="sigma text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}{{/KNOWN}}{{#UNKNOWN}}<td class="text" colspan="12"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
+<tr><th scope="row">{{SENSOR}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#SIGMA}}<td class="sigma">{{VALUE}}</td>{{/SIGMA}}{{#FIXED}}<td class="sigma text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}<td class="text limit">{{LIMIT}}</td>{{/KNOWN}}{{#PART}}<td class="text" colspan="3">{{#AT}}<div>{{LABEL}} {{VALUE}}</div>{{/AT}}</td>{{#TURNED}}<td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{/TURNED}}{{#TURN_OPEN}}<td class="text" colspan="3">{{#OF}}<div>{{LABEL}} {{VALUE}}</div>{{/OF}}</td>{{/TURN_OPEN}}<td class="sigma text" colspan="3">{{#SIGMA_MM}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_MM}}</td><td class="sigma text" colspan="3">{{#SIGMA_DEG}}<div>{{LABEL}} {{VALUE}}</div>{{/SIGMA_DEG}}</td><td class="text limit">{{LIMIT}}</td>{{/PART}}{{#UNKNOWN}}<td class="text" colspan="13"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
 {{/POSE}}
 </tbody>
 </table>
 </div>
+{{#IN_PART}}<p class="hint">Of a sensor of which not everything was measured, position and &sigma; are along and about the axes of <bdi>{{WHOSE}}</bdi>, as near to these as what was measured lies.</p>{{/IN_PART}}
 {{#MORE_POSES}}<p class="hint">{{COUNT}} more sensors are in <a href="revision.json">revision.json</a>.</p>{{/MORE_POSES}}
 {{#GONE}}<p dir="auto"><span class="badge unknown">past</span> {{WHY}}. To bring it back: <code class="typed">{{COMMAND}}</code></p>
 {{/GONE}}

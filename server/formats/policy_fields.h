@@ -1,0 +1,14 @@
+// The policy that a robot is judged by, in documents (docs/api.md, policy).
+#pragma once
+
+#include "server/formats/json_field.h"
+#include "server/formats/json_writer.h"
+#include "server/model/policy_version.h"
+
+namespace rigcal::formats {
+
+// Versions and what is said, in metres, radians and nanoseconds; without the watermark, which is of all robots.
+void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force);
+[[nodiscard]] PolicyInForce ReadPolicyMembers(const JsonField& field);
+
+}  // namespace rigcal::formats

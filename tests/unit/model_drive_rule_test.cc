@@ -1,0 +1,71 @@
+// What may be driven, for each verdict before and after its calibration is overdue.
+#include <gtest/gtest.h>
+
+#include "server/model/drive_rule.h"
+
+namespace rigcal {
+namespace {
+
+const Stamp kDue = *ParseIso("2027-02-20T08:00:00Z");
+const Stamp kBefore{kDue.ns - 1}, kAfter{kDue.ns + 1};
+
+Verdict Of(VerdictLevel level, const std::string& what_to_do = "") { return {level, "So it is.", what_to_do}; }
+
+TEST(DriveRule, APassHoldsUntilItIsDue) {
+  for (const Stamp now : {kBefore, kDue}) {
+    const DriveRule rule = DriveRuleOf(Of(VerdictLevel::kPass), kDue, now);
+    EXPECT_EQ(rule.rule, "OK to drive until 20 Feb 2027");
+    EXPECT_EQ(rule.until, kDue);
+    EXPECT_EQ(rule.level, VerdictLevel::kPass);
+  }
+}
+
+TEST(DriveRule, WhatIsOverdueIsNoPass) {
+  for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) {
+    const DriveRule rule = DriveRuleOf(Of(level, "Capture top."), kDue, kAfter);
+    EXPECT_EQ(rule.rule, "Overdue since 20 Feb 2027: capture again");
+    EXPECT_FALSE(rule.until);
+    EXPECT_EQ(rule.level, VerdictLevel::kWarn);
+  }
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), std::nullopt, kBefore).level, VerdictLevel::kWarn);
+}
+
+TEST(DriveRule, AWarningSaysTheFirstThingToDoAndByWhen) {
+  const auto rule = [](const std::string& what_to_do) {
+    return DriveRuleOf(Of(VerdictLevel::kWarn, what_to_do), kDue, kBefore);
+  };
+  EXPECT_EQ(rule("Capture top at more distances and tilts.").rule,
+            "OK to drive; capture top at more distances and tilts by 20 Feb 2027");
+  EXPECT_EQ(rule("Capture top; then capture left.").rule, "OK to drive; capture top by 20 Feb 2027");
+  EXPECT_EQ(rule("Take more. Tilt it.").rule, "OK to drive; take more by 20 Feb 2027");
+  EXPECT_EQ(rule("").rule, "OK to drive until 20 Feb 2027");
+  EXPECT_EQ(rule("").until, kDue);
+  EXPECT_EQ(rule("").level, VerdictLevel::kWarn);
+}
+
+TEST(DriveRule, OfAFailAndOfWhatIsNotKnownTimeChangesNothing) {
+  Verdict unknown = Of(VerdictLevel::kUnknown);
+  for (const Stamp now : {kBefore, kAfter}) {
+    EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), kDue, now).rule, "Do not drive");
+    EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), kDue, now).level, VerdictLevel::kFail);
+    EXPECT_EQ(DriveRuleOf(unknown, kDue, now).rule, "Not verified: do not rely on this calibration");
+  }
+  unknown.unverified = "lidar and arm";
+  const DriveRule rule = DriveRuleOf(unknown, std::nullopt, kBefore);
+  EXPECT_EQ(rule.rule, "Not verified: do not rely on lidar and arm");
+  EXPECT_EQ(rule.level, VerdictLevel::kUnknown);
+  EXPECT_FALSE(rule.until);
+}
+
+TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
+  Validity validity;
+  validity.calibrated_at = Stamp{kDue.ns - 30};
+  validity.max_age_ns = 30;
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).until, kDue);
+  validity.overdue = true;
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Overdue since 20 Feb 2027: capture again");
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");
+}
+
+}  // namespace
+}  // namespace rigcal
