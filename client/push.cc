@@ -173,6 +173,7 @@ Status RunPush(Context& context, const PushOptions& options) {
   else
     PrintResult(awaited, context.out);
   SayStanding(awaited.session, context.err);
+  SayRetiredSensors(folder.session.robot.str(), awaited.retired_sensors, [](const std::string&) { return true; }, context.err);
   context.exit_code = JudgeResult(awaited);
   return {};
 }

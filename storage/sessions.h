@@ -34,8 +34,9 @@ struct SessionRow {
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& robot);
 // Of those that are known.
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions);
-// Of the closed ones that which was captured first; of several the smallest id.
-[[nodiscard]] Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot);
+// The reference that is named by the closed session which was captured first (of several: of the smallest id), of those that
+// name none of `gone`. Empty: there is no such session.
+[[nodiscard]] Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot, const std::vector<SensorId>& gone);
 // Of the closed ones when the newest was captured.
 [[nodiscard]] Result<std::optional<Stamp>> LoadNewestCapture(Store& store, const RobotId& robot);
 // Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.

@@ -7,6 +7,7 @@
 #include "server/fleet/cause_findings.h"
 #include "server/fleet/effect.h"
 #include "server/fleet/wording.h"
+#include "server/model/past.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -90,7 +91,7 @@ Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const Graph
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!known.contains(sensor)) unknown.insert(sensor);
+      if (!known.contains(sensor) && !IsOfGoneSensor(edge)) unknown.insert(sensor);
   if (known.size() > 1) verdict.unverified = List(std::vector<SensorId>(unknown.begin(), unknown.end()));
   return verdict;
 }

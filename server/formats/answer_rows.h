@@ -8,6 +8,8 @@ namespace rigcal::formats {
 
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session);
 void WriteStanding(JsonWriter& out, const std::string& name, const std::optional<Standing>& standing);
+// "retired_sensors".
+void WriteRetiredSensors(JsonWriter& out, const std::vector<RetiredSensor>& retired);
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
 // `usable`
 void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);

@@ -68,7 +68,7 @@ TEST(Answers, Sessions) {
   EXPECT_EQ(WriteSessions({SampleSession()}),
             "{\"sessions\":[{\"bytes\":1234567,\"captured_at\":\"2026-01-31T12:00:00Z\",\"closed_at\":null,"
             "\"jobs_total\":2,\"jobs_waiting\":1,\"opened_at\":\"2026-02-01T12:00:00Z\",\"operator\":\"Ada\","
-            "\"payloads\":18,\"payloads_held\":17,\"robot\":\"mapper-01\",\"session\":\"" +
+            "\"payloads\":18,\"payloads_held\":17,\"retired\":null,\"robot\":\"mapper-01\",\"session\":\"" +
                 std::string(64, 'c') +
                 "\",\"standing\":null,\"state\":\"receiving\",\"superseded_by\":null,\"supersedes\":[]}]}");
 }
