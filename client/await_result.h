@@ -34,6 +34,7 @@ struct Awaited {
   std::string show_text;      // the same, verbatim
   Document status;
   Document session;  // its row, where a session was waited for
+  Document retired_sensors = {};  // of those that it lists
 };
 
 // Open before the push begins: no event is missed.

@@ -33,7 +33,8 @@ enum class EdgeParts { kAll, kRow };
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
 // Those of the sessions, sorted by id: ids, ends, pose and uncertainty, and nothing else of them.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions);
-// When each of the edges was measured: its session was captured or, of one that was pushed, it was stored.
+// When each of the edges was measured: its session was captured; of one that was pushed, what it says or, where it does not,
+// when it was stored.
 [[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges);
 // How many edges of the robot began to count up to `watermark`.
 [[nodiscard]] Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark);

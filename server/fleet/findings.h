@@ -90,6 +90,11 @@ struct Contradiction {
 [[nodiscard]] std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                       const SessionHeaders& headers,
                                                       const std::set<SensorId>& explained);
+// Known sensors that fewer than five captures, of all their good pairs and sessions, tie to the reference or to sensors
+// that more do: what so few scatter tells nothing of how well a pose is known.
+[[nodiscard]] std::vector<SensorId> SensorsOfFewCaptures(const std::vector<Edge>& edges, const GraphSolution& solution);
+// Of these.
+[[nodiscard]] Finding FewCapturesBehind(const std::vector<SensorId>& sensors, const std::vector<Edge>& edges);
 // Of these, each of a pair of its own.
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
 // Pairs that were measured before one of their sensors was remounted, and not since.

@@ -10,6 +10,8 @@ namespace rigcal::formats {
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session);
 // `name`: null where it is absent.
 void WriteStanding(JsonWriter& out, const std::string& name, const std::optional<Standing>& standing);
+// "retired_sensors".
+void WriteRetiredSensors(JsonWriter& out, const std::vector<RetiredSensor>& retired);
 // Members of an edge's row; `residual` null: the solution has none.
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
 // `usable`

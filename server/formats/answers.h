@@ -38,16 +38,20 @@ struct SessionAnswer {
   std::optional<Standing> standing = {};          // absent: not closed
   std::optional<Superseding> superseded_by = {};  // absent: current, or not closed
   std::vector<SessionId> supersedes = {};
+  std::optional<Standing> retired = {};           // absent: it is not
 };
 // A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
-[[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
-                                       const std::vector<Edge>& edges);
+// `retired`: of the sensors that it lists, those that are.
+[[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
+                                       const std::vector<RetiredSensor>& retired = {});
 
-// verb restore: the session as it stands; `has_edges`: its robot, so that a revision follows.
-[[nodiscard]] std::string WriteRestored(const SessionAnswer& session, bool has_edges);
-// verb retire: the edge as it is shown from now on.
-[[nodiscard]] std::string WriteRetired(const Edge& edge, const Standing& retired);
+// verbs retire, restore. Of a session, as it stands; `has_edges`: its robot, so that a revision follows.
+[[nodiscard]] std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges);
+// Of an edge, as it is shown from now on; of a sensor. `standing`: the newest word about it, if anybody said any.
+[[nodiscard]] std::string WriteStandingOfEdge(const Edge& edge, const std::optional<Standing>& standing);
+[[nodiscard]] std::string WriteStandingOfSensor(const RobotId& robot, const SensorId& sensor,
+                                                const std::optional<Standing>& standing, bool has_edges);
 
 // verb policy: what holds, and who set it, the widest first.
 struct PolicyAnswer {
@@ -123,6 +127,15 @@ struct LiveAnswer {
 [[nodiscard]] std::string WriteSensorNames(const RobotId& robot, const std::vector<SensorId>& sensors, bool more);
 // verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
 [[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
+
+// verb known_files: of the files asked for, those of another robot's session.
+struct FilesOfAnother {
+  RobotId robot;
+  SessionId session;
+  Stamp captured_at;
+  std::size_t files = 0;
+};
+[[nodiscard]] std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another);
 
 // verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
 // calibrated.

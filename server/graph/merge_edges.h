@@ -18,7 +18,8 @@ struct Merge {
 constexpr std::size_t kEdgesKeptOfPair = 8;
 // Edges that were pushed as finished results. Takes good ones into `before`, the oldest first, and leaves the newest `kept` of
 // each pair and method. One that contradicts what it would become part of stays, so that it is told for as long as nobody
-// settles it; merging begins with one that half of its pair's edges agree with.
+// settles it; merging begins with one that half of its pair's edges agree with. Of those that are past with their sensor
+// (retired, remounted) the newest `kept` stay too, and the others leave the window.
 // `measured_at` of each edge of `edges`; merged edges among these are passed over. Deterministic for any order of `edges`.
 [[nodiscard]] Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                     const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kEdgesKeptOfPair);

@@ -22,8 +22,9 @@ struct SessionRow {
   bool closed = false;
   std::int64_t files = 0, files_held = 0, pairs = 0, pairs_waiting = 0;
   std::int64_t good = 0, failed = 0;  // of the pairs that are done
-  std::int64_t past = 0;              // good where they were measured, but the newest revision counts them no more
+  std::int64_t past = 0;              // good where they were measured, but they count no more
   std::optional<Superseding> superseded_by = {};
+  std::optional<Word> retired = {};
 };
 // Of revisions and of sessions a page each, the newest first; "?before=<revision>" and "?sessions_before=<id>" show others.
 struct RobotInput {
@@ -34,6 +35,7 @@ struct RobotInput {
   std::vector<SessionRow> open = {};  // of all sessions: still arriving, or being calibrated; the newest first
   bool older_revisions = false, older_sessions = false;  // there are, beyond the page
   bool newest_revisions = true, newest_sessions = true;  // the page is the first
+  std::vector<RetiredSensor> retired = {};
 };
 // /robots/<id>/. Ages are as of `now`.
 [[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);
@@ -70,6 +72,7 @@ struct SessionInput {
   std::map<EdgeId, Diagnosis> past = {};                                  // of those: no longer counted, and why
   std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
   bool all_looked_at = true;                                              // for that; else there may be more
+  std::vector<RetiredSensor> retired = {};                                // of the sensors that it lists
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

@@ -12,6 +12,7 @@
 #include "storage/merged_edges.h"
 #include "storage/policies.h"
 #include "storage/query.h"
+#include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/robot_summary.h"
@@ -33,6 +34,8 @@ class QueryPlanTest : public StoreTest {
       ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, robot).value(), robot)));
     }
     session_ = session;
+    ASSERT_TRUE(RetireSensor(store_, kRobot, SensorId("s1"), {{2}, "Ada", "taken off"}));
+    ASSERT_TRUE(RetireSession(store_, session, {{2}, "Ada", "blurred"}));
   }
 
   // Rows that a statement stepped through without an index, by its text. A CROSS JOIN from a queue is meant: it holds
@@ -102,8 +105,15 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadMergedEdges(store_, kRobot));
   EXPECT_TRUE(IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   EXPECT_TRUE(LoadListedSensors(store_, kRobot));
+  EXPECT_TRUE(LoadHeldByAnother(store_, RobotId("b"), {Digest(std::string(64, 'a'))}));
   EXPECT_TRUE(LoadCapturedAt(store_, kRobot));
-  EXPECT_TRUE(LoadEarliestClosed(store_, kRobot));
+  EXPECT_TRUE(LoadNamedReference(store_, kRobot, {SensorId("right")}));
+  EXPECT_TRUE(LoadRetired(store_, kRobot));
+  EXPECT_TRUE(LoadRetiredSessions(store_, kRobot));
+  EXPECT_TRUE(LoadRetiredSensors(store_, kRobot));
+  EXPECT_TRUE(HasSensor(store_, kRobot, SensorId("nobody")));
+  EXPECT_TRUE(LoadStanding(store_, kRobot, SensorId("left")));
+  EXPECT_TRUE(LoadStanding(store_, session_));
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
   EXPECT_EQ(LoadRevisions(store_, kRobot, 2, 1)->size(), 1U);
   EXPECT_EQ(LoadCreatedAt(store_, kRobot, {1, 2})->size(), 1U);
