@@ -20,6 +20,7 @@ struct Contradiction {
   const Edge* edge = nullptr;
   Vector6d e = Vector6d::Zero();
 };
+// Nothing where no residual is beyond its limit.
 [[nodiscard]] std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges,
                                                              const GraphSolution& solution, const Policy& policy);
 // Two sensors whose edge the others contradict.

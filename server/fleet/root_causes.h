@@ -67,6 +67,7 @@ struct CauseSearch {
     return explained;
   }
 };
+// In the same order.
 [[nodiscard]] std::vector<EdgeId> IdsOf(const std::vector<const Edge*>& edges);
 
 // One per kind of cause, in the order in which they are asked: what is certain before what it may look like.
