@@ -51,13 +51,13 @@ struct SessionRow {
 // Digests that sessions of this robot hold: what it need not send again. What another robot sent does not count: its
 // digests can be read by anybody, its bytes cannot.
 [[nodiscard]] Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest);
-// Of the closed sessions of other robots the one that holds most of these contents; of several the first to arrive.
 struct HeldByAnother {
   RobotId robot;
   SessionId session;
   Stamp captured_at;
   std::size_t contents = 0;  // of those asked for
 };
+// Of the closed sessions of other robots the one that holds most of these contents; of several the first to arrive.
 [[nodiscard]] Result<std::optional<HeldByAnother>> LoadHeldByAnother(Store& store, const RobotId& robot,
                                                                      const std::set<Digest>& digests);
 // Closes the session (immutable and current from now on) and queues one job per pair, in this order. A no-op if closed;

@@ -135,6 +135,7 @@ struct FilesOfAnother {
   Stamp captured_at;
   std::size_t files = 0;
 };
+// `asked`: files that were asked about; `another` absent: nobody else's.
 [[nodiscard]] std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another);
 
 // verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
