@@ -19,9 +19,10 @@ class Class:
 
 
 class Prototype:
-    """`covered`: a contract stands above it, on its line, or above the prototypes that it follows without a blank line."""
-    def __init__(self, name, first, last):
-        self.name, self.first, self.last, self.covered = name, first, last, False
+    """`grouped`: a contract stands above it, or above the prototypes that it follows without a blank line; `covered`: so it
+    does, or on its own line."""
+    def __init__(self, name, first, last, grouped, beside):
+        self.name, self.first, self.last, self.grouped, self.covered = name, first, last, grouped, grouped or beside
 
 
 def matching(code, start):
@@ -148,12 +149,12 @@ class Outline:
         name = function_name(text)
         if re.search(r"=\s*(default|delete)$|\b(override|final)\b", text) or name.startswith("~") or "::" in text.split("()")[0].split()[-1]:
             return
-        first = self.line(begin + len(self.code[begin:end]) - len(self.code[begin:end].lstrip()))
-        found = Prototype((owner.name + "::" if owner else "") + name, first, self.line(last))
-        head_last = self.line(end)
-        group = first - 1 in self.above or any(one.last == first - 1 and one.group for one in siblings[-1:])
-        beside = any(number in self.beside for number in range(first, (found.last if found.last <= first + 1 else head_last) + 1))
-        found.group, found.covered = group, group or beside
+        first, head_last = self.line(begin + len(self.code[begin:end]) - len(self.code[begin:end].lstrip())), self.line(end)
+        last = self.line(last)
+        grouped = first - 1 in self.above or any(one.last == first - 1 and one.grouped for one in siblings[-1:])
+        told_until = last if last <= first + 1 else head_last  # a comment within a longer body is none for the caller
+        beside = any(number in self.beside for number in range(first, told_until + 1))
+        found = Prototype((owner.name + "::" if owner else "") + name, first, last, grouped, beside)
         siblings.append(found)
         self.prototypes.append(found)
 
