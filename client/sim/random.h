@@ -17,7 +17,7 @@ class Random {
  public:
   // The stream of this key, from its beginning.
   explicit Random(std::uint64_t key) : state_(key) {}
-  [[nodiscard]] std::uint64_t Bits();                     // 64 of them, each as likely 0 as 1
+  [[nodiscard]] std::uint64_t Bits();                     // 64, each as likely 0 as 1
   [[nodiscard]] double Uniform();                         // [0, 1)
   [[nodiscard]] double Uniform(double low, double high);  // [low, high)
   [[nodiscard]] double Normal();                          // mean 0, standard deviation 1 (Box & Muller)

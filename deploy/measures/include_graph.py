@@ -39,5 +39,6 @@ def upward(texts, rows):
     for path, targets in includes(texts).items():
         own, highest = table.module_of(path, rows), max(order.values())
         if own is not None and rows[own].allowed is not None:
-            found += ["%s: %s is of a later row" % (path, target) for target in sorted(targets) if order.get(table.module_of(target, rows), highest) > order[own]]
+            later = sorted(target for target in targets if order.get(table.module_of(target, rows), highest) > order[own])
+            found += ["%s: %s is of a later row" % (path, target) for target in later]
     return found

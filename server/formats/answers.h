@@ -59,7 +59,7 @@ struct PolicyAnswer {
   PolicyInForce in_force;
   std::vector<PolicyVersion> set;
 };
-// Limits as they hold after all that was set, then every version.
+// The limits that hold, key by key who set them, then what was set.
 [[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
 // verb set_policy: how many robots wait to be judged anew by it.
 [[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);

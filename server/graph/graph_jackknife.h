@@ -52,8 +52,8 @@ struct GraphJackknife {
 };
 constexpr int kJackknifeSensorsMax = 500;
 
-// `solution`: of this graph, converged. Not available without blocks, with kJackknifeSensorsMax sensors or more, and
-// where H cannot be factored.
+// `solution`: of this graph, converged. Not available without blocks, with kJackknifeSensorsMax sensors or more beside
+// the reference, and where H cannot be factored.
 [[nodiscard]] GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
                                             const BlocksByEdge& blocks);
 
