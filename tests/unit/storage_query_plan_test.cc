@@ -76,7 +76,7 @@ class QueryPlanTest : public StoreTest {
   SessionId session_;
 };
 
-TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
+TEST_F(QueryPlanTest, QuestionsWhetherARobotIsKnownDoNotScan) {
   (void)Scanned();  // what SetUp left
   EXPECT_TRUE(LoadRobot(store_, kRobot).value());
   EXPECT_TRUE(HasRobot(store_, kRobot).value());
@@ -84,6 +84,11 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_EQ(LoadRobotNames(store_, "m", 9)->size(), 1U);
   EXPECT_EQ(LoadRobotsBeside(store_, RobotId("bb"), 1)->size(), 2U);
   EXPECT_EQ(LoadRobotsNamed(store_, {RobotId("d"), RobotId("e")})->size(), 1U);
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan) {
+  (void)Scanned();
   EXPECT_TRUE(LoadOpenSessions(store_, kRobot));
   EXPECT_TRUE(LoadSessions(store_, kRobot));
   EXPECT_TRUE(LoadSession(store_, session_));
