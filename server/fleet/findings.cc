@@ -17,6 +17,8 @@
 namespace rigcal::fleet {
 namespace {
 
+constexpr int kCapturesUsual = 20;
+
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
 // How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limit.
@@ -219,7 +221,8 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
   }
   if (names.empty()) return std::nullopt;
   return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
-                 "Take 20 captures or more of each pair"};
+                 "Take " + std::to_string(std::max(kCapturesUsual, CapturesToTest(solution.residuals.size(), policy))) +
+                     " captures or more of each pair"};
 }
 
 bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {

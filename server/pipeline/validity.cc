@@ -87,6 +87,8 @@ Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, S
   validity.overdue = IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
   RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision));
   RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, revision.robot, 0));
+  if (newest && newest->number > revision.number) validity.superseded_by = newest->number;
   return validity;
 }
 
