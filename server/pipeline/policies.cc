@@ -51,7 +51,7 @@ Result<Holding> LoadHolding(storage::Store& store, const PolicyPlace& place) {
     return {};
   }));
   for (const PolicyVersion& one : holding.set) {
-    RIGCAL_ASSIGN(const Policy narrow, formats::ReadPolicy(one.text, "the policy of " + TextOf(one.place)));
+    RIGCAL_ASSIGN(const Policy narrow, formats::ReadStoredPolicy(one.text, "the policy of " + TextOf(one.place)));
     holding.in_force.policy = Overlaid(holding.in_force.policy, narrow);
     VersionIn(holding.in_force, one.place.scope) = one.version;
   }

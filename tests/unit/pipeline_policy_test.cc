@@ -145,6 +145,25 @@ TEST_F(PolicyTest, ACrashBetweenOrderAndVerdictLosesNothing) {
   EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
 }
 
+// It was taken when limits had no least value.
+TEST_F(PolicyTest, AStoredLimitThatIsTooSmallHoldsUpNobody) {
+  PushTriangle("r");
+  StepAll();
+  const Word word{clock_.now, "Ada", "a slip"};
+  ASSERT_TRUE(store_->Write([&]() -> Status {
+    RIGCAL_TRY(storage::AppendPolicy(*store_, {}, "max_age_days: 1e-15\ntolerance_mm: 1e-322\n", word));
+    return {};
+  }));
+  StepAll();
+  ASSERT_EQ(revisions_.size(), 2U);
+  const auto read = formats::ReadRevisionDocument(revisions_.back().document);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(revisions_.back().max_age_ns, 3'600'000'000'000);
+  EXPECT_DOUBLE_EQ(Ask("policy", json::object())["limits"]["tolerance_m"].get<double>(), 1e-6);
+  EXPECT_THAT(Order({{"text", "max_age_days: 1e-15\n"}}).error().what,
+              HasSubstr("the policy of the fleet line 1: max_age_days: must be from 0.0416667 (1 h) to 36500"));
+}
+
 TEST_F(PolicyTest, PixelsAreHeldAgainstGivenIntrinsics) {
   Policy policy;
   policy.all.tolerance_px_at_10_m = 1.0;
