@@ -103,6 +103,8 @@ struct Contradiction {
 // Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many.
 [[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
+// Pairs that the policy names with a tolerance, and whose T_a_b is less certain (any axis, 1 sigma).
+[[nodiscard]] std::optional<Finding> FindUncertainPairs(const Policy& policy, const PairCovariances& covariances);
 // Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
 [[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges,
                                                           const GraphSolution& solution);

@@ -147,6 +147,30 @@ TEST(Assess, UncertainSensorsWarnOnEveryAxis) {
   }
 }
 
+// Though each of its sensors is known well enough.
+TEST(Assess, APairThatIsKnownToLessThanItsToleranceWarns) {
+  const Rig rig;
+  const SensorPair pair{SensorId("left"), SensorId("right")}, other{SensorId("right"), SensorId("top")};
+  Policy policy;
+  policy.pairs[pair].tolerance_m = 0.002, policy.pairs[pair].tolerance_rad = 0.05 * M_PI / 180;
+  policy.pairs[other].tolerance_m = 0.003;
+  Matrix6d covariance = 1e-8 * Matrix6d::Identity();
+  PairCovariances known = {{pair, covariance}, {other, covariance}};
+  const auto judge = [&] { return Assess(rig.edges, rig.solution, policy, {}, {}, {}, known); };
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << judge().why;
+  known[pair](tangent::kZ, tangent::kZ) = 0.0033 * 0.0033;
+  known[pair](tangent::kRy, tangent::kRy) = std::pow(0.094 * M_PI / 180, 2);
+  EXPECT_EQ(judge().level, VerdictLevel::kWarn);
+  EXPECT_EQ(judge().why, "left - right is known to 3.3 mm and 0.094 deg only (2 mm and 0.05 deg wanted).");
+  EXPECT_EQ(judge().what_to_do, "Capture left and right together at more distances and tilts.");
+  known[other](tangent::kX, tangent::kX) = 0.02 * 0.02;
+  EXPECT_THAT(judge().why, HasSubstr("right - top and left - right are known, at worst, to 20 mm"));
+  EXPECT_THAT(judge().why, HasSubstr("(3 mm and 0.29 deg wanted)"));
+  policy.pairs.clear();
+  policy.pairs[pair].moved_min_m = 0.002;
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << "no tolerance is said of it";
+}
+
 TEST(Assess, AGraphWithoutALoopWarns) {
   Rig rig;
   rig.solution.dof = 0;

@@ -59,6 +59,20 @@ TEST_F(PolicyTest, OneOfARobotJudgesItAnew) {
   EXPECT_EQ(StepAll(), 0) << "it was set before";
 }
 
+// Each of both is known to about 1 mm, to the reference and to the other.
+TEST_F(PolicyTest, AToleranceOfAPairBoundsHowWellItIsKnown) {
+  PushTriangle("r");
+  StepAll();
+  Set({{"robot", "r"}, {"text", "pairs:\n  b - c: {tolerance_mm: 0.1}\n"}});
+  StepAll();
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(revisions_.back().verdict.why, HasSubstr("b - c is known to "));
+  EXPECT_THAT(revisions_.back().verdict.why, HasSubstr("only (0.1 mm and 0.29 deg wanted)"));
+  Set({{"robot", "r"}, {"text", "pairs:\n  b - c: {tolerance_mm: 4}\n"}});
+  StepAll();
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kPass) << revisions_.back().verdict.why;
+}
+
 TEST_F(PolicyTest, OneOfTheFleetComesBehindWhatIsNew) {
   for (const char* robot : {"a", "b"}) PushTriangle(robot);
   StepAll();
