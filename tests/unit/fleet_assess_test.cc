@@ -171,6 +171,27 @@ TEST(Assess, APairThatIsKnownToLessThanItsToleranceWarns) {
   EXPECT_EQ(judge().level, VerdictLevel::kPass) << "no tolerance is said of it";
 }
 
+// An edge that was pushed has no captures: it tells by what its covariance was estimated from, if it was.
+TEST(Assess, APairOfFewerCapturesThanThePolicyWantsWarns) {
+  Rig rig;
+  Policy policy;
+  policy.captures_min = 20;
+  const auto judge = [&] { return Assess(rig.edges, rig.solution, policy); };
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << "known exactly";
+  rig.edges[0].uncertainty.dof = 18;
+  EXPECT_EQ(judge().level, VerdictLevel::kWarn);
+  EXPECT_THAT(judge().why, HasSubstr("left - right was measured from fewer than 20 captures"));
+  rig.edges[0].uncertainty.dof = 19;
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << judge().why;
+  rig.edges[2].uncertainty.blocks.resize(19);
+  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from fewer than 20 captures"));
+  rig.edges[2].session = SessionId(std::string(64, '1'));
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << "of two pose streams: its blocks are no captures";
+  for (int i = 0; i < 19; ++i) rig.edges[2].captures.push_back({CaptureId(std::to_string(i)), 0.0, true, ""});
+  rig.edges[2].captures.push_back({CaptureId("unused"), 0.0, false, ""});
+  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from fewer than 20 captures"));
+}
+
 TEST(Assess, AGraphWithoutALoopWarns) {
   Rig rig;
   rig.solution.dof = 0;
