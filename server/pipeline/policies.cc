@@ -1,6 +1,7 @@
 #include "server/pipeline/policies.h"
 
 #include <algorithm>
+#include <set>
 
 #include "server/base/text.h"
 #include "server/formats/answers.h"
@@ -8,7 +9,9 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/subject.h"
+#include "server/pipeline/unknown_names.h"
 #include "storage/policies.h"
+#include "storage/retired.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -81,6 +84,34 @@ Result<PolicyPlace> PlaceAsked(storage::Store& store, const Parameters& paramete
   return PolicyPlace{PolicyScope::kRobot, robot.str()};
 }
 
+std::set<SensorId> SensorsNamedBy(const Policy& policy) {
+  std::set<SensorId> sensors;
+  for (const auto& [sensor, words] : policy.sensors) sensors.insert(sensor);
+  for (const auto& [pair, words] : policy.pairs) sensors.insert({pair.a, pair.b});
+  return sensors;
+}
+
+// Sensors that are retired may come back.
+Status CheckSensorsNamed(storage::Store& store, const RobotId& robot, const Policy& policy) {
+  for (const SensorId& sensor : SensorsNamedBy(policy)) {
+    RIGCAL_ASSIGN(const bool is_known, storage::HasSensor(store, robot, sensor));
+    if (is_known) continue;
+    RIGCAL_ASSIGN(const auto known, LoadSensorNames(store, robot));
+    return Fail(UnknownSensor(robot, sensor, {known.begin(), known.end()}));
+  }
+  return {};
+}
+
+// A misspelt name would hold for nobody, and nobody would notice.
+Status CheckNamesIn(storage::Store& store, const Parameters& parameters, const PolicyPlace& place,
+                    const Policy& policy) {
+  RIGCAL_ASSIGN(const bool is_new_model, parameters.Flag("new_model"));
+  if (place.scope == PolicyScope::kRobot) return CheckSensorsNamed(store, RobotId(place.subject), policy);
+  if (place.scope == PolicyScope::kFleet || is_new_model) return {};
+  RIGCAL_ASSIGN(const bool is_known, storage::HasRigModel(store, place.subject));
+  return is_known ? Status() : Fail(UnknownModel(store, place.subject));
+}
+
 }  // namespace
 
 Result<PolicyInForce> LoadPolicyInForce(storage::Store& store, const PolicyPlace& place) {
@@ -114,7 +145,8 @@ Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock, const Par
   RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why these limits."));
   RIGCAL_ASSIGN(const PolicyPlace place, PlaceAsked(store, parameters));
   const std::string text = parameters.Text("text").value_or("");
-  RIGCAL_TRY(formats::ReadPolicy(text, "the policy of " + TextOf(place)));
+  RIGCAL_ASSIGN(const Policy policy, formats::ReadPolicy(text, "the policy of " + TextOf(place)));
+  RIGCAL_TRY(CheckNamesIn(store, parameters, place, policy));
   PolicyVersion set;
   std::int64_t waiting = 0;
   RIGCAL_TRY(store.Write([&]() -> Status {

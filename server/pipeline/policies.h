@@ -27,7 +27,8 @@ void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
 [[nodiscard]] Result<std::string> TellPolicy(storage::Store& store, const formats::Parameters& parameters);
 
 // Order set_policy: `text` (YAML), `who`, `reason`, and `robot`, or `model`, or neither for the fleet. The robots that
-// it is for wait to be judged anew.
+// it is for wait to be judged anew. kNotFound where a robot's names a sensor that the robot does not have, and where no
+// session is of the rig model, unless `new_model` says that its sessions are to come.
 [[nodiscard]] Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock,
                                           const formats::Parameters& parameters);
 

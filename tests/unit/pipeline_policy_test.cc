@@ -192,6 +192,42 @@ TEST_F(PolicyTest, PixelsAreHeldAgainstGivenIntrinsics) {
   EXPECT_TRUE(without.focal_px.empty()) << "nobody asks";
 }
 
+TEST_F(PolicyTest, ASensorThatTheRobotDoesNotHaveIsRefused) {
+  std::vector<Edge> edges = {GivenEdge("r", "left", "right", 1.0), GivenEdge("r", "left", "top", 2.0)};
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  StepAll();
+  const auto refused = [&](const std::string& text) {
+    const auto done = Order({{"robot", "r"}, {"text", text}});
+    EXPECT_FALSE(done) << text;
+    return done ? "" : Sentence(done.error());
+  };
+  const std::string cure = " `rigcal show r` lists its sensors.";
+  EXPECT_EQ(refused("sensors: {rigth: {tolerance_mm: 2}}"),
+            "robot 'r' has no sensor 'rigth': did you mean right?" + cure);
+  EXPECT_EQ(refused("pairs: {left - lidar: {tolerance_mm: 2}}"), "robot 'r' has no sensor 'lidar'." + cure);
+  EXPECT_EQ(storage::LoadPolicyWatermark(*store_).value(), 0);
+  Set({{"robot", "r"}, {"text", "sensors: {right: {tolerance_mm: 2}}\npairs: {left - top: {tolerance_mm: 2}}\n"}});
+  Set({{"text", "sensors: {rigth: {tolerance_mm: 2}}\n"}});  // another robot of the fleet may have it
+}
+
+TEST_F(PolicyTest, ARigModelThatNoSessionNamesIsRefusedUnlessItIsNew) {
+  Manifest manifest;
+  manifest.header.robot = RobotId("m");
+  manifest.header.rig_model = "mars mapper";
+  manifest.header.reference = SensorId("left");
+  manifest.header.sensors.emplace_back().id = SensorId("left");
+  AddFile("left/01.png", "no picture", manifest);
+  Close(manifest);
+  const auto done = Order({{"model", "mars maper"}, {"text", "max_age_days: 20\n"}});
+  ASSERT_FALSE(done);
+  EXPECT_EQ(Sentence(done.error()),
+            "no session is of rig model \"mars maper\": did you mean mars mapper? Correct the name, or say with "
+            "--new-model that its sessions are to come.");
+  EXPECT_EQ(Set({{"model", "mars mapper"}, {"text", "max_age_days: 20\n"}})["set"]["version"], 1);
+  EXPECT_EQ(Set({{"model", "venus"}, {"new_model", true}, {"text", "max_age_days: 20\n"}})["set"]["subject"], "venus");
+}
+
 TEST_F(PolicyTest, WhatCannotBeSetSaysWhy) {
   PushTriangle("r");
   StepAll();
