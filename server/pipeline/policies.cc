@@ -1,6 +1,7 @@
 #include "server/pipeline/policies.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
 
 #include "server/base/text.h"
@@ -84,6 +85,20 @@ Result<PolicyPlace> PlaceAsked(storage::Store& store, const Parameters& paramete
   return PolicyPlace{PolicyScope::kRobot, robot.str()};
 }
 
+// Those of which it is not known when they were captured come last.
+std::vector<const SessionHeader*> NewestFirst(const std::map<SessionId, SessionHeader>& headers,
+                                              const std::map<SessionId, Stamp>& captured_at) {
+  std::vector<std::pair<std::int64_t, const SessionHeader*>> timed;
+  for (const auto& [session, header] : headers) {
+    const auto found = captured_at.find(session);
+    timed.emplace_back(found == captured_at.end() ? INT64_MIN : found->second.ns, &header);
+  }
+  std::stable_sort(timed.begin(), timed.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<const SessionHeader*> sorted;
+  for (const auto& [captured_ns, header] : timed) sorted.push_back(header);
+  return sorted;
+}
+
 std::set<SensorId> SensorsNamedBy(const Policy& policy) {
   std::set<SensorId> sensors;
   for (const auto& [sensor, words] : policy.sensors) sensors.insert(sensor);
@@ -128,8 +143,8 @@ void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
   for (const report::CameraReport& camera : LoadFits(store, report::ChooseFits(of_edges, captured_at)))
     if (camera.fit.source != IntrinsicsSource::kNone)
       policy.focal_px.emplace(camera.fit.camera, camera.fit.intrinsics.fx_px);
-  for (const auto& [session, header] : headers)
-    for (const Sensor& sensor : header.sensors)
+  for (const SessionHeader* header : NewestFirst(headers, captured_at))
+    for (const Sensor& sensor : header->sensors)
       if (sensor.intrinsics) policy.focal_px.emplace(sensor.id, sensor.intrinsics->fx_px);
 }
 

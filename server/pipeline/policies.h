@@ -18,7 +18,7 @@ namespace rigcal::pipeline {
 [[nodiscard]] Result<PolicyInForce> LoadPolicyInForce(storage::Store& store, const PolicyPlace& place);
 
 // READ: the focal lengths of cameras, where the policy has a tolerance in pixels: as the newest fit of an edge has it,
-// or as a session gives it.
+// or else as the newest session of `headers` that gives it.
 void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
                 const std::map<SessionId, SessionHeader>& headers, const std::map<SessionId, Stamp>& captured_at,
                 Policy& policy);

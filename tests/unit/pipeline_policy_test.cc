@@ -159,6 +159,27 @@ TEST_F(PolicyTest, ACrashBetweenOrderAndVerdictLosesNothing) {
   EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
 }
 
+TEST_F(PolicyTest, PixelsAreHeldAgainstTheNewestIntrinsicsWhateverTheNameOfTheSession) {
+  const auto header_of = [](double fx_px) {
+    SessionHeader header;
+    header.sensors.emplace_back().id = SensorId("left");
+    header.sensors.back().intrinsics = CameraIntrinsics{};
+    header.sensors.back().intrinsics->fx_px = fx_px;
+    return header;
+  };
+  const SessionId first(std::string(64, '1')), second(std::string(64, '2')), untold(std::string(64, '0'));
+  const std::map<SessionId, SessionHeader> headers = {
+      {first, header_of(500.0)}, {second, header_of(800.0)}, {untold, header_of(300.0)}};
+  for (const auto& [newest, fx_px] : {std::pair{first, 500.0}, std::pair{second, 800.0}}) {
+    Policy policy;
+    policy.all.tolerance_px_at_10_m = 1.0;
+    std::map<SessionId, Stamp> captured_at = {{first, Stamp{10}}, {second, Stamp{10}}};
+    captured_at[newest].ns = 20;
+    TakeFocals(*store_, {}, headers, captured_at, policy);
+    EXPECT_EQ(policy.focal_px, (std::map<SensorId, double>{{SensorId("left"), fx_px}}));
+  }
+}
+
 // It was taken when limits had no least value.
 TEST_F(PolicyTest, AStoredLimitThatIsTooSmallHoldsUpNobody) {
   PushTriangle("r");
