@@ -170,7 +170,7 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-               const SessionHeaders& headers) {
+               const SessionHeaders& headers, const PairCovariances& pairs) {
   const std::set<std::string> names = NamesOf(edges, solution);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
     return VerdictFrom(level, findings, names);
@@ -196,6 +196,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
+  if (auto uncertain = FindUncertainPairs(policy, pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
   const std::string remarks = Remarks({held_back ? held_back->why : "", SlantsRemark(estimates), SmallDisagreements(edges, judged, policy),
                                        SmallMoves(estimates, solution, policy, captured_at)},

@@ -225,6 +225,12 @@ storage::MergeStep MergeOlder(const RobotId& robot, RobotEdges& loaded) {
   return step;
 }
 
+std::vector<SensorPair> PairsNamedBy(const Policy& policy) {
+  std::vector<SensorPair> pairs;
+  for (const auto& [pair, words] : policy.pairs) pairs.push_back(pair);
+  return pairs;
+}
+
 // What is told of the graph and judged.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting, JointPoses& poses) {
   RobotGraph loaded = GraphOf(edges, robot, true);
@@ -237,9 +243,11 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
   poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
+  const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
+                                                          input.solution, honest.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
                                     : fleet::Assess(loaded.edges, input.solution, edges.policy.policy,
-                                                    edges.captured_at, edges.refined.estimates, edges.headers);
+                                                    edges.captured_at, edges.refined.estimates, edges.headers, pairs);
   input.policy = edges.policy;
   input.edges = std::move(loaded.edges);
   return input;

@@ -138,6 +138,8 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   EXPECT_TRUE(LoadRigModel(store_, kRobot));
+  EXPECT_TRUE(HasRigModel(store_, "nobody's"));
+  EXPECT_TRUE(LoadRigModels(store_, 9));
   EXPECT_TRUE(LoadPolicyWatermark(store_));
   for (const PolicyPlace& place : {PolicyPlace{}, PolicyPlace{PolicyScope::kRobot, kRobot.str()}})
     EXPECT_TRUE(LoadPolicy(store_, place));
