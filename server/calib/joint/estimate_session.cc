@@ -69,7 +69,10 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
 
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
-  const PoseCovariance covariance = CovarianceOfPoses(explained.refined, CovarianceByFields(explained.misfits));
+  Eigen::MatrixXd beside = CovarianceByFields(explained.misfits);
+  if (const Eigen::MatrixXd by_slants = CovarianceBySlants(explained); by_slants.size() > 0)
+    beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_slants) : by_slants;
+  const PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
   std::vector<int> sensors;
   for (const auto& [id, s] : LastOfEach(problem)) {
     estimate.poses.push_back({id, explained.refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
