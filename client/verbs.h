@@ -19,6 +19,7 @@ void AddRestore(CLI::App& app, Context& context);
 void AddRetire(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kPolicyActions = {"show", "check", "set"};
 void AddPolicy(CLI::App& app, Context& context);
+void AddAudit(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);
 void AddEdges(CLI::App& app, Context& context);

@@ -307,11 +307,4 @@ Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
   });
 }
 
-Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what) {
-  return store.connection().Append("audit", [&]() -> Status {
-    Query(store, "INSERT INTO audit (at_ns, who, what) VALUES (?, ?, ?)").Bind(now, who, what).Run();
-    return {};
-  });
-}
-
 }  // namespace rigcal::storage

@@ -54,7 +54,4 @@ struct RevisionKey {
 [[nodiscard]] Status PublishAgain(Store& store, const RobotId& robot);
 [[nodiscard]] Status AppendPublication(Store& store, const RevisionKey& key, Stamp now);
 
-// Append-only audit trail: who did what.
-[[nodiscard]] Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what);
-
 }  // namespace rigcal::storage

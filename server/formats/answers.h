@@ -11,6 +11,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/audit.h"
 #include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
@@ -63,6 +64,11 @@ struct PolicyAnswer {
 [[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
 // Of `rigcal policy check`: a file alone.
 [[nodiscard]] std::string WritePolicyCheck(const std::string& file, const Policy& policy);
+
+// verb audit, the newest first. `next`: as NextPage, the number of a row; 0: there is no other page.
+[[nodiscard]] std::string WriteAudit(const std::vector<AuditRow>& rows, const std::optional<std::int64_t>& next = {});
+// verb audit_verify
+[[nodiscard]] std::string WriteAuditCheck(const AuditCheck& check);
 
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,

@@ -11,6 +11,7 @@
 #include "server/graph/merged_edge.h"
 #include "server/graph/solve.h"
 #include "server/pipeline/asked.h"
+#include "server/pipeline/audit.h"
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/names.h"
@@ -296,6 +297,8 @@ const std::map<std::string, Verb>& Verbs() {
       {"known_files", TellKnownFiles},
       {"status", OfStatus},
       {"policy", TellPolicyAsked},
+      {"audit", ListAudit},
+      {"audit_verify", VerifyAudit},
       {"due", Due},
       {"health", Health},
       {"live", Live},

@@ -3,6 +3,7 @@
 
 #include "server/formats/documents.h"
 #include "storage/attempts.h"
+#include "storage/audit.h"
 #include "storage/fleet_facts.h"
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"

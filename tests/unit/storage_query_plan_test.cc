@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "storage/audit.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/fleet_list.h"
@@ -134,6 +135,9 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   EXPECT_TRUE(LoadRigModel(store_, kRobot));
   EXPECT_TRUE(LoadPolicyWatermark(store_));
+  EXPECT_FALSE(LoadAudit(store_, kRobot, 0, 9)->empty());
+  EXPECT_EQ(LoadAudit(store_, RobotId(), 2, 9)->size(), 1U);  // a page of all robots'
+  EXPECT_TRUE(AppendAudit(store_, {3}, "Ada", "looked"));
   for (const PolicyPlace& place : {PolicyPlace{}, PolicyPlace{PolicyScope::kRobot, kRobot.str()}})
     EXPECT_TRUE(LoadPolicy(store_, place));
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
