@@ -13,6 +13,8 @@ void WriteRetiredSensors(JsonWriter& out, const std::vector<RetiredSensor>& reti
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
 // `usable`
 void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);
+// "state", "decision", "in_use".
+void WriteApproval(JsonWriter& out, const Approval& approval);
 // Without its document.
 void WriteRevisionMembers(JsonWriter& out, const Revision& revision);
 

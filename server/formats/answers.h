@@ -12,6 +12,7 @@
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
 #include "server/model/audit.h"
+#include "server/model/decision.h"
 #include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
@@ -74,11 +75,16 @@ struct PolicyAnswer {
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
                                      const std::vector<EdgeResidual>& residuals, const NextPage& next = {});
 
+// verbs approve, reject, rollback: the revision as it stands from now on.
+[[nodiscard]] std::string WriteDecided(const Revision& revision, const Approval& approval);
+
 // verb show: number, time and digest around the revision's document, which is put in byte for byte.
-[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now);
-// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page.
+[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
+                                    const Approval& approval = {});
+// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
+// each revision.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
-                                         const std::optional<int>& next = {});
+                                         const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {});
 
 // verb lookup
 struct LookupAnswer {
@@ -91,6 +97,7 @@ struct LookupAnswer {
   std::optional<Eigen::Matrix3d> R_a_robot = {};  // as GraphSolution::R_ref_robot, in a; nothing: not known
   Verdict verdict;                         // of the revision
   Validity validity;
+  Approval approval = {};                  // likewise
 };
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
 

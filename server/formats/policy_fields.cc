@@ -78,6 +78,8 @@ void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force) {
   if (policy.residual_max_rad) out.Number("residual_max_rad", *policy.residual_max_rad);
   if (policy.max_age_ns) out.Integer("max_age_ns", *policy.max_age_ns);
   if (policy.captures_min) out.Integer("captures_min", *policy.captures_min);
+  if (policy.approval) out.Text("approval", NameOf(*policy.approval));
+  if (policy.approve_warnings) out.Flag("approve_warnings", *policy.approve_warnings);
 }
 
 PolicyInForce ReadPolicyMembers(const JsonField& field) {
@@ -94,6 +96,8 @@ PolicyInForce ReadPolicyMembers(const JsonField& field) {
   if (const auto value = field.Find("residual_max_rad")) policy.residual_max_rad = ReadAboveZero(*value);
   if (const auto value = field.Find("max_age_ns")) policy.max_age_ns = value->Integer(1, INT64_MAX);
   if (const auto value = field.Find("captures_min")) policy.captures_min = value->Integer(1, INT64_MAX);
+  if (const auto value = field.Find("approval")) policy.approval = ApprovalByOf(value->Text());
+  if (const auto value = field.Find("approve_warnings")) policy.approve_warnings = value->Flag();
   return in_force;
 }
 

@@ -8,6 +8,7 @@
 
 #include "server/base/ids.h"
 #include "server/base/stamp.h"
+#include "server/model/decision.h"
 #include "server/model/diagnosis.h"
 #include "server/model/validity.h"
 
@@ -31,6 +32,7 @@ struct RobotSummary {
   std::optional<Stamp> last_session_at = {};  // captured; of those that came whole the newest; absent: none did
   std::optional<WorstEdge> worst = {};        // of that revision; absent: nothing checks an edge, or it was not kept
   std::vector<std::string> causes = {};       // of that revision: keys of cause.h, sorted; each is of some characters of ids
+  RevisionState state = RevisionState::kUnusable;  // of that revision
 };
 
 }  // namespace rigcal

@@ -2,6 +2,7 @@
 
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
+#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/jobs.h"
@@ -38,6 +39,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   summary.revision = revision.number;
   summary.verdict = revision.verdict;
   RIGCAL_ASSIGN(summary.validity, LoadValidity(store, revision, now));
+  RIGCAL_ASSIGN(summary.state, storage::LoadRevisionState(store, revision));
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
   RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
   if (!summary.validity.calculating) return {};

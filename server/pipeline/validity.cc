@@ -6,6 +6,7 @@
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/session_refinement.h"
 #include "storage/attempts.h"
+#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/retired.h"
@@ -59,13 +60,16 @@ Result<std::string> LoadGivenUp(storage::Store& store, const RobotId& robot) {
 
 }  // namespace
 
-Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Revision& revision) {
-  if (IsUsable(revision.verdict)) return UsableRevision{revision.number, revision.created_at};
-  RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, revision.robot, revision.number));
+Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto in_use, storage::LoadInUse(store, robot));
+  if (!in_use) return std::nullopt;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
+  if (newest && newest->number == in_use->revision) return UsableRevision{newest->number, newest->created_at};
+  RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot));
   if (!usable) return std::nullopt;
-  RIGCAL_ASSIGN(const bool remounted, WasRemountedAfter(store, revision.robot, usable->created_at));
+  RIGCAL_ASSIGN(const bool remounted, WasRemountedAfter(store, robot, usable->created_at));
   if (remounted) return std::nullopt;
-  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, revision.robot, usable->created_at));
+  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, robot, usable->created_at));
   if (gave_way) return std::nullopt;
   return UsableRevision{usable->number, usable->created_at};
 }
@@ -85,7 +89,7 @@ Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, S
   validity.calibrated_at = revision.calibrated_at;
   validity.max_age_ns = revision.max_age_ns;
   validity.overdue = IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
-  RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision));
+  RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision.robot));
   RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
   return validity;
 }

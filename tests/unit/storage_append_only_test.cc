@@ -4,6 +4,7 @@
 #include "server/formats/documents.h"
 #include "storage/attempts.h"
 #include "storage/audit.h"
+#include "storage/decisions.h"
 #include "storage/fleet_facts.h"
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"
@@ -71,6 +72,7 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       RIGCAL_TRY(AppendPolicy(store_, {}, "tolerance_mm: 4", {{6}, "Ada", "new mounts"}));
+      RIGCAL_TRY(AppendDecision(store_, kRobot, number, Deciding::kApprove, {{6}, "Ada", "checked"}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "storage/audit.h"
+#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/fleet_list.h"
@@ -33,6 +34,7 @@ class QueryPlanTest : public StoreTest {
       ASSERT_TRUE(AppendRobot(store_, robot, {1}));
       for (int i = 0; i < 3; ++i) ASSERT_TRUE(AppendEdge(store_, MakeEdge(i, robot), {1}));
       ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, robot).value(), robot)));
+      ASSERT_TRUE(AppendDecision(store_, robot, 1, Deciding::kApprove, {{1}, "policy", ""}));
     }
     session_ = session;
     ASSERT_TRUE(RetireSensor(store_, kRobot, SensorId("s1"), {{2}, "Ada", "taken off"}));
@@ -95,8 +97,12 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(CountUnpublished(store_, kRobot));
   EXPECT_TRUE(LoadRevision(store_, kRobot, 0));
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 0));
-  EXPECT_TRUE(LoadUsableRevision(store_, kRobot, 0));
-  EXPECT_EQ(LoadNewestGood(store_, kRobot, 1).value(), 1);
+  EXPECT_TRUE(LoadUsableRevision(store_, kRobot).value());
+  EXPECT_EQ(LoadNewestApproved(store_, kRobot).value(), 1);
+  EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 1);
+  EXPECT_EQ(LoadDecision(store_, kRobot, 1).value()->how, "approved");
+  EXPECT_EQ(LoadRevisionState(store_, LoadRevisionSummary(store_, kRobot, 1)->value()).value(), RevisionState::kApproved);
+  EXPECT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kReject, {{3}, "Ada", "bent"}).value());
   EXPECT_EQ(CountEdges(store_, kRobot, LoadEdgeWatermark(store_, kRobot).value()).value(), 3);
   EXPECT_TRUE(LoadRevisionPoses(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
