@@ -23,11 +23,15 @@ std::string NumberOfUse(const Document& document) { return CountOf(document["in_
 
 void PrintApproval(const Document& document, std::ostream& out) {
   if (!document.Has("state")) return;
-  const Approval approval{RevisionStateOf(document["state"].Text()), DecisionIn(document["decision"]), DecisionIn(document["in_use"])};
-  const std::string text =
-      ApprovalText(RobotId(document["robot"].Text("?")), static_cast<int>(document["revision"].Integer().value_or(0)), approval);
+  const Approval approval{RevisionStateOf(document["state"].Text()), DecisionIn(document["decision"]),
+                          DecisionIn(document["in_use"])};
+  const std::string text = ApprovalText(RobotId(document["robot"].Text("?")),
+                                        static_cast<int>(document["revision"].Integer().value_or(0)), approval);
   if (!text.empty()) out << "         " << Plain(text) << '\n';
+  if (const std::string runs = RunsText(document); !runs.empty()) out << "         " << runs << '\n';
 }
+
+std::string RunsText(const Document& document) { return Plain(document["runs"]["trouble"].Text()); }
 
 std::string InUseText(const Document& row) {
   const RevisionState state = RevisionStateOf(row["state"].Text());
@@ -43,8 +47,9 @@ std::string DecidedText(const Document& done) {
   const std::string who = decision ? decision->word.who : "?";
   const std::string reason = decision && !decision->word.reason.empty() ? ": " + decision->word.reason : "";
   const std::string how = decision ? decision->how : "";
-  std::string text = how == "rolled_back" ? "Robot " + robot + " was rolled back to revision " + number + " by " + who + reason
-                                          : "Revision " + number + " of " + robot + " was " + how + " by " + who + reason;
+  std::string text = how == "rolled_back"
+                         ? "Robot " + robot + " was rolled back to revision " + number + " by " + who + reason
+                         : "Revision " + number + " of " + robot + " was " + how + " by " + who + reason;
   text += NumberOfUse(done) == number ? ". It is in use now."
           : done["in_use"].IsNull()   ? ". No calibration of " + robot + " is in use now."
                                       : ". Revision " + NumberOfUse(done) + " is in use.";

@@ -37,7 +37,8 @@ void PrintAuditCheck(const Document& document, std::ostream& out) {
         << " Compare it with a backup, and find out who can write to the server's disk.\n";
     return;
   }
-  out << "The audit is as it was written: " << rows << (rows == "1" ? " row" : " rows") << ", each with the hash of the one before.\n"
+  out << "The audit is as it was written: " << rows << (rows == "1" ? " row" : " rows")
+      << ", each with the hash of the one before.\n"
       << "head  " << CountOf(head["number"]) << ' ' << Plain(head["hash"].Text("?")) << '\n'
       << "That the newest rows were cut off is seen only by a head that is kept elsewhere: note it down.\n";
 }
@@ -70,8 +71,10 @@ void AddAudit(CLI::App& app, Context& context) {
                             ->type_name("N")
                             ->check(CLI::PositiveNumber);
   verb->footer(
-      "Every decision of a person or a policy is a row that is never changed, and holds the hash of the row before it.\n"
-      "`verify` walks through all and names the first that does not hold: exit code 1, else 0. That the newest rows were\n"
+      "Every decision of a person or a policy is a row that is never changed, and holds the hash of the row before "
+      "it.\n"
+      "`verify` walks through all and names the first that does not hold: exit code 1, else 0. That the newest rows "
+      "were\n"
       "cut off no chain can tell: keep the head that it prints elsewhere, and compare.\n"
       "Examples:\n"
       "  rigcal audit\n"

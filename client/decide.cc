@@ -17,14 +17,14 @@ struct DecideOptions {
 void PrintDecided(const Document& done, std::ostream& out) { out << DecidedText(done) << '\n'; }
 
 ExitCode RunDecide(const Context& context, const std::string& verb, const DecideOptions& options) {
-  std::vector<Field> parameters = {{"robot", options.robot},
-                                   {"who", options.who.empty() ? LoginName() : options.who},
-                                   {"reason", options.reason}};
+  std::vector<Field> parameters = {
+      {"robot", options.robot}, {"who", options.who.empty() ? LoginName() : options.who}, {"reason", options.reason}};
   if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
   return Answer(context, {verb, JsonObject(parameters), PrintDecided, {}});
 }
 
-void AddDecide(CLI::App& app, Context& context, const std::string& name, const std::string& description, const std::string& footer) {
+void AddDecide(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+               const std::string& footer) {
   CLI::App* verb = app.add_subcommand(name, description);
   auto options = std::make_shared<DecideOptions>();
   const bool needs_revision = name == "rollback";
@@ -42,7 +42,8 @@ void AddDecide(CLI::App& app, Context& context, const std::string& name, const s
 
 void AddApprove(CLI::App& app, Context& context) {
   AddDecide(app, context, "approve", "Let a robot use a revision",
-            "Only what passes or warns can be approved. Where the policy says `approval: person` nothing else lets a robot use a\n"
+            "Only what passes or warns can be approved. Where the policy says `approval: person` nothing else lets a "
+            "robot use a\n"
             "revision; else a pass is approved by itself (docs/approval.md).\n"
             "Examples:\n"
             "  rigcal show mapper-01              what is in use, and what is a candidate\n"
@@ -58,7 +59,8 @@ void AddReject(CLI::App& app, Context& context) {
 
 void AddRollback(CLI::App& app, Context& context) {
   AddDecide(app, context, "rollback", "Let a robot use an earlier approved revision again",
-            "Those after it are used no more, until one of them is approved or rolled back to. With `approval: automatic` the next\n"
+            "Those after it are used no more, until one of them is approved or rolled back to. With `approval: "
+            "automatic` the next\n"
             "revision that passes is in use again; set `approval: person` of the robot to keep it where it is.\n"
             "Examples:\n"
             "  rigcal history mapper-01           its revisions, and which is in use\n"

@@ -22,6 +22,7 @@ void AddPolicy(CLI::App& app, Context& context);
 void AddApprove(CLI::App& app, Context& context);
 void AddReject(CLI::App& app, Context& context);
 void AddRollback(CLI::App& app, Context& context);
+void AddAgent(CLI::App& app, Context& context);
 void AddAudit(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);

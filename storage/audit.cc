@@ -21,7 +21,9 @@ AuditRow AuditRowOf(const Query& query) {
 
 // The next number after all that there are, also where one of both tables was cut.
 std::int64_t NextAuditNumber(Store& store) {
-  Query query(store, "SELECT max(coalesce((SELECT max(number) FROM audit), 0), coalesce((SELECT max(number) FROM audit_chain), 0)) + 1");
+  Query query(store,
+              "SELECT max(coalesce((SELECT max(number) FROM audit), 0), coalesce((SELECT max(number) FROM "
+              "audit_chain), 0)) + 1");
   return query.Step() ? query.Int(0) : 1;
 }
 

@@ -31,7 +31,10 @@ void ChainOldAudit(SQLite::Database& database) {
   SQLite::Statement insert(database, "INSERT INTO audit_chain VALUES (?, ?, ?)");
   Digest before(kFirstAuditHash);
   while (rows.executeStep()) {
-    AuditRow row{rows.getColumn(0).getInt64(), {rows.getColumn(1).getInt64()}, {}, rows.getColumn(2).getString(),
+    AuditRow row{rows.getColumn(0).getInt64(),
+                 {rows.getColumn(1).getInt64()},
+                 {},
+                 rows.getColumn(2).getString(),
                  rows.getColumn(3).getString()};
     row.robot = RobotNamedIn(is_known, row.what);
     before = AuditHash(before, row);

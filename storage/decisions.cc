@@ -26,7 +26,8 @@ Decision DecisionOf(const Query& query) {
 
 // Of a decision `d` to use a revision.
 const std::string kNotRolledBack =
-    "NOT EXISTS (SELECT 1 FROM decision b WHERE b.robot_id = d.robot_id AND b.how = 'rolled_back' AND b.number > d.number AND "
+    "NOT EXISTS (SELECT 1 FROM decision b WHERE b.robot_id = d.robot_id AND b.how = 'rolled_back' AND b.number > "
+    "d.number AND "
     "b.revision_number < d.revision_number)";
 // That it holds.
 const std::string kHolds =
@@ -41,19 +42,22 @@ std::optional<Decision> InUse(Store& store, const RobotId& robot) {
 }
 
 std::optional<Decision> NewestAbout(Store& store, const RobotId& robot, int revision) {
-  Query query(store, "SELECT " + kDecisionColumns +
-                         " FROM decision d WHERE d.robot_id = ? AND d.revision_number = ? ORDER BY d.number DESC LIMIT 1");
+  Query query(store,
+              "SELECT " + kDecisionColumns +
+                  " FROM decision d WHERE d.robot_id = ? AND d.revision_number = ? ORDER BY d.number DESC LIMIT 1");
   return query.Bind(robot, revision).Step() ? std::optional(DecisionOf(query)) : std::nullopt;
 }
 
-bool WasApproved(Store& store, const RobotId& robot, int revision) {
+bool WasEverApproved(Store& store, const RobotId& robot, int revision) {
   return Query(store, "SELECT 1 FROM decision WHERE robot_id = ? AND revision_number = ? AND how <> 'rejected' LIMIT 1")
       .Bind(robot, revision)
       .Step();
 }
 
 bool WasRolledBack(Store& store, const Decision& decision) {
-  return !Query(store, "SELECT 1 FROM decision d WHERE d.number = ? AND " + kNotRolledBack).Bind(decision.number).Step();
+  return !Query(store, "SELECT 1 FROM decision d WHERE d.number = ? AND " + kNotRolledBack)
+              .Bind(decision.number)
+              .Step();
 }
 
 // The name of a decision in the table.
@@ -75,11 +79,14 @@ Status CheckDecision(Store& store, const RobotId& robot, int revision, Deciding 
                 "`rigcal history " + robot.str() + "` lists those that there are.");
   if (deciding == Deciding::kReject) return {};
   if (!IsUsable(known->verdict))
-    return Fail(ErrorCode::kConflict,
-                NamedRevision(robot, revision) + " has the verdict " + NameOf(known->verdict.level) + ": only pass and warn are used",
-                "`rigcal show " + robot.str() + " --revision " + std::to_string(revision) + "` says why, and what to do.");
-  if (deciding == Deciding::kApprove || WasApproved(store, robot, revision)) return {};
-  return Fail(ErrorCode::kConflict, NamedRevision(robot, revision) + " was never approved: there is nothing to go back to",
+    return Fail(
+        ErrorCode::kConflict,
+        NamedRevision(robot, revision) + " has the verdict " + NameOf(known->verdict.level) +
+            ": only pass and warn are used",
+        "`rigcal show " + robot.str() + " --revision " + std::to_string(revision) + "` says why, and what to do.");
+  if (deciding == Deciding::kApprove || WasEverApproved(store, robot, revision)) return {};
+  return Fail(ErrorCode::kConflict,
+              NamedRevision(robot, revision) + " was never approved: there is nothing to go back to",
               "`rigcal approve " + robot.str() + " " + std::to_string(revision) + " --reason TEXT` approves it.");
 }
 
@@ -114,8 +121,8 @@ Result<std::optional<Decision>> LoadInUse(Store& store, const RobotId& robot) {
 
 namespace {
 
-// Of a revision: that no edge which it counts was retired since, itself or with its session, and not restored. `counted` finds
-// the edges `c` of the word `t`, which is about `subject`.
+// Of a revision: that no edge which it counts was retired since, itself or with its session, and not restored.
+// `counted` finds the edges `c` of the word `t`, which is about `subject`.
 std::string CountsNothingRetired(const std::string& counted, const std::string& subject) {
   return "NOT EXISTS (SELECT 1 FROM standing t JOIN " + counted +
          " WHERE t.robot_id = revision.robot_id AND t.how = 'retired' AND c.number <= revision.edge_watermark "
@@ -130,15 +137,17 @@ std::string CountsNothingRetired(const std::string& counted, const std::string& 
 Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot) {
   using Found = std::optional<Revision>;
   return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> {
-    Query query(store, std::string("SELECT ") + kRevisionColumns +
-                           " FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND "
-                           "revision.number = d.revision_number " +
-                           kRevisionJudged + " WHERE d.robot_id = ? AND verdict IN ('pass', 'warn') AND " + kHolds + " AND " +
-                           CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
-                           CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
-                                                "JOIN counted_edge c ON c.edge_number = e.number",
-                                                "session_number") +
-                           " ORDER BY d.number DESC LIMIT 1");
+    Query query(
+        store,
+        std::string("SELECT ") + kRevisionColumns +
+            " FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND "
+            "revision.number = d.revision_number " +
+            kRevisionJudged + " WHERE d.robot_id = ? AND verdict IN ('pass', 'warn') AND " + kHolds + " AND " +
+            CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
+            CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
+                                 "JOIN counted_edge c ON c.edge_number = e.number",
+                                 "session_number") +
+            " ORDER BY d.number DESC LIMIT 1");
     return query.Bind(robot).Step() ? Found(RevisionAt(query)) : std::nullopt;
   });
 }
@@ -146,14 +155,21 @@ Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& 
 Result<int> LoadNewestApproved(Store& store, const RobotId& robot) {
   return Load<int>(store, DecisionsSubject(robot), [&]() -> Result<int> {
     Query query(store,
-                "SELECT revision_number FROM decision WHERE robot_id = ? AND how <> 'rejected' ORDER BY revision_number DESC LIMIT 1");
+                "SELECT revision_number FROM decision WHERE robot_id = ? AND how <> 'rejected' ORDER BY "
+                "revision_number DESC LIMIT 1");
     return query.Bind(robot).Step() ? static_cast<int>(query.Int(0)) : 0;
   });
 }
 
+Result<bool> WasApproved(Store& store, const RobotId& robot, int revision) {
+  return Load<bool>(store, DecisionsSubject(robot),
+                    [&]() -> Result<bool> { return WasEverApproved(store, robot, revision); });
+}
+
 Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision) {
   using Found = std::optional<Decision>;
-  return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> { return NewestAbout(store, robot, revision); });
+  return Load<Found>(store, DecisionsSubject(robot),
+                     [&]() -> Result<Found> { return NewestAbout(store, robot, revision); });
 }
 
 Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision) {

@@ -14,7 +14,8 @@ inline constexpr const char* kRevisionColumns =
     "WHERE c.robot_id = revision.robot_id AND c.revision_number = revision.number), "
     "judged.policy_watermark, judged.max_age_ns, judged.unverified ";
 inline constexpr const char* kRevisionJudged =
-    "LEFT JOIN revision_judgement judged ON judged.robot_id = revision.robot_id AND judged.revision_number = revision.number ";
+    "LEFT JOIN revision_judgement judged ON judged.robot_id = revision.robot_id AND judged.revision_number = "
+    "revision.number ";
 
 // Of a query whose first columns are these; without its document.
 [[nodiscard]] Revision RevisionAt(const Query& query);

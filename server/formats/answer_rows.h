@@ -15,6 +15,8 @@ void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* 
 void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);
 // "state", "decision", "in_use".
 void WriteApproval(JsonWriter& out, const Approval& approval);
+// "runs"
+void WriteRuns(JsonWriter& out, const std::optional<Runs>& runs);
 // Without its document.
 void WriteRevisionMembers(JsonWriter& out, const Revision& revision);
 

@@ -39,6 +39,7 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
     robot.revision > 0 ? out.Text("state", NameOf(robot.state)) : out.Null("state");
+    WriteRuns(out, robot.runs);
     WriteValidity(out, robot.validity);
     WriteDrive(out, robot.verdict, robot.validity);
     WriteAge(out, robot.validity.calibrated_at, now);
@@ -186,13 +187,15 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval) {
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval,
+                      const std::optional<Runs>& runs) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
     WriteDrive(out, revision.verdict, validity);
     WriteApproval(out, approval);
+    WriteRuns(out, runs);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     out.Null("document");

@@ -80,7 +80,7 @@ struct PolicyAnswer {
 
 // verb show: number, time and digest around the revision's document, which is put in byte for byte.
 [[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
-                                    const Approval& approval = {});
+                                    const Approval& approval = {}, const std::optional<Runs>& runs = {});
 // verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
 // each revision.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,

@@ -23,6 +23,14 @@ void WriteApproval(JsonWriter& out, const Approval& approval) {
   WriteDecision(out, "in_use", approval.in_use);
 }
 
+void WriteRuns(JsonWriter& out, const std::optional<Runs>& runs) {
+  if (!runs) return out.Null("runs");
+  out.Object("runs", [&] {
+    runs->revision > 0 ? out.Integer("revision", runs->revision) : out.Null("revision");
+    runs->trouble.empty() ? out.Null("trouble") : out.Text("trouble", runs->trouble);
+  });
+}
+
 std::string WriteDecided(const Revision& revision, const Approval& approval) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", revision.robot.str());

@@ -8,12 +8,13 @@
 namespace rigcal {
 namespace {
 
-constexpr std::array<std::pair<RevisionState, const char*>, 6> kStateNames = {{{RevisionState::kUnusable, "unusable"},
-                                                                               {RevisionState::kCandidate, "candidate"},
-                                                                               {RevisionState::kApproved, "approved"},
-                                                                               {RevisionState::kSuperseded, "superseded"},
-                                                                               {RevisionState::kRolledBack, "rolled_back"},
-                                                                               {RevisionState::kRejected, "rejected"}}};
+constexpr std::array<std::pair<RevisionState, const char*>, 6> kStateNames = {
+    {{RevisionState::kUnusable, "unusable"},
+     {RevisionState::kCandidate, "candidate"},
+     {RevisionState::kApproved, "approved"},
+     {RevisionState::kSuperseded, "superseded"},
+     {RevisionState::kRolledBack, "rolled_back"},
+     {RevisionState::kRejected, "rejected"}}};
 
 // "approved by policy, 3 Nov 2026"
 std::string DecidedText(const Decision& decision) {
@@ -26,7 +27,8 @@ std::string StateText(const RobotId& robot, int revision, const Approval& approv
       approval.decision && !approval.decision->word.reason.empty() ? ": " + approval.decision->word.reason : "";
   switch (approval.state) {
     case RevisionState::kCandidate:
-      return "this one is a candidate: `rigcal approve " + robot.str() + " " + std::to_string(revision) + " --reason TEXT`";
+      return "this one is a candidate: `rigcal approve " + robot.str() + " " + std::to_string(revision) +
+             " --reason TEXT`";
     case RevisionState::kSuperseded:
       return "this one was superseded";
     case RevisionState::kRolledBack:

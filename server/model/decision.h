@@ -1,5 +1,5 @@
-// The life of a calibration: a revision is a candidate until somebody approves it, a person or the policy; then it is in use until
-// another takes its place.
+// The life of a calibration: a revision is a candidate until somebody approves it, a person or the policy; then it is
+// in use until another takes its place.
 #pragma once
 
 #include <cstdint>
@@ -46,8 +46,8 @@ struct Approval {
 // Whether the policy approves a revision of this verdict by itself.
 [[nodiscard]] bool Approves(const Policy& policy, const Verdict& verdict);
 
-// "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 --reason TEXT`". Empty of
-// the revision that is in use, and of one that is unusable: its verdict says it.
+// "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 --reason TEXT`".
+// Empty of the revision that is in use, and of one that is unusable: its verdict says it.
 [[nodiscard]] std::string ApprovalText(const RobotId& robot, int revision, const Approval& approval);
 
 }  // namespace rigcal

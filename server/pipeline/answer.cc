@@ -95,7 +95,8 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
   RIGCAL_ASSIGN(const Approval approval, LoadApproval(context.store, revision));
-  return formats::WriteShow(revision, is_published, validity, now, approval);
+  RIGCAL_ASSIGN(const auto runs, LoadWhatRuns(context.store, robot));
+  return formats::WriteShow(revision, is_published, validity, now, approval, runs);
 }
 
 // Those of merged edges scatter as theirs do.

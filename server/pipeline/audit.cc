@@ -14,7 +14,8 @@ Result<std::int64_t> AuditRowBefore(const Parameters& parameters) {
   if (!parameters.Text("before")) return 0;
   RIGCAL_ASSIGN(const std::int64_t before, parameters.IntegerOr("before", 0));
   if (before >= 1) return before;
-  return Fail(ErrorCode::kInvalidInput, "the parameter 'before' is " + std::to_string(before), "Give the number of an audit row.");
+  return Fail(ErrorCode::kInvalidInput, "the parameter 'before' is " + std::to_string(before),
+              "Give the number of an audit row.");
 }
 
 }  // namespace
@@ -26,7 +27,8 @@ Result<std::string> ListAudit(const AnswerContext& context, const Parameters& pa
   }
   RIGCAL_ASSIGN(const std::int64_t page_rows, PageRows(parameters));
   RIGCAL_ASSIGN(const std::int64_t before, AuditRowBefore(parameters));
-  RIGCAL_ASSIGN(auto rows, storage::LoadAudit(context.store, robot, before, page_rows == 0 ? storage::kAllRows : page_rows + 1));
+  RIGCAL_ASSIGN(auto rows,
+                storage::LoadAudit(context.store, robot, before, page_rows == 0 ? storage::kAllRows : page_rows + 1));
   std::optional<std::int64_t> next;
   if (page_rows > 0) next = CutToPage(page_rows, rows) ? rows.back().number : 0;
   return formats::WriteAudit(rows, next);

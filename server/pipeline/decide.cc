@@ -9,6 +9,7 @@
 #include "server/pipeline/validity.h"
 #include "storage/decisions.h"
 #include "storage/revisions.h"
+#include "storage/robot_runs.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -21,7 +22,8 @@ Deciding DecidingOf(const std::string& verb) {
   return verb == "reject" ? Deciding::kReject : Deciding::kRollBack;
 }
 
-Result<Revision> RevisionAsked(storage::Store& store, const RobotId& robot, Deciding deciding, const Parameters& parameters) {
+Result<Revision> RevisionAsked(storage::Store& store, const RobotId& robot, Deciding deciding,
+                               const Parameters& parameters) {
   RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
   if (number < 1 && (deciding == Deciding::kRollBack || parameters.Text("revision")))
     return Fail(ErrorCode::kInvalidInput, "the parameter 'revision' is missing, or no number of a revision",
@@ -59,7 +61,8 @@ Status ApproveByPolicy(storage::Store& store, const Revision& revision, Stamp no
   return {};
 }
 
-Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb, const Parameters& parameters) {
+Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb,
+                         const Parameters& parameters) {
   const Deciding deciding = DecidingOf(verb);
   Word word{clock.Now(), "", ""};
   RIGCAL_ASSIGN(word.who, RequiredText(parameters, "who", "Say who decides."));
@@ -83,7 +86,8 @@ Result<Approval> LoadApproval(storage::Store& store, const Revision& revision) {
   return approvals.front();
 }
 
-Result<std::vector<Approval>> LoadApprovals(storage::Store& store, const RobotId& robot, const std::vector<Revision>& revisions) {
+Result<std::vector<Approval>> LoadApprovals(storage::Store& store, const RobotId& robot,
+                                            const std::vector<Revision>& revisions) {
   std::vector<Approval> approvals;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(const auto in_use, LoadUsingDecision(store, robot));
@@ -95,6 +99,18 @@ Result<std::vector<Approval>> LoadApprovals(storage::Store& store, const RobotId
     return {};
   }));
   return approvals;
+}
+
+Result<std::optional<Runs>> LoadWhatRuns(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(auto runs, storage::LoadRuns(store, robot));
+  if (!runs) return std::nullopt;
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, robot));
+  if (usable) {
+    RIGCAL_ASSIGN(const Revision in_use, LoadRevisionSummaryOf(store, robot, usable->number));
+    if (in_use.digest == runs->report.digest) runs->revision = usable->number;  // of several with the same document
+  }
+  RIGCAL_ASSIGN(const bool was_approved, storage::WasApproved(store, robot, runs->revision));
+  return RunsOf(*runs, was_approved, usable);
 }
 
 Result<Revision> LoadRevisionInUse(storage::Store& store, const RobotId& robot) {

@@ -1,5 +1,6 @@
 #include "server/pipeline/robot_summary.h"
 
+#include "server/pipeline/decide.h"
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
 #include "storage/decisions.h"
@@ -64,6 +65,7 @@ Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robo
   summary.edges = row.edges;
   RIGCAL_ASSIGN(summary.jobs_waiting, storage::CountJobs(store, robot));
   RIGCAL_ASSIGN(summary.last_session_at, storage::LoadNewestCapture(store, robot));
+  RIGCAL_ASSIGN(summary.runs, LoadWhatRuns(store, robot));
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, 0));
   RIGCAL_TRY(revision ? TakeRevision(store, *revision, now, summary) : TakeArrivals(store, summary));
   return summary;

@@ -23,7 +23,7 @@ void FillPages(Dictionary& list, bool is_newest, const std::string& last_shown) 
 }
 
 // Of what is unusable the verdict says it.
-void FillState(Dictionary& row, const std::map<int, RevisionState>& states, int number) {
+void FillLife(Dictionary& row, const std::map<int, RevisionState>& states, int number) {
   const auto found = states.find(number);
   if (found != states.end() && found->second != RevisionState::kUnusable) ShowValue(row, "STATE", "WORD", WordFor(found->second));
 }
@@ -39,7 +39,7 @@ void FillRevisions(Dictionary& page, const RobotInput& input, Stamp now) {
     row->SetValue("NUMBER", std::to_string(revision.number));
     FillBadge(*row, revision.verdict.level);
     row->SetValue("WHY", revision.verdict.why);
-    FillState(*row, input.states, revision.number);
+    FillLife(*row, input.states, revision.number);
     row->SetValue("TIME", TimeText(revision.created_at));
     row->SetValue("AGE", AgeOf(revision.created_at, now));
     if (revision.number <= 1) {
@@ -162,6 +162,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   }
   if (const std::string text = ApprovalText(row.robot, row.revision, input.approval); row.revision > 0 && !text.empty())
     ShowValue(page, "APPROVAL", "TEXT", text + ".");
+  if (row.runs && !row.runs->trouble.empty()) ShowValue(page, "RUNS", "TEXT", row.runs->trouble);
   FillNewest(page, row.revision);
   FillOpenOnes(page, input.open);
   FillSessions(page, input, now);

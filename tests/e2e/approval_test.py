@@ -1,9 +1,11 @@
 """The life of a calibration. A person approves, rolls back, and whatever kills the server in between, what robots are told was approved, and
 nothing else is; who decided is in an audit that holds, and names the row of which one byte was flipped."""
+import hashlib
 import json
 import re
 import sqlite3
 import subprocess
+import time
 
 from edge_case import edge
 from flow import Flow, check
@@ -74,6 +76,46 @@ def a_newer_one_waits(flow):
     check(in_use(flow) == 1 and states(flow) == {2: "rolled_back", 1: "approved"}, "rolled back: %r" % states(flow))
 
 
+def agent(flow, exit_code=0, timeout_s=60):
+    return flow.rigcal("agent", ROBOT, "--out", flow.folder / "calibration.json", "--once", "--json", "--timeout", timeout_s, exit_code=exit_code)
+
+
+def trouble(flow, wanted):
+    """What the server says of what the robot runs: it hears it a moment later."""
+    until = time.monotonic() + 60
+    while time.monotonic() < until:
+        told = json.loads(flow.server.rigcal("show", ROBOT, "--json").stdout)["runs"]
+        if told is not None and wanted in (told["trouble"] or "none"):
+            return told
+    check(False, "what the robot runs: %r instead of %s" % (told, wanted))
+
+
+def a_robot_applies_it(flow):
+    """Revision 1 is in use, 2 was rolled back."""
+    file = flow.folder / "calibration.json"
+    told = json.loads(agent(flow).stdout)
+    check(told["revision"] == 1 and told["written"], "it was applied: %r" % told)
+    check(hashlib.sha256(file.read_bytes()).hexdigest() == told["digest"], "the file is the revision's document")
+    check(trouble(flow, "none")["revision"] == 1, "the server knows")
+    check(not json.loads(agent(flow).stdout)["written"], "once more is no more")
+    flow.rigcal("rollback", ROBOT, 2, "--reason", "it was the wall")
+    check("It runs revision 1; revision 2 is in use: not applied yet." in trouble(flow, "not applied yet")["trouble"], "the server says what is not applied")
+    check("It runs revision 1; revision 2 is in use: not applied yet." in flow.get("/robots/rig/"), "so does the page")
+    flow.kill_and_restart()
+    check(json.loads(agent(flow).stdout)["revision"] == 2, "then it is")
+    trouble(flow, "none")
+    flow.rigcal("reject", ROBOT, 2, "--reason", "no")
+    flow.rigcal("reject", ROBOT, 1, "--reason", "no")
+    kept = file.read_bytes()
+    check("no calibration of robot 'rig' is in use" in agent(flow, exit_code=REFUSED, timeout_s=3).stderr, "nothing is announced")
+    check(file.read_bytes() == kept, "the file stays as it is")
+    file.write_text("{}")
+    agent(flow, exit_code=REFUSED, timeout_s=3)
+    check("It runs a calibration that nobody approved here" in trouble(flow, "nobody approved here")["trouble"], "a stranger's file is told")
+    flow.rigcal("approve", ROBOT, 1, "--reason", "after all")
+    check(json.loads(agent(flow).stdout)["revision"] == 1, "and replaced")
+
+
 def refusals(flow):
     push(flow, 1.0, more=[edge("a", "c", 5.0)], exit_code=FAIL)
     check("verdict fail" in flow.rigcal("approve", ROBOT, "--reason", WHY, exit_code=REFUSED).stderr, "a fail is not approved")
@@ -122,6 +164,7 @@ def main():
     with Flow() as flow:
         nothing_runs_unapproved(flow)
         a_newer_one_waits(flow)
+        a_robot_applies_it(flow)
         refusals(flow)
         verified(flow)
         kills(flow)

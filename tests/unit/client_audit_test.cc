@@ -14,9 +14,11 @@ TEST(AuditVerb, ListsRowsByPages) {
   const Ran ran = Rigcal({"audit", "r", "--limit", "2"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked, R"(audit {"limit":2,"robot":"r"})");
-  EXPECT_NE(ran.out.find("     9  2026-11-03T12:00:00Z  Ada   retired sensor top of robot r: off\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("     9  2026-11-03T12:00:00Z  Ada   retired sensor top of robot r: off\n"), std::string::npos)
+      << ran.out;
   EXPECT_NE(ran.out.find("E ve  set a policy\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("There are older ones: `rigcal audit r --limit 2 --before 8`\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("There are older ones: `rigcal audit r --limit 2 --before 8`\n"), std::string::npos)
+      << ran.out;
   EXPECT_EQ(Rigcal({"audit", "--robot", "verify", "--before", "8"}).code, 0);
   EXPECT_EQ(asked, R"(audit {"limit":20,"robot":"verify","before":8})");
   EXPECT_EQ(Rigcal({"audit", "verify", "--robot", "r"}).code, 2);
@@ -32,10 +34,14 @@ TEST(AuditVerb, VerifyEndsWithOneWhereARowDoesNotHold) {
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked, "audit_verify {}");
   EXPECT_NE(ran.out.find("head  16 abc\n"), std::string::npos) << ran.out;
-  fault = R"({"number":17,"at":"2026-11-03T12:00:00Z","what":"audit row 17 of 3 Nov 2026 was changed, or one before it is missing"})";
+  fault =
+      R"({"number":17,"at":"2026-11-03T12:00:00Z","what":"audit row 17 of 3 Nov 2026 was changed, or one before it is missing"})";
   ran = Rigcal({"audit", "verify"});
   EXPECT_EQ(ran.code, 1);
-  EXPECT_EQ(ran.out.rfind("The audit does not hold: audit row 17 of 3 Nov 2026 was changed, or one before it is missing. The 16 before it", 0), 0u)
+  EXPECT_EQ(ran.out.rfind("The audit does not hold: audit row 17 of 3 Nov 2026 was changed, or one before it is "
+                          "missing. The 16 before it",
+                          0),
+            0u)
       << ran.out;
 }
 

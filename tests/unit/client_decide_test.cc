@@ -13,18 +13,22 @@ TEST(DecideVerbs, AskAsOrdersAndSayWhatIsInUse) {
     asked = verb + " " + json;
     return answer;
   });
-  answer = R"({"robot":"r","revision":4,"state":"approved","decision":{"revision":4,"how":"approved","who":"Ada","reason":"checked"},)"
-           R"("in_use":{"revision":4,"how":"approved","who":"Ada","reason":"checked"}})";
+  answer =
+      R"({"robot":"r","revision":4,"state":"approved","decision":{"revision":4,"how":"approved","who":"Ada","reason":"checked"},)"
+      R"("in_use":{"revision":4,"how":"approved","who":"Ada","reason":"checked"}})";
   Ran ran = Rigcal({"approve", "r", "4", "--reason", "checked", "--by", "Ada"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked, R"(approve {"robot":"r","who":"Ada","reason":"checked","revision":4})");
   EXPECT_EQ(ran.out, "Revision 4 of r was approved by Ada: checked. It is in use now.\n");
-  answer = std::string(R"({"robot":"r","revision":4,"state":"rejected","decision":{"revision":4,"how":"rejected","who":"Ada","reason":"bent"},)") +
-           kInUse + "}";
+  answer =
+      std::string(
+          R"({"robot":"r","revision":4,"state":"rejected","decision":{"revision":4,"how":"rejected","who":"Ada","reason":"bent"},)") +
+      kInUse + "}";
   ran = Rigcal({"reject", "r", "--reason", "bent", "--by", "Ada"});
   EXPECT_EQ(asked, R"(reject {"robot":"r","who":"Ada","reason":"bent"})");
   EXPECT_EQ(ran.out, "Revision 4 of r was rejected by Ada: bent. Revision 3 is in use.\n");
-  answer = R"({"robot":"r","revision":3,"decision":{"revision":3,"how":"rolled_back","who":"Ada","reason":"bent"},"in_use":{"revision":3}})";
+  answer =
+      R"({"robot":"r","revision":3,"decision":{"revision":3,"how":"rolled_back","who":"Ada","reason":"bent"},"in_use":{"revision":3}})";
   ran = Rigcal({"rollback", "r", "3", "--reason", "bent", "--by", "Ada"});
   EXPECT_EQ(asked, R"(rollback {"robot":"r","who":"Ada","reason":"bent","revision":3})");
   EXPECT_EQ(ran.out, "Robot r was rolled back to revision 3 by Ada: bent. It is in use now.\n");
@@ -40,7 +44,8 @@ TEST(DecideVerbs, ShowAndStatusTellWhatIsInUse) {
            R"(,"document":{"robot":"r","verdict":{"level":"pass","why":"all agree"}}})";
   });
   const std::string shown = Rigcal({"show", "r"}).out;
-  EXPECT_NE(shown.find("In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve r 4 --reason TEXT`\n"),
+  EXPECT_NE(shown.find("In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve "
+                       "r 4 --reason TEXT`\n"),
             std::string::npos)
       << shown;
   const std::string status = Rigcal({"status", "r"}).out;

@@ -28,10 +28,14 @@ TEST(DecisionAnswers, ARevisionTellsItsStateAndWhatIsInUse) {
   const json decided = json::parse(WriteDecided(RevisionOf(4), candidate));
   EXPECT_EQ(decided["state"], "candidate");
   EXPECT_TRUE(decided["decision"].is_null());
-  EXPECT_EQ(decided["in_use"], (json{{"revision", 3}, {"how", "approved"}, {"at", "2026-11-03T12:00:00Z"}, {"who", "policy"},
+  EXPECT_EQ(decided["in_use"], (json{{"revision", 3},
+                                     {"how", "approved"},
+                                     {"at", "2026-11-03T12:00:00Z"},
+                                     {"who", "policy"},
                                      {"reason", "the verdict is \"document\":null"}}));
   EXPECT_EQ(decided["revision_follows"], false);
-  const json rows = json::parse(WriteRevisions(kRig, {RevisionOf(4), RevisionOf(3)}, {}, {}, {candidate, {RevisionState::kApproved, kThird, kThird}}));
+  const json rows = json::parse(WriteRevisions(kRig, {RevisionOf(4), RevisionOf(3)}, {}, {},
+                                               {candidate, {RevisionState::kApproved, kThird, kThird}}));
   EXPECT_EQ(rows["revisions"][0]["state"], "candidate");
   EXPECT_EQ(rows["revisions"][1]["decision"]["who"], "policy");
 }

@@ -1,7 +1,7 @@
 // Who approves what, and how it is told where a revision is in its life.
-#include "server/model/decision.h"
-
 #include <gtest/gtest.h>
+
+#include "server/model/decision.h"
 
 namespace rigcal {
 namespace {
@@ -21,7 +21,8 @@ TEST(Decision, ThePolicyApprovesWhatPassesAndWarnsUnlessItSaysOtherwise) {
   policy.approve_warnings = true;
   for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) EXPECT_FALSE(Approves(policy, Of(level)));
   policy.approval = ApprovalBy::kAutomatic;
-  for (const VerdictLevel level : {VerdictLevel::kFail, VerdictLevel::kUnknown}) EXPECT_FALSE(Approves(policy, Of(level)));
+  for (const VerdictLevel level : {VerdictLevel::kFail, VerdictLevel::kUnknown})
+    EXPECT_FALSE(Approves(policy, Of(level)));
 }
 
 TEST(Decision, StatesHaveNames) {
@@ -38,7 +39,8 @@ TEST(Decision, WhatIsInUseIsToldWhereItIsAnother) {
   EXPECT_EQ(ApprovalText(rig, 3, {RevisionState::kApproved, third, third}), "");
   EXPECT_EQ(ApprovalText(rig, 5, {RevisionState::kUnusable, {}, third}), "") << "the verdict says what to keep";
   EXPECT_EQ(ApprovalText(rig, 4, {RevisionState::kCandidate, {}, third}),
-            "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 --reason TEXT`");
+            "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 "
+            "--reason TEXT`");
   EXPECT_EQ(ApprovalText(rig, 1, {RevisionState::kCandidate, {}, {}}),
             "No calibration of rig is in use; this one is a candidate: `rigcal approve rig 1 --reason TEXT`");
   const Decision back{9, 2, "rolled_back", {kNoon, "Ada", "bent"}};

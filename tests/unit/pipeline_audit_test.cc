@@ -62,7 +62,8 @@ TEST_F(AuditAnswersTest, AFlippedByteIsNamed) {
   EXPECT_TRUE(whole["fault"].is_null()) << whole;
   EXPECT_EQ(whole["head"]["hash"], Ask("audit", {{"limit", 1}})["rows"][0]["hash"]);
   const std::int64_t last = whole["head"]["number"];
-  store_->database().exec("DROP TRIGGER audit_no_update; UPDATE audit SET who = 'Adb' WHERE number = " + std::to_string(last));
+  store_->database().exec("DROP TRIGGER audit_no_update; UPDATE audit SET who = 'Adb' WHERE number = " +
+                          std::to_string(last));
   const json broken = Ask("audit_verify", json::object());
   EXPECT_EQ(broken["fault"]["number"], last);
   EXPECT_EQ(broken["rows"], whole["rows"].get<std::int64_t>() - 1);

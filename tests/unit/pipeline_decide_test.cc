@@ -1,4 +1,5 @@
-// From the candidate to the calibration that robots use: by the policy, by a person, back again; and what is told of it.
+// From the candidate to the calibration that robots use: by the policy, by a person, back again; and what is told of
+// it.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -54,7 +55,8 @@ class DecideTest : public PipelineTest {
   }
   // A revision that passes, of three sensors.
   void Push(double ab_m) {
-    std::vector<Edge> edges = {GivenEdge("r", "a", "b", ab_m), GivenEdge("r", "b", "c", 1.0), GivenEdge("r", "a", "c", 1.0 + ab_m)};
+    std::vector<Edge> edges = {GivenEdge("r", "a", "b", ab_m), GivenEdge("r", "b", "c", 1.0),
+                               GivenEdge("r", "a", "c", 1.0 + ab_m)};
     AssignPushedIds(edges);
     StoreEdges(edges);
     StepAll();
@@ -116,7 +118,11 @@ TEST_F(DecideTest, WhereAPersonApprovesNothingIsToldBefore) {
   EXPECT_EQ(done["revision"], candidate);
   EXPECT_EQ(done["state"], "approved");
   EXPECT_EQ(done["revision_follows"], false);
-  EXPECT_EQ(done["in_use"], (json{{"revision", candidate}, {"how", "approved"}, {"at", ToIso(clock_.now)}, {"who", "Ada"}, {"reason", "checked against the wall"}}));
+  EXPECT_EQ(done["in_use"], (json{{"revision", candidate},
+                                  {"how", "approved"},
+                                  {"at", ToIso(clock_.now)},
+                                  {"who", "Ada"},
+                                  {"reason", "checked against the wall"}}));
   Reopen();
   EXPECT_EQ(Announced(), candidate);
   EXPECT_THAT(Page(), testing::Not(HasSubstr("rigcal approve")));

@@ -1,5 +1,5 @@
-// The audit: every decision in one row, each row held by the hash of all before it. What was changed outside of rigcald is
-// found and named.
+// The audit: every decision in one row, each row held by the hash of all before it. What was changed outside of rigcald
+// is found and named.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
@@ -24,7 +24,8 @@ class AuditTest : public StoreTest {
   void Tamper(const std::string& sql) {
     SQLite::Database file((folder_.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE);
     for (const char* table : {"audit", "audit_chain"})
-      for (const char* what : {"_no_update", "_no_delete"}) file.exec(std::string("DROP TRIGGER IF EXISTS ") + table + what);
+      for (const char* what : {"_no_update", "_no_delete"})
+        file.exec(std::string("DROP TRIGGER IF EXISTS ") + table + what);
     file.exec("PRAGMA foreign_keys = OFF; " + sql);
   }
   std::string Fault() {
@@ -51,8 +52,9 @@ TEST_F(AuditTest, AHashIsThatOfSixLines) {
   const std::vector<AuditRow> rows = LoadAudit(store_, RobotId()).value();
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[2].hash, Sha256Of(std::string(64, '0') + "\n1\n1793707200000000000\nmapper-01\nAda\n"
-                                   "retired sensor top of robot mapper-01: taken off"));
-  EXPECT_EQ(rows[1].hash, Sha256Of(rows[2].hash->str() + "\n2\n1793707200000000001\n\nEve\nset version 1 of the policy of the fleet"));
+                                                          "retired sensor top of robot mapper-01: taken off"));
+  EXPECT_EQ(rows[1].hash, Sha256Of(rows[2].hash->str() +
+                                   "\n2\n1793707200000000001\n\nEve\nset version 1 of the policy of the fleet"));
 }
 
 TEST_F(AuditTest, AChangedRowIsNamedWhicheverColumnItWas) {
@@ -64,8 +66,9 @@ TEST_F(AuditTest, AChangedRowIsNamedWhicheverColumnItWas) {
     Tamper("CREATE TABLE kept AS SELECT * FROM audit; CREATE TABLE kept_chain AS SELECT * FROM audit_chain;" + columns);
     EXPECT_EQ(Fault(), "audit row 2 of 3 Nov 2026 was changed, or one before it is missing") << change;
     EXPECT_EQ(VerifyAudit(store_)->rows, 1) << change;
-    Tamper("DELETE FROM audit; DELETE FROM audit_chain; INSERT INTO audit SELECT * FROM kept; INSERT INTO audit_chain "
-           "SELECT * FROM kept_chain; DROP TABLE kept; DROP TABLE kept_chain;");
+    Tamper(
+        "DELETE FROM audit; DELETE FROM audit_chain; INSERT INTO audit SELECT * FROM kept; INSERT INTO audit_chain "
+        "SELECT * FROM kept_chain; DROP TABLE kept; DROP TABLE kept_chain;");
     EXPECT_EQ(Fault(), "") << change;
   }
 }
@@ -131,11 +134,14 @@ TEST(AuditMigration, RowsOfVersion21AreChainedOnceAndAlike) {
   sql +=
       "PRAGMA application_id = 1382499180; PRAGMA user_version = 21; INSERT INTO robot VALUES ('mapper-01', 1);"
       "INSERT INTO audit VALUES (1, 5, 'Ada', 'retired sensor top of robot mapper-01: of robot b'),"
-      "(2, 6, 'Eve', 'set version 1 of the policy of rig model robot b: x'), (4, 7, 'Eve', 'restored session s of robot b, retired')";
+      "(2, 6, 'Eve', 'set version 1 of the policy of rig model robot b: x'), (4, 7, 'Eve', 'restored session s of "
+      "robot b, retired')";
   std::vector<Digest> heads;
   for (int time = 0; time < 2; ++time) {
     const TempFolder folder;
-    { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
+    {
+      SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql);
+    }
     Result<Store> store = Store::Open(folder.path());
     ASSERT_TRUE(store) << WordsOf(store);
     const AuditCheck check = VerifyAudit(*store).value();

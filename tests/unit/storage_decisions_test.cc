@@ -23,7 +23,9 @@ class DecisionsTest : public StoreTest {
       ASSERT_TRUE(AppendRevision(store_, revision));
     }
   }
-  void AppendGood(int count) { AppendRevisions(std::vector<VerdictLevel>(static_cast<std::size_t>(count), VerdictLevel::kPass)); }
+  void AppendGood(int count) {
+    AppendRevisions(std::vector<VerdictLevel>(static_cast<std::size_t>(count), VerdictLevel::kPass));
+  }
   Result<bool> Decide(Deciding deciding, int revision) {
     return AppendDecision(store_, kRobot, revision, deciding, {{++now_}, "Ada", "because"});
   }
@@ -109,10 +111,14 @@ TEST_F(DecisionsTest, WhatCannotBeDecidedIsRefusedAndLeavesNoTrace) {
     const auto decided = Decide(deciding, revision);
     return decided ? "" : NameOf(decided.error().code) + ": " + decided.error().what;
   };
-  EXPECT_EQ(refused(Deciding::kApprove, 2), "conflict: revision 2 of robot mapper-01 has the verdict fail: only pass and warn are used");
-  EXPECT_EQ(refused(Deciding::kApprove, 3), "conflict: revision 3 of robot mapper-01 has the verdict unknown: only pass and warn are used");
-  EXPECT_EQ(refused(Deciding::kRollBack, 1), "conflict: revision 1 of robot mapper-01 was never approved: there is nothing to go back to");
-  for (const int none : {0, 4, -1}) EXPECT_EQ(refused(Deciding::kReject, none), "not_found: robot 'mapper-01' has no revision " + std::to_string(none));
+  EXPECT_EQ(refused(Deciding::kApprove, 2),
+            "conflict: revision 2 of robot mapper-01 has the verdict fail: only pass and warn are used");
+  EXPECT_EQ(refused(Deciding::kApprove, 3),
+            "conflict: revision 3 of robot mapper-01 has the verdict unknown: only pass and warn are used");
+  EXPECT_EQ(refused(Deciding::kRollBack, 1),
+            "conflict: revision 1 of robot mapper-01 was never approved: there is nothing to go back to");
+  for (const int none : {0, 4, -1})
+    EXPECT_EQ(refused(Deciding::kReject, none), "not_found: robot 'mapper-01' has no revision " + std::to_string(none));
   EXPECT_FALSE(AppendDecision(store_, kRobot, 1, Deciding::kApprove, {{1}, "A\nda", ""}));
   EXPECT_TRUE(LoadAudit(store_, RobotId())->empty());
   EXPECT_EQ(InUse(), 0);
@@ -139,11 +145,13 @@ TEST(DecisionsMigration, WhatWasAnnouncedIsApproved) {
     files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   for (std::size_t i = 0; i < 22; ++i) sql += ReadFile(files[i], 1 << 20).value();
-  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 22; INSERT INTO robot VALUES ('mapper-01', 1), ('b', 1);";
+  sql +=
+      "PRAGMA application_id = 1382499180; PRAGMA user_version = 22; INSERT INTO robot VALUES ('mapper-01', 1), ('b', "
+      "1);";
   const std::vector<std::string> verdicts = {"pass", "warn", "fail"};
   for (std::size_t i = 0; i < verdicts.size(); ++i)
-    sql += "INSERT INTO revision VALUES ('mapper-01', " + std::to_string(i + 1) + ", 5, 0, '" + verdicts[i] + "', 'why', 'do', '" +
-           std::string(64, 'a') + "', '{}');";
+    sql += "INSERT INTO revision VALUES ('mapper-01', " + std::to_string(i + 1) + ", 5, 0, '" + verdicts[i] +
+           "', 'why', 'do', '" + std::string(64, 'a') + "', '{}');";
   sql += "INSERT INTO revision VALUES ('b', 1, 5, 0, 'fail', 'why', 'do', '" + std::string(64, 'a') + "', '{}');";
   { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
   Result<Store> store = Store::Open(folder.path());
