@@ -40,6 +40,7 @@ struct Awaited {
 // Open before the push begins: no event is missed.
 class ResultWatch {
  public:
+  // Asks and listens in the robot's partition. The error is of DDS.
   [[nodiscard]] static Result<ResultWatch> Open(const wire::Participant& participant,
                                                 const wire::ParticipantOptions& dds, const RobotId& robot);
   // kUnreachable if no server answered for give_up_ns, or if two are there.

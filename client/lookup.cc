@@ -46,6 +46,7 @@ void PrintLookup(const Document& document, std::ostream& out) {
 
 // Without a whole pose there is no result to go by, whatever the verdict lets pass.
 ExitCode JudgeLookup(const Document& document) {
+  if (document.Has("superseded_by")) return ExitCode::kVerdictUnknown;  // the newest failed, say
   const ExitCode code = Judge(document["verdict"], document);
   return document["known"].Flag(true) || code == ExitCode::kVerdictFail ? code : ExitCode::kVerdictUnknown;
 }

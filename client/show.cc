@@ -77,7 +77,10 @@ ExitCode RunShow(const Context& context, const ShowOptions& options) {
   if (options.whole && context.json) parameters.push_back(Field::Raw("whole", "true"));
   const auto print = [&](const Document& document, std::ostream& out) { PrintShow(document, options.whole, out); };
   return Answer(context, {"show", JsonObject(parameters), print,
-                          [](const Document& document) { return Judge(document["document"]["verdict"], document); }});
+                          [](const Document& document) {
+                            if (document.Has("superseded_by")) return ExitCode::kVerdictUnknown;  // whatever it said then
+                            return Judge(document["document"]["verdict"], document);
+                          }});
 }
 
 }  // namespace

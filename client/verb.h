@@ -35,6 +35,7 @@ struct Question {
   std::function<void(const Document&, std::ostream&)> print;  // for people
   std::function<ExitCode(const Document&)> judge;             // empty: good
 };
+// Prints the answer, or the error to `err`; the code to exit with.
 ExitCode Answer(const Context& context, const Question& question);
 // Asks; the error is left to the caller.
 [[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb,
@@ -54,7 +55,7 @@ void PrintDrive(const Document& document, std::ostream& out);
 // "pass" or "fail: why. What to do."; after it what to use instead, and that a newer one is on its way; before it that
 // it is overdue, where the drive rule does not say so. `validity`: the members of docs/api.md that `show` has.
 void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out);
-// "Keep using revision 4 of 12 Mar 2026 meanwhile.", ... of a fail and of what is not known; else empty.
+// "Keep using revision 4 of 12 Mar 2026 meanwhile.", ... of what is not known; of a fail that it is in doubt, too; else empty.
 [[nodiscard]] std::string FallbackText(const Document& verdict, const Document& validity);
 // "overdue, " where it is so, for what is told of a robot in one line.
 [[nodiscard]] std::string OverdueBefore(const Document& validity);

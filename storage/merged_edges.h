@@ -26,6 +26,7 @@ struct WhatCounts {
   std::map<SessionId, Standing> retired_sessions = {};
   std::map<SensorId, Standing> retired_sensors = {};
 };
+// Several readings: call it inside one Read, so that all are of one moment.
 [[nodiscard]] Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot);
 // True: of what has left the window an edge, session or sensor was retired or restored, a session superseded, or a sensor
 // remounted, after the newest revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.

@@ -71,6 +71,27 @@ Result<std::string> LoadRigModel(Store& store, const RobotId& robot) {
   });
 }
 
+Result<bool> HasRigModel(Store& store, const std::string& model) {
+  return Load<bool>(store, "rig model " + model, [&]() -> Result<bool> {
+    return Query(store, "SELECT 1 FROM session_model WHERE rig_model = ? LIMIT 1").Bind(model).Step();
+  });
+}
+
+// From each name to the next: a fleet has few models, and very many sessions of each.
+Result<std::vector<std::string>> LoadRigModels(Store& store, int max) {
+  return Load<std::vector<std::string>>(store, "rig models", [&]() -> Result<std::vector<std::string>> {
+    std::vector<std::string> models;
+    std::string last;  // no model is called so
+    while (static_cast<int>(models.size()) < max) {
+      Query query(store, "SELECT min(rig_model) FROM session_model WHERE rig_model > ?");
+      if (!query.Bind(last).Step() || query.IsNull(0)) break;
+      last = query.Text(0);
+      models.push_back(last);
+    }
+    return models;
+  });
+}
+
 Result<std::vector<RobotId>> LoadRobotsToJudge(Store& store, const RobotId& after, int max) {
   return Load<std::vector<RobotId>>(store, "robots to judge", [&]() -> Result<std::vector<RobotId>> {
     Query query(store, "SELECT robot_id FROM waiting_verdict WHERE robot_id > ? ORDER BY robot_id LIMIT ?");

@@ -13,6 +13,7 @@
 
 namespace rigcal::storage {
 
+// Of any edge that is stored, good or failed, counted or not.
 [[nodiscard]] Status RetireEdge(Store& store, const EdgeId& id, const Word& word);
 [[nodiscard]] Status RestoreEdge(Store& store, const EdgeId& id, const Word& word);
 

@@ -17,10 +17,10 @@ namespace rigcal::storage {
 
 // A session that is being closed is current. For CloseSession.
 [[nodiscard]] Status AppendPushed(Store& store, const RobotId& robot, const SessionId& id, Stamp now);
+enum class MadeCurrent { kPushedAgain, kRestored };
 // The closed session is current from now on: what it repeats or is repeated by is superseded by it. False, and a no-op,
 // if nothing supersedes it and it is not retired; otherwise noted in the audit as well. What was retired is restored only:
 // pushed again it stays retired. kNotFound if unknown, kConflict while it is not closed.
-enum class MadeCurrent { kPushedAgain, kRestored };
 [[nodiscard]] Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, const Word& word);
 // The newest word about a session: by which it is current, was last, or was retired. nullopt until it is closed.
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const SessionId& id);

@@ -21,6 +21,7 @@ void WriteValidity(JsonWriter& out, const Validity& validity) {
   WriteStamp(out, "valid_until", ValidUntil(validity));
   out.Flag("overdue", validity.overdue);
   WriteUsable(out, validity.usable);
+  if (validity.superseded_by) out.Integer("superseded_by", *validity.superseded_by);
   out.Flag("calculating", validity.calculating);
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
 }

@@ -42,6 +42,7 @@ struct SessionAnswer {
   std::vector<SessionId> supersedes = {};
   std::optional<Standing> retired = {};           // absent: it is not
 };
+// A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
 // `retired`: of the sensors that it lists, those that are.
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
@@ -60,6 +61,7 @@ struct PolicyAnswer {
   PolicyInForce in_force;
   std::vector<PolicyVersion> set;
 };
+// The limits that hold, key by key who set them, then what was set.
 [[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
 // verb set_policy: how many robots wait to be judged anew by it.
 [[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
@@ -99,6 +101,7 @@ struct LookupAnswer {
   Validity validity;
   Approval approval = {};                  // likewise
 };
+// "known" is true of a whole pose only; one in part has what was measured, axis by axis.
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
 
 // verb status
@@ -118,6 +121,7 @@ struct StatusAnswer {
   std::string http_address;         // of the reports; empty: none
   std::optional<Error> problem;     // why the server cannot store or answer
 };
+// Ages are as of `now`.
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);
 
 // verb live: changes whenever something arrived or was finished, and at no other time.
@@ -128,6 +132,7 @@ struct LiveAnswer {
   int revision = 0;             // of one robot; 0: none yet
   std::vector<SessionAnswer> open_sessions;
 };
+// With no time in it, so that the same state is the same text.
 [[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
 
 // verbs robot_names, sensor_names; `more`: there are others.
@@ -143,6 +148,7 @@ struct FilesOfAnother {
   Stamp captured_at;
   std::size_t files = 0;
 };
+// `asked`: files that were asked about; `another` absent: nobody else's.
 [[nodiscard]] std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another);
 
 // verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
@@ -172,6 +178,7 @@ struct HealthAnswer {
   std::vector<LostFileAnswer> first_lost_files;
   [[nodiscard]] std::optional<Error> problem() const;  // the first of the parts
 };
+// "state" is "failing" where a part has a problem, else "ok".
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);
 
 // {"error": {"code", "what", "cure"}}: what a failed request answers.

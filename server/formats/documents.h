@@ -42,6 +42,7 @@ struct RevisionInput {
   bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first
 };
+// In format 2, for which `input` need not be whole.
 [[nodiscard]] std::string WriteRevisionDocument(const RevisionInput& input);
 // Format 1: the same with every detail of the edges but block vectors. `input` must be whole.
 [[nodiscard]] std::string WriteWholeRevisionDocument(const RevisionInput& input);

@@ -19,6 +19,7 @@ constexpr double kMovedOdds = 5e-4;
 // A step that may as well be smaller than both (SquaredDistanceFromBalls within 3 sigmas) is not told: no lens and no
 // mount is known that well.
 constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3.0;
+// Both: `step` (right tangent, m and rad) with its information, and its odds by chance.
 [[nodiscard]] inline bool IsMove(const Vector6d& step, const Matrix6d& information, double odds) {
   return odds < kMovedOdds && SquaredDistanceFromBalls(step, information, kMovedMin_m, kMovedMin_rad) >=
                                   kMovedMinSigmas * kMovedMinSigmas;
@@ -59,6 +60,13 @@ struct LensMisfit {
   double sigma_ratio = 1.0;  // of that pose and axis that it makes less certain most: with it over without any misfit
 };
 
+// A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
+// incidence, surely; taken out of the poses.
+struct SlantBias {
+  SensorId lidar;
+  double too_long_m = 0.0, sigma_m = 0.0;
+};
+
 // The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
 // direction that is seen worst.
 constexpr double kAnyMove_m = 1e3, kAnyMove_rad = 3.14159265358979;  // nothing would be told
@@ -89,6 +97,7 @@ struct SessionEstimate {
   std::vector<BoardMovedWithin> boards_moved;
   std::vector<HeldBackLook> held_back;    // by sensor, then capture
   std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
+  std::vector<SlantBias> slants;          // by lidar
 };
 
 // First of the six rows of a pose; -1: the reference, which has none.

@@ -24,6 +24,7 @@ void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live);
 // Shared by the runner's threads; one robot's graph is used by the thread that has claimed the robot, no other.
 class LiveGraphs {
  public:
+  // Empty at first; valid as long as this.
   [[nodiscard]] LiveGraph& Of(const RobotId& robot);
 
  private:

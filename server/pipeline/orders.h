@@ -9,6 +9,7 @@
 
 namespace rigcal::pipeline {
 
+// Whether the verb changes what is stored: restore, retire, set_policy.
 [[nodiscard]] bool IsOrder(const std::string& verb);
 
 // What it returns is durable. Carried out twice it is as if it was once, and answered alike. The thing is named as in

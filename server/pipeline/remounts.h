@@ -10,6 +10,7 @@ namespace rigcal::pipeline {
 
 class Remounts {
  public:
+  // Of all closed sessions of the robot that count.
   [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const RobotId& robot);
   // With those that were loaded; After() then knows these sessions only.
   [[nodiscard]] static Result<Remounts> Load(storage::Store& store, const std::vector<SessionId>& sessions,

@@ -16,7 +16,7 @@ constexpr int kSessionsRefined = 8;
 // now.
 constexpr int kSessionsFused = 32;
 // Of stored estimates; raised when the same observations give another estimate.
-inline constexpr const char* kSessionEstimator = "joint/5";
+inline constexpr const char* kSessionEstimator = "joint/6";
 
 // Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets
 // an estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next
@@ -24,12 +24,13 @@ inline constexpr const char* kSessionEstimator = "joint/5";
 [[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
                                     const Clock& clock);
 
-// Of sessions that count (not superseded, not retired), the newest captured first. Moves of sensors that were remounted since,
-// or of which no edge of the session counts any more, are left out, and so is what could have moved unseen of retired ones. Call within one Read, with `current`.
 struct CurrentEstimates {
   std::vector<SessionEstimate> estimates;
   std::vector<Edge> within;  // what of their edges is in merged ones (current_edges.h)
 };
+// Of sessions that count (not superseded, not retired), the newest captured first. Moves of sensors that were remounted
+// since, or of which no edge of the session counts any more, are left out, and so is what could have moved unseen of
+// retired ones. Call within one Read, with `current`.
 [[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current);
 
 }  // namespace rigcal::pipeline

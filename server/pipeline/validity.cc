@@ -58,6 +58,12 @@ Result<std::string> LoadGivenUp(storage::Store& store, const RobotId& robot) {
          ". Give the server more memory and push another session, or take the newest edge out with `rigcal retire`.";
 }
 
+// It is the newest, or in use while the newest, which could be, was not approved.
+bool IsKept(const Revision& revision, const Revision& newest, const std::optional<UsableRevision>& in_use) {
+  if (revision.number >= newest.number) return true;
+  return in_use && in_use->number == revision.number && IsUsable(newest.verdict);
+}
+
 }  // namespace
 
 Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const RobotId& robot) {
@@ -91,6 +97,8 @@ Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, S
   validity.overdue = IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
   RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision.robot));
   RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, revision.robot, 0));
+  if (newest && !IsKept(revision, *newest, validity.usable)) validity.superseded_by = newest->number;
   return validity;
 }
 

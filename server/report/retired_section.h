@@ -11,8 +11,8 @@ namespace rigcal::report {
 void FillGone(Dictionary& page, const RobotId& robot, const std::vector<RetiredSensor>& gone);
 // Neither past already, nor put together of others.
 [[nodiscard]] bool HasWayOut(const Edge& edge);
-// {{#RETIRE}} with COMMAND. A list has so many at most.
-inline constexpr std::size_t kWaysOutMax = 200;
+inline constexpr std::size_t kWaysOutMax = 200;  // of a list
+// {{#RETIRE}} with COMMAND.
 void FillRetire(Dictionary& row, const std::string& command);
 
 }  // namespace rigcal::report

@@ -40,15 +40,16 @@ struct RobotInput {
   Approval approval = {};                     // of the newest revision
   std::map<int, RevisionState> states = {};  // of `revisions`
 };
+// /robots/<id>/. Ages are as of `now`.
 [[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);
 
-// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one, and
-// how far it moved from each to the next.
 struct SolvedRevision {
   int number = 0;
   std::shared_ptr<const formats::RevisionInput> revision;
   Stamp calibrated_at = {};  // 0: it counts nothing
 };
+// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one, and
+// how far it moved from each to the next.
 [[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
 
 struct ComparedLenses {
@@ -63,6 +64,7 @@ struct CompareInput {
   std::map<SessionId, Stamp> captured_at = {};
   ComparedLenses lenses = {};
 };
+// What differs between the two revisions: verdicts, poses, lenses, edges.
 [[nodiscard]] Result<std::string> RenderCompare(const CompareInput& input);
 
 struct SessionInput {

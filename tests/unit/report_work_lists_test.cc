@@ -29,7 +29,8 @@ FleetCounts Counts() {
   fleet.robots = 20;
   fleet.overdue = 4;
   fleet.due_next_week = 1;
-  fleet.causes = {{"failed_pair cam_left lidar_top", 12}, {"board_size panel larger", 3}, {"short_session", 1}};
+  fleet.causes = {{"failed_pair cam_left lidar_top", 12}, {"board_size panel larger", 3}, {"short_session", 1},
+                  {"not_measured a b c d +2", 1}};
   return fleet;
 }
 
@@ -44,6 +45,7 @@ TEST(CauseWords, SayWhatIsTheMatter) {
   EXPECT_EQ(CauseText("board_size panel larger"), "board panel larger than given");
   EXPECT_EQ(CauseText("board_size a b smaller"), "board a, b smaller than given");
   EXPECT_EQ(CauseText("board_size larger"), "board larger than given") << "no board is known by name";
+  EXPECT_EQ(CauseText("board_size panel disputed"), "size of board panel disputed");
   EXPECT_EQ(CauseText("board_counts panel"), "corners of board panel counted wrong");
   EXPECT_EQ(CauseText("lens_model left fisheye_kb4"), "lens of left is fisheye_kb4");
   EXPECT_EQ(CauseText("exchanged left right"), "left, right exchanged");
@@ -63,6 +65,7 @@ TEST(WorkLists, CountRobotsByCauseAndOpenTheirLists) {
   EXPECT_THAT(page, HasSubstr("?cause=failed_pair+cam_left+lidar_top\">cam_left - lidar_top failed</a>: 12 robots"));
   EXPECT_THAT(page, HasSubstr("?cause=board_size+panel+larger\">board panel larger than given</a>: 3 robots"));
   EXPECT_THAT(page, HasSubstr("session of a few captures</a>: 1 robot<"));
+  EXPECT_THAT(page, HasSubstr("?cause=not_measured+a+b+c+d+%2B2\">")) << "a sign is no blank";
   EXPECT_LT(page.find("By cause"), page.find("<table")) << "above the list";
   EXPECT_THAT(page, Not(HasSubstr("others on fewer robots")));
 }

@@ -43,7 +43,8 @@ class DecisionsTest : public StoreTest {
   }
   std::vector<State> States() {
     std::vector<State> states;
-    for (const Revision& revision : LoadRevisions(store_, kRobot).value())
+    const std::vector<Revision> revisions = LoadRevisions(store_, kRobot).value();
+    for (const Revision& revision : revisions)
       states.insert(states.begin(), LoadRevisionState(store_, revision).value());
     return states;
   }

@@ -80,7 +80,7 @@ class QueryPlanTest : public StoreTest {
   SessionId session_;
 };
 
-TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
+TEST_F(QueryPlanTest, QuestionsWhetherARobotIsKnownDoNotScan) {
   (void)Scanned();  // what SetUp left
   EXPECT_TRUE(LoadRobot(store_, kRobot).value());
   EXPECT_TRUE(HasRobot(store_, kRobot).value());
@@ -88,6 +88,11 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_EQ(LoadRobotNames(store_, "m", 9)->size(), 1U);
   EXPECT_EQ(LoadRobotsBeside(store_, RobotId("bb"), 1)->size(), 2U);
   EXPECT_EQ(LoadRobotsNamed(store_, {RobotId("d"), RobotId("e")})->size(), 1U);
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan) {
+  (void)Scanned();
   EXPECT_TRUE(LoadOpenSessions(store_, kRobot));
   EXPECT_TRUE(LoadSessions(store_, kRobot));
   EXPECT_TRUE(LoadSession(store_, session_));
@@ -135,6 +140,8 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   EXPECT_TRUE(LoadRigModel(store_, kRobot));
+  EXPECT_TRUE(HasRigModel(store_, "nobody's"));
+  EXPECT_TRUE(LoadRigModels(store_, 9));
   EXPECT_TRUE(LoadPolicyWatermark(store_));
   for (const PolicyPlace& place : {PolicyPlace{}, PolicyPlace{PolicyScope::kRobot, kRobot.str()}})
     EXPECT_TRUE(LoadPolicy(store_, place));

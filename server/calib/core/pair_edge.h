@@ -25,6 +25,7 @@ namespace rigcal::calib {
 struct FilesFound {
   std::size_t files = 0, unreadable = 0, with_board = 0;  // of a tracker every row counts as one with a board
   std::optional<std::size_t> first_unreadable_idx;        // into the captures of the pair
+  // A file; of those that are not `readable` the first is remembered, by its capture.
   void Add(std::size_t capture_idx, bool readable, bool board);
 };
 // "files_a" and "files_with_board_a" with `side` "_a"; where there are any, "files_unreadable_a" and
@@ -35,6 +36,7 @@ void AddFilesFound(const FilesFound& found, const std::string& side, Edge& edge)
 [[nodiscard]] std::optional<Diagnosis> PositionsInMillimetres(const SensorId& tracker, const PoseTable& poses,
                                                               const std::string& side);
 
+// Behind those that are there, in their order.
 void Append(std::vector<Diagnosis> more, std::vector<Diagnosis>& diagnoses);
 // "fx_a_px", ..., "k1_a_ratio" with `camera` "_a".
 void AddIntrinsicsFigures(const CameraIntrinsics& intrinsics, const std::string& camera, Edge& edge);

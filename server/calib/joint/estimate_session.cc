@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "server/calib/joint/explained.h"
+#include "server/calib/joint/slant_bias.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -81,6 +81,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
+  estimate.slants = SlantsTold(problem, explained.refined);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
@@ -118,7 +119,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   }
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(std::move(*first), estimate);
+  const Explained last = ExplainAll(WithSlants(std::move(*first)), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   return estimate;
