@@ -81,7 +81,7 @@ Result<Agent> Agent::Open(const Context& context, const AgentOptions& options) {
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(options.robot));
   const std::string partition = wire::RobotPartition(robot);
   RIGCAL_ASSIGN(auto participant, wire::Participant::Open(context.dds));
-  RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds, partition));
+  RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
   RIGCAL_ASSIGN(auto calibrations, wire::Reader<rigcal_wire_Calibration>::Open(participant, {partition}));
   RIGCAL_ASSIGN(auto reports, wire::Writer<rigcal_wire_CalibrationInUse>::Open(participant, {partition}));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));

@@ -65,10 +65,10 @@ Connection::Connection(wire::Writer<rigcal_wire_Request> requests, wire::Reader<
       one_server_(std::move(one_server)),
       where_(std::move(where)) {}
 
-Result<Connection> Connection::Open(const wire::Participant& participant, const wire::ParticipantOptions& options,
-                                    const std::string& partition) {
-  RIGCAL_ASSIGN(auto requests, wire::Writer<rigcal_wire_Request>::Open(participant, {partition}));
-  RIGCAL_ASSIGN(auto replies, wire::Reader<rigcal_wire_Reply>::Open(participant, {partition}));
+Result<Connection> Connection::Open(const wire::Participant& participant, const wire::ParticipantOptions& options) {
+  const std::vector<std::string> partition = {wire::kOperatorPartition};
+  RIGCAL_ASSIGN(auto requests, wire::Writer<rigcal_wire_Request>::Open(participant, partition));
+  RIGCAL_ASSIGN(auto replies, wire::Reader<rigcal_wire_Reply>::Open(participant, partition));
   RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
   RIGCAL_TRY(waitset.Attach(replies.get()));
   RIGCAL_TRY(waitset.Attach(requests.get()));

@@ -15,10 +15,9 @@ namespace rigcal::client {
 
 class Connection {
  public:
-  // Does not wait for a server: Ask does. `partition`: of people, or of the robot that asks.
+  // Does not wait for a server: Ask does.
   [[nodiscard]] static Result<Connection> Open(const wire::Participant& participant,
-                                               const wire::ParticipantOptions& options,
-                                               const std::string& partition = wire::kOperatorPartition);
+                                               const wire::ParticipantOptions& options);
   // The /api/v1 document of (verb, json), verbatim. kUnreachable if nobody answers in time, or if two servers are
   // there; the error that the document carries, if it is one.
   [[nodiscard]] Result<std::string> Ask(const std::string& verb, const std::string& json,
