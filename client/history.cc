@@ -5,6 +5,7 @@
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/limits.h"
+#include "server/model/decision.h"
 
 namespace rigcal::client {
 namespace {
@@ -19,10 +20,10 @@ void PrintHistory(const Document& document, const HistoryOptions& options, std::
   const char* none = options.before > 0 ? kNoOlderOnes : "There is no revision yet. Send a session with `rigcal push DIR`.\n";
   if (revisions.empty()) out << none;
   if (revisions.empty()) return;
-  Table table({{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"WHY"}});
+  Table table({{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"STATE"}, {"WHY"}});
   for (const Document& revision : revisions)
     table.Add({CountOf(revision["revision"]), revision["created_at"].Text("-"), revision["verdict"]["level"].Text("unknown"),
-               revision["verdict"]["why"].Text()});
+               WordFor(RevisionStateOf(revision["state"].Text())), revision["verdict"]["why"].Text()});
   table.Print(out);
   PrintNextPage(document, "rigcal history " + options.robot + " --limit " + std::to_string(options.limit), out);
 }

@@ -48,6 +48,9 @@ void PrintLimits(const Document& document, std::ostream& out) {
   out << "max_age " << AgeOf(limits["max_age_ns"]);
   if (limits["captures_min"].Integer()) out << ", captures_min " << CountOf(limits["captures_min"]);
   out << '\n';
+  if (limits["approval"].Text() == "person") out << "Each calibration is approved by a person before robots use it.\n";
+  if (limits["approval"].Text() == "automatic" && !limits["approve_warnings"].Flag(true))
+    out << "A pass is approved by itself, a warning by a person.\n";
   if (const std::string all = SaidText("all", policy["all"]); all.find("px_at_10_m") != std::string::npos)
     out << Plain(all) << '\n';
   for (const Document& sensor : policy["sensors"].Items())

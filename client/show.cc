@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "client/approval_text.h"
 #include "client/cause_list.h"
 #include "client/edge_table.h"
 #include "client/insight_table.h"
@@ -50,6 +51,7 @@ void PrintShow(const Document& document, bool whole, std::ostream& out) {
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
   PrintDrive(document, out);
   PrintVerdict(revision["verdict"], document, out);
+  PrintApproval(document, out);
   PrintCauses(revision["causes"], out);
   PrintGlobalError(revision, out);
   PrintDiagnoses(revision["diagnoses"], out);

@@ -1,7 +1,7 @@
 #include "storage/policies.h"
 
+#include "storage/audit.h"
 #include "storage/query.h"
-#include "storage/revisions.h"
 #include "storage/standing.h"
 #include "storage/standing_row.h"
 
@@ -39,7 +39,8 @@ Result<PolicyVersion> AppendPolicy(Store& store, const PolicyPlace& place, const
     next.number = store.database().getLastInsertRowid();
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            "set version " + std::to_string(next.version) + " of " + PolicySubject(place) +
-                               Because(word)));
+                               Because(word),
+                           RobotId(place.scope == PolicyScope::kRobot ? place.subject : "")));
     return next;
   });
 }

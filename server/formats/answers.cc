@@ -39,6 +39,8 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     out.Text("robot", robot.robot.str());
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
+    robot.revision > 0 ? out.Text("state", NameOf(robot.state)) : out.Null("state");
+    WriteRuns(out, robot.runs);
     WriteValidity(out, robot.validity);
     WriteDrive(out, robot.verdict, robot.validity);
     WriteAge(out, robot.validity.calibrated_at, now);
@@ -186,31 +188,36 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now) {
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval,
+                      const std::optional<Runs>& runs) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
     WriteDrive(out, revision.verdict, validity);
+    WriteApproval(out, approval);
+    WriteRuns(out, runs);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     out.Null("document");
   });
-  // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds free text.
+  // Byte for byte, so that whoever reads the answer can check the digest. Free text before it has its quotation marks escaped.
   const std::string place = "\"document\":null";
   return text.replace(text.find(place) + place.size() - 4, 4, revision.document);
 }
 
-std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next) {
+std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next,
+                           const std::vector<Approval>& approvals) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");
     out.List("revisions", [&] {
-      for (const Revision& revision : revisions)
+      for (std::size_t i = 0; i < revisions.size(); ++i)
         out.Object([&] {
-          WriteRevisionMembers(out, revision);
-          WriteAge(out, revision.created_at, now);
-          WriteVerdict(out, "verdict", revision.verdict);
+          WriteRevisionMembers(out, revisions[i]);
+          WriteAge(out, revisions[i].created_at, now);
+          WriteVerdict(out, "verdict", revisions[i].verdict);
+          if (i < approvals.size()) WriteApproval(out, approvals[i]);
         });
     });
   });
@@ -227,6 +234,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
     WriteDrive(out, answer.verdict, answer.validity);
+    WriteApproval(out, answer.approval);
   });
 }
 

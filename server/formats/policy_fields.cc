@@ -79,6 +79,8 @@ void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force) {
   if (policy.residual_max_rad) out.Number("residual_max_rad", *policy.residual_max_rad);
   if (policy.max_age_ns) out.Integer("max_age_ns", *policy.max_age_ns);
   if (policy.captures_min) out.Integer("captures_min", *policy.captures_min);
+  if (policy.approval) out.Text("approval", NameOf(*policy.approval));
+  if (policy.approve_warnings) out.Flag("approve_warnings", *policy.approve_warnings);
 }
 
 PolicyInForce ReadPolicyMembers(const JsonField& field) {
@@ -96,6 +98,8 @@ PolicyInForce ReadPolicyMembers(const JsonField& field) {
   if (const auto value = field.Find("max_age_ns"))
     if (const std::int64_t age_ns = value->Integer(INT64_MIN, INT64_MAX); age_ns > 0) policy.max_age_ns = age_ns;
   if (const auto value = field.Find("captures_min")) policy.captures_min = value->Integer(1, INT64_MAX);
+  if (const auto value = field.Find("approval")) policy.approval = ApprovalByOf(value->Text());
+  if (const auto value = field.Find("approve_warnings")) policy.approve_warnings = value->Flag();
   return in_force;
 }
 

@@ -180,6 +180,19 @@ void ReadPairLimits(const YamlField& pairs, TooSmall small, Policy& policy) {
   }
 }
 
+ApprovalBy ReadApproval(const YamlField& member) {
+  const std::string text = member.Text();
+  if (text != NameOf(ApprovalBy::kAutomatic) && text != NameOf(ApprovalBy::kPerson))
+    member.Refuse("must be automatic or person, not " + Quoted(text));
+  return ApprovalByOf(text);
+}
+
+bool ReadTrueOrFalse(const YamlField& member) {
+  const std::string text = member.Text();
+  if (text != "true" && text != "false") member.Refuse("must be true or false, not " + Quoted(text));
+  return text == "true";
+}
+
 // False: it is none of those that are for the whole robot.
 bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
   const std::string& key = member.Key();
@@ -189,6 +202,8 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
   if (key == "max_age_days")
     return policy.max_age_ns = std::llround(ReadBounded(member, "days", small) * kNsPerDay), true;
   if (key == "captures_min") return policy.captures_min = member.Integer(1, kCapturesMinMost), true;
+  if (key == "approval") return policy.approval = ReadApproval(member), true;
+  if (key == "approve_warnings") return policy.approve_warnings = ReadTrueOrFalse(member), true;
   if (key == "sensors") return ReadSensorLimits(member, small, policy), true;
   if (key == "pairs") return ReadPairLimits(member, small, policy), true;
   return false;
@@ -196,7 +211,8 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
 
 std::vector<std::string> KeysOfPolicy() {
   std::vector<std::string> keys = LimitKeys(false);
-  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "sensors", "pairs"})
+  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval", "approve_warnings",
+                            "sensors", "pairs"})
     keys.emplace_back(other);
   return keys;
 }

@@ -29,7 +29,7 @@ struct Validity {
   bool calculating = false;              // something arrived that the newest revision does not hold
   std::string given_up = {};             // a sentence with the cure, where that could not be solved; then not calculating
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // of the policy that judged the revision
-  std::optional<int> superseded_by = {};  // the robot's newest revision, where it is another
+  std::optional<int> superseded_by = {};  // the robot's newest revision, where it takes this one's place
 };
 
 // Two sensors that a measurement ties, and when it was made.

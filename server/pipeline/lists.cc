@@ -6,6 +6,7 @@
 #include "server/model/past.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/robot_rows.h"
 #include "storage/edges.h"
 #include "storage/merged_edges.h"
@@ -97,7 +98,8 @@ Result<std::string> ListRevisions(const AnswerContext& context, const Parameters
   RIGCAL_ASSIGN(auto revisions, storage::LoadRevisions(context.store, robot, before, RowsToLoad(page_rows)));
   std::optional<int> next;
   if (page_rows > 0) next = CutToPage(page_rows, revisions) ? revisions.back().number : 0;
-  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next);
+  RIGCAL_ASSIGN(const auto approvals, LoadApprovals(context.store, robot, revisions));
+  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals);
 }
 
 }  // namespace rigcal::pipeline

@@ -18,6 +18,7 @@
 #include "server/graph/solve.h"
 #include "server/model/past.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
@@ -292,6 +293,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
+    RIGCAL_TRY(ApproveByPolicy(store, revision, clock.Now()));
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));

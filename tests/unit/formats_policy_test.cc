@@ -26,6 +26,8 @@ residual_max_mm: 40
 residual_max_deg: 2
 max_age_days: 30.5
 captures_min: 20
+approval: person
+approve_warnings: false
 sensors:
   lidar: {tolerance_mm: 20, moved_min_mm: 3}
   left: {tolerance_px_at_10_m: 1}
@@ -53,6 +55,8 @@ TEST(PolicyYaml, EveryKeyIsRead) {
   EXPECT_DOUBLE_EQ(*read->residual_max_rad, 2 * M_PI / 180);
   EXPECT_EQ(read->max_age_ns, 30LL * 86'400'000'000'000 + 43'200'000'000'000);
   EXPECT_EQ(read->captures_min, 20);
+  EXPECT_EQ(read->approval, ApprovalBy::kPerson);
+  EXPECT_EQ(read->approve_warnings, false);
   ASSERT_EQ(read->sensors.size(), 2u);
   EXPECT_EQ(read->sensors.at(SensorId("lidar")).moved_min_m, 0.003);
   EXPECT_FALSE(read->sensors.at(SensorId("lidar")).moved_min_rad);
@@ -98,6 +102,12 @@ TEST(PolicyYaml, ALimitIsAboveZero) {
             "policy.yaml line 1: captures_min: must be a whole number from 1 to 100000, not \"0\"");
   EXPECT_EQ(Refused("tolerance_mm: nan"), "policy.yaml line 1: tolerance_mm: must be a number, not \"nan\"");
   EXPECT_EQ(Refused("tolerance_mm:"), "policy.yaml line 1: tolerance_mm: has no value");
+}
+
+TEST(PolicyYaml, WhoApprovesIsOneOfTwo) {
+  EXPECT_EQ(ReadPolicy("approval: automatic", "policy.yaml")->approval, ApprovalBy::kAutomatic);
+  EXPECT_EQ(Refused("approval: Ada"), "policy.yaml line 1: approval: must be automatic or person, not \"Ada\"");
+  EXPECT_EQ(Refused("approve_warnings: yes"), "policy.yaml line 1: approve_warnings: must be true or false, not \"yes\"");
 }
 
 // What becomes 0, or next to it, in the unit in which it is kept.
@@ -226,6 +236,8 @@ TEST(PolicyAnswer, TellsWhatHoldsAndWhoSetIt) {
   EXPECT_EQ(told["limits"]["moved_min_m"], 0.001);
   EXPECT_EQ(told["limits"]["max_age_ns"], kDefaultMaxAge_ns);
   EXPECT_TRUE(told["limits"]["captures_min"].is_null());
+  EXPECT_EQ(told["limits"]["approval"], "automatic");
+  EXPECT_EQ(told["limits"]["approve_warnings"], true);
   EXPECT_EQ(told["set"][0]["who"], "Ada");
   EXPECT_EQ(told["set"][0]["text"], "tolerance_mm: 4\n");
   EXPECT_EQ(told["set"][0]["version"], 2);

@@ -116,11 +116,14 @@ TEST(FleetCsv, HasARowForARobot) {
   EXPECT_EQ(FleetCsvRow(Late("late")),
             "late,warn,yes,2026-05-01T12:00:00Z,2026-01-31T12:00:00Z,,3,2,7,1,,,,"
             "board panel larger than given; cam_left - lidar_top failed,\"Pairs failed, \"\"many\"\".\","
-            "\"'=Measure, then push.\"\r\n");
+            "\"'=Measure, then push.\",unusable,,,\r\n");
   RobotSummary fresh;
   fresh.robot = RobotId("fresh");
   fresh.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
-  EXPECT_EQ(FleetCsvRow(fresh), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,\r\n");
+  EXPECT_EQ(FleetCsvRow(fresh), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,\r\n");
+  fresh.validity.usable = UsableRevision{5, {}};
+  fresh.runs = Runs{3, "It runs revision 3; revision 5 is in use: not applied yet."};
+  EXPECT_THAT(FleetCsvRow(fresh), HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.\r\n"));
   const auto commas = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
   EXPECT_EQ(commas(FleetCsvRow(fresh)), commas(heading));
 }
