@@ -46,6 +46,7 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   validity.max_age_ns = query.Int(18);
   validity.overdue = summary.revision > 0 && IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
   if (!query.IsNull(6)) validity.usable = UsableRevision{static_cast<int>(query.Int(6)), query.Time(7)};
+  validity.approved = IsApproved(summary.verdict, summary.revision, validity.usable);
   validity.calculating = query.Int(8) != 0;
   validity.given_up = query.Text(9);
   summary.sessions = query.Int(10);

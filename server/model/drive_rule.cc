@@ -36,6 +36,11 @@ std::string UnverifiedRule(const Verdict& verdict) {
   return "Not verified: do not rely on " + (verdict.unverified.empty() ? "this calibration" : verdict.unverified);
 }
 
+std::string UnapprovedRule(const std::optional<UsableRevision>& in_use) {
+  if (!in_use) return "Not approved: do not rely on it before somebody approves it";
+  return "Not approved: robots have revision " + std::to_string(in_use->number) + " of " + DayText(in_use->created_at);
+}
+
 std::string WarnRule(const Verdict& verdict, Stamp due) {
   const std::string action = FirstAction(verdict.what_to_do);
   return action.empty() ? "OK to drive until " + DayText(due) : "OK to drive; " + action + " by " + DayText(due);
@@ -52,6 +57,7 @@ DriveRule DriveRuleOf(const Verdict& verdict, const std::optional<Stamp>& due, S
 }
 
 DriveRule DriveRuleOf(const Verdict& verdict, const Validity& validity) {
+  if (!validity.approved && !validity.superseded_by) return {VerdictLevel::kUnknown, UnapprovedRule(validity.usable)};
   if (validity.superseded_by)
     return {VerdictLevel::kUnknown, "Superseded by revision " + std::to_string(*validity.superseded_by) +
                                         ": what this one says of driving is past"};

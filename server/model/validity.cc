@@ -43,6 +43,10 @@ bool IsUsable(const Verdict& verdict) {
   return verdict.level == VerdictLevel::kPass || verdict.level == VerdictLevel::kWarn;
 }
 
+bool IsApproved(const Verdict& verdict, int revision, const std::optional<UsableRevision>& usable) {
+  return !IsUsable(verdict) || (usable && usable->number == revision);
+}
+
 std::optional<Stamp> ValidUntil(const Validity& validity) {
   if (!validity.calibrated_at) return std::nullopt;
   return Stamp{validity.calibrated_at->ns + validity.max_age_ns};

@@ -29,6 +29,7 @@ struct Validity {
   bool calculating = false;              // something arrived that the newest revision does not hold
   std::string given_up = {};             // a sentence with the cure, where that could not be solved; then not calculating
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // of the policy that judged the revision
+  bool approved = true;  // false: it passed or warned, and nobody approved it, or it was rolled back
   std::optional<int> superseded_by = {};  // the robot's newest revision, where it takes this one's place
 };
 
@@ -43,6 +44,9 @@ struct DatedTie {
 
 // Whether a robot may drive by it: pass or warn.
 [[nodiscard]] bool IsUsable(const Verdict& verdict);
+// Whether the revision of that verdict and number is what robots are to have, `usable`; of a fail and of what is not
+// known nobody asks.
+[[nodiscard]] bool IsApproved(const Verdict& verdict, int revision, const std::optional<UsableRevision>& usable);
 // The moment from which it is overdue; absent: it counts nothing.
 [[nodiscard]] std::optional<Stamp> ValidUntil(const Validity& validity);
 // What was never calibrated is overdue.

@@ -99,6 +99,7 @@ Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, S
   RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, revision.robot, 0));
   if (newest && !IsKept(revision, *newest, validity.usable)) validity.superseded_by = newest->number;
+  validity.approved = IsApproved(revision.verdict, revision.number, validity.usable);
   return validity;
 }
 

@@ -74,6 +74,13 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
             "Superseded by revision 7: what this one says of driving is past");
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
   validity.superseded_by.reset();
+  validity.approved = false;
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule,
+            "Not approved: do not rely on it before somebody approves it");
+  validity.usable = UsableRevision{3, kBefore};
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule.find("Not approved: robots have revision 3 of "), 0u);
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
+  validity.approved = true;
   validity.overdue = true;
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");
