@@ -8,6 +8,7 @@ namespace rigcal::fleet {
 namespace {
 
 constexpr int kVisitsForScatter = 3;
+constexpr std::size_t kDriftsTold = 6;
 
 std::vector<SensorId> InState(const AsFound& found, FoundState state) {
   std::vector<SensorId> sensors;
@@ -30,7 +31,9 @@ std::vector<std::string> DriftTexts(const AsFound& found) {
   std::stable_sort(drifted.begin(), drifted.end(),
                    [](const auto* x, const auto* y) { return x->InSigmas() > y->InSigmas(); });
   std::vector<std::string> texts;
-  for (const SensorFound* sensor : drifted) texts.push_back(DriftText(*sensor));
+  for (std::size_t k = 0; k < std::min(drifted.size(), kDriftsTold); ++k) texts.push_back(DriftText(*drifted[k]));
+  if (drifted.size() > kDriftsTold)
+    texts.push_back(std::to_string(drifted.size() - kDriftsTold) + " more moved, by fewer sigmas");
   return texts;
 }
 

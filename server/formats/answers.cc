@@ -1,6 +1,7 @@
 #include "server/formats/answers.h"
 
 #include "server/formats/answer_rows.h"
+#include "server/formats/as_found.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
@@ -173,7 +174,8 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now) {
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
+                      const std::optional<AsFound>& as_found) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
@@ -181,14 +183,17 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     WriteDrive(out, revision.verdict, validity);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
+    if (as_found) out.Object("as_found", [&] { WriteAsFoundMembers(out, *as_found); });
     out.Null("document");
   });
-  // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds free text.
+  // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds these words: quotes
+  // in its texts are escaped.
   const std::string place = "\"document\":null";
   return text.replace(text.find(place) + place.size() - 4, 4, revision.document);
 }
 
-std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next) {
+std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next,
+                           const std::map<int, AsFoundSummary>& as_found) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");
@@ -198,6 +203,8 @@ std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& re
           WriteRevisionMembers(out, revision);
           WriteAge(out, revision.created_at, now);
           WriteVerdict(out, "verdict", revision.verdict);
+          if (const auto found = as_found.find(revision.number); found != as_found.end())
+            out.Object("as_found", [&] { WriteAsFoundMembers(out, found->second); });
         });
     });
   });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/as_found.h"
 #include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
@@ -64,11 +66,14 @@ struct PolicyAnswer {
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
                                      const std::vector<EdgeResidual>& residuals, const NextPage& next = {});
 
-// verb show: number, time and digest around the revision's document, which is put in byte for byte.
-[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now);
-// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page.
+// verb show: number, time and digest around the revision's document, which is put in byte for byte; beside it what its
+// newest session found of the calibration in use.
+[[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
+                                    const std::optional<AsFound>& as_found = {});
+// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `as_found`: of
+// those that have it.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
-                                         const std::optional<int>& next = {});
+                                         const std::optional<int>& next = {}, const std::map<int, AsFoundSummary>& as_found = {});
 
 // verb lookup
 struct LookupAnswer {

@@ -66,4 +66,11 @@ FoundState AsFound::State() const {
 double AsFound::Smallest_m() const { return LargestSmallest(sensors, tangent::kTranslation); }
 double AsFound::Smallest_rad() const { return LargestSmallest(sensors, tangent::kRotation); }
 
+AsFoundSummary SummaryOf(const AsFound& found) {
+  AsFoundSummary summary{found.session, found.State(), {}};
+  for (const SensorFound& sensor : found.sensors)
+    if (sensor.state == FoundState::kDrifted) summary.drifted.push_back(sensor.sensor);
+  return summary;
+}
+
 }  // namespace rigcal

@@ -71,4 +71,12 @@ struct AsFound {
   [[nodiscard]] double Smallest_rad() const;
 };
 
+// At a glance.
+struct AsFoundSummary {
+  SessionId session;
+  FoundState state = FoundState::kNotMeasured;
+  std::vector<SensorId> drifted;  // sorted
+};
+[[nodiscard]] AsFoundSummary SummaryOf(const AsFound& found);
+
 }  // namespace rigcal

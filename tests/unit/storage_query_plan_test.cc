@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/fleet_list.h"
@@ -121,6 +122,8 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadAsFound(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadAsFoundSummaries(store_, kRobot, {1, 2}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   EXPECT_TRUE(LoadRigModel(store_, kRobot));
   EXPECT_TRUE(LoadPolicyWatermark(store_));
