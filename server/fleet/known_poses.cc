@@ -91,6 +91,19 @@ KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
   return poses;
 }
 
+KnownPoses Some(const KnownPoses& poses, const std::function<bool(const SensorId&)>& is_one) {
+  KnownPoses some{poses.reference, {}, {}};
+  std::vector<Index> rows;
+  for (const KnownPose& pose : poses.poses) {
+    if (!is_one(pose.sensor)) continue;
+    some.poses.push_back(pose);
+    const Index first = FirstRow(poses, pose.sensor);
+    for (Index row = first; first >= 0 && row < first + 6; ++row) rows.push_back(row);
+  }
+  some.covariance = poses.covariance(rows, rows);
+  return some;
+}
+
 PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, const KnownPoses& poses) {
   const MatrixXd covariance = WithoutHoles(poses.covariance);
   const KnownPose& of_frame = *poses.Find(frame);

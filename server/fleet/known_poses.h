@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct KnownPoses {
 // sensors. The others stand apart, by their own.
 [[nodiscard]] KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
                                  const std::vector<JointCovariance>& joint = {});
+
+// Those that `is_one` takes; the frame stays that of the reference, though it may be left out.
+[[nodiscard]] KnownPoses Some(const KnownPoses& poses, const std::function<bool(const SensorId&)>& is_one);
 
 // Some of them in the frame of one: T_f_s = T_ref_f^-1 T_ref_s, xi_fs = xi_s - Ad(T_f_s^-1) xi_f.
 struct PosesSeen {

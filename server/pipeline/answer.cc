@@ -22,6 +22,7 @@
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
+#include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/lost_blobs.h"
@@ -90,7 +91,8 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(context.store, {robot, revision.number}));
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
-  return formats::WriteShow(revision, is_published, validity, now);
+  RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFound(context.store, {robot, revision.number}));
+  return formats::WriteShow(revision, is_published, validity, now, as_found);
 }
 
 // Those of merged edges scatter as theirs do.

@@ -7,6 +7,7 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/robot_rows.h"
+#include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
@@ -97,7 +98,10 @@ Result<std::string> ListRevisions(const AnswerContext& context, const Parameters
   RIGCAL_ASSIGN(auto revisions, storage::LoadRevisions(context.store, robot, before, RowsToLoad(page_rows)));
   std::optional<int> next;
   if (page_rows > 0) next = CutToPage(page_rows, revisions) ? revisions.back().number : 0;
-  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next);
+  std::vector<int> numbers;
+  for (const Revision& revision : revisions) numbers.push_back(revision.number);
+  RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFoundSummaries(context.store, robot, numbers));
+  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, as_found);
 }
 
 }  // namespace rigcal::pipeline

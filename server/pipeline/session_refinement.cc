@@ -160,17 +160,6 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
   return {};
 }
 
-// Sensors of which an edge of the session still says something.
-using Counting = std::set<std::pair<SessionId, SensorId>>;
-Counting CountingOf(const std::vector<Edge>& current, const std::vector<Edge>& within) {
-  Counting counting;
-  for (const std::vector<Edge>* edges : {&current, &within})
-    for (const Edge& edge : *edges)
-      if (edge.state == EdgeState::kGood)
-        for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) counting.emplace(edge.session, sensor);
-  return counting;
-}
-
 std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates) {
   std::vector<SessionId> sessions;
   for (const SessionEstimate& estimate : estimates) sessions.push_back(estimate.session);
@@ -194,7 +183,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
     if (row.estimate && !current.counts.superseded.contains(row.session)) result.estimates.push_back(std::move(*row.estimate));
   RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, SessionsOf(result.estimates), current.counts.remounts));
-  const Counting counting = CountingOf(current.edges, result.within);
+  const SessionSensors counting = SensorsThatCount(current, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;
     std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
@@ -203,6 +192,15 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
   }
   return result;
+}
+
+SessionSensors SensorsThatCount(const CurrentEdges& current, const std::vector<Edge>& within) {
+  SessionSensors counting;
+  for (const std::vector<Edge>* edges : {&current.edges, &within})
+    for (const Edge& edge : *edges)
+      if (edge.state == EdgeState::kGood)
+        for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) counting.emplace(edge.session, sensor);
+  return counting;
 }
 
 }  // namespace rigcal::pipeline

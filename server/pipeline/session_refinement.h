@@ -1,6 +1,10 @@
 // READ, joint refinement, WRITE: one estimate per session from the raw observations that its pairs were made from.
 #pragma once
 
+#include <set>
+#include <utility>
+#include <vector>
+
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
 #include "server/model/edge.h"
@@ -31,5 +35,9 @@ struct CurrentEstimates {
   std::vector<Edge> within;  // what of their edges is in merged ones (current_edges.h)
 };
 [[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current);
+
+// Sensors of which a good edge of the session still says something.
+using SessionSensors = std::set<std::pair<SessionId, SensorId>>;
+[[nodiscard]] SessionSensors SensorsThatCount(const CurrentEdges& current, const std::vector<Edge>& within);
 
 }  // namespace rigcal::pipeline
