@@ -86,6 +86,7 @@ Status ResultWatch::AskSession(State& state) {
                 connection_.AskDocument("session", JsonObject({{"id", state.place.session.str()}}), kAnswerWithin));
   const Document session = document["session"];
   state.result.session = session;
+  state.result.retired_sensors = document["retired_sensors"];
   state.place.standing = std::max(state.place.standing, session["standing"]["number"].Integer().value_or(0));
   state.waiting = session["jobs_waiting"].Integer().value_or(0);
   state.total = session["jobs_total"].Integer().value_or(0);

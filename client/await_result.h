@@ -34,11 +34,13 @@ struct Awaited {
   std::string show_text;      // the same, verbatim
   Document status;
   Document session;  // its row, where a session was waited for
+  Document retired_sensors = {};  // of those that it lists
 };
 
 // Open before the push begins: no event is missed.
 class ResultWatch {
  public:
+  // Asks and listens in the robot's partition. The error is of DDS.
   [[nodiscard]] static Result<ResultWatch> Open(const wire::Participant& participant,
                                                 const wire::ParticipantOptions& dds, const RobotId& robot);
   // kUnreachable if no server answered for give_up_ns, or if two are there.

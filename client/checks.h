@@ -29,6 +29,8 @@ struct NetworkInterface {
 [[nodiscard]] std::optional<std::int64_t> ReceiveBufferMax();
 [[nodiscard]] Check JudgeReceiveBuffer(std::optional<std::int64_t> bytes_max);
 
+// kFail where the protocols differ, kWarn where only the versions do. `server_protocol`: nothing where the server does
+// not tell.
 [[nodiscard]] Check JudgeVersions(const std::string& client, int client_protocol, const std::string& server,
                                   std::optional<std::int64_t> server_protocol);
 // `offset_ns`: server minus here; `round_trip_ns` bounds its error.

@@ -9,6 +9,8 @@
 
 namespace rigcal::client {
 
+// One command, `argv` as of main: what it gives goes to `out`, what is wrong to `err`. The exit code (exit_code.h);
+// never throws.
 int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal);
 // With these verbs only.
 int RunCommandLine(int argc, const char* const* argv, std::ostream& out, std::ostream& err, bool err_is_terminal,

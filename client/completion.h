@@ -12,6 +12,7 @@ class App;
 
 namespace rigcal::client {
 
+// Whether the command line is a shell's question what may stand there.
 [[nodiscard]] bool AsksForCompletion(const Context& context);
 // Prints what may stand in place of the last of WORDS, one a line: the word, a tab, its meaning. Files are left to the
 // shell by the line ":files", folders by ":folders". Robots and sensors are asked from the server; where it does not

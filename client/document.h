@@ -21,11 +21,13 @@ class Document {
 
   [[nodiscard]] Document operator[](std::string_view key) const;  // member of an object, or null
   [[nodiscard]] Document operator[](std::size_t idx) const;       // element of an array, or null
+  // Also of what is not there.
   [[nodiscard]] bool IsNull() const;
   [[nodiscard]] bool Has(std::string_view key) const;   // of an object: the member is there, be it null
   [[nodiscard]] std::size_t size() const;               // of an array or object; else 0
   [[nodiscard]] std::vector<Document> Items() const;    // elements of an array; else none
   [[nodiscard]] std::vector<std::string> Keys() const;  // of an object; else none
+  // The value, if it is of that kind; else the fallback, or nothing.
   [[nodiscard]] std::string Text(std::string_view fallback = "") const;
   [[nodiscard]] std::optional<double> Number() const;
   [[nodiscard]] std::optional<std::int64_t> Integer() const;
@@ -40,12 +42,14 @@ class Document {
 
 // {"key": value, ...} as JSON text; for requests.
 struct Field {
+  // `text` is quoted and escaped.
   Field(std::string key, const std::string& text);
   Field(std::string key, const char* text);
   Field(std::string key, std::int64_t value);
   [[nodiscard]] static Field Raw(std::string key, std::string json);  // the value is JSON already
   std::string key, json;
 };
+// In the order of `fields`; keys are quoted, and not looked at for repeats.
 [[nodiscard]] std::string JsonObject(const std::vector<Field>& fields);
 
 }  // namespace rigcal::client

@@ -17,11 +17,13 @@ struct EdgesToPush {
   std::vector<Edge> edges;                // sorted by id
   std::vector<std::uint32_t> send_order;  // the file's order, or shuffled
 };
+// The batch's id is that of its robot and edges, in any order. `shuffle_seed`: absent for the file's order.
 [[nodiscard]] EdgesToPush EdgesOf(const RobotId& robot, std::vector<Edge> edges,
                                   std::optional<std::uint64_t> shuffle_seed);
 
 class EdgeOutlet : public Outlet {
  public:
+  // A writer in the robot's partition.
   [[nodiscard]] static Result<std::unique_ptr<EdgeOutlet>> Open(const wire::Participant& participant,
                                                                 const EdgesToPush& batch);
   [[nodiscard]] Status SendHeader(const PushEngine& engine) override;  // one item that is not held: it gets an answer

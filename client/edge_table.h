@@ -14,8 +14,8 @@ namespace rigcal::client {
 
 // Retired, of a superseded session, or measured before a sensor was remounted: no part of the solution any more.
 [[nodiscard]] bool IsPast(const Document& edge);
-// Rows as in docs/api.md, edges; with the first 12 digits of each id, if asked for.
 enum class EdgeIds { kHidden, kShown };
+// Rows as in docs/api.md, edges; with the first 12 digits of each id, if asked for.
 void PrintEdges(const std::vector<Document>& edges, std::ostream& out, EdgeIds ids = EdgeIds::kHidden);
 // One line: "left - right  stereo  good  sigma 0.08 0.06 0.21 mm, 0.010 0.012 0.004 deg".
 [[nodiscard]] std::string EdgeLine(const Document& edge);

@@ -17,6 +17,7 @@ enum class ExitCode {
   kVerdictUnknown = 6,  // the answer came, and nothing is known: there is no result, or no verdict
 };
 
+// kUnreachable stays; every other error is kRefused.
 [[nodiscard]] ExitCode ExitCodeOf(const Error& error);
 // Prints "rigcal: <what>. <cure>" and gives the code to exit with.
 ExitCode Report(const Error& error, std::ostream& err);

@@ -21,10 +21,12 @@ struct FileMark {
 };
 // By path relative to the folder. Mark before hashing: then a change during or after it shows.
 using FileMarks = std::map<std::string, FileMark>;
+// Of all files below `folder`; what cannot be read is left out.
 [[nodiscard]] FileMarks MarkFiles(const std::filesystem::path& folder);
 
 class FilePieces {
  public:
+  // `payloads` of the files in `folder`, in the manifest's order; `marks` as of MarkFiles.
   FilePieces(std::filesystem::path folder, std::vector<Payload> payloads, FileMarks marks);
   // Valid until the next call. One file is open at a time.
   [[nodiscard]] Result<const std::string*> Read(const ChunkAt& chunk);

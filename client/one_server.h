@@ -16,6 +16,7 @@ namespace rigcal::client {
 class ServersSeen {
  public:
   using Time = std::chrono::steady_clock::time_point;
+  // `where`: named in the error; `opened_at`: when discovery began.
   ServersSeen(std::string where, Time opened_at) : where_(std::move(where)), opened_at_(opened_at) {}
   // kUnreachable names two that serve. A server that was restarted on its data folder is the same.
   [[nodiscard]] Status Judge(const std::vector<wire::ServerName>& listed, Time now);
@@ -33,6 +34,7 @@ class ServersSeen {
 // The same, from what a participant hears. One thread.
 class OneServer {
  public:
+  // Begins to listen; the others are known after a moment of discovery.
   [[nodiscard]] static Result<OneServer> Open(const wire::Participant& participant, const std::string& where);
   [[nodiscard]] Status Check();       // now
   [[nodiscard]] Status CheckOften();  // for loops: looks 20 times a second, whatever it is called

@@ -19,8 +19,8 @@ std::string LoginName() {
 
 namespace {
 
-std::string ParametersOf(const OrderToGive& order, const OrderOptions& options) {
-  std::vector<Field> fields = {{order.subject, options.id}, {"who", options.who.empty() ? LoginName() : options.who}};
+std::string ParametersOf(const OrderOptions& options) {
+  std::vector<Field> fields = {{"thing", options.id}, {"who", options.who.empty() ? LoginName() : options.who}};
   if (!options.reason.empty()) fields.emplace_back("reason", options.reason);
   if (!options.robot.empty()) fields.emplace_back("robot", options.robot);
   return JsonObject(fields);
@@ -53,7 +53,7 @@ std::string OrderJson(const std::string& done, const Awaited& awaited) {
 
 void AddOrderOptions(CLI::App& verb, OrderOptions& options) {
   verb.add_option("--by", options.who, "Who asks for it (default: the login name)")->type_name("NAME");
-  verb.add_option("--robot", options.robot, "Only this robot's: where the first digits fit several")->type_name("ID");
+  verb.add_option("--robot", options.robot, "The sensor's robot; of an id: only this robot's, where its first digits fit several")->type_name("ID");
   verb.add_flag("--no-wait", options.no_wait, "End when it is safe on the server's disk");
   verb.add_option("--timeout-total", options.give_up_s, "Give up after so many seconds without any answer (default 60)")
       ->check(CLI::Range(0.1, 1e7))
@@ -61,7 +61,7 @@ void AddOrderOptions(CLI::App& verb, OrderOptions& options) {
 }
 
 Status GiveOrder(Context& context, const OrderToGive& order, const OrderOptions& options) {
-  RIGCAL_ASSIGN(const std::string text, AskOnce(context, order.verb, ParametersOf(order, options)));
+  RIGCAL_ASSIGN(const std::string text, AskOnce(context, order.verb, ParametersOf(options)));
   return FollowOrder(context, order, options, text);
 }
 

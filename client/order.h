@@ -24,7 +24,6 @@ void AddOrderOptions(CLI::App& verb, OrderOptions& options);
 
 struct OrderToGive {
   std::string verb;
-  std::string subject;  // the parameter that has the id
   std::function<void(const Document& done, std::ostream&)> print;
 };
 // What follows the answer `text` to an order: it is told, and the revision waited for. Sets the exit code by its

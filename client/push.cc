@@ -150,12 +150,17 @@ Result<Awaited> Await(const Context& context, const PushOptions& options, const 
   return awaited;
 }
 
+Status CheckMeant(const Context& context, const SessionToPush& session, Connection& connection) {
+  RIGCAL_TRY(CheckNewRobot(connection, session.robot, context.timeout));
+  return CheckWhoseFiles(connection, session.robot, session.payloads, context.timeout);
+}
+
 Status RunPush(Context& context, const PushOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
-  if (!options.new_robot) RIGCAL_TRY(CheckNewRobot(watch.connection(), folder.session.robot, context.timeout));
+  if (!options.new_robot) RIGCAL_TRY(CheckMeant(context, folder.session, watch.connection()));
   RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, folder));
   SaySent(context, summary);
   if (options.no_wait) {
@@ -168,6 +173,7 @@ Status RunPush(Context& context, const PushOptions& options) {
   else
     PrintResult(awaited, context.out);
   SayStanding(awaited.session, context.err);
+  SayRetiredSensors(folder.session.robot.str(), awaited.retired_sensors, [](const std::string&) { return true; }, context.err);
   context.exit_code = JudgeResult(awaited);
   return {};
 }

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "client/new_robot.h"
 #include "client/progress.h"
 #include "client/push_result.h"
+#include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/durable_file.h"
@@ -93,6 +95,12 @@ void SayRetired(const EdgesToPush& batch, const Document& revision, std::ostream
   }
 }
 
+bool Names(const EdgesToPush& batch, const std::string& sensor) {
+  return std::any_of(batch.edges.begin(), batch.edges.end(), [&](const Edge& edge) {
+    return edge.frame_a.str() == sensor || edge.frame_b.str() == sensor;
+  });
+}
+
 Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
   SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
   RIGCAL_ASSIGN(const EdgesToPush batch, ReadEdges(options));
@@ -115,6 +123,8 @@ Status RunPushEdges(Context& context, const PushEdgesOptions& options) {
   else
     PrintResult(awaited, context.out);
   SayRetired(batch, awaited.show["document"], context.err);
+  SayRetiredSensors(batch.robot.str(), awaited.show["document"]["retired_sensors"],
+                    [&](const std::string& sensor) { return Names(batch, sensor); }, context.err);
   context.exit_code = JudgeResult(awaited);
   return {};
 }

@@ -53,8 +53,10 @@ struct PushAction {
 
 class PushEngine {
  public:
+  // Nothing is sent yet; silence counts from `now_ns` (steady).
   PushEngine(PushPlan plan, std::int64_t now_ns);
 
+  // A receipt that is older than one before, or comes after the end, is ignored.
   void OnReceipt(const wire::Receipt& receipt, std::int64_t now_ns);
   // Each returned send counts as done; say so if it was not.
   [[nodiscard]] PushAction Next(std::int64_t now_ns);
@@ -64,16 +66,20 @@ class PushEngine {
   void NotAsked() { header_ns_.reset(); }
   void Refuse(Error error);
 
+  // All is durable; or refused, or given up, and why.
   [[nodiscard]] bool Closed() const { return state_ == wire::ReceiptState::kClosed; }
   [[nodiscard]] const std::optional<Error>& error() const { return error_; }
   // What the server says is wrong with a payload while it goes on receiving.
   [[nodiscard]] const std::optional<Error>& complaint() const { return complaint_; }
 
   [[nodiscard]] bool Answered() const { return answered_; }  // by any receipt, ever
+  // Since the last receipt, or since the beginning.
   [[nodiscard]] std::int64_t SilentFor(std::int64_t now_ns) const { return now_ns - heard_ns_; }
   [[nodiscard]] int restarts() const { return restarts_; }  // of the server, seen by this engine
+  // Of payloads that are durable on the server.
   [[nodiscard]] std::int64_t HeldBytes() const { return held_bytes_; }
   [[nodiscard]] std::int64_t HeldAtFirst() const { return held_at_first_bytes_; }  // before anything was sent
+  // Of all payloads of the plan.
   [[nodiscard]] std::int64_t TotalBytes() const { return total_bytes_; }
   // Durable, plus what the server has taken to its disk but not yet receipted: for a bar that moves.
   [[nodiscard]] std::int64_t ArrivedBytes() const;

@@ -18,6 +18,7 @@ struct PushSummary {
   int restarts = 0;                         // of the server, seen on the way
   std::int64_t transfer_ns = 0;             // from looking for the server to the last receipt
 };
+// `transfer_ns` is left at 0 for the caller.
 [[nodiscard]] PushSummary SummaryOf(const PushEngine& engine, std::string kind, std::string robot, std::string id,
                                     std::size_t items);
 

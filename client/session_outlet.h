@@ -21,6 +21,7 @@ struct SessionToPush {
 
 class SessionOutlet : public Outlet {
  public:
+  // Writers of header, manifest and chunks in the robot's partition.
   [[nodiscard]] static Result<std::unique_ptr<SessionOutlet>> Open(const wire::Participant& participant,
                                                                    const SessionToPush& session, FilePieces pieces);
   [[nodiscard]] Status SendHeader(const PushEngine& engine) override;

@@ -23,14 +23,14 @@ void PrintSessions(const Document& document, std::ostream& out) {
   for (const Document& row : document["sessions"].Items()) {
     const auto done = row["jobs_total"].Integer().value_or(0) - row["jobs_waiting"].Integer().value_or(0);
     table.Add({row["session"].Text("?").substr(0, 16), row["robot"].Text("?"),
-               IsSuperseded(row) ? "superseded" : row["state"].Text("?"), row["captured_at"].Text("-"),
+               IsRetired(row) ? "retired" : IsSuperseded(row) ? "superseded" : row["state"].Text("?"), row["captured_at"].Text("-"),
                CountOf(row["payloads_held"]) + "/" + CountOf(row["payloads"]),
                ByteText(row["bytes"].Number().value_or(0.0)), std::to_string(done) + "/" + CountOf(row["jobs_total"]),
                row["operator"].Text()});
   }
   table.Print(out);
   for (const Document& row : document["sessions"].Items())
-    if (IsSuperseded(row)) out << StandingText(row) << '\n';
+    if (IsSuperseded(row) || IsRetired(row)) out << StandingText(row) << '\n';
 }
 
 struct SessionsOptions {
@@ -62,7 +62,8 @@ void AddSessions(CLI::App& app, Context& context) {
   AddPageOptions(*verb, options->page, "sessions", "the whole id of a session");
   verb->footer(
       "FILES: on the server's disk / in all. JOBS: sensor pairs done / in all. --json has the whole session ids.\n"
-      "A superseded session does not count: another one of the same pictures was pushed, or restored, after it.\n"
+      "A superseded session does not count: another one of the same pictures was pushed, or restored, after it. Nor does a\n"
+      "retired one: somebody took it out with `rigcal retire`.\n"
       "Examples:\n"
       "  rigcal sessions\n"
       "  rigcal sessions mapper-01 --limit 20\n");

@@ -8,6 +8,7 @@
 #include "client/insight_table.h"
 #include "client/part_text.h"
 #include "client/pose_text.h"
+#include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -39,6 +40,8 @@ void PrintPoses(const Document& revision, std::ostream& out) {
   }
   table.Print(out);
   PrintParts(revision, out);
+  for (const Document& gone : revision["retired_sensors"].Items())
+    out << RetiredSensorText(revision["robot"].Text("?"), gone) << '\n';
 }
 
 // Of a server that tells it.
@@ -49,9 +52,9 @@ void PrintAsFound(const Document& as_found, std::ostream& out) {
 
 void PrintShow(const Document& document, bool whole, std::ostream& out) {
   const Document revision = document["document"];
-  PrintDrive(document, out);
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
+  PrintDrive(document, out);
   PrintVerdict(revision["verdict"], document, out);
   PrintCauses(revision["causes"], out);
   PrintAsFound(document["as_found"], out);

@@ -13,6 +13,7 @@ struct DisturbanceWords {
   std::string bump, bump_by, board_moved, wrong_instant, shift_capture, visit_scatter;
 };
 
+// Adds the options to `verb`; both outlive its parsing.
 void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simulation);
 // The error names the option and shows how it is written.
 [[nodiscard]] Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation);

@@ -16,6 +16,7 @@ struct Column {
 
 class Table {
  public:
+  // Without rows.
   explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
   // Missing cells are empty; cells beyond the columns are dropped.
   void Add(std::vector<std::string> cells);

@@ -16,7 +16,9 @@ class Outlet {
   Outlet(const Outlet&) = delete;
   Outlet& operator=(const Outlet&) = delete;
   virtual ~Outlet() = default;
+  // Asks the server where it stands.
   [[nodiscard]] virtual Status SendHeader(const PushEngine& engine) = 0;
+  // Once the server wants it.
   [[nodiscard]] virtual Status SendManifest() = 0;
   [[nodiscard]] virtual Status SendChunk(const ChunkAt& chunk) = 0;  // kBusy: not sent
   // The server complained about a payload: is it our input that changed?
@@ -39,6 +41,7 @@ struct TransferPlace {
   std::string where;       // WhereText
 };
 
+// Of a clock that never goes back; its zero means nothing.
 [[nodiscard]] std::int64_t SteadyNow_ns();
 
 // Until the subject is closed. Errors: refused (the server's sentence), kUnreachable after the plan's give_up_ns or

@@ -35,6 +35,7 @@ struct Question {
   std::function<void(const Document&, std::ostream&)> print;  // for people
   std::function<ExitCode(const Document&)> judge;             // empty: good
 };
+// Prints the answer, or the error to `err`; the code to exit with.
 ExitCode Answer(const Context& context, const Question& question);
 // Asks; the error is left to the caller.
 [[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb,

@@ -13,11 +13,14 @@ namespace rigcal::client {
 
 using AddVerb = void (*)(CLI::App& app, Context& context);
 
+// Each adds its verb: options, help, and what runs when its words have been read. `context` outlives `app`, and gets
+// the exit code.
 void AddPush(CLI::App& app, Context& context);
 void AddPushEdges(CLI::App& app, Context& context);
 void AddRestore(CLI::App& app, Context& context);
 void AddRetire(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kPolicyActions = {"show", "check", "set"};
+// policy, and the verbs that ask the server what it knows.
 void AddPolicy(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);
@@ -33,10 +36,11 @@ void AddCompare(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
-void AddCompletion(CLI::App& app, Context& context);
+void AddCompletion(CLI::App& app, Context& context);                            // prints that script
 // In programs of their own (simulate_main.cc, check_main.cc); `rigcal` has those that start them.
 inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
 inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";
+// Those that do it, and those that start the program that does, if it is installed beside.
 void AddSimulate(CLI::App& app, Context& context);
 void AddSimulateElsewhere(CLI::App& app, Context& context);
 void AddCheck(CLI::App& app, Context& context);

@@ -73,6 +73,7 @@ void PutNumbers(const Edge& edge, rigcal_wire_PairwiseResult& sample) {
   sample.rank = edge.uncertainty.rank;
   sample.dof = edge.uncertainty.dof;
   sample.jackknife_ratio = edge.uncertainty.jackknife_ratio;
+  sample.measured_ns = edge.measured_at ? edge.measured_at->ns : 0;
 }
 
 Status PutParts(const Uncertainty& uncertainty, EdgeMemory& memory) {
@@ -180,6 +181,7 @@ Result<BatchItem> FromPairwiseResult(const rigcal_wire_PairwiseResult& sample) {
   RIGCAL_TRY(TakeNames(sample, item));
   RIGCAL_TRY(TakePose(sample, item.edge.T_a_b));
   RIGCAL_TRY(TakeUncertainty(sample, item.edge.uncertainty));
+  if (sample.measured_ns != 0) item.edge.measured_at = Stamp{sample.measured_ns};
   item.edge.state = EdgeState::kGood;
   RIGCAL_TRY(Validate(item.edge));
   RIGCAL_TRY(CheckIdentity(sample, item.edge));

@@ -31,9 +31,9 @@ enum class AttemptEnd {
                                 Stamp now);
 // The same for every open attempt; the works that were open.
 [[nodiscard]] Result<std::vector<std::string>> EndOpenAttempts(Store& store, AttemptEnd end, Stamp now);
+constexpr int kKillsMax = 10;
 // The same where the process was killed from outside: given back, but still work that was begun before; from the
 // kKillsMax-th kill of the same work on cut off, for a cause that is always outside is none.
-constexpr int kKillsMax = 10;
 [[nodiscard]] Result<std::vector<std::string>> EndKilledAttempts(Store& store, Stamp now);
 
 // Attempts that count, of work that is not done; with the one under way.
@@ -43,6 +43,7 @@ struct Attempts {
   bool under_way = false;
   std::string newest_why;  // of those that failed
 };
+// Zeros of work that never began, or that is done.
 [[nodiscard]] Result<Attempts> LoadAttempts(Store& store, const std::string& work);
 
 }  // namespace rigcal::storage

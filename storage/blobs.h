@@ -21,6 +21,7 @@ struct FinishedFile {
   std::filesystem::path path;
   Digest digest;
 };
+// One that is gone and whose blob is there counts as moved. kStorage names what cannot be moved.
 [[nodiscard]] Status AdoptBlobs(const std::filesystem::path& blob_folder, const std::vector<FinishedFile>& files);
 // The whole blob, held against its name; refuses more than bytes_max. kNotFound: there is none; kConflict: its bytes
 // are not those that it was stored with.
@@ -29,6 +30,7 @@ struct FinishedFile {
 
 // What the disk has kept of a blob. Of a disk that cannot be asked (permissions, say) an error.
 enum class BlobState { kGood, kDamaged, kMissing };
+// Reads the whole blob and holds it against its name; changes nothing.
 [[nodiscard]] Result<BlobState> LookAtBlob(const std::filesystem::path& blob_folder, const Digest& digest);
 // The same, and moves a damaged one aside, to a name ending in ".damaged" that is not taken: from then on it is
 // missing.

@@ -24,7 +24,7 @@ class Connection {
   // Throws SQLite::Exception.
   Connection(const std::filesystem::path& file, std::string name);
 
-  [[nodiscard]] SQLite::Database& database() { return database_; }
+  [[nodiscard]] SQLite::Database& database() { return database_; }  // for storage/*.cc only
 
   // Where the prepared statement of `sql` waits while nobody runs it; null at first.
   [[nodiscard]] std::unique_ptr<SQLite::Statement>& IdleStatement(const std::string& sql) {

@@ -22,6 +22,7 @@ struct StoredCloud {
   CloudView view;
   Digest picture;  // as above
 };
+// As of pictures: nothing if this detector has not seen the cloud yet; a cloud that is there already stays as it is.
 [[nodiscard]] Result<std::optional<StoredCloud>> LoadCloud(Store& store, const Digest& cloud,
                                                            const std::string& detector);
 [[nodiscard]] Status AppendCloud(Store& store, const Digest& cloud, const std::string& detector,

@@ -59,6 +59,7 @@ Edge EdgeOf(const Query& query) {
   edge.frame_b = query.IdAt<SensorId>(6);
   edge.method = query.Text(7);
   edge.state = query.Text(8) == "good" ? EdgeState::kGood : EdgeState::kFailed;
+  if (!query.IsNull(23)) edge.measured_at = query.Time(23);
   if (edge.state != EdgeState::kGood) return edge;
   edge.T_a_b = PoseOf(query, 9);
   edge.uncertainty = UncertaintyOf(query, 16);
@@ -69,7 +70,7 @@ Selected LoadRows(Store& store, const Selection& selection) {
   Query query(store,
               "SELECT number, edge_id, robot_id, session_id, epoch, frame_a, frame_b, method, state, "
               "T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, T_a_b_qw, "
-              "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio FROM edge e WHERE " +
+              "information, rank, dof, source, covariance, unobservable_basis, jackknife_ratio, measured_ns FROM edge e WHERE " +
                   selection.where +
                   " AND EXISTS (SELECT 1 FROM counted_edge c WHERE c.edge_number = e.number) ORDER BY edge_id");
   query.Bind(selection.key);
@@ -217,7 +218,7 @@ Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<E
   for (const Edge& edge : edges) ids.push_back(edge.id);
   return Load<Stamps>(store, "times of edges", [&]() -> Result<Stamps> {
     Query query(store,
-                "SELECT edge.edge_id, coalesce(session.captured_ns, edge.appended_ns) FROM edge "
+                "SELECT edge.edge_id, coalesce(session.captured_ns, edge.measured_ns, edge.appended_ns) FROM edge "
                 "LEFT JOIN session USING (session_id) WHERE edge.edge_id IN (SELECT value FROM json_each(?))");
     query.Bind(ListOf(ids));
     Stamps stamps;

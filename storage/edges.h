@@ -20,9 +20,9 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::optional<Edge>> LoadEdge(Store& store, const EdgeId& id);
 // All edges of a robot, good and failed, sorted by id. With `blocks` false the block vectors are left out.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const RobotId& robot, bool blocks);
+enum class EdgeParts { kAll, kRow };
 // Those that are in no merged edge (merged_edges.h), sorted by id: whole, or ids, ends, state, pose and uncertainty without
 // its block vectors, which is what a graph is made of.
-enum class EdgeParts { kAll, kRow };
 [[nodiscard]] Result<std::vector<Edge>> LoadUnmergedEdges(Store& store, const RobotId& robot, EdgeParts parts);
 // Those of `ids` that are there, sorted by id; likewise.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const std::vector<EdgeId>& ids, bool blocks = true);
@@ -33,7 +33,8 @@ enum class EdgeParts { kAll, kRow };
 [[nodiscard]] Result<std::vector<Edge>> LoadEdges(Store& store, const SessionId& session);
 // Those of the sessions, sorted by id: ids, ends, pose and uncertainty, and nothing else of them.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgeRows(Store& store, const std::vector<SessionId>& sessions);
-// When each of the edges was measured: its session was captured or, of one that was pushed, it was stored.
+// When each of the edges was measured: its session was captured; of one that was pushed, what it says or, where it does not,
+// when it was stored.
 [[nodiscard]] Result<std::map<EdgeId, Stamp>> LoadMeasuredAt(Store& store, const std::vector<Edge>& edges);
 // How many edges of the robot began to count up to `watermark`.
 [[nodiscard]] Result<std::int64_t> CountEdges(Store& store, const RobotId& robot, std::int64_t watermark);
@@ -49,14 +50,14 @@ enum class EdgeParts { kAll, kRow };
                                      Stamp now);
 // held[i]: item i is durable; nullopt if the batch is unknown.
 [[nodiscard]] Result<std::optional<std::vector<bool>>> LoadBatchHeld(Store& store, const BatchId& batch);
-// Batches of which items are missing, of one robot, or of all if `robot` is empty; the oldest first. Their edges do not
-// count.
 struct OpenBatch {
   BatchId id;
   RobotId robot;
   std::int64_t items = 0, held = 0;
   Stamp opened_at, newest_at;  // `newest_at`: when an item was last pushed
 };
+// Batches of which items are missing, of one robot, or of all if `robot` is empty; the oldest first. Their edges do not
+// count.
 [[nodiscard]] Result<std::vector<OpenBatch>> LoadOpenBatches(Store& store, const RobotId& robot);
 
 }  // namespace rigcal::storage

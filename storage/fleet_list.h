@@ -24,6 +24,7 @@ struct FleetSize {
   std::int64_t robots = 0, sessions = 0, edges = 0;  // edges that count
   std::int64_t unfinished = 0;                       // robots to solve or to judge, and reports to publish
 };
+// Zeros of an empty store.
 [[nodiscard]] Result<FleetSize> LoadFleetSize(Store& store);
 
 }  // namespace rigcal::storage

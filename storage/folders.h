@@ -8,6 +8,7 @@
 
 namespace rigcal::storage {
 
+// Where the parts of the store at `folder` lie; nothing is looked at.
 [[nodiscard]] std::filesystem::path DatabaseFile(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path BlobFolderOf(const std::filesystem::path& folder);
 [[nodiscard]] std::filesystem::path IntakeFolderOf(const std::filesystem::path& folder);

@@ -28,6 +28,7 @@ struct JobRow {
 struct JobCount {
   std::int64_t waiting = 0, total = 0;
 };
+// Zeros of a session that is not known.
 [[nodiscard]] Result<JobCount> CountJobs(Store& store, const SessionId& session);
 // The job that made this edge, once more: its evidence is made again. A no-op for an edge that was pushed.
 [[nodiscard]] Status QueueAgain(Store& store, const EdgeId& edge);

@@ -27,6 +27,7 @@ struct LostPayloads {
   std::int64_t count = 0;
   std::vector<LostPayload> first;
 };
+// By robot, session and path. `count`: of all of them, `first`: up to `first_max`.
 [[nodiscard]] Result<LostPayloads> LoadLost(Store& store, std::size_t first_max);
 
 // The content of this payload is on disk again: it is lost no more, jobs that waited for nothing else are queued again;

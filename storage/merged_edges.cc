@@ -5,6 +5,7 @@
 
 #include "server/base/sha256.h"
 #include "storage/query.h"
+#include "storage/retired.h"
 #include "storage/standing.h"
 
 namespace rigcal::storage {
@@ -113,21 +114,41 @@ std::string KeysOf(const Map& map) {
   return ListOf(keys);
 }
 
-// Of sessions, whether an edge is in no window.
-bool AnyOfSessionsOutside(Store& store, const RobotId& robot) {
+// Of edges that have a date, those of sessions and some pushed ones, whether any is in no window.
+bool AnyDatedOutside(Store& store, const RobotId& robot) {
   return Query(store,
                "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
-               "e.session_id IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+               "coalesce(e.session_id, e.measured_ns) IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
                "w.edge_number = c.edge_number) LIMIT 1")
       .Bind(robot)
       .Step();
 }
 
+// Of retired sensors, those of which an edge is in no window.
+std::string SensorsOutside(Store& store, const RobotId& robot, const WhatCounts& counts) {
+  std::string outside;
+  for (const auto& [sensor, standing] : counts.retired_sensors)
+    if (Query(store,
+              "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
+              "?2 IN (e.frame_a, e.frame_b) AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+              "w.edge_number = c.edge_number) LIMIT 1")
+            .Bind(robot, sensor)
+            .Step())
+      outside += "sensor " + sensor.str() + "\n";
+  return outside;
+}
+
+std::string RetiredSessionsOutside(Store& store, const RobotId& robot, const WhatCounts& counts) {
+  const std::string outside = OutsideOf(store, robot, "session_id", KeysOf(counts.retired_sessions));
+  return outside.empty() ? "" : "retired\n" + outside;
+}
+
 // Of what people said, what concerns edges that are in no window. Empty where nothing does.
 std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts) {
   std::string basis = OutsideOf(store, robot, "session_id", KeysOf(counts.superseded)) +
-                      OutsideOf(store, robot, "edge_id", KeysOf(counts.retired));
-  if (!counts.remounts.empty() && AnyOfSessionsOutside(store, robot))
+                      OutsideOf(store, robot, "edge_id", KeysOf(counts.retired)) +
+                      RetiredSessionsOutside(store, robot, counts) + SensorsOutside(store, robot, counts);
+  if (!counts.remounts.empty() && AnyDatedOutside(store, robot))
     for (const Remount& remount : counts.remounts) basis += remount.session.str() + " " + remount.sensor.str() + "\n";
   return basis.empty() ? "" : Sha256Of(basis).str();
 }
@@ -186,6 +207,8 @@ Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(counts.superseded, LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(counts.retired, LoadRetired(store, robot));
   RIGCAL_ASSIGN(counts.remounts, LoadRemounts(store, robot));
+  RIGCAL_ASSIGN(counts.retired_sessions, LoadRetiredSessions(store, robot));
+  RIGCAL_ASSIGN(counts.retired_sensors, LoadRetiredSensors(store, robot));
   return counts;
 }
 

@@ -23,10 +23,13 @@ struct WhatCounts {
   std::map<SessionId, Superseding> superseded;
   std::map<EdgeId, Standing> retired;
   std::vector<Remount> remounts;
+  std::map<SessionId, Standing> retired_sessions = {};
+  std::map<SensorId, Standing> retired_sensors = {};
 };
+// Several readings: call it inside one Read, so that all are of one moment.
 [[nodiscard]] Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot);
-// True: of what has left the window an edge was retired, a session superseded or restored, or a sensor remounted, after the newest
-// revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.
+// True: of what has left the window an edge, session or sensor was retired or restored, a session superseded, or a sensor
+// remounted, after the newest revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.
 [[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts);
 
 struct MergeStep {

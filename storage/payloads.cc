@@ -1,9 +1,14 @@
+#include <map>
+
 #include "storage/lost_blobs.h"
 #include "storage/query.h"
 #include "storage/sessions.h"
 
 namespace rigcal::storage {
 namespace {
+
+// A content that more sessions hold, an empty file say, tells nothing of whose it is.
+constexpr std::int64_t kSessionsOfContentMax = 100;
 
 struct PayloadList {
   std::int64_t session_number = 0;
@@ -73,6 +78,29 @@ Status AppendHeld(Store& store, const SessionId& id, const std::vector<std::uint
 Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest) {
   return Load<bool>(store, "payload " + digest.str(), [&]() -> Result<bool> {
     return Query(store, "SELECT 1 FROM robot_digest_held WHERE robot_id = ? AND digest = ?").Bind(robot, digest).Step();
+  });
+}
+
+Result<std::optional<HeldByAnother>> LoadHeldByAnother(Store& store, const RobotId& robot,
+                                                       const std::set<Digest>& digests) {
+  using Held = std::optional<HeldByAnother>;
+  return Load<Held>(store, "files of other robots than " + robot.str(), [&]() -> Result<Held> {
+    std::map<std::int64_t, HeldByAnother> by_session;
+    for (const Digest& digest : digests) {
+      Query query(store,
+                  "SELECT DISTINCT s.number, s.robot_id, s.session_id, s.captured_ns FROM payload p "
+                  "JOIN session s ON s.number = p.session_number JOIN session_closed c ON c.session_number = s.number "
+                  "WHERE p.digest = ? AND s.robot_id <> ? LIMIT ?");
+      query.Bind(digest, robot, kSessionsOfContentMax);
+      while (query.Step()) {
+        const HeldByAnother first{RobotId(query.Text(1)), SessionId(query.Text(2)), Stamp{query.Int(3)}, 0};
+        ++by_session.try_emplace(query.Int(0), first).first->second.contents;
+      }
+    }
+    Held most;
+    for (const auto& [number, held] : by_session)
+      if (!most || held.contents > most->contents) most = held;
+    return most;
   });
 }
 

@@ -3,6 +3,7 @@
 #include "storage/query.h"
 #include "storage/revisions.h"
 #include "storage/standing.h"
+#include "storage/standing_row.h"
 
 namespace rigcal::storage {
 namespace {
@@ -38,7 +39,7 @@ Result<PolicyVersion> AppendPolicy(Store& store, const PolicyPlace& place, const
     next.number = store.database().getLastInsertRowid();
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            "set version " + std::to_string(next.version) + " of " + PolicySubject(place) +
-                               (word.reason.empty() ? "" : ": " + word.reason)));
+                               Because(word)));
     return next;
   });
 }

@@ -23,16 +23,20 @@ static_assert(std::endian::native == std::endian::little, "BLOBs hold little-end
 struct Blob {
   std::string bytes;
 };
+// The doubles as they lie in memory; a matrix row by row.
 [[nodiscard]] Blob BlobOf(const double* values, std::size_t count);
 [[nodiscard]] Blob BlobOf(const Matrix6d& matrix);
 
 class Query {
  public:
+  // Takes the statement of `sql` that the connection keeps, or prepares it. Throws SQLite::Exception, as all that
+  // follows.
   Query(Store& store, const std::string& sql);
   ~Query();
   Query(const Query&) = delete;
   Query& operator=(const Query&) = delete;
 
+  // The next parameters, from the first: what is absent becomes NULL, an id its text, a stamp its nanoseconds.
   template <typename... Values>
   Query& Bind(const Values&... values) {
     (BindOne(values), ...);
@@ -46,6 +50,7 @@ class Query {
   // Runs it to the end; the number of rows changed.
   int Run() { return statement_->exec(); }
 
+  // Of the row that Step() came to; columns count from 0. NULL reads as 0 or empty text.
   [[nodiscard]] bool IsNull(int column) const { return statement_->isColumnNull(column); }
   [[nodiscard]] std::int64_t Int(int column) const { return statement_->getColumn(column).getInt64(); }
   [[nodiscard]] double Real(int column) const { return statement_->getColumn(column).getDouble(); }
@@ -96,6 +101,7 @@ template <typename Tag>
   return list + "]";
 }
 
+// Of numbers, likewise.
 [[nodiscard]] std::string ListOf(const std::vector<int>& numbers);
 
 // NULL for an empty id.

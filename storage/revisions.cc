@@ -136,17 +136,30 @@ Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId&
   });
 }
 
+namespace {
+
+// Of a revision: that no edge which it counts was retired since, itself or with its session, and not restored. `counted` finds
+// the edges `c` of the word `t`, which is about `subject`.
+std::string CountsNothingRetired(const std::string& counted, const std::string& subject) {
+  return "NOT EXISTS (SELECT 1 FROM standing t JOIN " + counted +
+         " WHERE t.robot_id = revision.robot_id AND t.how = 'retired' AND c.number <= revision.edge_watermark "
+         "AND t.number > coalesce((SELECT standing_watermark FROM revision_standing w "
+         "WHERE w.robot_id = revision.robot_id AND w.revision_number = revision.number), 0) "
+         "AND NOT EXISTS (SELECT 1 FROM standing later WHERE later." +
+         subject + " = t." + subject + " AND later.number > t.number AND later.how = 'restored'))";
+}
+
+}  // namespace
+
 Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store,
-                "SELECT " + kColumns + kFrom +
-                    "WHERE revision.robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') "
-                    // none that counts an edge which was retired since
-                    "AND NOT EXISTS (SELECT 1 FROM standing t JOIN counted_edge c ON c.edge_number = t.edge_number "
-                    "WHERE t.robot_id = revision.robot_id AND c.number <= revision.edge_watermark "
-                    "AND t.number > coalesce((SELECT standing_watermark FROM revision_standing s "
-                    "WHERE s.robot_id = revision.robot_id AND s.revision_number = revision.number), 0)) "
-                    "ORDER BY number DESC LIMIT 1");
+    Query query(store, "SELECT " + kColumns + kFrom +
+                           "WHERE revision.robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') AND " +
+                           CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
+                           CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
+                                                "JOIN counted_edge c ON c.edge_number = e.number",
+                                                "session_number") +
+                           " ORDER BY number DESC LIMIT 1");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
     return RevisionOf(query);
   });

@@ -18,7 +18,8 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number);
 // The same without the document, which may be many megabytes.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number);
-// The newest up to `number` (0: of all) whose verdict is pass or warn; without the document.
+// The newest up to `number` (0: of all) whose verdict is pass or warn; without the document. None that counts an edge which was
+// retired since, itself or with its session.
 [[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number);
 // The number of the newest up to `number` whose verdict is pass or warn, also where it may be used no more; 0: there is none.
 [[nodiscard]] Result<int> LoadNewestGood(Store& store, const RobotId& robot, int number);

@@ -91,6 +91,11 @@ void InsertListed(Store& store, std::int64_t session_number) {
         "FROM session WHERE number = ? AND json_extract(manifest, '$.rig_model') <> ''")
       .Bind(session_number)
       .Run();
+  Query(store,
+        "INSERT INTO session_reference SELECT number, json_extract(manifest, '$.reference') FROM session "
+        "WHERE number = ? AND json_extract(manifest, '$.reference') IS NOT NULL")
+      .Bind(session_number)
+      .Run();
 }
 
 void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {
@@ -217,13 +222,13 @@ Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vecto
   });
 }
 
-Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot) {
-  return Load<std::optional<SessionId>>(store, Subject(robot), [&]() -> Result<std::optional<SessionId>> {
+Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot, const std::vector<SensorId>& gone) {
+  return Load<SensorId>(store, Subject(robot), [&]() -> Result<SensorId> {
     Query query(store,
-                "SELECT session_id FROM session JOIN session_closed ON session_number = number WHERE robot_id = ? "
-                "ORDER BY captured_ns, session_id LIMIT 1");
-    if (!query.Bind(robot).Step()) return std::nullopt;
-    return query.IdAt<SessionId>(0);
+                "SELECT r.sensor_id FROM session s CROSS JOIN session_reference r ON r.session_number = s.number "
+                "WHERE s.robot_id = ? AND r.sensor_id NOT IN (SELECT value FROM json_each(?)) "
+                "ORDER BY s.captured_ns, s.session_id LIMIT 1");
+    return query.Bind(robot, ListOf(gone)).Step() ? query.IdAt<SensorId>(0) : SensorId();
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct SessionRow {
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const RobotId& robot);
 // Of those that are known.
 [[nodiscard]] Result<std::map<SessionId, Stamp>> LoadCapturedAt(Store& store, const std::vector<SessionId>& sessions);
-// Of the closed ones that which was captured first; of several the smallest id.
-[[nodiscard]] Result<std::optional<SessionId>> LoadEarliestClosed(Store& store, const RobotId& robot);
+// The reference that is named by the closed session which was captured first (of several: of the smallest id), of those that
+// name none of `gone`. Empty: there is no such session.
+[[nodiscard]] Result<SensorId> LoadNamedReference(Store& store, const RobotId& robot, const std::vector<SensorId>& gone);
 // Of the closed ones when the newest was captured.
 [[nodiscard]] Result<std::optional<Stamp>> LoadNewestCapture(Store& store, const RobotId& robot);
 // Those that are still arriving, or whose pairs are still being calibrated; likewise newest first.
@@ -49,17 +51,26 @@ struct SessionRow {
 // Digests that sessions of this robot hold: what it need not send again. What another robot sent does not count: its
 // digests can be read by anybody, its bytes cannot.
 [[nodiscard]] Result<bool> IsHeld(Store& store, const RobotId& robot, const Digest& digest);
+struct HeldByAnother {
+  RobotId robot;
+  SessionId session;
+  Stamp captured_at;
+  std::size_t contents = 0;  // of those asked for
+};
+// Of the closed sessions of other robots the one that holds most of these contents; of several the first to arrive.
+[[nodiscard]] Result<std::optional<HeldByAnother>> LoadHeldByAnother(Store& store, const RobotId& robot,
+                                                                     const std::set<Digest>& digests);
 // Closes the session (immutable and current from now on) and queues one job per pair, in this order. A no-op if closed;
 // kConflict while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
-// Sensors that closed sessions of the robot name as remounted, the earliest captured first; superseded sessions do not
-// count.
 struct Remount {
   SensorId sensor;
   SessionId session;
   Stamp captured_at;
 };
+// Sensors that closed sessions of the robot name as remounted, the earliest captured first; superseded sessions do not
+// count.
 [[nodiscard]] Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot);
 
 // All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
@@ -70,6 +81,7 @@ struct RobotRow {
   Stamp first_seen_at;
   std::int64_t sessions = 0, edges = 0;
 };
+// A no-op if the robot is known; its name must be a robot's name.
 [[nodiscard]] Status AppendRobot(Store& store, const RobotId& robot, Stamp now);
 // Nothing of a robot that is not known.
 [[nodiscard]] Result<std::optional<RobotRow>> LoadRobot(Store& store, const RobotId& robot);

@@ -1,20 +1,15 @@
 #include "storage/standing.h"
 
 #include "server/base/text.h"
-#include "storage/query.h"
+#include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
+#include "storage/standing_row.h"
 
 namespace rigcal::storage {
 namespace {
 
 std::string StandingSubject(const std::string& thing) { return "standing of " + thing; }
-
-Standing StandingOf(const Query& query, int column) {
-  return {query.Int(column),
-          query.Text(column + 1),
-          {query.Time(column + 2), query.Text(column + 3), query.Text(column + 4)}};
-}
 
 struct CurrentRow {
   SessionId id;
@@ -23,7 +18,8 @@ struct CurrentRow {
   Standing standing;
 };
 
-// The newest standing of each closed session that repeats another or is repeated, by the session's row number.
+// Of each closed session that repeats another or is repeated the newest word by which it was current, by the session's row
+// number. That it was retired makes nothing else current.
 std::map<std::int64_t, CurrentRow> LoadCurrent(Store& store, const RobotId& robot) {
   const std::string of_robot = robot.empty() ? "" : " WHERE robot_id = ?1";
   Query query(
@@ -31,11 +27,11 @@ std::map<std::int64_t, CurrentRow> LoadCurrent(Store& store, const RobotId& robo
       "SELECT s.number, s.session_id, s.captured_ns, s.operator_name, t.number, t.how, t.at_ns, t.who, t.reason "
       "FROM (SELECT earlier_number AS number FROM session_repeat" + of_robot + " UNION SELECT later_number FROM session_repeat" +
           of_robot + ") r JOIN session s ON s.number = r.number JOIN standing t ON t.number = "
-      "(SELECT max(number) FROM standing x WHERE x.session_number = s.number)");
+      "(SELECT max(number) FROM standing x WHERE x.session_number = s.number AND x.how <> 'retired')");
   if (!robot.empty()) query.Bind(robot);
   std::map<std::int64_t, CurrentRow> rows;
   while (query.Step())
-    rows[query.Int(0)] = {query.IdAt<SessionId>(1), query.Time(2), query.Text(3), StandingOf(query, 4)};
+    rows[query.Int(0)] = {query.IdAt<SessionId>(1), query.Time(2), query.Text(3), StandingAt(query, 4)};
   return rows;
 }
 
@@ -59,23 +55,6 @@ void InsertCurrent(Store& store, const SessionId& id, const std::string& how, co
         "SELECT robot_id, ?, ?, number, ?, ? FROM session WHERE session_id = ?")
       .Bind(word.at, how, word.who, word.reason, id)
       .Run();
-}
-
-// False if the edge is retired already.
-bool InsertRetired(Store& store, const EdgeId& id, const Word& word) {
-  return Query(store,
-               "INSERT INTO standing (robot_id, at_ns, how, edge_number, who, reason) "
-               "SELECT robot_id, ?, 'retired', number, ?, ? FROM edge WHERE edge_id = ? ON CONFLICT DO NOTHING")
-             .Bind(word.at, word.who, word.reason, id)
-             .Run() > 0;
-}
-
-std::string Because(const Word& word) { return word.reason.empty() ? "" : ": " + word.reason; }
-
-Result<RobotId> RobotOfEdge(Store& store, const EdgeId& id) {
-  Query query(store, "SELECT robot_id FROM edge WHERE edge_id = ?");
-  if (query.Bind(id).Step()) return query.IdAt<RobotId>(0);
-  return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is not known", "`rigcal edges ROBOT` lists those that are.");
 }
 
 Result<SessionRow> RequiredClosed(Store& store, const SessionId& id) {
@@ -148,18 +127,30 @@ Result<std::map<SessionId, Superseding>> LoadSuperseded(Store& store, const Robo
   return superseded;
 }
 
+namespace {
+
+// What a session was that is made current, for the audit; empty: it is current already.
+Result<std::string> WhatItWas(Store& store, const SessionRow& row, MadeCurrent how) {
+  RIGCAL_ASSIGN(const auto retired, LoadRetiredSessions(store, row.robot));
+  if (retired.contains(row.id)) return how == MadeCurrent::kRestored ? std::string(", retired") : std::string();
+  RIGCAL_ASSIGN(const auto superseded, LoadSuperseded(store, row.robot));
+  const auto found = superseded.find(row.id);
+  return found == superseded.end() ? std::string() : ", superseded by session " + found->second.by.str();
+}
+
+}  // namespace
+
 Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, const Word& word) {
   RIGCAL_TRY(CheckWord(word));
   return Append<bool>(store, StandingSubject("session " + id.str()), [&]() -> Result<bool> {
     RIGCAL_ASSIGN(const SessionRow row, RequiredClosed(store, id));
-    RIGCAL_ASSIGN(const auto superseded, LoadSuperseded(store, row.robot));
-    const auto found = superseded.find(id);
-    if (found == superseded.end()) return false;
+    RIGCAL_ASSIGN(const std::string was, WhatItWas(store, row, how));
+    if (was.empty()) return false;
     const bool restored = how == MadeCurrent::kRestored;
     InsertCurrent(store, id, restored ? "restored" : "pushed_again", word);
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            (restored ? "restored session " : "pushed again session ") + id.str() + " of robot " +
-                               row.robot.str() + ", superseded by session " + found->second.by.str() + Because(word)));
+                               row.robot.str() + was + Because(word)));
     return true;
   });
 }
@@ -171,30 +162,7 @@ Result<std::optional<Standing>> LoadStanding(Store& store, const SessionId& id) 
                 "SELECT t.number, t.how, t.at_ns, t.who, t.reason FROM session s "
                 "JOIN standing t ON t.session_number = s.number WHERE s.session_id = ? ORDER BY t.number DESC LIMIT 1");
     if (!query.Bind(id).Step()) return std::nullopt;
-    return StandingOf(query, 0);
-  });
-}
-
-Status RetireEdge(Store& store, const EdgeId& id, const Word& word) {
-  RIGCAL_TRY(CheckWord(word));
-  return store.connection().Append(StandingSubject("edge " + id.str()), [&]() -> Status {
-    RIGCAL_ASSIGN(const RobotId robot, RobotOfEdge(store, id));
-    if (!InsertRetired(store, id, word)) return {};
-    return AppendAudit(store, word.at, word.who,
-                       "retired edge " + id.str() + " of robot " + robot.str() + Because(word));
-  });
-}
-
-Result<std::map<EdgeId, Standing>> LoadRetired(Store& store, const RobotId& robot) {
-  using Retired = std::map<EdgeId, Standing>;
-  return Load<Retired>(store, "retired edges of robot " + robot.str(), [&]() -> Result<Retired> {
-    Query query(store,
-                "SELECT e.edge_id, t.number, t.how, t.at_ns, t.who, t.reason FROM standing t "
-                "JOIN edge e ON e.number = t.edge_number WHERE t.robot_id = ?");
-    query.Bind(robot);
-    Retired retired;
-    while (query.Step()) retired[query.IdAt<EdgeId>(0)] = StandingOf(query, 1);
-    return retired;
+    return StandingAt(query, 0);
   });
 }
 

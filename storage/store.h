@@ -27,9 +27,11 @@ class Store {
   // synchronous FULL, foreign keys, a busy timeout.
   [[nodiscard]] static Result<Store> Open(const std::filesystem::path& folder);
   ~Store();
+  // A store that was moved from may only be assigned to or destroyed.
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
 
+  // As Open() was given it.
   [[nodiscard]] const std::filesystem::path& folder() const;
   [[nodiscard]] std::filesystem::path BlobFolder() const;    // folder/blobs
   [[nodiscard]] std::filesystem::path IntakeFolder() const;  // folder/intake: files not yet receipted
@@ -47,6 +49,7 @@ class Store {
 
   [[nodiscard]] SQLite::Database& database();  // for storage/*.cc only
   [[nodiscard]] Connection& connection();      // likewise
+  // Number of the newest migration that the database has.
   [[nodiscard]] int SchemaVersion() const;
 
  private:

@@ -22,8 +22,9 @@ struct Judgement {
   std::vector<std::string> remarks;  // files that are missing, unreadable, alike, blurred: sentences
   std::size_t captures_more = 0;     // at the least, by the advice that wants most
   std::vector<SensorId> clouds_of;   // lidars whose clouds were only counted: boards in them were not looked for
-  [[nodiscard]] bool IsEnough() const { return advice.empty(); }
+  [[nodiscard]] bool IsEnough() const { return advice.empty(); }  // nothing more is asked
 };
+// Advice on sensors, then on pairs that these do not explain, alike ones grouped.
 [[nodiscard]] Judgement JudgeFindings(const Findings& findings);
 // "Enough.", "Enough, as far as was looked: ...", "Take 7 more captures.", "Take at least 7 more captures.", "Not enough yet."
 [[nodiscard]] std::string Headline(const Judgement& judgement);

@@ -21,6 +21,7 @@ inline constexpr std::array<const char*, 4> kTiltSides = {"left", "right", "up",
 // Of fewer, a side of the ring is open: one pose of a board seen small may be the wrong one of two.
 inline constexpr std::size_t kTiltedViewsMin = 2;
 
+// Of views whose board has a pose.
 [[nodiscard]] TiltRing RingOf(const CameraFit& fit);
 // "left and up": the open sides; empty if there is none.
 [[nodiscard]] std::string OpenSides(const TiltRing& ring);

@@ -13,7 +13,7 @@ struct Bend {
   Eigen::Vector2d axis = Eigen::Vector2d::UnitX();  // unit: the way it bends
   double reach_m = 1.0;                             // half of the plate's diagonal
 
-  [[nodiscard]] bool is_flat() const { return height_m == 0.0; }
+  [[nodiscard]] bool is_flat() const { return height_m == 0.0; }  // not bent at all
   // Into the plate, at a point of the plate's plane.
   [[nodiscard]] double At(const Eigen::Vector2d& ab_m) const;
 };

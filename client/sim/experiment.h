@@ -63,6 +63,8 @@ struct Experiment {
   std::optional<TakenElsewhere> wrong_instant;
   std::optional<ShiftedPicture> shifted;
 
+  // The true pose in the body, after a bump the bumped one; and in the world, where a sensor tells of another instant
+  // the one of that. The sensor must exist.
   [[nodiscard]] Se3 T_body_sensor(const SensorId& id, std::size_t capture_idx) const;
   [[nodiscard]] Se3 T_world_sensor(const SensorId& id, std::size_t capture_idx) const;
   [[nodiscard]] RigBoard BoardAt(const TargetId& id, std::size_t capture_idx) const;  // must exist

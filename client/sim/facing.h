@@ -5,6 +5,7 @@
 
 namespace rigcal::sim {
 
+// The pose of such a frame at p_m.
 [[nodiscard]] inline Se3 Turned(const Eigen::Vector3d& p_m, const Eigen::Vector3d& rpy_rad) {
   using Eigen::AngleAxisd, Eigen::Vector3d;
   return Se3{p_m, AngleAxisd(rpy_rad.z(), Vector3d::UnitZ()) * AngleAxisd(rpy_rad.y(), Vector3d::UnitY()) *

@@ -16,7 +16,7 @@ struct Wave {
 struct LensMisfit {
   std::vector<Wave> along_u, along_v;  // of the shift; none: a lens as its model says
 
-  [[nodiscard]] bool empty() const { return along_u.empty() && along_v.empty(); }
+  [[nodiscard]] bool empty() const { return along_u.empty() && along_v.empty(); }  // nothing is bent
   // What is added to the pixel at which the model sees a point.
   [[nodiscard]] Eigen::Vector2d At(const Eigen::Vector2d& uv_px) const;
   // Where the model would see what this lens shows at a pixel.

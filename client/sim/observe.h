@@ -25,10 +25,10 @@ namespace rigcal::sim {
 // The same with noise of corner_sigma_px on each coordinate, as detection tells it.
 [[nodiscard]] BoardView ObserveBoard(const Experiment& experiment, const Scene& scene, const RigSensor& camera,
                                      std::size_t capture_idx);
+constexpr double kPlateMargin_m = 0.03;
 // The scan's points on a board, kPlateMargin_m and more inside the plate's edge, as a search gives them: one candidate,
 // or none where less than four beams or twenty points meet the plate. They are points of the scan that a cloud file
 // would hold.
-constexpr double kPlateMargin_m = 0.03;
 [[nodiscard]] std::vector<ScanPoint> PlatePoints(const Experiment& experiment, const Scene& scene,
                                                  const RigSensor& lidar, const TargetId& board,
                                                  std::size_t capture_idx);
@@ -41,6 +41,7 @@ struct Observations {
   std::map<SensorId, std::map<CaptureId, std::map<TargetId, CloudView>>> clouds;
   std::map<SensorId, std::vector<TrackerRow>> tracker;
 };
+// The same for the same experiment, on any number of threads.
 [[nodiscard]] Observations Observe(const Experiment& experiment);
 
 }  // namespace rigcal::sim

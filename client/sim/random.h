@@ -15,11 +15,13 @@ namespace rigcal::sim {
 // A counter run through a mixing function (Steele, Lea & Flood 2014: SplitMix).
 class Random {
  public:
+  // The stream of this key, from its beginning.
   explicit Random(std::uint64_t key) : state_(key) {}
-  [[nodiscard]] std::uint64_t Bits();
+  [[nodiscard]] std::uint64_t Bits();                     // 64, each as likely 0 as 1
   [[nodiscard]] double Uniform();                         // [0, 1)
   [[nodiscard]] double Uniform(double low, double high);  // [low, high)
   [[nodiscard]] double Normal();                          // mean 0, standard deviation 1 (Box & Muller)
+  // Independent, each as Normal().
   template <int kRows>
   [[nodiscard]] Eigen::Matrix<double, kRows, 1> Normals() {
     Eigen::Matrix<double, kRows, 1> values;

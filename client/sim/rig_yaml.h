@@ -12,6 +12,7 @@ namespace rigcal::sim {
 // `name` is used in errors ("rig.yaml line 7: ...").
 [[nodiscard]] Result<Rig> ReadRig(std::string_view text, const std::string& name);
 
+// Their names.
 [[nodiscard]] std::vector<std::string> BuiltInRigs();
 // The text of a built-in rig.
 [[nodiscard]] Result<std::string> BuiltInRig(const std::string& name);

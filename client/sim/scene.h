@@ -30,6 +30,7 @@ struct Scene {
 
 constexpr double kWhite = 0.86, kBlack = 0.05;  // of printed boards
 
+// Room, objects and the boards where the rig has them at first.
 [[nodiscard]] Scene SceneOf(const Rig& rig);
 // How much farther along a ray a bent panel is than its plane, over the distance of the plane, where the ray meets the
 // plane; `height_m`: of the ray's origin over the plane.
@@ -44,6 +45,7 @@ struct Hit {
   double distance = 0.0;
   Eigen::Vector2d ab_m = Eigen::Vector2d::Zero();
 };
+// Of panels seen from their front; plates also from behind.
 [[nodiscard]] Hit NearestHit(const Scene& scene, const Eigen::Vector3d& from_m, const Eigen::Vector3d& direction);
 
 }  // namespace rigcal::sim

@@ -14,7 +14,9 @@ struct TrackerRow {
   std::size_t capture_idx;
   Se3 T_world_body;
 };
+// In the order of the captures; those that are not recorded, or whose file is missing, are left out.
 [[nodiscard]] std::vector<TrackerRow> TrackerRows(const Experiment& experiment, const RigSensor& tracker);
+// The table "<tracker>/poses.csv", with its heading.
 [[nodiscard]] std::string PosesCsv(const Experiment& experiment, const std::vector<TrackerRow>& rows);
 
 }  // namespace rigcal::sim

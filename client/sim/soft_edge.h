@@ -11,6 +11,7 @@ class SoftEdge {
  public:
   static constexpr float kReach = 4.0f;  // beyond it a step is over
 
+  // Fills the table.
   SoftEdge() {
     for (int i = 0; i <= kCells; ++i) {
       const double x = -kReach + 2.0 * kReach * i / kCells;
@@ -18,6 +19,7 @@ class SoftEdge {
     }
     table_.front() = 0, table_[kCells] = 1, table_[kCells + 1] = 1;
   }
+  // 0 also of what is no number.
   [[nodiscard]] float operator()(float x) const {
     if (!(x > -kReach)) return 0;
     if (x >= kReach) return 1;

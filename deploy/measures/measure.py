@@ -8,23 +8,25 @@ import tempfile
 
 
 class Measure:
-    def __init__(self, name, value, limit, state):
-        self.name, self.value, self.limit, self.state = name, value, limit, state
+    """`detail`: lines that tell what the value counts, for stderr and the document."""
+    def __init__(self, name, value, limit, state, detail=()):
+        self.name, self.value, self.limit, self.state, self.detail = name, value, limit, state, list(detail)
 
     def row(self):
-        return {"name": self.name, "value": self.value, "limit": self.limit, "state": self.state}
+        told = {"name": self.name, "value": self.value, "limit": self.limit, "state": self.state}
+        return {**told, "detail": self.detail} if self.detail else told
 
 
 def shown(value):
     return "%.6g" % value if isinstance(value, float) else str(value)
 
 
-def at_most(name, value, limit, unit=""):
-    return Measure(name, shown(value) + unit, "<=" + shown(limit) + unit, "ok" if value <= limit else "SHORT")
+def at_most(name, value, limit, unit="", detail=()):
+    return Measure(name, shown(value) + unit, "<=" + shown(limit) + unit, "ok" if value <= limit else "SHORT", detail)
 
 
-def at_least(name, value, limit, unit=""):
-    return Measure(name, shown(value) + unit, ">=" + shown(limit) + unit, "ok" if value >= limit else "SHORT")
+def at_least(name, value, limit, unit="", detail=()):
+    return Measure(name, shown(value) + unit, ">=" + shown(limit) + unit, "ok" if value >= limit else "SHORT", detail)
 
 
 def within(name, value, centre, half_width, unit=""):
@@ -32,13 +34,18 @@ def within(name, value, centre, half_width, unit=""):
     return Measure(name, shown(value) + unit, limit, "ok" if abs(value - centre) <= half_width else "SHORT")
 
 
-def equal(name, value, wanted):
-    return Measure(name, shown(value), "==" + shown(wanted), "ok" if value == wanted else "SHORT")
+def between(name, value, least, most, unit=""):
+    limit = "%s..%s%s" % (shown(least), shown(most), unit)
+    return Measure(name, shown(value) + unit, limit, "ok" if least <= value <= most else "SHORT")
 
 
-def info(name, value, unit=""):
+def equal(name, value, wanted, detail=()):
+    return Measure(name, shown(value), "==" + shown(wanted), "ok" if value == wanted else "SHORT", detail)
+
+
+def info(name, value, unit="", detail=()):
     """A figure that is asked for without a limit."""
-    return Measure(name, shown(value) + unit, "-", "ok")
+    return Measure(name, shown(value) + unit, "-", "ok", detail)
 
 
 def skip(name, why):

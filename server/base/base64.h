@@ -8,7 +8,9 @@
 
 namespace rigcal {
 
+// Standard alphabet, in one line, with '=' padding.
 [[nodiscard]] std::string ToBase64(std::string_view bytes);
+// The bytes; kInvalidInput where the text is not base64 or its length no multiple of 4.
 [[nodiscard]] Result<std::string> FromBase64(std::string_view text);
 
 }  // namespace rigcal

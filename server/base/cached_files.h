@@ -12,6 +12,7 @@ namespace rigcal {
 // One thread at a time.
 class CachedFiles {
  public:
+  // `bytes_max`: how much of the newest files may stay cached, in all.
   explicit CachedFiles(std::int64_t bytes_max) : bytes_max_(bytes_max) {}
   // A synced file that is not written any more. Lets the oldest go beyond the limit; whether the system heeds it
   // changes no result.

@@ -10,6 +10,7 @@
 
 namespace rigcal {
 
+// fsync of a file, of a folder's entries. The error names the path: kNotFound or kStorage.
 [[nodiscard]] Status SyncFile(const std::filesystem::path& path);
 [[nodiscard]] Status SyncFolder(const std::filesystem::path& folder);
 // Replaces `path` atomically with `bytes`; durable when it returns.

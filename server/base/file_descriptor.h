@@ -13,6 +13,7 @@ namespace rigcal {
 
 class FileDescriptor {
  public:
+  // Takes `fd` over; negative, as of a failed open(), owns nothing.
   explicit FileDescriptor(int fd) : fd_(fd) {}
   FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   FileDescriptor& operator=(FileDescriptor&& other) noexcept {
@@ -20,7 +21,7 @@ class FileDescriptor {
     return *this;
   }
   ~FileDescriptor();
-  [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] int get() const { return fd_; }                   // negative: none
   [[nodiscard]] int Release() { return std::exchange(fd_, -1); }  // the caller owns it now
   // Closes now and reports: some file systems report a failed write only here.
   [[nodiscard]] bool Close();

@@ -20,6 +20,7 @@ template <typename Tag>
 class Id {
  public:
   Id() = default;
+  // Unchecked: for texts of our own, or that were checked before.
   explicit Id(std::string text) : text_(std::move(text)) {}
   // Checked construction, for everything that comes from outside. The error names the kind and the text.
   [[nodiscard]] static Result<Id> Parse(std::string_view text) {
@@ -58,5 +59,6 @@ using Digest = Id<DigestTag>;
 
 template <typename Tag>
 struct std::hash<rigcal::Id<Tag>> {
+  // Of the text, so that ids may be keys of unordered containers.
   std::size_t operator()(const rigcal::Id<Tag>& id) const { return std::hash<std::string>{}(id.str()); }
 };

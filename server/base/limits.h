@@ -43,6 +43,7 @@ constexpr std::int64_t kReportsOfRobot = 20;  // kept on disk, beside one of eac
 constexpr std::size_t kG2oFileBytesMax = 1ULL << 30;
 constexpr std::size_t kRevisionBytesMax = 1ULL << 30;  // of a revision's document
 constexpr std::int64_t kPageRowsMax = 1'000;           // of a list that is asked for by pages
+constexpr std::size_t kDigestsAskedMax = 32;           // of files, in one question whose they are
 constexpr std::int64_t kRobotsComparedMax = 10'000;    // on each side of a name that no robot has
 
 }  // namespace rigcal::limits

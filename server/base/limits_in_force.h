@@ -32,6 +32,7 @@ struct Setting {
   std::int64_t Limits::*value;
   std::int64_t least, ceiling;
 };
+// All of them, in the order of the members above; valid as long as the process.
 [[nodiscard]] std::span<const Setting> Settings();
 
 // What holds in this process: the defaults until Enforce.

@@ -19,8 +19,10 @@ class MemoryBudget {
   // Gives its bytes back when it goes.
   class Share {
    public:
+    // Calls `give_back` once, when it goes; a share that was moved from calls nothing.
     explicit Share(GiveBack give_back) : give_back_(std::move(give_back)) {}
     ~Share();
+    // Takes the bytes over.
     Share(Share&& other) noexcept : give_back_(std::exchange(other.give_back_, nullptr)) {}
     Share& operator=(Share&&) = delete;
 
@@ -33,6 +35,7 @@ class MemoryBudget {
 
   // From here on another process keeps the account: `ask` waits until it has set so many bytes aside. Before any thread takes.
   using Ask = std::function<GiveBack(std::int64_t bytes)>;
+  // Take() then waits in `ask`, and a share that goes calls what `ask` returned.
   void AskElsewhere(Ask ask) { ask_ = std::move(ask); }
 
  private:

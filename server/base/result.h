@@ -30,6 +30,7 @@ template <typename T>
 using Result = tl::expected<T, Error>;
 using Status = Result<void>;
 
+// `what` names the thing that is wrong, without a full stop; `cure` says in whole sentences what the person can do.
 [[nodiscard]] inline tl::unexpected<Error> Fail(ErrorCode code, std::string what, std::string cure) {
   return tl::unexpected<Error>(Error{code, std::move(what), std::move(cure)});
 }

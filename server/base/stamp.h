@@ -28,8 +28,9 @@ struct Stamp {
 class Clock {
  public:
   virtual ~Clock() = default;
-  [[nodiscard]] virtual Stamp Now() const = 0;
+  [[nodiscard]] virtual Stamp Now() const = 0;  // nanoseconds since 1970, UTC
 };
+// The machine's clock; lives as long as the process.
 [[nodiscard]] const Clock& SystemClock();
 
 }  // namespace rigcal

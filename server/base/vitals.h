@@ -29,6 +29,7 @@ class Part {
   void Turn();             // went round in order: a failure is over
   void Rest();             // in order, and waits for work as long as it takes
   void Fail(Error error);  // did not do its work, and will try again; logged once per kind of failure
+  // As of `now`: the failure that it reported, or that it stands still because it went round too long ago.
   [[nodiscard]] PartState State(Time now) const;
 
  private:
@@ -48,6 +49,7 @@ class Part {
 
 class Vitals {
  public:
+  // `clock` tells since when a problem lasts; it outlives this.
   explicit Vitals(const Clock& clock) : clock_(clock) {}
   // The part lives as long as this.
   [[nodiscard]] Part& Expect(const std::string& name, std::chrono::milliseconds within);

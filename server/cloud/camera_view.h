@@ -32,6 +32,7 @@ struct CameraView {
   static constexpr std::size_t kPart = 16384;
   std::vector<std::vector<SeenPoint>> parts;
 
+  // Of all parts together.
   [[nodiscard]] std::size_t Count() const {
     std::size_t count = 0;
     for (const auto& part : parts) count += part.size();

@@ -15,12 +15,14 @@ struct Patch {
 
 class DepthBuffer {
  public:
+  // Cells in which nothing has been seen yet.
   DepthBuffer(int width, int height)
       : width_(width),
         height_(height),
         nearest_m_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                    std::numeric_limits<float>::infinity()) {}
 
+  // In cells.
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   // Cells whose middle the patch covers, and always its own. Only rows first to last - 1: threads share by rows.

@@ -13,6 +13,7 @@ namespace rigcal::cloud {
 // per camera here, by walking outwards from the axis, instead of once per point.
 class Lens {
  public:
+  // For pictures of any size. What a list of distortion lacks counts as 0.
   explicit Lens(const CameraIntrinsics& intrinsics);
   // For a picture of this size: what lies well outside of it may count as not seen.
   Lens(const CameraIntrinsics& intrinsics, int width_px, int height_px);

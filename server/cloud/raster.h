@@ -10,6 +10,7 @@ namespace rigcal::cloud {
 
 class Raster {
  public:
+  // All background, infinitely far away.
   Raster(int width_px, int height_px);
 
   // A disc of pixels, of those that lie nearer than what is there. `place`: x, y in pixels, depth.

@@ -31,6 +31,7 @@ class Answerers {
     storage::Store store;
     Part* part = nullptr;
   };
+  // Starts the threads, one per place; there is one at least.
   Answerers(std::vector<Place> places, Work work, std::function<void()> done);
   ~Answerers();  // what is being answered is finished; what waits gets no answer
   Answerers(const Answerers&) = delete;

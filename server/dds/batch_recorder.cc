@@ -5,6 +5,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/log.h"
 #include "server/dds/server_side.h"
+#include "server/model/admission.h"
 #include "storage/edges.h"
 #include "storage/sessions.h"
 
@@ -46,6 +47,8 @@ Result<BatchRecorder::Batch*> BatchRecorder::Open(const wire::BatchItem& item) {
 }
 
 void BatchRecorder::Take(wire::BatchItem item) {
+  if (const Status past = CheckMeasuredAt(item.edge, clock_.Now()); !past)
+    return SendRefusal(item.edge.robot, item.batch, past.error());
   const auto batch = Open(item);
   if (!batch) return SendRefusal(item.edge.robot, item.batch, batch.error());
   ++(*batch)->written_bytes;

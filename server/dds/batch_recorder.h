@@ -19,7 +19,9 @@ class BatchRecorder {
                 std::uint64_t incarnation)
       : store_(store), outbox_(outbox), callbacks_(callbacks), clock_(clock), incarnation_(incarnation) {}
 
+  // Keeps the item for Commit, which tells the client; one that does not fit its batch is refused at once.
   void Take(wire::BatchItem item);
+  // Whether Commit has something to record or to tell.
   [[nodiscard]] bool HasPending() const { return !pending_.empty() || !dirty_.empty(); }
   // Records what was taken in ONE transaction, then tells the clients.
   void Commit();

@@ -19,6 +19,7 @@ class Inbox {
     std::int64_t session_bytes, all_bytes;
     std::size_t items;
   };
+  // `session_bytes`: of what waits of one session; `all_bytes` and `items`: of all that waits.
   explicit Inbox(const Limits& limits) : limits_(limits) {}
 
   // Never waits. A chunk beyond the limits becomes a DiscardedChunk; anything else beyond them is dropped, as clients

@@ -9,7 +9,9 @@ namespace rigcal::dds {
 // Any thread.
 class LastQuestion {
  public:
+  // Now somebody asked.
   void Note() { at_ = Clock::now().time_since_epoch(); }
+  // Whether that was at most `span` ago; not at first.
   [[nodiscard]] bool IsWithin(std::chrono::milliseconds span) const {
     return Clock::now().time_since_epoch() - at_.load() < span;
   }

@@ -13,6 +13,7 @@ namespace rigcal::dds {
 // One thread at a time.
 class PartFile {
  public:
+  // The file need not be there: the first Flush makes it. `size_bytes`: of the whole payload.
   PartFile(std::filesystem::path path, std::uint64_t size_bytes) : path_(std::move(path)), size_bytes_(size_bytes) {}
 
   // Kept in memory until Flush. The caller has checked that the piece lies within the payload.
@@ -26,6 +27,7 @@ class PartFile {
   // In so many bits and pieces that it is no honest transfer.
   [[nodiscard]] bool Shattered() const;
 
+  // As they were given.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 

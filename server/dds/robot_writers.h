@@ -13,8 +13,10 @@ namespace rigcal::dds {
 
 class RobotWriters {
  public:
+  // A writer of each topic in the robot's partition.
   [[nodiscard]] static Result<std::shared_ptr<RobotWriters>> Open(const wire::Participant& participant, const RobotId& robot);
 
+  // What cannot be sent is logged.
   void Send(const wire::Receipt& receipt);
   // Drops the receipt that is kept for who comes later.
   void Forget(const wire::Receipt& receipt);

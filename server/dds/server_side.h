@@ -5,6 +5,7 @@
 
 namespace rigcal::dds {
 
+// Only errors of storage are changed: "the server's disk: ...".
 [[nodiscard]] inline Error ToldToClient(Error error) {
   if (error.code == ErrorCode::kStorage) error.what = "the server's disk: " + error.what;
   return error;

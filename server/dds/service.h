@@ -52,8 +52,10 @@ struct Announcement {
 
 class Service {
  public:
+  // Answers and receives when it returns. The error says what could not be opened: the network or the store.
   [[nodiscard]] static Result<Service> Start(const Options& options, Callbacks callbacks);
   ~Service();  // stops and joins the threads; what was receipted is on disk
+  // A service that was moved from does nothing: the other goes on.
   Service(Service&&) noexcept;
   Service& operator=(Service&&) noexcept;
 

@@ -39,11 +39,13 @@ class SessionIntake {
   std::vector<std::uint32_t> WithSameContent(std::uint32_t payload_idx) const;
   void MarkHeld(const std::vector<std::uint32_t>& payload_idx);
 
+  // Every payload of the manifest is durable.
   [[nodiscard]] bool AllHeld() const { return held_count_ == wanted_.size(); }
   // True if these would be the last.
   [[nodiscard]] bool Completes(const std::set<std::uint32_t>& payload_idx) const;
   [[nodiscard]] wire::Receipt ReceiptOf(wire::ReceiptState state, std::int64_t window_bytes) const;
 
+  // As it was made with; payloads() counts those of the manifest.
   [[nodiscard]] const RobotId& robot() const { return robot_; }
   [[nodiscard]] const SessionId& session() const { return session_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

@@ -23,6 +23,8 @@ class SessionRecorder {
   SessionRecorder(storage::Store& store, storage::Store& commit_store, Outbox& outbox, const Callbacks& callbacks,
                   const Clock& clock, std::uint64_t incarnation, std::function<void()> commit_done);
 
+  // The first two are answered at once, by a receipt or a refusal; what became of chunks is told in Report. A chunk of
+  // a session that is not open only tells the client where that stands.
   void Take(const OpenSession& open);
   void Take(const ManifestText& text);
   void Take(ChunkBytes chunk);
@@ -36,8 +38,8 @@ class SessionRecorder {
   [[nodiscard]] std::int64_t PendingBytes() const;
   // Makes them durable on a thread of its own, if none runs.
   void StartCommit();
-  // Sends the receipts of the commit that runs, if it is done; kAll waits for it.
   enum class Patience { kNone, kAll };
+  // Sends the receipts of the commit that runs, if it is done; kAll waits for it.
   void FinishCommit(Patience patience);
   // Commits all and waits.
   void Settle();

@@ -16,6 +16,7 @@ struct FittedPlane {
   double sigma_m = 0.0;  // robust, of the points about the plane
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
 
+  // With its sign: positive on the sensor's side.
   [[nodiscard]] double Distance_m(const Eigen::Vector3d& point_m) const { return normal.dot(point_m) + offset_m; }
   // How far a point may lie off and still be on the plane.
   [[nodiscard]] double Tolerance_m() const;
@@ -42,11 +43,13 @@ struct Piercing {
 struct PlaneFrame {
   Eigen::Vector3d origin_m, u, v;
 
+  // From the plane's coordinates to the sensor's frame; and back, of a point's foot on the plane.
   [[nodiscard]] Eigen::Vector3d At(const Eigen::Vector2d& uv_m) const { return origin_m + u * uv_m.x() + v * uv_m.y(); }
   [[nodiscard]] Eigen::Vector2d Of(const Eigen::Vector3d& point_m) const {
     return {u.dot(point_m - origin_m), v.dot(point_m - origin_m)};
   }
 };
+// With its origin at the foot of `near_m`.
 [[nodiscard]] PlaneFrame FrameOn(const FittedPlane& plane, const Eigen::Vector3d& near_m);
 
 // About `budget` rays that pierce the plane within `radius_m` of the frame's origin.

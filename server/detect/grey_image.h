@@ -16,6 +16,7 @@ struct GreyImage {
   int width_px = 0, height_px = 0;
   std::vector<std::uint8_t> pixels;  // row-major, width_px * height_px
 
+  // 0 is the top left pixel's column and row; inside the picture, not checked.
   [[nodiscard]] std::uint8_t At(int x, int y) const {
     return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x)];
   }

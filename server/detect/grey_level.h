@@ -18,6 +18,7 @@ struct GreyLevel {
   double scale = 1.0;  // of this level against the picture
   std::vector<std::int16_t> pixels;
 
+  // From a row to the next, in pixels: both paddings included.
   [[nodiscard]] std::ptrdiff_t Stride() const { return width_px + 2 * kPad; }
   // Row y from -kPad to height_px + kPad - 1; the pointer is to x = 0.
   [[nodiscard]] const std::int16_t* Row(int y) const { return pixels.data() + (y + kPad) * Stride() + kPad; }
@@ -30,6 +31,7 @@ struct GreyLevel {
   }
 };
 
+// The picture itself at scale 1; its border is repeated into the padding.
 [[nodiscard]] GreyLevel LevelOf(const GreyImage& image);
 // Means of 2 x 2 pixels; an odd last row or column is left out.
 [[nodiscard]] GreyLevel Halved(const GreyLevel& level);

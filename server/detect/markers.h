@@ -42,6 +42,7 @@ struct FoundMarkers {
   std::vector<SeenMarker> markers;
   int strangers = 0;
 };
+// Nothing where OpenCV does not know the dictionary.
 [[nodiscard]] FoundMarkers FindMarkers(const GreyImage& image, const MarkerSearch& search);
 // A quick look at a large picture, in all widths of border, from the front and from behind: can FindMarkers() find two
 // of them? True for small pictures, in which that one is quick. Squares that clutter makes do not count, unless they

@@ -17,6 +17,7 @@ struct FittedPlate {
   double margin_m = 0.0;  // inside the outline, of pixels that may have seen plate and background at once
   double score = 0.0;
 
+  // Of the outline, in the lidar's frame.
   [[nodiscard]] Eigen::Vector3d Centre_m() const { return frame.At(outline.centre_m); }
   // Lidar frame, in order round the plate.
   [[nodiscard]] std::array<Eigen::Vector3d, 4> Corners_m() const;

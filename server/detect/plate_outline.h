@@ -14,10 +14,12 @@ namespace rigcal::detect {
 struct PlateSize {
   Eigen::Vector2d min_m, max_m;
 
+  // Width and height half-way between the two; the shorter of them; the diagonal.
   [[nodiscard]] Eigen::Vector2d Middle_m() const { return (min_m + max_m) / 2; }
   [[nodiscard]] double Short_m() const { return Middle_m().minCoeff(); }
   [[nodiscard]] double Diagonal_m() const { return Middle_m().norm(); }
 };
+// Of the measured plate, else of the pattern.
 [[nodiscard]] PlateSize PlateSizeOf(const Target& target);
 
 // In a plane's frame: the rectangle's middle, the direction of its width, its width and height.
@@ -26,6 +28,7 @@ struct Outline {
   double angle_rad = 0.0;
   Eigen::Vector2d size_m = Eigen::Vector2d::Zero();
 
+  // Unit vector along the width.
   [[nodiscard]] Eigen::Vector2d Axis() const { return {std::cos(angle_rad), std::sin(angle_rad)}; }
   // Coordinates along width and height, from the middle.
   [[nodiscard]] Eigen::Vector2d Local(const Eigen::Vector2d& uv_m) const;

@@ -29,6 +29,7 @@ void Grow(const GreyLevel& level, std::size_t count_max, SaddleGrid& grid);
 // Smallest and largest column and row.
 struct GridBox {
   int col_min = 0, col_max = 0, row_min = 0, row_max = 0;
+  // How many columns and rows; whether a place is among them.
   [[nodiscard]] int Cols() const { return col_max - col_min + 1; }
   [[nodiscard]] int Rows() const { return row_max - row_min + 1; }
   [[nodiscard]] bool Has(const GridPlace& place) const {

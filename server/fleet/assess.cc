@@ -7,6 +7,7 @@
 #include "server/fleet/cause_findings.h"
 #include "server/fleet/effect.h"
 #include "server/fleet/wording.h"
+#include "server/model/past.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -90,7 +91,7 @@ Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const Graph
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!known.contains(sensor)) unknown.insert(sensor);
+      if (!known.contains(sensor) && !IsOfGoneSensor(edge)) unknown.insert(sensor);
   if (known.size() > 1) verdict.unverified = List(std::vector<SensorId>(unknown.begin(), unknown.end()));
   return verdict;
 }
@@ -167,6 +168,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
+  if (const auto few = SensorsOfFewCaptures(edges, solution); !few.empty()) {
+    Verdict verdict = say(VerdictLevel::kUnknown, {FewCapturesBehind(few, edges)});
+    verdict.unverified = List(few);
+    return verdict;
+  }
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));

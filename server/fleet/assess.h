@@ -31,6 +31,7 @@ using SessionTimes = std::map<SessionId, Stamp>;
 // else than such lenses of one session can be behind edges that disagree, no edge or sensor is accused. `headers`: of
 // the sessions of the edges, as far as they are known: what they say of boards and of nominal poses.
 using SessionHeaders = std::map<SessionId, SessionHeader>;
+// `edges`: all of the robot; `solution`: of them.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
                              const SessionHeaders& headers = {});
@@ -42,6 +43,7 @@ struct EdgeTest {
   double statistic = 0.0;
   double limit = 0.0;
 };
+// `edge_count`: of the edges that are tested together, which share the odds of a false accusation.
 [[nodiscard]] EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_t edge_count,
                                     const Policy& policy = {});
 

@@ -88,7 +88,7 @@ RootCause WrongCounts(const std::vector<const Looks*>& boards, std::vector<EdgeI
   const std::string total = std::to_string(static_cast<long>(pictures));
   cause.said.why = cause.sensors.size() == 1
                        ? cause.sensors.front().str() + " found " + described + " in none of " + total + " pictures"
-                       : "no camera found " + described + " in any of " + total + " pictures";
+                       : described + " was not found in any of the " + total + " pictures of " + List(cause.sensors);
   cause.said.what_to_do = "Look at one of the pictures: is " + named + " in it? Count its " +
                           (has_tags ? "tags, check its dictionary and correct both" : "corners and correct `inner_corners`") +
                           " in session.yaml";

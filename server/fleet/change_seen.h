@@ -15,6 +15,7 @@ struct ChangeSeen {
   Eigen::MatrixXd covariance;
   std::vector<double> dof;  // per row (Welch 1947; Satterthwaite 1946); 0: known
 
+  // Of a row of `change`, m or rad.
   [[nodiscard]] double Sigma(Eigen::Index row) const;
   // A sigma beyond a metre or a radian says nothing of a rig.
   [[nodiscard]] bool IsMeasured(Eigen::Index row) const;

@@ -28,6 +28,7 @@ struct EdgeEnd {
   // Of "files" or "board_tilt", with its unit "" or "_rad".
   [[nodiscard]] std::optional<double> Figure(const std::string& name, const char* unit = "") const;
 };
+// Frame a's end, then frame b's; valid as long as `edge`.
 [[nodiscard]] std::array<EdgeEnd, 2> EndsOf(const Edge& edge);
 [[nodiscard]] bool IsEndOf(const Edge& edge, const SensorId& sensor);
 
@@ -36,17 +37,20 @@ enum class Loss { kNoFile, kUnreadable, kNoBoard };
 // In how many captures of a failed pair one of its sensors saw a board, and what became of the others.
 struct Sight {
   double captures = 0.0, files = 0.0, unreadable = 0.0, with_board = 0.0;
+  // Captures of which the sensor has a file that can be read.
   [[nodiscard]] double readable() const { return files - unreadable; }
+  // It saw a board in less than half of them.
   [[nodiscard]] bool IsSeldom() const { return 2 * with_board < captures; }
+  // What keeps it from most of them; of equals a missing file, then one that cannot be read.
   [[nodiscard]] Loss LargestLoss() const;
 };
 // Nothing where the edge does not tell.
 [[nodiscard]] std::optional<Sight> SightOf(const EdgeEnd& end);
-// The end that saw a board in fewest captures, if in less than half of them; of equals the one that lacks files.
 struct Blind {
   EdgeEnd end;
   Sight sight;
 };
+// The end that saw a board in fewest captures, if in less than half of them; of equals the one that lacks files.
 [[nodiscard]] std::optional<Blind> BlindEndOf(const Edge& edge);
 
 // Those of sessions that something measured is of: what nothing was measured in any more says nothing of the rig.

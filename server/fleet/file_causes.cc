@@ -14,6 +14,8 @@ namespace {
 constexpr double kCapturesOfSession = 10;
 // A sensor that sees a board in less of what it recorded almost never does.
 constexpr double kAlmostNeverRatio = 0.1;
+// Of pairs that were calibrated all the same: fewer missing files than this are not told.
+constexpr double kFilesLostMin = 3, kFilesLostMin_ratio = 0.25;
 
 std::string CountOf(double count) { return std::to_string(static_cast<long>(count)); }
 
@@ -152,11 +154,38 @@ std::vector<SensorId> SensorsOf(const std::vector<const Edge*>& edges) {
   return {sensors.begin(), sensors.end()};
 }
 
+bool LacksFiles(const Blind& blind) {
+  const double lost = blind.sight.captures - blind.sight.files;
+  return lost >= kFilesLostMin && lost >= kFilesLostMin_ratio * blind.sight.captures && !RecordedApart(blind);
+}
+
+// Of good pairs of the newest session of each sensor, where its files were enough all the same. By sensor the end that
+// lost most.
+std::map<SensorId, Blind> EndsLackingFiles(const CauseSearch& search) {
+  std::map<SensorId, std::pair<Stamp, Blind>> worst;
+  for (const Edge& edge : search.edges) {
+    const auto at = search.captured_at.find(edge.session);
+    if (edge.state != EdgeState::kGood || at == search.captured_at.end()) continue;
+    for (const EdgeEnd& end : EndsOf(edge)) {
+      const Sight none, sight = SightOf(end).value_or(none);
+      const auto known = worst.try_emplace(end.sensor, at->second, Blind{end, sight}).first;
+      const auto lost = [](const Sight& one) { return one.captures - one.files; };
+      const bool newer = known->second.first < at->second, same = known->second.first == at->second;
+      if (newer || (same && lost(known->second.second.sight) < lost(sight))) known->second = {at->second, {end, sight}};
+    }
+  }
+  std::map<SensorId, Blind> lacking;
+  for (const auto& [sensor, one] : worst)
+    if (LacksFiles(one.second)) lacking.emplace(sensor, one.second);
+  return lacking;
+}
+
 }  // namespace
 
 void FindFileCauses(CauseSearch& search) {
-  for (const auto& [sensor, blind] : TakeBlind(search, Loss::kNoFile))
-    search.causes.push_back(MissingFiles(search, sensor, blind));
+  std::map<SensorId, BlindSensor> missing = TakeBlind(search, Loss::kNoFile);
+  for (const auto& [sensor, blind] : EndsLackingFiles(search)) missing.try_emplace(sensor, BlindSensor{blind, {}});
+  for (const auto& [sensor, blind] : missing) search.causes.push_back(MissingFiles(search, sensor, blind));
   for (const auto& [sensor, blind] : TakeBlind(search, Loss::kUnreadable))
     search.causes.push_back(UnreadableFiles(search, sensor, blind));
 }

@@ -94,7 +94,7 @@ std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
   if (edges.empty()) return Finding{"nothing has been calibrated yet", "Push a capture session"};
   if (std::all_of(edges.begin(), edges.end(), IsPast))
     return Finding{
-        "all that was calibrated is past: sensors were remounted since, sessions corrected, or edges retired",
+        "all that was calibrated is past: it was retired, sensors were remounted since, or sessions corrected",
         "Push a session that calibrates them anew"};
   return Finding{"every calibration failed", "Open the failed edges, do what each of them says, and push again"};
 }

@@ -20,6 +20,7 @@ struct Contradiction {
   const Edge* edge = nullptr;
   Vector6d e = Vector6d::Zero();
 };
+// Nothing where no residual is beyond its limit.
 [[nodiscard]] std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges,
                                                              const GraphSolution& solution, const Policy& policy);
 // Two sensors whose edge the others contradict.
@@ -90,6 +91,11 @@ struct Contradiction {
 [[nodiscard]] std::vector<Finding> FindUnknownSensors(const std::vector<Edge>& edges, const GraphSolution& solution,
                                                       const SessionHeaders& headers,
                                                       const std::set<SensorId>& explained);
+// Known sensors that fewer than five captures, of all their good pairs and sessions, tie to the reference or to sensors
+// that more do: what so few scatter tells nothing of how well a pose is known.
+[[nodiscard]] std::vector<SensorId> SensorsOfFewCaptures(const std::vector<Edge>& edges, const GraphSolution& solution);
+// Of these.
+[[nodiscard]] Finding FewCapturesBehind(const std::vector<SensorId>& sensors, const std::vector<Edge>& edges);
 // Of these, each of a pair of its own.
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
 // Pairs that were measured before one of their sensors was remounted, and not since.

@@ -26,12 +26,13 @@ struct KnownPoses {
   std::vector<KnownPose> poses;  // the reference, too
   Eigen::MatrixXd covariance;    // of the poses in their order, the reference left out: six rows each, right tangents
 
-  [[nodiscard]] const KnownPose* Find(const SensorId& sensor) const;  // null: it is not among them
+  // Null: it is not among them.
+  [[nodiscard]] const KnownPose* Find(const SensorId& sensor) const;
 };
 
+// Of a session's own estimate (`why_not` empty); and those that a solution knows, with the joint covariance of the fused
+// sensors. Where none were fused it is that of `joint`, if it has all sensors; the others stand apart, by their own.
 [[nodiscard]] KnownPoses PosesOf(const SessionEstimate& estimate);
-// Those that are known. Joint covariance of the fused sensors; where none were fused, that of `joint` if it has all
-// sensors. The others stand apart, by their own.
 [[nodiscard]] KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
                                  const std::vector<JointCovariance>& joint = {});
 

@@ -18,8 +18,8 @@ std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const Grap
   const SessionHeaders current = WithoutPast(headers, edges);
   CauseSearch search{edges, solution, current, captured_at};
   search.open = FindOpenFailures(edges, captured_at);
-  for (const auto find : {FindFileCauses, FindBoardCounts, FindExchanged, FindBoardSizes, FindLensModels,
-                          FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal, FindNotMeasured})
+  for (const auto find : {FindFileCauses, FindPositionsUnits, FindBoardCounts, FindExchanged, FindBoardSizes,
+                          FindLensModels, FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal, FindNotMeasured})
     find(search);
   std::stable_sort(search.causes.begin(), search.causes.end(), IsWorse);
   return std::move(search.causes);

@@ -16,6 +16,7 @@ enum class CauseKind {
   kExchanged,        // two sensors sit where the drawing has the other, and others bear it out
   kFilesMissing,     // a sensor without files of most captures
   kFilesUnreadable,  // a sensor most of whose files cannot be read
+  kPositionsUnit,    // a tracker whose positions look like millimetres
   kBoardCounts,      // a board that no camera finds in any picture
   kBoardSize,        // a board that cameras together with lidars or trackers see larger or smaller than given
   kLensModel,        // a camera that another lens model fits
@@ -66,10 +67,12 @@ struct CauseSearch {
     return explained;
   }
 };
+// In the same order.
 [[nodiscard]] std::vector<EdgeId> IdsOf(const std::vector<const Edge*>& edges);
 
 // One per kind of cause, in the order in which they are asked: what is certain before what it may look like.
 void FindFileCauses(CauseSearch& search);      // kFilesMissing, kFilesUnreadable
+void FindPositionsUnits(CauseSearch& search);  // kPositionsUnit
 void FindBoardCounts(CauseSearch& search);     // kBoardCounts
 void FindExchanged(CauseSearch& search);       // kExchanged, kFarFromNominal of two
 void FindBoardSizes(CauseSearch& search);      // kBoardSize

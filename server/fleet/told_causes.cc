@@ -17,6 +17,8 @@ const char* KindWord(CauseKind kind) {
       return "files_missing";
     case CauseKind::kFilesUnreadable:
       return "files_unreadable";
+    case CauseKind::kPositionsUnit:
+      return "positions_unit";
     case CauseKind::kBoardCounts:
       return "board_counts";
     case CauseKind::kBoardSize:

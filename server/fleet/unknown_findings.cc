@@ -7,6 +7,7 @@
 #include "server/fleet/findings.h"
 #include "server/fleet/partial_poses.h"
 #include "server/fleet/wording.h"
+#include "server/model/past.h"
 
 namespace rigcal::fleet {
 namespace {
@@ -81,7 +82,7 @@ Finding OpenDirections(const std::vector<PartialPose>& partial, const std::vecto
   return finding;
 }
 
-// Without a pose, and without directions that would be known.
+// Without a pose, and without directions that would be known. Nobody asks for sensors that are gone from the robot.
 std::vector<SensorId> ApartSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
   std::vector<SensorId> apart;
   std::set<SensorId> solved, only_failed;
@@ -91,7 +92,7 @@ std::vector<SensorId> ApartSensors(const std::vector<Edge>& edges, const GraphSo
   }
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!solved.contains(sensor)) only_failed.insert(sensor);
+      if (!solved.contains(sensor) && !IsOfGoneSensor(edge)) only_failed.insert(sensor);
   apart.insert(apart.end(), only_failed.begin(), only_failed.end());
   return apart;
 }

@@ -136,28 +136,40 @@ std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const Next
   });
 }
 
-std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges) {
+std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
+                         const std::vector<RetiredSensor>& retired) {
   return WriteObject([&](JsonWriter& out) {
     out.Object("session", [&] { WriteSessionMembers(out, session); });
     out.Object("manifest", [&] { WriteManifestMembers(out, manifest); });
     out.List("edges", [&] {
       for (const Edge& edge : edges) out.Object([&] { WriteEdgeRowMembers(out, edge, nullptr); });
     });
+    WriteRetiredSensors(out, retired);
   });
 }
 
-std::string WriteRestored(const SessionAnswer& session, bool has_edges) {
+std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges) {
   return WriteObject([&](JsonWriter& out) {
     out.Object("session", [&] { WriteSessionMembers(out, session); });
     out.Flag("revision_follows", has_edges);
   });
 }
 
-std::string WriteRetired(const Edge& edge, const Standing& retired) {
+std::string WriteStandingOfEdge(const Edge& edge, const std::optional<Standing>& standing) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", edge.robot.str());
     out.Object("edge", [&] { WriteEdgeRowMembers(out, edge, nullptr); });
-    WriteStanding(out, "standing", retired);
+    WriteStanding(out, "standing", standing);
+  });
+}
+
+std::string WriteStandingOfSensor(const RobotId& robot, const SensorId& sensor, const std::optional<Standing>& standing,
+                                  bool has_edges) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Text("robot", robot.str());
+    out.Text("sensor", sensor.str());
+    out.Flag("revision_follows", has_edges);
+    WriteStanding(out, "standing", standing);
   });
 }
 
@@ -274,6 +286,17 @@ std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vect
     out.Text("robot", robot.str());
     out.Flag("known", is_known);
     WriteNames(out, "slip_of", slip_of);
+  });
+}
+
+std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another) {
+  return WriteObject([&](JsonWriter& out) {
+    out.Integer("asked", static_cast<std::int64_t>(asked));
+    out.Integer("files", another ? static_cast<std::int64_t>(another->files) : 0);
+    if (!another) return;
+    out.Text("robot", another->robot.str());
+    out.Text("session", another->session.str());
+    out.Text("captured_at", ToIso(another->captured_at));
   });
 }
 

@@ -40,15 +40,20 @@ struct SessionAnswer {
   std::optional<Standing> standing = {};          // absent: not closed
   std::optional<Superseding> superseded_by = {};  // absent: current, or not closed
   std::vector<SessionId> supersedes = {};
+  std::optional<Standing> retired = {};           // absent: it is not
 };
+// A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
-[[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
-                                       const std::vector<Edge>& edges);
+// `retired`: of the sensors that it lists, those that are.
+[[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
+                                       const std::vector<RetiredSensor>& retired = {});
 
-// verb restore: the session as it stands; `has_edges`: its robot, so that a revision follows.
-[[nodiscard]] std::string WriteRestored(const SessionAnswer& session, bool has_edges);
-// verb retire: the edge as it is shown from now on.
-[[nodiscard]] std::string WriteRetired(const Edge& edge, const Standing& retired);
+// verbs retire, restore. Of a session, as it stands; `has_edges`: its robot, so that a revision follows.
+[[nodiscard]] std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges);
+// Of an edge, as it is shown from now on; of a sensor. `standing`: the newest word about it, if anybody said any.
+[[nodiscard]] std::string WriteStandingOfEdge(const Edge& edge, const std::optional<Standing>& standing);
+[[nodiscard]] std::string WriteStandingOfSensor(const RobotId& robot, const SensorId& sensor,
+                                                const std::optional<Standing>& standing, bool has_edges);
 
 // verb policy: what holds, and who set it, the widest first.
 struct PolicyAnswer {
@@ -56,6 +61,7 @@ struct PolicyAnswer {
   PolicyInForce in_force;
   std::vector<PolicyVersion> set;
 };
+// The limits that hold, key by key who set them, then what was set.
 [[nodiscard]] std::string WritePolicy(const PolicyAnswer& answer);
 // verb set_policy: how many robots wait to be judged anew by it.
 [[nodiscard]] std::string WritePolicySet(const PolicyVersion& set, std::int64_t robots_waiting);
@@ -87,6 +93,7 @@ struct LookupAnswer {
   Verdict verdict;                         // of the revision
   Validity validity;
 };
+// "known" is true of a whole pose only; one in part has what was measured, axis by axis.
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);
 
 // verb status
@@ -106,6 +113,7 @@ struct StatusAnswer {
   std::string http_address;         // of the reports; empty: none
   std::optional<Error> problem;     // why the server cannot store or answer
 };
+// Ages are as of `now`.
 [[nodiscard]] std::string WriteStatus(const StatusAnswer& answer, Stamp now);
 
 // verb live: changes whenever something arrived or was finished, and at no other time.
@@ -116,6 +124,7 @@ struct LiveAnswer {
   int revision = 0;             // of one robot; 0: none yet
   std::vector<SessionAnswer> open_sessions;
 };
+// With no time in it, so that the same state is the same text.
 [[nodiscard]] std::string WriteLive(const LiveAnswer& answer);
 
 // verbs robot_names, sensor_names; `more`: there are others.
@@ -123,6 +132,16 @@ struct LiveAnswer {
 [[nodiscard]] std::string WriteSensorNames(const RobotId& robot, const std::vector<SensorId>& sensors, bool more);
 // verb known_robot; `slip_of`: known ones that a robot which is not known may be, mistyped.
 [[nodiscard]] std::string WriteKnownRobot(const RobotId& robot, bool is_known, const std::vector<RobotId>& slip_of);
+
+// verb known_files: of the files asked for, those of another robot's session.
+struct FilesOfAnother {
+  RobotId robot;
+  SessionId session;
+  Stamp captured_at;
+  std::size_t files = 0;
+};
+// `asked`: files that were asked about; `another` absent: nobody else's.
+[[nodiscard]] std::string WriteKnownFiles(std::size_t asked, const std::optional<FilesOfAnother>& another);
 
 // verb due: every robot, or a part of them; overdue = older than max_age_ns (absent: than its policy allows), or never
 // calibrated.
@@ -151,6 +170,7 @@ struct HealthAnswer {
   std::vector<LostFileAnswer> first_lost_files;
   [[nodiscard]] std::optional<Error> problem() const;  // the first of the parts
 };
+// "state" is "failing" where a part has a problem, else "ok".
 [[nodiscard]] std::string WriteHealth(const HealthAnswer& answer, Stamp now);
 
 // {"error": {"code", "what", "cure"}}: what a failed request answers.

@@ -10,6 +10,7 @@
 
 namespace rigcal::formats {
 
+// The document as it is stored, and back: bounded; the error names the wrong field.
 [[nodiscard]] std::string WriteAsFound(const AsFound& found);
 [[nodiscard]] Result<AsFound> ReadAsFound(std::string_view text);
 

@@ -35,6 +35,7 @@ namespace rigcal::formats {
 struct CloudSize {
   std::size_t points = 0, values = 0;  // values: of all points, x y z included
 };
+// `suffix` as of ReadCloud. Zeros of a suffix that is not known.
 [[nodiscard]] CloudSize ClaimedSize(std::span<const std::byte> start, std::string_view suffix, std::size_t file_bytes);
 
 }  // namespace rigcal::formats

@@ -14,6 +14,7 @@
 
 namespace rigcal::formats {
 
+// ReadCloud of one suffix, without its checks of the cloud as a whole; errors call the file `name`.
 [[nodiscard]] Result<Cloud> ReadPcd(std::string_view bytes, const std::string& name);
 [[nodiscard]] Result<Cloud> ReadPly(std::string_view bytes, const std::string& name);
 // Points, and values of each, as the header claims; nothing if it cannot be read.

@@ -14,7 +14,7 @@
 namespace rigcal::formats {
 
 enum class Scalar { kInt8, kInt16, kInt32, kInt64, kUint8, kUint16, kUint32, kUint64, kFloat32, kFloat64 };
-[[nodiscard]] std::size_t SizeOf(Scalar type);
+[[nodiscard]] std::size_t SizeOf(Scalar type);  // in bytes
 enum class ByteOrder { kLittle, kBig };
 
 // One number of every point. In bytes it stands at start + i * step for point i; in text it is word `word_idx` of a

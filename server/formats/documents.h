@@ -12,6 +12,7 @@
 #include "server/model/graph.h"
 #include "server/model/policy_version.h"
 #include "server/model/session.h"
+#include "server/model/standing.h"
 
 namespace rigcal::formats {
 
@@ -24,7 +25,7 @@ namespace rigcal::formats {
 [[nodiscard]] Result<Edge> ReadEdge(std::string_view text);
 
 // A file of finished edges for `rigcal push-edges` (docs/edges-format.md):
-// {"format": 1, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?, "dof"?, ...}]}.
+// {"format": 1, "measured_at"?, "edges": [{"frame_a", "frame_b", "T_a_b", "information" | "covariance", "method"?, ...}]}.
 // Ids are assigned (AssignPushedIds). The error names the edge by its position and field.
 [[nodiscard]] Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& robot);
 
@@ -37,9 +38,11 @@ struct RevisionInput {
   GraphSolution solution;
   Verdict verdict;
   std::optional<PolicyInForce> policy = {};  // that judged it; absent: it is from before there were any
+  std::vector<RetiredSensor> retired = {};  // sorted by sensor; in the document only where there is any
   bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first
 };
+// In format 2, for which `input` need not be whole.
 [[nodiscard]] std::string WriteRevisionDocument(const RevisionInput& input);
 // Format 1: the same with every detail of the edges but block vectors. `input` must be whole.
 [[nodiscard]] std::string WriteWholeRevisionDocument(const RevisionInput& input);

@@ -140,6 +140,7 @@ void WriteEdgeRow(JsonWriter& out, const Edge& edge, const std::map<std::string,
   out.Text("state", edge.state == EdgeState::kGood ? "good" : "failed");
   out.Text("method", edge.method);
   edge.session.empty() ? out.Null("session") : out.Text("session", edge.session.str());
+  if (edge.measured_at) WriteStamp(out, "measured_at", edge.measured_at);
   out.Integer("epoch", edge.epoch);
   edge.state == EdgeState::kGood ? WriteEstimate(out, edge) : WriteNoEstimate(out);
   WriteDiagnoses(out, "diagnoses", edge.diagnoses);
@@ -200,6 +201,7 @@ Edge ReadEdgeRow(const JsonField& field) {
   edge.state = ReadState(field.At("state"));
   edge.method = field.At("method").Text(kShortTextMax);
   if (const auto session = field.Find("session")) edge.session = ReadId<SessionId>(*session);
+  if (const auto measured = field.Find("measured_at")) edge.measured_at = ReadStamp(*measured);
   edge.epoch = static_cast<int>(field.At("epoch").Integer(1, INT_MAX));
   edge.diagnoses = ReadDiagnoses(field.At("diagnoses"));
   for (const auto& [name, value] : field.At("figures").Members(kFiguresMax)) edge.figures[name] = value.Number();

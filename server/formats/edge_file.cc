@@ -89,10 +89,15 @@ std::string ReadMethod(const JsonField& field) {
   return method;
 }
 
+std::optional<Stamp> ReadMeasuredAt(const JsonField& parent) {
+  const auto field = parent.Find("measured_at");
+  return field ? std::optional(ReadStamp(*field)) : std::nullopt;
+}
+
 // `indefinite`: its information matrix has a negative eigenvalue; the caller says so, of all edges at once.
 Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot, bool& indefinite) {
   field.AllowOnly({"frame_a", "frame_b", "T_a_b", "information", "covariance", "method", "dof", "source", "blocks",
-                   "contributions", "jackknife_ratio"});
+                   "contributions", "jackknife_ratio", "measured_at"});
   Edge edge;
   edge.robot = robot;
   edge.frame_a = ReadId<SensorId>(field.At("frame_a"));
@@ -101,6 +106,7 @@ Edge ReadMeasuredEdge(const JsonField& field, const RobotId& robot, bool& indefi
   edge.uncertainty = ReadGivenUncertainty(field, indefinite);
   const auto method = field.Find("method");
   edge.method = method ? ReadMethod(*method) : "given";
+  edge.measured_at = ReadMeasuredAt(field);
   edge.state = EdgeState::kGood;
   return edge;
 }
@@ -123,7 +129,8 @@ Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& rob
   RIGCAL_ASSIGN(JsonDocument document, JsonDocument::Parse(text, kind));
   const JsonField root = document.Root();
   (void)root.At("format").Integer(1, 1);
-  root.AllowOnly({"format", "edges"});
+  root.AllowOnly({"format", "edges", "measured_at"});
+  const std::optional<Stamp> measured_at = ReadMeasuredAt(root);
   const std::vector<JsonField> items = root.At("edges").Items(limits::kEdgesPerBatchMax);
   if (items.empty()) root.Refuse("\"edges\" is empty: there is nothing to push");
   std::vector<Edge> edges;
@@ -131,6 +138,7 @@ Result<std::vector<Edge>> ReadEdgeFile(std::string_view text, const RobotId& rob
   for (const JsonField& item : items) {
     bool has_negative = false;
     edges.push_back(ReadMeasuredEdge(item, robot, has_negative));
+    if (!edges.back().measured_at) edges.back().measured_at = measured_at;
     RIGCAL_TRY(document.status());
     if (has_negative) {
       indefinite.push_back(edges.size() - 1);

@@ -29,6 +29,18 @@ void WriteStanding(JsonWriter& out, const std::string& name, const std::optional
   });
 }
 
+void WriteRetiredSensors(JsonWriter& out, const std::vector<RetiredSensor>& retired) {
+  out.List("retired_sensors", [&] {
+    for (const RetiredSensor& gone : retired)
+      out.Object([&] {
+        WriteStamp(out, "at", gone.word.at);
+        out.Text("reason", gone.word.reason);
+        out.Text("sensor", gone.sensor.str());
+        out.Text("who", gone.word.who);
+      });
+  });
+}
+
 void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
   out.Text("session", session.session.str());
   out.Text("robot", session.robot.str());
@@ -43,6 +55,7 @@ void WriteSessionMembers(JsonWriter& out, const SessionAnswer& session) {
   out.Integer("jobs_waiting", session.jobs_waiting);
   out.Integer("jobs_total", session.jobs_total);
   WriteStanding(out, "standing", session.standing);
+  WriteStanding(out, "retired", session.retired);
   WriteSuperseding(out, session.superseded_by);
   out.List("supersedes", [&] {
     for (const SessionId& one : session.supersedes) out.Text(one.str());

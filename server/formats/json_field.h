@@ -39,6 +39,7 @@ class JsonField {
   [[nodiscard]] std::vector<std::pair<std::string, JsonField>> Members(std::size_t count_max) const;
   [[nodiscard]] bool IsNull() const;
 
+  // One value of that kind, else the field is refused; an integer outside of min to max, and a longer text, too.
   [[nodiscard]] double Number() const;
   [[nodiscard]] std::int64_t Integer(std::int64_t min, std::int64_t max) const;
   [[nodiscard]] bool Flag() const;
@@ -61,11 +62,15 @@ class JsonField {
 
 class JsonDocument {
  public:
+  // kInvalidInput: larger than the kind allows, not JSON, nested deeper than kJsonDepthMax, or a key twice.
   [[nodiscard]] static Result<JsonDocument> Parse(std::string_view text, const JsonKind& kind);
+  // A document that was moved from may only be assigned to or destroyed.
   JsonDocument(JsonDocument&&) noexcept;
   JsonDocument& operator=(JsonDocument&&) noexcept;
   ~JsonDocument();
+  // Valid as long as the document, also after it was moved.
   [[nodiscard]] JsonField Root();
+  // The first refusal; good where there was none.
   [[nodiscard]] Status status() const;
 
  private:

@@ -15,6 +15,7 @@
 
 namespace rigcal::formats {
 
+// A list of six numbers, translation first.
 void WriteVector(JsonWriter& out, std::string_view key, const Vector6d& values);
 void WriteMatrix(JsonWriter& out, std::string_view key, const Matrix6d& matrix);  // 6 rows of 6
 // Rows of the lower triangle, the diagonal with it: row k has k + 1 numbers.
@@ -33,6 +34,8 @@ void WriteNoSigmas(JsonWriter& out);
 // A revision's number; 0, "none yet", is null.
 void WriteRevisionNumber(JsonWriter& out, int revision);
 
+// What the writer of that name wrote; anything else is refused at its field. A lower triangle becomes a symmetric
+// matrix.
 [[nodiscard]] Vector6d ReadVector(const JsonField& field);
 [[nodiscard]] Matrix6d ReadMatrix(const JsonField& field);
 [[nodiscard]] Eigen::MatrixXd ReadLowerTriangle(const JsonField& field);

@@ -6,6 +6,7 @@
 
 namespace rigcal::formats {
 
+// Members of an object that is open: the header's, then "payloads" in their order.
 void WriteManifestMembers(JsonWriter& out, const Manifest& manifest);
 
 }  // namespace rigcal::formats

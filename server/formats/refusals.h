@@ -10,6 +10,7 @@ namespace rigcal::formats {
 // The first refusal ends a reading. A survey keeps each and goes on without what it is about.
 class Refusals {
  public:
+  // Null: the first refusal ends the reading; else they are kept there.
   explicit Refusals(std::vector<Error>* kept) : kept_(kept) {}
   // An error: the reading ends.
   [[nodiscard]] Status Take(Error error) const {

@@ -2,6 +2,7 @@
 #include <climits>
 
 #include "server/base/limits.h"
+#include "server/formats/answer_rows.h"
 #include "server/formats/cause_fields.h"
 #include "server/formats/documents.h"
 #include "server/formats/edge_fields.h"
@@ -216,6 +217,16 @@ GraphSolution ReadSolution(const JsonField& root) {
   return solution;
 }
 
+std::vector<RetiredSensor> ReadRetiredSensors(const JsonField& root) {
+  std::vector<RetiredSensor> retired;
+  const auto field = root.Find("retired_sensors");
+  if (!field) return retired;
+  for (const JsonField& gone : field->Items(limits::kSensorsPerRobotMax))
+    retired.push_back({ReadId<SensorId>(gone.At("sensor")),
+                       {ReadStamp(gone.At("at")), gone.At("who").Text(), gone.At("reason").Text()}});
+  return retired;
+}
+
 std::string WriteInFormat(const RevisionInput& input, int format) {
   return WriteObject([&](JsonWriter& out) {
     out.Integer("format", format);
@@ -223,6 +234,7 @@ std::string WriteInFormat(const RevisionInput& input, int format) {
     input.reference.empty() ? out.Null("reference") : out.Text("reference", input.reference.str());
     WriteVerdict(out, "verdict", input.verdict);
     WriteCauses(out, input.causes);
+    if (!input.retired.empty()) WriteRetiredSensors(out, input.retired);
     if (input.policy) out.Object("policy", [&] { WritePolicyMembers(out, *input.policy); });
     WriteSolution(out, input);
     WriteRevisionEdges(out, input, format);
@@ -256,6 +268,7 @@ Result<RevisionInput> ReadRevisionDocument(std::string_view text) {
   if (const auto reference = root.Find("reference")) input.reference = ReadId<SensorId>(*reference);
   input.verdict = ReadVerdict(root.At("verdict"));
   input.causes = ReadCauses(root);
+  input.retired = ReadRetiredSensors(root);
   if (const auto policy = root.Find("policy")) input.policy = ReadPolicyMembers(*policy);
   input.solution = ReadSolution(root);
   ReadRevisionEdges(root.At("edges"), input);

@@ -8,6 +8,7 @@
 
 namespace rigcal::formats {
 
+// Canonical, as all documents (documents.h). Reading refuses by name what is not one.
 [[nodiscard]] std::string WriteSessionEstimate(const SessionEstimate& estimate);
 [[nodiscard]] Result<SessionEstimate> ReadSessionEstimate(std::string_view text);
 

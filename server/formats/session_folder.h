@@ -25,6 +25,7 @@ struct SessionSurvey {
   Manifest manifest;
   std::vector<Error> refusals;  // the first is the error of ReadSessionFolder
 };
+// An error where the folder or session.yaml itself cannot be read. `progress` as of ReadSessionFolder.
 [[nodiscard]] Result<SessionSurvey> SurveySessionFolder(
     const std::filesystem::path& folder, const std::function<void(std::int64_t, std::int64_t)>& progress);
 

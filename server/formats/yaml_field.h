@@ -39,6 +39,7 @@ struct YamlTree {
 // empty. Lives as long as the tree.
 class YamlField {
  public:
+  // The root of the tree.
   explicit YamlField(YamlTree& tree) : tree_(&tree), node_(&tree.root) {}
   // A member that must be there.
   [[nodiscard]] YamlField At(std::string_view key) const;
@@ -50,11 +51,13 @@ class YamlField {
   // The same place, called `title` in errors: "sensor 'left'".
   [[nodiscard]] YamlField Called(std::string title) const;
 
+  // One value of that kind, else the field is refused; a number is finite, an integer within min to max.
   [[nodiscard]] std::string Text() const;
   [[nodiscard]] double Number() const;
   [[nodiscard]] std::int64_t Integer(std::int64_t min, std::int64_t max) const;
   void Numbers(double* to, std::size_t count) const;  // exactly `count`
 
+  // Refuses the first other key of a map by name, with what was probably meant.
   void AllowOnly(std::initializer_list<std::string_view> keys) const;
   // "<name> line <n>: <title>: <what>"; only the first one counts. An empty cure is the tree's.
   void Refuse(const std::string& what, const std::string& cure = {}) const;

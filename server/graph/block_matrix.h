@@ -27,6 +27,7 @@ struct BlockMatrix {
   using Block = Eigen::Matrix<double, B, B>;
   std::vector<Block> diagonal, off_diagonal;
 
+  // All blocks of the pattern, zero.
   void SetZero(const BlockPattern& pattern) {
     diagonal.assign(static_cast<std::size_t>(pattern.block_count), Block::Zero());
     off_diagonal.assign(pattern.off_diagonal.size(), Block::Zero());
@@ -48,9 +49,9 @@ class BlockCholesky {
   [[nodiscard]] virtual std::vector<Block> InverseDiagonal() = 0;
 };
 
-// Null if the factor would need more than kFactorBytesMax. `blocks_dense_max`: up to this many blocks it is dense.
 constexpr int kBlocksDenseMax = 40;
 constexpr std::size_t kFactorBytesMax = std::size_t{2} << 30;
+// Null if the factor would need more than kFactorBytesMax. `blocks_dense_max`: up to this many blocks it is dense.
 template <int B>
 [[nodiscard]] std::unique_ptr<BlockCholesky<B>> MakeCholesky(const BlockPattern& pattern,
                                                              int blocks_dense_max = kBlocksDenseMax);
@@ -84,6 +85,7 @@ struct Supernodes {
   std::vector<int> supernode_of_col;
   std::vector<int> position;  // where a row or column of the matrix comes in the factor
 
+  // How many supernodes.
   [[nodiscard]] int count() const { return static_cast<int>(first_col.size()) - 1; }
 };
 
@@ -93,9 +95,11 @@ struct Supernode {
   const int* rows = nullptr;
   std::size_t start = 0;
 
+  // Of its rows, how many lie below its own triangle, and which: in the order of the factor.
   [[nodiscard]] int below() const { return row_count - col_count; }
   [[nodiscard]] const int* rows_below() const { return rows + col_count; }
 };
+// `s` from 0 to count() - 1; valid as long as `supernodes` is.
 [[nodiscard]] Supernode SliceOf(const Supernodes& supernodes, int s);
 
 // Symbolic analysis by CHOLMOD on the pattern of blocks, then every block spread to block_size rows and columns.

@@ -20,6 +20,7 @@ class CliqueTree {
     Matrix6d U_i, U_j;
   };
 
+  // As if made anew: no edges, no blocks, and the counts below at zero.
   void Clear();
   // An edge under its number, and blocks that have none yet. The factor knows it after Renew.
   void Take(std::size_t number, const Edge& edge);
@@ -43,6 +44,7 @@ class CliqueTree {
   [[nodiscard]] double Reduce(const Eigen::VectorXd& x);
   void Finish(Eigen::VectorXd& x);
 
+  // Blocks that have been taken, with edges or without any more.
   [[nodiscard]] int block_count() const { return static_cast<int>(owner_.size()); }
   // Of all calls since Clear: products of blocks, and columns renewed.
   [[nodiscard]] double products() const { return products_; }

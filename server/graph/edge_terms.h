@@ -18,6 +18,7 @@ struct EdgeState {
   Vector6d e;
 };
 
+// Log of the pose (p_m, q) by its series: `sine2`, the squared sine of half its angle, is below series::kSineBelow2.
 inline Vector6d SmallLog(const Eigen::Vector3d& p_m, const Eigen::Quaterniond& q, double sine2) {
   const Eigen::Vector3d phi = (std::copysign(2.0, q.w()) * series::Polynomial(series::kArcsineOver, sine2)) * q.vec();
   const Eigen::Vector3d turned = phi.cross(p_m);
@@ -28,6 +29,7 @@ inline Vector6d SmallLog(const Eigen::Vector3d& p_m, const Eigen::Quaterniond& q
   return xi;
 }
 
+// At the poses of its two vertices.
 inline EdgeState EdgeStateAt(const Constraint& constraint, const Se3& T_ref_i, const Se3& T_ref_j) {
   EdgeState state;
   const Eigen::Quaterniond q_i_ref = T_ref_i.q.conjugate();

@@ -33,6 +33,7 @@ void AddPins(const std::vector<Pin>& pins, BlockMatrix<6>& H);
 // memory BFGS (Nocedal 1980, the two-loop recursion) with the factor as its starting matrix.
 class SecantPairs {
  public:
+  // For a new factor, beside which nothing is known yet.
   void Clear() { count_ = 0; }
 
   // The gradient changed by `change` over `step`. Forgotten if there is no room, or no curvature along the step.

@@ -26,6 +26,7 @@ constexpr std::size_t kJackknifeBlocksMin = 8;
 // By edge, block ids unique. BlocksOf leaves out edges without enough block vectors, with a block twice, or with block
 // vectors that do not scatter in every direction that the edge sees.
 using BlocksByEdge = std::map<EdgeId, EdgeBlocks>;
+// What a given constant brings goes to C_given where its shifts are not known or its name comes twice.
 [[nodiscard]] BlocksByEdge BlocksOf(const std::vector<Edge>& edges);
 
 // d of every block of a session (`ids`, sorted; the edge's own are among them), centred and scaled so that columns * columns^T
@@ -51,6 +52,8 @@ struct GraphJackknife {
 };
 constexpr int kJackknifeSensorsMax = 500;
 
+// `solution`: of this graph, converged. Not available without blocks, with kJackknifeSensorsMax sensors or more beside
+// the reference, and where H cannot be factored.
 [[nodiscard]] GraphJackknife JackknifeGraph(const Graph& graph, const GraphSolution& solution,
                                             const BlocksByEdge& blocks);
 
@@ -86,6 +89,7 @@ struct JackknifeWork {
   const BlocksByEdge& blocks;
   std::vector<EdgeJacobian> jacobians;  // by constraint
 
+  // The edge behind a constraint, by its place in problem.constraints.
   [[nodiscard]] const GraphEdge& EdgeOf(std::size_t constraint) const {
     return graph.edges[problem.edges_by_id[problem.constraints[constraint].edge]];
   }
@@ -105,6 +109,7 @@ struct CheckedDirections {
   int rank = 0;
   double t_squared = 0.0;
 };
+// `e` in the same coordinates as `C`, of which only the symmetric part counts.
 [[nodiscard]] CheckedDirections CheckWhitened(const Matrix6d& C, const Vector6d& e);
 
 }  // namespace rigcal::graph

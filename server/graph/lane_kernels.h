@@ -77,6 +77,7 @@ namespace series {
 constexpr double kSineBelow2 = 0.00996;  // squared sine of half the angle: 0.2 rad
 constexpr double kAngleBelow2 = 0.04;    // rad^2
 
+// c[0] + c[1] x + c[2] x^2 + ...
 template <int N>
 inline double Polynomial(const double (&c)[N], double x) {
   double sum = c[N - 1];

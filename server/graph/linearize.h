@@ -39,6 +39,7 @@ struct EdgeJacobian {
   Vector6d e = Vector6d::Zero();
   Matrix6d J_i = Matrix6d::Zero(), J_j = Matrix6d::Zero(), D = Matrix6d::Zero();
 };
+// At the poses `T_ref` of the vertices, the reference among them.
 [[nodiscard]] EdgeJacobian JacobianOf(const Constraint& constraint, const Poses& T_ref);
 
 // Columns += J_i^T Omega de, J_j^T Omega de at the rows of the two vertices (the reference has none).

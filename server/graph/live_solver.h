@@ -37,6 +37,7 @@ struct UpdateBudget {
 
 class LiveSolver {
  public:
+  // Without edges: only the reference has a pose.
   explicit LiveSolver(const SensorId& reference, const UpdateBudget& budget = {}) : budget_(budget) {
     graph_.reference = reference;
   }
@@ -57,6 +58,7 @@ class LiveSolver {
   // False once an update has stopped short of the optimum: Settle when there is time.
   [[nodiscard]] bool settled() const { return settled_; }
 
+  // Edges and sensors as they are after the last update, also those that take no part.
   [[nodiscard]] const Graph& graph() const { return graph_; }
   // sum e^T Omega e at the poses at hand, and these poses (none for a sensor that is not connected).
   [[nodiscard]] double Cost() const { return fast_ ? graph::Cost(*problem_, T_ref_) : solution_.cost; }

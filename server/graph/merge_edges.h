@@ -15,18 +15,19 @@ struct Merge {
   std::vector<EdgeId> taken;       // edges that count in them now or are past, and were in the window before
 };
 
+constexpr std::size_t kEdgesKeptOfPair = 8;
 // Edges that were pushed as finished results. Takes good ones into `before`, the oldest first, and leaves the newest `kept` of
 // each pair and method. One that contradicts what it would become part of stays, so that it is told for as long as nobody
-// settles it; merging begins with one that half of its pair's edges agree with.
+// settles it; merging begins with one that half of its pair's edges agree with. Of those that are past with their sensor
+// (retired, remounted) the newest `kept` stay too, and the others leave the window.
 // `measured_at` of each edge of `edges`; merged edges among these are passed over. Deterministic for any order of `edges`.
-constexpr std::size_t kEdgesKeptOfPair = 8;
 [[nodiscard]] Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                     const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kEdgesKeptOfPair);
 
+constexpr std::size_t kSessionsKept = 8;
 // Edges of sessions, a session at a time, as its pairs share captures: likewise takes all that were captured before the newest
 // `kept` with a good edge. One of which any edge contradicts what it would become part of stays whole. What failed in a session
 // that is taken, or is past, leaves the window with it.
-constexpr std::size_t kSessionsKept = 8;
 [[nodiscard]] Merge MergeOlderSessions(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                                        const std::map<EdgeId, Stamp>& measured_at, std::size_t kept = kSessionsKept);
 

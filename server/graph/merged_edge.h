@@ -19,6 +19,7 @@ namespace rigcal::graph {
 void Add(const Edge& edge, Stamp measured_at, MergedEdge& merged);
 
 using MeasuredPair = std::tuple<SensorId, SensorId, std::string>;  // frames and method
+// What edges share that are merged with each other.
 [[nodiscard]] inline MeasuredPair PairOf(const Edge& edge) { return {edge.frame_a, edge.frame_b, edge.method}; }
 using MergedPairs = std::map<MeasuredPair, MergedEdge>;
 // Adds the good edges of a session to those of its pairs, and what they have in common as columns of their scores.

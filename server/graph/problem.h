@@ -35,6 +35,7 @@ struct Problem {
   EliminationCost elimination_cost;      // of that pattern
   std::vector<Diagnosis> diagnoses;      // sensors that are not connected, edges that cannot be used
 
+  // Vertices whose poses are sought: all but the reference.
   [[nodiscard]] int free_count() const { return vertex_count > 0 ? vertex_count - 1 : 0; }
   // Whether every edge sees all six directions.
   [[nodiscard]] bool HasFullRank() const {
@@ -49,6 +50,7 @@ struct Problem {
 // Disjoint sets of vertices.
 class UnionFind {
  public:
+  // Members 0 to count - 1, each in a set of its own.
   explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
   // The smallest member of the set of `member`.
   [[nodiscard]] int Find(int member) {

@@ -35,6 +35,7 @@ constexpr std::size_t kFusedSensorsMax = 200;
 // Per axis, squared; alike along all three.
 struct VisitVariance {
   double translation_m2 = 0.0, rotation_rad2 = 0.0;
+  // As a covariance of a pose: diagonal, translation first.
   [[nodiscard]] Matrix6d Matrix() const;
   bool operator==(const VisitVariance&) const = default;
 };
@@ -74,7 +75,9 @@ struct SessionFusion {
   std::vector<EdgeFactor> edges;
   std::vector<VisitVariance> scatter;  // per sensor
 
+  // Scalars that are sought: six for each variable.
   [[nodiscard]] Eigen::Index Size() const { return 6 * static_cast<Eigen::Index>(T_ref.size()); }
+  // In the reference; kFixed is the reference itself.
   [[nodiscard]] Se3 Pose(int variable) const {
     return variable == kFixed ? Se3{} : T_ref[static_cast<std::size_t>(variable)];
   }
@@ -98,6 +101,7 @@ struct LinearFactor {
   Eigen::VectorXd e;
   Eigen::MatrixXd J, W;  // by all variables; information, scatter between visits included
 };
+// At the poses at hand: six rows for each sensor of the factor. W is zero where the covariance cannot be inverted.
 [[nodiscard]] LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor);
 
 // Moves the poses to the optimum with the scatter held; H^-1. Nothing where something is left open.

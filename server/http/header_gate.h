@@ -21,6 +21,7 @@ namespace rigcal::http {
 // What civetweb would do with these first bytes of a request: read on, or answer (also where it refuses them).
 enum class Head { kPartial, kWhole };
 constexpr std::size_t kHeadBytesMax = 16 << 10;  // of civetweb: beyond them it refuses
+// kWhole once the head ends, or where civetweb refuses it: too long, or with a control character.
 [[nodiscard]] Head JudgeHead(std::string_view bytes);
 
 // At most limits::kHttpWaitingMax connections wait; one more makes the oldest go. Any thread.

@@ -30,7 +30,7 @@ int SendRedirect(mg_connection* connection, int status, const std::string& locat
 // A small page, or below /api the document {"error": {code, cure, what}}. Returns the status.
 int SendError(mg_connection* connection, int status, const Error& error, bool as_json, const Headers& headers = {});
 
-[[nodiscard]] bool IsHead(const mg_connection* connection);
+[[nodiscard]] bool IsHead(const mg_connection* connection);  // then the answer has no body
 [[nodiscard]] std::string_view HeaderOf(const mg_connection* connection, const char* name);  // "" if absent
 
 }  // namespace rigcal::http

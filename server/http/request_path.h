@@ -23,6 +23,7 @@ namespace rigcal::http {
 // The robot whose pages `path` is below, but not its own page; "" if none.
 [[nodiscard]] std::string RobotAbove(const std::string& path);
 
+// Whether programs ask there: errors are JSON and not a page.
 [[nodiscard]] bool IsApi(const std::string& path);
 
 }  // namespace rigcal::http

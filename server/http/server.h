@@ -33,11 +33,14 @@ using Answer = std::function<Result<Page>(const std::string& path, const std::st
 
 class Server {
  public:
+  // Listens when it returns. kInvalidInput: `options` have no such address; kConflict: it cannot listen there. It
+  // stops, with all its connections, when it goes.
   [[nodiscard]] static Result<Server> Start(const Options& options, Answer answer);
   ~Server();
+  // A server that was moved from serves nothing: the other goes on.
   Server(Server&&) noexcept;
   Server& operator=(Server&&) noexcept;
-  [[nodiscard]] int port() const;
+  [[nodiscard]] int port() const;  // that which was bound, also where 0 was asked for
 
  private:
   struct Impl;

@@ -16,18 +16,22 @@ struct Se3 {
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();  // unit; canonical sign (w >= 0) after Normalized()
 
   friend bool operator==(const Se3&, const Se3&) = default;
+  // xi = [rho, phi], m and rad; phi of any length.
   [[nodiscard]] static Se3 Exp(const Vector6d& xi);
+  // `matrix` is homogeneous, its rotation orthonormal with det +1 (not checked); the last row is not read.
   [[nodiscard]] static Se3 FromMatrix(const Eigen::Matrix4d& matrix);
-  [[nodiscard]] Vector6d Log() const;  // rotation part in [0, pi]
-  [[nodiscard]] Se3 Inverse() const;
-  [[nodiscard]] Se3 Normalized() const;  // unit quaternion with w >= 0
-  [[nodiscard]] Eigen::Matrix4d Matrix() const;
-  [[nodiscard]] Eigen::Matrix3d R() const { return q.toRotationMatrix(); }
+  [[nodiscard]] Vector6d Log() const;                                       // rotation part in [0, pi]
+  [[nodiscard]] Se3 Inverse() const;                                        // T_b_a of T_a_b
+  [[nodiscard]] Se3 Normalized() const;                                     // unit quaternion with w >= 0
+  [[nodiscard]] Eigen::Matrix4d Matrix() const;                             // 4x4, homogeneous
+  [[nodiscard]] Eigen::Matrix3d R() const { return q.toRotationMatrix(); }  // 3x3; takes q as unit
 };
 
+// T_a_c = T_a_b T_b_c, and the point p_a = T_a_b p_b in metres. The quaternions are taken as unit.
 [[nodiscard]] Se3 operator*(const Se3& T_a_b, const Se3& T_b_c);
 [[nodiscard]] Eigen::Vector3d operator*(const Se3& T_a_b, const Eigen::Vector3d& p_b);
 
+// Hat(v) w = v x w.
 [[nodiscard]] Eigen::Matrix3d Hat(const Eigen::Vector3d& v);
 // Ad(T) = [R, [p]x R; 0, R]: T Exp(xi) T^-1 = Exp(Ad(T) xi).
 [[nodiscard]] Matrix6d Adjoint(const Se3& T);

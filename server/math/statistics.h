@@ -3,6 +3,7 @@
 
 namespace rigcal {
 
+// The value below which a statistic lies with this probability, 0 to 1; infinite at 1, zero without freedom.
 [[nodiscard]] double ChiSquareQuantile(double probability, double dof);
 [[nodiscard]] double ChiSquareTail(double statistic, double dof);        // P(X >= statistic)
 [[nodiscard]] double FisherTail(double statistic, double p, double nu);  // P(F(p, nu) >= statistic); 1 without freedom

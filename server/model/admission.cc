@@ -32,13 +32,28 @@ Status CheckAdmission(const Manifest& manifest, const limits::Limits& limits) {
                 "Split it into several sessions");
 }
 
-Status CheckCapturedAt(const SessionHeader& header, Stamp now, const std::string& whose) {
+namespace {
+
+Status NotAhead(const std::string& what, Stamp at, Stamp now, const std::string& whose, const std::string& cure) {
   constexpr std::int64_t kAheadMax_ns = 86'400'000'000'000, kSecond_ns = 1'000'000'000;
-  if (header.captured_at.ns - kAheadMax_ns <= now.ns) return {};
+  if (at.ns - kAheadMax_ns <= now.ns) return {};
   return Fail(ErrorCode::kInvalidInput,
-              "captured_at " + ToIso(header.captured_at) + " is more than a day ahead of " + whose + "'s clock, " +
+              what + " " + ToIso(at) + " is more than a day ahead of " + whose + "'s clock, " +
                   ToIso({now.ns - now.ns % kSecond_ns}),
-              "Correct captured_at in session.yaml, or the clock that is wrong.");
+              cure);
+}
+
+}  // namespace
+
+Status CheckCapturedAt(const SessionHeader& header, Stamp now, const std::string& whose) {
+  return NotAhead("captured_at", header.captured_at, now, whose,
+                  "Correct captured_at in session.yaml, or the clock that is wrong.");
+}
+
+Status CheckMeasuredAt(const Edge& edge, Stamp now) {
+  if (!edge.measured_at) return {};
+  return NotAhead("edge " + edge.frame_a.str() + " - " + edge.frame_b.str() + ": measured_at", *edge.measured_at, now,
+                  "this server", "Correct measured_at in the file, or the clock that is wrong.");
 }
 
 }  // namespace rigcal

@@ -4,6 +4,7 @@
 
 #include "server/base/limits_in_force.h"
 #include "server/base/result.h"
+#include "server/model/edge.h"
 #include "server/model/session.h"
 
 namespace rigcal {
@@ -14,5 +15,7 @@ namespace rigcal {
 // Age and due dates count from captured_at, so a session from the future would never be due. A day is allowed for
 // clocks in other time zones. `now`: of whose clock, the error names.
 [[nodiscard]] Status CheckCapturedAt(const SessionHeader& header, Stamp now, const std::string& whose = "this server");
+// Likewise of a finished edge that says when it was measured.
+[[nodiscard]] Status CheckMeasuredAt(const Edge& edge, Stamp now);
 
 }  // namespace rigcal

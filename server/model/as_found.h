@@ -21,8 +21,8 @@ constexpr double kAsFoundPower = 0.95;
 
 // Of a sensor, and of each of its axes. Sensors that were moved on purpose or are new are not tested.
 enum class FoundState { kUnchanged, kDrifted, kNotMeasured, kMovedOnPurpose, kNew };
-[[nodiscard]] std::string NameOf(
-    FoundState state);  // "unchanged", "drifted", "not_measured", "moved_on_purpose", "new"
+// "unchanged", "drifted", "not_measured", "moved_on_purpose", "new"; and back, kInvalidInput for any other name.
+[[nodiscard]] std::string NameOf(FoundState state);
 [[nodiscard]] Result<FoundState> FoundStateOf(const std::string& name);
 
 // By how much a sensor's place goes on changing, over the visits that are kept: right tangent at the sensor, m and rad.
@@ -35,8 +35,7 @@ struct DriftRate {
 struct SensorFound {
   SensorId sensor;
   FoundState state = FoundState::kNotMeasured;
-  SensorId or_else =
-      {};  // of a drifted one: as likely it was this one that moved, only the two against each other are told
+  SensorId or_else = {};  // of a drifted one: this one may have moved instead, data tell only one against the other
   std::array<FoundState, 6> axes = {FoundState::kNotMeasured, FoundState::kNotMeasured, FoundState::kNotMeasured,
                                     FoundState::kNotMeasured, FoundState::kNotMeasured, FoundState::kNotMeasured};
   // T_session = T_in_use Exp(change) in the frame of AsFound::relative_to, right tangent at the sensor, m and rad. Of
@@ -46,6 +45,7 @@ struct SensorFound {
   std::optional<Vector6d> left = {};     // T_session = T_as_left Exp(left); nothing: it has no pose any more
   std::optional<DriftRate> rate = {};    // from three visits on
 
+  // Of an axis, 0 to 5: it was tested and has numbers.
   [[nodiscard]] bool IsMeasured(int axis) const;
   // Largest of |change| / sigma, 0 where nothing is measured.
   [[nodiscard]] double InSigmas() const;

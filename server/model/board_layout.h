@@ -10,6 +10,7 @@ namespace rigcal {
 
 // Stands in BoardView::why_not where the markers lie as the other layout (Target::legacy_layout) has them.
 inline constexpr std::string_view kSetsLayout = "set legacy_layout: ";
+// Whether the board was not found for that reason only.
 inline bool ShowsOtherLayout(const BoardView& view) {
   return !view.found && view.why_not.find(kSetsLayout) != std::string::npos;
 }

@@ -11,6 +11,7 @@ namespace rigcal {
 // "pinhole_radtan": k1 k2 p1 p2 k3. "pinhole_rational": k1 k2 p1 p2 k3 k4 k5 k6 (both OpenCV's order and formula).
 // "fisheye_kb4": k1 k2 k3 k4 of Kannala & Brandt (2006), theta_d = theta (1 + k1 theta^2 + ... + k4 theta^8).
 enum class CameraModel { kPinholeRadtan, kPinholeRational, kFisheyeKb4 };
+// The spelling in documents, and back: kInvalidInput, with the known ones, for any other.
 [[nodiscard]] std::string NameOf(CameraModel model);
 [[nodiscard]] Result<CameraModel> CameraModelOf(const std::string& name);
 // 5, 8, 4.

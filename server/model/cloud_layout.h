@@ -9,6 +9,7 @@
 namespace rigcal {
 
 enum class PointType { kFloat32, kFloat64 };  // "float32" | "float64"
+// The spelling in documents, and back: kInvalidInput, with the known ones, for any other.
 [[nodiscard]] std::string NameOf(PointType type);
 [[nodiscard]] Result<PointType> PointTypeOf(const std::string& name);
 

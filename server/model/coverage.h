@@ -15,8 +15,10 @@ struct Coverage {
   std::vector<int> corners;              // of every field, row by row
   double share_ratio = 0.0;              // of the fields that have a corner
   std::array<double, 4> margin_ratio{};  // without a corner at the left, right, top, bottom; of width or height
+  // Corners in a field; column and row count from 0 at the top left and are not checked.
   [[nodiscard]] int At(int column, int row) const { return corners[static_cast<std::size_t>(row * columns + column)]; }
 };
+// Of all views of the camera together; where it saw no corner the share and the margins are 0.
 [[nodiscard]] Coverage CoverageOf(const CameraFit& fit);
 
 inline constexpr std::array<const char*, 4> kSidesOfPicture = {"left", "right", "top", "bottom"};

@@ -25,6 +25,7 @@ struct Verdict {
   // Of an unknown one: the sensors that are not to be relied on, as a sentence names them; empty: all of the robot.
   std::string unverified = {};
 };
+// "unknown" | "pass" | "warn" | "fail", and back; any other name is unknown.
 [[nodiscard]] std::string NameOf(VerdictLevel level);
 [[nodiscard]] VerdictLevel VerdictLevelOf(const std::string& name);
 

@@ -15,8 +15,8 @@ std::string FirstAction(const std::string& what_to_do) {
 }
 
 std::string OverdueRule(const std::optional<Stamp>& due) {
-  return due ? "Overdue since " + DayText(*due) + ": capture again"
-             : "Overdue: nothing that it counts has a date: capture again";
+  return due ? "Not verified: do not rely on it, overdue since " + DayText(*due) + "; capture again"
+             : "Not verified: do not rely on it, nothing that it counts has a date; capture again";
 }
 
 std::string UnverifiedRule(const Verdict& verdict) {

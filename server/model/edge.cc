@@ -42,6 +42,8 @@ Status CheckPose(const Edge& edge) {
 // Of edges that were pushed as finished. What we estimate ourselves is judged by its residuals instead.
 Status CheckBelievable(const Edge& edge) {
   if (!edge.session.empty()) return {};
+  if (edge.measured_at && edge.measured_at->ns <= 0)
+    return Refuse(edge, "measured_at is not after 1970", "Give the day on which it was measured, or leave it out.");
   if (Status near = CheckPlausible(edge.T_a_b.p_m); !near) return Refuse(edge, near.error().what, near.error().cure);
   if (Status sane = CheckPlausible(edge.uncertainty.Omega); !sane)
     return Refuse(edge, sane.error().what, sane.error().cure);
@@ -93,8 +95,9 @@ EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t o
 }
 
 // Fields: frame_a, frame_b, method, pose, Omega, source, dof; then the number of blocks and each one's id and vector;
-// then the number of contributions and each one's name, covariance and shifts; the jackknife's ratio if told. Edges
-// that agree in all this are the same measurement given twice: then only their count matters, not which is which.
+// then the number of contributions and each one's name, covariance and shifts; the jackknife's ratio if told; "measured"
+// and when it was, if told. Edges that agree in all this are the same measurement given twice: then only their count
+// matters, not which is which.
 Digest ContentDigest(const Edge& edge) {
   const Uncertainty& uncertainty = edge.uncertainty;
   FieldHash hash("rigcal edge content 1");
@@ -108,6 +111,7 @@ Digest ContentDigest(const Edge& edge) {
     for (const Vector6d& shift : part.shifts) hash.Vector(shift);
   }
   if (uncertainty.jackknife_ratio > 0.0) hash.Real(uncertainty.jackknife_ratio);
+  if (edge.measured_at) hash.Text("measured").Number(static_cast<std::uint64_t>(edge.measured_at->ns));
   return hash.Finish();
 }
 

@@ -45,6 +45,7 @@ struct Edge {
   Uncertainty uncertainty;  // likewise
   std::string method;       // "stereo", "given", ...
   SessionId session;        // empty: pushed as a finished edge
+  std::optional<Stamp> measured_at = {};  // of a pushed one, as it was told; absent: it was not, or its session tells it
   int epoch = 1;
   EdgeState state = EdgeState::kFailed;
   std::vector<Diagnosis> diagnoses;       // why it failed, or what a reader should know about a good edge
@@ -66,7 +67,7 @@ struct Edge {
 // Of what is estimated again from the same session, the first time having failed as the edge `earlier`.
 [[nodiscard]] EdgeId RepeatedEdgeId(const EdgeId& earlier);
 [[nodiscard]] EdgeId PushedEdgeId(const RobotId& robot, const Digest& content, std::uint64_t occurrence_idx);
-// Digest of frames, pose, information and method, bit by bit.
+// Digest of frames, pose, information, method and, where it is told, when it was measured; bit by bit.
 [[nodiscard]] Digest ContentDigest(const Edge& edge);
 // Sets ids of finished edges that were read from a file: content digest + occurrence index.
 void AssignPushedIds(std::vector<Edge>& edges);

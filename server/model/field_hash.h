@@ -15,9 +15,13 @@ namespace rigcal {
 
 class FieldHash {
  public:
+  // `kind` keeps apart things of different kinds whose fields are the same.
   explicit FieldHash(std::string_view kind) { Text(kind); }
+  // Length in bytes, then the bytes.
   FieldHash& Text(std::string_view text);
+  // 8 bytes, the least first.
   FieldHash& Number(std::uint64_t number);
+  // The bits of the number; -0 counts as 0.
   FieldHash& Real(double value);
   // p_m, then q_xyzw with the sign that makes w >= 0 (at w = 0: the first of x y z that is not zero is positive).
   FieldHash& Pose(const Se3& T);

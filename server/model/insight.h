@@ -38,6 +38,7 @@ struct CycleResidual {
   double dof = 0.0;               // behind the estimate of C_e; 0: known
   double limit = 0.0;             // of t_squared, for all tested cycles together; 0: too few captures for one
 
+  // False where it was not tested.
   [[nodiscard]] bool fails() const { return limit > 0.0 && t_squared > limit; }
 };
 

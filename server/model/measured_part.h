@@ -26,7 +26,7 @@ struct AxisResult {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit, in the frame of the pose; rather forward, left and up than back
   std::optional<double> position_m;          // of the sensor along it; of a shift that was measured
   std::optional<double> sigma_m, sigma_rad;  // 1 sigma of a shift, of a turn; neither: not measured
-  [[nodiscard]] bool measured() const { return sigma_m || sigma_rad; }
+  [[nodiscard]] bool measured() const { return sigma_m || sigma_rad; }  // as a shift or as a turn
 };
 
 // Shifts, then turns, of the pose T_frame_sensor, whose covariance has nothing along what is `open` (right tangents at the
@@ -52,6 +52,7 @@ struct AxisResult {
 struct RestSigma {
   std::optional<double> m, rad;
 };
+// The largest sigma among shifts, and among turns.
 [[nodiscard]] RestSigma WorstSigmaOf(const std::vector<AxisResult>& axes);
 // Whether all three turns were measured: then the rotation is known whole.
 [[nodiscard]] bool TurnsMeasured(const std::vector<AxisResult>& axes);

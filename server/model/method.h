@@ -43,7 +43,9 @@ static_assert([] {
   return kMethods.back().method == Method::kPoseStreams;
 }());
 
+// What is known of a method: its row above.
 [[nodiscard]] constexpr const MethodRow& RowOf(Method method) { return kMethods[static_cast<std::size_t>(method)]; }
+// As edges and documents spell it.
 [[nodiscard]] inline std::string NameOf(Method method) { return std::string(RowOf(method).name); }
 // Of an edge's method; nothing where it is not one of ours ("given", or another program's).
 [[nodiscard]] std::optional<Method> MethodNamed(std::string_view name);

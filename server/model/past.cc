@@ -5,12 +5,15 @@
 namespace rigcal {
 
 bool MeansPast(std::string_view diagnosis_code) {
-  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode || diagnosis_code == kRetiredCode;
+  return diagnosis_code == kSupersededCode || diagnosis_code == kRemountedCode || diagnosis_code == kRetiredCode ||
+         diagnosis_code == kSensorRetiredCode;
 }
 
 bool IsPast(const Edge& edge) {
   return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && MeansPast(edge.diagnoses.front().code);
 }
+
+bool IsOfGoneSensor(const Edge& edge) { return IsPast(edge) && edge.diagnoses.front().code == kSensorRetiredCode; }
 
 bool FailedForLostFile(const Edge& edge) {
   return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && edge.diagnoses.front().code == kFileLostCode;

@@ -8,17 +8,22 @@
 
 namespace rigcal {
 
-// Codes of what takes an edge out of a revision: somebody retired it; its session was superseded by another of the same
-// pictures, or its pair run again; or, of a good one, one of its sensors was remounted since. Such an edge is failed in
-// the revision, with this as its only diagnosis; the store keeps it as it was measured.
-inline constexpr std::string_view kRetiredCode = "retired", kSupersededCode = "superseded",
-                                  kRemountedCode = "remounted";
+// Codes of what takes an edge out of a revision: somebody retired it, or its session; one of its sensors was retired; its
+// session was superseded by another of the same pictures, or its pair run again; or, of a good one, one of its sensors was
+// remounted since. Such an edge is failed in the revision, with this as its only diagnosis; the store keeps it as it was
+// measured.
+inline constexpr std::string_view kRetiredCode = "retired", kSensorRetiredCode = "sensor_retired",
+                                  kSupersededCode = "superseded", kRemountedCode = "remounted";
+// Whether a diagnosis has one of these codes; whether an edge has such a diagnosis and is failed.
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);
+// That it is past as one of its sensors is gone from the robot: nobody asks for that sensor any more.
+[[nodiscard]] bool IsOfGoneSensor(const Edge& edge);
 
 // Code of the only diagnosis of an edge that failed because the server's disk has not kept a file of its session. When
 // that was sent again, the pair is run again: its edge then has the id RepeatedEdgeId (edge.h) of this one.
 inline constexpr std::string_view kFileLostCode = "file_lost";
+// Whether the edge waits for a file to be sent again.
 [[nodiscard]] bool FailedForLostFile(const Edge& edge);
 
 // Once, where it belongs among those that are named: in which order they are does not make another session.

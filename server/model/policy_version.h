@@ -10,6 +10,7 @@
 namespace rigcal {
 
 enum class PolicyScope { kFleet, kModel, kRobot };  // "fleet" | "model" | "robot"; each goes before those before it
+// The spelling in documents, and back; any other name is the fleet.
 [[nodiscard]] std::string NameOf(PolicyScope scope);
 [[nodiscard]] PolicyScope PolicyScopeOf(const std::string& name);
 

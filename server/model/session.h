@@ -20,6 +20,7 @@ namespace rigcal {
 inline constexpr std::string_view kPoseTableStem = "poses";
 
 enum class SensorKind { kCamera, kLidar, kTracker, kPoseStream };  // "camera" | "lidar" | "tracker" | "pose_stream"
+// The spelling in documents, and back: kInvalidInput, with the known ones, for any other.
 [[nodiscard]] std::string NameOf(SensorKind kind);
 [[nodiscard]] Result<SensorKind> SensorKindOf(const std::string& name);
 
@@ -42,6 +43,7 @@ struct Sensor {
 
 // "none" | "gicp": the pose of two lidars is NDT's, or polished from there by generalised ICP.
 enum class LidarPolish { kNone, kGicp };
+// The spelling in documents, and back: kInvalidInput, with the known ones, for any other.
 [[nodiscard]] std::string NameOf(LidarPolish polish);
 [[nodiscard]] Result<LidarPolish> LidarPolishOf(const std::string& name);
 

@@ -19,6 +19,7 @@ constexpr double kMovedOdds = 5e-4;
 // A step that may as well be smaller than both (SquaredDistanceFromBalls within 3 sigmas) is not told: no lens and no
 // mount is known that well.
 constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3.0;
+// Both: `step` (right tangent, m and rad) with its information, and its odds by chance.
 [[nodiscard]] inline bool IsMove(const Vector6d& step, const Matrix6d& information, double odds) {
   return odds < kMovedOdds && SquaredDistanceFromBalls(step, information, kMovedMin_m, kMovedMin_rad) >=
                                   kMovedMinSigmas * kMovedMinSigmas;

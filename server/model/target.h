@@ -13,8 +13,10 @@ namespace rigcal {
 // "checkerboard"; "charuco": a checkerboard with markers in its white squares; "aruco_grid": separate markers, numbered
 // from the top left, row by row (OpenCV's GridBoard); "april_grid": the same, numbered from the bottom left (Kalibr's).
 enum class TargetKind { kCheckerboard, kCharuco, kArucoGrid, kAprilGrid };
+// The spelling in documents, and back: kInvalidInput, with the known ones, for any other.
 [[nodiscard]] std::string NameOf(TargetKind kind);
 [[nodiscard]] Result<TargetKind> TargetKindOf(const std::string& name);
+// Whether the board is made of separate markers (a grid), and not of squares.
 [[nodiscard]] inline bool IsTagGrid(TargetKind kind) {
   return kind == TargetKind::kArucoGrid || kind == TargetKind::kAprilGrid;
 }

@@ -10,6 +10,7 @@
 namespace rigcal {
 
 enum class UncertaintySource { kJackknife, kModel, kGiven, kAssumed };  // "jackknife" | "model" | "given" | "assumed"
+// The spelling in documents, and back: kInvalidInput, with the known ones, for any other.
 [[nodiscard]] std::string NameOf(UncertaintySource source);
 [[nodiscard]] Result<UncertaintySource> UncertaintySourceOf(const std::string& name);
 
@@ -54,6 +55,7 @@ struct AxisSigma {
   bool known = false;
   double value = 0.0;
 };  // m or rad
+// `axis` as in tangent.h, 0 to 5; not known: outside of that, unobservable by more than 1e-6, or not finite.
 [[nodiscard]] AxisSigma SigmaOf(const Uncertainty& uncertainty, int axis);
 
 }  // namespace rigcal

@@ -41,6 +41,14 @@ Positions DrawnPositions(const SessionHeader& header) {
   return p_m;
 }
 
+Stretch LongestStep(const PoseTable& tracker) {
+  Stretch longest;
+  for (std::size_t i = 1; i < tracker.size(); ++i)
+    Widen((tracker[i].T_world_body.p_m - tracker[i - 1].T_world_body.p_m).norm(),
+          "captures " + tracker[i - 1].capture.str(), tracker[i].capture.str(), longest);
+  return longest;
+}
+
 }  // namespace
 
 std::string UnitDoubt(const std::map<std::string, Eigen::Vector3d>& p_m) {
@@ -56,13 +64,9 @@ std::string UnitDoubt(const std::vector<Edge>& edges) {
   return QuestionBeyond(kSensorsApartDoubted_m, widest);
 }
 
-std::string UnitDoubt(const PoseTable& tracker) {
-  Stretch widest;
-  for (std::size_t i = 1; i < tracker.size(); ++i)
-    Widen((tracker[i].T_world_body.p_m - tracker[i - 1].T_world_body.p_m).norm(),
-          "captures " + tracker[i - 1].capture.str(), tracker[i].capture.str(), widest);
-  return QuestionBeyond(kTrackerStepDoubted_m, widest);
-}
+double LongestStep_m(const PoseTable& tracker) { return LongestStep(tracker).distance_m; }
+
+std::string UnitDoubt(const PoseTable& tracker) { return QuestionBeyond(kTrackerStepDoubted_m, LongestStep(tracker)); }
 
 std::map<std::string, std::string> UnitDoubts(const SessionHeader& header, const std::map<SensorId, PoseTable>& poses) {
   std::map<std::string, std::string> doubts;

@@ -24,7 +24,9 @@ inline constexpr const char* kTakenInMetres = "Positions are taken in metres."; 
 [[nodiscard]] std::string UnitDoubt(const SessionHeader& header);
 // Each edge by itself.
 [[nodiscard]] std::string UnitDoubt(const std::vector<Edge>& edges);
-// The rows of a tracker, in the order of their captures.
+// The longest way from one row of a tracker to the next, in the order of their captures.
+[[nodiscard]] double LongestStep_m(const PoseTable& tracker);
+// The same rows, where they are doubted.
 [[nodiscard]] std::string UnitDoubt(const PoseTable& tracker);
 
 // Of a session all of these, by the file that each is about. `poses`: of its trackers; others are left out.

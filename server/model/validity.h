@@ -28,6 +28,7 @@ struct Validity {
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // of the policy that judged the revision
 };
 
+// Whether a robot may drive by it: pass or warn.
 [[nodiscard]] bool IsUsable(const Verdict& verdict);
 // The moment from which it is overdue; absent: it counts nothing.
 [[nodiscard]] std::optional<Stamp> ValidUntil(const Validity& validity);

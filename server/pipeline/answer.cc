@@ -45,9 +45,11 @@ Result<std::string> Robots(const AnswerContext& context, const Parameters& param
 Result<std::string> Session(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const SessionId id, RequiredId<SessionId>(parameters, "id"));
   RIGCAL_ASSIGN(const auto row, LoadSessionRow(context.store, id));
-  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(context.store, id));
+  RIGCAL_ASSIGN(auto stored, storage::LoadManifest(context.store, id));
+  const Manifest manifest = std::move(stored).value_or(Manifest{});
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, id));
-  return formats::WriteSession(row, manifest.value_or(Manifest{}), edges);
+  RIGCAL_ASSIGN(const auto retired, LoadRetiredSensorsIn(context.store, row.robot, manifest));
+  return formats::WriteSession(row, manifest, edges, retired);
 }
 
 // Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids were kept.
@@ -106,8 +108,13 @@ Result<graph::BlocksByEdge> BlocksOfWhole(storage::Store& store, formats::Revisi
 Status CheckSensors(const RobotId& robot, const formats::RevisionInput& revision, const std::vector<SensorId>& asked) {
   std::vector<SensorId> known;
   for (const SensorPose& pose : revision.solution.poses) known.push_back(pose.sensor);
-  for (const SensorId& sensor : asked)
-    if (std::find(known.begin(), known.end(), sensor) == known.end()) return Fail(UnknownSensor(robot, sensor, known));
+  for (const SensorId& sensor : asked) {
+    if (std::find(known.begin(), known.end(), sensor) != known.end()) continue;
+    const auto gone = std::find_if(revision.retired.begin(), revision.retired.end(),
+                                   [&](const RetiredSensor& one) { return one.sensor == sensor; });
+    if (gone == revision.retired.end()) return Fail(UnknownSensor(robot, sensor, known));
+    return Fail(ErrorCode::kNotFound, RetiredText(*gone), BringsBack(RestoreCommand(robot, sensor)));
+  }
   return {};
 }
 
@@ -288,6 +295,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"robot_names", TellRobotNames},
       {"sensor_names", TellSensorNames},
       {"known_robot", TellKnownRobot},
+      {"known_files", TellKnownFiles},
       {"status", OfStatus},
       {"policy", TellPolicyAsked},
       {"due", Due},

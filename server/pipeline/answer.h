@@ -31,6 +31,7 @@ struct AnswerContext {
 [[nodiscard]] Result<std::string> Answer(const AnswerContext& context, const std::string& verb,
                                          const std::string& json);
 
+// What the verb health tells; without `context.health` it looks for itself.
 [[nodiscard]] formats::HealthAnswer LookAtHealth(const AnswerContext& context);
 // As in missing_report.h.
 [[nodiscard]] Error WhyMissing(const AnswerContext& context, const RobotId& robot, int number, const std::string& file);

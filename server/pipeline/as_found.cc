@@ -58,10 +58,12 @@ Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTh
   return std::nullopt;
 }
 
-Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use) {
+// Without sensors that are gone from the robot: nobody asks for these.
+Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use, const CurrentEdges& current) {
   RIGCAL_ASSIGN(const auto joint, storage::LoadRevisionPoses(store, {in_use.told.robot, in_use.revision.number}));
-  return fleet::PosesOf(in_use.told.solution, in_use.told.reference,
-                        joint ? joint->covariances : std::vector<JointCovariance>());
+  const fleet::KnownPoses all = fleet::PosesOf(in_use.told.solution, in_use.told.reference,
+                                               joint ? joint->covariances : std::vector<JointCovariance>());
+  return fleet::Some(all, [&](const SensorId& sensor) { return !current.counts.retired_sensors.contains(sensor); });
 }
 
 // Since the calibration in use was measured, says the session or one between both.
@@ -121,7 +123,7 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
     found.why_not = WhyNoEstimate(newest);
   } else {
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
-    RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use));
+    RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
     found = fleet::TestAsFound(
         {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(sessions, *in_use, revision.current)});
     fleet::AddDriftRates(counted.Visits(), left, found);

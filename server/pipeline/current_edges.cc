@@ -36,6 +36,29 @@ void SupersedeWhatWasRunAgain(std::vector<Edge>& edges) {
                "Nothing: the edge that was made from them then counts.", edge);
 }
 
+void MakePast(const SessionId& session, const Word& retired, Edge& edge) {
+  MakePast(kRetiredCode, "session " + session.str().substr(0, 16) + " was " + RetiredText(retired),
+           BringsBack(RestoreCommand(session)), edge);
+}
+
+void MakePast(const RetiredSensor& gone, Edge& edge) {
+  MakePast(kSensorRetiredCode, RetiredText(gone), BringsBack(RestoreCommand(edge.robot, gone.sensor)), edge);
+}
+
+void MakePast(const Word& retired, Edge& edge) {
+  MakePast(kRetiredCode, RetiredText(retired),
+           "Push the right value: as another edge it counts. If this one is right, " + BringsBack(RestoreCommand(edge.id)), edge);
+}
+
+void MakePastWhatWasRetired(const storage::WhatCounts& counts, Edge& edge) {
+  if (const auto found = counts.retired_sessions.find(edge.session); found != counts.retired_sessions.end())
+    MakePast(edge.session, found->second.word, edge);
+  for (const SensorId& sensor : {edge.frame_b, edge.frame_a})
+    if (const auto found = counts.retired_sensors.find(sensor); found != counts.retired_sensors.end())
+      MakePast(RetiredSensor{sensor, found->second.word}, edge);
+  if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) MakePast(found->second.word, edge);
+}
+
 void MakePast(const storage::Remount& remount, Edge& edge) {
   MakePast(kRemountedCode,
            "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
@@ -49,9 +72,11 @@ Status MakePastWhatWasRemounted(storage::Store& store, const std::vector<storage
     if (!edge.session.empty()) sessions.insert(edge.session);
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, {sessions.begin(), sessions.end()}, all));
   for (Edge& edge : edges)
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (const auto* remount = remounts.After(edge.session, sensor); remount && edge.state == EdgeState::kGood)
-        MakePast(*remount, edge);
+    for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) {
+      const auto* remount =
+          edge.measured_at ? remounts.After(*edge.measured_at, sensor) : remounts.After(edge.session, sensor);
+      if (remount != nullptr && edge.state == EdgeState::kGood) MakePast(*remount, edge);
+    }
   return {};
 }
 
@@ -60,7 +85,7 @@ Status MakePastWhatWasRemounted(storage::Store& store, const std::vector<storage
 Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::vector<Edge>& edges) {
   for (Edge& edge : edges) {
     if (const auto found = counts.superseded.find(edge.session); found != counts.superseded.end()) Supersede(found->second, edge);
-    if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) Retire(found->second.word, edge);
+    MakePastWhatWasRetired(counts, edge);
   }
   SupersedeWhatWasRunAgain(edges);
   return MakePastWhatWasRemounted(store, counts.remounts, edges);
@@ -89,12 +114,6 @@ Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEd
   RIGCAL_ASSIGN(std::vector<Edge> edges, storage::LoadEdgeRows(store, {wanted.begin(), wanted.end()}));
   RIGCAL_TRY(MarkPast(store, current.counts, edges));
   return edges;
-}
-
-void Retire(const Word& word, Edge& edge) {
-  const std::string reason = word.reason.empty() ? "" : ": " + word.reason;
-  MakePast(kRetiredCode, "retired by " + word.who + " on " + ToIso(word.at).substr(0, 10) + reason,
-           "Nothing: it takes no part for good. Push the right value: as another edge it counts.", edge);
 }
 
 }  // namespace rigcal::pipeline

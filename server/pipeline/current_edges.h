@@ -17,15 +17,14 @@ struct CurrentEdges {
   bool all = false;                // what it made of them holds no more: `edges` are all
   storage::WhatCounts counts;      // by which edges are past
 };
-// Edges that were retired, those of a superseded session, and those of a sensor that was remounted since are failed, with that
-// as their only diagnosis (IsPast). Where that changes for edges that were merged, no edge is merged. Call within one Read.
+// Edges that were retired, those of a session or sensor that was, those of a superseded session, and those of a sensor that was
+// remounted since are failed, with that as their only diagnosis (IsPast). Where that changes for edges that were merged, no edge is merged. Call within one Read.
 [[nodiscard]] Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, storage::EdgeParts parts);
 // Of sessions whose edges are not among `current`: ids, ends and state, past ones with their reason. Call within one Read.
 [[nodiscard]] Result<std::vector<Edge>> LoadEdgesWithin(storage::Store& store, const CurrentEdges& current,
                                                         const std::vector<SessionId>& sessions);
-// Good edges that do not count are failed, with the reason as their only diagnosis (IsPast).
+// Edges that do not count are failed, with the reason as their only diagnosis (IsPast): of several reasons what a person said of
+// the edge itself, of its sensor, of its session, in this order.
 [[nodiscard]] Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::vector<Edge>& edges);
-// As it is shown where it was retired.
-void Retire(const Word& word, Edge& edge);
 
 }  // namespace rigcal::pipeline

@@ -14,7 +14,9 @@ namespace rigcal::pipeline {
 // One per server. Any thread.
 class ServerHealth {
  public:
+  // `folder`: of the store. Nothing is looked at yet.
   ServerHealth(std::filesystem::path folder, const Clock& clock);
+  // For those who tell of further parts.
   [[nodiscard]] Vitals& vitals() { return vitals_; }
 
   struct Found {

@@ -1,6 +1,7 @@
 #include "server/pipeline/live_graphs.h"
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 namespace rigcal::pipeline {
@@ -26,6 +27,13 @@ std::vector<EdgeId> Without(const std::vector<EdgeId>& a, const std::vector<Edge
   return rest;
 }
 
+// Whether it holds a sensor that is gone: one does not leave it otherwise.
+bool HoldsOthers(const graph::LiveSolver& solver, const std::vector<SensorId>& sensors) {
+  const std::set<SensorId> wanted(sensors.begin(), sensors.end());
+  const auto& held = solver.graph().sensors;
+  return std::any_of(held.begin(), held.end(), [&](const SensorId& sensor) { return !wanted.contains(sensor); });
+}
+
 void StartAnew(const RobotGraph& loaded, LiveGraph& live) {
   live.solver = std::make_unique<graph::LiveSolver>(loaded.graph);
 }
@@ -40,7 +48,8 @@ void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live) {
   const std::vector<EdgeId> wanted = SortedIds(loaded.graph.edges);
   const std::vector<EdgeId> added = Without(wanted, held), removed = Without(held, wanted);
   if (solver == nullptr || solver->graph().reference != loaded.graph.reference ||
-      added.size() > std::max(kOneByOneMax, held.size()) || removed.size() > kOneByOneMax)
+      HoldsOthers(*solver, loaded.graph.sensors) || added.size() > std::max(kOneByOneMax, held.size()) ||
+      removed.size() > kOneByOneMax)
     return StartAnew(loaded, live);
   for (const SensorId& sensor : loaded.graph.sensors) live.solver->AddSensor(sensor);
   std::size_t batches = 0;

@@ -18,12 +18,13 @@ struct LiveGraph {
 };
 
 // Brings `live` to what the store holds: new edges are added, those that no longer count are removed. After a restart,
-// for another reference, or where most of the graph is new, it is solved as a whole.
+// for another reference, without a sensor that it holds, or where most of the graph is new, it is solved as a whole.
 void TakeNewEdges(const RobotGraph& loaded, LiveGraph& live);
 
 // Shared by the runner's threads; one robot's graph is used by the thread that has claimed the robot, no other.
 class LiveGraphs {
  public:
+  // Empty at first; valid as long as this.
   [[nodiscard]] LiveGraph& Of(const RobotId& robot);
 
  private:

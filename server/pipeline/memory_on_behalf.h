@@ -20,6 +20,7 @@ class MemoryOnBehalf : public std::enable_shared_from_this<MemoryOnBehalf> {
  public:
   // Called from another thread, and not after End.
   using Granted = std::function<void(const std::string& id)>;
+  // `granted` is told each id whose bytes are set aside.
   explicit MemoryOnBehalf(Granted granted) : granted_(std::move(granted)) {}
 
   // Throws std::system_error where no thread can be made.

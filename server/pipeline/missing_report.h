@@ -16,8 +16,11 @@ namespace rigcal::pipeline {
 // Why reports could not be drawn when it was last tried. Any thread.
 class UndrawnReports {
  public:
+  // The newest reason replaces an older one.
   void Note(const storage::RevisionKey& key, const Error& error);
+  // It was drawn.
   void Forget(const storage::RevisionKey& key);
+  // Nothing where it did not fail since the start, or was drawn since.
   [[nodiscard]] std::optional<Error> Find(const storage::RevisionKey& key) const;
 
  private:

@@ -1,12 +1,14 @@
 #include "server/pipeline/names.h"
 
 #include <set>
+#include <sstream>
 
 #include "server/base/limits.h"
 #include "server/base/near_names.h"
 #include "server/formats/answers.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/unknown_names.h"
+#include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -23,16 +25,32 @@ Result<std::string> PrefixOf(const Parameters& parameters) {
   return prefix;
 }
 
-// Of the newest revision those with a pose, if it keeps its poses beside its document; and those that sessions list.
+// Of the newest revision those with a pose, if it keeps its poses beside its document; and those that sessions list, without
+// those that were retired.
 Result<std::set<SensorId>> LoadSensorNames(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto listed, storage::LoadListedSensors(store, robot));
+  RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSensors(store, robot));
   std::set<SensorId> sensors(listed.begin(), listed.end());
+  std::erase_if(sensors, [&](const SensorId& sensor) { return retired.contains(sensor); });
   RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
   if (!newest) return sensors;
   RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(store, {robot, newest->number}));
   if (!poses) return sensors;
-  for (const auto& [sensor, pose] : poses->T_ref_sensor) sensors.insert(sensor);
+  for (const auto& [sensor, pose] : poses->T_ref_sensor)
+    if (!retired.contains(sensor)) sensors.insert(sensor);
   return sensors;
+}
+
+Result<std::set<Digest>> DigestsIn(const std::string& text) {
+  std::set<Digest> digests;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    RIGCAL_ASSIGN(Digest digest, Digest::Parse(word));
+    digests.insert(std::move(digest));
+  }
+  if (!digests.empty() && digests.size() <= limits::kDigestsAskedMax) return digests;
+  return Fail(ErrorCode::kInvalidInput, "the parameter 'digests' has " + std::to_string(digests.size()) + " digests",
+              "Ask for 1 to " + std::to_string(limits::kDigestsAskedMax) + " at once, with blanks between them.");
 }
 
 }  // namespace
@@ -62,6 +80,15 @@ Result<std::string> TellKnownRobot(const AnswerContext& context, const Parameter
   RIGCAL_ASSIGN(auto near, LoadNearRobots(context.store, robot));
   std::erase_if(near, [&](const RobotId& one) { return !IsSlip(robot.str(), one.str()); });
   return formats::WriteKnownRobot(robot, false, near);
+}
+
+Result<std::string> TellKnownFiles(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, RequiredId<RobotId>(parameters, "robot"));
+  RIGCAL_ASSIGN(const std::set<Digest> digests, DigestsIn(parameters.Text("digests").value_or("")));
+  RIGCAL_ASSIGN(const auto held, storage::LoadHeldByAnother(context.store, robot, digests));
+  if (!held) return formats::WriteKnownFiles(digests.size(), std::nullopt);
+  return formats::WriteKnownFiles(digests.size(),
+                                  formats::FilesOfAnother{held->robot, held->session, held->captured_at, held->contents});
 }
 
 }  // namespace rigcal::pipeline

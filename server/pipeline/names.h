@@ -14,4 +14,7 @@ namespace rigcal::pipeline {
 // Whether a robot is known, and if not, of which known ones its name is a slip.
 [[nodiscard]] Result<std::string> TellKnownRobot(const AnswerContext& context, const formats::Parameters& parameters);
 
+// Whether another robot's session holds these files: of which session, and how many.
+[[nodiscard]] Result<std::string> TellKnownFiles(const AnswerContext& context, const formats::Parameters& parameters);
+
 }  // namespace rigcal::pipeline

@@ -1,12 +1,14 @@
 #include "server/pipeline/orders.h"
 
-#include "server/base/text.h"
 #include "server/formats/answers.h"
-#include "server/formats/parameters.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/next_reference.h"
 #include "server/pipeline/policies.h"
+#include "server/pipeline/revise.h"
 #include "server/pipeline/robot_rows.h"
+#include "server/pipeline/subject.h"
 #include "storage/edges.h"
+#include "storage/retired.h"
 #include "storage/standing.h"
 
 namespace rigcal::pipeline {
@@ -14,74 +16,59 @@ namespace {
 
 using formats::Parameters;
 
-Result<std::string> RequiredText(const Parameters& parameters, const std::string& name, const std::string& cure) {
-  const auto text = parameters.Text(name);
-  if (text && text->find_first_not_of(' ') != std::string::npos) return *text;
-  return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", cure);
-}
+// What a person says of something.
+struct Saying {
+  bool retires = false;  // else restores
+  Word word;
+};
 
-Result<Word> WordOf(const Parameters& parameters, const Clock& clock) {
+Result<Saying> SayingOf(const Clock& clock, const std::string& verb, const Parameters& parameters) {
   RIGCAL_ASSIGN(std::string who, RequiredText(parameters, "who", "Say who asks for it."));
-  return Word{clock.Now(), std::move(who), parameters.Text("reason").value_or("")};
+  const bool retires = verb == "retire";
+  if (retires) RIGCAL_TRY(RequiredText(parameters, "reason", "Say why it is to take no part."));
+  return Saying{retires, {clock.Now(), std::move(who), parameters.Text("reason").value_or("")}};
 }
 
-Result<RobotId> RobotNamed(const Parameters& parameters) {
-  const auto text = parameters.Text("robot");
-  return text ? RobotId::Parse(*text) : RobotId();
+// As it is shown from now on.
+Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const EdgeId& id) {
+  RIGCAL_ASSIGN(const auto edge, storage::LoadEdge(store, id));
+  if (!edge)
+    return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is of a batch that is not whole: it does not count",
+                "There is nothing to retire; push the batch again, then retire the edge.");
+  RIGCAL_TRY(saying.retires ? storage::RetireEdge(store, id, saying.word) : storage::RestoreEdge(store, id, saying.word));
+  RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(store, edge->robot));
+  RIGCAL_ASSIGN(const auto standing, storage::LoadStanding(store, id));
+  std::vector<Edge> shown = {*edge};
+  RIGCAL_TRY(MarkPast(store, counts, shown));
+  return OrderDone{edge->robot, formats::WriteStandingOfEdge(shown.front(), standing)};
 }
 
-// The one thing that `prefix` names.
-template <typename AnId>
-Result<AnId> OnlyOne(const std::vector<AnId>& ids, const std::string& kind, const std::string& prefix,
-                     const RobotId& robot, const std::string& list) {
-  const std::string of = robot.empty() ? "" : " of robot " + robot.str();
-  if (ids.size() == 1) return ids.front();
-  if (ids.empty())
-    return Fail(ErrorCode::kNotFound, "no " + kind + of + " begins with " + Quoted(prefix),
-                "`" + list + "` lists those that are known.");
-  return Fail(ErrorCode::kConflict,
-              std::to_string(ids.size()) + " " + kind + "s" + of + " begin with " + Quoted(prefix) + ": " +
-                  ids[0].str() + ", " + ids[1].str() + (ids.size() > 2 ? ", ..." : ""),
-              "Give more digits of its id.");
-}
-
-Result<OrderDone> Restore(storage::Store& store, const Clock& clock, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const Word word, WordOf(parameters, clock));
-  RIGCAL_ASSIGN(const RobotId robot, RobotNamed(parameters));
-  RIGCAL_ASSIGN(const std::string prefix, RequiredText(parameters, "session", "Name the session to restore."));
-  formats::SessionAnswer row;
-  RIGCAL_TRY(store.Write([&]() -> Status {
-    RIGCAL_ASSIGN(const auto ids, storage::FindSessions(store, prefix, robot));
-    RIGCAL_ASSIGN(const SessionId id, OnlyOne(ids, "session", prefix, robot, "rigcal sessions --json"));
-    RIGCAL_TRY(storage::MakeCurrent(store, id, storage::MadeCurrent::kRestored, word));
-    RIGCAL_ASSIGN(row, LoadSessionRow(store, id));
-    return {};
-  }));
+Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const SessionId& id) {
+  if (saying.retires) {
+    RIGCAL_TRY(storage::RetireSession(store, id, saying.word));
+  } else {
+    RIGCAL_TRY(storage::MakeCurrent(store, id, storage::MadeCurrent::kRestored, saying.word));
+  }
+  RIGCAL_ASSIGN(const auto row, LoadSessionRow(store, id));
   RIGCAL_ASSIGN(const std::int64_t newest_edge, storage::LoadEdgeWatermark(store, row.robot));
-  return OrderDone{row.robot, formats::WriteRestored(row, newest_edge > 0)};
+  return OrderDone{row.robot, formats::WriteStandingOfSession(row, newest_edge > 0)};
 }
 
-Result<OrderDone> RetireOne(storage::Store& store, const Clock& clock, const Parameters& parameters) {
-  RIGCAL_ASSIGN(const Word word, WordOf(parameters, clock));
-  RIGCAL_TRY(RequiredText(parameters, "reason", "Say why the edge is wrong."));
-  RIGCAL_ASSIGN(const RobotId robot, RobotNamed(parameters));
-  RIGCAL_ASSIGN(const std::string prefix, RequiredText(parameters, "edge", "Name the edge to retire."));
-  std::optional<Edge> edge;
-  Standing retired;
-  RIGCAL_TRY(store.Write([&]() -> Status {
-    RIGCAL_ASSIGN(const auto ids, storage::FindEdges(store, prefix, robot));
-    RIGCAL_ASSIGN(const EdgeId id, OnlyOne(ids, "edge", prefix, robot, "rigcal edges ROBOT"));
-    RIGCAL_ASSIGN(edge, storage::LoadEdge(store, id));
-    if (!edge)
-      return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is of a batch that is not whole: it does not count",
-                  "There is nothing to retire; push the batch again, then retire the edge.");
-    RIGCAL_TRY(storage::RetireEdge(store, id, word));
-    RIGCAL_ASSIGN(const auto all, storage::LoadRetired(store, edge->robot));
-    retired = all.at(id);
-    return {};
-  }));
-  Retire(retired.word, *edge);
-  return OrderDone{edge->robot, formats::WriteRetired(*edge, retired)};
+// The transaction is given up where the robot cannot do without it.
+Status RetireGone(storage::Store& store, const SensorOfRobot& of, const Word& word) {
+  RIGCAL_ASSIGN(const RobotGraph before, LoadRobotGraph(store, of.robot));
+  RIGCAL_TRY(storage::RetireSensor(store, of.robot, of.sensor, word));
+  if (before.graph.reference != of.sensor) return {};
+  RIGCAL_ASSIGN(const RobotGraph after, LoadRobotGraph(store, of.robot));
+  return CheckNextReference(before.graph, after.graph);
+}
+
+Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const SensorOfRobot& of) {
+  RIGCAL_TRY(saying.retires ? RetireGone(store, of, saying.word)
+                            : storage::RestoreSensor(store, of.robot, of.sensor, saying.word));
+  RIGCAL_ASSIGN(const auto standing, storage::LoadStanding(store, of.robot, of.sensor));
+  RIGCAL_ASSIGN(const std::int64_t newest_edge, storage::LoadEdgeWatermark(store, of.robot));
+  return OrderDone{of.robot, formats::WriteStandingOfSensor(of.robot, of.sensor, standing, newest_edge > 0)};
 }
 
 }  // namespace
@@ -92,7 +79,14 @@ Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std:
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
   if (verb == "set_policy") return SetPolicy(store, clock, parameters);
-  return verb == "retire" ? RetireOne(store, clock, parameters) : Restore(store, clock, parameters);
+  RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
+  OrderDone done;
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const Subject subject, FindSubject(store, parameters));
+    RIGCAL_ASSIGN(done, std::visit([&](const auto& of) { return SayOf(store, saying, of); }, subject));
+    return {};
+  }));
+  return done;
 }
 
 }  // namespace rigcal::pipeline

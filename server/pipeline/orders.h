@@ -9,13 +9,16 @@
 
 namespace rigcal::pipeline {
 
+// Whether the verb changes what is stored: restore, retire, set_policy.
 [[nodiscard]] bool IsOrder(const std::string& verb);
 
-// What it returns is durable. Carried out twice it is as if it was once, and answered alike.
-// restore: `session` (id or its first 8 digits or more), `robot` (optional), `who`, `reason` (optional): the session is
-// current, those it repeats or is repeated by are superseded by it. retire: `edge` likewise, `who`, `reason`: the edge
-// takes no part from now on. set_policy: policies.h. kNotFound, kConflict (a prefix of several), kInvalidInput name
-// what is wrong.
+// What it returns is durable. Carried out twice it is as if it was once, and answered alike. The thing is named as in
+// subject.h, besides `who` and `reason`.
+// retire: the edge, the edges of the session, or those of the sensor take no part from now on, and of a sensor nothing that
+// sessions say of it. kConflict for the reference, where no other sensor can take its place. Without `reason` kInvalidInput.
+// restore: what was retired takes part again; a session is current, and those that it repeats or is repeated by are superseded
+// by it.
+// set_policy: policies.h.
 [[nodiscard]] Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                                          const std::string& json);
 

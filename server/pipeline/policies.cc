@@ -7,6 +7,7 @@
 #include "server/formats/policy_yaml.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/camera_fits.h"
+#include "server/pipeline/subject.h"
 #include "storage/policies.h"
 
 namespace rigcal::pipeline {
@@ -63,12 +64,6 @@ bool SaysPixels(const Policy& policy) {
                      [](const auto& one) { return one.second.tolerance_px_at_10_m.has_value(); });
 }
 
-Result<std::string> WordNamed(const Parameters& parameters, const std::string& name, const std::string& cure) {
-  const auto text = parameters.Text(name);
-  if (text && text->find_first_not_of(' ') != std::string::npos) return *text;
-  return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", cure);
-}
-
 // A rig model is named freely, in one line.
 Result<PolicyPlace> ModelNamed(const std::string& model) {
   constexpr std::size_t kModelBytesMax = 1024;
@@ -115,8 +110,8 @@ Result<std::string> TellPolicy(storage::Store& store, const Parameters& paramete
 
 Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock, const Parameters& parameters) {
   Word word{clock.Now(), "", ""};
-  RIGCAL_ASSIGN(word.who, WordNamed(parameters, "who", "Say who sets it."));
-  RIGCAL_ASSIGN(word.reason, WordNamed(parameters, "reason", "Say why these limits."));
+  RIGCAL_ASSIGN(word.who, RequiredText(parameters, "who", "Say who sets it."));
+  RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why these limits."));
   RIGCAL_ASSIGN(const PolicyPlace place, PlaceAsked(store, parameters));
   const std::string text = parameters.Text("text").value_or("");
   RIGCAL_TRY(formats::ReadPolicy(text, "the policy of " + TextOf(place)));

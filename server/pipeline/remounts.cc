@@ -39,4 +39,11 @@ const storage::Remount* Remounts::After(const SessionId& session, const SensorId
   return found != remounts_.end() ? &*found : nullptr;
 }
 
+const storage::Remount* Remounts::After(Stamp measured_at, const SensorId& sensor) const {
+  const auto found = std::find_if(remounts_.begin(), remounts_.end(), [&](const storage::Remount& remount) {
+    return remount.sensor == sensor && measured_at <= remount.captured_at;
+  });
+  return found != remounts_.end() ? &*found : nullptr;
+}
+
 }  // namespace rigcal::pipeline

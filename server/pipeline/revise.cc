@@ -35,15 +35,23 @@
 namespace rigcal::pipeline {
 namespace {
 
-Result<SensorId> LoadReference(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto first, storage::LoadEarliestClosed(store, robot));
-  if (!first) return SensorId();
-  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, *first));
-  return manifest ? manifest->header.reference : SensorId();
+std::vector<RetiredSensor> GoneOf(const storage::WhatCounts& counts) {
+  std::vector<RetiredSensor> gone;
+  for (const auto& [sensor, standing] : counts.retired_sensors) gone.push_back({sensor, standing.word});
+  return gone;
 }
 
-void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector<SensorId>& listed, Graph& graph) {
+std::vector<SensorId> SensorsOf(const std::vector<RetiredSensor>& gone) {
+  std::vector<SensorId> sensors;
+  for (const RetiredSensor& one : gone) sensors.push_back(one.sensor);
+  return sensors;
+}
+
+// Nobody asks for those that are `gone`.
+void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector<SensorId>& listed,
+                               const std::vector<SensorId>& gone, Graph& graph) {
   std::set<SensorId> known(graph.sensors.begin(), graph.sensors.end());
+  known.insert(gone.begin(), gone.end());
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
       if (known.insert(sensor).second) graph.sensors.push_back(sensor);
@@ -112,6 +120,7 @@ struct RobotEdges {
   fleet::SessionHeaders headers;  // of sessions with an edge that is not past
   std::set<SessionId> unfinished;  // pairs of it are still to be calibrated
   std::vector<SensorId> listed;  // by its sessions
+  std::vector<RetiredSensor> gone;
   SensorId reference;
   std::int64_t watermark = 0, standing_watermark = 0;
   PolicyInForce policy;
@@ -122,7 +131,8 @@ Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgePa
   RIGCAL_ASSIGN(loaded.standing_watermark, storage::LoadStandingWatermark(store, robot));
   RIGCAL_ASSIGN(loaded.current, LoadCurrentEdges(store, robot, parts));
   RIGCAL_ASSIGN(loaded.listed, storage::LoadListedSensors(store, robot));
-  RIGCAL_ASSIGN(loaded.reference, LoadReference(store, robot));
+  loaded.gone = GoneOf(loaded.current.counts);
+  RIGCAL_ASSIGN(loaded.reference, storage::LoadNamedReference(store, robot, SensorsOf(loaded.gone)));
   return {};
 }
 
@@ -160,7 +170,7 @@ RobotGraph GraphOf(const RobotEdges& loaded, const RobotId& robot, bool blocks) 
   std::sort(result.edges.begin(), result.edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
   result.graph = graph::GraphOf(result.edges, loaded.reference);
   if (!loaded.reference.empty()) result.graph.reference = loaded.reference;
-  AddSensorsWithoutGoodEdge(result.edges, loaded.listed, result.graph);
+  AddSensorsWithoutGoodEdge(result.edges, loaded.listed, SensorsOf(loaded.gone), result.graph);
   return result;
 }
 
@@ -215,6 +225,7 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   formats::RevisionInput input;
   input.robot = robot;
   input.reference = loaded.graph.reference;
+  input.retired = edges.gone;
   HonestSolution honest = SolveHonestly(loaded);
   input.solution = std::move(honest.solution);
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);

@@ -7,10 +7,11 @@
 
 namespace rigcal::pipeline {
 
-// The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list.
+// The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list, without those
+// that were retired.
 // What was retired, superseded or remounted since is failed there with that reason (current_edges.h) and takes no part.
-// The reference is the one that the earliest
-// captured session names (ties: smaller session id); without a session, GraphOf's own rule.
+// The reference is the one that the earliest captured session names (ties: smaller session id), of those that name none
+// which was retired; without such a session, GraphOf's own rule.
 // Edges that were merged take part as the edges that stand for them.
 struct RobotGraph {
   std::vector<Edge> edges;  // good and failed, sorted by id

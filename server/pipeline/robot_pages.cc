@@ -19,6 +19,7 @@
 #include "storage/blobs.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
+#include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -46,6 +47,7 @@ report::SessionRow SessionRowOf(const formats::SessionAnswer& answer) {
   row.pairs = answer.jobs_total;
   row.pairs_waiting = answer.jobs_waiting;
   row.superseded_by = answer.superseded_by;
+  if (answer.retired) row.retired = answer.retired->word;
   return row;
 }
 
@@ -79,27 +81,31 @@ Result<std::vector<SensorId>> TrendSensors(const AnswerContext& context, const R
   return sensors;
 }
 
-// What the newest revision says of good edges that it does not count; and those that were retired, whether it still lists them or
-// not.
-Result<std::vector<Edge>> PastEdges(const AnswerContext& context, const RobotId& robot) {
+// What a person took out says no more why it failed.
+bool IsTakenOut(const Diagnosis& why) { return why.code == kRetiredCode || why.code == kSensorRetiredCode; }
+
+// Of edges as they were measured: which do not count now, and why. Of those that failed only what was retired.
+Result<std::map<EdgeId, Diagnosis>> WhyPast(const AnswerContext& context, const RobotId& robot, const std::vector<Edge>& edges) {
   RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(context.store, robot));
-  std::vector<EdgeId> retired;
-  for (const auto& [id, standing] : counts.retired) retired.push_back(id);
-  RIGCAL_ASSIGN(std::vector<Edge> past, storage::LoadEdges(context.store, retired, false));
-  RIGCAL_TRY(MarkPast(context.store, counts, past));
-  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
-  if (!newest) return past;
-  RIGCAL_ASSIGN(const ParsedRevision revision, context.revisions.Load(context.store, robot, newest->number));
-  for (const Edge& edge : revision.document->edges)
-    if (IsPast(edge) && !counts.retired.contains(edge.id)) past.push_back(edge);
+  std::vector<Edge> now = edges;
+  RIGCAL_TRY(MarkPast(context.store, counts, now));
+  std::map<EdgeId, Diagnosis> past;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (IsPast(now[i]) && (edges[i].state == EdgeState::kGood || IsTakenOut(now[i].diagnoses.front())))
+      past.emplace(now[i].id, now[i].diagnoses.front());
   return past;
 }
 
-// The list of sessions counts as good what the newest revision does, as the session's own page.
+// The list of sessions counts as good what still counts, as the session's own page.
 Status MovePast(const AnswerContext& context, const RobotId& robot, std::vector<report::SessionRow>& rows) {
-  RIGCAL_ASSIGN(const auto past, PastEdges(context, robot));
+  std::vector<SessionId> sessions;
+  for (const report::SessionRow& row : rows) sessions.push_back(row.id);
+  RIGCAL_ASSIGN(auto edges, storage::LoadEdgeRows(context.store, sessions));
+  std::erase_if(edges, [](const Edge& edge) { return edge.state != EdgeState::kGood; });
+  RIGCAL_ASSIGN(const auto past, WhyPast(context, robot, edges));
   std::map<SessionId, std::int64_t> counts;
-  for (const Edge& edge : past) ++counts[edge.session];
+  for (const Edge& edge : edges)
+    if (past.contains(edge.id)) ++counts[edge.session];
   for (report::SessionRow& row : rows) {
     const auto found = counts.find(row.id);
     if (found == counts.end() || row.superseded_by) continue;
@@ -145,6 +151,8 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, c
   RIGCAL_ASSIGN(input.row, LoadRobotSummary(context.store, robot, now));
   RIGCAL_TRY(TakeListedRevisions(context, robot, revisions_before, input));
   RIGCAL_TRY(TakeListedSessions(context, robot, sessions_before, input));
+  RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(context.store, robot));
+  for (const auto& [sensor, standing] : gone) input.retired.push_back({sensor, standing.word});
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.row.revision));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
   return PageText{std::move(body), kHtmlType};
@@ -209,9 +217,9 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   input.row = rows.front();
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
+  RIGCAL_ASSIGN(input.retired, LoadRetiredSensorsIn(context.store, robot, input.manifest));
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
-  RIGCAL_ASSIGN(const auto past, PastEdges(context, robot));
-  for (const Edge& edge : past) input.past.emplace(edge.id, edge.diagnoses.front());
+  RIGCAL_ASSIGN(input.past, WhyPast(context, robot, input.edges));
   if (input.row.closed && input.row.pairs_waiting == 0) {
     Unreadable unreadable = FindUnreadable(context.store, input.manifest, input.edges);
     input.unreadable = std::move(unreadable.why);

@@ -7,6 +7,7 @@
 #include "server/base/limits.h"
 #include "server/pipeline/robot_summary.h"
 #include "storage/jobs.h"
+#include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 #include "storage/standing.h"
@@ -70,11 +71,32 @@ Result<std::map<SessionId, Superseding>> LoadSupersededOf(storage::Store& store,
   return superseded;
 }
 
+Result<std::map<SessionId, Standing>> LoadRetiredOf(storage::Store& store, const std::vector<formats::SessionAnswer>& rows) {
+  std::set<RobotId> robots;
+  for (const formats::SessionAnswer& row : rows) robots.insert(row.robot);
+  std::map<SessionId, Standing> retired;
+  for (const RobotId& one : robots) {
+    RIGCAL_ASSIGN(auto of_one, storage::LoadRetiredSessions(store, one));
+    retired.merge(of_one);
+  }
+  return retired;
+}
+
 }  // namespace
+
+Result<std::vector<RetiredSensor>> LoadRetiredSensorsIn(storage::Store& store, const RobotId& robot, const Manifest& manifest) {
+  RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSensors(store, robot));
+  std::vector<RetiredSensor> in_it;
+  for (const auto& [sensor, standing] : retired)
+    if (SensorOf(manifest.header, sensor) != nullptr) in_it.push_back({sensor, standing.word});
+  return in_it;
+}
 
 Status AddStanding(storage::Store& store, const RobotId& robot, std::vector<formats::SessionAnswer>& rows) {
   RIGCAL_ASSIGN(const auto superseded, LoadSupersededOf(store, robot, rows));
+  RIGCAL_ASSIGN(const auto retired, LoadRetiredOf(store, rows));
   for (formats::SessionAnswer& row : rows) {
+    if (const auto found = retired.find(row.session); found != retired.end()) row.retired = found->second;
     RIGCAL_ASSIGN(row.standing, storage::LoadStanding(store, row.session));
     if (const auto found = superseded.find(row.session); found != superseded.end()) row.superseded_by = found->second;
     for (const auto& [old, superseding] : superseded)

@@ -18,6 +18,9 @@ namespace rigcal::pipeline {
 // Which of `rows`, sessions of the robot or of several if it is empty, are current, and by which the others are superseded.
 [[nodiscard]] Status AddStanding(storage::Store& store, const RobotId& robot,
                                  std::vector<formats::SessionAnswer>& rows);
+// Of the sensors that a session of the robot lists, those that are retired.
+[[nodiscard]] Result<std::vector<RetiredSensor>> LoadRetiredSensorsIn(storage::Store& store, const RobotId& robot,
+                                                                      const Manifest& manifest);
 // With its standing.
 [[nodiscard]] Result<formats::SessionAnswer> LoadSessionRow(storage::Store& store, const SessionId& id);
 // The newest revision, or `number`; kNotFound names the robot.

@@ -19,8 +19,10 @@ class Runner {
     UndrawnReports* undrawn = nullptr;  // likewise
     std::vector<std::string> worker;    // program and arguments that Work(); none: the threads do all work themselves
   };
+  // Opens a store per thread, notes what the last run left open, and begins to work. Errors are the store's.
   [[nodiscard]] static Result<Runner> Start(const Options& options, Announcer announcer);
   ~Runner();  // finishes the step at hand, then joins; unfinished work is found again at the next start
+  // A runner that was moved from does nothing: the other goes on.
   Runner(Runner&&) noexcept;
   Runner& operator=(Runner&&) noexcept;
   // There may be work. Any thread; never blocks.

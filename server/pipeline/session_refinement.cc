@@ -160,6 +160,18 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
   return {};
 }
 
+bool Counts(const SessionId& session, const storage::WhatCounts& counts) {
+  return !counts.superseded.contains(session) && !counts.retired_sessions.contains(session);
+}
+
+// What it says to people of sensors that were retired since. Their poses take no part where no edge of them counts.
+void LeaveOutGone(const std::map<SensorId, Standing>& gone, SessionEstimate& estimate) {
+  for (RefinedPose& pose : estimate.poses)
+    if (gone.contains(pose.sensor)) pose.smallest_move.reset();
+  std::erase_if(estimate.held_back,
+                [&](const HeldBackLook& look) { return gone.contains(look.sensor) || gone.contains(look.against); });
+}
+
 std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates) {
   std::vector<SessionId> sessions;
   for (const SessionEstimate& estimate : estimates) sessions.push_back(estimate.session);
@@ -180,7 +192,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused));
   CurrentEstimates result;
   for (storage::SessionEstimateRow& row : rows)
-    if (row.estimate && !current.counts.superseded.contains(row.session)) result.estimates.push_back(std::move(*row.estimate));
+    if (row.estimate && Counts(row.session, current.counts)) result.estimates.push_back(std::move(*row.estimate));
   RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, SessionsOf(result.estimates), current.counts.remounts));
   const SessionSensors counting = SensorsThatCount(current, result.within);
@@ -190,6 +202,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
       return remounts.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
     });
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
+    LeaveOutGone(current.counts.retired_sensors, estimate);
   }
   return result;
 }

@@ -28,12 +28,13 @@ inline constexpr const char* kSessionEstimator = "joint/5";
 [[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
                                     const Clock& clock);
 
-// Of sessions that count (not superseded), the newest captured first. Moves of sensors that were remounted since, or of
-// which no edge of the session counts any more, are left out. Call within one Read, with `current`.
 struct CurrentEstimates {
   std::vector<SessionEstimate> estimates;
   std::vector<Edge> within;  // what of their edges is in merged ones (current_edges.h)
 };
+// Of sessions that count (not superseded, not retired), the newest captured first. Moves of sensors that were remounted
+// since, or of which no edge of the session counts any more, are left out, and so is what could have moved unseen of
+// retired ones. Call within one Read, with `current`.
 [[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current);
 
 // Sensors of which a good edge of the session still says something.

@@ -23,6 +23,7 @@ namespace rigcal::pipeline {
 class Claims {
  public:
   [[nodiscard]] bool Take(const RobotId& robot);  // false: somebody else has it, or it rests
+  // Others may take it, unless it rests.
   void GiveBack(const RobotId& robot);
   [[nodiscard]] std::vector<RobotId> Taken() const;  // includes those that rest
   // Robots of which a job was begun in this round: the others come first. A round is over when one comes again.

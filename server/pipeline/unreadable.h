@@ -16,6 +16,7 @@ struct Unreadable {
   std::map<std::pair<CaptureId, SensorId>, std::string> why;
   bool all_looked_at = true;
 };
+// Pictures in the order of the manifest; why, in the words of the reader.
 [[nodiscard]] Unreadable FindUnreadable(storage::Store& store, const Manifest& manifest,
                                         const std::vector<Edge>& edges);
 

@@ -1,5 +1,6 @@
 #include "server/pipeline/validity.h"
 
+#include <algorithm>
 #include <set>
 
 #include "server/pipeline/attempt.h"
@@ -7,6 +8,7 @@
 #include "storage/attempts.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
+#include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/session_estimates.h"
 #include "storage/sessions.h"
@@ -15,11 +17,13 @@
 namespace rigcal::pipeline {
 namespace {
 
-// Whether a session that came after `solved_at` says that a sensor was moved on purpose.
+// Whether a session that came after `solved_at` says that a sensor was moved on purpose, which is not gone since.
 Result<bool> WasRemountedAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
   RIGCAL_ASSIGN(const auto remounts, storage::LoadRemounts(store, robot));
+  RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
   std::set<SessionId> named;
-  for (const storage::Remount& remount : remounts) named.insert(remount.session);
+  for (const storage::Remount& remount : remounts)
+    if (!gone.contains(remount.sensor)) named.insert(remount.session);
   for (const SessionId& id : named) {
     RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
     if (session && session->closed_at > solved_at) return true;
@@ -27,11 +31,17 @@ Result<bool> WasRemountedAfter(storage::Store& store, const RobotId& robot, Stam
   return false;
 }
 
-// Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more.
+// Whether a sensor gave way during a session that came after `solved_at`: what was known of it before holds no more. That of
+// one that is gone since says nothing of the others, nor does a session that was retired.
 Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
+  RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSessions(store, robot));
+  RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
+  const auto is_gone = [&](const SensorMovedWithin& moved) { return gone.contains(moved.sensor); };
   for (const storage::SessionEstimateRow& row : rows) {
-    if (!row.estimate || row.estimate->moved.empty()) continue;
+    if (!row.estimate || retired.contains(row.session)) continue;
+    const auto& moved = row.estimate->moved;
+    if (std::all_of(moved.begin(), moved.end(), is_gone)) continue;
     RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, row.session));
     if (session && session->closed_at > solved_at) return true;
   }

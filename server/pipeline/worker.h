@@ -16,6 +16,7 @@
 
 namespace rigcal::pipeline {
 
+// Lines as Work() takes them.
 [[nodiscard]] std::string JobOrder(const storage::JobRow& job);
 [[nodiscard]] std::string RefineOrder(const RobotId& robot);
 [[nodiscard]] std::string PublishOrder(const storage::RevisionKey& key, const std::string& why_no_clouds);

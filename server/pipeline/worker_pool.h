@@ -18,14 +18,15 @@ class WorkerPool {
     std::string program = "/proc/self/exe";
     std::chrono::seconds order_max{6 * 3600};
   };
+  // Starts nothing yet.
   explicit WorkerPool(Options options);
   ~WorkerPool();  // those that are idle end; nobody is in Run any more
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
+  using Outcome = WorkerOutcome;
   // Carries out an order in a process that has no other, and gives what it says. An error of the order is its own; where the
   // process ended amid the order, or took longer than `order_max`, `died` is true and the error says how. Any thread.
-  using Outcome = WorkerOutcome;
   [[nodiscard]] Outcome Run(const std::string& order);
   // Starts one, so that the first order need not wait for it.
   void Warm();

@@ -20,14 +20,16 @@ namespace rigcal::pipeline {
 class PipeEnd {
  public:
   PipeEnd() = default;
+  // Takes `fd` over.
   explicit PipeEnd(int fd) : fd_(fd) {}
   ~PipeEnd();
+  // The other end gives what it has, and may be destroyed.
   PipeEnd(PipeEnd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   PipeEnd& operator=(PipeEnd&& other) noexcept {
     std::swap(fd_, other.fd_);
     return *this;
   }
-  [[nodiscard]] int get() const { return fd_; }
+  [[nodiscard]] int get() const { return fd_; }  // negative: none
 
  private:
   int fd_ = -1;

@@ -7,6 +7,7 @@
 
 namespace rigcal::report {
 
+// "12 days ago"; of what lies in the future, that the clock should be checked.
 [[nodiscard]] std::string AgeOf(Stamp then, Stamp now);
 // Not calibrated yet: no revision, or one of failed edges only.
 [[nodiscard]] bool IsNever(const RobotSummary& robot);

@@ -11,6 +11,7 @@ struct Asset {
   std::string name;  // "rig-0123456789ab.js"
   std::string_view bytes;
 };
+// All scripts and styles that pages use, each named by its content; valid as long as the process.
 [[nodiscard]] const std::vector<Asset>& Assets();
 
 // Relative to the folder that holds assets/: "rig.js" -> "assets/rig-0123456789ab.js".

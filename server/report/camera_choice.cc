@@ -17,6 +17,11 @@ std::ptrdiff_t UsedOf(const Edge& edge) {
   return std::count_if(edge.captures.begin(), edge.captures.end(), [](const auto& capture) { return capture.used; });
 }
 
+bool IsGone(const SensorId& sensor, const formats::RevisionInput& revision) {
+  return std::any_of(revision.retired.begin(), revision.retired.end(),
+                     [&](const RetiredSensor& gone) { return gone.sensor == sensor; });
+}
+
 }  // namespace
 
 std::vector<FitChoice> ChooseFits(const formats::RevisionInput& revision,
@@ -25,7 +30,7 @@ std::vector<FitChoice> ChooseFits(const formats::RevisionInput& revision,
   std::map<SensorId, std::pair<Rank, FitChoice>> best;
   for (const Edge& edge : revision.edges)
     for (const Evidence& evidence : edge.evidence) {
-      if (evidence.suffix != formats::kCameraFitSuffix) continue;
+      if (evidence.suffix != formats::kCameraFitSuffix || IsGone(evidence.sensor, revision)) continue;
       const Rank rank{edge.state == EdgeState::kGood, TimeOf(edge, captured_at), UsedOf(edge)};
       const auto [at, fresh] =
           best.try_emplace(evidence.sensor, rank, FitChoice{evidence.sensor, edge.id, evidence.digest});

@@ -6,6 +6,8 @@
 
 namespace rigcal::report {
 
+// Every camera's row, and a fold for each up to a limit; cameras of which nothing was kept are named. Without any,
+// nothing.
 void FillCameras(Dictionary& page, const ReportInput& input);
 
 }  // namespace rigcal::report

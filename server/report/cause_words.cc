@@ -21,6 +21,7 @@ constexpr std::array kPhrases = {
     Phrase{"exchanged", "{} exchanged"},
     Phrase{"files_missing", "files of {} missing"},
     Phrase{"files_unreadable", "files of {} cannot be read"},
+    Phrase{"positions_unit", "positions of {} in millimetres"},
     Phrase{"board_counts", "corners of board {} counted wrong"},
     Phrase{"board_size", "board {} {last} than given"},
     Phrase{"lens_model", "lens of {} is {last}"},

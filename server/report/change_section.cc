@@ -63,6 +63,7 @@ void FillEdgeLines(Dictionary& lines, const Changes& changes) {
                        " not count any more: " + Listed(PairsOf(changes.edges_past)) + ".");
   if (!changes.sensors_gained.empty()) AddLine(lines, "Now known: " + Listed(NamesOf(changes.sensors_gained)) + ".");
   if (!changes.sensors_lost.empty()) AddLine(lines, "No longer known: " + Listed(NamesOf(changes.sensors_lost)) + ".");
+  if (!changes.sensors_retired.empty()) AddLine(lines, "Retired: " + Listed(NamesOf(changes.sensors_retired)) + ".");
 }
 
 void FillMoves(Dictionary& section, const Changes& changes) {

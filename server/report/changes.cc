@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -83,10 +84,19 @@ std::vector<const Edge*> NowPast(const formats::RevisionInput& before, const for
   return past;
 }
 
+std::set<SensorId> GoneIn(const formats::RevisionInput& revision) {
+  std::set<SensorId> gone;
+  for (const RetiredSensor& one : revision.retired) gone.insert(one.sensor);
+  return gone;
+}
+
 void CompareSensors(const formats::RevisionInput& before, const formats::RevisionInput& now, Changes& changes) {
   const Poses old = KnownPoses(before), current = KnownPoses(now);
   changes.sensors_gained = Missing(current, old);
   changes.sensors_lost = Missing(old, current);
+  const std::set<SensorId> gone_before = GoneIn(before), gone = GoneIn(now);
+  std::set_difference(gone.begin(), gone.end(), gone_before.begin(), gone_before.end(), std::back_inserter(changes.sensors_retired));
+  std::erase_if(changes.sensors_lost, [&](const SensorId& sensor) { return gone.contains(sensor); });
   changes.same_reference = before.reference == now.reference;
   if (!changes.same_reference) return;
   for (const auto& [sensor, pose] : current)

@@ -5,6 +5,7 @@
 
 namespace rigcal::report {
 
+// Of edges that are `detailed`; the others are counted, with where to find them.
 void FillDetails(Dictionary& page, const ReportInput& input, const EdgesByCause& edges);
 
 }  // namespace rigcal::report

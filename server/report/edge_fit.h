@@ -16,12 +16,15 @@ namespace rigcal::report {
 struct Contradictions {
   std::set<EdgeId> suspects, alternatives;
 };
+// An edge that is suspected is no alternative as well.
 [[nodiscard]] Contradictions ContradictionsOf(const Suspects& suspects);
 
 // Stroke widths between the least and the most certain edge, by the logarithm of the largest sigma of the position.
 class InformationScale {
  public:
+  // The scale of these edges; those without information take no part.
   explicit InformationScale(const std::vector<ShownEdge>& edges);
+  // The thinnest for an edge without information; all alike where the edges are about equally certain.
   [[nodiscard]] double Width_px(const Edge& edge) const;
 
  private:

@@ -11,6 +11,7 @@
 #include "server/report/edge_state.h"
 #include "server/report/figure_words.h"
 #include "server/report/influence.h"
+#include "server/report/retired_section.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {
@@ -187,7 +188,9 @@ void FillPictures(Dictionary& section, const Edge& edge, const std::set<Digest>&
 std::string ProvenanceOf(const ReportInput& input, const Edge& edge) {
   if (IsMergedOfSessions(edge)) return "Of this pair, what the sessions before the newest ones say together.";
   if (IsMerged(edge)) return "Earlier edges of this pair, each pushed as a finished result, merged: what they say together.";
-  if (edge.session.empty()) return "Pushed as a finished result.";
+  if (edge.session.empty())
+    return edge.measured_at ? "Pushed as a finished result, measured " + TimeText(*edge.measured_at) + "."
+                            : "Pushed as a finished result.";
   const auto facts = std::find_if(input.sessions.begin(), input.sessions.end(),
                                   [&](const SessionFacts& session) { return session.id == edge.session; });
   const std::string id = ShortDigest(edge.session.str());
@@ -213,6 +216,7 @@ void FillEdgeSection(Dictionary& section, const ReportInput& input, const ShownE
   section.SetValue("PROVENANCE", ProvenanceOf(input, edge));
   if (open) section.ShowSection("OPEN");
   FillWarned(section, edge);
+  if (HasWayOut(edge) && input.revision.edges.size() <= kWaysOutMax) FillRetire(section, RetireCommand(edge.id));
   FillDiagnoses(section, edge);
   if (!failed) FillPose(section, edge);
   FillFigures(section, edge);

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/model/past.h"
 #include "server/model/unchecked.h"
 #include "server/report/edge_axes.h"
 #include "server/report/edge_fit.h"
 #include "server/report/edge_state.h"
 #include "server/report/figure_words.h"
 #include "server/report/influence.h"
+#include "server/report/retired_section.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 
@@ -124,7 +126,15 @@ void FillRow(Dictionary& row, const ReportInput& input, const ShownEdge& shown, 
   row.SetValue("CAPTURES", CapturesText(edge));
   row.SetValue("CAPTURES_KEY", edge.captures.empty() ? "" : std::to_string(UsedCount(edge)));
   if (edge.state == EdgeState::kGood) return FillGood(row, input, shown, judged.unchecked.contains(edge.id));
-  ShowValue(row, "FAILED", "WHY", edge.diagnoses.empty() ? "no reason was given" : edge.diagnoses.front().what);
+  Dictionary* failed = row.AddSectionDictionary("FAILED");
+  failed->SetValue("WHY", edge.diagnoses.empty() ? "no reason was given" : edge.diagnoses.front().what);
+  if (IsPast(edge)) ShowValue(*failed, "CURE", "TEXT", edge.diagnoses.front().cure);
+}
+
+// Of few edges, one with a section of its own has it there. Of many the first rows are what one looks for: failed ones, then
+// the worst fits.
+void FillWayOut(Dictionary& row, const ShownEdge& shown, bool many) {
+  if ((many || !shown.detailed) && HasWayOut(*shown.edge)) FillRetire(row, RetireCommand(shown.edge->id));
 }
 
 void FillGroupRow(Dictionary& row, const EdgeGroup& group) {
@@ -141,8 +151,13 @@ void FillEdges(Dictionary& page, const ReportInput& input, const EdgesByCause& e
   const Judged judged{ContradictionsOf(input.revision.solution.suspects), UncheckedEdges(input.revision.solution)};
   for (const EdgeGroup& group : edges.groups) FillGroupRow(*page.AddSectionDictionary("EDGE_GROUP"), group);
   const std::size_t alone = edges.others.size();
-  for (std::size_t i = 0; i < std::min(alone, kEdgeRowsMax); ++i)
-    FillRow(*page.AddSectionDictionary("EDGE"), input, *edges.others[i], judged);
+  const bool many = input.revision.edges.size() > kWaysOutMax;
+  for (std::size_t i = 0; i < std::min(alone, kEdgeRowsMax); ++i) {
+    Dictionary* row = page.AddSectionDictionary("EDGE");
+    FillRow(*row, input, *edges.others[i], judged);
+    if (i < kWaysOutMax) FillWayOut(*row, *edges.others[i], many);
+  }
+  if (many) ShowValue(page, "OTHER_IDS", "ROBOT", input.revision.robot.str());
   if (alone > kEdgeRowsMax) ShowValue(page, "MORE_EDGES", "COUNT", std::to_string(alone - kEdgeRowsMax));
   if (const std::string& why_not = input.revision.solution.influences.why_not; !why_not.empty())
     ShowValue(page, "NO_EDGE_INFLUENCE", "TEXT", why_not);

@@ -15,6 +15,7 @@ struct ExperimentRow {
   bool has_figures = false;  // experiment.json
   std::string title = {};    // of its page; empty: its name
 };
+// In the order of `rows`; beyond a limit only how many there are is told.
 [[nodiscard]] Result<std::string> RenderExperiments(const std::vector<ExperimentRow>& rows);
 
 }  // namespace rigcal::report

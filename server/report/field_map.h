@@ -14,6 +14,7 @@ namespace rigcal::report {
 // Drawing units: a map is so wide, and as high as the picture's shape makes it (within bounds: odd sizes are drawn,
 // too).
 inline constexpr double kMapWidth = 360.0;
+// As a number for the drawing's height; of a size that is not known two thirds of the width.
 [[nodiscard]] std::string MapHeightText(int width_px, int height_px);
 
 struct FieldMap {
@@ -31,6 +32,7 @@ struct WorstField {
   double value_px = 0.0;
   std::string where;
 };
+// Of equals the first, row by row.
 [[nodiscard]] std::optional<WorstField> WorstOf(const FieldMap& map, const std::vector<bool>& among = {});
 // Of the field that holds the middle of the picture.
 [[nodiscard]] std::optional<double> MiddleValue(const FieldMap& map);

@@ -31,6 +31,8 @@ constexpr std::array kWords = {
     Word{"Files of {b} that show a board", Word::kOutOf, {"files_with_board_b", "files_b"}},
     Word{"Files of {a} that cannot be read", Word::kEach, {"files_unreadable_a", ""}},
     Word{"Files of {b} that cannot be read", Word::kEach, {"files_unreadable_b", ""}},
+    Word{"Positions of {a}, longest step", Word::kEach, {"positions_step_a_m", ""}},
+    Word{"Positions of {b}, longest step", Word::kEach, {"positions_step_b_m", ""}},
     Word{"Boards before {a} turned apart by at most", Word::kEach, {"board_tilt_a_rad", ""}},
     Word{"Boards before {b} turned apart by at most", Word::kEach, {"board_tilt_b_rad", ""}},
     Word{"Reprojection error, rms", Word::kEach, {"rms_px", ""}},

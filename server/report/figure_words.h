@@ -16,6 +16,7 @@ struct FigureRows {
       checks;                   // what the method says of its own result; figures of other programs by their own names
   std::vector<FigureRow> lens;  // intrinsics that this edge was solved with
 };
+// Places in lists ("_idx") are left out; figures that we know come first, in the order of the words for them.
 [[nodiscard]] FigureRows RowsOf(const Edge& edge);
 // "lidar_camera" -> "lidar-camera"; a method that is not ours stays as it is.
 [[nodiscard]] std::string MethodText(const std::string& method);

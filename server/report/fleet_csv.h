@@ -7,6 +7,7 @@
 
 namespace rigcal::report {
 
+// The names of FleetCsvRow's columns, with its line end.
 [[nodiscard]] std::string FleetCsvHeading();
 // Times in UTC; empty where nothing is known.
 [[nodiscard]] std::string FleetCsvRow(const RobotSummary& robot);

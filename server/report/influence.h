@@ -13,6 +13,7 @@ struct Influence {
   double position_m = 0.0, rotation_rad = 0.0;
   double in_sigmas = 0.0;  // largest |d| / sigma of the six axes
 };
+// Of blocks that move the position alike the first.
 [[nodiscard]] Influence LargestInfluence(const std::vector<BlockVector>& blocks, const Uncertainty& uncertainty);
 // "Leaving out 07 moves the position most: by 0.12 mm and 0.004 deg, 0.4 sigma."; empty without block vectors.
 [[nodiscard]] std::string InfluenceText(const Influence& influence);

@@ -6,7 +6,9 @@
 
 namespace rigcal::report {
 
+// The figures on top: mean squared disagreement, cost, and the worst edge and sensor.
 void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);
+// What the solution tells beside the verdict; beyond a limit only how many more there are.
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision);
 
 }  // namespace rigcal::report

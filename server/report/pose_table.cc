@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/report/retired_section.h"
 #include "server/report/sigmas.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
@@ -39,6 +40,15 @@ void FillKnown(Dictionary& row, const SensorPose& pose, bool is_reference, const
   for (int axis = 0; axis < 6; ++axis) ShowValue(*known, "SIGMA", "VALUE", SigmaText(pose.covariance, axis));
 }
 
+// How each sensor is taken out; of very many, how any is.
+void FillWaysOut(Dictionary& page, const formats::RevisionInput& revision) {
+  const auto& poses = revision.solution.poses;
+  if (poses.empty()) return;
+  Dictionary* ways = page.AddSectionDictionary("WAYS_OUT");
+  if (poses.size() > kWaysOutMax) return FillRetire(*ways, RetireCommand(revision.robot, SensorId("SENSOR")));
+  for (const SensorPose& pose : poses) FillRetire(*ways, RetireCommand(revision.robot, pose.sensor));
+}
+
 void AddAxisLine(Dictionary& cell, const char* section, const std::string& label, const std::string& value) {
   Dictionary* line = cell.AddSectionDictionary(section);
   line->SetValue("LABEL", label);
@@ -75,6 +85,8 @@ void FillPart(Dictionary& row, const SensorPose& pose, const std::optional<Eigen
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision) {
   const auto why = WhyUnknown(revision);
   const auto& poses = revision.solution.poses;
+  FillGone(page, revision.robot, revision.retired);
+  FillWaysOut(page, revision);
   bool any_in_part = false;
   for (std::size_t i = 0; i < std::min(poses.size(), kPoseRowsMax); ++i) {
     Dictionary* row = page.AddSectionDictionary("POSE");

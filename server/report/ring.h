@@ -24,13 +24,17 @@ struct RingSize {
 struct Curve {
   Eigen::Vector2d a, control, b;
 };
+// The nth of `count` between the two, counted from 0; the middle one of an odd number is straight.
 [[nodiscard]] Curve CurveBetween(const Eigen::Vector2d& a, const Eigen::Vector2d& b, int nth, int count);
+// `t` from 0 at a to 1 at b.
 [[nodiscard]] Eigen::Vector2d At(const Curve& curve, double t);
 
 // Finds a free place on the curve for a box of the given size; nothing if there is none.
 class TagPlaces {
  public:
+  // The box's middle, near the curve's if it can be; from then on the place is taken.
   [[nodiscard]] std::optional<Eigen::Vector2d> Take(const Curve& curve, const Eigen::Vector2d& box_px);
+  // Keeps this place free of boxes.
   void Block(const Eigen::Vector2d& centre_px, const Eigen::Vector2d& box_px);
 
  private:

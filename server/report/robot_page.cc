@@ -5,6 +5,7 @@
 #include "server/report/banner.h"
 #include "server/report/choices.h"
 #include "server/report/page.h"
+#include "server/report/retired_section.h"
 #include "server/report/robot_pages.h"
 #include "server/report/text.h"
 
@@ -76,8 +77,15 @@ void FillSuperseded(Dictionary& row, const SessionRow& session) {
   part->SetValue("OLD", session.id.str().substr(0, 16));
 }
 
+void FillRetired(Dictionary& row, const SessionRow& session) {
+  Dictionary* part = row.AddSectionDictionary("RETIRED");
+  part->SetValue("WHY", RetiredText(*session.retired));
+  part->SetValue("COMMAND", RestoreCommand(session.id));
+}
+
 // Of a session that came whole; the others stand above the list, with their progress.
 void FillResult(Dictionary& row, const SessionRow& session) {
+  if (session.retired) return FillRetired(row, session);
   if (session.superseded_by) return FillSuperseded(row, session);
   if (!session.closed || session.pairs_waiting > 0)
     return ShowValue(row, "WORKING", "WORD", session.closed ? "being calibrated" : "arriving");
@@ -102,6 +110,10 @@ void FillSessions(Dictionary& page, const RobotInput& input, Stamp now) {
     FillResult(*row, session);
   }
   FillPages(*list, input.newest_sessions, input.older_sessions ? input.sessions.back().id.str() : "");
+}
+
+void FillGoneSensors(Dictionary& page, const RobotInput& input) {
+  if (!input.retired.empty()) FillGone(*page.AddSectionDictionary("GONE_SENSORS"), input.row.robot, input.retired);
 }
 
 // The way on: the newest report, and what is different in it.
@@ -144,6 +156,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   FillNewest(page, row.revision);
   FillOpenOnes(page, input.open);
   FillSessions(page, input, now);
+  FillGoneSensors(page, input);
   FillRevisions(page, input, now);
   FillCompare(page, row.revision);
   AddScript(page, "../../" + AssetPath("live.js"));

@@ -22,8 +22,9 @@ struct SessionRow {
   bool closed = false;
   std::int64_t files = 0, files_held = 0, pairs = 0, pairs_waiting = 0;
   std::int64_t good = 0, failed = 0;  // of the pairs that are done
-  std::int64_t past = 0;              // good where they were measured, but the newest revision counts them no more
+  std::int64_t past = 0;              // good where they were measured, but they count no more
   std::optional<Superseding> superseded_by = {};
+  std::optional<Word> retired = {};
 };
 // Of revisions and of sessions a page each, the newest first; "?before=<revision>" and "?sessions_before=<id>" show others.
 struct RobotInput {
@@ -34,16 +35,18 @@ struct RobotInput {
   std::vector<SessionRow> open = {};  // of all sessions: still arriving, or being calibrated; the newest first
   bool older_revisions = false, older_sessions = false;  // there are, beyond the page
   bool newest_revisions = true, newest_sessions = true;  // the page is the first
+  std::vector<RetiredSensor> retired = {};
 };
+// /robots/<id>/. Ages are as of `now`.
 [[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);
 
-// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one, and
-// how far it moved from each to the next.
 struct SolvedRevision {
   int number = 0;
   std::shared_ptr<const formats::RevisionInput> revision;
   Stamp calibrated_at = {};  // 0: it counts nothing
 };
+// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one, and
+// how far it moved from each to the next.
 [[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
 
 struct ComparedLenses {
@@ -58,6 +61,7 @@ struct CompareInput {
   std::map<SessionId, Stamp> captured_at = {};
   ComparedLenses lenses = {};
 };
+// What differs between the two revisions: verdicts, poses, lenses, edges.
 [[nodiscard]] Result<std::string> RenderCompare(const CompareInput& input);
 
 struct SessionInput {
@@ -68,6 +72,7 @@ struct SessionInput {
   std::map<EdgeId, Diagnosis> past = {};                                  // of those: no longer counted, and why
   std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
   bool all_looked_at = true;                                              // for that; else there may be more
+  std::vector<RetiredSensor> retired = {};                                // of the sensors that it lists
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

@@ -6,6 +6,7 @@
 #include "server/report/assets.h"
 #include "server/report/figure_words.h"
 #include "server/report/page.h"
+#include "server/report/retired_section.h"
 #include "server/report/robot_pages.h"
 #include "server/report/session_sheet.h"
 #include "server/report/text.h"
@@ -37,7 +38,8 @@ void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosi
   row.SetValue("FROM", edge.frame_a.str());
   row.SetValue("TO", edge.frame_b.str());
   row.SetValue("METHOD", MethodText(edge));
-  if (const auto why = past.find(edge.id); good && why != past.end()) return FillPast(row, why->second);
+  if (const auto why = past.find(edge.id); why != past.end()) return FillPast(row, why->second);
+  FillRetire(row, RetireCommand(edge.id));
   row.SetValue("LEVEL", good ? "pass" : "fail");
   row.SetValue("STATE", good ? "good" : "failed");
   if (edge.diagnoses.empty()) return;
@@ -54,11 +56,13 @@ void FillEdges(Dictionary& page, const SessionInput& input) {
   for (const Edge* edge : sorted) FillEdge(*list->AddSectionDictionary("EDGE"), *edge, input.past);
 }
 
-// What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet.
-std::string CommonestCure(const std::vector<Edge>& edges) {
+// What to do is what most of the failed pairs ask for; of equally many, the first by the alphabet. Nothing is asked for what is
+// past.
+std::string CommonestCure(const SessionInput& input) {
   std::map<std::string, int> cures;
-  for (const Edge& edge : edges)
-    if (edge.state == EdgeState::kFailed && !edge.diagnoses.empty()) ++cures[edge.diagnoses.front().cure];
+  for (const Edge& edge : input.edges)
+    if (edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && !input.past.contains(edge.id))
+      ++cures[edge.diagnoses.front().cure];
   const auto most =
       std::max_element(cures.begin(), cures.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == cures.end() ? "" : most->first;
@@ -89,6 +93,10 @@ Outcome SupersededOutcome(const SessionRow& row) {
           "Nothing, if that is the right one; else `rigcal restore " + row.id.str().substr(0, 16) + "` takes it back."};
 }
 
+Outcome RetiredOutcome(const SessionRow& row) {
+  return {"under-way", "This session does not count: it was " + RetiredText(*row.retired) + ".", BringsBack(RestoreCommand(row.id))};
+}
+
 Outcome OutcomeOf(const SessionInput& input) {
   const SessionRow& row = input.row;
   const std::string pairs = Count(static_cast<std::size_t>(row.pairs), "pair", "pairs");
@@ -102,6 +110,7 @@ Outcome OutcomeOf(const SessionInput& input) {
             "This session is being calibrated: " + std::to_string(row.pairs - row.pairs_waiting) + " of " + pairs +
                 " are done.",
             ""};
+  if (row.retired) return RetiredOutcome(row);
   if (row.superseded_by) return SupersededOutcome(row);
   if (row.pairs == 0)
     return {"warn", "This session has no pair of sensors that could be calibrated.",
@@ -112,7 +121,7 @@ Outcome OutcomeOf(const SessionInput& input) {
             (row.pairs == 1 ? "The pair of sensors was" : "All " + pairs + " of sensors were") +
                 std::string(" calibrated.") + unreadable,
             ""};
-  const std::string cure = CommonestCure(input.edges);
+  const std::string cure = CommonestCure(input);
   const std::string first = unreadable.empty() ? cure : "Save or copy anew the pictures that cannot be read. " + cure;
   if (row.good == 0)
     return {"off",
@@ -162,6 +171,8 @@ Result<std::string> RenderSession(const SessionInput& input) {
   page.SetValue("ID", input.row.id.str());
   FillFacts(page, input);
   FillOutcome(page, input);
+  FillGone(page, input.robot, input.retired);
+  if (input.row.closed && !input.row.retired) ShowValue(page, "MISLEADS", "COMMAND", RetireCommand(input.row.id));
   FillEdges(page, input);
   FillSheet(page, input);
   AddScript(page, "../../../../" + AssetPath("live.js"));

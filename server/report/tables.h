@@ -9,6 +9,7 @@
 
 namespace rigcal::report {
 
+// A row per sensor up to a limit: its pose with sigmas, the part that was measured, or why it is not known.
 void FillPoses(Dictionary& page, const formats::RevisionInput& revision);
 // A row for those that one cause explains.
 void FillEdges(Dictionary& page, const ReportInput& input, const EdgesByCause& edges);

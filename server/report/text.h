@@ -29,6 +29,7 @@ inline constexpr double kDegPerRad = 57.295779513082320877;
 struct RollPitchYaw {
   double roll = 0.0, pitch = 0.0, yaw = 0.0;
 };
+// `q` is a unit quaternion.
 [[nodiscard]] RollPitchYaw RollPitchYawOf(const Eigen::Quaterniond& q);
 
 // "reprojection_rms_px", 0.21 -> "reprojection rms", "0.21 px"; _m as mm, _rad as deg.
@@ -39,6 +40,7 @@ struct FigureUnit {
   std::string shown;
   double scale = 1.0;
 };
+// Of what has no unit, or one that is not known: nothing, and 1.
 [[nodiscard]] FigureUnit UnitOfFigure(const std::string& figure);
 
 // Words as a value in an address; the template escapes the rest.

@@ -1,6 +1,7 @@
 """What counts, and how it is taken back. A stranger reads the manifest of a session over HTTP and sends it with squares 1.1 times
 as large: in the name of another robot it must bring the pictures, in the name of the same robot it supersedes the session. The
-owner pushes the right folder again, or restores it, and it counts. An edge with a typing error is retired, for good."""
+owner pushes the right folder again, or restores it, and it counts. An edge with a typing error is retired, and pushed
+again it stays so. A sensor that was taken off is retired: nobody asks for it, a session that brings it says so, and it is restored."""
 import json
 import os
 import subprocess
@@ -118,7 +119,7 @@ def check_edges(flow):
     wrong = [row["id"] for row in rows if row["T_a_b"]["p_m"][0] == 12.0][0]
     check(wrong[:12] in flow.rigcal("edges", "typed").stdout, "the ids are listed")
     text = flow.rigcal("retire", wrong[:12], "--reason", "typed 12 for 2", "--by", "Ada").stdout
-    check("retired by Ada on " in text and "typed 12 for 2" in text, "retire says so: " + text)
+    check("retired on 20" in text and " by Ada: " in text and "typed 12 for 2" in text, "retire says so: " + text)
     check(level(flow) == good, "the robot is as it was: %s" % level(flow))
     again = flow.rigcal("push-edges", flow.folder / "typo.json", "--robot", "typed")
     check("stays retired" in again.stderr and "typed 12 for 2" in again.stderr, "pushed again it stays so: " + again.stderr)
@@ -129,6 +130,38 @@ def check_edges(flow):
     check(past == [wrong] and level(flow) == good, "after a restart too: %r" % past)
 
 
+def sensors(flow):
+    return [sensor["id"] for sensor in json.loads(flow.get("/api/v1/show?robot=typed"))["document"]["sensors"]]
+
+
+def push_mast(flow, name, x_m):
+    edges = [edge("b", "mast", x_m), edge("c", "mast", x_m - 1.0)]
+    (flow.folder / name).write_text(json.dumps({"format": 1, "measured_at": "2026-01-31", "edges": edges}))
+    return flow.rigcal("push-edges", flow.folder / name, "--robot", "typed")
+
+
+def check_sensor(flow):
+    push_mast(flow, "mast.json", 3.0)
+    check(sensors(flow) == ["a", "b", "c", "mast"], "the mast is known: %r" % sensors(flow))
+    retired = flow.rigcal("retire", "mast", "--robot", "typed", "--reason", "taken off", "--by", "Ada").stdout
+    command = "rigcal restore mast --robot typed"
+    check("Sensor mast of typed does not count any more: retired on 20" in retired and command in retired, "retire says so: " + retired)
+    check(sensors(flow) == ["a", "b", "c"], "nobody asks for it: %r" % sensors(flow))
+    again = push_mast(flow, "other.json", 3.00005)
+    check("mast was retired on " in again.stderr and command in again.stderr, "what comes later says so: " + again.stderr)
+    check(sensors(flow) == ["a", "b", "c"], "and does not count: %r" % sensors(flow))
+    check(command in flow.get("/robots/typed/") and command in flow.rigcal("show", "typed").stdout, "the page and `show` say so")
+    check("brings it back" in flow.rigcal("lookup", "typed", "a", "mast", exit_code=4).stderr, "lookup says so")
+    refused = flow.rigcal("retire", "nobody", "--robot", "typed", "--reason", "x", exit_code=4).stderr
+    check("has no sensor 'nobody'" in refused, "one that there is not: " + refused)
+    flow.kill_and_restart()
+    flow.rigcal("retire", "mast", "--robot", "typed", "--reason", "again")
+    check(sensors(flow) == ["a", "b", "c"], "after a restart too: %r" % sensors(flow))
+    restored = flow.rigcal("restore", "mast", "--robot", "typed", "--by", "Ada").stdout
+    check("Sensor mast of typed counts again, restored by Ada on " in restored, "restore says so: " + restored)
+    check(sensors(flow) == ["a", "b", "c", "mast"], "it is back: %r" % sensors(flow))
+
+
 def main():
     with Flow() as flow:
         rig = front_rig(flow, ROBOT, "rig")
@@ -136,6 +169,7 @@ def main():
         flow.rigcal("simulate", rig, "--out", session, "--seed", 1, "--captures", 20, "--scale", 0.3, "--captured-at", "2026-01-31")
         check_sessions(flow, session)
         check_edges(flow)
+        check_sensor(flow)
     print("standing: good")
 
 

@@ -143,6 +143,15 @@ TEST(HandEye, NothingMovedIsADiagnosis) {
   EXPECT_THAT(result.error().code, testing::AnyOf("no_motion", "too_few_captures"));
 }
 
+TEST(HandEye, PositionsInMillimetresAreAskedAbout) {
+  HandEyeProblem problem = Tracked(Driven(Drive::kFree, 20, 0, 1), kNoise, kNoise, 1);
+  for (TimedPose& pose : problem.b.poses) pose.T_world_body.p_m *= 1000;
+  const Edge edge = EstimateHandEyeEdge(problem);
+  ASSERT_EQ(edge.state, EdgeState::kFailed);
+  EXPECT_EQ(edge.diagnoses.front().code, "positions_in_millimetres");
+  EXPECT_GT(edge.figures.at("positions_step_b_m"), 100);
+}
+
 TEST(HandEye, NamesTheAxisInItsEdge) {
   const Edge edge = EstimateHandEyeEdge(Tracked(Driven(Drive::kFloor, 30, 0, 1), kNoise, kNoise, 1));
   ASSERT_EQ(edge.state, EdgeState::kGood);

@@ -145,10 +145,10 @@ TEST(Drive, EachLimitStandsBesideItsSigma) {
 }
 
 TEST(Validity, OverdueIsSaidFirst) {
-  const std::string overdue = "Overdue since 20 Feb 2027: capture again.";
-  FakeServer server("r1", Telling({"pass", true, 5, "Overdue since 20 Feb 2027: capture again"}));
+  const std::string overdue = "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again.";
+  FakeServer server("r1", Telling({"pass", true, 5, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again"}));
   const std::string shown = Rigcal({"show", "r1"}).out;
-  EXPECT_EQ(shown.find(overdue + "\nr1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\nverdict  pass"), 0U)
+  EXPECT_EQ(shown.find("r1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\n" + overdue + "\nverdict  pass"), 0U)
       << shown;
   EXPECT_NE(Rigcal({"robots"}).out.find("overdue, pass"), std::string::npos);
   EXPECT_NE(Rigcal({"status"}).out.find("1 robot: 1 warn or overdue"), std::string::npos);

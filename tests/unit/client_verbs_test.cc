@@ -222,7 +222,7 @@ FakeServer::AnswerTo CalibratedServer(std::atomic<int>& session_questions) {
              (is_done ? edge : "") + "]}";
     }
     if (verb == "status") return R"({"http_address":"http://127.0.0.1:8420","robots":[{"robot":"r1","revision":1}]})";
-    if (verb == "known_robot") return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
+    if (verb == "known_robot" || verb == "known_files") return Fail(ErrorCode::kInvalidInput, "the verb is not known", "So says an older server.");
     EXPECT_EQ(verb, "show");
     EXPECT_EQ(json, R"({"robot":"r1","revision":1})");
     return R"({"robot":"r1","revision":1,"age_ns":1,"digest":"d","document":{"verdict":{"level":"pass","why":"all agree"},"edges":[)" +
@@ -270,6 +270,23 @@ TEST(Verbs, PushWaitsForTheReport) {
   EXPECT_FALSE(returned_early.get());
 }
 
+TEST(Verbs, PushSaysWhichOfItsSensorsAreRetired) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  std::atomic<int> session_questions{0};
+  FakeServer server("r1", [usual = CalibratedServer(session_questions)](const std::string& verb, const std::string& json) {
+    auto answer = usual(verb, json);
+    if (verb == "session")
+      answer->insert(1, R"("retired_sensors":[{"sensor":"left","at":"2026-02-01T12:00:00Z","who":"Ada","reason":"taken off"}],)");
+    return answer;
+  });
+  const Ran ran = Rigcal({"push", folder.path().string()});
+  EXPECT_NE(ran.err.find("left was retired on 2026-02-01 by Ada: taken off. `rigcal restore left --robot r1` brings it back. Until "
+                         "then what was sent of it does not count.\n"),
+            std::string::npos)
+      << ran.err;
+}
+
 TEST(Verbs, PushJsonIsOneDocument) {
   SessionFolder folder;
   folder.WriteSession("r1", 2, 1000);
@@ -284,7 +301,7 @@ TEST(Verbs, PushJsonIsOneDocument) {
   EXPECT_EQ((*document)["report"].Text(), "http://127.0.0.1:8420/robots/r1/revisions/1/");
 }
 
-TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherTheRobotIsKnown) {
+TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherRobotAndFilesAreKnown) {
   SessionFolder folder;
   folder.WriteSession("r1", 2, 1000);
   std::set<std::string> asked;
@@ -295,7 +312,26 @@ TEST(Verbs, PushWithoutWaitingAsksOnlyWhetherTheRobotIsKnown) {
   EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
   EXPECT_EQ(server.requests_seen, 0);
   EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait"}).code, 0);
-  EXPECT_EQ(asked, std::set<std::string>{R"(known_robot{"robot":"r1"})"});
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_EQ(*asked.rbegin(), R"(known_robot{"robot":"r1"})");
+  EXPECT_EQ(asked.begin()->rfind(R"(known_files{"digests":")", 0), 0u) << *asked.begin();
+}
+
+TEST(Verbs, PushOfAnotherRobotsFilesSendsNothingUnlessItIsMeant) {
+  SessionFolder folder;
+  folder.WriteSession("r1", 2, 1000);
+  FakeServer server("r1", [&](const std::string& verb, const std::string&) -> Result<std::string> {
+    if (verb == "known_robot") return R"({"known":true,"robot":"r1","slip_of":[]})";
+    return R"({"asked":4,"files":2,"robot":"r2","session":"0123456789abcdef0123","captured_at":"2026-08-01T10:00:00Z"})";
+  });
+  const Ran ran = Rigcal({"push", folder.path().string(), "--no-wait"});
+  EXPECT_EQ(ran.code, 4);
+  EXPECT_NE(ran.err.find("2 of 4 files looked at are the same as in the session of robot r2 of 1 Aug 2026 "
+                         "(0123456789abcdef), not of 'r1'. Correct `robot:` in session.yaml"),
+            std::string::npos)
+      << ran.err;
+  EXPECT_EQ(server.SubjectsSeen(), std::set<std::string>{}) << "nothing was sent";
+  EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
 }
 
 TEST(Verbs, APushForAMisspeltRobotSendsNothing) {
@@ -317,56 +353,6 @@ TEST(Verbs, APushForAMisspeltRobotSendsNothing) {
   }
   EXPECT_EQ(Rigcal({"push", folder.path().string(), "--no-wait", "--new-robot"}).code, 0);
   EXPECT_EQ(server.SubjectsSeen().size(), 1U);
-}
-
-constexpr const char* kRestoredRow =
-    R"({"session":"aaaaaaaaaaaaaaaaaaaa","robot":"r1","state":"closed","superseded_by":null,"supersedes":["bbbbbbbbbbbbbbbbbbbb"],)"
-    R"("standing":{"number":8,"how":"restored","at":"2026-02-01T12:00:00Z","who":"Ada","reason":"wrong squares"}})";
-constexpr const char* kSupersededRow =
-    R"({"session":"bbbbbbbbbbbbbbbbbbbb","robot":"r1","state":"closed","supersedes":[],"superseded_by":{"session":"aaaaaaaaaaaaaaaaaaaa",)"
-    R"("captured_at":"2026-01-31T00:00:00Z","operator":"Eve","standing":{"number":8,"how":"restored","at":"2026-02-01T12:00:00Z",)"
-    R"("who":"Ada","reason":"wrong squares"}}})";
-
-TEST(Verbs, SessionsSayWhichSupersedesWhich) {
-  FakeServer server("r1", Always(std::string(R"({"sessions":[)") + kRestoredRow + "," + kSupersededRow + "]}"));
-  const Ran ran = Rigcal({"sessions"});
-  EXPECT_NE(ran.out.find("superseded"), std::string::npos) << ran.out;
-  EXPECT_NE(
-      ran.out.find("Session bbbbbbbbbbbbbbbb does not count: session aaaaaaaaaaaaaaaa of the same pictures (captured "
-                   "2026-01-31T00:00:00Z, by Eve), restored by Ada on 2026-02-01T12:00:00Z (wrong squares), "
-                   "supersedes it. `rigcal restore bbbbbbbbbbbbbbbb` takes that back.\n"),
-      std::string::npos)
-      << ran.out;
-}
-
-// The newest revision may be one from before the order: it is asked for until it counts it.
-TEST(Verbs, AnOrderWaitsForTheRevisionThatCountsIt) {
-  std::atomic<bool> is_counted = false;
-  std::string asked;
-  const auto answer = [&](const std::string& verb, const std::string& json) -> Result<std::string> {
-    if (verb == "restore") {
-      asked = json;
-      return std::string(R"({"revision_follows":true,"session":)") + kRestoredRow + "}";
-    }
-    if (verb == "status")
-      return std::string(R"({"robots":[{"robot":"r1","revision":)") + (is_counted ? "2" : "1") + "}]}";
-    const bool is_old = json.find(R"("revision":1})") != std::string::npos;
-    is_counted = true;
-    return std::string(R"({"robot":"r1","revision":)") + (is_old ? "1" : "2") + R"(,"standing":)" +
-           (is_old ? "7" : "8") + R"(,"document":{"verdict":{"level":")" + (is_old ? "pass" : "fail") +
-           R"("},"edges":[]}})";
-  };
-  FakeServer server("r1", answer);
-  const Ran ran = Rigcal({"restore", "aaaaaaaa", "--by", "Ada", "--reason", "wrong squares", "--robot", "r1"});
-  EXPECT_EQ(ran.code, 1) << ran.err;
-  EXPECT_EQ(asked, R"({"session":"aaaaaaaa","who":"Ada","reason":"wrong squares","robot":"r1"})");
-  EXPECT_NE(
-      ran.out.find("Session aaaaaaaaaaaaaaaa is current again, restored by Ada on 2026-02-01T12:00:00Z (wrong "
-                   "squares); superseded by it: session bbbbbbbbbbbbbbbb. `rigcal restore bbbbbbbbbbbbbbbb` takes "
-                   "that back.\n"),
-      std::string::npos)
-      << ran.out;
-  EXPECT_NE(ran.out.find("r1, revision 2"), std::string::npos) << ran.out;
 }
 
 TEST(Verbs, PushEdgesTakesJson) {

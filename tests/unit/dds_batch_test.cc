@@ -77,6 +77,19 @@ TEST_F(BatchTest, AStrangersEdgeIsRefusedAndNotStored) {
   EXPECT_TRUE(Must(storage::LoadEdges(store, RobotId("mapper-01"), false)).empty());
 }
 
+TEST_F(BatchTest, AnEdgeOfTheFutureIsRefusedAndNotStored) {
+  Edge edge = wire::SampleEdge();
+  edge.T_a_b.q.normalize();
+  edge.measured_at = Stamp{SystemClock().Now().ns + 3 * 86'400'000'000'000};
+  const auto batch = wire::SampleBatch({edge});
+  Client client = MakeClient("mapper-01");
+  client.SendEdge(batch[0]);
+  const Receipt refused = client.AwaitState(batch[0].batch.str(), ReceiptState::kRefused);
+  EXPECT_THAT(refused.error->what, HasSubstr("left - right: measured_at "));
+  storage::Store store = Must(storage::Store::Open(folder_.path()));
+  EXPECT_TRUE(Must(storage::LoadEdges(store, RobotId("mapper-01"), false)).empty());
+}
+
 TEST_F(BatchTest, AnotherCountForAKnownBatchIsRefused) {
   auto batch = MakeBatch(3);
   Client client = MakeClient("mapper-01");

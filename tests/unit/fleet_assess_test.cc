@@ -45,6 +45,17 @@ TEST(Assess, PastEdgesHaveNotFailed) {
   EXPECT_THAT(verdict.what_to_do, HasSubstr("calibrates top - rear anew"));
 }
 
+// It has no pose, and nobody asks for it.
+TEST(Assess, ASensorThatIsGoneIsNotMissed) {
+  Rig rig;
+  rig.edges.push_back(PastEdge('d', "left", "mast", kSensorRetiredCode));
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kPass);
+  rig.edges.push_back(FailedEdge('e', "left", "rear"));
+  EXPECT_EQ(rig.Judge().level, VerdictLevel::kUnknown);
+  EXPECT_THAT(rig.Judge().why, Not(HasSubstr("mast")));
+  EXPECT_EQ(rig.Judge().unverified, "rear");
+}
+
 TEST(Assess, NothingIsKnownWhereAllIsPast) {
   const Verdict verdict = Assess({PastEdge('a', "left", "right", kRemountedCode)}, GraphSolution());
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);

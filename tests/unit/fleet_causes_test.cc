@@ -22,14 +22,16 @@ TEST(BoardCounts, TwentyOneFailuresOfABoardThatNobodyFindsAreOneLine) {
   EXPECT_THAT(cause.edges, SizeIs(21));
   EXPECT_THAT(cause.sensors, SizeIs(7));
   EXPECT_THAT(cause.boards, ElementsAre(TargetId("calib")));
-  EXPECT_EQ(cause.said.why, "no camera found board calib with 9 x 6 inner corners in any of 105 pictures");
+  EXPECT_EQ(cause.said.why, "board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
+            "camera_0, camera_1, camera_2, camera_3, camera_4, camera_5 and 1 more");
   EXPECT_EQ(cause.said.what_to_do,
             "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
             "session.yaml");
   EXPECT_EQ(cause.command, "rigcal push FOLDER");
   const Verdict verdict = visit.Judge({});
   EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
-  EXPECT_EQ(verdict.why, "No camera found board calib with 9 x 6 inner corners in any of 105 pictures.");
+  EXPECT_EQ(verdict.why, "Board calib with 9 x 6 inner corners was not found in any of the 105 pictures of "
+            "camera_0, camera_1, camera_2, camera_3, camera_4, camera_5 and 1 more.");
   EXPECT_EQ(verdict.what_to_do,
             "Look at one of the pictures: is board calib in it? Count its corners and correct `inner_corners` in "
             "session.yaml, then `rigcal push FOLDER`.");
@@ -190,8 +192,8 @@ TEST(Mixed, TwoCausesAtOnceAreTwoLinesTheWorstFirst) {
   EXPECT_THAT(causes[1].edges, SizeIs(4));
   const Verdict verdict = visit.Judge({});
   EXPECT_EQ(verdict.why,
-            "No camera found board calib with 9 x 6 inner corners in any of 50 pictures; also, rear has "
-            "files for 2 of 12 captures.");
+            "Board calib with 9 x 6 inner corners was not found in any of the 50 pictures of front, left, rear, right and top; "
+            "also, rear has files for 2 of 12 captures.");
   EXPECT_THAT(verdict.what_to_do, HasSubstr("`rigcal push FOLDER`; then copy what is missing into rear/"));
 }
 

@@ -1,6 +1,7 @@
 // What the files of a session show, and what they do not.
 #include <gmock/gmock.h>
 
+#include "tests/unit/fleet_rig.h"
 #include "tests/unit/fleet_visit.h"
 
 namespace rigcal::fleet {
@@ -8,6 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
@@ -143,6 +145,52 @@ TEST(ShortSession, IsToldWithItsCaptures) {
   Visit lidar(LidarBoard());
   lidar.AddLidarCamera("front", "BBB", "top", "BBB");
   EXPECT_EQ(OneCause(lidar, CauseKind::kShortSession).said.why, "the session of 2026-01-31 has 3 captures only");
+}
+
+// Ten of twenty captures were enough: nothing failed, and half of what was taken is missing all the same.
+TEST(FilesOfGoodPairs, AreMissedWhereACaptureInFourHasNone) {
+  Visit visit(StereoBoard());
+  const auto good = [&](const std::string& a, const std::string& b, double files_b) {
+    Edge edge = MakeEdge('a', a, b);
+    edge.figures = {{"captures_total", 20}, {"files_b", files_b}, {"files_with_board_b", files_b}};
+    visit.Add(edge);
+  };
+  good("left", "right", 16);
+  EXPECT_THAT(visit.Causes(), IsEmpty()) << "four of twenty";
+  good("left", "top", 10);
+  const RootCause cause = OneCause(visit, CauseKind::kFilesMissing);
+  EXPECT_EQ(cause.said.why, "top has files for 10 of 20 captures");
+  EXPECT_THAT(cause.edges, IsEmpty());
+}
+
+TEST(FewCaptures, OfASensorLeaveItUnknown) {
+  Rig rig;
+  rig.solution.poses.push_back(PoseOf("rear"));
+  Edge edge = MakeEdge('d', "top", "rear");
+  edge.session = SessionId(std::string(64, '1'));
+  for (const char* capture : {"00", "01", "02"}) edge.captures.push_back({CaptureId(capture), 0.1, true, {}});
+  rig.edges.push_back(edge);
+  edge.frame_a = SensorId("left");
+  rig.edges.push_back(edge);
+  const Verdict verdict = rig.Judge();
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.why, "Only 3 captures stand behind the pose of rear: too few to tell how well it is known.");
+  EXPECT_EQ(verdict.unverified, "rear");
+  edge.session = SessionId(std::string(64, '2'));
+  rig.edges.push_back(edge);
+  EXPECT_NE(rig.Judge().level, VerdictLevel::kUnknown) << "three of another day";
+}
+
+TEST(PositionsUnit, OneTrackerInMillimetresIsOneCause) {
+  Visit visit(StereoBoard());
+  for (const char* camera : {"left", "right", "top"})
+    visit.AddFailed("body", camera, "hand_eye", "positions_in_millimetres",
+                    {{"positions_step_a_m", camera[0] == 't' ? 310.2 : 250.0}});
+  const RootCause cause = OneCause(visit, CauseKind::kPositionsUnit);
+  EXPECT_THAT(cause.edges, SizeIs(3));
+  EXPECT_THAT(cause.sensors, ElementsAre(SensorId("body")));
+  EXPECT_EQ(cause.said.why, "the positions of body look like millimetres: up to 310 m from one capture to the next");
+  EXPECT_EQ(cause.said.what_to_do, "Give the positions in body/poses.csv in metres");
 }
 
 }  // namespace

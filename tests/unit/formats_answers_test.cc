@@ -68,7 +68,7 @@ TEST(Answers, Sessions) {
   EXPECT_EQ(WriteSessions({SampleSession()}),
             "{\"sessions\":[{\"bytes\":1234567,\"captured_at\":\"2026-01-31T12:00:00Z\",\"closed_at\":null,"
             "\"jobs_total\":2,\"jobs_waiting\":1,\"opened_at\":\"2026-02-01T12:00:00Z\",\"operator\":\"Ada\","
-            "\"payloads\":18,\"payloads_held\":17,\"robot\":\"mapper-01\",\"session\":\"" +
+            "\"payloads\":18,\"payloads_held\":17,\"retired\":null,\"robot\":\"mapper-01\",\"session\":\"" +
                 std::string(64, 'c') +
                 "\",\"standing\":null,\"state\":\"receiving\",\"superseded_by\":null,\"supersedes\":[]}]}");
 }
@@ -133,7 +133,7 @@ TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   EXPECT_EQ(document["published"], true);
   EXPECT_EQ(document["overdue"], true);
   EXPECT_EQ(document["valid_until"], "2026-05-01T12:00:00Z");
-  EXPECT_EQ(document["drive"], (json{{"rule", "Overdue since 1 May 2026: capture again"}, {"until", nullptr}}));
+  EXPECT_EQ(document["drive"], (json{{"rule", "Not verified: do not rely on it, overdue since 1 May 2026; capture again"}, {"until", nullptr}}));
   EXPECT_EQ(document["usable"]["revision"], 3);
   EXPECT_EQ(document["calculating"], false);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));

@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include <algorithm>
 
 #include "tests/unit/formats_samples.h"
@@ -61,6 +63,28 @@ TEST(EdgeFile, TakesOptionalFields) {
   EXPECT_EQ(edges->at(0).uncertainty.contributions.at(0).covariance(4, 4), 5.0);
 }
 
+TEST(EdgeFile, AnEdgeOrTheFileSaysWhenItWasMeasured) {
+  const std::string dated = EdgeText("a", "b", Informed(R"(,"measured_at":"2026-01-31T12:00:00Z")"));
+  const std::string undated = EdgeText("b", "c", Informed());
+  auto edges = ReadEdgeFile(FileText(dated + "," + undated), kRobot);
+  ASSERT_TRUE(edges) << Sentence(edges.error());
+  EXPECT_EQ(edges->at(0).measured_at, *ParseIso("2026-01-31T12:00:00Z"));
+  EXPECT_FALSE(edges->at(1).measured_at);
+  const EdgeId without = edges->at(1).id;
+  edges = ReadEdgeFile(R"({"format":1,"measured_at":"2026-02-01","edges":[)" + dated + "," + undated + "]}", kRobot);
+  ASSERT_TRUE(edges) << Sentence(edges.error());
+  EXPECT_EQ(edges->at(0).measured_at, *ParseIso("2026-01-31T12:00:00Z"));  // its own
+  EXPECT_EQ(edges->at(1).measured_at, *ParseIso("2026-02-01"));
+  EXPECT_NE(edges->at(1).id, without);
+  EXPECT_EQ(*ReadEdge(WriteEdge(edges->at(1)))->measured_at, *edges->at(1).measured_at);
+  edges = ReadEdgeFile(FileText(EdgeText("a", "b", Informed(R"(,"measured_at":"yesterday")"))), kRobot);
+  ASSERT_FALSE(edges);
+  EXPECT_THAT(edges.error().what, testing::HasSubstr("edges[0].measured_at: "));
+  edges = ReadEdgeFile(FileText(EdgeText("a", "b", Informed(R"(,"measured_at":"1970-01-01")"))), kRobot);
+  ASSERT_FALSE(edges);
+  EXPECT_THAT(edges.error().what, testing::HasSubstr("measured_at is not after 1970"));
+}
+
 TEST(EdgeFile, NormalisesAQuaternionWithFewDigits) {
   std::string text = FileText(EdgeText("a", "b", Informed()));
   text.replace(text.find("0,0,0.6,0.8"), 11, "0,0,-0.7071,-0.7071");
@@ -118,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{R"({"format":2,"edges":[]})", "format: must be an integer from 1 to 1"},
         BadFile{R"({"format":1})", "\"edges\" is missing"},
         BadFile{R"({"format":1,"edges":[]})", "\"edges\" is empty: there is nothing to push"},
-        BadFile{R"({"format":1,"edges":[],"robot":"x"})", "unknown field \"robot\"; known here: format and edges"},
+        BadFile{R"({"format":1,"edges":[],"robot":"x"})", "unknown field \"robot\"; known here: format, edges and measured_at"},
         BadFile{Second("\"frame_a\"", "\"frame_x\""), "edges[1]: unknown field \"frame_x\"; did you mean \"frame_a\"?"},
         BadFile{Second("\"frame_a\":\"b\",", ""), "edges[1]: \"frame_a\" is missing"},
         BadFile{Second("\"b\"", "\"-b\""), "edges[1].frame_a: sensor id \"-b\" is not a valid name"},

@@ -115,6 +115,7 @@ TEST(EdgeConversion, KeepsEveryNumberBitByBit) {
   EXPECT_EQ(edge.uncertainty.jackknife_ratio, 0.1 + 0.2);
   EXPECT_EQ(edge.uncertainty.source, UncertaintySource::kJackknife);
   EXPECT_EQ(edge.method, "given");
+  EXPECT_EQ(edge.measured_at, sent.measured_at);
   EXPECT_EQ(edge.state, EdgeState::kGood);
   ASSERT_EQ(edge.uncertainty.blocks.size(), 3u);
   EXPECT_EQ(edge.uncertainty.blocks[2].block_id, "capture-2");
@@ -122,6 +123,18 @@ TEST(EdgeConversion, KeepsEveryNumberBitByBit) {
   ASSERT_EQ(edge.uncertainty.contributions.size(), 1u);
   EXPECT_EQ(edge.uncertainty.contributions[0].name, "board size");
   EXPECT_EQ(edge.uncertainty.contributions[0].covariance, sent.uncertainty.contributions[0].covariance);
+}
+
+TEST(EdgeConversion, OfNoDateThereIsNone) {
+  Edge undated = SampleItem().edge;
+  undated.measured_at.reset();
+  const auto items = SampleBatch({undated});
+  const auto owned = ToPairwiseResult(items.front());
+  ASSERT_TRUE(owned);
+  EXPECT_EQ(owned->sample.measured_ns, 0);
+  const auto back = FromPairwiseResult(owned->sample);
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_FALSE(back->edge.measured_at);
 }
 
 // Error on one axis, looked for at that index of the C struct.

@@ -136,6 +136,7 @@ TEST(GoldenCdr, PairwiseResult) {
   sample.contributions = {1, 1, &part, false};
   sample.occurrence_idx = 1;
   sample.jackknife_ratio = 0.5;
+  sample.measured_ns = 1'700'000'000'000'000'001;
   ExpectGolden("PairwiseResult", sample);
 }
 

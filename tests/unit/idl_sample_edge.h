@@ -28,6 +28,7 @@ inline Edge SampleEdge(double shift_m = 0.0) {
   edge.uncertainty.contributions.push_back({"board size", 1e-6 * part});
   edge.uncertainty.jackknife_ratio = 0.1 + 0.2;
   edge.method = "given";
+  edge.measured_at = Stamp{1'700'000'000'000'000'001};
   edge.state = EdgeState::kGood;
   return edge;
 }

@@ -64,5 +64,19 @@ TEST(Admission, AClockMayBeADayAhead) {
   EXPECT_THAT(refused.error().what, HasSubstr("2026-01-31T12:00:00Z"));
 }
 
+TEST(Admission, AnEdgeOfTheFutureIsRefused) {
+  constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+  const Stamp now = *ParseIso("2026-01-31T12:00:00Z");
+  Edge edge;
+  edge.frame_a = SensorId("left"), edge.frame_b = SensorId("right");
+  EXPECT_TRUE(CheckMeasuredAt(edge, now));
+  edge.measured_at = Stamp{now.ns + kDay_ns};
+  EXPECT_TRUE(CheckMeasuredAt(edge, now));
+  edge.measured_at = Stamp{now.ns + kDay_ns + 1'000'000'000};
+  const Status refused = CheckMeasuredAt(edge, now);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("edge left - right: measured_at 2026-02-01T12:00:01Z is more than a day ahead"));
+}
+
 }  // namespace
 }  // namespace rigcal

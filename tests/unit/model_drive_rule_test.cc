@@ -23,7 +23,7 @@ TEST(DriveRule, APassHoldsUntilItIsDue) {
 TEST(DriveRule, WhatIsOverdueIsNoPass) {
   for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) {
     const DriveRule rule = DriveRuleOf(Of(level, "Capture top."), kDue, kAfter);
-    EXPECT_EQ(rule.rule, "Overdue since 20 Feb 2027: capture again");
+    EXPECT_EQ(rule.rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
     EXPECT_FALSE(rule.until);
     EXPECT_EQ(rule.level, VerdictLevel::kWarn);
   }
@@ -63,7 +63,7 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
   validity.max_age_ns = 30;
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).until, kDue);
   validity.overdue = true;
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Overdue since 20 Feb 2027: capture again");
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");
 }
 

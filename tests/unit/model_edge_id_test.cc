@@ -67,6 +67,8 @@ TEST(ContentDigest, EverythingThatIsMeasuredCounts) {
       [](Edge& e) { e.uncertainty.Omega(1, 0) = 0.5; },
       [](Edge& e) { e.uncertainty.dof = 3; },
       [](Edge& e) { e.uncertainty.jackknife_ratio = 0.5; },
+      [](Edge& e) { e.measured_at = Stamp{1}; },
+      [](Edge& e) { e.measured_at = Stamp{2}; },
       [](Edge& e) { e.uncertainty.source = UncertaintySource::kAssumed; },
       [](Edge& e) {
         e.uncertainty.blocks = {{"001", Vector6d::Zero()}};

@@ -4,7 +4,7 @@
 #include "server/pipeline/revise.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {
@@ -69,6 +69,44 @@ TEST_F(MergedHistoryTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
   for (int week = 21; week < 24; ++week) Week(week);
   ExpectSamePoses(Whole(ids_[2]), newest_.solution);
   EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size() + 1);  // it stays on the page, with its reason
+}
+
+TEST_F(MergedHistoryTest, EdgesOfASensorThatIsGoneLeaveTheWindowAndComeBackWithIt) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  ASSERT_TRUE(storage::RetireSensor(*store_, kOld, SensorId("c"), {clock_.now, "Ada", "taken off"}));
+  Week(20);
+  EXPECT_EQ(newest_.solution.poses.size(), 2u);
+  EXPECT_EQ(newest_.edges.size(), 9 + 2 * 8u);  // of each pair of it the newest stay, as past
+  Week(21);
+  EXPECT_EQ(newest_.edges.size(), 9 + 2 * 8u);
+  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld, *storage::LoadWhatCounts(*store_, kOld)));
+  ASSERT_TRUE(storage::RestoreSensor(*store_, kOld, SensorId("c"), {clock_.now, "Ada", "back"}));
+  Week(22);
+  ExpectSamePoses(Whole(), newest_.solution);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size());
+}
+
+// Which are the newest is told by when they were measured, not by when they came.
+TEST_F(MergedHistoryTest, DatedEdgesHaveTheirPlaceInTime) {
+  const auto push = [&](const std::vector<int>& weeks) {
+    for (const int week : weeks) {
+      std::vector<Edge> edges;
+      for (const auto& [a, b] : kMeasured) edges.push_back(GivenEdge("r", a, b, (b[0] - a[0]) + 1e-7 * week));
+      for (Edge& edge : edges) edge.measured_at = Stamp{1'600'000'000'000'000'000 + week * 7LL * 86'400 * 1'000'000'000};
+      AssignPushedIds(edges);
+      StoreEdges(edges);
+    }
+    const auto revised = Revise(*store_, kOld, clock_);
+    EXPECT_EQ(revised->calibrated_at->ns, 1'600'000'000'000'000'000 + 14 * 7LL * 86'400 * 1'000'000'000);
+    return formats::ReadRevisionDocument(revised->document)->edges;
+  };
+  (void)push({14, 13, 12, 11, 10});
+  const std::vector<Edge> edges = push({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(edges.size(), 9 * kMeasured.size());
+  for (const Edge& edge : edges)
+    if (!IsMerged(edge)) {
+      EXPECT_GE(edge.T_a_b.p_m.x() - std::round(edge.T_a_b.p_m.x()), 6.5e-7);
+    }
 }
 
 TEST_F(MergedHistoryTest, TheLiveStateFollows) {

@@ -7,6 +7,7 @@
 #include "storage/jobs.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
+#include "storage/retired.h"
 #include "storage/standing.h"
 #include "tests/unit/pipeline_fixture.h"
 
@@ -146,6 +147,42 @@ TEST_F(MergedSessionsTest, ASessionOfLongAgoThatIsPushedAgainAndRestoredCountsOn
   EXPECT_TRUE(IsOutdated());
   Revised();
   ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[20]; }));
+}
+
+TEST_F(MergedSessionsTest, ASensorThatIsGoneTakesWhatWasMergedOfItAlongAndBringsItBack) {
+  Weeks(0, 20);
+  const SensorId top("top");
+  const auto of_top = [&](const Edge& edge) { return edge.frame_a == top || edge.frame_b == top; };
+  ASSERT_TRUE(storage::RetireSensor(*store_, kWeekly, top, {clock_.now, "Ada", "taken off"}));
+  EXPECT_TRUE(IsOutdated());
+  Revised();
+  ExpectPoses(WholeBut(of_top));
+  EXPECT_FALSE(IsOutdated());
+  for (const SensorPose& pose : newest_.solution.poses) EXPECT_NE(pose.sensor, top);
+  Weeks(20, 23);  // bring it again
+  ExpectPoses(WholeBut(of_top));
+  EXPECT_FALSE(IsOutdated());
+  EXPECT_EQ(Good(), 9u);
+  EXPECT_EQ(newest_.edges.size(), 8 * 4 + 1u);
+  ASSERT_TRUE(storage::RestoreSensor(*store_, kWeekly, top, {clock_.now, "Ada", "back"}));
+  EXPECT_TRUE(IsOutdated());
+  Revised();
+  ExpectPoses(WholeBut([](const Edge&) { return false; }));
+  EXPECT_FALSE(IsOutdated());
+  EXPECT_EQ(Good(), 9 * kSeen.size());
+}
+
+TEST_F(MergedSessionsTest, ARetiredSessionOfLongAgoTakesNoPartUntilItIsRestored) {
+  Weeks(0, 20);
+  ASSERT_TRUE(storage::RetireSession(*store_, sessions_[2], {clock_.now, "Ada", "blurred"}));
+  EXPECT_TRUE(IsOutdated());
+  Revised();
+  ExpectPoses(WholeBut([&](const Edge& edge) { return edge.session == sessions_[2]; }));
+  EXPECT_FALSE(IsOutdated());
+  ASSERT_TRUE(*storage::MakeCurrent(*store_, sessions_[2], storage::MadeCurrent::kRestored, {clock_.now, "Ada", "was right"}));
+  EXPECT_TRUE(IsOutdated());
+  Revised();
+  ExpectPoses(WholeBut([](const Edge&) { return false; }));
 }
 
 // A session of long ago that is only half calibrated.

@@ -96,6 +96,14 @@ TEST_F(NamesTest, WhetherARobotIsKnownOrItsNameASlip) {
   EXPECT_EQ(Ask("known_robot", "{}").error().code, ErrorCode::kInvalidInput);
 }
 
+TEST_F(NamesTest, WhoseFilesTheyAre) {
+  const std::string none = std::string(64, 'e');
+  EXPECT_EQ(*Ask("known_files", R"({"robot":"rover","digests":")" + none + R"("})"), R"({"asked":1,"files":0})");
+  EXPECT_EQ(Ask("known_files", R"({"robot":"rover","digests":""})").error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(Ask("known_files", R"({"robot":"rover","digests":"12"})").error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(Ask("known_files", R"({"robot":"rover"})").error().code, ErrorCode::kInvalidInput);
+}
+
 double ProcessorMs() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -8,6 +8,7 @@
 #include "server/pipeline/orders.h"
 #include "storage/revisions.h"
 #include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {
@@ -133,7 +134,7 @@ TEST_F(OrdersTest, ARetiredEdgeIsPastForGood) {
   const auto revision = formats::ReadRevisionDocument(revisions_.back().document);
   ASSERT_TRUE(revision);
   for (const Edge& edge : revision->edges) EXPECT_EQ(IsPast(edge), edge.id.str() == id);
-  EXPECT_THAT(revisions_.back().document, HasSubstr("retired by Ada on 2027-01-15: typed 12 for 2"));
+  EXPECT_THAT(revisions_.back().document, HasSubstr("retired on 2027-01-15 by Ada: typed 12 for 2"));
   EXPECT_NEAR(poses_[2].T_ref_sensor.p_m.x(), 2.002, 1e-9);
   EXPECT_EQ(live_.Of(RobotId("r")).solver->graph().edges.size(), 3u);
 
@@ -157,6 +158,49 @@ TEST_F(OrdersTest, AnEstimatedEdgeCanBeRetiredToo) {
   StepAll();
   EXPECT_EQ(revisions_.back().document.find("\"state\":\"good\""), std::string::npos);
   EXPECT_NE(revisions_.back().verdict.level, VerdictLevel::kPass);
+}
+
+TEST_F(OrdersTest, ARetiredEdgeIsRestored) {
+  std::vector<Edge> edges = Triangle("r");
+  StoreEdges(edges);
+  StepAll();
+  const std::string before = revisions_.back().document, id = edges[2].id.str();
+  ASSERT_TRUE(Order("retire", {{"thing", id.substr(0, 8)}, {"who", "Ada"}, {"reason", "mistaken"}}));
+  StepAll();
+  EXPECT_NE(revisions_.back().document, before);
+  const auto done = Order("restore", {{"thing", id}, {"who", "Ada"}});
+  ASSERT_TRUE(done) << Sentence(done.error());
+  EXPECT_EQ(json::parse(done->document)["edge"]["state"], "good");
+  EXPECT_EQ(json::parse(done->document)["standing"]["how"], "restored");
+  StepAll();
+  EXPECT_EQ(revisions_.back().document, before);
+  EXPECT_EQ(live_.Of(RobotId("r")).solver->graph().edges.size(), 3u);
+}
+
+TEST_F(OrdersTest, ARetiredSessionIsPastUntilItIsRestored) {
+  const SessionId session = SessionWithEdge(0.1);
+  const std::string command = "rigcal restore " + session.str().substr(0, 16);
+  const auto done = Order("retire", {{"thing", session.str().substr(0, 8)}, {"who", "Ada"}, {"reason", "blurred"}});
+  ASSERT_TRUE(done) << Sentence(done.error());
+  EXPECT_EQ(json::parse(done->document)["session"]["retired"]["reason"], "blurred");
+  StepAll();
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kUnknown);
+  EXPECT_THAT(revisions_.back().verdict.why, HasSubstr("All that was calibrated is past"));
+  EXPECT_FALSE(revisions_.back().calibrated_at);
+  const formats::RevisionInput document = *formats::ReadRevisionDocument(revisions_.back().document);
+  for (const Edge& edge : document.edges) {
+    EXPECT_TRUE(IsPast(edge));
+    EXPECT_THAT(edge.diagnoses.front().what, HasSubstr("was retired on 2027-01-15 by Ada: blurred"));
+  }
+  EXPECT_THAT(Page("/robots/r/"), HasSubstr("<code class=\"typed\">" + command + "</code>"));
+  EXPECT_THAT(Page("/robots/r/sessions/" + session.str() + "/"),
+              HasSubstr("This session does not count: it was retired on 2027-01-15 by Ada: blurred."));
+  const auto again = storage::MakeCurrent(*store_, session, storage::MadeCurrent::kPushedAgain, {clock_.now, "robot r", ""});
+  EXPECT_FALSE(*again);  // pushed again it stays retired
+  ASSERT_TRUE(Order("restore", {{"thing", session.str()}, {"who", "Ada"}}));
+  StepAll();
+  EXPECT_NEAR(RightAt(), 0.1, 1e-9);
+  EXPECT_TRUE(json::parse(Ask("sessions", {{"robot", "r"}}))["sessions"][0]["retired"].is_null());
 }
 
 TEST_F(OrdersTest, WhatCannotBeDoneSaysWhy) {

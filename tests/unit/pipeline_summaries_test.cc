@@ -12,7 +12,7 @@
 #include "storage/fleet_facts.h"
 #include "storage/revisions.h"
 #include "storage/robot_summary.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {

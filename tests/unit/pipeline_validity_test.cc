@@ -6,6 +6,7 @@
 #include "server/pipeline/validity.h"
 #include "storage/attempts.h"
 #include "storage/edges.h"
+#include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/standing.h"
 #include "tests/unit/pipeline_fixture.h"
@@ -164,7 +165,7 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   EXPECT_NE(page.find("<section class=\"banner " + NameOf(revisions_[0].verdict.level) + " overdue\""),
             std::string::npos);
   EXPECT_EQ(page.find("OK to drive"), std::string::npos);
-  EXPECT_EQ(Ask("show")["drive"]["rule"], "Overdue since " + DayText(until) + ": capture again");
+  EXPECT_EQ(Ask("show")["drive"]["rule"], "Not verified: do not rely on it, overdue since " + DayText(until) + "; capture again");
   EXPECT_LT(fleet.find("<span class=\"badge warn\">overdue</span> <span class=\"badge "), fleet.find("class=\"why\""));
 }
 
@@ -223,6 +224,45 @@ TEST_F(ValidityTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
   EXPECT_EQ(Row()["calibrated_at"], ToIso(clock_.now));
   // The history ends with the date that the page tells.
   EXPECT_NE(Page("/robots/r/trend.js").find("\"date\":\"" + ToIso(clock_.now).substr(0, 10) + "\""), std::string::npos);
+}
+
+TEST_F(ValidityTest, TheAgeOfPushedEdgesIsThatOfTheirMeasurement) {
+  std::vector<Edge> edges = Closing("r", 2.0);
+  const Stamp measured{clock_.now.ns - 100 * kDay_ns};
+  for (Edge& edge : edges) edge.measured_at = Stamp{measured.ns - kDay_ns};
+  edges[1].measured_at = measured;
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  StepAll();
+  EXPECT_EQ(Ask("show")["calibrated_at"], ToIso(measured));
+  EXPECT_EQ(Ask("show")["valid_until"], ToIso({measured.ns + kDefaultMaxAge_ns}));
+  EXPECT_EQ(Row()["overdue"], true);
+  EXPECT_EQ(Row()["age_ns"], 100 * kDay_ns);
+  EXPECT_EQ(json::parse(*Answer(Context(), "due", "{}"))["robots"][0]["overdue"], true);
+  edges[0].measured_at.reset();  // of now
+  AssignPushedIds(edges);
+  StoreEdges({edges[0]});
+  StepAll();
+  EXPECT_EQ(Row()["overdue"], false);
+}
+
+// One that was measured before its sensor was moved is past, however late it comes.
+TEST_F(ValidityTest, AnEdgeOfBeforeARemountIsPastIfItTellsWhenItWasMeasured) {
+  StoreSession("r", {{"left/01.png", "1"}, {"right/01.png", "2"}}, {SensorId("right")});
+  std::vector<Edge> edges = {GivenEdge("r", "left", "right", 0.1), GivenEdge("r", "left", "right", 0.2),
+                             GivenEdge("r", "left", "right", 0.3)};
+  edges[0].measured_at = Stamp{clock_.now.ns - kDay_ns};
+  edges[1].measured_at = Stamp{clock_.now.ns + kDay_ns / 2};
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  StepAll();
+  for (const json& row : Ask("edges")["edges"]) {
+    if (row["method"] != "given") continue;
+    EXPECT_EQ(row["state"] == "failed", row["id"] == edges[0].id.str());
+    if (row["state"] == "failed") {
+      EXPECT_EQ(row["diagnoses"][0]["code"], "remounted");
+    }
+  }
 }
 
 // A session of a wrong date that was pushed again in a corrected form does not keep the robot from being due.

@@ -9,7 +9,7 @@
 #include "server/pipeline/whole_revision.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/pipeline_fixture.h"
 
 namespace rigcal::pipeline {

@@ -51,7 +51,7 @@ TEST(ReportFleet, RowsWithAgeAndLinks) {
   EXPECT_THAT(page, HasSubstr("href=\"robots/bad/\""));
   EXPECT_THAT(page, HasSubstr(AgeText(3 * kDay_ns) + " ago"));
   EXPECT_THAT(page, HasSubstr("<strong class=\"drive\" dir=\"auto\">Do not drive.</strong>"));
-  EXPECT_THAT(page, HasSubstr("<strong class=\"drive\">Overdue since 10 Jul 1970: capture again.</strong>"));
+  EXPECT_THAT(page, HasSubstr("<strong class=\"drive\">Not verified: do not rely on it, overdue since 10 Jul 1970; capture again.</strong>"));
   EXPECT_THAT(page, HasSubstr("<strong class=\"drive until\" dir=\"auto\">OK to drive until 10 Jul 1970.</strong>"));
   EXPECT_THAT(page, Not(HasSubstr("badge fail\">overdue"))) << "amber";
   EXPECT_THAT(page, HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "

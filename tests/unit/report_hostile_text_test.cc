@@ -94,6 +94,10 @@ INSTANTIATE_TEST_SUITE_P(
                 in.revision.solution.cycles.worst.resize(1);
                 in.revision.solution.cycles.worst[0].sensors = {SensorId(kHostile)};
               }},
+        Field{"retired_sensor",
+              [](ReportInput& in) {
+                in.revision.retired = {{SensorId(kHostile), {Stamp{1}, kHostile, kHostile}}};
+              }},
         Field{"method", [](ReportInput& in) { in.revision.edges[0].method = kHostile; }},
         Field{"capture_note", [](ReportInput& in) { in.revision.edges[0].captures[4].note = kHostile; }},
         Field{"picture_title", [](ReportInput& in) { in.revision.edges[0].evidence[0].title = kHostile; }},
@@ -124,11 +128,11 @@ TEST(HostileTextElsewhere, FleetAndRobotPage) {
   fleet.robots = 1;
   ExpectHarmless(RenderFleet(fleet, {{row}, 1, 1, 1}, Stamp{2}, {kHostile, kHostile, kHostile, true, 1}).value(),
                  "fleet");
-  const SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
-  ExpectHarmless(
-      RenderRobot({row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true}, Stamp{2})
-          .value(),
-      "robot");
+  SessionRow session{SessionId(kHostile), Stamp{1}, kHostile, false, 2, 1, 1, 1};
+  session.retired = Word{Stamp{1}, kHostile, kHostile};
+  RobotInput robot{row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true};
+  robot.retired = {{SensorId(kHostile), *session.retired}};
+  ExpectHarmless(RenderRobot(robot, Stamp{2}).value(), "robot");
 }
 
 TEST(HostileTextElsewhere, SessionPage) {
@@ -143,6 +147,8 @@ TEST(HostileTextElsewhere, SessionPage) {
   input.edges = {SampleReport().revision.edges[0]};
   input.edges[0].captures[0] = {CaptureId(kHostile), 0.1, false, kHostile};
   input.edges[0].evidence[0] = {kHostile, sensor.id, CaptureId(kHostile), Sha256Of("x"), "jpg"};
+  input.row.retired = Word{Stamp{1}, kHostile, kHostile};
+  input.retired = {{sensor.id, *input.row.retired}};
   ExpectHarmless(RenderSession(input).value(), "session");
 }
 

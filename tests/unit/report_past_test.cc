@@ -34,7 +34,7 @@ ReportInput OnePast(const char* code) {
 }
 
 TEST(ReportPast, APastEdgeIsNoFailure) {
-  for (const char* code : {"superseded", "remounted", "retired"}) {
+  for (const char* code : {"superseded", "remounted", "retired", "sensor_retired"}) {
     const ReportInput input = OnePast(code);
     const std::string page = RenderRevision(input, "{}").value().at("index.html");
     EXPECT_THAT(page, HasSubstr("5 good, 0 failed, 1 past"));
@@ -101,6 +101,26 @@ TEST(ReportPast, ASensorThatOnlyPastEdgesReachSaysSo) {
   MakePast(old, "remounted");
   input.revision.edges.push_back(old);
   EXPECT_EQ(WhyUnknown(input.revision).at(SensorId("tracker")), "its edges do not count any more: front_left");
+}
+
+TEST(ReportPast, ARetiredSensorIsNamedWithTheWayBackAndIsNoLoss) {
+  ReportInput input = SampleReport();
+  input.previous = PastRevision{6, input.revision};
+  const SensorId gone("top");
+  std::erase_if(input.revision.solution.poses, [&](const SensorPose& pose) { return pose.sensor == gone; });
+  Edge& its = input.revision.edges[4];
+  ASSERT_EQ(its.frame_b, gone);
+  std::erase_if(input.revision.solution.residuals, [&](const EdgeResidual& residual) { return residual.edge == its.id; });
+  MakePast(its, "sensor_retired");
+  input.revision.retired = {{gone, {*ParseIso("2026-01-31T12:00:00Z"), "Ada <b>", "taken off."}}};
+  EXPECT_THAT(Compare(input.previous->revision, input.revision).sensors_retired, ElementsAre(gone));
+  EXPECT_TRUE(Compare(input.previous->revision, input.revision).sensors_lost.empty());
+  EXPECT_TRUE(Compare(input.revision, input.revision).sensors_retired.empty());
+  const std::string page = RenderRevision(input, "{}").value().at("index.html");
+  EXPECT_THAT(page, HasSubstr(gone.str() + " was retired on 2026-01-31 by Ada &lt;b&gt;: taken off. To bring it back: "
+                              "<code class=\"typed\">rigcal restore " + gone.str() + " --robot "));
+  EXPECT_THAT(page, HasSubstr("Retired: " + gone.str() + "."));
+  EXPECT_THAT(page, Not(HasSubstr("No longer known")));
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"
 #include "storage/policies.h"
+#include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/session_estimates.h"
-#include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {

@@ -212,6 +212,22 @@ TEST_F(EdgesTest, ASessionHasItsOwnEdges) {
   EXPECT_EQ(edges[0].uncertainty.blocks.size(), 3u);
 }
 
+TEST_F(EdgesTest, AnEdgeWasMeasuredWhenItSaysElseWhenItCame) {
+  Edge dated = MakeEdge(1);
+  dated.measured_at = Stamp{1'234'567'890'123'456'789};
+  ASSERT_TRUE(AppendEdge(store_, dated, {50}));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {60}));
+  Edge of_session = MakeEdge(3);
+  of_session.session = AppendOpenSession(store_, 1);
+  ASSERT_TRUE(AppendEdge(store_, of_session, {70}));
+  EXPECT_EQ(LoadEdge(store_, dated.id).value()->measured_at, dated.measured_at);
+  EXPECT_FALSE(LoadEdge(store_, MakeEdge(2).id).value()->measured_at);
+  const auto at = LoadMeasuredAt(store_, {dated, MakeEdge(2), of_session}).value();
+  EXPECT_EQ(at.at(dated.id), *dated.measured_at);
+  EXPECT_EQ(at.at(MakeEdge(2).id), Stamp{60});
+  EXPECT_EQ(at.at(of_session.id), MakeManifest(1).header.captured_at);
+}
+
 TEST_F(EdgesTest, TheWatermarkGrowsWithEachEdgeOfTheRobot) {
   const RobotId other("mapper-02");
   EXPECT_EQ(LoadEdgeWatermark(store_, kRobot).value(), 0);

@@ -6,7 +6,7 @@
 
 #include "server/base/durable_file.h"
 #include "storage/merged_edges.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {

@@ -13,6 +13,7 @@
 #include "storage/merged_edges.h"
 #include "storage/policies.h"
 #include "storage/query.h"
+#include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 #include "storage/robot_summary.h"
@@ -34,6 +35,8 @@ class QueryPlanTest : public StoreTest {
       ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, robot).value(), robot)));
     }
     session_ = session;
+    ASSERT_TRUE(RetireSensor(store_, kRobot, SensorId("s1"), {{2}, "Ada", "taken off"}));
+    ASSERT_TRUE(RetireSession(store_, session, {{2}, "Ada", "blurred"}));
   }
 
   // Rows that a statement stepped through without an index, by its text. A CROSS JOIN from a queue is meant: it holds
@@ -74,7 +77,7 @@ class QueryPlanTest : public StoreTest {
   SessionId session_;
 };
 
-TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
+TEST_F(QueryPlanTest, QuestionsWhetherARobotIsKnownDoNotScan) {
   (void)Scanned();  // what SetUp left
   EXPECT_TRUE(LoadRobot(store_, kRobot).value());
   EXPECT_TRUE(HasRobot(store_, kRobot).value());
@@ -82,6 +85,11 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_EQ(LoadRobotNames(store_, "m", 9)->size(), 1U);
   EXPECT_EQ(LoadRobotsBeside(store_, RobotId("bb"), 1)->size(), 2U);
   EXPECT_EQ(LoadRobotsNamed(store_, {RobotId("d"), RobotId("e")})->size(), 1U);
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan) {
+  (void)Scanned();
   EXPECT_TRUE(LoadOpenSessions(store_, kRobot));
   EXPECT_TRUE(LoadSessions(store_, kRobot));
   EXPECT_TRUE(LoadSession(store_, session_));
@@ -103,8 +111,15 @@ TEST_F(QueryPlanTest, QuestionsAboutOneRobotDoNotScan) {
   EXPECT_TRUE(LoadMergedEdges(store_, kRobot));
   EXPECT_TRUE(IsMergeOutdated(store_, kRobot, *LoadWhatCounts(store_, kRobot)));
   EXPECT_TRUE(LoadListedSensors(store_, kRobot));
+  EXPECT_TRUE(LoadHeldByAnother(store_, RobotId("b"), {Digest(std::string(64, 'a'))}));
   EXPECT_TRUE(LoadCapturedAt(store_, kRobot));
-  EXPECT_TRUE(LoadEarliestClosed(store_, kRobot));
+  EXPECT_TRUE(LoadNamedReference(store_, kRobot, {SensorId("right")}));
+  EXPECT_TRUE(LoadRetired(store_, kRobot));
+  EXPECT_TRUE(LoadRetiredSessions(store_, kRobot));
+  EXPECT_TRUE(LoadRetiredSensors(store_, kRobot));
+  EXPECT_TRUE(HasSensor(store_, kRobot, SensorId("nobody")));
+  EXPECT_TRUE(LoadStanding(store_, kRobot, SensorId("left")));
+  EXPECT_TRUE(LoadStanding(store_, session_));
   EXPECT_TRUE(IsPublished(store_, {kRobot, 1}));
   EXPECT_EQ(LoadRevisions(store_, kRobot, 2, 1)->size(), 1U);
   EXPECT_EQ(LoadCreatedAt(store_, kRobot, {1, 2})->size(), 1U);

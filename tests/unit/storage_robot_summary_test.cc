@@ -13,7 +13,7 @@
 #include "storage/policies.h"
 #include "storage/robot_summary.h"
 #include "storage/session_estimates.h"
-#include "storage/standing.h"
+#include "storage/retired.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {

@@ -93,6 +93,24 @@ TEST_F(SessionsTest, ADigestIsHeldForTheRobotThatSentIt) {
   EXPECT_THAT(LoadHeld(store_, second).value(), ElementsAre(false, false, false));
 }
 
+TEST_F(SessionsTest, FilesOfAnotherRobotAreToldOnceItsSessionIsWhole) {
+  const RobotId other("other");
+  const Manifest manifest = MakeManifest(4);
+  std::set<Digest> digests;
+  for (const Payload& payload : manifest.payloads) digests.insert(payload.digest);
+  const SessionId open = AppendOpenSession(store_, 4);
+  EXPECT_FALSE(LoadHeldByAnother(store_, other, digests)->has_value()) << "it may never come whole";
+  ASSERT_TRUE(AppendHeld(store_, open, {0, 1, 2, 3}, {11}));
+  ASSERT_TRUE(CloseSession(store_, open, {}, {12}));
+  const auto held = LoadHeldByAnother(store_, other, digests).value();
+  ASSERT_TRUE(held);
+  EXPECT_EQ(held->robot, kRobot);
+  EXPECT_EQ(held->session, open);
+  EXPECT_EQ(held->contents, digests.size());
+  EXPECT_FALSE(LoadHeldByAnother(store_, kRobot, digests)->has_value()) << "its own";
+  EXPECT_FALSE(LoadHeldByAnother(store_, other, {Digest(std::string(64, 'e'))})->has_value());
+}
+
 TEST_F(SessionsTest, OnlyAWholeSessionCloses) {
   const SessionId id = AppendOpenSession(store_, 2);
   ASSERT_TRUE(AppendHeld(store_, id, {0}, {1}));

@@ -4,6 +4,7 @@
 
 #include "server/base/durable_file.h"
 #include "server/formats/documents.h"
+#include "storage/retired.h"
 #include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include "storage/retired.h"
 #include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
 

@@ -14,6 +14,7 @@ namespace rigcal::calib {
 // that failed for want of memory, say, is not kept. Holds limits::kCameraMemoryViewsMax views.
 class CameraMemory {
  public:
+  // What it does not know it asks of `solver`; an empty one stands for EstimateCamera.
   explicit CameraMemory(CameraSolver solver = {}) : solver_(std::move(solver)) {}
   [[nodiscard]] OrDiagnosis<CameraEstimate> Estimate(const CameraProblem& problem);
 

@@ -23,7 +23,9 @@ struct GatheredViews {
   Matrix6d motion_normal = Matrix6d::Zero();
   Eigen::MatrixXd motion_mixed;  // 6 rows, a column for each intrinsic
 
+  // Of no views yet.
   explicit GatheredViews(CameraModel model);
+  // A view with so many corners, its board's pose eliminated.
   void Add(const ViewMoments& moments, std::size_t corners);
 };
 

@@ -20,7 +20,7 @@ struct IntrinsicsPull {
   IntrinsicsVector given = IntrinsicsVector::Zero(), sigma = IntrinsicsVector::Zero();  // sigma 0: held
   double corner_sigma_px = 0;                                                           // 0: nothing pulls
 
-  [[nodiscard]] bool Pulls() const { return corner_sigma_px > 0; }
+  [[nodiscard]] bool Pulls() const { return corner_sigma_px > 0; }  // false: the intrinsics are not refined
   // Of the residual given - estimated, in px.
   [[nodiscard]] double Weight(int idx) const { return sigma[idx] > 0 ? corner_sigma_px / sigma[idx] : 0.0; }
 };

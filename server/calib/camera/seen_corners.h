@@ -16,6 +16,7 @@ constexpr std::size_t kCornersMin = 6;  // of a view, not on one line
 struct SeenCorners {
   std::vector<int> idx;
   std::vector<Eigen::Vector2d> uv_px;
+  // The target is not seen; how many of its points are.
   [[nodiscard]] bool empty() const { return uv_px.empty(); }
   [[nodiscard]] std::size_t size() const { return uv_px.size(); }
 };

@@ -28,6 +28,7 @@ struct ViewOfIntrinsics {
   IntrinsicsVector gradient;
   Eigen::Matrix<double, 6, kIntrinsicsMax> d_board;  // T_cam_board * Exp(d_board * change of the intrinsics)
 };
+// Schur complement over the board's pose, whose block of the normal matrix has to be invertible.
 [[nodiscard]] ViewOfIntrinsics Eliminated(const ViewMoments& view);
 
 }  // namespace rigcal::calib

@@ -14,6 +14,7 @@ constexpr std::size_t kBlocksMax = 40;
 
 // Captures are named in the order in which they were taken, with leading zeros or without: "9" is before "10".
 struct TakenBefore {
+  // By the numbers within the names, as strverscmp compares.
   bool operator()(const CaptureId& a, const CaptureId& b) const;
 };
 

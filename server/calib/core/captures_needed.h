@@ -12,6 +12,7 @@ struct CapturesNeeded {
   std::size_t least = 0;   // fewer: there is no answer
   std::size_t enough = 0;  // fewer: a note on the edge says that its uncertainty is rough
 };
+// The limits that the estimator of this method holds itself to.
 [[nodiscard]] CapturesNeeded NeededBy(Method method);
 
 }  // namespace rigcal::calib

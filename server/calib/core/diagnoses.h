@@ -16,8 +16,10 @@ constexpr std::size_t kCapturesEnough = 8;  // likewise; fewer: the jackknife ha
 // Residuals beyond this mean that something is wrong, not noisy: a part of the picture's width, and at least one pixel.
 constexpr double kHighRmsRatio = 1.0 / 600;
 
+// "too_few_captures": `both` is how many show the board to both.
 [[nodiscard]] Diagnosis TooFewCaptures(const StereoProblem& problem, std::size_t both);
 [[nodiscard]] Diagnosis FewCaptures(const StereoProblem& problem, std::size_t both);  // a note on a good edge
+// "no_common_view": each camera sees the board, but never both in one capture.
 [[nodiscard]] Diagnosis NoCommonView(const StereoProblem& problem);
 // The captures that a camera (&StereoCapture::a or b) misses: "board_layout", "picture_unreadable" and
 // "board_not_found", where there are any.

@@ -13,6 +13,7 @@ using Directions = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 struct SplitDirections {
   Directions within, across;
 };
+// The columns of `spanned` have to be independent; none at all is allowed.
 [[nodiscard]] inline SplitDirections SplitBy(const Directions& spanned) {
   const Eigen::Index count = spanned.cols();
   const Matrix6d Q =

@@ -29,6 +29,7 @@ struct JointCovariance {
   // The other part: what one sigma of each pulled number does to T_a_b, ascending by index.
   std::vector<Vector6d> shifts_a, shifts_b;
 };
+// At the optimum. kInvalidInput where there are fewer residuals than unknowns, or a direction is open.
 [[nodiscard]] Result<JointCovariance> ModelCovariance(const JointProblem& problem, const JointState& state);
 
 }  // namespace rigcal::calib

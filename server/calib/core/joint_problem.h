@@ -23,7 +23,7 @@ struct JointCamera {
   bool estimate = true;   // intrinsics; otherwise they stay as the state gives them
   std::vector<int> held;  // of the estimated intrinsics, by index: stay as the state gives them
   IntrinsicsPull pull;    // of the estimated intrinsics: what is known of them beforehand
-  [[nodiscard]] bool IsFree() const { return estimate && !pull.Pulls(); }
+  [[nodiscard]] bool IsFree() const { return estimate && !pull.Pulls(); }  // by the views alone
 };
 
 struct JointProblem {

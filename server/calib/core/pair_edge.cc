@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/calib/camera/camera_diagnoses.h"
+#include "server/model/unit_doubt.h"
 
 namespace rigcal::calib {
 
@@ -40,11 +41,23 @@ void FilesFound::Add(std::size_t capture_idx, bool readable, bool board) {
 }
 
 void AddFilesFound(const FilesFound& found, const std::string& side, Edge& edge) {
+  const auto captures = edge.figures.find("captures_total");
+  const bool complete = captures != edge.figures.end() && static_cast<double>(found.files) >= captures->second;
+  if (edge.state == EdgeState::kGood && complete) return;
   edge.figures["files" + side] = static_cast<double>(found.files);
   edge.figures["files_with_board" + side] = static_cast<double>(found.with_board);
   if (!found.first_unreadable_idx) return;
   edge.figures["files_unreadable" + side] = static_cast<double>(found.unreadable);
   edge.figures["first_unreadable" + side + "_idx"] = static_cast<double>(*found.first_unreadable_idx);
+}
+
+std::optional<Diagnosis> PositionsInMillimetres(const SensorId& tracker, const PoseTable& poses,
+                                                const std::string& side) {
+  const std::string doubt = UnitDoubt(poses);
+  if (doubt.empty()) return std::nullopt;
+  return Diagnosis{"positions_in_millimetres", tracker.str() + ": " + doubt,
+                   "Give the positions in " + tracker.str() + "/poses.csv in metres.",
+                   {{"positions_step" + side + "_m", LongestStep_m(poses)}}};
 }
 
 void Append(std::vector<Diagnosis> more, std::vector<Diagnosis>& diagnoses) {

@@ -10,6 +10,7 @@
 #include "server/calib/motion/motion_observability.h"
 #include "server/model/camera.h"
 #include "server/model/method.h"
+#include "server/model/pose_table.h"
 
 namespace rigcal::calib {
 
@@ -24,12 +25,18 @@ namespace rigcal::calib {
 struct FilesFound {
   std::size_t files = 0, unreadable = 0, with_board = 0;  // of a tracker every row counts as one with a board
   std::optional<std::size_t> first_unreadable_idx;        // into the captures of the pair
+  // A file; of those that are not `readable` the first is remembered, by its capture.
   void Add(std::size_t capture_idx, bool readable, bool board);
 };
 // "files_a" and "files_with_board_a" with `side` "_a"; where there are any, "files_unreadable_a" and
-// "first_unreadable_a_idx".
+// "first_unreadable_a_idx". On a good edge only where captures lack a file of this sensor.
 void AddFilesFound(const FilesFound& found, const std::string& side, Edge& edge);
+// Of a tracker's positions that look like millimetres (unit_doubt.h), with "positions_step_a_m" with `side` "_a" among
+// its figures; nothing where they look like metres.
+[[nodiscard]] std::optional<Diagnosis> PositionsInMillimetres(const SensorId& tracker, const PoseTable& poses,
+                                                              const std::string& side);
 
+// Behind those that are there, in their order.
 void Append(std::vector<Diagnosis> more, std::vector<Diagnosis>& diagnoses);
 // "fx_a_px", ..., "k1_a_ratio" with `camera` "_a".
 void AddIntrinsicsFigures(const CameraIntrinsics& intrinsics, const std::string& camera, Edge& edge);

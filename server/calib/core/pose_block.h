@@ -16,6 +16,7 @@ constexpr int kPoseSize = 7;
 using PoseBlock = Eigen::Matrix<double, kPoseSize, 1>;
 using QuaternionJacobian = Eigen::Matrix<double, 3, 4>;
 
+// [p, q_xyzw], q as it stands: neither is made a unit nor given another sign.
 [[nodiscard]] PoseBlock BlockOf(const Se3& T);
 [[nodiscard]] Se3 PoseOf(const double* block);
 

@@ -28,6 +28,7 @@ void MarkBeams(const PlanePatch& patch, std::vector<char>& seen);  // `seen`: kB
 // The answer with all ranges, or those of one group of beams, longer by so much.
 using WithRanges = std::function<Result<Se3>(double longer_m)>;
 using WithBeams = std::function<Result<Se3>(std::size_t group, double longer_m)>;
+// "range bias of LIDAR", solved anew at every call. Without a sigma nothing is added.
 void AddRangeBias(const SensorId& lidar, double sigma_m, const WithRanges& solved,
                   std::vector<GivenConstant>& constants);
 // Every group errs by the lidar's range_bias_sigma_m alone as well; those not in `seen` leave the answer T_a_b. One

@@ -34,6 +34,7 @@ struct Selection {
 [[nodiscard]] std::set<CaptureId> SeenByBoth(const StereoProblem& problem);
 [[nodiscard]] Selection Select(const StereoProblem& problem);
 
+// How many of those at the indices `used` show the board to both cameras.
 [[nodiscard]] std::size_t CountBoth(const StereoProblem& problem, const std::vector<std::size_t>& used);
 // `turn_b`: of the views of b, as in StereoEstimate. Corners are taken as typical until SetCornerSigma says otherwise.
 [[nodiscard]] JointProblem JointOf(const StereoProblem& problem, const std::vector<std::size_t>& used,

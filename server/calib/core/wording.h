@@ -21,6 +21,7 @@ using OrDiagnosis = tl::expected<T, Diagnosis>;
 
 // A word of a sentence: words, a name or a count.
 struct Word {
+  // Implicit, so that a list of words may mix them; a number becomes its digits.
   Word(std::string words) : text(std::move(words)) {}
   Word(const char* words) : text(words) {}
   Word(const SensorId& id) : text(id.str()) {}
@@ -49,6 +50,7 @@ struct Word {
 struct MissedCaptures {
   std::vector<CaptureId> captures;
   std::string first_reason;
+  // In the order of the captures: the first call's `why` becomes the reason.
   void Add(const CaptureId& capture, const std::string& why);
 };
 // What few captures mean for the uncertainty, after "with fewer than 8".

@@ -11,6 +11,7 @@ struct CaptureGroups {
   std::vector<int> group_of_place;  // whole bursts, contiguous in time; ascending from 0
 
   friend bool operator==(const CaptureGroups&, const CaptureGroups&) = default;
+  // How many groups; 0 without places.
   [[nodiscard]] int groups() const { return group_of_place.empty() ? 0 : group_of_place.back() + 1; }
 };
 

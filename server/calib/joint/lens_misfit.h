@@ -16,8 +16,10 @@ struct FoundMisfits {
   FieldEquations equations;
   Components components;  // per camera of the problem
   bool held = false;      // the state that it was found at has the fields taken out
+  // Whether a camera's evidence reaches kMisfitEvidence.
   [[nodiscard]] bool any() const;
 };
+// Looked for in what `refined` leaves unexplained; cameras whose picture's size is not known have none.
 [[nodiscard]] FoundMisfits FindMisfits(const SessionProblem& problem, const Refined& refined);
 
 // The state with each field at its mean, given what was seen.

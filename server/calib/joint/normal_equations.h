@@ -10,8 +10,10 @@ namespace rigcal::calib::joint {
 struct LookWeights {
   std::vector<double> corners, plates, poses;  // below 1: contradicts the others
   std::vector<double> in_burst;                // of corners: below 1: has errors in common with others
+  // Of the i-th look of problem.corners.
   [[nodiscard]] double OfCorners(std::size_t i) const { return corners[i] * in_burst[i]; }
 };
+// Every look counts in full.
 [[nodiscard]] LookWeights FullWeights(const SessionProblem& problem);
 
 struct NormalEquations {
@@ -43,6 +45,7 @@ struct Linearized {
   SessionFit fit;
   double cost = 0.0;
 
+  // What is given and all groups together.
   [[nodiscard]] NormalEquations Total() const;
 };
 

@@ -69,12 +69,14 @@ struct SessionProblem {
   std::vector<RelativeKnown> relatives;
 };
 
+// visit(look) with the Where of every look: corners, then plates, then poses, each in its order.
 template <typename Visit>
 void ForEachLook(const SessionProblem& problem, const Visit& visit) {
   for (const Where& look : problem.corners) visit(look);
   for (const Where& look : problem.plates) visit(look);
   for (const Where& look : problem.poses) visit(look);
 }
+// The name of the capture that a place stands for.
 [[nodiscard]] const CaptureId& CaptureAt(const SessionProblem& problem, int place);
 
 struct SessionState {
@@ -105,6 +107,8 @@ struct Layout {
   std::vector<int> bias;   // per sensor, one
   int size = 0;            // without the reference's
 };
+// In the order of the members above; held: the reference, the held board, lenses without refined numbers, and scales
+// and biases without a sigma.
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 
 // The state moved by `step` of the layout (right tangents) and by six numbers per place.

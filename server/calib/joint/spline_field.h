@@ -13,7 +13,7 @@ constexpr int kFieldCells = 10;
 
 struct PictureSize {
   int width_px = 0, height_px = 0;
-  [[nodiscard]] bool empty() const { return width_px <= 0 || height_px <= 0; }
+  [[nodiscard]] bool empty() const { return width_px <= 0 || height_px <= 0; }  // the size is not known
 };
 
 // Control points of the grid, whose cells are squares of the longer side / kFieldCells.
@@ -21,7 +21,7 @@ struct FieldGrid {
   int columns = 0, rows = 0;
   double cell_px = 1.0;
   PictureSize picture = {};
-  [[nodiscard]] int points() const { return columns * rows; }
+  [[nodiscard]] int points() const { return columns * rows; }  // how many there are
 };
 [[nodiscard]] FieldGrid FieldGridOf(const PictureSize& picture);  // of an empty picture: no points
 
@@ -31,6 +31,7 @@ struct FieldWeights {
   std::array<int, 9> point = {};
   std::array<double, 9> weight = {};
 };
+// Quadratic B-splines; the grid has points, `uv_px` is finite.
 [[nodiscard]] FieldWeights FieldWeightsAt(const FieldGrid& grid, const Eigen::Vector2d& uv_px);
 
 // `coefficients_px`: of u at all control points, then of v.

@@ -13,6 +13,7 @@ struct RandomEffects {
   Eigen::MatrixXd S;
   Eigen::VectorXd score;
   std::vector<int> at;  // of each block, and the end
+  // How many blocks there are, and how many effects one of them has.
   [[nodiscard]] std::size_t blocks() const { return at.empty() ? 0 : at.size() - 1; }
   [[nodiscard]] int size(std::size_t block) const { return at[block + 1] - at[block]; }
 };

@@ -158,6 +158,7 @@ Edge Solved(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   edge.captures = estimate->residuals;
   AddNotes(problem, *estimate, edge.diagnoses);
   AddFigures(problem, *estimate, edge);
+  AddFiles(problem, edge);
   return edge;
 }
 

@@ -32,6 +32,7 @@ struct LidarCameraWork {
   PlaneSolution solution;
 
   [[nodiscard]] PlaneState StateOf() const;  // boards where the pictures put them
+  // `position`: in `used`. The capture becomes an unused one, for this reason.
   void Drop(std::size_t position, const std::string& why);
 };
 
@@ -54,6 +55,7 @@ struct NormalSpread {
   double next_sigma_m = 0.0;  // of the worst direction across that one
   Eigen::Vector3d axis_cam = Eigen::Vector3d::UnitZ();  // that direction
 };
+// Of the boards' normals in the camera; sigma is infinite along what none of them tells.
 [[nodiscard]] NormalSpread SpreadOf(const std::vector<PlaneCapture>& planes);
 
 // The problem with one thing changed, solved again from an estimate of the whole.

@@ -43,6 +43,8 @@ struct SurfacePairs {
   std::size_t near = 0;  // points beside or on a flat voxel's surface, whether they agree with it or not
 };
 
+// At this pose: points within 0.15 of a voxel of the nearest flat voxel's surface, and flat voxels of both clouds whose
+// normals agree to 20 degrees.
 [[nodiscard]] SurfacePairs PairsOf(const LidarClouds& clouds, const Se3& T_map_moving);
 
 // Orthonormal directions of T * Exp(xi) that the pairs say nothing about (a corridor's axis, a plane's two shifts and
@@ -56,6 +58,7 @@ struct PairInformation {
   Matrix6d Omega = Matrix6d::Zero();
   std::size_t blocks = 0;
 };
+// At the pose. Omega is zero with fewer blocks than two more than there are known directions.
 [[nodiscard]] PairInformation InformationOf(const std::vector<SurfacePairs>& captures, const Se3& T_map_moving,
                                             const Directions& unknown, double voxel_m);
 

@@ -24,6 +24,7 @@ struct RangeShift {
   double a_m = 0, b_m = 0;
 };
 constexpr std::size_t kCloudPointsMin = 500;
+// Whether both clouds have kCloudPointsMin points.
 [[nodiscard]] bool IsUsable(const LidarLidarCapture& capture);
 // Without cells: nothing to polish with; FitFrom() then gives NDT's pose twice.
 [[nodiscard]] LidarLidarWork WorkOf(const LidarLidarProblem& problem, const RangeShift& shift = {},
@@ -61,6 +62,7 @@ struct LidarLidarBlocks {
   std::vector<Vector6d> d;          // Log(T^-1 T_(i))
   std::vector<SurfacePairs> pairs;  // of the block left out, by the pose without it
 };
+// `T`: the common pose T_map_moving; `locked`: directions in which no block may move it.
 [[nodiscard]] LidarLidarBlocks LeaveBlocksOut(const LidarLidarWork& work, const Se3& T, const Directions& locked);
 
 // lidar_lidar_uncertainty.cc: how sure the pose is.

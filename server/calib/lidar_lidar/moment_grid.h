@@ -15,6 +15,7 @@ namespace rigcal::calib {
 using CellKey = std::uint64_t;
 constexpr double kCellsMax = 1 << 20;  // from the origin, each way, per axis
 
+// Of cell (x, y, z), each within kCellsMax of the origin's, which is not checked; and back.
 [[nodiscard]] inline CellKey CellKeyOf(int x, int y, int z) {
   constexpr int kOffset = 1 << 20;
   return (static_cast<CellKey>(x + kOffset) << 42) | (static_cast<CellKey>(y + kOffset) << 21) |
@@ -25,6 +26,7 @@ constexpr double kCellsMax = 1 << 20;  // from the origin, each way, per axis
 // From keys to 0, 1, 2, ... in the order of their first appearance; open addressing.
 class CellIndex {
  public:
+  // Room for so many keys before it grows.
   explicit CellIndex(std::size_t expected = 0);
   // The number of this key, a new one if it is new.
   std::uint32_t Add(CellKey key);
@@ -85,6 +87,7 @@ struct Moments {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 1> products = Eigen::Matrix<double, 6, 1>::Zero();  // xx xy xz yy yz zz
 
+  // A point, or all of another cell's, in the same frame. The mean of nothing is no number.
   void Add(const Eigen::Vector3d& p);
   void Add(const Moments& other);
   [[nodiscard]] Eigen::Vector3d Mean() const { return sum / count; }

@@ -33,6 +33,7 @@ struct NdtMap {
 
 constexpr double kNdtPointsMin = 6;  // of a voxel that has a Gaussian
 
+// Of cells of kNdtPointsMin points and more; with NdtKind::kSurfaces only of flat ones.
 [[nodiscard]] NdtMap NdtMapOf(const MomentGrid& grid, NdtKind kind);
 
 // A point of the moving cloud: the mean of a cell, as many points as `weight` says.
@@ -40,6 +41,7 @@ struct NdtPoint {
   Eigen::Vector3d p_m;
   double weight = 1;
 };
+// One for each cell, in the order of their numbers; a cell of very many points weighs no more than a limit.
 [[nodiscard]] std::vector<NdtPoint> NdtPointsOf(const MomentGrid& grid);
 
 // Clouds of one capture at one level. Frames: the map is a's, the points are b's.
@@ -56,6 +58,7 @@ struct NdtScore {
   Matrix6d information = Matrix6d::Zero();
   double points = 0, points_met = 0;  // all, and those with a voxel: weights
 };
+// Sum over the terms, alike on any number of threads.
 [[nodiscard]] NdtScore ScoreOf(const std::vector<NdtTerm>& terms, const Se3& T_a_b);
 
 // Causes that each move a point (frame of the moving cloud) or the mean of a voxel (frame of the map).

@@ -24,6 +24,7 @@ struct SurfaceCells {
   [[nodiscard]] const SurfaceCell* Nearest(const Eigen::Vector3d& q_m) const;
 };
 
+// A normal for each cell, from the means of the cells around it.
 [[nodiscard]] SurfaceCells SurfaceCellsOf(const MomentGrid& grid);
 
 // Clouds of one capture.
@@ -45,6 +46,7 @@ struct NormalSums {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
 };
+// With pairs of nearest cells as they are at this pose.
 [[nodiscard]] NormalSums SumsOf(const PolishTerm& term, const Se3& T_a_b);
 
 // From the pose of NDT; `locked` as for FitNdt. The same bits on any number of threads.

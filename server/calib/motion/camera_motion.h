@@ -24,6 +24,8 @@ struct CameraMotion {
   Eigen::Vector3d centre_board_m = Eigen::Vector3d::Zero();  // about which it is turned
 };
 
+// The camera by itself, then every pose of each view. The diagnosis is that of the camera's estimate; `solver` empty:
+// EstimateCamera.
 [[nodiscard]] OrDiagnosis<CameraMotion> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver);
 
 // The pose and what the intrinsics do to it. `turn`: the board taken as turned by that many of its symmetric turns.

@@ -52,7 +52,10 @@ Edge FailedEdge(const HandEyeProblem& problem, const Diagnosis& diagnosis) {
   const std::set<CaptureId> captures = AllCaptures(problem);
   for (const CaptureId& capture : captures) edge.captures.push_back({capture, 0.0, false, "the pair was not solved"});
   AddFiles(problem, captures, edge);
-  std::vector<Diagnosis> diagnoses = {diagnosis};
+  std::vector<Diagnosis> diagnoses;
+  for (const auto& [side, name] : {std::pair{&problem.a, "_a"}, {&problem.b, "_b"}})
+    if (auto unit = PositionsInMillimetres(side->sensor.id, side->poses, name)) diagnoses.push_back(std::move(*unit));
+  diagnoses.push_back(diagnosis);
   Append(MissedViews(problem), diagnoses);
   return FailedFor(std::move(diagnoses), std::move(edge));
 }
@@ -131,6 +134,7 @@ Edge Solved(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   Append(MissedViews(problem), edge.diagnoses);
   AddCaptures(problem, estimate, edge);
   AddFigures(problem, estimate, edge);
+  AddFiles(problem, AllCaptures(problem), edge);
   return edge;
 }
 

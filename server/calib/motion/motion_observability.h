@@ -45,6 +45,7 @@ struct MotionWords {
   std::string code, moved;
   std::size_t open = 0;
 };
+// A general motion has no code, and neither has one that stands still.
 [[nodiscard]] MotionWords WordsOf(MotionKind kind, const std::string& axis, const std::string& tilt);
 
 }  // namespace rigcal::calib

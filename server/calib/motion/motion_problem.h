@@ -28,6 +28,7 @@ struct MotionSide {
   // What is known of the shared parameters apart from the motion: 1/2 s^T information s + gradient^T s.
   SharedMatrix information = SharedMatrix(0, 0);
   SharedVector gradient = SharedVector(0);
+  // How many shared parameters this side has.
   [[nodiscard]] int SharedCount() const { return static_cast<int>(gradient.size()); }
 };
 
@@ -38,6 +39,7 @@ struct MotionProblem {
   // Columns: directions of X (right tangent at b) along which it is estimated. All six unless the motion leaves some
   // open.
   Directions free = Matrix6d::Identity();
+  // How many pairs of poses have weight.
   [[nodiscard]] std::size_t UsedCount() const;
 };
 
@@ -53,10 +55,10 @@ struct MotionSolution {
   int iterations = 0;
 };
 
+constexpr int kMotionIterationsMax = 60;
 // Gauss-Newton with damping where a step does not help; the body's poses eliminated. Deterministic. Directions of Z
 // and of the shared parameters that nothing tells stay where they are. Fails if nothing converges. With fewer
 // iterations it is on the way to the minimum.
-constexpr int kMotionIterationsMax = 60;
 [[nodiscard]] Result<MotionSolution> SolveMotion(const MotionProblem& problem, const MotionState& start,
                                                  int iterations_max = kMotionIterationsMax);
 // A start from X and Z: the body where side a sees it, nothing shared.

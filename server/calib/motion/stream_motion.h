@@ -18,7 +18,9 @@ struct ClockOffset {
 struct StreamSpan {
   double seconds = 0.0, turn_rad = 0.0;
 };
+// The rows are in the order of their stamps.
 [[nodiscard]] StreamSpan SpanOf(const PoseTable& stream);
+// How long both run at once if b's first row comes `offset_s` after a's; 0: never.
 [[nodiscard]] double SecondsInCommon(const PoseTable& a, const PoseTable& b, double offset_s);
 
 // By correlation of the angular speeds over every offset at which the streams overlap by a fair part. Nothing where
@@ -33,6 +35,7 @@ struct StreamPose {
   Se3 T_world_body;
   Vector6d twist = Vector6d::Zero();  // right tangent, per second
 };
+// The stream has at least two rows; between them the motion is of constant twist.
 [[nodiscard]] std::optional<StreamPose> PoseAt(const PoseTable& stream, double time_s);
 
 // Where both have poses: rows of a, evenly spread over the path, and b interpolated.
@@ -41,6 +44,7 @@ struct CommonPoses {
   std::vector<Se3> a;
   std::vector<StreamPose> b;
 };
+// `offset_s`: as in ClockOffset. About 400, or as many as there are rows; none where the streams do not overlap.
 [[nodiscard]] CommonPoses PosesInCommon(const PoseTable& a, const PoseTable& b, double offset_s);
 
 }  // namespace rigcal::calib

@@ -47,10 +47,10 @@ struct StaticSolution {
   int iterations = 0;
 };
 
+constexpr int kStaticIterationsMax = 60;
 // min sum g^T M g + delta^T covariance^-1 delta (Gauss-Newton with halved steps, the body's poses eliminated), g a
 // plane in the lidar's frame (plane_moments.h). Directions that nothing tells stay where they are. Fails if nothing
 // converges. With fewer iterations it is on the way to the minimum.
-constexpr int kStaticIterationsMax = 60;
 [[nodiscard]] Result<StaticSolution> SolveStatic(const StaticProblem& problem, const StaticState& start,
                                                  int iterations_max = kStaticIterationsMax);
 
@@ -64,6 +64,7 @@ struct SightingJacobian {
   Eigen::Matrix<double, 7, 6> by_lidar, by_body;
   Eigen::Matrix<double, 7, 3> by_plane;
 };
+// Rows 3 to 5 of g are its normal times the range bias, and change with that normal.
 [[nodiscard]] SightingJacobian JacobianAt(const Se3& T_world_body, const Se3& T_body_lidar, const WorldPlane& plane,
                                           double range_bias_m);
 
@@ -78,6 +79,7 @@ struct StaticNormal {
   };
   std::vector<Body> bodies;
 };
+// Of all captures, linearised at `state`.
 [[nodiscard]] StaticNormal NormalOf(const StaticProblem& problem, const StaticState& state);
 
 // What the residuals say of the tracker's noise and of the whole, translation before rotation.
@@ -111,6 +113,7 @@ struct PlaneReach {
 struct OpenAxes {
   std::vector<Eigen::Vector3d> positions, turns;  // unit
 };
+// Of `reach.open`, which are right tangents at the lidar; an open direction that turns counts as a turn.
 [[nodiscard]] OpenAxes AxesOf(const PlaneReach& reach, const Se3& T_body_lidar);
 
 }  // namespace rigcal::calib

@@ -151,6 +151,7 @@ Edge GoodEdge(const StereoProblem& problem, const StereoEstimate& estimate, Unce
   AddDisagreement(problem.camera_a, estimate.intrinsics_a, edge.diagnoses);
   AddDisagreement(problem.camera_b, estimate.intrinsics_b, edge.diagnoses);
   AddFigures(estimate, both, edge);
+  AddFiles(problem, edge);
   return edge;
 }
 

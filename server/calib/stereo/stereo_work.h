@@ -20,7 +20,9 @@ struct StereoWork {
   JointState state;
   int iterations = 0;
 
+  // `position`: in `used`. The capture becomes an unused one, for this reason.
   void Drop(std::size_t position, const std::string& why);
+  // Of the corners' residuals in both cameras, at `state`.
   [[nodiscard]] double SumOfSquares_px2() const;
   // Of a corner's u or v: per degree of freedom.
   [[nodiscard]] double Variance_px2() const;
@@ -35,6 +37,7 @@ struct StereoStart {
   double width_px = 0;    // of the larger picture
   double distance_m = 0;  // of the boards, median
 };
+// "too_few_captures", "no_common_view", or why a camera's own intrinsics could not be started.
 [[nodiscard]] OrDiagnosis<StereoStart> ColdStart(const StereoProblem& problem);
 // From an earlier estimate: its captures, turns and board poses.
 [[nodiscard]] StereoWork WarmStart(const StereoProblem& problem, const StereoEstimate& start);

@@ -59,12 +59,21 @@ void AddFiles(const TrackerLidarProblem& problem, Edge& edge) {
   AddFilesFound(clouds, problem.tracker_is_a ? "_b" : "_a", edge);
 }
 
+PoseTable PosesOf(const TrackerLidarProblem& problem) {
+  PoseTable poses;
+  for (const TrackerLidarCapture& capture : problem.captures)
+    if (capture.T_world_body) poses.push_back({capture.capture, {}, *capture.T_world_body});
+  return poses;
+}
+
 Edge FailedEdge(const TrackerLidarProblem& problem, const Diagnosis& diagnosis) {
   Edge edge = EdgeOf(problem);
   for (const TrackerLidarCapture& capture : problem.captures)
     edge.captures.push_back({capture.capture, 0.0, false, "the pair was not solved"});
   AddFiles(problem, edge);
   std::vector<Diagnosis> diagnoses = {diagnosis};
+  if (auto unit = PositionsInMillimetres(problem.tracker.id, PosesOf(problem), problem.tracker_is_a ? "_a" : "_b"))
+    diagnoses.insert(diagnoses.begin(), std::move(*unit));
   Append(MissedClouds(problem), diagnoses);
   return FailedFor(std::move(diagnoses), std::move(edge));
 }
@@ -113,6 +122,7 @@ Edge Solved(const TrackerLidarProblem& problem) {
   Append(MissedClouds(problem), edge.diagnoses);
   AddCaptures(problem, estimate, edge);
   AddFigures(estimate, edge);
+  AddFiles(problem, edge);
   return edge;
 }
 

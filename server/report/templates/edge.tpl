@@ -80,5 +80,6 @@
 </details>
 {{/LENS}}
 <p class="hint">{{PROVENANCE}} Edge <code>{{ID}}</code></p>
+{{#RETIRE}}<p class="hint">If it is wrong: <code class="typed">{{COMMAND}}</code></p>{{/RETIRE}}
 </div>
 </details>

@@ -92,7 +92,18 @@
 </div>
 {{#IN_PART}}<p class="hint">Of a sensor of which not everything was measured, position and &sigma; are along and about the axes of <bdi>{{WHOSE}}</bdi>, as near to these as what was measured lies.</p>{{/IN_PART}}
 {{#MORE_POSES}}<p class="hint">{{COUNT}} more sensors are in <a href="revision.json">revision.json</a>.</p>{{/MORE_POSES}}
+{{#GONE}}<p dir="auto"><span class="badge unknown">past</span> {{WHY}}. To bring it back: <code class="typed">{{COMMAND}}</code></p>
+{{/GONE}}
 <p class="hint">Rotation R = Rz(yaw) Ry(pitch) Rx(roll). &sigma; is one standard deviation along the sensor's own axes.</p>
+{{#WAYS_OUT}}
+<details class="words">
+<summary>If a sensor is gone from the robot</summary>
+<ul>
+{{#RETIRE}}<li><code class="typed">{{COMMAND}}</code></li>
+{{/RETIRE}}
+</ul>
+</details>
+{{/WAYS_OUT}}
 </section>
 {{#FUSED_SECTION}}
 {{>FUSED}}
@@ -112,12 +123,13 @@
 <tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{COUNT}}</a>{{/LINK}}{{#PLAIN}}{{COUNT}}{{/PLAIN}}</th><td class="text"><span class="badge fail">failed</span></td><td class="text" colspan="8" data-v=""><span dir="auto">{{WHY:x-typed}}</span><details class="words"><summary>Which pairs</summary>{{>PAIRS}}</details></td></tr>
 {{/EDGE_GROUP}}
 {{#EDGE}}
-<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#EARLIER}}<a href="../{{REVISION}}/#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a> <span class="soft">rev. {{REVISION}}</span>{{/EARLIER}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}</td>{{/FAILED}}</tr>
+<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#EARLIER}}<a href="../{{REVISION}}/#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a> <span class="soft">rev. {{REVISION}}</span>{{/EARLIER}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}{{#RETIRE}}<details class="words"><summary>If it is wrong</summary><code class="typed">{{COMMAND}}</code></details>{{/RETIRE}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td>{{E_SIGMA}}</td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}{{#CURE}} <span class="cure">{{TEXT:x-typed}}</span>{{/CURE}}</td>{{/FAILED}}</tr>
 {{/EDGE}}
 </tbody>
 </table>
 </div>
 {{#MORE_EDGES}}<p class="hint">{{COUNT}} more edges, all of them better than these, are in <a href="edges.csv">edges.csv</a>.</p>{{/MORE_EDGES}}
+{{#OTHER_IDS}}<p class="hint">Ids of all edges, as <code>rigcal retire</code> takes them: <code>rigcal edges {{ROBOT}}</code></p>{{/OTHER_IDS}}
 {{#UNCHECKED}}<p class="hint">{{TEXT}}</p>{{/UNCHECKED}}
 {{#NO_EDGE_INFLUENCE}}<p class="hint">{{TEXT}}</p>{{/NO_EDGE_INFLUENCE}}
 <p class="downloads"><a class="button" href="edges.csv" download>All edges as CSV</a></p>

@@ -39,7 +39,7 @@
 <thead><tr><th scope="col">Session</th><th scope="col">Captured</th><th scope="col">Operator</th><th scope="col">Result</th><th scope="col" class="num">Files</th></tr></thead>
 <tbody>
 {{#SESSION}}
-<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#PAST}} <span class="badge unknown">{{COUNT}} past</span>{{/PAST}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code class="typed">rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
+<tr><th scope="row"><a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a></th><td class="text">{{TIME}} <span class="soft">{{AGE}}</span></td><td class="text" dir="auto">{{OPERATOR}}</td><td class="text">{{GOOD}}{{#PAST}} <span class="badge unknown">{{COUNT}} past</span>{{/PAST}}{{#FAILED}} <span class="badge fail">{{COUNT}} failed</span>{{/FAILED}}{{#WORKING}}<span class="soft">{{WORD}}</span>{{/WORKING}}{{#RETIRED}}<span class="badge unknown">retired</span> <span class="why" dir="auto">{{WHY}}.</span> <span class="cure">To bring it back: <code class="typed">{{COMMAND}}</code></span>{{/RETIRED}}{{#SUPERSEDED}}<span class="badge unknown">superseded</span> <span class="why" dir="auto">by <a href="sessions/{{BY}}/"><code>{{SHORT}}</code></a> (captured {{TIME}}{{#PEOPLE}}, by <bdi>{{NAME}}</bdi>{{/PEOPLE}}), {{HOW}} on {{SINCE}}.</span> <span class="cure">If it should not be: <code class="typed">rigcal restore {{OLD}}</code></span>{{/SUPERSEDED}}</td><td data-label="Files">{{FILES}}</td></tr>
 {{/SESSION}}
 </tbody>
 </table>
@@ -47,6 +47,13 @@
 {{#PAGES}}<p class="hint">{{#NEWEST_PAGE}}<a href="./#sessions">The newest sessions</a> {{/NEWEST_PAGE}}{{#OLDER}}<a href="?sessions_before={{BEFORE}}#sessions">Older sessions</a>{{/OLDER}}</p>{{/PAGES}}
 </section>
 {{/SESSIONS}}
+{{#GONE_SENSORS}}
+<section class="card">
+<h2 id="gone">Retired sensors <span class="soft">what was measured of them is past</span></h2>
+{{#GONE}}<p dir="auto"><span class="badge unknown">past</span> {{WHY}}. To bring it back: <code class="typed">{{COMMAND}}</code></p>
+{{/GONE}}
+</section>
+{{/GONE_SENSORS}}
 </div>
 <div id="compare" data-fresh>
 {{#COMPARE}}

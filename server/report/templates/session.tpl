@@ -11,6 +11,8 @@
 <section class="card moved {{OUTCOME_LEVEL}}" aria-label="Outcome">
 <p class="what" role="status">{{OUTCOME}}{{#PROGRESS}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress"></progress>{{/PROGRESS}}</p>
 {{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
+{{#GONE}}<p dir="auto"><span class="badge unknown">past</span> {{WHY}}; what this session says of it does not count. To bring it back: <code class="typed">{{COMMAND}}</code></p>
+{{/GONE}}
 </section>
 <section class="card">
 <h2 id="edges">What it gave{{#FAILED_FIRST}} <span class="soft">failed pairs first</span>{{/FAILED_FIRST}}</h2>
@@ -21,7 +23,7 @@
 <table class="list">
 <thead><tr><th scope="col">Pair</th><th scope="col">State</th><th scope="col">Method</th></tr></thead>
 <tbody>
-{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY:x-typed}}</span>{{#CURE}} <span class="cure" dir="auto">{{TEXT:x-typed}}</span>{{/CURE}}</td><td class="text whole"><bdi>{{METHOD}}</bdi></td></tr>
+{{#EDGE}}<tr><th scope="row">{{FROM}} &rarr; {{TO}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span> <span class="why" dir="auto">{{WHY:x-typed}}</span>{{#CURE}} <span class="cure" dir="auto">{{TEXT:x-typed}}</span>{{/CURE}}</td><td class="text whole"><bdi>{{METHOD}}</bdi>{{#RETIRE}}<details class="words"><summary>If it is wrong</summary><code class="typed">{{COMMAND}}</code></details>{{/RETIRE}}</td></tr>
 {{/EDGE}}
 </tbody>
 </table>
@@ -44,6 +46,7 @@
 {{#POSES}}<p class="hint">The poses of <bdi>{{NAMES}}</bdi> come as one file per sensor, of the whole session.</p>{{/POSES}}
 {{#MORE}}<p class="hint">{{COUNT}} more captures are in the session's manifest.</p>{{/MORE}}
 <p class="hint"><a href="../../../../api/v1/session?id={{ID}}">Manifest as JSON</a> <code>{{ID}}</code></p>
+{{#MISLEADS}}<p class="hint">If this session misleads: <code class="typed">{{COMMAND}}</code></p>{{/MISLEADS}}
 </section>
 </div>
 </main>
