@@ -19,7 +19,7 @@ std::vector<SensorId> InState(const AsFound& found, FoundState state) {
 
 // What was measured of it: the rest is zero.
 std::string DriftText(const SensorFound& sensor) {
-  const std::string moved = OffList(sensor.change) + " (" + Number(sensor.InSigmas(), "sigma") + ")";
+  const std::string moved = OffList(sensor.change) + " (" + Number(InSigmas(sensor), "sigma") + ")";
   if (sensor.or_else.empty()) return sensor.sensor.str() + " moved " + moved;
   return sensor.sensor.str() + " moved against " + sensor.or_else.str() + " " + moved + ", either of the two may have";
 }
@@ -29,7 +29,7 @@ std::vector<std::string> DriftTexts(const AsFound& found) {
   for (const SensorFound& sensor : found.sensors)
     if (sensor.state == FoundState::kDrifted) drifted.push_back(&sensor);
   std::stable_sort(drifted.begin(), drifted.end(),
-                   [](const auto* x, const auto* y) { return x->InSigmas() > y->InSigmas(); });
+                   [](const auto* x, const auto* y) { return InSigmas(*x) > InSigmas(*y); });
   std::vector<std::string> texts;
   for (std::size_t k = 0; k < std::min(drifted.size(), kDriftsTold); ++k) texts.push_back(DriftText(*drifted[k]));
   if (drifted.size() > kDriftsTold)
@@ -38,7 +38,7 @@ std::vector<std::string> DriftTexts(const AsFound& found) {
 }
 
 std::string SmallestText(const AsFound& found) {
-  const double m = found.Smallest_m(), rad = found.Smallest_rad();
+  const double m = SmallestSeen_m(found), rad = SmallestSeen_rad(found);
   if (!std::isfinite(m) || !std::isfinite(rad))
     return "too few captures to tell the smallest change it could have seen";
   return "smallest change this session could have seen: " + TwoDigits(1e3 * m, "mm") + ", " +

@@ -31,7 +31,7 @@ struct KnownPoses {
 };
 
 // Of a session's own estimate (`why_not` empty); and those that a solution knows, with the joint covariance of the fused
-// sensors. Where none were fused it is that of `joint`, if it has all sensors; the others stand apart, by their own.
+// sensors. Where none were fused it is that of `joint`, if it has all sensors; others stand apart, by their own.
 [[nodiscard]] KnownPoses PosesOf(const SessionEstimate& estimate);
 [[nodiscard]] KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
                                  const std::vector<JointCovariance>& joint = {});

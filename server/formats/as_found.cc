@@ -14,7 +14,7 @@ constexpr std::size_t kAsFoundBytesMax = 64u << 20, kFoundTextMax = 64u << 10;
 // Null of an axis that was not measured, and of a number that is none.
 void WriteMeasured(JsonWriter& out, std::string_view key, const SensorFound& sensor, const Vector6d& values) {
   out.List(key, [&] {
-    for (int axis = 0; axis < 6; ++axis) sensor.IsMeasured(axis) ? out.Number(values(axis)) : out.Null();
+    for (int axis = 0; axis < 6; ++axis) IsMeasured(sensor, axis) ? out.Number(values(axis)) : out.Null();
   });
 }
 
@@ -67,7 +67,7 @@ void WriteSensorFound(JsonWriter& out, const SensorFound& sensor) {
 // Of an axis that is measured, no smallest change means that none would be seen.
 void ForgetUnmeasured(SensorFound& sensor) {
   for (int axis = 0; axis < 6; ++axis)
-    if (!sensor.IsMeasured(axis)) sensor.smallest(axis) = 0.0;
+    if (!IsMeasured(sensor, axis)) sensor.smallest(axis) = 0.0;
 }
 
 SensorFound ReadSensorFound(const JsonField& field) {
@@ -101,8 +101,8 @@ void WriteTested(JsonWriter& out, const AsFound& found) {
   out.Integer("visits", found.visits);
   found.relative_to.empty() ? out.Null("relative_to") : out.Text("relative_to", found.relative_to.str());
   const bool tested = found.tests > 0;
-  tested ? out.Number("smallest_m", found.Smallest_m()) : out.Null("smallest_m");
-  tested ? out.Number("smallest_rad", found.Smallest_rad()) : out.Null("smallest_rad");
+  tested ? out.Number("smallest_m", SmallestSeen_m(found)) : out.Null("smallest_m");
+  tested ? out.Number("smallest_rad", SmallestSeen_rad(found)) : out.Null("smallest_rad");
   out.List("sensors", [&] {
     for (const SensorFound& sensor : found.sensors) WriteSensorFound(out, sensor);
   });
@@ -123,7 +123,7 @@ void WriteAsFoundMembers(JsonWriter& out, const AsFound& found) {
   out.Text("session", found.session.str());
   WriteStamp(out, "captured_at", found.captured_at);
   WriteInUse(out, found);
-  out.Text("state", NameOf(found.State()));
+  out.Text("state", NameOf(StateOf(found)));
   found.why_not.empty() ? out.Null("why_not") : out.Text("why_not", found.why_not);
   WriteTested(out, found);
   out.Text("text", found.text);

@@ -12,7 +12,7 @@ double LargestSmallest(const std::vector<SensorFound>& sensors, int first_axis) 
   double largest = 0.0;
   for (const SensorFound& sensor : sensors)
     for (int axis = first_axis; axis < first_axis + 3; ++axis)
-      if (sensor.IsMeasured(axis)) largest = std::max(largest, sensor.smallest(axis));
+      if (IsMeasured(sensor, axis)) largest = std::max(largest, sensor.smallest(axis));
   return largest;
 }
 
@@ -42,32 +42,32 @@ Result<FoundState> FoundStateOf(const std::string& name) {
               "Use unchanged, drifted, not_measured, moved_on_purpose or new.");
 }
 
-bool SensorFound::IsMeasured(int axis) const {
-  const FoundState of_axis = axes[static_cast<std::size_t>(axis)];
+bool IsMeasured(const SensorFound& sensor, int axis) {
+  const FoundState of_axis = sensor.axes[static_cast<std::size_t>(axis)];
   return of_axis == FoundState::kUnchanged || of_axis == FoundState::kDrifted;
 }
 
-double SensorFound::InSigmas() const {
+double InSigmas(const SensorFound& sensor) {
   double largest = 0.0;
   for (int axis = 0; axis < 6; ++axis)
-    if (IsMeasured(axis)) largest = std::max(largest, std::abs(change(axis)) / sigma(axis));
+    if (IsMeasured(sensor, axis)) largest = std::max(largest, std::abs(sensor.change(axis)) / sensor.sigma(axis));
   return largest;
 }
 
-FoundState AsFound::State() const {
+FoundState StateOf(const AsFound& found) {
   FoundState state = FoundState::kNotMeasured;
-  for (const SensorFound& sensor : sensors) {
+  for (const SensorFound& sensor : found.sensors) {
     if (sensor.state == FoundState::kDrifted) return FoundState::kDrifted;
     if (sensor.state == FoundState::kUnchanged) state = FoundState::kUnchanged;
   }
   return state;
 }
 
-double AsFound::Smallest_m() const { return LargestSmallest(sensors, tangent::kTranslation); }
-double AsFound::Smallest_rad() const { return LargestSmallest(sensors, tangent::kRotation); }
+double SmallestSeen_m(const AsFound& found) { return LargestSmallest(found.sensors, tangent::kTranslation); }
+double SmallestSeen_rad(const AsFound& found) { return LargestSmallest(found.sensors, tangent::kRotation); }
 
 AsFoundSummary SummaryOf(const AsFound& found) {
-  AsFoundSummary summary{found.session, found.State(), {}};
+  AsFoundSummary summary{found.session, StateOf(found), {}};
   for (const SensorFound& sensor : found.sensors)
     if (sensor.state == FoundState::kDrifted) summary.drifted.push_back(sensor.sensor);
   return summary;

@@ -44,12 +44,11 @@ struct SensorFound {
   Vector6d smallest = Vector6d::Zero();  // change that would have been told with kAsFoundPower; infinite: none would
   std::optional<Vector6d> left = {};     // T_session = T_as_left Exp(left); nothing: it has no pose any more
   std::optional<DriftRate> rate = {};    // from three visits on
-
-  // Of an axis, 0 to 5: it was tested and has numbers.
-  [[nodiscard]] bool IsMeasured(int axis) const;
-  // Largest of |change| / sigma, 0 where nothing is measured.
-  [[nodiscard]] double InSigmas() const;
 };
+// Of an axis, 0 to 5: it was tested and has numbers.
+[[nodiscard]] bool IsMeasured(const SensorFound& sensor, int axis);
+// Largest of |change| / sigma, 0 where nothing is measured.
+[[nodiscard]] double InSigmas(const SensorFound& sensor);
 
 struct AsFound {
   SessionId session;
@@ -63,13 +62,12 @@ struct AsFound {
   SensorId relative_to = {};              // did not move: the others are told in its frame
   std::vector<SensorFound> sensors = {};  // the other ones, sorted
   std::string text = {};                  // all of it in a sentence
-
-  // Drifted if any sensor is; unchanged if one was tested; else not measured.
-  [[nodiscard]] FoundState State() const;
-  // The largest that any tested sensor's axes have, of the three shifts and the three turns.
-  [[nodiscard]] double Smallest_m() const;
-  [[nodiscard]] double Smallest_rad() const;
 };
+// Drifted if any sensor is; unchanged if one was tested; else not measured.
+[[nodiscard]] FoundState StateOf(const AsFound& found);
+// The largest `smallest` that any tested sensor's axes have, of the three shifts and the three turns.
+[[nodiscard]] double SmallestSeen_m(const AsFound& found);
+[[nodiscard]] double SmallestSeen_rad(const AsFound& found);
 
 // At a glance.
 struct AsFoundSummary {

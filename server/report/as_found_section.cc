@@ -67,7 +67,7 @@ void FillOff(Dictionary& row, const char* section, const SensorFound& sensor, in
 
 void FillAxis(Dictionary& row, const SensorFound& sensor, int axis, bool rates) {
   row.SetValue("AXIS", std::string(tangent::kNames[static_cast<std::size_t>(axis)]));
-  if (!sensor.IsMeasured(axis)) return row.ShowSection("OPEN");
+  if (!IsMeasured(sensor, axis)) return row.ShowSection("OPEN");
   Dictionary* measured = row.AddSectionDictionary("MEASURED");
   FillOff(*measured, "FOUND", sensor, axis, sensor.change(axis));
   if (sensor.left)

@@ -31,7 +31,7 @@ int FalseAlarms(const Errors& errors, unsigned seed) {
   for (int i = 0; i < 2000; ++i) {
     AsFoundInput input = Visit(DrawnRig(), DrawnRig(), errors, draws);
     input.alpha = 0.01;
-    alarms += TestAsFound(input).State() == FoundState::kDrifted ? 1 : 0;
+    alarms += StateOf(TestAsFound(input)) == FoundState::kDrifted ? 1 : 0;
   }
   return alarms;
 }
@@ -100,7 +100,7 @@ TEST(AsFound, TheSensorThatMovedIsNamedWithItsStep) {
     EXPECT_EQ(found.tests, 18);
     EXPECT_EQ(found.visits, 4);
     for (int axis = 0; axis < 6; ++axis) EXPECT_NEAR(named.change(axis), step(axis), 5 * named.sigma(axis)) << axis;
-    EXPECT_GT(named.InSigmas(), 5);
+    EXPECT_GT(InSigmas(named), 5);
     EXPECT_LT(named.left->norm(), 1e-9) << "updated by the session alone";
   }
 }
@@ -158,7 +158,7 @@ TEST(AsFound, WhatWasMovedOnPurposeOrIsNewIsNoDrift) {
   AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kTop, Along(0, 0.05)), SomeErrors(), draws);
   input.moved_on_purpose = {kTop};
   EXPECT_EQ(Of(kTop, TestAsFound(input)).state, FoundState::kMovedOnPurpose);
-  EXPECT_EQ(TestAsFound(input).State(), FoundState::kUnchanged);
+  EXPECT_EQ(StateOf(TestAsFound(input)), FoundState::kUnchanged);
   input.moved_on_purpose.clear();
   input.in_use.poses.pop_back();
   input.in_use.covariance = Eigen::MatrixXd(input.in_use.covariance.topLeftCorner(12, 12));
@@ -174,7 +174,7 @@ TEST(AsFound, WhereNothingIsToBeComparedItSaysWhy) {
   input.moved_on_purpose = {kTop, kRight, kRear};
   const AsFound found = TestAsFound(input);
   EXPECT_THAT(found.why_not, ::testing::HasSubstr("no two sensors"));
-  EXPECT_EQ(found.State(), FoundState::kNotMeasured);
+  EXPECT_EQ(StateOf(found), FoundState::kNotMeasured);
 }
 
 // Other axes, other numbers: of the right camera's frame in place of the left's, by differences.

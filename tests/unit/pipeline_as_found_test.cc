@@ -154,7 +154,7 @@ TEST_F(AsFoundTest, WhatWasRemountedIsNoDrift) {
   Visit(0, AtHome());
   Visit(30, RightMoved(0.02), {SensorId("right")});
   const AsFound found = Found(2);
-  EXPECT_EQ(found.State(), FoundState::kUnchanged) << found.text;
+  EXPECT_EQ(StateOf(found), FoundState::kUnchanged) << found.text;
   EXPECT_THAT(found.text, HasSubstr("rear unchanged; right moved on purpose"));
 }
 
