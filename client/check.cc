@@ -85,6 +85,8 @@ void AddCheck(CLI::App& app, Context& context) {
       "Not looked at: boards in clouds, and how clouds lie on each other. Pairs with a lidar are only counted: "
       "captures\n"
       "with a cloud and, of a camera, the board in its picture.\n"
+      "Judged by the default limits, 5 mm and 0.29 deg, for no server is asked: its policy may want more\n"
+      "(`rigcal policy show ROBOT`).\n"
       "Exit code: 0 enough, 5 take more or mend something, 4 what `push` would refuse.\n"
       "Examples:\n"
       "  rigcal check visit-2026-01-31/\n"

@@ -6,6 +6,7 @@
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/limits.h"
+#include "server/model/decision.h"
 
 namespace rigcal::client {
 namespace {
@@ -30,12 +31,13 @@ void PrintHistory(const Document& document, const HistoryOptions& options, std::
   if (revisions.empty()) return;
   const auto is_found = [](const Document& revision) { return !FoundText(revision["as_found"]).empty(); };
   const bool found = std::any_of(revisions.begin(), revisions.end(), is_found);
-  std::vector<Column> columns = {{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"WHY"}};
+  std::vector<Column> columns = {{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"STATE"}, {"WHY"}};
   if (found) columns.insert(columns.end() - 1, {"AS FOUND"});
   Table table(columns);
   for (const Document& revision : revisions) {
     std::vector<std::string> cells = {CountOf(revision["revision"]), revision["created_at"].Text("-"),
-                                      revision["verdict"]["level"].Text("unknown"), revision["verdict"]["why"].Text()};
+                                      revision["verdict"]["level"].Text("unknown"),
+                                      WordFor(RevisionStateOf(revision["state"].Text())), revision["verdict"]["why"].Text()};
     if (found) cells.insert(cells.end() - 1, FoundText(revision["as_found"]));
     table.Add(cells);
   }

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/approval_text.h"
 #include "client/part_text.h"
 #include "client/pose_text.h"
 #include "client/table.h"
@@ -40,21 +41,25 @@ void PrintLookup(const Document& document, std::ostream& out) {
   IsInPart(document) ? PrintPoseInPart(document, a, b, out) : PrintPose(document, b, out);
   PrintDrive(document, out);
   PrintVerdict(document["verdict"], document, out);
+  PrintApproval(document, out);
 }
 
 // Without a whole pose there is no result to go by, whatever the verdict lets pass.
 ExitCode JudgeLookup(const Document& document) {
+  if (document.Has("superseded_by")) return ExitCode::kVerdictUnknown;  // the newest failed, say
   const ExitCode code = Judge(document["verdict"], document);
   return document["known"].Flag(true) || code == ExitCode::kVerdictFail ? code : ExitCode::kVerdictUnknown;
 }
 
 struct LookupOptions {
   std::string robot, a, b;
+  int revision = 0;
 };
 
 ExitCode RunLookup(const Context& context, const LookupOptions& options) {
-  const std::string parameters = JsonObject({{"robot", options.robot}, {"a", options.a}, {"b", options.b}});
-  return Answer(context, {"lookup", parameters, PrintLookup, JudgeLookup});
+  std::vector<Field> parameters = {{"robot", options.robot}, {"a", options.a}, {"b", options.b}};
+  if (options.revision > 0) parameters.emplace_back("revision", std::int64_t{options.revision});
+  return Answer(context, {"lookup", JsonObject(parameters), PrintLookup, JudgeLookup});
 }
 
 }  // namespace
@@ -65,7 +70,10 @@ void AddLookup(CLI::App& app, Context& context) {
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("A", options->a, "Sensor in whose frame the pose is given")->required();
   verb->add_option("B", options->b, "Sensor whose pose it is")->required();
-  verb->footer("p_A = T_A_B * p_B. " + std::string(kVerdictCodes) +
+  verb->add_option("--revision", options->revision, "A numbered revision (default: the one that is in use)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb->footer("p_A = T_A_B * p_B, of the calibration that is in use: robots are told the same. " + std::string(kVerdictCodes) +
                "6 also where a direction of the pose was not measured: then it is told what was, and --json has T_a_b null.\n"
                "Examples:\n"
                "  rigcal lookup mapper-01 front_left lidar\n"

@@ -9,6 +9,7 @@ namespace rigcal::client {
 namespace {
 
 constexpr std::size_t kShortId = 16;
+constexpr std::int64_t kFilesAlikeMin = 3;  // a picture with the cap on the lens, or two, may be another's
 
 // Of pictures and clouds, spread over the session. A table of poses may be the same for robots that are driven alike.
 std::string DigestsOf(const std::vector<Payload>& payloads) {
@@ -41,7 +42,7 @@ Status CheckWhoseFiles(Connection& connection, const RobotId& robot, const std::
   const auto told = connection.AskDocument("known_files", question, timeout);
   if (!told) return {};
   const std::int64_t asked = (*told)["asked"].Integer().value_or(0), files = (*told)["files"].Integer().value_or(0);
-  if (files < 1 || 2 * files < asked) return {};
+  if (files < kFilesAlikeMin || 2 * files < asked) return {};
   const std::string another = Plain((*told)["robot"].Text("?"));
   return Fail(ErrorCode::kConflict,
               std::to_string(files) + " of " + std::to_string(asked) +

@@ -16,6 +16,7 @@ namespace {
 
 struct PolicyOptions {
   std::string action, what, model;
+  bool new_model = false;
   OrderOptions order;
 };
 
@@ -47,6 +48,9 @@ void PrintLimits(const Document& document, std::ostream& out) {
   out << "max_age " << AgeOf(limits["max_age_ns"]);
   if (limits["captures_min"].Integer()) out << ", captures_min " << CountOf(limits["captures_min"]);
   out << '\n';
+  if (limits["approval"].Text() == "person") out << "Each calibration is approved by a person before robots use it.\n";
+  if (limits["approval"].Text() == "automatic" && !limits["approve_warnings"].Flag(true))
+    out << "A pass is approved by itself, a warning by a person.\n";
   if (const std::string all = SaidText("all", policy["all"]); all.find("px_at_10_m") != std::string::npos)
     out << Plain(all) << '\n';
   for (const Document& sensor : policy["sensors"].Items())
@@ -113,6 +117,7 @@ Status SetFile(Context& context, const PolicyOptions& options) {
                                    {"who", options.order.who.empty() ? LoginName() : options.order.who}};
   if (!options.order.robot.empty()) parameters.emplace_back("robot", options.order.robot);
   if (!options.model.empty()) parameters.emplace_back("model", options.model);
+  if (options.new_model) parameters.push_back(Field::Raw("new_model", "true"));
   RIGCAL_ASSIGN(const std::string done, AskOnce(context, "set_policy", JsonObject(parameters)));
   OrderToGive order;
   order.verb = "set_policy", order.print = PrintSet;
@@ -148,9 +153,11 @@ void AddPolicy(CLI::App& app, Context& context) {
       ->check(CLI::IsMember(std::vector<std::string>(kPolicyActions.begin(), kPolicyActions.end())));
   verb->add_option("WHAT", options->what, "Of show: the robot (default: the fleet); of check and set: the file");
   CLI::Option* robot = verb->add_option("--robot", options->order.robot, "Of this robot")->type_name("ID");
-  verb->add_option("--model", options->model, "Of this rig model, as sessions name it")
-      ->type_name("NAME")
-      ->excludes(robot);
+  CLI::Option* model = verb->add_option("--model", options->model, "Of this rig model, as sessions name it")
+                           ->type_name("NAME")
+                           ->excludes(robot);
+  verb->add_flag("--new-model", options->new_model, "Of set: no session is of the rig model yet, they are to come")
+      ->needs(model);
   verb->add_option("--reason", options->order.reason, "Of set: why, for those who come after")->type_name("TEXT");
   verb->add_option("--by", options->order.who, "Of set: who sets it (default: the login name)")->type_name("NAME");
   verb->add_flag("--no-wait", options->order.no_wait, "Of set: end when it is safe on the server's disk");
@@ -161,7 +168,8 @@ void AddPolicy(CLI::App& app, Context& context) {
   verb->footer(
       "A robot's own policy goes before that of its rig model, and that before the fleet's, key by key. `check` needs "
       "no\n"
-      "server. `set` of one robot waits for its new verdict. " +
+      "server, and does not know which sensors a robot has; `set` of a robot refuses those that it does not have.\n"
+      "`set` of one robot waits for its new verdict. " +
       std::string(kVerdictCodes) +
       "Examples:\n"
       "  rigcal policy show mapper-01\n"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "client/approval_text.h"
 #include "client/edge_table.h"
 #include "client/table.h"
 #include "client/verb.h"
@@ -34,6 +35,7 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
   PrintDrive(awaited.show, out);
   out << robot << ", revision " << CountOf(awaited.show["revision"]) << '\n';
   PrintVerdict(revision["verdict"], awaited.show, out);
+  PrintApproval(awaited.show, out);
   PrintGlobalError(revision, out);
   const auto edges = revision["edges"].Items();
   const auto past = static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), IsPast));

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "client/approval_text.h"
 #include "client/cause_list.h"
 #include "client/edge_table.h"
 #include "client/insight_table.h"
@@ -56,6 +57,7 @@ void PrintShow(const Document& document, bool whole, std::ostream& out) {
       << DayOf(document["calibrated_at"]) << ", solved " << AgeOf(document["age_ns"]) << " ago\n";
   PrintDrive(document, out);
   PrintVerdict(revision["verdict"], document, out);
+  PrintApproval(document, out);
   PrintCauses(revision["causes"], out);
   PrintAsFound(document["as_found"], out);
   PrintGlobalError(revision, out);
@@ -82,7 +84,10 @@ ExitCode RunShow(const Context& context, const ShowOptions& options) {
   if (options.whole && context.json) parameters.push_back(Field::Raw("whole", "true"));
   const auto print = [&](const Document& document, std::ostream& out) { PrintShow(document, options.whole, out); };
   return Answer(context, {"show", JsonObject(parameters), print,
-                          [](const Document& document) { return Judge(document["document"]["verdict"], document); }});
+                          [](const Document& document) {
+                            if (document.Has("superseded_by")) return ExitCode::kVerdictUnknown;  // whatever it said then
+                            return Judge(document["document"]["verdict"], document);
+                          }});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "client/approval_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -53,8 +54,10 @@ void PrintStatus(const Document& document, bool of_one, std::ostream& out) {
   Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
   for (const Document& row : rows) {
     const std::string drive = of_one ? "" : DriveText(row);
+    const std::string in_use = InUseText(row), runs = RunsText(row);
     table.Add({row["robot"].Text("?"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
-               drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"])});
+               drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"]) +
+                   (in_use.empty() ? "" : " " + in_use) + (runs.empty() ? "" : " " + runs)});
   }
   table.Print(out);
 }

@@ -79,8 +79,8 @@ std::string FallbackText(const Document& verdict, const Document& validity) {
   if (IsUsable(told) || !validity.Has("usable")) return "";
   const Document usable = validity["usable"];
   const auto created_at = StampOf(usable["created_at"]);
-  if (!created_at) return KeepText(std::nullopt);
-  return KeepText(UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
+  if (!created_at) return KeepText(told.level, std::nullopt);
+  return KeepText(told.level, UsableRevision{static_cast<int>(usable["revision"].Integer().value_or(0)), *created_at});
 }
 
 std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }

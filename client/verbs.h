@@ -22,6 +22,11 @@ void AddRetire(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kPolicyActions = {"show", "check", "set"};
 // policy, and the verbs that ask the server what it knows.
 void AddPolicy(CLI::App& app, Context& context);
+void AddApprove(CLI::App& app, Context& context);
+void AddReject(CLI::App& app, Context& context);
+void AddRollback(CLI::App& app, Context& context);
+void AddAgent(CLI::App& app, Context& context);
+void AddAudit(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);
 void AddEdges(CLI::App& app, Context& context);

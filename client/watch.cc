@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "client/approval_text.h"
 #include "client/edge_table.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -52,6 +53,7 @@ std::string TextOf(const std::string& kind, const Document& data) {
     return CountOf(data["sensors_known"]) + " of " + CountOf(data["sensors"]) + " sensors known, " +
            CountOf(data["edges"]) + " edges (provisional)";
   if (kind == "revision") return "revision " + CountOf(data["revision"]) + ", " + VerdictAndKeep(data);
+  if (kind == "decision") return DecidedText(data);
   if (kind == "published") return "report of revision " + CountOf(data["revision"]) + " at " + data["path"].Text("?");
   return data.Dump();
 }

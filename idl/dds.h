@@ -114,6 +114,7 @@ class Origins {
  private:
   std::unordered_map<dds_instance_handle_t, SampleOrigin> by_publication_;
 };
+Status WaitForAcks(dds_entity_t writer, std::chrono::milliseconds timeout);
 Status WithdrawInstance(dds_entity_t writer, const void* sample, const char* topic);
 Status ForgetInstance(dds_entity_t writer, const void* sample);
 std::vector<dds_instance_handle_t> MatchedPublications(dds_entity_t reader);
@@ -153,6 +154,10 @@ class Writer {
   // kBusy if a reader did not take within the writer's blocking time: nothing was written, try again.
   [[nodiscard]] Status Write(const T& sample) {
     return internal::WriteSample(entity_.get(), &sample, InfoOf<T>().name);
+  }
+  // Until every matched reader has what was written; kUnreachable after the timeout.
+  [[nodiscard]] Status WaitForAcks(std::chrono::milliseconds timeout) const {
+    return internal::WaitForAcks(entity_.get(), timeout);
   }
   [[nodiscard]] int MatchedReaders() const { return internal::MatchedCount(entity_.get(), true); }
   // Whether any reader matched that is none of `others` (NewReaders::OfMany).

@@ -92,6 +92,12 @@ Status WriteSample(dds_entity_t writer, const void* sample, const char* topic) {
   return Written(dds_write(writer, sample), topic);
 }
 
+Status WaitForAcks(dds_entity_t writer, std::chrono::milliseconds timeout) {
+  if (dds_wait_for_acks(writer, DDS_MSECS(timeout.count())) == DDS_RETCODE_OK) return {};
+  return Fail(ErrorCode::kUnreachable, "nobody took what was written within " + std::to_string(timeout.count()) + " ms",
+              "Try again; `rigcal doctor` tells whether a server is there");
+}
+
 Status WithdrawInstance(dds_entity_t writer, const void* sample, const char* topic) {
   return Written(dds_dispose(writer, sample), topic);
 }

@@ -1,6 +1,7 @@
 #include "storage/migrate.h"
 
 #include "schema.h"
+#include "storage/audit_chain.h"
 
 namespace rigcal::storage {
 namespace {
@@ -18,8 +19,10 @@ bool IsEmpty(Connection& connection) {
 Status RunMissing(Connection& connection) {
   // Another process may have migrated since the version was read.
   const int version = SchemaVersionOf(connection);
-  for (int next = version; next < NewestSchemaVersion(); ++next)
+  for (int next = version; next < NewestSchemaVersion(); ++next) {
     connection.database().exec(std::string(schema::kEmbeddedFiles.at(static_cast<std::size_t>(next)).second));
+    if (next + 1 == kAuditChainVersion) ChainOldAudit(connection.database());
+  }
   connection.database().exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
                              "; PRAGMA user_version = " + std::to_string(NewestSchemaVersion()));
   return {};

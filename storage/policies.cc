@@ -1,7 +1,7 @@
 #include "storage/policies.h"
 
+#include "storage/audit.h"
 #include "storage/query.h"
-#include "storage/revisions.h"
 #include "storage/standing.h"
 #include "storage/standing_row.h"
 
@@ -39,7 +39,8 @@ Result<PolicyVersion> AppendPolicy(Store& store, const PolicyPlace& place, const
     next.number = store.database().getLastInsertRowid();
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            "set version " + std::to_string(next.version) + " of " + PolicySubject(place) +
-                               Because(word)));
+                               Because(word),
+                           RobotId(place.scope == PolicyScope::kRobot ? place.subject : "")));
     return next;
   });
 }
@@ -67,6 +68,27 @@ Result<std::string> LoadRigModel(Store& store, const RobotId& robot) {
                 "SELECT rig_model FROM session_model WHERE robot_id = ? "
                 "ORDER BY captured_ns DESC, session_number DESC LIMIT 1");
     return query.Bind(robot).Step() ? query.Text(0) : std::string();
+  });
+}
+
+Result<bool> HasRigModel(Store& store, const std::string& model) {
+  return Load<bool>(store, "rig model " + model, [&]() -> Result<bool> {
+    return Query(store, "SELECT 1 FROM session_model WHERE rig_model = ? LIMIT 1").Bind(model).Step();
+  });
+}
+
+// From each name to the next: a fleet has few models, and very many sessions of each.
+Result<std::vector<std::string>> LoadRigModels(Store& store, int max) {
+  return Load<std::vector<std::string>>(store, "rig models", [&]() -> Result<std::vector<std::string>> {
+    std::vector<std::string> models;
+    std::string last;  // no model is called so
+    while (static_cast<int>(models.size()) < max) {
+      Query query(store, "SELECT min(rig_model) FROM session_model WHERE rig_model > ?");
+      if (!query.Bind(last).Step() || query.IsNull(0)) break;
+      last = query.Text(0);
+      models.push_back(last);
+    }
+    return models;
   });
 }
 

@@ -22,6 +22,11 @@ namespace rigcal::storage {
 // As the robot's newest closed session says; empty: none does.
 [[nodiscard]] Result<std::string> LoadRigModel(Store& store, const RobotId& robot);
 
+// Whether a closed session names it.
+[[nodiscard]] Result<bool> HasRigModel(Store& store, const std::string& model);
+// Those that closed sessions name, sorted, at most `max`.
+[[nodiscard]] Result<std::vector<std::string>> LoadRigModels(Store& store, int max);
+
 // Robots of which a newer policy than that of their newest revision was set, after `after` by id, at most `max` of
 // them.
 [[nodiscard]] Result<std::vector<RobotId>> LoadRobotsToJudge(Store& store, const RobotId& after, int max);

@@ -1,6 +1,6 @@
 #include "storage/retired.h"
 
-#include "storage/revisions.h"
+#include "storage/audit.h"
 #include "storage/standing.h"
 #include "storage/standing_row.h"
 
@@ -51,7 +51,7 @@ Status Say(Store& store, const SaidOf<Key>& thing, const std::string& how, const
       .Bind(thing.robot, word.at, how, thing.key, word.who, word.reason)
       .Run();
   return AppendAudit(store, word.at, word.who,
-                     how + " " + thing.name + " of robot " + thing.robot.str() + Because(word));
+                     how + " " + thing.name + " of robot " + thing.robot.str() + Because(word), thing.robot);
 }
 
 Result<SaidOf<std::int64_t>> EdgeSaidOf(Store& store, const EdgeId& id) {

@@ -4,7 +4,7 @@
 
 #include "server/base/limits.h"
 #include "storage/compressed.h"
-#include "storage/query.h"
+#include "storage/revision_row.h"
 #include "storage/sessions.h"
 
 namespace rigcal::storage {
@@ -16,33 +16,7 @@ std::string PublicationSubject(const RevisionKey& key) {
   return "publication of revision " + std::to_string(key.number) + " of robot " + key.robot.str();
 }
 
-const std::string kColumns =
-    "revision.robot_id, number, created_ns, edge_watermark, verdict, verdict_why, verdict_what_to_do, digest, "
-    "(SELECT standing_watermark FROM revision_standing s WHERE s.robot_id = revision.robot_id AND "
-    "s.revision_number = revision.number), "
-    "(SELECT calibrated_ns FROM revision_calibrated c "
-    "WHERE c.robot_id = revision.robot_id AND c.revision_number = revision.number), "
-    "judged.policy_watermark, judged.max_age_ns, judged.unverified ";
-const std::string kFrom =
-    "FROM revision LEFT JOIN revision_judgement judged "
-    "ON judged.robot_id = revision.robot_id AND judged.revision_number = revision.number ";
-
-Revision RevisionOf(const Query& query) {
-  Revision revision;
-  revision.robot = query.IdAt<RobotId>(0);
-  revision.number = static_cast<int>(query.Int(1));
-  revision.created_at = query.Time(2);
-  revision.edge_watermark = query.Int(3);
-  revision.verdict = {VerdictLevelOf(query.Text(4)), query.Text(5), query.Text(6)};
-  revision.digest = query.IdAt<Digest>(7);
-  revision.standing_watermark = query.Int(8);  // NULL reads as 0
-  if (!query.IsNull(9)) revision.calibrated_at = query.Time(9);
-  if (query.IsNull(10)) return revision;  // of before policies
-  revision.policy_watermark = query.Int(10);
-  revision.max_age_ns = query.Int(11);
-  revision.verdict.unverified = query.Text(12);
-  return revision;
-}
+const std::string kRevision = std::string(kRevisionColumns) + "FROM revision " + kRevisionJudged;
 
 int NewestNumber(Store& store, const RobotId& robot) {
   Query query(store, "SELECT coalesce(max(number), 0) FROM revision WHERE robot_id = ?");
@@ -105,6 +79,23 @@ void Insert(Store& store, const Revision& revision, int number, const Blob& docu
 
 }  // namespace
 
+Revision RevisionAt(const Query& query) {
+  Revision revision;
+  revision.robot = query.IdAt<RobotId>(0);
+  revision.number = static_cast<int>(query.Int(1));
+  revision.created_at = query.Time(2);
+  revision.edge_watermark = query.Int(3);
+  revision.verdict = {VerdictLevelOf(query.Text(4)), query.Text(5), query.Text(6)};
+  revision.digest = query.IdAt<Digest>(7);
+  revision.standing_watermark = query.Int(8);  // NULL reads as 0
+  if (!query.IsNull(9)) revision.calibrated_at = query.Time(9);
+  if (query.IsNull(10)) return revision;  // of before policies
+  revision.policy_watermark = query.Int(10);
+  revision.max_age_ns = query.Int(11);
+  revision.verdict.unverified = query.Text(12);
+  return revision;
+}
+
 Result<int> AppendRevision(Store& store, const Revision& revision) {
   return Append<int>(store, RevisionsSubject(revision.robot), [&]() -> Result<int> {
     RIGCAL_TRY(AppendRobot(store, revision.robot, revision.created_at));
@@ -117,12 +108,12 @@ Result<int> AppendRevision(Store& store, const Revision& revision) {
 
 Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, "SELECT " + kColumns +
+    Query query(store, std::string("SELECT ") + kRevisionColumns +
                            ", (SELECT zstd FROM revision_document d WHERE d.robot_id = revision.robot_id AND "
-                           "d.revision_number = revision.number), document " +
-                           kFrom + "WHERE revision.robot_id = ? AND number = ?");
+                           "d.revision_number = revision.number), document FROM revision " +
+                           kRevisionJudged + "WHERE revision.robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
-    Revision revision = RevisionOf(query);
+    Revision revision = RevisionAt(query);
     RIGCAL_ASSIGN(revision.document, DocumentOf(query, DocumentSubject(robot, revision.number)));
     return revision;
   });
@@ -130,57 +121,19 @@ Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot,
 
 Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number) {
   return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, "SELECT " + kColumns + kFrom + "WHERE revision.robot_id = ? AND number = ?");
+    Query query(store, "SELECT " + kRevision + "WHERE revision.robot_id = ? AND number = ?");
     if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
-    return RevisionOf(query);
-  });
-}
-
-namespace {
-
-// Of a revision: that no edge which it counts was retired since, itself or with its session, and not restored. `counted` finds
-// the edges `c` of the word `t`, which is about `subject`.
-std::string CountsNothingRetired(const std::string& counted, const std::string& subject) {
-  return "NOT EXISTS (SELECT 1 FROM standing t JOIN " + counted +
-         " WHERE t.robot_id = revision.robot_id AND t.how = 'retired' AND c.number <= revision.edge_watermark "
-         "AND t.number > coalesce((SELECT standing_watermark FROM revision_standing w "
-         "WHERE w.robot_id = revision.robot_id AND w.revision_number = revision.number), 0) "
-         "AND NOT EXISTS (SELECT 1 FROM standing later WHERE later." +
-         subject + " = t." + subject + " AND later.number > t.number AND later.how = 'restored'))";
-}
-
-}  // namespace
-
-Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number) {
-  return Load<std::optional<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::optional<Revision>> {
-    Query query(store, "SELECT " + kColumns + kFrom +
-                           "WHERE revision.robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') AND " +
-                           CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
-                           CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
-                                                "JOIN counted_edge c ON c.edge_number = e.number",
-                                                "session_number") +
-                           " ORDER BY number DESC LIMIT 1");
-    if (!query.Bind(robot, number > 0 ? number : NewestNumber(store, robot)).Step()) return std::nullopt;
-    return RevisionOf(query);
-  });
-}
-
-Result<int> LoadNewestGood(Store& store, const RobotId& robot, int number) {
-  return Load<int>(store, RevisionsSubject(robot), [&]() -> Result<int> {
-    Query query(store,
-                "SELECT number FROM revision WHERE robot_id = ? AND number <= ? AND verdict IN ('pass', 'warn') "
-                "ORDER BY number DESC LIMIT 1");
-    return query.Bind(robot, number).Step() ? static_cast<int>(query.Int(0)) : 0;
+    return RevisionAt(query);
   });
 }
 
 Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before, std::int64_t limit) {
   return Load<std::vector<Revision>>(store, RevisionsSubject(robot), [&]() -> Result<std::vector<Revision>> {
-    Query query(store, "SELECT " + kColumns + kFrom +
+    Query query(store, "SELECT " + kRevision +
                            "WHERE revision.robot_id = ? AND number < ? ORDER BY number DESC LIMIT ?");
     query.Bind(robot, before > 0 ? before : std::numeric_limits<int>::max(), limit);
     std::vector<Revision> revisions;
-    while (query.Step()) revisions.push_back(RevisionOf(query));
+    while (query.Step()) revisions.push_back(RevisionAt(query));
     return revisions;
   });
 }
@@ -303,13 +256,6 @@ Status AppendPublication(Store& store, const RevisionKey& key, Stamp now) {
     Query(store, "DELETE FROM waiting_publication WHERE robot_id = ? AND revision_number = ?")
         .Bind(key.robot, key.number)
         .Run();
-    return {};
-  });
-}
-
-Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what) {
-  return store.connection().Append("audit", [&]() -> Status {
-    Query(store, "INSERT INTO audit (at_ns, who, what) VALUES (?, ?, ?)").Bind(now, who, what).Run();
     return {};
   });
 }

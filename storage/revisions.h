@@ -18,11 +18,6 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::optional<Revision>> LoadRevision(Store& store, const RobotId& robot, int number);
 // The same without the document, which may be many megabytes.
 [[nodiscard]] Result<std::optional<Revision>> LoadRevisionSummary(Store& store, const RobotId& robot, int number);
-// The newest up to `number` (0: of all) whose verdict is pass or warn; without the document. None that counts an edge which was
-// retired since, itself or with its session.
-[[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int number);
-// The number of the newest up to `number` whose verdict is pass or warn, also where it may be used no more; 0: there is none.
-[[nodiscard]] Result<int> LoadNewestGood(Store& store, const RobotId& robot, int number);
 // Without documents; newest first, up to `limit` with numbers below `before` (0: from the newest on).
 [[nodiscard]] Result<std::vector<Revision>> LoadRevisions(Store& store, const RobotId& robot, int before = 0,
                                                           std::int64_t limit = kAllRows);
@@ -53,8 +48,5 @@ struct RevisionKey {
 // The robot's newest revision, once more: what it shows was not all there. A no-op without a revision.
 [[nodiscard]] Status PublishAgain(Store& store, const RobotId& robot);
 [[nodiscard]] Status AppendPublication(Store& store, const RevisionKey& key, Stamp now);
-
-// Append-only audit trail: who did what.
-[[nodiscard]] Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what);
 
 }  // namespace rigcal::storage

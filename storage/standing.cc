@@ -1,8 +1,8 @@
 #include "storage/standing.h"
 
 #include "server/base/text.h"
+#include "storage/audit.h"
 #include "storage/retired.h"
-#include "storage/revisions.h"
 #include "storage/sessions.h"
 #include "storage/standing_row.h"
 
@@ -150,7 +150,8 @@ Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, con
     InsertCurrent(store, id, restored ? "restored" : "pushed_again", word);
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            (restored ? "restored session " : "pushed again session ") + id.str() + " of robot " +
-                               row.robot.str() + was + Because(word)));
+                               row.robot.str() + was + Because(word),
+                           row.robot));
     return true;
   });
 }

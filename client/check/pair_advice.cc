@@ -77,10 +77,8 @@ std::optional<Advice> TooRough(const PairFound& pair) {
   const double more = std::ceil(static_cast<double>(pair.both) * std::min(excess * excess - 1, 1.0));
   return Advice{{PairText(pair.pair)},
                 "known to " + client::Fixed(client::kMmPerM * sigma_m, 1) + " mm and " +
-                    client::Fixed(client::kDegPerRad * sigma_rad, 2) + " deg only, " +
-                    client::Fixed(client::kMmPerM * kDefaultTolerance.m, 0) + " mm and " +
-                    client::Fixed(client::kDegPerRad * kDefaultTolerance.rad, 2) +
-                    " deg are wanted: hold the board nearer, tilted to all sides, in all parts of both pictures",
+                    client::Fixed(client::kDegPerRad * sigma_rad, 2) + " deg only, " + DefaultLimitsText() +
+                    " are wanted: hold the board nearer, tilted to all sides, in all parts of both pictures",
                 Urgency::kRough,
                 static_cast<std::size_t>(more)};
 }

@@ -1,5 +1,6 @@
 #include "client/check/report.h"
 #include "server/formats/json_values.h"
+#include "server/model/policy.h"
 
 namespace rigcal::check {
 namespace {
@@ -48,6 +49,14 @@ void WriteAdvice(JsonWriter& out, const Judgement& judgement) {
         out.Text("urgency", UrgencyName(advice.urgency));
         out.Integer("captures_more", static_cast<std::int64_t>(advice.captures_more));
       });
+  });
+}
+
+// What a policy of the server's says is not known here.
+void WriteLimits(JsonWriter& out) {
+  out.Object("limits", [&] {
+    out.Number("tolerance_m", kDefaultTolerance.m);
+    out.Number("tolerance_rad", kDefaultTolerance.rad);
   });
 }
 
@@ -172,6 +181,7 @@ std::string ReportJson(const Findings& findings, const Judgement& judgement) {
     out.List("clouds_not_looked_at", [&] {
       for (const SensorId& lidar : judgement.clouds_of) out.Text(lidar.str());
     });
+    WriteLimits(out);
     WriteAdvice(out, judgement);
     WriteTexts(out, "remarks", judgement.remarks);
     WriteRefusals(out, findings);

@@ -46,6 +46,7 @@ void PrintVerdict(const Findings& findings, const Judgement& judgement, std::ost
   }
   for (std::size_t i = 0; i < judgement.remarks.size(); ++i)
     out << (i == 0 ? "files    " : kIndent) << Plain(judgement.remarks[i]) << '\n';
+  out << "limits   Judged by the default limits, " << DefaultLimitsText() << ": the server's policy may want more.\n";
 }
 
 // Largest tilt to each side, whole degrees; of no pose "-".

@@ -1,5 +1,9 @@
 #include "client/check/words.h"
 
+#include "client/pose_text.h"
+#include "client/table.h"
+#include "server/model/policy.h"
+
 namespace rigcal::check {
 
 std::string Enumerated(const std::vector<std::string>& words) {
@@ -18,6 +22,11 @@ std::string NamesText(const std::vector<std::string>& names) {
 }
 
 std::string PairText(const SensorPair& pair) { return pair.a.str() + " - " + pair.b.str(); }
+
+std::string DefaultLimitsText() {
+  return client::Fixed(client::kMmPerM * kDefaultTolerance.m, 0) + " mm and " +
+         client::Fixed(client::kDegPerRad * kDefaultTolerance.rad, 2) + " deg";
+}
 
 std::string SentenceOf(const Diagnosis& diagnosis) {
   return Sentence({ErrorCode::kInvalidInput, diagnosis.what, diagnosis.cure});

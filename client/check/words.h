@@ -16,6 +16,8 @@ namespace rigcal::check {
 
 // "left - right"
 [[nodiscard]] std::string PairText(const SensorPair& pair);
+// "5 mm and 0.29 deg": by which it judges, as no server is asked for its policy.
+[[nodiscard]] std::string DefaultLimitsText();
 // What, and what to do.
 [[nodiscard]] std::string SentenceOf(const Diagnosis& diagnosis);
 

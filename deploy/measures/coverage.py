@@ -78,7 +78,7 @@ def turned(context):
 def revision_of(context, session, data, count, *extra):
     """The revision of one push, by a server that has so many processors."""
     with processors(count), Server(context, data) as server:
-        done = server.rigcal("push", session, "--json", *extra, timeout=1800)
+        done = server.rigcal("push", session, "--json", "--new-robot", *extra, timeout=1800)
         if done.returncode not in ANSWERED:
             raise RuntimeError("rigcal push: exit %d: %s" % (done.returncode, done.stderr.strip()[-300:]))
         return json.loads(server.rigcal("show", "mars-mapper", "--json").stdout)

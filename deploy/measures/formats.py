@@ -54,7 +54,7 @@ def run(context):
         subprocess.run([sys.executable, str(context.root / "tests" / "data" / "extract_caliscope.py"), str(source), str(session)],
                        check=True, stdout=subprocess.DEVNULL)
         with Server(context, pathlib.Path(temporary) / "store") as server:
-            if server.rigcal("push", session).returncode not in ANSWERED:
+            if server.rigcal("push", session, "--new-robot").returncode not in ANSWERED:
                 raise RuntimeError("push failed")
             document = json.loads(server.rigcal("show", "caliscope-rig", "--whole", "--json").stdout)["document"]
     edges = [edge for edge in document["edges"] if edge["state"] == "good"]

@@ -28,7 +28,7 @@ def angle_deg(rpy_a, rpy_b):
 def through_the_service(context, temporary, session):
     """The edge's method, state and number of captures, of the same folder pushed to a real rigcald."""
     with Server(context, pathlib.Path(temporary) / "store") as server:
-        if server.rigcal("push", session).returncode not in ANSWERED:
+        if server.rigcal("push", session, "--new-robot").returncode not in ANSWERED:
             raise RuntimeError("push failed")
         done = server.rigcal("show", "acfr", "--json")
         return [edge for edge in json.loads(done.stdout)["document"]["edges"] if edge["method"] == "lidar_camera"]

@@ -38,7 +38,7 @@ def one_visit(context, folder, seed):
     context.run_json("rigcal", "simulate", "mars-mapper", "--out", session, "--seed", seed, "--json")
     with Server(context, folder / ("data-%d" % seed)) as server:
         began = time.monotonic()
-        pushed = server.rigcal("push", session, "--json", timeout=600)
+        pushed = server.rigcal("push", session, "--json", "--new-robot", timeout=600)
         took_s = time.monotonic() - began
         edges = json.loads(server.rigcal("edges", "mars-mapper", "--json").stdout)["edges"]
         compared = json.loads(server.rigcal("compare", "mars-mapper", "--poses", session / "truth.yaml", "--json").stdout)

@@ -46,7 +46,7 @@ def run(context):
                 raise RuntimeError("push-edges failed")
             quiet_ms = statistics.median([p99_ms(context, server) for _ in range(RUNS + 1)][1:])  # the first make what later ones find
             began = time.monotonic()
-            if server.rigcal("push", poison, "--no-wait").returncode != 0 or server.rigcal("push", beside, "--no-wait").returncode != 0:
+            if server.rigcal("push", poison, "--no-wait", "--new-robot").returncode != 0 or server.rigcal("push", beside, "--no-wait", "--new-robot").returncode != 0:
                 raise RuntimeError("push failed")
             busy = []
             while not (edges(server, "poison") and edges(server, "beside")) and time.monotonic() - began < PATIENCE_S:

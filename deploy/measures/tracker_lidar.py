@@ -52,7 +52,7 @@ def of_visits(context, folder, lidar):
     for seed in range(1, VISITS + 1):
         visit, bound = sessions.simulate(context, folder, lidar, seed, *VISITS_OPTIONS)
         with Server(context, folder / ("data-" + visit.name)) as server:
-            server.rigcal("push", visit)
+            server.rigcal("push", visit, "--new-robot")
             edge, error = sessions.edge_of(server, visit), sessions.error_of(server, visit)
         worst = max([worst] + [abs(e) / s for e, s in zip(error["e"], edge["sigma_m"] + edge["sigma_rad"])])
         squares.append(sum(e * e for e in error["e"][:3]))

@@ -32,7 +32,7 @@ def splits(context):
 def judged(context, session, robot):
     """The rows of the edges and the document of one push."""
     with context.folder() as data, Server(context, pathlib.Path(data) / "data") as server:
-        pushed = server.rigcal("push", session, "--json", timeout=600)
+        pushed = server.rigcal("push", session, "--json", "--new-robot", timeout=600)
         if pushed.returncode not in ANSWERED:
             raise RuntimeError("rigcal push %s: exit %d: %s" % (session, pushed.returncode, pushed.stderr.strip()[-300:]))
         edges = json.loads(server.rigcal("edges", robot, "--json").stdout)["edges"]

@@ -8,6 +8,7 @@
 
 #include "idl/convert.h"
 #include "server/base/ids.h"
+#include "server/model/robot_runs.h"
 
 namespace rigcal::dds {
 
@@ -53,7 +54,8 @@ struct Order {
   std::function<void(Result<std::string>)> answer;
 };
 
-using Arrival = std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal, Order>;
+using Arrival =
+    std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal, Order, RunsReport>;
 
 // Memory it holds while it waits.
 [[nodiscard]] std::int64_t BytesOf(const Arrival& arrival);

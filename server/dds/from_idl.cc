@@ -77,6 +77,16 @@ Result<Arrival> Checked(const rigcal_wire_PairwiseResult& sample, const wire::Sa
   return item;
 }
 
+Result<Arrival> Checked(const rigcal_wire_CalibrationInUse& sample, const wire::SampleOrigin& origin) {
+  RunsReport report;
+  RIGCAL_ASSIGN(report.robot, RobotId::Parse(sample.robot_id));
+  RIGCAL_TRY(CheckSpeaker(report.robot, origin));
+  RIGCAL_ASSIGN(report.digest, Digest::Parse(sample.digest));
+  report.applied_at = {sample.applied_ns};
+  report.who = sample.who;
+  return report;
+}
+
 template <typename T>
 std::optional<Arrival> Convert(const T& sample, const char* subject_id, const wire::SampleOrigin& origin) {
   Result<Arrival> checked = Checked(sample, origin);
@@ -97,6 +107,9 @@ std::optional<Arrival> FromIdl(const rigcal_wire_Chunk& sample, const wire::Samp
 }
 std::optional<Arrival> FromIdl(const rigcal_wire_PairwiseResult& sample, const wire::SampleOrigin& origin) {
   return Convert(sample, sample.batch_id, origin);
+}
+std::optional<Arrival> FromIdl(const rigcal_wire_CalibrationInUse& sample, const wire::SampleOrigin& origin) {
+  return Convert(sample, sample.digest, origin);
 }
 
 std::optional<RobotId> RobotOfPartition(const std::string& partition) {

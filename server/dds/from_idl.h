@@ -15,6 +15,8 @@ namespace rigcal::dds {
 [[nodiscard]] std::optional<Arrival> FromIdl(const rigcal_wire_Chunk& sample, const wire::SampleOrigin& origin);
 [[nodiscard]] std::optional<Arrival> FromIdl(const rigcal_wire_PairwiseResult& sample,
                                              const wire::SampleOrigin& origin);
+[[nodiscard]] std::optional<Arrival> FromIdl(const rigcal_wire_CalibrationInUse& sample,
+                                             const wire::SampleOrigin& origin);
 
 // The robot of a "robot/<id>" partition; nullopt for any other.
 [[nodiscard]] std::optional<RobotId> RobotOfPartition(const std::string& partition);

@@ -21,7 +21,8 @@ Result<Intake::Readers> Intake::OpenReaders(const wire::Participant& participant
   RIGCAL_ASSIGN(auto manifests, wire::Reader<rigcal_wire_Manifest>::Open(participant, robots));
   RIGCAL_ASSIGN(auto edges, wire::Reader<rigcal_wire_PairwiseResult>::Open(participant, robots));
   RIGCAL_ASSIGN(auto chunks, wire::Reader<rigcal_wire_Chunk>::Open(participant, robots));
-  return Readers{std::move(headers), std::move(manifests), std::move(edges), std::move(chunks)};
+  RIGCAL_ASSIGN(auto runs, wire::Reader<rigcal_wire_CalibrationInUse>::Open(participant, robots));
+  return Readers{std::move(headers), std::move(manifests), std::move(edges), std::move(chunks), std::move(runs)};
 }
 
 Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox, Inbox& inbox, Part& part) {
@@ -29,7 +30,8 @@ Result<Intake> Intake::Open(const wire::Participant& participant, Outbox& outbox
   RIGCAL_ASSIGN(wire::NewReaders listeners, wire::NewReaders::Open(participant));
   RIGCAL_ASSIGN(wire::WaitSet waitset, wire::WaitSet::Open(participant));
   for (const dds_entity_t reader :
-       {readers.headers.get(), readers.manifests.get(), readers.edges.get(), readers.chunks.get(), listeners.get()})
+       {readers.headers.get(), readers.manifests.get(), readers.edges.get(), readers.chunks.get(), readers.runs.get(),
+        listeners.get()})
     RIGCAL_TRY(waitset.Attach(reader));
   return Intake(std::move(readers), std::move(listeners), std::move(waitset), outbox, inbox, part);
 }
@@ -45,7 +47,8 @@ Result<bool> Intake::TakeInto(wire::Reader<T>& reader, int max) {
 // One topic that fails keeps none of the others from being taken; its error is the result.
 Result<bool> Intake::TakeAll() {
   const Result<bool> taken[] = {TakeInto(readers_.headers, kSmallAtOnce), TakeInto(readers_.manifests, kBigAtOnce),
-                                TakeInto(readers_.edges, kEdgesAtOnce), TakeInto(readers_.chunks, kBigAtOnce)};
+                                TakeInto(readers_.edges, kEdgesAtOnce), TakeInto(readers_.chunks, kBigAtOnce),
+                                TakeInto(readers_.runs, kSmallAtOnce)};
   bool any = false;
   for (const Result<bool>& one : taken) {
     RIGCAL_TRY(one);

@@ -26,6 +26,7 @@ class Intake {
     wire::Reader<rigcal_wire_Manifest> manifests;
     wire::Reader<rigcal_wire_PairwiseResult> edges;
     wire::Reader<rigcal_wire_Chunk> chunks;
+    wire::Reader<rigcal_wire_CalibrationInUse> runs;
   };
   Intake(Readers readers, wire::NewReaders listeners, wire::WaitSet waitset, Outbox& outbox, Inbox& inbox, Part& part);
 

@@ -6,6 +6,7 @@
 #include "server/base/log.h"
 #include "server/base/thread_rank.h"
 #include "server/dds/server_side.h"
+#include "storage/robot_runs.h"
 
 namespace rigcal::dds {
 namespace {
@@ -32,6 +33,7 @@ Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks&
       inbox_(inbox),
       outbox_(outbox),
       callbacks_(callbacks),
+      clock_(clock),
       asked_(asked),
       incarnation_(incarnation),
       sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
@@ -61,6 +63,13 @@ void Recorder::CarryOut(const Order& order) {
   order.answer(std::move(done->document));
 }
 
+// What cannot be kept is told again when the robot's program, or this server, starts anew.
+void Recorder::Keep(const RunsReport& report) {
+  const auto kept = storage::AppendRuns(stores_.takes, report, clock_.Now());
+  if (!kept) return LogWarn("what robot " + report.robot.str() + " runs was not kept: " + Sentence(kept.error()));
+  if (*kept) callbacks_.work_arrived(report.robot);  // its summary is to be made anew
+}
+
 void Recorder::Take(Arrival arrival) {
   if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(std::move(*chunk));
   if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(std::move(*item));
@@ -69,6 +78,7 @@ void Recorder::Take(Arrival arrival) {
   if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return sessions_.Take(*discarded);
   if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
   if (const auto* order = std::get_if<Order>(&arrival)) return CarryOut(*order);
+  if (const auto* report = std::get_if<RunsReport>(&arrival)) return Keep(*report);
 }
 
 // While somebody asks, one robot's flood leaves processors and disk to the answers: the next round begins no earlier

@@ -27,6 +27,7 @@ class Recorder {
   void Take(Arrival arrival);
   void Answer(const Refusal& refusal);
   void CarryOut(const Order& order);
+  void Keep(const RunsReport& report);
   [[nodiscard]] Time TakeRound();
   void CommitDue();
 
@@ -34,6 +35,7 @@ class Recorder {
   Inbox& inbox_;
   Outbox& outbox_;
   const Callbacks& callbacks_;
+  const Clock& clock_;
   const LastQuestion& asked_;
   std::uint64_t incarnation_;
   SessionRecorder sessions_;

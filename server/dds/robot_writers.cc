@@ -79,10 +79,13 @@ Status RobotWriters::TellStatus(const RobotState& state) {
   return statuses_.Write(sample);
 }
 
-Status RobotWriters::TellCalibration(const RobotId& robot, const RobotState::Calibration& calibration) {
+Status RobotWriters::TellCalibration(const RobotState& state) {
+  const RobotId& robot = state.newest.robot;
+  const RobotState::Calibration& calibration = *state.calibration;
   if (calibration.revision.number == told_calibration_) return {};
   told_calibration_ = 0;
   std::set<SensorId> gone = told_sensors_;
+  gone.insert(state.withdrawn.begin(), state.withdrawn.end());
   for (const SensorPose& pose : calibration.poses) {
     RIGCAL_ASSIGN(const auto owned, wire::ToCalibration(robot, calibration, pose));
     RIGCAL_TRY(calibrations_.Write(owned.sample));
@@ -105,7 +108,7 @@ Status RobotWriters::Withdraw(const RobotId& robot, const std::set<SensorId>& se
 }
 
 Status RobotWriters::TellPoses(const RobotState& state) {
-  if (state.calibration) return TellCalibration(state.newest.robot, *state.calibration);
+  if (state.calibration) return TellCalibration(state);
   told_calibration_ = 0;
   std::set<SensorId> gone = told_sensors_;
   gone.insert(state.withdrawn.begin(), state.withdrawn.end());

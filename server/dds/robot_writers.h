@@ -34,7 +34,7 @@ class RobotWriters {
 
   [[nodiscard]] Status TellStatus(const RobotState& state);
   [[nodiscard]] Status TellPoses(const RobotState& state);
-  [[nodiscard]] Status TellCalibration(const RobotId& robot, const RobotState::Calibration& calibration);
+  [[nodiscard]] Status TellCalibration(const RobotState& state);
   [[nodiscard]] Status Withdraw(const RobotId& robot, const std::set<SensorId>& sensors);
 
   wire::Publisher publisher_;

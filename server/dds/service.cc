@@ -30,6 +30,7 @@ struct Service::Impl {
   Impl(wire::Participant opened, Callbacks given) : participant(std::move(opened)), callbacks(std::move(given)) {}
   ~Impl();
   [[nodiscard]] Status Open(const Options& options);
+  void TellDecisions(const Clock& clock);
   void Start();
 
   // Threads are joined before any of it goes.
@@ -46,6 +47,18 @@ struct Service::Impl {
   std::thread thread_d, thread_w, thread_t, thread_q;
 };
 
+// A decision is told as soon as it is durable, before whoever made it has the answer.
+void Service::Impl::TellDecisions(const Clock& clock) {
+  callbacks.carry_out = [this, &clock, carry_out = callbacks.carry_out](
+                            storage::Store& store, const std::string& verb, const std::string& json) -> Result<OrderDone> {
+    RIGCAL_ASSIGN(OrderDone done, carry_out(store, verb, json));
+    if (done.decided == 0) return done;
+    teller->TellNext(done.robot);
+    outbox.Send(Announcement{done.robot, "decision", std::to_string(done.decided), clock.Now(), done.document});
+    return done;
+  };
+}
+
 Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(storage::Store store, storage::Store::Open(options.folder));
   Vitals& vitals = options.vitals == nullptr ? alone : *options.vitals;
@@ -57,6 +70,7 @@ Status Service::Impl::Open(const Options& options) {
   RIGCAL_ASSIGN(requests, Requests::Open(options.participant, callbacks, inbox, asked,
                                          vitals.Expect("questions", kTurnWithin), std::move(places)));
   const Clock& clock = options.clock == nullptr ? SystemClock() : *options.clock;
+  if (callbacks.carry_out) TellDecisions(clock);
   RIGCAL_ASSIGN(storage::Store commit_store, storage::Store::Open(options.folder));
   recorder =
       std::make_unique<Recorder>(Recorder::Stores{std::move(store), std::move(commit_store)}, inbox, outbox, callbacks,

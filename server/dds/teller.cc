@@ -32,7 +32,7 @@ std::optional<RobotId> Teller::Next() {
       due_.erase(robot);
       return robot;
     }
-    part_.Rest();
+    if (failing_.empty()) part_.Rest();
     if (order_.empty())
       changed_.wait(lock);
     else
@@ -55,10 +55,11 @@ Status Teller::Tell(const RobotId& robot) {
 void Teller::TellOrRetry(const RobotId& robot) {
   const Status told = Tell(robot);
   if (told) {
-    failing_.erase(robot);
+    if (failing_.erase(robot) > 0 && failing_.empty()) part_.Turn();
     return;
   }
   const Error& error = told.error();
+  part_.Fail({error.code, "the state of a robot could not be told: " + error.what, error.cure});
   const auto [again, is_first] = failing_.try_emplace(robot, kTellAgainFirst);
   if (is_first)
     LogError({error.code, "the state of robot " + robot.str() + " could not be told, it is tried again: " + error.what,
@@ -70,7 +71,7 @@ void Teller::TellOrRetry(const RobotId& robot) {
 void Teller::Run() {
   SetThreadRank(ThreadRank::kWorks);
   while (const auto robot = Next()) {
-    part_.Turn();
+    if (failing_.empty()) part_.Turn();
     TellOrRetry(*robot);
   }
 }

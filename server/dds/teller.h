@@ -34,6 +34,7 @@ class Teller {
   void Put(const RobotId& robot, Time due);
   [[nodiscard]] std::optional<RobotId> Next();  // waits for one that is due; nothing: stopped
   [[nodiscard]] Status Tell(const RobotId& robot);
+  // While any robot is not told the part has a problem, however well others are.
   void TellOrRetry(const RobotId& robot);
 
   storage::Store store_;

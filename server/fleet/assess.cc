@@ -91,9 +91,29 @@ Verdict NotVerified(Verdict verdict, const std::vector<Edge>& edges, const Graph
   for (const SensorPose& pose : solution.poses) (pose.known ? known : unknown).insert(pose.sensor);
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!known.contains(sensor) && !IsOfGoneSensor(edge)) unknown.insert(sensor);
-  if (known.size() > 1) verdict.unverified = List(std::vector<SensorId>(unknown.begin(), unknown.end()));
+      if (!known.contains(sensor) && !AsksForNoSensor(edge)) unknown.insert(sensor);
+  if (known.size() > 1) verdict.unverified = ListAll({unknown.begin(), unknown.end()});
   return verdict;
+}
+
+// Sensors that have a pose which is not to be relied on all the same.
+struct Doubt {
+  std::vector<Finding> findings;
+  std::vector<SensorId> sensors;
+};
+
+std::optional<Doubt> FindDoubt(const std::vector<Edge>& edges, const GraphSolution& solution,
+                               const std::vector<RootCause>& causes) {
+  Doubt doubt{FindingsOf(causes, [](const RootCause& cause) { return cause.in_doubt; }), {}};
+  std::set<SensorId> sensors;
+  for (const RootCause& cause : causes)
+    if (cause.in_doubt) sensors.insert(cause.sensors.begin(), cause.sensors.end());
+  doubt.sensors.assign(sensors.begin(), sensors.end());
+  if (!doubt.findings.empty()) return doubt;
+  doubt.sensors = SensorsOfFewCaptures(edges, solution);
+  if (doubt.sensors.empty()) return std::nullopt;
+  doubt.findings = {FewCapturesBehind(doubt.sensors, edges)};
+  return doubt;
 }
 
 // Edges that do not agree, and loops of them that do not close.
@@ -150,7 +170,7 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-               const SessionHeaders& headers) {
+               const SessionHeaders& headers, const PairCovariances& pairs) {
   const std::set<std::string> names = NamesOf(edges, solution);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
     return VerdictFrom(level, findings, names);
@@ -168,16 +188,17 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
     return say(VerdictLevel::kFail, failing);
   if (const auto unknown = FindUnknown(edges, solution, headers, causes); !unknown.empty())
     return NotVerified(say(VerdictLevel::kUnknown, unknown), edges, solution);
-  if (const auto few = SensorsOfFewCaptures(edges, solution); !few.empty()) {
-    Verdict verdict = say(VerdictLevel::kUnknown, {FewCapturesBehind(few, edges)});
-    verdict.unverified = List(few);
+  if (const auto doubt = FindDoubt(edges, solution, causes)) {
+    Verdict verdict = say(VerdictLevel::kUnknown, doubt->findings);
+    verdict.unverified = ListAll(doubt->sensors);
     return verdict;
   }
   const bool pairs_disagree = !FindAccusations(edges, WithoutSmall(solution, policy), policy, captured_at).empty();
   auto warnings = FindWarnings(edges, solution, policy, captured_at, estimates, causes, pairs_disagree);
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
+  if (auto uncertain = FindUncertainPairs(policy, pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
-  const std::string remarks = Remarks({held_back ? held_back->why : "", SmallDisagreements(edges, judged, policy),
+  const std::string remarks = Remarks({held_back ? held_back->why : "", SlantsRemark(estimates), SmallDisagreements(edges, judged, policy),
                                        SmallMoves(estimates, solution, policy, captured_at)},
                                       names);
   Verdict verdict = warnings.empty() ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))

@@ -13,6 +13,7 @@
 
 #include "server/base/stamp.h"
 #include "server/model/graph.h"
+#include "server/model/joint_poses.h"
 #include "server/model/policy.h"
 #include "server/model/session.h"
 #include "server/model/session_estimate.h"
@@ -31,10 +32,11 @@ using SessionTimes = std::map<SessionId, Stamp>;
 // else than such lenses of one session can be behind edges that disagree, no edge or sensor is accused. `headers`: of
 // the sessions of the edges, as far as they are known: what they say of boards and of nominal poses.
 using SessionHeaders = std::map<SessionId, SessionHeader>;
-// `edges`: all of the robot; `solution`: of them.
+// `edges`: all of the robot; `solution`: of them. `pairs`: how well those pairs that the policy names are known, by the
+// same solution, as far as they are.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
-                             const SessionHeaders& headers = {});
+                             const SessionHeaders& headers = {}, const PairCovariances& pairs = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has
 // it, else e^T Omega e (edge covariance minus what the solution explains is not used: conservative). limit is 0 where
@@ -46,5 +48,7 @@ struct EdgeTest {
 // `edge_count`: of the edges that are tested together, which share the odds of a false accusation.
 [[nodiscard]] EdgeTest TestResidual(const Edge& edge, const EdgeResidual& residual, std::size_t edge_count,
                                     const Policy& policy = {});
+// Independent captures of an edge from which its residual can be tested in all six directions among so many edges.
+[[nodiscard]] int CapturesToTest(std::size_t edge_count, const Policy& policy = {});
 
 }  // namespace rigcal::fleet

@@ -105,6 +105,7 @@ struct Claim {
   CauseKind kind = CauseKind::kExchanged;
   Finding said;
   std::string command;
+  bool in_doubt = false;
 };
 
 // Where others moved along with the two, the whole drawing would have to be mirrored for it to be anything else: that
@@ -129,13 +130,14 @@ Claim ClaimOf(const Exchange& exchange, const std::vector<Placed>& placed) {
           {both + " sit where the drawing has the other " + off +
                ": they are exchanged, or the sign or direction of T_ref_nominal is wrong",
            check},
-          ""};
+          "",
+          true};
 }
 
 void AddExchanged(CauseSearch& search, const Exchange& exchange, const std::vector<Placed>& placed) {
   const SensorId &x = exchange.x.sensor, &y = exchange.y.sensor;
   Claim claim = ClaimOf(exchange, placed);
-  RootCause cause{claim.kind, {x, y}, {}, {}, {}, std::move(claim.said), std::move(claim.command)};
+  RootCause cause{claim.kind, {x, y}, {}, {}, {}, std::move(claim.said), std::move(claim.command), claim.in_doubt};
   cause.edges = TakeMatchedFromDrawing(search, {x, y});
   search.causes.push_back(std::move(cause));
 }

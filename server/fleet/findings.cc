@@ -17,6 +17,8 @@
 namespace rigcal::fleet {
 namespace {
 
+constexpr int kCapturesUsual = 20;
+
 std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
 
 // How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limit.
@@ -49,6 +51,16 @@ std::string CureOfLoop(const CycleResidual& loop, const std::vector<Edge>& edges
          "No: "
          "capture " +
          sensors + " again";
+}
+
+// That an edge was measured from. One that was pushed tells by what its covariance was estimated from. Nothing: it does
+// not tell, as its covariance is known exactly, its poses make no captures, or it stands for many edges.
+std::optional<std::int64_t> CapturesOf(const Edge& edge) {
+  if (!edge.captures.empty())
+    return std::count_if(edge.captures.begin(), edge.captures.end(), [](const auto& one) { return one.used; });
+  const Uncertainty& known = edge.uncertainty;
+  if (!edge.session.empty() || IsMerged(edge) || (known.dof == 0 && known.blocks.empty())) return std::nullopt;
+  return std::max<std::int64_t>(known.dof > 0 ? known.dof + 1 : 0, static_cast<std::int64_t>(known.blocks.size()));
 }
 
 std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges) {
@@ -137,10 +149,8 @@ std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Pol
   std::map<std::pair<SensorId, SensorId>, std::int64_t> most;
   for (const Edge& edge : edges) {
     if (edge.state != EdgeState::kGood) continue;
-    const auto used =
-        std::count_if(edge.captures.begin(), edge.captures.end(), [](const auto& one) { return one.used; });
     std::int64_t& known = most[PairOf(edge)];
-    known = std::max<std::int64_t>(known, edge.captures.empty() ? *policy.captures_min : used);
+    known = std::max(known, CapturesOf(edge).value_or(*policy.captures_min));
   }
   std::vector<std::string> names;
   for (const auto& [pair, used] : most)
@@ -219,7 +229,8 @@ std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const Grap
   }
   if (names.empty()) return std::nullopt;
   return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
-                 "Take 20 captures or more of each pair"};
+                 "Take " + std::to_string(std::max(kCapturesUsual, CapturesToTest(solution.residuals.size(), policy))) +
+                     " captures or more of each pair"};
 }
 
 bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {

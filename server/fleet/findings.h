@@ -57,6 +57,8 @@ struct Contradiction {
 // instant does: it counts for next to nothing, so no pose suffers. Of a lidar a board among other surfaces is left out in sound
 // sessions, too: no news.
 [[nodiscard]] std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers);
+// Lidars that the newest session finds to measure too long or too short at a slant: taken out, so no more than news.
+[[nodiscard]] std::string SlantsRemark(const std::vector<SessionEstimate>& estimates);
 // The newest session, where it says enough to be refined as a whole and could not be.
 [[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,
                                                    const SessionTimes& captured_at);
@@ -100,9 +102,12 @@ struct Contradiction {
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
 // Pairs that were measured before one of their sensors was remounted, and not since.
 [[nodiscard]] std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges);
-// Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many.
+// Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many: those that
+// were pushed by the degrees of freedom, or the blocks, of their covariance.
 [[nodiscard]] std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy);
 [[nodiscard]] std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy);
+// Pairs that the policy names with a tolerance, and whose T_a_b is less certain (any axis, 1 sigma).
+[[nodiscard]] std::optional<Finding> FindUncertainPairs(const Policy& policy, const PairCovariances& covariances);
 // Sensors that hang on a single edge (a bridge of the graph): nothing checks them. All of them, if there is no loop.
 [[nodiscard]] std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges,
                                                           const GraphSolution& solution);

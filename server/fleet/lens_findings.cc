@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "server/fleet/findings.h"
@@ -79,6 +80,18 @@ std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estim
   Finding finding = FindingOf(std::move(misfits));
   if (edges_disagree) finding.why = "pairs of sensors disagree because " + finding.why;
   return finding;
+}
+
+std::string SlantsRemark(const std::vector<SessionEstimate>& estimates) {
+  const auto newest = std::find_if(estimates.begin(), estimates.end(),
+                                   [](const SessionEstimate& estimate) { return estimate.why_not.empty(); });
+  std::string remark;
+  if (newest == estimates.end()) return remark;
+  for (const SlantBias& slant : newest->slants)
+    remark += (remark.empty() ? "" : "; ") + slant.lidar.str() + " measures " +
+              TwoDigits(1e3 * std::abs(slant.too_long_m), "mm") + (slant.too_long_m > 0 ? " too long" : " too short") +
+              " where its beam meets a surface at 60 deg, which was taken out";
+  return remark;
 }
 
 std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates, const std::set<SensorId>& accused) {

@@ -37,6 +37,7 @@ struct RootCause {
   std::vector<EdgeId> edges;        // that it explains, of FindOpenFailures(); none: it failed no pair
   Finding said;
   std::string command;     // to copy when it is done; empty: none
+  bool in_doubt = false;   // whether its sensors are taken for each other: none of their poses is to be relied on
   std::string trait = {};  // tells it from others of its kind about the same: "larger"; a word, or empty
 };
 

@@ -92,7 +92,7 @@ std::vector<SensorId> ApartSensors(const std::vector<Edge>& edges, const GraphSo
   }
   for (const Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (!solved.contains(sensor) && !IsOfGoneSensor(edge)) only_failed.insert(sensor);
+      if (!solved.contains(sensor) && !AsksForNoSensor(edge)) only_failed.insert(sensor);
   apart.insert(apart.end(), only_failed.begin(), only_failed.end());
   return apart;
 }

@@ -39,8 +39,10 @@ std::string PlainNumber(double value) {
   return text;
 }
 
-std::string List(const std::vector<std::string>& names) {
-  const std::size_t shown = names.size() > kNamesMax ? kNamesMax : names.size();
+namespace {
+
+std::string ListUpTo(std::size_t shown_max, const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), shown_max);
   std::string text;
   for (std::size_t k = 0; k < shown; ++k) {
     const bool last = k + 1 == names.size();
@@ -51,11 +53,17 @@ std::string List(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string List(const std::vector<SensorId>& sensors) {
+std::vector<std::string> NamesOf(const std::vector<SensorId>& sensors) {
   std::vector<std::string> names;
   for (const SensorId& sensor : sensors) names.push_back(sensor.str());
-  return List(names);
+  return names;
 }
+
+}  // namespace
+
+std::string List(const std::vector<std::string>& names) { return ListUpTo(kNamesMax, names); }
+std::string List(const std::vector<SensorId>& sensors) { return List(NamesOf(sensors)); }
+std::string ListAll(const std::vector<SensorId>& sensors) { return ListUpTo(sensors.size(), NamesOf(sensors)); }
 
 std::string NameOfEdge(const Edge& edge) { return edge.frame_a.str() + " - " + edge.frame_b.str(); }
 

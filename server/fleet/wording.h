@@ -17,6 +17,8 @@ namespace rigcal::fleet {
 // "a", "a and b", "a, b and c", "a, b, c, d, e, f and 3 more".
 [[nodiscard]] std::string List(const std::vector<std::string>& names);
 [[nodiscard]] std::string List(const std::vector<SensorId>& sensors);
+// However many: what a robot must not be relied on for is no place to be short.
+[[nodiscard]] std::string ListAll(const std::vector<SensorId>& sensors);
 [[nodiscard]] std::string NameOfEdge(const Edge& edge);
 // "30 mm and 0.2 deg": the lengths of both halves of a tangent vector.
 [[nodiscard]] std::string OffText(const Vector6d& e);

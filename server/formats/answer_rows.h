@@ -16,6 +16,10 @@ void WriteRetiredSensors(JsonWriter& out, const std::vector<RetiredSensor>& reti
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
 // `usable`
 void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);
+// "state", "decision", "in_use".
+void WriteApproval(JsonWriter& out, const Approval& approval);
+// "runs"
+void WriteRuns(JsonWriter& out, const std::optional<Runs>& runs);
 // Without its document.
 void WriteRevisionMembers(JsonWriter& out, const Revision& revision);
 

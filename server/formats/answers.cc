@@ -22,6 +22,7 @@ void WriteValidity(JsonWriter& out, const Validity& validity) {
   WriteStamp(out, "valid_until", ValidUntil(validity));
   out.Flag("overdue", validity.overdue);
   WriteUsable(out, validity.usable);
+  if (validity.superseded_by) out.Integer("superseded_by", *validity.superseded_by);
   out.Flag("calculating", validity.calculating);
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
 }
@@ -39,6 +40,8 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     out.Text("robot", robot.robot.str());
     WriteRevisionNumber(out, robot.revision);
     WriteVerdict(out, "verdict", robot.verdict);
+    robot.revision > 0 ? out.Text("state", NameOf(robot.state)) : out.Null("state");
+    WriteRuns(out, robot.runs);
     WriteValidity(out, robot.validity);
     WriteDrive(out, robot.verdict, robot.validity);
     WriteAge(out, robot.validity.calibrated_at, now);
@@ -186,36 +189,38 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
   });
 }
 
-std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
-                      const std::optional<AsFound>& as_found) {
+std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval,
+                      const std::optional<Runs>& runs, const std::optional<AsFound>& as_found) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
     WriteDrive(out, revision.verdict, validity);
+    WriteApproval(out, approval);
+    WriteRuns(out, runs);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
     if (as_found) out.Object("as_found", [&] { WriteAsFoundMembers(out, *as_found); });
     out.Null("document");
   });
-  // Byte for byte, so that whoever reads the answer can check the digest. Nothing before it holds these words: quotes
-  // in its texts are escaped.
+  // Byte for byte, so that whoever reads the answer can check the digest. Free text before it has its quotation marks escaped.
   const std::string place = "\"document\":null";
   return text.replace(text.find(place) + place.size() - 4, 4, revision.document);
 }
 
 std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next,
-                           const std::map<int, AsFoundSummary>& as_found) {
+                           const std::vector<Approval>& approvals, const std::map<int, AsFoundSummary>& as_found) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");
     out.List("revisions", [&] {
-      for (const Revision& revision : revisions)
+      for (std::size_t i = 0; i < revisions.size(); ++i)
         out.Object([&] {
-          WriteRevisionMembers(out, revision);
-          WriteAge(out, revision.created_at, now);
-          WriteVerdict(out, "verdict", revision.verdict);
-          if (const auto found = as_found.find(revision.number); found != as_found.end())
+          WriteRevisionMembers(out, revisions[i]);
+          WriteAge(out, revisions[i].created_at, now);
+          WriteVerdict(out, "verdict", revisions[i].verdict);
+          if (i < approvals.size()) WriteApproval(out, approvals[i]);
+          if (const auto found = as_found.find(revisions[i].number); found != as_found.end())
             out.Object("as_found", [&] { WriteAsFoundMembers(out, found->second); });
         });
     });
@@ -233,6 +238,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
     WriteDrive(out, answer.verdict, answer.validity);
+    WriteApproval(out, answer.approval);
   });
 }
 

@@ -13,6 +13,8 @@
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
 #include "server/model/as_found.h"
+#include "server/model/audit.h"
+#include "server/model/decision.h"
 #include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
@@ -68,18 +70,28 @@ struct PolicyAnswer {
 // Of `rigcal policy check`: a file alone.
 [[nodiscard]] std::string WritePolicyCheck(const std::string& file, const Policy& policy);
 
+// verb audit, the newest first. `next`: as NextPage, the number of a row; 0: there is no other page.
+[[nodiscard]] std::string WriteAudit(const std::vector<AuditRow>& rows, const std::optional<std::int64_t>& next = {});
+// verb audit_verify
+[[nodiscard]] std::string WriteAuditCheck(const AuditCheck& check);
+
 // verb edges: a row per edge; `residuals` (sorted by edge id) are those of `revision`, 0 if there is none.
 [[nodiscard]] std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edge>& edges,
                                      const std::vector<EdgeResidual>& residuals, const NextPage& next = {});
 
+// verbs approve, reject, rollback: the revision as it stands from now on.
+[[nodiscard]] std::string WriteDecided(const Revision& revision, const Approval& approval);
+
 // verb show: number, time and digest around the revision's document, which is put in byte for byte; beside it what its
 // newest session found of the calibration in use.
 [[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
+                                    const Approval& approval = {}, const std::optional<Runs>& runs = {},
                                     const std::optional<AsFound>& as_found = {});
-// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `as_found`: of
-// those that have it.
+// verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
+// each revision. `as_found`: of those that have it.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
-                                         const std::optional<int>& next = {}, const std::map<int, AsFoundSummary>& as_found = {});
+                                         const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {},
+                                         const std::map<int, AsFoundSummary>& as_found = {});
 
 // verb lookup
 struct LookupAnswer {
@@ -92,6 +104,7 @@ struct LookupAnswer {
   std::optional<Eigen::Matrix3d> R_a_robot = {};  // as GraphSolution::R_ref_robot, in a; nothing: not known
   Verdict verdict;                         // of the revision
   Validity validity;
+  Approval approval = {};                  // likewise
 };
 // "known" is true of a whole pose only; one in part has what was measured, axis by axis.
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);

@@ -33,6 +33,8 @@ void WriteLimitsInForce(JsonWriter& out, const Policy& policy) {
   WritePoseLimit(out, "residual_max", ResidualMaxOf(policy));
   out.Integer("max_age_ns", policy.max_age_ns.value_or(kDefaultMaxAge_ns));
   policy.captures_min ? out.Integer("captures_min", *policy.captures_min) : out.Null("captures_min");
+  out.Text("approval", NameOf(policy.approval.value_or(ApprovalBy::kAutomatic)));
+  out.Flag("approve_warnings", policy.approve_warnings.value_or(true));
 }
 
 }  // namespace

@@ -15,10 +15,10 @@ void WriteLimitWords(JsonWriter& out, const LimitWords& words) {
     if (words.*one.value) out.Number(StoredKeyOf(one), *(words.*one.value));
 }
 
-double ReadAboveZero(const JsonField& field) {
+// 0 or less is no limit: documents were written with it, and stay readable.
+std::optional<double> ReadAboveZero(const JsonField& field) {
   const double value = field.Number();
-  if (!(value > 0.0)) field.Refuse("must be above 0");
-  return value;
+  return value > 0.0 ? std::optional(value) : std::nullopt;
 }
 
 LimitWords ReadLimitWords(const JsonField& field) {
@@ -59,7 +59,8 @@ void ReadLimitsOfSome(const JsonField& field, Policy& policy) {
   for (const JsonField& pair : field.At("pairs").Items(limits::kSensorsPerRobotMax))
     policy.pairs[{ReadId<SensorId>(pair.At("a")), ReadId<SensorId>(pair.At("b"))}] = ReadLimitWords(pair);
   for (const JsonField& camera : field.At("focal_px").Items(limits::kSensorsPerRobotMax))
-    policy.focal_px[ReadId<SensorId>(camera.At("id"))] = ReadAboveZero(camera.At("fx_px"));
+    if (const auto focal = ReadAboveZero(camera.At("fx_px")))
+      policy.focal_px[ReadId<SensorId>(camera.At("id"))] = *focal;
 }
 
 }  // namespace
@@ -78,6 +79,8 @@ void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force) {
   if (policy.residual_max_rad) out.Number("residual_max_rad", *policy.residual_max_rad);
   if (policy.max_age_ns) out.Integer("max_age_ns", *policy.max_age_ns);
   if (policy.captures_min) out.Integer("captures_min", *policy.captures_min);
+  if (policy.approval) out.Text("approval", NameOf(*policy.approval));
+  if (policy.approve_warnings) out.Flag("approve_warnings", *policy.approve_warnings);
 }
 
 PolicyInForce ReadPolicyMembers(const JsonField& field) {
@@ -92,8 +95,11 @@ PolicyInForce ReadPolicyMembers(const JsonField& field) {
   ReadLimitsOfSome(field, policy);
   if (const auto value = field.Find("residual_max_m")) policy.residual_max_m = ReadAboveZero(*value);
   if (const auto value = field.Find("residual_max_rad")) policy.residual_max_rad = ReadAboveZero(*value);
-  if (const auto value = field.Find("max_age_ns")) policy.max_age_ns = value->Integer(1, INT64_MAX);
+  if (const auto value = field.Find("max_age_ns"))
+    if (const std::int64_t age_ns = value->Integer(INT64_MIN, INT64_MAX); age_ns > 0) policy.max_age_ns = age_ns;
   if (const auto value = field.Find("captures_min")) policy.captures_min = value->Integer(1, INT64_MAX);
+  if (const auto value = field.Find("approval")) policy.approval = ApprovalByOf(value->Text());
+  if (const auto value = field.Find("approve_warnings")) policy.approve_warnings = value->Flag();
   return in_force;
 }
 

@@ -9,6 +9,7 @@ namespace rigcal::formats {
 
 // Versions and what is said, in metres, radians and nanoseconds; without the watermark, which is of all robots.
 void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force);
+// A limit of 0 or less is as if nobody had said it.
 [[nodiscard]] PolicyInForce ReadPolicyMembers(const JsonField& field);
 
 }  // namespace rigcal::formats

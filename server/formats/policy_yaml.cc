@@ -14,9 +14,22 @@ namespace rigcal::formats {
 namespace {
 
 constexpr const char* kPolicyCure = "Mend it; docs/policy.md lists every key with its unit.";
-constexpr double kLengthMax_mm = 10'000, kAngleMax_deg = 180, kPixelsMax = 10'000, kAgeMax_days = 36'500;
 constexpr std::int64_t kCapturesMinMost = 100'000;
 constexpr double kNsPerDay = 86'400e9;
+
+// What a limit may be, in the unit in which it is written. The least is told so that what is told is taken.
+struct Bounds {
+  std::string_view unit;
+  double least, most;
+  const char* least_told;
+};
+constexpr std::array<Bounds, 4> kBounds = {{{"mm", 1e-3, 10'000, "0.001"},
+                                            {"deg", 1e-4, 180, "0.0001"},
+                                            {"px_at_10_m", 1e-3, 10'000, "0.001"},
+                                            {"days", 1.0 / 24, 36'500, "0.0416667 (1 h)"}}};
+
+// Of a limit above 0 that is below its least.
+enum class TooSmall { kRefused, kRaised };
 
 // What else may be measured in a unit that somebody writes, and how many of the key's unit it is.
 struct OtherUnit {
@@ -62,22 +75,24 @@ double TimesOf(std::string_view unit, std::string_view wanted) {
   return 0.0;
 }
 
-// Above 0, up to `most`. "5 cm" is told as what it is in millimetres.
-double ReadPositive(const YamlField& field, std::string_view unit, double most) {
+const Bounds& BoundsOf(std::string_view unit) {
+  return *std::find_if(kBounds.begin(), kBounds.end(), [unit](const Bounds& one) { return one.unit == unit; });
+}
+
+// Within the bounds of its unit. "5 cm" is told as what it is in millimetres.
+double ReadBounded(const YamlField& field, std::string_view unit, TooSmall small) {
   const std::string text = field.Text();
   if (const auto quantity = QuantityOf(text); quantity && !quantity->unit.empty())
     if (const double times = TimesOf(quantity->unit, unit); times > 0.0)
       field.Refuse("is in " + std::string(unit) + ": write " + Short(quantity->value * times) + ", not " +
                    Quoted(text));
   const double value = field.Number();
-  if (value > 0.0 && value <= most) return value;
-  field.Refuse("must be above 0 and at most " + Short(most) + ", not " + Quoted(text));
-  return 0.0;
-}
-
-double MostOf(std::string_view unit) {
-  if (unit == "mm") return kLengthMax_mm;
-  return unit == "deg" ? kAngleMax_deg : kPixelsMax;
+  const Bounds& bounds = BoundsOf(unit);
+  if (small == TooSmall::kRaised && value > 0.0 && value < bounds.least) return bounds.least;
+  if (value >= bounds.least && value <= bounds.most) return value;
+  field.Refuse("must be from " + std::string(bounds.least_told) + " to " + Short(bounds.most) + ", not " +
+               Quoted(text));
+  return bounds.least;
 }
 
 std::string KeyOf(const LimitName& name) { return std::string(name.name) + "_" + name.written; }
@@ -90,10 +105,10 @@ std::vector<std::string> LimitKeys(bool of_pair) {
 }
 
 // False: it is no limit of a sensor, or of a pair.
-bool ReadLimit(const YamlField& member, bool of_pair, LimitWords& words) {
+bool ReadLimit(const YamlField& member, bool of_pair, TooSmall small, LimitWords& words) {
   for (const LimitName& one : kLimitNames) {
     if (member.Key() != KeyOf(one) || (of_pair && !one.of_pairs)) continue;
-    words.*one.value = ReadPositive(member, one.written, MostOf(one.written)) / one.divisor;
+    words.*one.value = ReadBounded(member, one.written, small) / one.divisor;
     return true;
   }
   return false;
@@ -120,10 +135,10 @@ void RefuseKey(const YamlField& member, const std::vector<std::string>& known) {
   member.Refuse("unknown key " + Quoted(member.Key()) + "; " + DidYouMean(member.Key(), names));
 }
 
-LimitWords ReadWords(const YamlField& map, const std::string& title, bool of_pair) {
+LimitWords ReadWords(const YamlField& map, const std::string& title, bool of_pair, TooSmall small) {
   LimitWords words;
   for (const YamlField& member : map.Members())
-    if (!ReadLimit(member.Called(title + ": " + member.Key()), of_pair, words))
+    if (!ReadLimit(member.Called(title + ": " + member.Key()), of_pair, small, words))
       RefuseKey(member.Called(title), LimitKeys(of_pair));
   return words;
 }
@@ -149,53 +164,78 @@ SensorPair ReadPairName(const YamlField& place) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-void ReadSensorLimits(const YamlField& sensors, Policy& policy) {
+void ReadSensorLimits(const YamlField& sensors, TooSmall small, Policy& policy) {
   for (const YamlField& sensor : sensors.Members()) {
     const SensorId id = ReadSensorName(sensor, sensor.Key());
-    policy.sensors[id] = ReadWords(sensor, "sensor '" + id.str() + "'", false);
+    policy.sensors[id] = ReadWords(sensor, "sensor '" + id.str() + "'", false, small);
   }
 }
 
-void ReadPairLimits(const YamlField& pairs, Policy& policy) {
+void ReadPairLimits(const YamlField& pairs, TooSmall small, Policy& policy) {
   for (const YamlField& pair : pairs.Members()) {
     const SensorPair names = ReadPairName(pair);
     const std::string title = "pair '" + names.a.str() + " - " + names.b.str() + "'";
     if (policy.pairs.contains(names)) pair.Called(title).Refuse("is there twice");
-    policy.pairs[names] = ReadWords(pair, title, true);
+    policy.pairs[names] = ReadWords(pair, title, true, small);
   }
 }
 
+ApprovalBy ReadApproval(const YamlField& member) {
+  const std::string text = member.Text();
+  if (text != NameOf(ApprovalBy::kAutomatic) && text != NameOf(ApprovalBy::kPerson))
+    member.Refuse("must be automatic or person, not " + Quoted(text));
+  return ApprovalByOf(text);
+}
+
+bool ReadTrueOrFalse(const YamlField& member) {
+  const std::string text = member.Text();
+  if (text != "true" && text != "false") member.Refuse("must be true or false, not " + Quoted(text));
+  return text == "true";
+}
+
 // False: it is none of those that are for the whole robot.
-bool ReadOther(const YamlField& member, Policy& policy) {
+bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
   const std::string& key = member.Key();
-  if (key == "residual_max_mm") return policy.residual_max_m = ReadPositive(member, "mm", kLengthMax_mm) / 1000, true;
+  if (key == "residual_max_mm") return policy.residual_max_m = ReadBounded(member, "mm", small) / 1000, true;
   if (key == "residual_max_deg")
-    return policy.residual_max_rad = ReadPositive(member, "deg", kAngleMax_deg) / kDegreesOfRadian, true;
+    return policy.residual_max_rad = ReadBounded(member, "deg", small) / kDegreesOfRadian, true;
   if (key == "max_age_days")
-    return policy.max_age_ns = std::llround(ReadPositive(member, "days", kAgeMax_days) * kNsPerDay), true;
+    return policy.max_age_ns = std::llround(ReadBounded(member, "days", small) * kNsPerDay), true;
   if (key == "captures_min") return policy.captures_min = member.Integer(1, kCapturesMinMost), true;
-  if (key == "sensors") return ReadSensorLimits(member, policy), true;
-  if (key == "pairs") return ReadPairLimits(member, policy), true;
+  if (key == "approval") return policy.approval = ReadApproval(member), true;
+  if (key == "approve_warnings") return policy.approve_warnings = ReadTrueOrFalse(member), true;
+  if (key == "sensors") return ReadSensorLimits(member, small, policy), true;
+  if (key == "pairs") return ReadPairLimits(member, small, policy), true;
   return false;
 }
 
 std::vector<std::string> KeysOfPolicy() {
   std::vector<std::string> keys = LimitKeys(false);
-  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "sensors", "pairs"})
+  for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval", "approve_warnings",
+                            "sensors", "pairs"})
     keys.emplace_back(other);
   return keys;
+}
+
+Result<Policy> ReadPolicyText(std::string_view text, const std::string& name, TooSmall small) {
+  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(text, name, kPolicyCure, kPolicyBytesMax));
+  Policy policy;
+  if (tree->root.kind == YamlNode::Kind::kNull) return policy;  // comments only
+  for (const YamlField& member : YamlField(*tree).Members())
+    if (!ReadLimit(member, false, small, policy.all) && !ReadOther(member, small, policy))
+      RefuseKey(member, KeysOfPolicy());
+  if (tree->error) return Fail(*tree->error);
+  return policy;
 }
 
 }  // namespace
 
 Result<Policy> ReadPolicy(std::string_view text, const std::string& name) {
-  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(text, name, kPolicyCure, kPolicyBytesMax));
-  Policy policy;
-  if (tree->root.kind == YamlNode::Kind::kNull) return policy;  // comments only
-  for (const YamlField& member : YamlField(*tree).Members())
-    if (!ReadLimit(member, false, policy.all) && !ReadOther(member, policy)) RefuseKey(member, KeysOfPolicy());
-  if (tree->error) return Fail(*tree->error);
-  return policy;
+  return ReadPolicyText(text, name, TooSmall::kRefused);
+}
+
+Result<Policy> ReadStoredPolicy(std::string_view text, const std::string& name) {
+  return ReadPolicyText(text, name, TooSmall::kRaised);
 }
 
 }  // namespace rigcal::formats

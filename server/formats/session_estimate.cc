@@ -95,6 +95,21 @@ LensMisfit ReadMisfit(const JsonField& field) {
   return misfit;
 }
 
+void WriteSlants(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("slants", [&] {
+    for (const SlantBias& slant : estimate.slants)
+      out.Object([&] {
+        out.Text("lidar", slant.lidar.str());
+        out.Number("sigma_m", slant.sigma_m);
+        out.Number("too_long_m", slant.too_long_m);
+      });
+  });
+}
+
+SlantBias ReadSlant(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("lidar")), field.At("too_long_m").Number(), field.At("sigma_m").Number()};
+}
+
 RefinedPose ReadRefinedPose(const JsonField& field) {
   RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
                    field.At("dof").Number(), std::nullopt};
@@ -134,6 +149,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WritePoses(out, estimate);
     out.Text("reference", estimate.reference.str());
     out.Text("session", estimate.session.str());
+    WriteSlants(out, estimate);
     WriteDiagnoses(out, "why_not", estimate.why_not);
   });
 }
@@ -156,6 +172,8 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
                                   ReadOptionalId<SensorId>(item, "against")});
   if (const auto boards = root.Find("boards_moved"))  // documents of before have none
     for (const JsonField& item : boards->Items(kSensorsMax)) estimate.boards_moved.push_back(ReadBoardMoved(item));
+  if (const auto slants = root.Find("slants"))  // nor these
+    for (const JsonField& item : slants->Items(kSensorsMax)) estimate.slants.push_back(ReadSlant(item));
   if (const auto misfits = root.Find("misfits"))  // nor these
     for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
   RIGCAL_TRY(document.status());

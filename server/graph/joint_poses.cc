@@ -1,6 +1,8 @@
 #include "server/graph/joint_poses.h"
 
 #include <algorithm>
+#include <set>
+#include <span>
 
 #include "server/graph/observability.h"
 #include "server/graph/start_poses.h"
@@ -90,6 +92,25 @@ std::optional<JointCovariance> JackknifeJoint(const GraphJackknife& jackknife, c
   return joint;
 }
 
+std::optional<JointCovariance> JointOfGraph(const Graph& graph, const GraphSolution& solution,
+                                            const GraphJackknife& jackknife, const std::vector<SensorId>& sensors) {
+  return jackknife.available ? JackknifeJoint(jackknife, sensors) : AnalyticJoint(graph, solution, sensors);
+}
+
+// Of those of the pairs' sensors that are known; the reference needs no rows.
+std::vector<JointCovariance> JointsOfPairs(std::span<const SensorPair> pairs, const Graph& graph,
+                                           const GraphSolution& solution, const GraphJackknife& jackknife) {
+  JointPoses joint = FusedPosesOf(solution, graph.reference);
+  std::set<SensorId> sensors;
+  for (const SensorPair& pair : pairs)
+    for (const SensorId& sensor : {pair.a, pair.b})
+      if (sensor != graph.reference && joint.T_ref_sensor.contains(sensor)) sensors.insert(sensor);
+  if (sensors.empty()) return {};
+  auto of_graph = JointOfGraph(graph, solution, jackknife, {sensors.begin(), sensors.end()});
+  if (of_graph) joint.covariances.push_back(std::move(*of_graph));
+  return std::move(joint.covariances);
+}
+
 int RowOf(const JointPoses& poses, const JointCovariance& covariance, const SensorId& sensor) {
   if (sensor == poses.reference) return kOfReference;
   const int index = IndexOf(covariance.sensors, sensor);
@@ -142,7 +163,7 @@ JointPoses JointPosesOf(const Graph& graph, const GraphSolution& solution, const
     if (sensor != graph.reference) sensors.push_back(sensor);
   if (sensors.size() > kJointPosesMax) joint.covariances.clear();
   if (solution.fused.sensors.size() >= sensors.size() || sensors.size() > kJointPosesMax) return joint;
-  auto of_graph = jackknife.available ? JackknifeJoint(jackknife, sensors) : AnalyticJoint(graph, solution, sensors);
+  auto of_graph = JointOfGraph(graph, solution, jackknife, sensors);
   if (of_graph) joint.covariances.push_back(std::move(*of_graph));
   return joint;
 }
@@ -160,6 +181,20 @@ std::optional<RelativePose> RelativeOf(const JointPoses& poses, const SensorId& 
     return RelativeBetween(of_a->second, of_b->second, block(row_a, row_a), block(row_b, row_b), block(row_a, row_b));
   }
   return std::nullopt;
+}
+
+PairCovariances CovariancesOfPairs(const std::vector<SensorPair>& pairs, const JointPoses& poses, const Graph& graph,
+                                   const GraphSolution& solution, const GraphJackknife& jackknife) {
+  constexpr std::size_t kPairsAtOnce = kJointPosesMax / 2;
+  PairCovariances covariances;
+  JointPoses some = poses;
+  for (std::size_t first = 0; first < pairs.size(); first += kPairsAtOnce) {
+    const auto part = std::span(pairs).subspan(first, std::min(kPairsAtOnce, pairs.size() - first));
+    if (poses.covariances.empty()) some.covariances = JointsOfPairs(part, graph, solution, jackknife);
+    for (const SensorPair& pair : part)
+      if (const auto relative = RelativeOf(some, pair.a, pair.b)) covariances.emplace(pair, relative->covariance);
+  }
+  return covariances;
 }
 
 }  // namespace rigcal::graph

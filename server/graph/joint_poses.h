@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/solve.h"
@@ -19,5 +20,11 @@ namespace rigcal::graph {
 // T_a_b with its covariance, cross terms included (math/covariance.h: RelativeCovariance). Nothing where one of the two is
 // not known or no covariance has both.
 [[nodiscard]] std::optional<RelativePose> RelativeOf(const JointPoses& poses, const SensorId& a, const SensorId& b);
+
+// Of those pairs whose sensors are both known: what RelativeOf says, also of more than kJointPosesMax sensors. `poses`:
+// JointPosesOf these.
+[[nodiscard]] PairCovariances CovariancesOfPairs(const std::vector<SensorPair>& pairs, const JointPoses& poses,
+                                                 const Graph& graph, const GraphSolution& solution,
+                                                 const GraphJackknife& jackknife);
 
 }  // namespace rigcal::graph

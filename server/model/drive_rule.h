@@ -19,7 +19,7 @@ struct DriveRule {
 // `due`: when the calibration is overdue; absent: it counts nothing, and is. Of a fail and of what is not known the
 // time changes nothing.
 [[nodiscard]] DriveRule DriveRuleOf(const Verdict& verdict, const std::optional<Stamp>& due, Stamp now);
-// As of the moment at which `validity.overdue` was worked out.
+// As of the moment at which `validity.overdue` was worked out. Of a superseded revision that it is: not known.
 [[nodiscard]] DriveRule DriveRuleOf(const Verdict& verdict, const Validity& validity);
 
 }  // namespace rigcal

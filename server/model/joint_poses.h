@@ -7,6 +7,7 @@
 
 #include "server/base/ids.h"
 #include "server/math/se3.h"
+#include "server/model/session.h"
 
 namespace rigcal {
 
@@ -22,6 +23,9 @@ struct JointPoses {
   std::map<SensorId, Se3> T_ref_sensor;      // of all that are known, the reference too
   std::vector<JointCovariance> covariances;  // of two sensors the first that has both holds
 };
+
+// Of some pairs, how well two sensors are known to each other: of T_a_b, right tangent at b, m and rad.
+using PairCovariances = std::map<SensorPair, Matrix6d>;
 
 // More sensors than this make a matrix of megabytes.
 constexpr std::size_t kJointPosesMax = 40;

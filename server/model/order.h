@@ -10,6 +10,7 @@ namespace rigcal {
 struct OrderDone {
   RobotId robot;  // to be revised
   std::string document;
+  int decided = 0;  // revision about which somebody decided, so that the robot is told at once; 0: none
 };
 
 }  // namespace rigcal

@@ -13,7 +13,7 @@ bool IsPast(const Edge& edge) {
   return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && MeansPast(edge.diagnoses.front().code);
 }
 
-bool IsOfGoneSensor(const Edge& edge) { return IsPast(edge) && edge.diagnoses.front().code == kSensorRetiredCode; }
+bool AsksForNoSensor(const Edge& edge) { return IsPast(edge) && edge.diagnoses.front().code != kRemountedCode; }
 
 bool FailedForLostFile(const Edge& edge) {
   return edge.state == EdgeState::kFailed && !edge.diagnoses.empty() && edge.diagnoses.front().code == kFileLostCode;

@@ -17,8 +17,9 @@ inline constexpr std::string_view kRetiredCode = "retired", kSensorRetiredCode =
 // Whether a diagnosis has one of these codes; whether an edge has such a diagnosis and is failed.
 [[nodiscard]] bool MeansPast(std::string_view diagnosis_code);
 [[nodiscard]] bool IsPast(const Edge& edge);
-// That it is past as one of its sensors is gone from the robot: nobody asks for that sensor any more.
-[[nodiscard]] bool IsOfGoneSensor(const Edge& edge);
+// That nobody asks for its sensors on its account: it is retired, one of its sensors is gone from the robot, or another
+// session of the same pictures has taken its place.
+[[nodiscard]] bool AsksForNoSensor(const Edge& edge);
 
 // Code of the only diagnosis of an edge that failed because the server's disk has not kept a file of its session. When
 // that was sent again, the pair is run again: its edge then has the id RepeatedEdgeId (edge.h) of this one.

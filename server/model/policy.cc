@@ -32,6 +32,12 @@ PoseLimits Wider(const PoseLimits& a, const PoseLimits& b) {
 
 }  // namespace
 
+std::string NameOf(ApprovalBy by) { return by == ApprovalBy::kPerson ? "person" : "automatic"; }
+
+ApprovalBy ApprovalByOf(const std::string& name) {
+  return name == NameOf(ApprovalBy::kPerson) ? ApprovalBy::kPerson : ApprovalBy::kAutomatic;
+}
+
 bool IsBeyond(const Vector6d& off, const PoseLimit& limit) {
   return off.head<3>().norm() > limit.m || off.tail<3>().norm() > limit.rad;
 }
@@ -49,6 +55,8 @@ Policy Overlaid(const Policy& wide, const Policy& narrow) {
   Overlay(narrow.residual_max_rad, sum.residual_max_rad);
   Overlay(narrow.max_age_ns, sum.max_age_ns);
   Overlay(narrow.captures_min, sum.captures_min);
+  Overlay(narrow.approval, sum.approval);
+  Overlay(narrow.approve_warnings, sum.approve_warnings);
   return sum;
 }
 

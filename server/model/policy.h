@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "server/model/edge.h"
 #include "server/model/session.h"
@@ -66,6 +67,11 @@ inline constexpr std::array<LimitName, 7> kLimitNames = {
      {"unseen_move", "mm", "m", 1000, &LimitWords::unseen_move_m, false},
      {"unseen_move", "deg", "rad", kDegreesOfRadian, &LimitWords::unseen_move_rad, false}}};
 
+// Who approves a revision that passes or warns, so that robots use it.
+enum class ApprovalBy { kAutomatic, kPerson };  // "automatic" | "person"
+[[nodiscard]] std::string NameOf(ApprovalBy by);
+[[nodiscard]] ApprovalBy ApprovalByOf(const std::string& name);
+
 struct Policy {
   LimitWords all;                          // of all sensors
   std::map<SensorId, LimitWords> sensors;  // of one: before `all`
@@ -73,6 +79,8 @@ struct Policy {
   std::optional<double> residual_max_m, residual_max_rad;
   std::optional<std::int64_t> max_age_ns;    // a calibration that was measured longer ago is overdue
   std::optional<std::int64_t> captures_min;  // a pair that was measured from fewer warns
+  std::optional<ApprovalBy> approval;        // automatic: a pass is approved as soon as it is there
+  std::optional<bool> approve_warnings;      // and so is a warning
   // An edge beyond this quantile of its test is not explained by chance, corrected for the number of edges.
   double residual_probability = 0.999;
   std::map<SensorId, double> focal_px;  // of cameras, as far as it is known; never written

@@ -8,7 +8,9 @@
 
 #include "server/base/ids.h"
 #include "server/base/stamp.h"
+#include "server/model/decision.h"
 #include "server/model/diagnosis.h"
+#include "server/model/robot_runs.h"
 #include "server/model/validity.h"
 
 namespace rigcal {
@@ -31,6 +33,8 @@ struct RobotSummary {
   std::optional<Stamp> last_session_at = {};  // captured; of those that came whole the newest; absent: none did
   std::optional<WorstEdge> worst = {};        // of that revision; absent: nothing checks an edge, or it was not kept
   std::vector<std::string> causes = {};       // of that revision: keys of cause.h, sorted; each is of some characters of ids
+  RevisionState state = RevisionState::kUnusable;  // of that revision
+  std::optional<Runs> runs = {};                   // what the robot says that it runs; absent: it never told
 };
 
 }  // namespace rigcal

@@ -60,6 +60,13 @@ struct LensMisfit {
   double sigma_ratio = 1.0;  // of that pose and axis that it makes less certain most: with it over without any misfit
 };
 
+// A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
+// incidence, surely; taken out of the poses.
+struct SlantBias {
+  SensorId lidar;
+  double too_long_m = 0.0, sigma_m = 0.0;
+};
+
 // The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
 // direction that is seen worst.
 constexpr double kAnyMove_m = 1e3, kAnyMove_rad = 3.14159265358979;  // nothing would be told
@@ -90,6 +97,7 @@ struct SessionEstimate {
   std::vector<BoardMovedWithin> boards_moved;
   std::vector<HeldBackLook> held_back;    // by sensor, then capture
   std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
+  std::vector<SlantBias> slants;          // by lidar
 };
 
 // First of the six rows of a pose; -1: the reference, which has none.

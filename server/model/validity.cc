@@ -1,9 +1,43 @@
 #include "server/model/validity.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <map>
 
 namespace rigcal {
+
+namespace {
+
+// Sensors that are tied together so far, by a name that they share.
+class TiedGroups {
+ public:
+  // False where they were tied before.
+  bool Tie(const SensorId& a, const SensorId& b) {
+    const SensorId of_a = GroupOf(a), of_b = GroupOf(b);
+    if (of_a != of_b) parent_[of_a] = of_b;
+    return of_a != of_b;
+  }
+
+ private:
+  SensorId GroupOf(SensorId sensor) {
+    while (parent_.try_emplace(sensor, sensor).first->second != sensor) sensor = parent_[sensor];
+    return sensor;
+  }
+  std::map<SensorId, SensorId> parent_;
+};
+
+}  // namespace
+
+std::optional<Stamp> MeasuredThroughout(std::vector<DatedTie> ties, const std::set<SensorId>& sensors) {
+  std::stable_sort(ties.begin(), ties.end(),
+                   [](const DatedTie& x, const DatedTie& y) { return y.measured_at < x.measured_at; });
+  TiedGroups groups;
+  std::optional<Stamp> oldest;
+  for (const DatedTie& tie : ties)
+    if (sensors.contains(tie.a) && sensors.contains(tie.b) && groups.Tie(tie.a, tie.b)) oldest = tie.measured_at;
+  return oldest;
+}
 
 bool IsUsable(const Verdict& verdict) {
   return verdict.level == VerdictLevel::kPass || verdict.level == VerdictLevel::kWarn;
@@ -31,9 +65,12 @@ std::string OverdueText(const std::optional<Stamp>& valid_until) {
   return "Overdue since " + DayText(*valid_until) + ". Calibrate the robot again before it is relied on.";
 }
 
-std::string KeepText(const std::optional<UsableRevision>& usable) {
+std::string KeepText(VerdictLevel level, const std::optional<UsableRevision>& usable) {
   if (!usable) return "There is no earlier calibration to fall back to.";
-  return "Keep using revision " + std::to_string(usable->number) + " of " + DayText(usable->created_at) + " meanwhile.";
+  const std::string revision = "revision " + std::to_string(usable->number) + " of " + DayText(usable->created_at);
+  if (level == VerdictLevel::kFail)
+    return "Robots that listen still have " + revision + ": do not rely on it, either, until this is cleared up.";
+  return "Keep using " + revision + " meanwhile.";
 }
 
 }  // namespace rigcal

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
+#include "server/base/ids.h"
 #include "server/base/stamp.h"
 #include "server/model/diagnosis.h"
 
@@ -20,13 +23,23 @@ struct UsableRevision {
 };
 
 struct Validity {
-  std::optional<Stamp> calibrated_at;    // when what the revision counts was measured; absent: it counts nothing
+  std::optional<Stamp> calibrated_at;    // as of when all of its sensors were measured; absent: it counts nothing
   bool overdue = false;                  // now
   std::optional<UsableRevision> usable = {};  // the newest; absent: there is none to fall back to
   bool calculating = false;              // something arrived that the newest revision does not hold
   std::string given_up = {};             // a sentence with the cure, where that could not be solved; then not calculating
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // of the policy that judged the revision
+  std::optional<int> superseded_by = {};  // the robot's newest revision, where it takes this one's place
 };
+
+// Two sensors that a measurement ties, and when it was made.
+struct DatedTie {
+  SensorId a, b;
+  Stamp measured_at;
+};
+// As of when all of these sensors are measured: the newest moment such that what was measured from then on ties them
+// all together. What nothing ties is left out; absent: nothing ties any two.
+[[nodiscard]] std::optional<Stamp> MeasuredThroughout(std::vector<DatedTie> ties, const std::set<SensorId>& sensors);
 
 // Whether a robot may drive by it: pass or warn.
 [[nodiscard]] bool IsUsable(const Verdict& verdict);
@@ -38,8 +51,8 @@ struct Validity {
 // For people: "31 Jan 2026", in UTC; and sentences.
 [[nodiscard]] std::string DayText(Stamp stamp);
 [[nodiscard]] std::string OverdueText(const std::optional<Stamp>& valid_until);
-// Of a revision that is neither pass nor warn.
-[[nodiscard]] std::string KeepText(const std::optional<UsableRevision>& usable);
+// Of a revision that is neither pass nor warn. What a fail contradicts may be what the robot has.
+[[nodiscard]] std::string KeepText(VerdictLevel level, const std::optional<UsableRevision>& usable);
 inline constexpr const char* kCalculatingText = "A newer revision is being calculated.";
 
 }  // namespace rigcal

@@ -11,6 +11,8 @@
 #include "server/graph/merged_edge.h"
 #include "server/graph/solve.h"
 #include "server/pipeline/asked.h"
+#include "server/pipeline/audit.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/names.h"
@@ -93,8 +95,10 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const bool is_published, storage::IsPublished(context.store, {robot, revision.number}));
   const Stamp now = context.clock.Now();
   RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
+  RIGCAL_ASSIGN(const Approval approval, LoadApproval(context.store, revision));
+  RIGCAL_ASSIGN(const auto runs, LoadWhatRuns(context.store, robot));
   RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFound(context.store, {robot, revision.number}));
-  return formats::WriteShow(revision, is_published, validity, now, as_found);
+  return formats::WriteShow(revision, is_published, validity, now, approval, runs, as_found);
 }
 
 // Those of merged edges scatter as theirs do.
@@ -173,12 +177,19 @@ Status TakeDerived(const AnswerContext& context, formats::LookupAnswer& answer) 
   return {};
 }
 
-// What the newest revision says: an edge that arrived since plays no part.
+// By its number, or that which robots are to use.
+Result<Revision> RevisionToLookUp(const AnswerContext& context, const RobotId& robot, const Parameters& parameters) {
+  if (!parameters.Text("revision")) return LoadRevisionInUse(context.store, robot);
+  RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
+  return LoadRevisionSummaryOf(context.store, robot, number);
+}
+
+// What that revision says: an edge that arrived since plays no part.
 Result<std::string> Lookup(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const SensorId a, RequiredId<SensorId>(parameters, "a"));
   RIGCAL_ASSIGN(const SensorId b, RequiredId<SensorId>(parameters, "b"));
-  RIGCAL_ASSIGN(const Revision revision, LoadRevisionSummaryOf(context.store, robot, 0));
+  RIGCAL_ASSIGN(const Revision revision, RevisionToLookUp(context, robot, parameters));
   RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(context.store, {robot, revision.number}));
   formats::LookupAnswer answer;
   answer.robot = robot;
@@ -193,6 +204,7 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   }
   answer.verdict = revision.verdict;
   RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));
+  RIGCAL_ASSIGN(answer.approval, LoadApproval(context.store, revision));
   return formats::WriteLookup(answer);
 }
 
@@ -298,6 +310,8 @@ const std::map<std::string, Verb>& Verbs() {
       {"known_files", TellKnownFiles},
       {"status", OfStatus},
       {"policy", TellPolicyAsked},
+      {"audit", ListAudit},
+      {"audit_verify", VerifyAudit},
       {"due", Due},
       {"health", Health},
       {"live", Live},

@@ -5,6 +5,7 @@
 
 #include "server/fleet/as_found.h"
 #include "server/graph/session_fusion.h"
+#include "storage/decisions.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
 
@@ -46,14 +47,14 @@ Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTh
   const RobotId& robot = revision.made.robot;
   RIGCAL_ASSIGN(int last, LoadLastBefore(store, revision, sessions));
   while (last > 0) {
-    RIGCAL_ASSIGN(const int good, storage::LoadNewestGood(store, robot, last));
-    if (good == 0) break;
-    RIGCAL_ASSIGN(auto loaded, storage::LoadRevision(store, robot, good));
+    RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, last));
+    if (!usable) break;
+    RIGCAL_ASSIGN(auto loaded, storage::LoadRevision(store, robot, usable->number));
     if (!loaded) break;
     RIGCAL_ASSIGN(formats::RevisionInput told, formats::ReadRevisionDocument(loaded->document));
     loaded->document.clear();
     if (!HasAnyOf(told, sessions)) return InUse{std::move(*loaded), std::move(told)};
-    last = good - 1;
+    last = usable->number - 1;
   }
   return std::nullopt;
 }

@@ -19,9 +19,10 @@ struct RevisionInTheMaking {
   std::int64_t watermark;  // of its edges
   const formats::RevisionInput& made;
 };
-// In use is the newest good revision (pass or warn) that has nothing of the session, nor of one of the same pictures
-// that it supersedes; so it is the same however often a revision of the same sessions is made. Nothing where no session
-// was refined.
+// In use is what the robot is to use by what was decided (storage/decisions.h), among the revisions that have nothing of
+// the session, nor of one of the same pictures that it supersedes; so it is the same however often a revision of the same
+// sessions is made, until somebody rejects, rolls back or retires. Also where a sensor was moved on purpose since: that
+// is told of the sensor. Nothing where no session was refined.
 [[nodiscard]] Result<std::optional<AsFound>> FindAsFound(storage::Store& store, const RevisionInTheMaking& revision);
 
 }  // namespace rigcal::pipeline

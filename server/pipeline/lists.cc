@@ -6,6 +6,7 @@
 #include "server/model/past.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/robot_rows.h"
 #include "storage/as_found.h"
 #include "storage/edges.h"
@@ -101,7 +102,8 @@ Result<std::string> ListRevisions(const AnswerContext& context, const Parameters
   std::vector<int> numbers;
   for (const Revision& revision : revisions) numbers.push_back(revision.number);
   RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFoundSummaries(context.store, robot, numbers));
-  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, as_found);
+  RIGCAL_ASSIGN(const auto approvals, LoadApprovals(context.store, robot, revisions));
+  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals, as_found);
 }
 
 }  // namespace rigcal::pipeline

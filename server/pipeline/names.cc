@@ -8,9 +8,6 @@
 #include "server/formats/answers.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/unknown_names.h"
-#include "storage/retired.h"
-#include "storage/revision_poses.h"
-#include "storage/revisions.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
@@ -23,22 +20,6 @@ Result<std::string> PrefixOf(const Parameters& parameters) {
   const std::string prefix = parameters.Text("prefix").value_or("");
   if (!prefix.empty()) RIGCAL_TRY(CheckName("prefix", prefix));
   return prefix;
-}
-
-// Of the newest revision those with a pose, if it keeps its poses beside its document; and those that sessions list, without
-// those that were retired.
-Result<std::set<SensorId>> LoadSensorNames(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto listed, storage::LoadListedSensors(store, robot));
-  RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSensors(store, robot));
-  std::set<SensorId> sensors(listed.begin(), listed.end());
-  std::erase_if(sensors, [&](const SensorId& sensor) { return retired.contains(sensor); });
-  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
-  if (!newest) return sensors;
-  RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(store, {robot, newest->number}));
-  if (!poses) return sensors;
-  for (const auto& [sensor, pose] : poses->T_ref_sensor)
-    if (!retired.contains(sensor)) sensors.insert(sensor);
-  return sensors;
 }
 
 Result<std::set<Digest>> DigestsIn(const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include "server/formats/answers.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/next_reference.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/revise.h"
@@ -73,12 +74,21 @@ Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const Senso
 
 }  // namespace
 
-bool IsOrder(const std::string& verb) { return verb == "restore" || verb == "retire" || verb == "set_policy"; }
+namespace {
+
+bool IsDecision(const std::string& verb) { return verb == "approve" || verb == "reject" || verb == "rollback"; }
+
+}  // namespace
+
+bool IsOrder(const std::string& verb) {
+  return verb == "restore" || verb == "retire" || verb == "set_policy" || IsDecision(verb);
+}
 
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
   if (verb == "set_policy") return SetPolicy(store, clock, parameters);
+  if (IsDecision(verb)) return Decide(store, clock, verb, parameters);
   RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
   OrderDone done;
   RIGCAL_TRY(store.Write([&]() -> Status {

@@ -1,6 +1,8 @@
 #include "server/pipeline/policies.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <set>
 
 #include "server/base/text.h"
 #include "server/formats/answers.h"
@@ -8,7 +10,9 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/subject.h"
+#include "server/pipeline/unknown_names.h"
 #include "storage/policies.h"
+#include "storage/retired.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -51,7 +55,7 @@ Result<Holding> LoadHolding(storage::Store& store, const PolicyPlace& place) {
     return {};
   }));
   for (const PolicyVersion& one : holding.set) {
-    RIGCAL_ASSIGN(const Policy narrow, formats::ReadPolicy(one.text, "the policy of " + TextOf(one.place)));
+    RIGCAL_ASSIGN(const Policy narrow, formats::ReadStoredPolicy(one.text, "the policy of " + TextOf(one.place)));
     holding.in_force.policy = Overlaid(holding.in_force.policy, narrow);
     VersionIn(holding.in_force, one.place.scope) = one.version;
   }
@@ -81,6 +85,48 @@ Result<PolicyPlace> PlaceAsked(storage::Store& store, const Parameters& paramete
   return PolicyPlace{PolicyScope::kRobot, robot.str()};
 }
 
+// Those of which it is not known when they were captured come last.
+std::vector<const SessionHeader*> NewestFirst(const std::map<SessionId, SessionHeader>& headers,
+                                              const std::map<SessionId, Stamp>& captured_at) {
+  std::vector<std::pair<std::int64_t, const SessionHeader*>> timed;
+  for (const auto& [session, header] : headers) {
+    const auto found = captured_at.find(session);
+    timed.emplace_back(found == captured_at.end() ? INT64_MIN : found->second.ns, &header);
+  }
+  std::stable_sort(timed.begin(), timed.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<const SessionHeader*> sorted;
+  for (const auto& [captured_ns, header] : timed) sorted.push_back(header);
+  return sorted;
+}
+
+std::set<SensorId> SensorsNamedBy(const Policy& policy) {
+  std::set<SensorId> sensors;
+  for (const auto& [sensor, words] : policy.sensors) sensors.insert(sensor);
+  for (const auto& [pair, words] : policy.pairs) sensors.insert({pair.a, pair.b});
+  return sensors;
+}
+
+// Sensors that are retired may come back.
+Status CheckSensorsNamed(storage::Store& store, const RobotId& robot, const Policy& policy) {
+  for (const SensorId& sensor : SensorsNamedBy(policy)) {
+    RIGCAL_ASSIGN(const bool is_known, storage::HasSensor(store, robot, sensor));
+    if (is_known) continue;
+    RIGCAL_ASSIGN(const auto known, LoadSensorNames(store, robot));
+    return Fail(UnknownSensor(robot, sensor, {known.begin(), known.end()}));
+  }
+  return {};
+}
+
+// A misspelt name would hold for nobody, and nobody would notice.
+Status CheckNamesIn(storage::Store& store, const Parameters& parameters, const PolicyPlace& place,
+                    const Policy& policy) {
+  RIGCAL_ASSIGN(const bool is_new_model, parameters.Flag("new_model"));
+  if (place.scope == PolicyScope::kRobot) return CheckSensorsNamed(store, RobotId(place.subject), policy);
+  if (place.scope == PolicyScope::kFleet || is_new_model) return {};
+  RIGCAL_ASSIGN(const bool is_known, storage::HasRigModel(store, place.subject));
+  return is_known ? Status() : Fail(UnknownModel(store, place.subject));
+}
+
 }  // namespace
 
 Result<PolicyInForce> LoadPolicyInForce(storage::Store& store, const PolicyPlace& place) {
@@ -97,8 +143,8 @@ void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
   for (const report::CameraReport& camera : LoadFits(store, report::ChooseFits(of_edges, captured_at)))
     if (camera.fit.source != IntrinsicsSource::kNone)
       policy.focal_px.emplace(camera.fit.camera, camera.fit.intrinsics.fx_px);
-  for (const auto& [session, header] : headers)
-    for (const Sensor& sensor : header.sensors)
+  for (const SessionHeader* header : NewestFirst(headers, captured_at))
+    for (const Sensor& sensor : header->sensors)
       if (sensor.intrinsics) policy.focal_px.emplace(sensor.id, sensor.intrinsics->fx_px);
 }
 
@@ -114,7 +160,8 @@ Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock, const Par
   RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why these limits."));
   RIGCAL_ASSIGN(const PolicyPlace place, PlaceAsked(store, parameters));
   const std::string text = parameters.Text("text").value_or("");
-  RIGCAL_TRY(formats::ReadPolicy(text, "the policy of " + TextOf(place)));
+  RIGCAL_ASSIGN(const Policy policy, formats::ReadPolicy(text, "the policy of " + TextOf(place)));
+  RIGCAL_TRY(CheckNamesIn(store, parameters, place, policy));
   PolicyVersion set;
   std::int64_t waiting = 0;
   RIGCAL_TRY(store.Write([&]() -> Status {

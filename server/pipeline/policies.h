@@ -18,7 +18,7 @@ namespace rigcal::pipeline {
 [[nodiscard]] Result<PolicyInForce> LoadPolicyInForce(storage::Store& store, const PolicyPlace& place);
 
 // READ: the focal lengths of cameras, where the policy has a tolerance in pixels: as the newest fit of an edge has it,
-// or as a session gives it.
+// or else as the newest session of `headers` that gives it.
 void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
                 const std::map<SessionId, SessionHeader>& headers, const std::map<SessionId, Stamp>& captured_at,
                 Policy& policy);
@@ -27,7 +27,8 @@ void TakeFocals(storage::Store& store, const std::vector<Edge>& edges,
 [[nodiscard]] Result<std::string> TellPolicy(storage::Store& store, const formats::Parameters& parameters);
 
 // Order set_policy: `text` (YAML), `who`, `reason`, and `robot`, or `model`, or neither for the fleet. The robots that
-// it is for wait to be judged anew.
+// it is for wait to be judged anew. kNotFound where a robot's names a sensor that the robot does not have, and where no
+// session is of the rig model, unless `new_model` says that its sessions are to come.
 [[nodiscard]] Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock,
                                           const formats::Parameters& parameters);
 

@@ -112,7 +112,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   input.software_version = std::string(Version());
   input.calibrated_at = revision.calibrated_at;
   input.max_age_ns = revision.max_age_ns;
-  RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision));
+  RIGCAL_ASSIGN(input.usable, LoadUsable(store, revision.robot));
   RIGCAL_ASSIGN(input.revision, LoadWholeRevision(store, revision, Blocks::kLoaded));
   TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));

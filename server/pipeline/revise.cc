@@ -20,6 +20,7 @@
 #include "server/model/past.h"
 #include "server/pipeline/as_found.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
@@ -53,8 +54,9 @@ void AddSensorsWithoutGoodEdge(const std::vector<Edge>& edges, const std::vector
   std::set<SensorId> known(graph.sensors.begin(), graph.sensors.end());
   known.insert(gone.begin(), gone.end());
   for (const Edge& edge : edges)
-    for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
-      if (known.insert(sensor).second) graph.sensors.push_back(sensor);
+    if (!AsksForNoSensor(edge))
+      for (const SensorId& sensor : {edge.frame_a, edge.frame_b})
+        if (known.insert(sensor).second) graph.sensors.push_back(sensor);
   for (const SensorId& sensor : listed)
     if (known.insert(sensor).second) graph.sensors.push_back(sensor);
   std::sort(graph.sensors.begin(), graph.sensors.end(), graph::SensorBefore);
@@ -90,18 +92,6 @@ Verdict NotJudged(std::int64_t pairs_waiting) {
           kWaitForPairs};
 }
 
-// When the newest of the edges that count was measured.
-std::optional<Stamp> CalibratedAt(const std::vector<Edge>& edges, const std::map<EdgeId, Stamp>& measured_at,
-                                  const std::vector<MergedEdge>& merged) {
-  std::optional<Stamp> newest;
-  const auto take = [&](Stamp at) { newest = std::max(newest.value_or(at), at); };
-  for (const Edge& edge : edges)
-    if (const auto found = measured_at.find(edge.id); edge.state == EdgeState::kGood && found != measured_at.end())
-      take(found->second);
-  for (const MergedEdge& one : merged) take(one.newest);
-  return newest;
-}
-
 // The worst fit of those that other edges check; failed ones have no fit.
 std::optional<WorstEdge> WorstEdgeOf(const formats::RevisionInput& revision) {
   if (revision.solution.dof <= 0) return std::nullopt;
@@ -125,6 +115,26 @@ struct RobotEdges {
   std::int64_t watermark = 0, standing_watermark = 0;
   PolicyInForce policy;
 };
+
+// What ties sensors: edges that count, and sessions that were refined as a whole.
+std::vector<DatedTie> TiesOf(const RobotEdges& loaded, const std::vector<MergedEdge>& merged) {
+  std::vector<DatedTie> ties;
+  for (const Edge& edge : loaded.current.edges)
+    if (const auto at = loaded.measured_at.find(edge.id); edge.state == EdgeState::kGood && at != loaded.measured_at.end())
+      ties.push_back({edge.frame_a, edge.frame_b, at->second});
+  for (const MergedEdge& one : merged) ties.push_back({one.frame_a, one.frame_b, one.newest});
+  for (const SessionEstimate& estimate : loaded.refined.estimates)
+    if (const auto at = loaded.captured_at.find(estimate.session); at != loaded.captured_at.end())
+      for (const RefinedPose& pose : estimate.poses)
+        if (pose.sensor != estimate.reference) ties.push_back({estimate.reference, pose.sensor, at->second});
+  return ties;
+}
+
+std::set<SensorId> SensorsOf(const GraphSolution& solution) {
+  std::set<SensorId> sensors;
+  for (const SensorPose& pose : solution.poses) sensors.insert(pose.sensor);
+  return sensors;
+}
 
 Status LoadForGraph(storage::Store& store, const RobotId& robot, storage::EdgeParts parts, RobotEdges& loaded) {
   RIGCAL_ASSIGN(loaded.watermark, storage::LoadEdgeWatermark(store, robot));
@@ -219,6 +229,12 @@ storage::MergeStep MergeOlder(const RobotId& robot, RobotEdges& loaded) {
   return step;
 }
 
+std::vector<SensorPair> PairsNamedBy(const Policy& policy) {
+  std::vector<SensorPair> pairs;
+  for (const auto& [pair, words] : policy.pairs) pairs.push_back(pair);
+  return pairs;
+}
+
 // What is told of the graph and judged.
 formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edges, std::int64_t pairs_waiting, JointPoses& poses) {
   RobotGraph loaded = GraphOf(edges, robot, true);
@@ -231,9 +247,11 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
   graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
   poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
+  const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
+                                                          input.solution, honest.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
                                     : fleet::Assess(loaded.edges, input.solution, edges.policy.policy,
-                                                    edges.captured_at, edges.refined.estimates, edges.headers);
+                                                    edges.captured_at, edges.refined.estimates, edges.headers, pairs);
   input.policy = edges.policy;
   input.edges = std::move(loaded.edges);
   return input;
@@ -269,7 +287,6 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
   RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot));
   const storage::MergeStep merge = MergeOlder(robot, loaded);
-  revision.calibrated_at = CalibratedAt(loaded.current.edges, loaded.measured_at, merge.merged);
   JointPoses poses;
   formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
   std::vector<std::string> cause_keys;
@@ -279,6 +296,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     as_found = TakeAsFound(store, loaded, input);
   }
 
+  revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, merge.merged), SensorsOf(input.solution));
   const auto worst = WorstEdgeOf(input);
   revision.verdict = input.verdict;
   revision.document = formats::WriteRevisionDocument(input);
@@ -289,6 +307,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
+    RIGCAL_TRY(ApproveByPolicy(store, revision, clock.Now()));
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));

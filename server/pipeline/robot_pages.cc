@@ -11,6 +11,7 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/compared_lenses.h"
 #include "server/pipeline/current_edges.h"
+#include "server/pipeline/decide.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
 #include "server/pipeline/unreadable.h"
@@ -125,6 +126,11 @@ Status TakeListedRevisions(const AnswerContext& context, const RobotId& robot, i
   RIGCAL_ASSIGN(input.revisions, storage::LoadRevisions(context.store, robot, before, kListRows + 1));
   input.older_revisions = CutToPage(kListRows, input.revisions);
   input.newest_revisions = before == 0;
+  RIGCAL_ASSIGN(const auto approvals, LoadApprovals(context.store, robot, input.revisions));
+  for (std::size_t i = 0; i < approvals.size(); ++i) input.states[input.revisions[i].number] = approvals[i].state;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(context.store, robot, 0));
+  if (!newest) return {};
+  RIGCAL_ASSIGN(input.approval, LoadApproval(context.store, *newest));
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include "server/formats/documents.h"
 #include "server/pipeline/validity.h"
+#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
 
@@ -23,27 +24,29 @@ Result<RobotState::Calibration> LoadCalibration(storage::Store& store, const Rob
 }
 
 // Poses of these may be with readers. Whoever told them may have ended before it could take them back, or before it
-// told a later revision of fewer sensors: those that the newest revision knows of are taken back too.
-Result<std::vector<SensorId>> LoadWithdrawn(storage::Store& store, const Revision& newest) {
-  RIGCAL_ASSIGN(const int told, storage::LoadNewestGood(store, newest.robot, newest.number));
-  if (told == 0) return std::vector<SensorId>();
+// told a later revision of fewer sensors: where none is in use, those that the newest revision knows of are taken back too.
+Result<std::vector<SensorId>> LoadWithdrawn(storage::Store& store, const Revision& newest,
+                                            const std::optional<RobotState::Calibration>& in_use) {
+  RIGCAL_ASSIGN(const int told, storage::LoadNewestApproved(store, newest.robot));
+  if (told == 0 || (in_use && in_use->revision.number == told)) return std::vector<SensorId>();
   std::set<SensorId> sensors;
-  for (const int number : {told, newest.number}) {
+  for (const int number : in_use ? std::vector<int>{told} : std::vector<int>{told, newest.number}) {
     RIGCAL_ASSIGN(const auto calibration, LoadCalibration(store, newest.robot, number));
     for (const SensorPose& pose : calibration.poses) sensors.insert(pose.sensor);
   }
+  if (in_use)
+    for (const SensorPose& pose : in_use->poses) sensors.erase(pose.sensor);
   return std::vector<SensorId>(sensors.begin(), sensors.end());
 }
 
 Result<RobotState> LoadStateOf(storage::Store& store, Revision newest) {
   RobotState state;
   RIGCAL_ASSIGN(state.edges, storage::CountEdges(store, newest.robot, newest.edge_watermark));
-  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, newest));
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, newest.robot));
   if (usable) {
     RIGCAL_ASSIGN(state.calibration, LoadCalibration(store, newest.robot, usable->number));
-  } else {
-    RIGCAL_ASSIGN(state.withdrawn, LoadWithdrawn(store, newest));
   }
+  RIGCAL_ASSIGN(state.withdrawn, LoadWithdrawn(store, newest, state.calibration));
   state.newest = std::move(newest);
   return state;
 }

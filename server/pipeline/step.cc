@@ -161,7 +161,7 @@ Status ReviseAndTell(const StepContext& context, const RobotId& robot, std::int6
   RIGCAL_ASSIGN(const Revision revision, Revise(context.store, robot, context.clock, jobs));
   // Whoever hears of it finds it in the lists.
   if (const Status kept = RefreshSummary(context.store, context.clock, robot); !kept) LogError(kept.error());
-  RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, revision));
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(context.store, robot));
   context.announcer.event(robot, "revision", std::to_string(revision.number),
                           formats::WriteRevisionEvent(revision, usable));
   context.announcer.state(robot);

@@ -4,10 +4,17 @@
 
 #include "server/base/limits.h"
 #include "server/base/near_names.h"
+#include "server/base/text.h"
+#include "storage/policies.h"
+#include "storage/retired.h"
+#include "storage/revision_poses.h"
+#include "storage/revisions.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
 namespace {
+
+constexpr int kModelsComparedMax = 1'000;
 
 template <typename AnId>
 std::vector<std::string> TextsOf(const std::vector<AnId>& ids) {
@@ -46,11 +53,32 @@ Error UnknownRobot(storage::Store& store, const RobotId& name) {
           "`rigcal robots` lists those that are."};
 }
 
+Result<std::set<SensorId>> LoadSensorNames(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto listed, storage::LoadListedSensors(store, robot));
+  RIGCAL_ASSIGN(const auto retired, storage::LoadRetiredSensors(store, robot));
+  std::set<SensorId> sensors(listed.begin(), listed.end());
+  std::erase_if(sensors, [&](const SensorId& sensor) { return retired.contains(sensor); });
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
+  if (!newest) return sensors;
+  RIGCAL_ASSIGN(const auto poses, storage::LoadRevisionPoses(store, {robot, newest->number}));
+  if (!poses) return sensors;
+  for (const auto& [sensor, pose] : poses->T_ref_sensor)
+    if (!retired.contains(sensor)) sensors.insert(sensor);
+  return sensors;
+}
+
 Error UnknownSensor(const RobotId& robot, const SensorId& name, const std::vector<SensorId>& known) {
   return {ErrorCode::kNotFound,
           "robot '" + robot.str() + "' has no sensor '" + name.str() + "'" +
               Suggestion(NearestNames(name.str(), TextsOf(known))),
           "`rigcal show " + robot.str() + "` lists its sensors."};
+}
+
+Error UnknownModel(storage::Store& store, const std::string& name) {
+  const auto known = storage::LoadRigModels(store, kModelsComparedMax);
+  if (!known) return known.error();
+  return {ErrorCode::kNotFound, "no session is of rig model " + Quoted(name) + Suggestion(NearestNames(name, *known)),
+          "Correct the name, or say with --new-model that its sessions are to come."};
 }
 
 }  // namespace rigcal::pipeline

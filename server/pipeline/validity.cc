@@ -6,6 +6,7 @@
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/session_refinement.h"
 #include "storage/attempts.h"
+#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/retired.h"
@@ -57,15 +58,24 @@ Result<std::string> LoadGivenUp(storage::Store& store, const RobotId& robot) {
          ". Give the server more memory and push another session, or take the newest edge out with `rigcal retire`.";
 }
 
+// It is the newest, or in use while the newest, which could be, was not approved.
+bool IsKept(const Revision& revision, const Revision& newest, const std::optional<UsableRevision>& in_use) {
+  if (revision.number >= newest.number) return true;
+  return in_use && in_use->number == revision.number && IsUsable(newest.verdict);
+}
+
 }  // namespace
 
-Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Revision& revision) {
-  if (IsUsable(revision.verdict)) return UsableRevision{revision.number, revision.created_at};
-  RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, revision.robot, revision.number));
+Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto in_use, storage::LoadInUse(store, robot));
+  if (!in_use) return std::nullopt;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
+  if (newest && newest->number == in_use->revision) return UsableRevision{newest->number, newest->created_at};
+  RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot));
   if (!usable) return std::nullopt;
-  RIGCAL_ASSIGN(const bool remounted, WasRemountedAfter(store, revision.robot, usable->created_at));
+  RIGCAL_ASSIGN(const bool remounted, WasRemountedAfter(store, robot, usable->created_at));
   if (remounted) return std::nullopt;
-  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, revision.robot, usable->created_at));
+  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, robot, usable->created_at));
   if (gave_way) return std::nullopt;
   return UsableRevision{usable->number, usable->created_at};
 }
@@ -85,8 +95,10 @@ Result<Validity> LoadValidity(storage::Store& store, const Revision& revision, S
   validity.calibrated_at = revision.calibrated_at;
   validity.max_age_ns = revision.max_age_ns;
   validity.overdue = IsOverdue(validity.calibrated_at, validity.max_age_ns, now);
-  RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision));
+  RIGCAL_ASSIGN(validity.usable, LoadUsable(store, revision.robot));
   RIGCAL_TRY(LoadWhatIsNew(store, revision.robot, validity));
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, revision.robot, 0));
+  if (newest && !IsKept(revision, *newest, validity.usable)) validity.superseded_by = newest->number;
   return validity;
 }
 

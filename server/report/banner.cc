@@ -66,7 +66,7 @@ void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validi
   FillDrive(*banner, verdict, validity);
   if (!has_revision) return;
   FillOverdue(*banner, verdict, validity);
-  if (!IsUsable(verdict)) ShowValue(*banner, "KEEP", "TEXT", KeepText(validity.usable));
+  if (!IsUsable(verdict)) ShowValue(*banner, "KEEP", "TEXT", KeepText(verdict.level, validity.usable));
 }
 
 }  // namespace rigcal::report

@@ -33,6 +33,8 @@ constexpr std::array kPhrases = {
     Phrase{"not_measured", "{} not measured"},
 };
 
+constexpr std::string_view kDisputed = "disputed";  // of a board's size: lidars and trackers do not agree
+
 std::vector<std::string> WordsIn(const std::string& key) {
   std::istringstream stream(key);
   std::vector<std::string> words;
@@ -73,6 +75,7 @@ std::string CauseText(const std::string& key) {
   if (text.find("{last}") != std::string::npos && !names.empty()) {
     last = names.back();
     names.pop_back();
+    if (last == kDisputed) text = "size of board {} {last}";
   }
   PutWords("{last}", last, text);
   PutWords("{-}", JoinedNames(names, " - "), text);

@@ -25,7 +25,7 @@ struct ShownEdge {
 
 // How much of a very large graph goes into one page; the rest is in revision.json, edges.csv and `rigcal show --whole`.
 inline constexpr std::size_t kPoseRowsMax = 3000;
-inline constexpr std::size_t kEdgeRowsMax = 6000;
+inline constexpr std::size_t kEdgeRowsMax = 5500;
 inline constexpr std::size_t kDetailItemsMax = 6000;  // captures + pictures + diagnoses, all sections together
 inline constexpr std::size_t kPicturesPerEdgeMax = 24;  // the session's page has all
 inline constexpr std::size_t kManySections = 24;        // of more edges than this half as many pictures are shown

@@ -59,7 +59,8 @@ void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("WHY", robot.verdict.why);
   if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())
     ShowValue(row, "DO", "WHAT_TO_DO", robot.verdict.what_to_do);
-  if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.validity.usable));
+  if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.verdict.level, robot.validity.usable));
+  if (robot.runs && !robot.runs->trouble.empty()) ShowValue(row, "RUNS", "TEXT", robot.runs->trouble);
   if (robot.jobs_waiting > 0)
     ShowValue(row, "WORKING", "TEXT",
               Count(static_cast<std::size_t>(robot.jobs_waiting), "pair", "pairs") + " being calibrated");

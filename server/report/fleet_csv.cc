@@ -14,6 +14,14 @@ std::string WorstFields(const std::optional<WorstEdge>& worst) {
   return "," + CsvField(worst->frame_a.str()) + "," + CsvField(worst->frame_b.str()) + "," + Fixed(worst->in_sigmas, 3);
 }
 
+// Where its revision is in its life, which one it is to use, which one it says that it runs.
+std::string LifeFields(const RobotSummary& robot) {
+  const auto& usable = robot.validity.usable;
+  const bool runs = robot.runs && robot.runs->revision > 0;
+  return "," + (robot.revision > 0 ? NameOf(robot.state) : std::string()) + "," + (usable ? std::to_string(usable->number) : "") + "," +
+         (runs ? std::to_string(robot.runs->revision) : "") + "," + CsvField(robot.runs ? robot.runs->trouble : "");
+}
+
 std::string CausesField(const std::vector<std::string>& causes) {
   std::string text;
   for (const std::string& cause : causes) text += (text.empty() ? "" : "; ") + CauseText(cause);
@@ -24,7 +32,7 @@ std::string CausesField(const std::vector<std::string>& causes) {
 
 std::string FleetCsvHeading() {
   return "robot,verdict,overdue,valid_until,calibrated_at,last_session_at,revision,sessions,edges,pairs_waiting,"
-         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do\r\n";
+         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble\r\n";
 }
 
 std::string FleetCsvRow(const RobotSummary& robot) {
@@ -34,7 +42,7 @@ std::string FleetCsvRow(const RobotSummary& robot) {
          TimeField(robot.last_session_at) + "," + (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," +
          std::to_string(robot.sessions) + "," + std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) +
          WorstFields(robot.worst) + CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," +
-         CsvField(robot.verdict.what_to_do) + "\r\n";
+         CsvField(robot.verdict.what_to_do) + LifeFields(robot) + "\r\n";
 }
 
 }  // namespace rigcal::report

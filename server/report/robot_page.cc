@@ -22,6 +22,12 @@ void FillPages(Dictionary& list, bool is_newest, const std::string& last_shown) 
   if (!last_shown.empty()) ShowValue(*pages, "OLDER", "BEFORE", last_shown);
 }
 
+// Of what is unusable the verdict says it.
+void FillLife(Dictionary& row, const std::map<int, RevisionState>& states, int number) {
+  const auto found = states.find(number);
+  if (found != states.end() && found->second != RevisionState::kUnusable) ShowValue(row, "STATE", "WORD", WordFor(found->second));
+}
+
 void FillRevisions(Dictionary& page, const RobotInput& input, Stamp now) {
   std::vector<Revision> revisions = input.revisions;
   if (revisions.empty()) return;
@@ -33,6 +39,7 @@ void FillRevisions(Dictionary& page, const RobotInput& input, Stamp now) {
     row->SetValue("NUMBER", std::to_string(revision.number));
     FillBadge(*row, revision.verdict.level);
     row->SetValue("WHY", revision.verdict.why);
+    FillLife(*row, input.states, revision.number);
     row->SetValue("TIME", TimeText(revision.created_at));
     row->SetValue("AGE", AgeOf(revision.created_at, now));
     if (revision.number <= 1) {
@@ -153,6 +160,9 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
     newer->SetValue("TEXT", row.validity.given_up.empty() ? kCalculatingText : row.validity.given_up);
     newer->SetValue("NUMBER", std::to_string(row.revision));
   }
+  if (const std::string text = ApprovalText(row.robot, row.revision, input.approval); row.revision > 0 && !text.empty())
+    ShowValue(page, "APPROVAL", "TEXT", text + ".");
+  if (row.runs && !row.runs->trouble.empty()) ShowValue(page, "RUNS", "TEXT", row.runs->trouble);
   FillNewest(page, row.revision);
   FillOpenOnes(page, input.open);
   FillSessions(page, input, now);

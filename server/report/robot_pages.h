@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/model/decision.h"
 #include "server/model/projection_map.h"
 #include "server/model/standing.h"
 #include "server/report/render.h"
@@ -36,6 +37,8 @@ struct RobotInput {
   bool older_revisions = false, older_sessions = false;  // there are, beyond the page
   bool newest_revisions = true, newest_sessions = true;  // the page is the first
   std::vector<RetiredSensor> retired = {};
+  Approval approval = {};                     // of the newest revision
+  std::map<int, RevisionState> states = {};  // of `revisions`
 };
 // /robots/<id>/. Ages are as of `now`.
 [[nodiscard]] Result<std::string> RenderRobot(const RobotInput& input, Stamp now);

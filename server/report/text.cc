@@ -110,9 +110,15 @@ std::string FigureValue(const std::string& figure, double value) {
   return !unit || number == kNotKnown ? number : number + std::string(unit->shown);
 }
 
-std::string InAddress(std::string words) {
-  std::replace(words.begin(), words.end(), ' ', '+');
-  return words;
+std::string InAddress(const std::string& words) {
+  std::string address;
+  for (const char letter : words) {
+    if (letter == '+')
+      address += "%2B";
+    else
+      address += letter == ' ' ? '+' : letter;
+  }
+  return address;
 }
 
 std::string Count(std::size_t count, const std::string& one, const std::string& many) {

@@ -44,7 +44,7 @@ class Checker:
         return problem
 
     def refused(self, case, place, robot):
-        command = ["push", place] if case.kind == "push" else ["push-edges", place, "--robot", robot]
+        command = ["push", place, "--new-robot"] if case.kind == "push" else ["push-edges", place, "--robot", robot]
         done = self.server.rigcal(*command, "--json", "--timeout-total", "20", timeout=60)
         said = done.stdout.strip() + " / " + done.stderr.strip()[-600:]
         if done.returncode != 4:
@@ -64,7 +64,7 @@ class Checker:
         return ""
 
     def stored(self, case, place, robot):
-        done = self.server.rigcal("push", place, "--timeout-total", "30", timeout=60)
+        done = self.server.rigcal("push", place, "--new-robot", "--timeout-total", "30", timeout=60)
         if done.returncode not in ANSWERED:
             return "exit code %d: %s" % (done.returncode, done.stderr.strip()[-600:])
         edges = self.get("edges", robot=robot)["edges"]
@@ -90,7 +90,7 @@ class Checker:
     def good_session_calibrates(self):
         """After all of it. Empty, or what is wrong."""
         place = bad_inputs.write(self.folder / "good", YAML.replace("ROBOT", "good"), bad_inputs.GOOD)
-        done = self.server.rigcal("push", place, timeout=60)
+        done = self.server.rigcal("push", place, "--new-robot", timeout=60)
         if done.returncode not in ANSWERED:
             return "exit code %d: %s" % (done.returncode, done.stderr)
         edge = self.get("edges", robot="good")["edges"][0]

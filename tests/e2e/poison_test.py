@@ -68,7 +68,7 @@ def wait_for(flow, what, ready):
 
 def push_good(flow, name):
     session = write(flow.folder / name, YAML.replace("ROBOT", name), GOOD)
-    check(flow.server.rigcal("push", session).returncode in (0, 5, 6), name + " is calibrated")
+    check(flow.server.rigcal("push", session, "--new-robot").returncode in (0, 5, 6), name + " is calibrated")
     check(edges_of(flow, name)[0]["state"] == "good", name + " has a good edge")
 
 
@@ -84,7 +84,7 @@ def little_memory(session):
         with address_space(ADDRESS_SPACE_BYTES):
             flow = stack.enter_context(Flow())
         first = flow.server.process.pid
-        flow.rigcal("push", session, "--no-wait")
+        flow.rigcal("push", session, "--no-wait", "--new-robot")
         push_good(flow, "beside")
         said = failed_edge(flow)
         check(re.search(r'file "left/\d\d\.png" of 14000 x 14000 pixels would take \d+ MiB of memory, and this server has \d+ MiB for that', said),
@@ -108,7 +108,7 @@ def crash_and_restart(flow):
 
 def crashed_thrice(session):
     with Flow() as flow:
-        flow.rigcal("push", session, "--no-wait")
+        flow.rigcal("push", session, "--no-wait", "--new-robot")
         wait_for(flow, "the first attempt", lambda: begun(flow, 1, 1))
         flow.kill_and_restart()  # from outside: not the work's doing
         wait_for(flow, "the first attempt again", lambda: begun(flow, 1, 2))
@@ -145,7 +145,7 @@ def worker_died(session):
     """What ends the process that works costs that work, and not the server."""
     with Flow() as flow:
         first = flow.server.process.pid
-        flow.rigcal("push", session, "--no-wait")
+        flow.rigcal("push", session, "--no-wait", "--new-robot")
         for attempt in (1, 2, 3):
             wait_for(flow, "attempt %d" % attempt, lambda: begun(flow, attempt, 1))
             os.kill(busiest(workers_of(flow)), signal.SIGSEGV)

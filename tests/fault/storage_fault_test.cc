@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "storage/audit.h"
 #include "storage/migrate.h"
 #include "tests/fault/fault_disk.h"
 #include "tests/unit/storage_fixture.h"

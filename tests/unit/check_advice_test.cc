@@ -338,6 +338,9 @@ TEST(CheckReport, TellsTheVerdictFirst) {
                                              "verdict  Take 5 more captures.\n"
                                              "         left - right: both see the board in 3 different captures, 8 are "
                                              "enough: take 5 more.\n"));
+  EXPECT_THAT(out.str(),
+              HasSubstr("\nlimits   Judged by the default limits, 5 mm and 0.29 deg: the server's policy may "
+                        "want more.\n"));
   EXPECT_THAT(out.str(), HasSubstr("Pairs, as the server will find them"));
   EXPECT_THAT(out.str(), HasSubstr("0.20"));
 }
@@ -351,6 +354,7 @@ TEST(CheckReport, IsOneObject) {
   EXPECT_EQ((*document)["captures_more"].Integer(), 5);
   EXPECT_EQ((*document)["advice"][0]["of"][0].Text(), "left - right");
   EXPECT_EQ((*document)["refused"][0]["cure"].Text(), "Remove the file.");
+  EXPECT_EQ((*document)["limits"]["tolerance_m"].Number(), 0.005);
   EXPECT_EQ((*document)["cameras"].size(), 2u);
   EXPECT_EQ((*document)["pairs"][0]["state"].Text(), "good");
   EXPECT_NEAR(*(*document)["pairs"][0]["sigma_m"][0].Number(), 0.0002, 1e-9);

@@ -116,11 +116,11 @@ TEST(ExitCode, OfStatusIsThatOfTheWorstRobot) {
   EXPECT_EQ(code(row("unknown") + "," + row("fail") + "," + row("warn")), 1);
 }
 
-TEST(Drive, TheRuleIsTheFirstLine) {
+TEST(Drive, TheRuleComesBeforeTheVerdict) {
   const Case told{"fail", false, 1, "Do not drive"};
   FakeServer server("r1", Telling(told));
   const std::string shown = Rigcal({"show", "r1"}).out;
-  EXPECT_EQ(shown.find("Do not drive.\nr1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\nverdict  fail"), 0U)
+  EXPECT_EQ(shown.find("r1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\nDo not drive.\nverdict  fail"), 0U)
       << shown;
   EXPECT_EQ(Rigcal({"status", "r1"}).out.find("Do not drive.\n"), 0U);
   const std::string all = Rigcal({"status"}).out;
@@ -161,7 +161,7 @@ TEST(Validity, OfAFailThatItIsOverdueIsSaidToo) {
   EXPECT_NE(shown.find("Overdue since 20 Feb 2027. Calibrate the robot again before it is relied on.\nverdict  fail"),
             std::string::npos)
       << shown;
-  EXPECT_NE(shown.find("Keep using revision 4 of 12 Mar 2026 meanwhile."), std::string::npos) << shown;
+  EXPECT_NE(shown.find("Robots that listen still have revision 4 of 12 Mar 2026: do not rely on it, either, until this is cleared up."), std::string::npos) << shown;
 }
 
 TEST(Validity, NothingToFallBackToAndANewerOneOnItsWay) {

@@ -10,13 +10,13 @@ TEST(HistoryVerbs, HistoryListsRevisionsByPages) {
   std::string asked;
   FakeServer server("r", [&](const std::string& verb, const std::string& json) -> Result<std::string> {
     asked = verb + " " + json;
-    return R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"warn","why":"one edge is far off"}},)"
+    return R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"warn","why":"one edge is far off"},"state":"candidate"},)"
            R"({"revision":8,"created_at":"2026-01-24T12:00:00Z","verdict":{"level":"fail","why":"a camera moved"}}],"next":8})";
   });
   Ran ran = Rigcal({"history", "r"});
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked, R"(revisions {"robot":"r","limit":20})");
-  EXPECT_NE(ran.out.find("       9  2026-01-31T12:00:00Z  warn     one edge is far off\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("       9  2026-01-31T12:00:00Z  warn     candidate  one edge is far off\n"), std::string::npos) << ran.out;
   EXPECT_LT(ran.out.find("2026-01-31"), ran.out.find("2026-01-24"));
   EXPECT_NE(ran.out.find("There are older ones: `rigcal history r --limit 20 --before 8`\n"), std::string::npos) << ran.out;
   ran = Rigcal({"history", "r", "--limit", "2", "--before", "10", "--json"});
@@ -26,15 +26,15 @@ TEST(HistoryVerbs, HistoryListsRevisionsByPages) {
 
 TEST(HistoryVerbs, HistoryTellsWhatSessionsFound) {
   FakeServer server("r", Always(
-      R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"pass","why":"well"},)"
+      R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"candidate",)"
       R"("as_found":{"session":"aa","state":"drifted","drifted":["right","top"]}},)"
-      R"({"revision":8,"created_at":"2026-01-24T12:00:00Z","verdict":{"level":"pass","why":"well"},"as_found":{"state":"not_measured","drifted":[]}},)"
+      R"({"revision":8,"created_at":"2026-01-24T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"superseded","as_found":{"state":"not_measured","drifted":[]}},)"
       R"({"revision":7,"created_at":"2026-01-17T12:00:00Z","verdict":{"level":"pass","why":"pushed"}}],"next":null})"));
   const Ran ran = Rigcal({"history", "r"});
-  EXPECT_NE(ran.out.find("VERDICT  AS FOUND            WHY\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("pass     right, top drifted  well\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("pass     not measured        well\n"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("pass                         pushed\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("VERDICT  STATE       AS FOUND            WHY\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("pass     candidate   right, top drifted  well\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("pass     superseded  not measured        well\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("pass     -                               pushed\n"), std::string::npos) << ran.out;
 }
 
 TEST(HistoryVerbs, ShowTellsWhatTheNewestSessionFound) {

@@ -104,6 +104,9 @@ TEST_F(PolicyVerb, OneOfTheFleetSaysWhoIsJudgedAnew) {
             "`rigcal status` tells.\n");
   (void)Rigcal({"policy", "set", File(""), "--reason", "x", "--by", "Ada", "--model", "mars"});
   EXPECT_EQ(asked, R"({"reason":"x","text":"","who":"Ada","model":"mars"})");
+  (void)Rigcal({"policy", "set", File(""), "--reason", "x", "--by", "Ada", "--model", "mars", "--new-model"});
+  EXPECT_EQ(asked, R"({"reason":"x","text":"","who":"Ada","model":"mars","new_model":true})");
+  EXPECT_EQ(Rigcal({"policy", "set", File(""), "--reason", "x", "--new-model"}).code, 2) << "of which one?";
   EXPECT_EQ(Rigcal({"policy", "set", File("tolerance_mm: -1\n"), "--reason", "x"}).code, 4) << "nothing is asked";
 }
 

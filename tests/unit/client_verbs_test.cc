@@ -322,11 +322,11 @@ TEST(Verbs, PushOfAnotherRobotsFilesSendsNothingUnlessItIsMeant) {
   folder.WriteSession("r1", 2, 1000);
   FakeServer server("r1", [&](const std::string& verb, const std::string&) -> Result<std::string> {
     if (verb == "known_robot") return R"({"known":true,"robot":"r1","slip_of":[]})";
-    return R"({"asked":4,"files":2,"robot":"r2","session":"0123456789abcdef0123","captured_at":"2026-08-01T10:00:00Z"})";
+    return R"({"asked":4,"files":3,"robot":"r2","session":"0123456789abcdef0123","captured_at":"2026-08-01T10:00:00Z"})";
   });
   const Ran ran = Rigcal({"push", folder.path().string(), "--no-wait"});
   EXPECT_EQ(ran.code, 4);
-  EXPECT_NE(ran.err.find("2 of 4 files looked at are the same as in the session of robot r2 of 1 Aug 2026 "
+  EXPECT_NE(ran.err.find("3 of 4 files looked at are the same as in the session of robot r2 of 1 Aug 2026 "
                          "(0123456789abcdef), not of 'r1'. Correct `robot:` in session.yaml"),
             std::string::npos)
       << ran.err;

@@ -221,6 +221,44 @@ TEST_F(AnnounceTest, WhatCannotBeLoadedIsToldOnceItCan) {
   EXPECT_EQ(loads, 2);
 }
 
+// It is seen where people look at how the server is, as long as it lasts; that another robot is told changes nothing.
+TEST_F(AnnounceTest, ARobotThatIsNotToldIsAProblemUntilItIs) {
+  StopServer();
+  Vitals vitals{SystemClock()};
+  const auto problem = [&vitals] {
+    for (const PartState& part : vitals.States())
+      if (part.name == "robot states") return part.problem;
+    return std::optional<Error>();
+  };
+  std::atomic<int> loads = 0;
+  std::optional<Error> at_first, meanwhile, at_last;  // of thread T, which is joined before they are read
+  state_of_ = [&](const RobotId& robot) -> Result<std::optional<RobotState>> {
+    if (robot != kMapper) {
+      meanwhile = problem();
+      return LoadState(robot);
+    }
+    if (++loads == 1) {
+      at_first = problem();
+      server_->Tell(RobotId("mapper-02"));
+      return Fail(ErrorCode::kBusy, "another process holds the database", "Wait");
+    }
+    at_last = problem();
+    return LoadState(robot);
+  };
+  StoreState(StateOf(3, kPass, {PoseOf("right")}));
+  options_.vitals = &vitals;
+  StartServer();
+  Listener<rigcal_wire_RobotStatus> other(options_.participant, "robot/mapper-02");
+  other.WaitForServer();
+  Listener<rigcal_wire_RobotStatus>(options_.participant, "robot/mapper-01").Take(1, [](const auto&) {});
+  StopServer();
+  EXPECT_FALSE(at_first);
+  ASSERT_TRUE(meanwhile && at_last);
+  EXPECT_EQ(meanwhile->what, "the state of a robot could not be told: another process holds the database");
+  EXPECT_EQ(at_last->what, meanwhile->what);
+  EXPECT_FALSE(problem()) << problem()->what;
+}
+
 TEST_F(AnnounceTest, ReceiptsDoNotWaitForStatesToBeLoaded) {
   std::promise<void> loaded;
   state_of_ = [&, may_end = loaded.get_future().share()](const RobotId& robot) {

@@ -50,6 +50,24 @@ TEST(FromIdl, AStrangerIsRefusedInItsOwnPartition) {
   EXPECT_THAT(std::get<Refusal>(*terminal).error.what, HasSubstr(R"("\x1b[2J")"));
 }
 
+TEST(FromIdl, GivesWhatARobotRunsInItsOwnPartitionOnly) {
+  rigcal_wire_CalibrationInUse sample{};
+  std::strcpy(sample.robot_id, "mapper-01");
+  std::memset(sample.digest, 'd', 64);
+  std::strcpy(sample.who, "agent");
+  sample.applied_ns = 7;
+  const auto arrival = FromIdl(sample, OriginOf("robot/mapper-01"));
+  ASSERT_TRUE(arrival);
+  const auto& report = std::get<RunsReport>(*arrival);
+  EXPECT_EQ(report.robot.str(), "mapper-01");
+  EXPECT_EQ(report.digest.str(), std::string(64, 'd'));
+  EXPECT_EQ(report.applied_at, Stamp{7});
+  EXPECT_EQ(report.who, "agent");
+  EXPECT_TRUE(std::holds_alternative<Refusal>(*FromIdl(sample, OriginOf("robot/stranger"))));
+  sample.digest[3] = 'x';
+  EXPECT_FALSE(FromIdl(sample, OriginOf("robot/mapper-01"))) << "nobody can be answered about it";
+}
+
 TEST(FromIdl, NobodyIsToldWhereNobodyIs) {
   std::vector<std::uint8_t> bytes = {1};
   EXPECT_FALSE(FromIdl(ChunkOf(bytes), wire::SampleOrigin{}));  // the writer is gone

@@ -147,6 +147,51 @@ TEST(Assess, UncertainSensorsWarnOnEveryAxis) {
   }
 }
 
+// Though each of its sensors is known well enough.
+TEST(Assess, APairThatIsKnownToLessThanItsToleranceWarns) {
+  const Rig rig;
+  const SensorPair pair{SensorId("left"), SensorId("right")}, other{SensorId("right"), SensorId("top")};
+  Policy policy;
+  policy.pairs[pair].tolerance_m = 0.002, policy.pairs[pair].tolerance_rad = 0.05 * M_PI / 180;
+  policy.pairs[other].tolerance_m = 0.003;
+  Matrix6d covariance = 1e-8 * Matrix6d::Identity();
+  PairCovariances known = {{pair, covariance}, {other, covariance}};
+  const auto judge = [&] { return Assess(rig.edges, rig.solution, policy, {}, {}, {}, known); };
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << judge().why;
+  known[pair](tangent::kZ, tangent::kZ) = 0.0033 * 0.0033;
+  known[pair](tangent::kRy, tangent::kRy) = std::pow(0.094 * M_PI / 180, 2);
+  EXPECT_EQ(judge().level, VerdictLevel::kWarn);
+  EXPECT_EQ(judge().why, "left - right is known to 3.3 mm and 0.094 deg only (2 mm and 0.05 deg wanted).");
+  EXPECT_EQ(judge().what_to_do, "Capture left and right together at more distances and tilts.");
+  known[other](tangent::kX, tangent::kX) = 0.02 * 0.02;
+  EXPECT_THAT(judge().why, HasSubstr("right - top and left - right are known, at worst, to 20 mm"));
+  EXPECT_THAT(judge().why, HasSubstr("(3 mm and 0.29 deg wanted)"));
+  policy.pairs.clear();
+  policy.pairs[pair].moved_min_m = 0.002;
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << "no tolerance is said of it";
+}
+
+// An edge that was pushed has no captures: it tells by what its covariance was estimated from, if it was.
+TEST(Assess, APairOfFewerCapturesThanThePolicyWantsWarns) {
+  Rig rig;
+  Policy policy;
+  policy.captures_min = 20;
+  const auto judge = [&] { return Assess(rig.edges, rig.solution, policy); };
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << "known exactly";
+  rig.edges[0].uncertainty.dof = 18;
+  EXPECT_EQ(judge().level, VerdictLevel::kWarn);
+  EXPECT_THAT(judge().why, HasSubstr("left - right was measured from fewer than 20 captures"));
+  rig.edges[0].uncertainty.dof = 19;
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << judge().why;
+  rig.edges[2].uncertainty.blocks.resize(19);
+  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from fewer than 20 captures"));
+  rig.edges[2].session = SessionId(std::string(64, '1'));
+  EXPECT_EQ(judge().level, VerdictLevel::kPass) << "of two pose streams: its blocks are no captures";
+  for (int i = 0; i < 19; ++i) rig.edges[2].captures.push_back({CaptureId(std::to_string(i)), 0.0, true, ""});
+  rig.edges[2].captures.push_back({CaptureId("unused"), 0.0, false, ""});
+  EXPECT_THAT(judge().why, HasSubstr("left - top was measured from fewer than 20 captures"));
+}
+
 TEST(Assess, AGraphWithoutALoopWarns) {
   Rig rig;
   rig.solution.dof = 0;

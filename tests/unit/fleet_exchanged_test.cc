@@ -15,7 +15,7 @@ using testing::StartsWith;
 const Se3 kLeft = At({1, 0.211, 0.5}), kRight = At({1, -0.211, 0.5});
 const Se3 kMast = At({0.3, 0.25, 1.2}), kRear = At({-1, 0, 0.5}, M_PI);
 
-// A warning, and nobody is told to rename anything before he has looked.
+// Nobody relies on them, and nobody is told to rename anything before he has looked.
 void ExpectDoubt(const Drawn& drawn, const std::string& first, const std::string& second, const std::string& off) {
   const std::vector<RootCause> causes = drawn.Causes();
   ASSERT_THAT(causes, SizeIs(1));
@@ -23,13 +23,13 @@ void ExpectDoubt(const Drawn& drawn, const std::string& first, const std::string
   EXPECT_THAT(causes[0].sensors, ElementsAre(SensorId(first), SensorId(second)));
   EXPECT_EQ(causes[0].command, "");
   const Verdict verdict = drawn.Judge();
-  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.level, VerdictLevel::kUnknown);
+  EXPECT_EQ(verdict.unverified, first + " and " + second);
   EXPECT_THAT(verdict.why,
               StartsWith(first + " and " + second + " sit where the drawing has the other (" + off +
-                         " from nominal): they are exchanged, or the sign or direction of T_ref_nominal is "
-                         "wrong; also, "));
+                         " from nominal): they are exchanged, or the sign or direction of T_ref_nominal is wrong"));
   EXPECT_THAT(verdict.what_to_do,
-              StartsWith("Check which sensor the files of " + first + " come from before you rename anything; then "));
+              StartsWith("Check which sensor the files of " + first + " come from before you rename anything"));
 }
 
 // The mast, which is not half-way between them, is where the drawing has it: so its signs are right.
@@ -159,7 +159,7 @@ TEST(Exchanged, InARigThatLooksTheSameMirroredNobodyIsToldToRename) {
 TEST(DrawnWrong, FailsOnlyWhereEdgesDisagreeAroundTheTwo) {
   Drawn drawn = WithReference(SensorKind::kCamera);
   drawn.Add("right", SensorKind::kCamera, At({-0.12, 0, 0}), At({0.12, 0, 0}));
-  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kWarn);
+  EXPECT_EQ(drawn.Judge().level, VerdictLevel::kUnknown);
   drawn.solution.residuals = {ResidualOf(drawn.visit.edges.front(), 0.5)};
   const Verdict verdict = drawn.Judge();
   EXPECT_EQ(verdict.level, VerdictLevel::kFail);

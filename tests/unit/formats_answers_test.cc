@@ -27,7 +27,7 @@ TEST(Answers, Robots) {
             "{\"robots\":[{\"age_ns\":86400000000000,\"calculating\":true,\"calibrated_at\":\"2026-01-31T12:00:00Z\","
             "\"drive\":{\"rule\":\"OK to drive until 1 May 2026\",\"until\":\"2026-05-01T12:00:00Z\"},"
             "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\","
-            "\"sessions\":2,"
+            "\"runs\":null,\"sessions\":2,\"state\":\"unusable\","
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
             "\"valid_until\":\"2026-05-01T12:00:00Z\",\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\","
             "\"why\":\"All is well.\"}}]}");

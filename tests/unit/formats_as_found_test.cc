@@ -91,10 +91,10 @@ TEST(AsFoundDocument, StandsBesideTheDocumentOfARevisionAndInItsRow) {
   revision.number = 3;
   revision.document = WriteRevisionDocument(samples::SampleRevision());
   EXPECT_FALSE(json::parse(WriteShow(revision, true, {}, {})).contains("as_found"));
-  const std::string text = WriteShow(revision, true, {}, {}, SomeFound());
+  const std::string text = WriteShow(revision, true, {}, {}, {}, {}, SomeFound());
   EXPECT_NE(text.find(revision.document), std::string::npos);
   EXPECT_EQ(json::parse(text)["as_found"], json::parse(WriteAsFound(SomeFound())));
-  const json rows = json::parse(WriteRevisions(revision.robot, {revision}, {}, {}, {{3, SummaryOf(SomeFound())}}));
+  const json rows = json::parse(WriteRevisions(revision.robot, {revision}, {}, {}, {}, {{3, SummaryOf(SomeFound())}}));
   EXPECT_EQ(rows["revisions"][0]["as_found"],
             (json{{"session", std::string(64, 'a')}, {"state", "drifted"}, {"drifted", {"right"}}}));
   EXPECT_FALSE(json::parse(WriteRevisions(revision.robot, {revision}, {}))["revisions"][0].contains("as_found"));

@@ -26,6 +26,8 @@ residual_max_mm: 40
 residual_max_deg: 2
 max_age_days: 30.5
 captures_min: 20
+approval: person
+approve_warnings: false
 sensors:
   lidar: {tolerance_mm: 20, moved_min_mm: 3}
   left: {tolerance_px_at_10_m: 1}
@@ -53,6 +55,8 @@ TEST(PolicyYaml, EveryKeyIsRead) {
   EXPECT_DOUBLE_EQ(*read->residual_max_rad, 2 * M_PI / 180);
   EXPECT_EQ(read->max_age_ns, 30LL * 86'400'000'000'000 + 43'200'000'000'000);
   EXPECT_EQ(read->captures_min, 20);
+  EXPECT_EQ(read->approval, ApprovalBy::kPerson);
+  EXPECT_EQ(read->approve_warnings, false);
   ASSERT_EQ(read->sensors.size(), 2u);
   EXPECT_EQ(read->sensors.at(SensorId("lidar")).moved_min_m, 0.003);
   EXPECT_FALSE(read->sensors.at(SensorId("lidar")).moved_min_rad);
@@ -90,16 +94,60 @@ TEST(PolicyYaml, AWrongUnitIsToldInTheRightOne) {
 }
 
 TEST(PolicyYaml, ALimitIsAboveZero) {
-  EXPECT_EQ(Refused("tolerance_mm: -5"),
-            "policy.yaml line 1: tolerance_mm: must be above 0 and at most 10000, not \"-5\"");
-  EXPECT_EQ(Refused("tolerance_deg: 0"),
-            "policy.yaml line 1: tolerance_deg: must be above 0 and at most 180, not \"0\"");
+  EXPECT_EQ(Refused("tolerance_mm: -5"), "policy.yaml line 1: tolerance_mm: must be from 0.001 to 10000, not \"-5\"");
+  EXPECT_EQ(Refused("tolerance_deg: 0"), "policy.yaml line 1: tolerance_deg: must be from 0.0001 to 180, not \"0\"");
   EXPECT_EQ(Refused("max_age_days: -1"),
-            "policy.yaml line 1: max_age_days: must be above 0 and at most 36500, not \"-1\"");
+            "policy.yaml line 1: max_age_days: must be from 0.0416667 (1 h) to 36500, not \"-1\"");
   EXPECT_EQ(Refused("captures_min: 0"),
             "policy.yaml line 1: captures_min: must be a whole number from 1 to 100000, not \"0\"");
   EXPECT_EQ(Refused("tolerance_mm: nan"), "policy.yaml line 1: tolerance_mm: must be a number, not \"nan\"");
   EXPECT_EQ(Refused("tolerance_mm:"), "policy.yaml line 1: tolerance_mm: has no value");
+}
+
+TEST(PolicyYaml, WhoApprovesIsOneOfTwo) {
+  EXPECT_EQ(ReadPolicy("approval: automatic", "policy.yaml")->approval, ApprovalBy::kAutomatic);
+  EXPECT_EQ(Refused("approval: Ada"), "policy.yaml line 1: approval: must be automatic or person, not \"Ada\"");
+  EXPECT_EQ(Refused("approve_warnings: yes"), "policy.yaml line 1: approve_warnings: must be true or false, not \"yes\"");
+}
+
+// What becomes 0, or next to it, in the unit in which it is kept.
+TEST(PolicyYaml, ALimitThatJudgesNothingIsRefused) {
+  EXPECT_EQ(Refused("max_age_days: 1e-15"),
+            "policy.yaml line 1: max_age_days: must be from 0.0416667 (1 h) to 36500, not \"1e-15\"");
+  EXPECT_EQ(Refused("tolerance_px_at_10_m: 1e-320"),
+            "policy.yaml line 1: tolerance_px_at_10_m: must be from 0.001 to 10000, not \"1e-320\"");
+  EXPECT_EQ(Refused("pairs: {a - b: {moved_min_deg: 1e-5}}"),
+            "policy.yaml line 1: pair 'a - b': moved_min_deg: must be from 0.0001 to 180, not \"1e-5\"");
+  for (const char* key : {"tolerance_mm", "tolerance_deg", "unseen_move_mm", "residual_max_mm", "residual_max_deg"})
+    EXPECT_THAT(Refused(key + std::string(": 1e-322")), testing::HasSubstr("must be from 0.0"));
+}
+
+TEST(PolicyYaml, TheLeastThatIsToldIsTaken) {
+  const auto read =
+      ReadPolicy("tolerance_mm: 0.001\ntolerance_deg: 0.0001\ntolerance_px_at_10_m: 0.001\nmax_age_days: 0.0416667\n",
+                 "policy.yaml");
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_DOUBLE_EQ(*read->all.tolerance_m, 1e-6);
+  EXPECT_GT(*read->all.tolerance_rad, 0.0);
+  EXPECT_GE(*read->max_age_ns, 3'600'000'000'000);
+}
+
+// Texts of before there was a least value: robots are judged all the same.
+TEST(PolicyYaml, AStoredLimitCountsAsTheLeast) {
+  const auto read = ReadStoredPolicy(
+      "tolerance_mm: 1e-322\nmax_age_days: 1e-15\ntolerance_px_at_10_m: 1e-320\nsensors: {left: {tolerance_deg: "
+      "1e-9}}\n"
+      "pairs: {a - b: {moved_min_mm: 1e-9}}\nresidual_max_mm: 1e-322\nresidual_max_deg: 3\n",
+      "policy.yaml");
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_DOUBLE_EQ(*read->all.tolerance_m, 1e-6);
+  EXPECT_EQ(read->max_age_ns, 3'600'000'000'000);
+  EXPECT_EQ(read->all.tolerance_px_at_10_m, 0.001);
+  EXPECT_DOUBLE_EQ(*read->sensors.at(SensorId("left")).tolerance_rad, 1e-4 * M_PI / 180);
+  EXPECT_DOUBLE_EQ(*read->pairs.at({SensorId("a"), SensorId("b")}).moved_min_m, 1e-6);
+  EXPECT_DOUBLE_EQ(*read->residual_max_m, 1e-6);
+  EXPECT_DOUBLE_EQ(*read->residual_max_rad, 3 * M_PI / 180);
+  EXPECT_FALSE(ReadStoredPolicy("tolerance_mm: 0\n", "policy.yaml"));
 }
 
 TEST(PolicyYaml, NamesAreThoseOfSensors) {
@@ -131,6 +179,28 @@ TEST(PolicyFields, WhatIsSaidComesBack) {
   EXPECT_EQ(read.fleet, 3);
   EXPECT_EQ(read.model, 0);
   EXPECT_EQ(read.robot, 12);
+}
+
+// As documents have it that were written before a limit had a least value.
+TEST(PolicyFields, ALimitOfZeroIsNone) {
+  PolicyInForce in_force;
+  in_force.policy.all.tolerance_m = 0.0;
+  in_force.policy.sensors[SensorId("left")].tolerance_px_at_10_m = 0.0;
+  in_force.policy.pairs[{SensorId("a"), SensorId("b")}].moved_min_m = 0.002;
+  in_force.policy.residual_max_m = 0.0;
+  in_force.policy.max_age_ns = 0;
+  in_force.policy.focal_px[SensorId("left")] = 0.0;
+  const std::string text = WriteObject([&](JsonWriter& out) { WritePolicyMembers(out, in_force); });
+  Result<JsonDocument> document = JsonDocument::Parse(text, {"policy", "", 1 << 20});
+  ASSERT_TRUE(document);
+  const PolicyInForce read = ReadPolicyMembers(document->Root());
+  ASSERT_TRUE(document->status()) << Sentence(document->status().error());
+  EXPECT_FALSE(read.policy.all.tolerance_m);
+  EXPECT_FALSE(read.policy.sensors.at(SensorId("left")).tolerance_px_at_10_m);
+  EXPECT_EQ(read.policy.pairs.at({SensorId("a"), SensorId("b")}).moved_min_m, 0.002);
+  EXPECT_FALSE(read.policy.residual_max_m);
+  EXPECT_FALSE(read.policy.max_age_ns);
+  EXPECT_TRUE(read.policy.focal_px.empty());
 }
 
 // A revision says by what it was judged, and beside each sigma what it is held against.
@@ -166,6 +236,8 @@ TEST(PolicyAnswer, TellsWhatHoldsAndWhoSetIt) {
   EXPECT_EQ(told["limits"]["moved_min_m"], 0.001);
   EXPECT_EQ(told["limits"]["max_age_ns"], kDefaultMaxAge_ns);
   EXPECT_TRUE(told["limits"]["captures_min"].is_null());
+  EXPECT_EQ(told["limits"]["approval"], "automatic");
+  EXPECT_EQ(told["limits"]["approve_warnings"], true);
   EXPECT_EQ(told["set"][0]["who"], "Ada");
   EXPECT_EQ(told["set"][0]["text"], "tolerance_mm: 4\n");
   EXPECT_EQ(told["set"][0]["version"], 2);

@@ -32,6 +32,7 @@ SessionEstimate MakeEstimate() {
   misfit.rms_px = 0.05, misfit.evidence = 300, misfit.sigma_ratio = 2.5;
   misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
   estimate.misfits = {misfit};
+  estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   return estimate;
 }
 
@@ -61,6 +62,10 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
   EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
   EXPECT_EQ(read->boards_moved[0].step[tangent::kY], 0.02);
+  ASSERT_EQ(read->slants.size(), 1u);
+  EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
+  EXPECT_EQ(read->slants[0].too_long_m, 0.01);
+  EXPECT_EQ(read->slants[0].sigma_m, 0.002);
   ASSERT_EQ(read->misfits.size(), 1u);
   EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
   EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);

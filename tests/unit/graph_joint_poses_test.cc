@@ -57,6 +57,33 @@ TEST(JointPoses, FusedSensorsAreToldByTheirOwnCovariance) {
   ExpectSame(RelativeOf(poses, free[0], free[2]).value(), Relative(rig.graph, solution, free[0], free[2]).value(), "mixed");
 }
 
+// More sensors than a revision keeps the covariance of, and more pairs than are worked out at once.
+TEST(JointPoses, PairsOfManySensorsAreToldAsAQueryTellsThem) {
+  const RandomRig rig = MakeRig(kJointPosesMax + 6, 90, 8, 0.001, 0.0005);
+  const GraphSolution solution = Solve(rig.graph);
+  const JointPoses poses = JointPosesOf(rig.graph, solution, {});
+  ASSERT_TRUE(poses.covariances.empty());
+  std::vector<SensorPair> pairs = {{SensorId("nobody"), rig.graph.reference}};
+  for (std::size_t i = 1; i < rig.graph.sensors.size(); ++i)
+    pairs.push_back({rig.graph.sensors[i - 1], rig.graph.sensors[i]});
+  const PairCovariances covariances = CovariancesOfPairs(pairs, poses, rig.graph, solution, {});
+  EXPECT_EQ(covariances.size(), pairs.size() - 1);
+  for (const auto& [pair, covariance] : covariances) {
+    const Matrix6d wanted = Relative(rig.graph, solution, pair.a, pair.b)->covariance;
+    EXPECT_LT((covariance - wanted).norm(), 1e-7 * wanted.norm()) << pair.a.str() << " " << pair.b.str();
+  }
+}
+
+TEST(JointPoses, PairsOfFewSensorsAreTakenFromWhatIsKept) {
+  const RandomRig rig = MakeRig(5, 9, 6, 0.001, 0.0005);
+  const GraphSolution solution = Solve(rig.graph);
+  const JointPoses poses = JointPosesOf(rig.graph, solution, {});
+  const SensorPair pair{rig.graph.sensors[1], rig.graph.sensors[3]};
+  const PairCovariances covariances = CovariancesOfPairs({pair}, poses, rig.graph, solution, {});
+  ASSERT_EQ(covariances.size(), 1u);
+  EXPECT_EQ(covariances.at(pair), RelativeOf(poses, pair.a, pair.b)->covariance);
+}
+
 TEST(JointPoses, WhatIsNotKnownHasNoAnswer) {
   const RandomRig rig = MakeRig(4, 5, 7, 0.001, 0.0005);
   GraphSolution solution = Solve(rig.graph);

@@ -175,6 +175,16 @@ TEST(GoldenCdr, Calibration) {
   ExpectGolden("Calibration", sample);
 }
 
+TEST(GoldenCdr, CalibrationInUse) {
+  rigcal_wire_CalibrationInUse sample{};
+  std::strcpy(sample.robot_id, "mapper-01");
+  std::memset(sample.digest, 'd', 64);
+  sample.revision = 3;
+  sample.applied_ns = 1'700'000'000'000'000'001;
+  std::strcpy(sample.who, "agent");
+  ExpectGolden("CalibrationInUse", sample);
+}
+
 TEST(GoldenCdr, RobotStatus) {
   rigcal_wire_RobotStatus sample{};
   std::strcpy(sample.robot_id, "mapper-01");

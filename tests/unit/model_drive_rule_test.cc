@@ -38,6 +38,13 @@ TEST(DriveRule, AWarningSaysTheFirstThingToDoAndByWhen) {
             "OK to drive; capture top at more distances and tilts by 20 Feb 2027");
   EXPECT_EQ(rule("Capture top; then capture left.").rule, "OK to drive; capture top by 20 Feb 2027");
   EXPECT_EQ(rule("Take more. Tilt it.").rule, "OK to drive; take more by 20 Feb 2027");
+  EXPECT_EQ(rule("Fasten the board; poses of this session tell its two places apart.").rule,
+            "OK to drive; fasten the board by 20 Feb 2027");
+  EXPECT_EQ(rule("Try `model: fisheye_kb4`: by itself it fits its corners to 0.10 px rms with it.").rule,
+            "OK to drive; try `model: fisheye_kb4` by 20 Feb 2027")
+      << "a colon within a word is no end";
+  EXPECT_EQ(rule("Was left moved? Yes: `rigcal push FOLDER --remounted left`. No: capture it again.").rule,
+            "OK to drive; answer what the verdict asks by 20 Feb 2027");
   EXPECT_EQ(rule("").rule, "OK to drive until 20 Feb 2027");
   EXPECT_EQ(rule("").until, kDue);
   EXPECT_EQ(rule("").level, VerdictLevel::kWarn);
@@ -62,6 +69,11 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
   validity.calibrated_at = Stamp{kDue.ns - 30};
   validity.max_age_ns = 30;
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).until, kDue);
+  validity.superseded_by = 7;
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule,
+            "Superseded by revision 7: what this one says of driving is past");
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).level, VerdictLevel::kUnknown);
+  validity.superseded_by.reset();
   validity.overdue = true;
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");

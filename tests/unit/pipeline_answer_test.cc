@@ -159,7 +159,7 @@ TEST_F(AnswerTest, LookupOfAFusedRevisionFromBeforeIsReadFromItsDocument) {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(*store_, revision));
     return {};
   }));
-  const auto answer = Ask("lookup", R"({"robot":"r","a":"a","b":"b"})");
+  const auto answer = Ask("lookup", R"({"robot":"r","a":"a","b":"b","revision":2})");
   ASSERT_TRUE(answer) << Sentence(answer.error());
   const std::string key = "\"covariance\":[[";
   EXPECT_NEAR(std::stod(answer->substr(answer->find(key) + key.size())), 4e-8, 1e-15) << *answer;

@@ -7,6 +7,7 @@
 #include "server/pipeline/revise.h"
 #include "server/pipeline/session_refinement.h"
 #include "storage/as_found.h"
+#include "storage/decisions.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/pipeline_fixture.h"
 
@@ -93,6 +94,10 @@ class AsFoundTest : public PipelineTest {
     newest_ = revision.value_or(Revision{});
     return newest_.number;
   }
+  void Decide(storage::Deciding deciding, int revision) {
+    const auto done = storage::AppendDecision(*store_, kRig, revision, deciding, {clock_.now, "Ada", "looked at"});
+    EXPECT_TRUE(done && *done) << revision;
+  }
   AsFound Found(int number) { return storage::LoadAsFound(*store_, {kRig, number}).value().value_or(AsFound{}); }
   json Ask(const std::string& verb) {
     const auto answer = Answer({*store_, clock_, revisions_cache_, clock_.now, ""}, verb, R"({"robot":"r"})");
@@ -148,6 +153,28 @@ TEST_F(AsFoundTest, ADriftIsFoundAgainstWhatWasInUseHoweverOftenTheRevisionIsMad
   const json rows = Ask("revisions")["revisions"];
   EXPECT_EQ(rows[1]["as_found"]["drifted"], json::array({"right"}));
   EXPECT_EQ(rows[3]["as_found"]["state"], "unchanged");
+}
+
+TEST_F(AsFoundTest, WhatTheRobotWasRolledBackToIsInUse) {
+  Visit(0, AtHome());
+  Visit(30, AtHome());
+  Decide(storage::Deciding::kRollBack, 1);
+  Visit(60, AtHome());
+  EXPECT_EQ(Found(3).in_use, 1);
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 3) << newest_.verdict.why;
+  EXPECT_EQ(Again(), 4);
+  EXPECT_EQ(Found(4).in_use, 1) << "though a revision with the session is in use since";
+}
+
+TEST_F(AsFoundTest, WhatNobodyApprovedIsNotInUse) {
+  Visit(0, AtHome());
+  Decide(storage::Deciding::kReject, 1);
+  Visit(30, AtHome());
+  EXPECT_EQ(Found(2).in_use, 0);
+  EXPECT_THAT(Found(2).text, HasSubstr("not tested. No calibration was in use before it."));
+  Decide(storage::Deciding::kApprove, 1);
+  EXPECT_EQ(Again(), 3);
+  EXPECT_EQ(Found(3).in_use, 1);
 }
 
 TEST_F(AsFoundTest, WhatWasRemountedIsNoDrift) {

@@ -158,7 +158,7 @@ TEST_F(MeasuredPartTest, ADocumentFromBeforeStillSaysWhy) {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(*store_, revision));
     return {};
   }));
-  const auto answer = Ask("lookup", R"({"robot":"r","a":"base","b":"lidar"})");
+  const auto answer = Ask("lookup", R"({"robot":"r","a":"base","b":"lidar","revision":2})");
   ASSERT_FALSE(answer);
   EXPECT_THAT(answer.error().what, HasSubstr("sensor lidar is not fully determined: its edges leave free translation along z"));
 }

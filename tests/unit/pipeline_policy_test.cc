@@ -59,6 +59,20 @@ TEST_F(PolicyTest, OneOfARobotJudgesItAnew) {
   EXPECT_EQ(StepAll(), 0) << "it was set before";
 }
 
+// Each of both is known to about 1 mm, to the reference and to the other.
+TEST_F(PolicyTest, AToleranceOfAPairBoundsHowWellItIsKnown) {
+  PushTriangle("r");
+  StepAll();
+  Set({{"robot", "r"}, {"text", "pairs:\n  b - c: {tolerance_mm: 0.1}\n"}});
+  StepAll();
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(revisions_.back().verdict.why, HasSubstr("b - c is known to "));
+  EXPECT_THAT(revisions_.back().verdict.why, HasSubstr("only (0.1 mm and 0.29 deg wanted)"));
+  Set({{"robot", "r"}, {"text", "pairs:\n  b - c: {tolerance_mm: 4}\n"}});
+  StepAll();
+  EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kPass) << revisions_.back().verdict.why;
+}
+
 TEST_F(PolicyTest, OneOfTheFleetComesBehindWhatIsNew) {
   for (const char* robot : {"a", "b"}) PushTriangle(robot);
   StepAll();
@@ -145,6 +159,46 @@ TEST_F(PolicyTest, ACrashBetweenOrderAndVerdictLosesNothing) {
   EXPECT_EQ(revisions_.back().verdict.level, VerdictLevel::kWarn);
 }
 
+TEST_F(PolicyTest, PixelsAreHeldAgainstTheNewestIntrinsicsWhateverTheNameOfTheSession) {
+  const auto header_of = [](double fx_px) {
+    SessionHeader header;
+    header.sensors.emplace_back().id = SensorId("left");
+    header.sensors.back().intrinsics = CameraIntrinsics{};
+    header.sensors.back().intrinsics->fx_px = fx_px;
+    return header;
+  };
+  const SessionId first(std::string(64, '1')), second(std::string(64, '2')), untold(std::string(64, '0'));
+  const std::map<SessionId, SessionHeader> headers = {
+      {first, header_of(500.0)}, {second, header_of(800.0)}, {untold, header_of(300.0)}};
+  for (const auto& [newest, fx_px] : {std::pair{first, 500.0}, std::pair{second, 800.0}}) {
+    Policy policy;
+    policy.all.tolerance_px_at_10_m = 1.0;
+    std::map<SessionId, Stamp> captured_at = {{first, Stamp{10}}, {second, Stamp{10}}};
+    captured_at[newest].ns = 20;
+    TakeFocals(*store_, {}, headers, captured_at, policy);
+    EXPECT_EQ(policy.focal_px, (std::map<SensorId, double>{{SensorId("left"), fx_px}}));
+  }
+}
+
+// It was taken when limits had no least value.
+TEST_F(PolicyTest, AStoredLimitThatIsTooSmallHoldsUpNobody) {
+  PushTriangle("r");
+  StepAll();
+  const Word word{clock_.now, "Ada", "a slip"};
+  ASSERT_TRUE(store_->Write([&]() -> Status {
+    RIGCAL_TRY(storage::AppendPolicy(*store_, {}, "max_age_days: 1e-15\ntolerance_mm: 1e-322\n", word));
+    return {};
+  }));
+  StepAll();
+  ASSERT_EQ(revisions_.size(), 2U);
+  const auto read = formats::ReadRevisionDocument(revisions_.back().document);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(revisions_.back().max_age_ns, 3'600'000'000'000);
+  EXPECT_DOUBLE_EQ(Ask("policy", json::object())["limits"]["tolerance_m"].get<double>(), 1e-6);
+  EXPECT_THAT(Order({{"text", "max_age_days: 1e-15\n"}}).error().what,
+              HasSubstr("the policy of the fleet line 1: max_age_days: must be from 0.0416667 (1 h) to 36500"));
+}
+
 TEST_F(PolicyTest, PixelsAreHeldAgainstGivenIntrinsics) {
   Policy policy;
   policy.all.tolerance_px_at_10_m = 1.0;
@@ -157,6 +211,42 @@ TEST_F(PolicyTest, PixelsAreHeldAgainstGivenIntrinsics) {
   Policy without;
   TakeFocals(*store_, {}, {{SessionId(std::string(64, '1')), header}}, {}, without);
   EXPECT_TRUE(without.focal_px.empty()) << "nobody asks";
+}
+
+TEST_F(PolicyTest, ASensorThatTheRobotDoesNotHaveIsRefused) {
+  std::vector<Edge> edges = {GivenEdge("r", "left", "right", 1.0), GivenEdge("r", "left", "top", 2.0)};
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  StepAll();
+  const auto refused = [&](const std::string& text) {
+    const auto done = Order({{"robot", "r"}, {"text", text}});
+    EXPECT_FALSE(done) << text;
+    return done ? "" : Sentence(done.error());
+  };
+  const std::string cure = " `rigcal show r` lists its sensors.";
+  EXPECT_EQ(refused("sensors: {rigth: {tolerance_mm: 2}}"),
+            "robot 'r' has no sensor 'rigth': did you mean right?" + cure);
+  EXPECT_EQ(refused("pairs: {left - lidar: {tolerance_mm: 2}}"), "robot 'r' has no sensor 'lidar'." + cure);
+  EXPECT_EQ(storage::LoadPolicyWatermark(*store_).value(), 0);
+  Set({{"robot", "r"}, {"text", "sensors: {right: {tolerance_mm: 2}}\npairs: {left - top: {tolerance_mm: 2}}\n"}});
+  Set({{"text", "sensors: {rigth: {tolerance_mm: 2}}\n"}});  // another robot of the fleet may have it
+}
+
+TEST_F(PolicyTest, ARigModelThatNoSessionNamesIsRefusedUnlessItIsNew) {
+  Manifest manifest;
+  manifest.header.robot = RobotId("m");
+  manifest.header.rig_model = "mars mapper";
+  manifest.header.reference = SensorId("left");
+  manifest.header.sensors.emplace_back().id = SensorId("left");
+  AddFile("left/01.png", "no picture", manifest);
+  Close(manifest);
+  const auto done = Order({{"model", "mars maper"}, {"text", "max_age_days: 20\n"}});
+  ASSERT_FALSE(done);
+  EXPECT_EQ(Sentence(done.error()),
+            "no session is of rig model \"mars maper\": did you mean mars mapper? Correct the name, or say with "
+            "--new-model that its sessions are to come.");
+  EXPECT_EQ(Set({{"model", "mars mapper"}, {"text", "max_age_days: 20\n"}})["set"]["version"], 1);
+  EXPECT_EQ(Set({{"model", "venus"}, {"new_model", true}, {"text", "max_age_days: 20\n"}})["set"]["subject"], "venus");
 }
 
 TEST_F(PolicyTest, WhatCannotBeSetSaysWhy) {

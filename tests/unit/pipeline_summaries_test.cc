@@ -8,6 +8,7 @@
 #include "server/pipeline/robot_summary.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/pipeline/summaries.h"
+#include "storage/decisions.h"
 #include "storage/attempts.h"
 #include "storage/fleet_facts.h"
 #include "storage/revisions.h"
@@ -172,6 +173,7 @@ TEST_F(SummariesTest, OneRobotThatCannotBeReadKeepsNoOtherWaiting) {
       revision.verdict.level = level;
       RIGCAL_TRY(storage::AppendRevision(*store_, revision));
     }
+    RIGCAL_TRY(storage::AppendDecision(*store_, revision.robot, 1, storage::Deciding::kApprove, {clock_.now, "Ada", ""}));
     return storage::AppendRobot(*store_, RobotId("well"), clock_.now);
   }));
   store_->database().exec("INSERT INTO session_estimate SELECT number, '" + std::string(kSessionEstimator) +

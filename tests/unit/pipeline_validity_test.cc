@@ -79,10 +79,10 @@ TEST_F(ValidityTest, OnlyWhatIsUsableGoesOutAndAFailedRevisionNamesIt) {
   EXPECT_EQ(Event("revision")["usable"], usable);
   EXPECT_EQ(Ask("show")["usable"], usable);
   EXPECT_EQ(Row()["usable"], usable);
-  const std::string keep = "Keep using revision 1 of " + DayText(revisions_[0].created_at) + " meanwhile.";
+  const std::string keep = "Robots that listen still have revision 1 of " + DayText(revisions_[0].created_at) + ": do not rely on it";
   for (const std::string& page : {Page("/"), Page("/robots/r/"), Report(2)})
     EXPECT_NE(page.find(keep), std::string::npos) << page;
-  EXPECT_EQ(Report(1).find("Keep using"), std::string::npos);
+  EXPECT_EQ(Report(1).find("Robots that listen"), std::string::npos);
 }
 
 TEST_F(ValidityTest, WhoBeginsToListenIsToldTheUsableOneAndTheNewestVerdict) {
@@ -149,7 +149,7 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
       << "for readers without a script";
   EXPECT_NE(report.find(" " + DayText(until) + ".</p>"), std::string::npos);
   EXPECT_NE(
-      report.find("<template data-from=\"" + ToIso(until) + "\"><p class=\"late\">Overdue since " + DayText(until)),
+      report.find("<template data-from=\"" + ToIso(until) + "\"><p class=\"late\">Not verified: do not rely on it, overdue since " + DayText(until)),
       std::string::npos);
   clock_.now = until;
   EXPECT_EQ(Row()["overdue"], false);
@@ -161,7 +161,7 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
   EXPECT_EQ(Ask("show")["valid_until"], ToIso(until));
   EXPECT_EQ(json::parse(*Answer(Context(), "lookup", R"({"robot":"r","a":"a","b":"b"})"))["overdue"], true);
   const std::string page = Page("/robots/r/"), fleet = Page("/");
-  EXPECT_LT(page.find("Overdue since " + DayText(until)), page.find("class=\"word\""));
+  EXPECT_LT(page.find("overdue since " + DayText(until)), page.find("class=\"word\""));
   EXPECT_NE(page.find("<section class=\"banner " + NameOf(revisions_[0].verdict.level) + " overdue\""),
             std::string::npos);
   EXPECT_EQ(page.find("OK to drive"), std::string::npos);
@@ -171,7 +171,7 @@ TEST_F(ValidityTest, OverdueIsSaidEverywhereOnceItsTimeHasCome) {
 
 TEST_F(ValidityTest, AGraphThatWasGivenUpIsToldWithItsCure) {
   PushGood();
-  std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001)};
+  std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001), GivenEdge("r", "b", "c", 1.0001)};
   AssignPushedIds(more);
   StoreEdges(more);
   const std::string work = storage::WorkOfRevision(RobotId("r"), storage::LoadEdgeWatermark(*store_, RobotId("r")).value(),
@@ -204,7 +204,7 @@ TEST_F(ValidityTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
   EXPECT_EQ(Row()["calculating"], false);
   EXPECT_EQ(Page("/robots/r/").find("is being calculated"), std::string::npos);
   clock_.now.ns += 40 * kDay_ns;
-  std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001)};
+  std::vector<Edge> more = {GivenEdge("r", "a", "b", 1.0001), GivenEdge("r", "b", "c", 1.0001)};
   AssignPushedIds(more);
   StoreEdges(more);
   const json row = Row(), show = Ask("show");
@@ -220,7 +220,7 @@ TEST_F(ValidityTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
   EXPECT_NE(page.find("A newer revision is being calculated. This page still tells revision 1."), std::string::npos);
   StepAll();
   EXPECT_EQ(Row()["calculating"], false);
-  EXPECT_EQ(Row()["edges"], 4);
+  EXPECT_EQ(Row()["edges"], 5);
   EXPECT_EQ(Row()["calibrated_at"], ToIso(clock_.now));
   // The history ends with the date that the page tells.
   EXPECT_NE(Page("/robots/r/trend.js").find("\"date\":\"" + ToIso(clock_.now).substr(0, 10) + "\""), std::string::npos);
@@ -229,8 +229,8 @@ TEST_F(ValidityTest, AllTellTheNewestRevisionAndThatAnotherIsOnItsWay) {
 TEST_F(ValidityTest, TheAgeOfPushedEdgesIsThatOfTheirMeasurement) {
   std::vector<Edge> edges = Closing("r", 2.0);
   const Stamp measured{clock_.now.ns - 100 * kDay_ns};
-  for (Edge& edge : edges) edge.measured_at = Stamp{measured.ns - kDay_ns};
-  edges[1].measured_at = measured;
+  for (Edge& edge : edges) edge.measured_at = measured;
+  edges[1].measured_at = Stamp{measured.ns - kDay_ns};  // the other two tie all three
   AssignPushedIds(edges);
   StoreEdges(edges);
   StepAll();
@@ -242,6 +242,11 @@ TEST_F(ValidityTest, TheAgeOfPushedEdgesIsThatOfTheirMeasurement) {
   edges[0].measured_at.reset();  // of now
   AssignPushedIds(edges);
   StoreEdges({edges[0]});
+  StepAll();
+  EXPECT_EQ(Row()["overdue"], true) << "two of three sensors";
+  edges[2].measured_at.reset();
+  AssignPushedIds(edges);
+  StoreEdges({edges[2]});
   StepAll();
   EXPECT_EQ(Row()["overdue"], false);
 }

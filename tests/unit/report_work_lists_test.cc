@@ -29,7 +29,8 @@ FleetCounts Counts() {
   fleet.robots = 20;
   fleet.overdue = 4;
   fleet.due_next_week = 1;
-  fleet.causes = {{"failed_pair cam_left lidar_top", 12}, {"board_size panel larger", 3}, {"short_session", 1}};
+  fleet.causes = {{"failed_pair cam_left lidar_top", 12}, {"board_size panel larger", 3}, {"short_session", 1},
+                  {"not_measured a b c d +2", 1}};
   return fleet;
 }
 
@@ -44,6 +45,7 @@ TEST(CauseWords, SayWhatIsTheMatter) {
   EXPECT_EQ(CauseText("board_size panel larger"), "board panel larger than given");
   EXPECT_EQ(CauseText("board_size a b smaller"), "board a, b smaller than given");
   EXPECT_EQ(CauseText("board_size larger"), "board larger than given") << "no board is known by name";
+  EXPECT_EQ(CauseText("board_size panel disputed"), "size of board panel disputed");
   EXPECT_EQ(CauseText("board_counts panel"), "corners of board panel counted wrong");
   EXPECT_EQ(CauseText("lens_model left fisheye_kb4"), "lens of left is fisheye_kb4");
   EXPECT_EQ(CauseText("exchanged left right"), "left, right exchanged");
@@ -63,6 +65,7 @@ TEST(WorkLists, CountRobotsByCauseAndOpenTheirLists) {
   EXPECT_THAT(page, HasSubstr("?cause=failed_pair+cam_left+lidar_top\">cam_left - lidar_top failed</a>: 12 robots"));
   EXPECT_THAT(page, HasSubstr("?cause=board_size+panel+larger\">board panel larger than given</a>: 3 robots"));
   EXPECT_THAT(page, HasSubstr("session of a few captures</a>: 1 robot<"));
+  EXPECT_THAT(page, HasSubstr("?cause=not_measured+a+b+c+d+%2B2\">")) << "a sign is no blank";
   EXPECT_LT(page.find("By cause"), page.find("<table")) << "above the list";
   EXPECT_THAT(page, Not(HasSubstr("others on fewer robots")));
 }
@@ -113,11 +116,14 @@ TEST(FleetCsv, HasARowForARobot) {
   EXPECT_EQ(FleetCsvRow(Late("late")),
             "late,warn,yes,2026-05-01T12:00:00Z,2026-01-31T12:00:00Z,,3,2,7,1,,,,"
             "board panel larger than given; cam_left - lidar_top failed,\"Pairs failed, \"\"many\"\".\","
-            "\"'=Measure, then push.\"\r\n");
+            "\"'=Measure, then push.\",unusable,,,\r\n");
   RobotSummary fresh;
   fresh.robot = RobotId("fresh");
   fresh.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
-  EXPECT_EQ(FleetCsvRow(fresh), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,\r\n");
+  EXPECT_EQ(FleetCsvRow(fresh), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,\r\n");
+  fresh.validity.usable = UsableRevision{5, {}};
+  fresh.runs = Runs{3, "It runs revision 3; revision 5 is in use: not applied yet."};
+  EXPECT_THAT(FleetCsvRow(fresh), HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.\r\n"));
   const auto commas = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
   EXPECT_EQ(commas(FleetCsvRow(fresh)), commas(heading));
 }

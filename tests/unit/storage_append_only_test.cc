@@ -4,12 +4,15 @@
 #include "server/formats/documents.h"
 #include "storage/as_found.h"
 #include "storage/attempts.h"
+#include "storage/audit.h"
+#include "storage/decisions.h"
 #include "storage/fleet_facts.h"
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"
 #include "storage/policies.h"
 #include "storage/retired.h"
 #include "storage/revision_poses.h"
+#include "storage/robot_runs.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
 
@@ -74,6 +77,8 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       RIGCAL_TRY(AppendPolicy(store_, {}, "tolerance_mm: 4", {{6}, "Ada", "new mounts"}));
+      RIGCAL_TRY(AppendDecision(store_, kRobot, number, Deciding::kApprove, {{6}, "Ada", "checked"}));
+      RIGCAL_TRY(AppendRuns(store_, {kRobot, revision.digest, {7}, "rigcal agent"}, {8}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }

@@ -146,6 +146,10 @@ TEST_F(PoliciesTest, OneOfARigModelIsForRobotsThatNamedIt) {
   CloseSessionOf(RobotId("a"), "stereo-rig", 2, 30);
   CloseSessionOf(RobotId("a"), "older-rig", 3, 5);  // late
   CloseSessionOf(RobotId("b"), "other", 4, 10);
+  EXPECT_THAT(LoadRigModels(store_, 9).value(), ElementsAre("old-rig", "older-rig", "other", "stereo-rig"));
+  EXPECT_THAT(LoadRigModels(store_, 2).value(), ElementsAre("old-rig", "older-rig"));
+  EXPECT_TRUE(HasRigModel(store_, "older-rig").value());
+  EXPECT_FALSE(HasRigModel(store_, "old").value());
   EXPECT_EQ(LoadRigModel(store_, RobotId("a")).value(), "stereo-rig");
   for (const char* robot : {"a", "b"}) Judge(RobotId(robot));
   Set(kModel, "tolerance_mm: 4\n");

@@ -6,6 +6,8 @@
 #include <map>
 
 #include "storage/as_found.h"
+#include "storage/audit.h"
+#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/fleet_list.h"
@@ -16,6 +18,7 @@
 #include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
+#include "storage/robot_runs.h"
 #include "storage/robot_summary.h"
 #include "storage/sessions.h"
 #include "storage/standing.h"
@@ -33,6 +36,7 @@ class QueryPlanTest : public StoreTest {
       ASSERT_TRUE(AppendRobot(store_, robot, {1}));
       for (int i = 0; i < 3; ++i) ASSERT_TRUE(AppendEdge(store_, MakeEdge(i, robot), {1}));
       ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, robot).value(), robot)));
+      ASSERT_TRUE(AppendDecision(store_, robot, 1, Deciding::kApprove, {{1}, "policy", ""}));
     }
     session_ = session;
     ASSERT_TRUE(RetireSensor(store_, kRobot, SensorId("s1"), {{2}, "Ada", "taken off"}));
@@ -100,8 +104,6 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_TRUE(CountUnpublished(store_, kRobot));
   EXPECT_TRUE(LoadRevision(store_, kRobot, 0));
   EXPECT_TRUE(LoadRevisionSummary(store_, kRobot, 0));
-  EXPECT_TRUE(LoadUsableRevision(store_, kRobot, 0));
-  EXPECT_EQ(LoadNewestGood(store_, kRobot, 1).value(), 1);
   EXPECT_EQ(CountEdges(store_, kRobot, LoadEdgeWatermark(store_, kRobot).value()).value(), 3);
   EXPECT_TRUE(LoadRevisionPoses(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadEdgeWatermark(store_, kRobot));
@@ -141,9 +143,30 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_TRUE(LoadAsFoundSummaries(store_, kRobot, {1, 2}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   EXPECT_TRUE(LoadRigModel(store_, kRobot));
+  EXPECT_TRUE(HasRigModel(store_, "nobody's"));
+  EXPECT_TRUE(LoadRigModels(store_, 9));
   EXPECT_TRUE(LoadPolicyWatermark(store_));
   for (const PolicyPlace& place : {PolicyPlace{}, PolicyPlace{PolicyScope::kRobot, kRobot.str()}})
     EXPECT_TRUE(LoadPolicy(store_, place));
+  for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
+}
+
+// Nor does what was decided, by whom, and what the robot says that it runs.
+TEST_F(QueryPlanTest, TheLifeOfACalibrationDoesNotScan) {
+  (void)Scanned();
+  EXPECT_TRUE(LoadUsableRevision(store_, kRobot).value());
+  EXPECT_FALSE(LoadUsableRevision(store_, kRobot, 0).value());
+  EXPECT_EQ(LoadNewestApproved(store_, kRobot).value(), 1);
+  EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 1);
+  EXPECT_EQ(LoadDecision(store_, kRobot, 1).value()->how, "approved");
+  EXPECT_EQ(LoadRevisionState(store_, LoadRevisionSummary(store_, kRobot, 1)->value()).value(), RevisionState::kApproved);
+  EXPECT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kReject, {{3}, "Ada", "bent"}).value());
+  EXPECT_FALSE(LoadAudit(store_, kRobot, 0, 9)->empty());
+  EXPECT_EQ(LoadAudit(store_, RobotId(), 2, 9)->size(), 1U);  // a page of all robots'
+  EXPECT_TRUE(AppendAudit(store_, {3}, "Ada", "looked"));
+  EXPECT_TRUE(AppendRuns(store_, {kRobot, Digest(std::string(64, 'a')), {1}, "agent"}, {2}).value());
+  EXPECT_EQ(LoadRuns(store_, kRobot).value()->revision, 0);
+  EXPECT_FALSE(WasApproved(store_, kRobot, 9).value());
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 

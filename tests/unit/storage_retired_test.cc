@@ -5,6 +5,7 @@
 #include "server/base/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/merged_edges.h"
+#include "storage/decisions.h"
 #include "storage/retired.h"
 #include "storage/standing.h"
 #include "tests/unit/storage_fixture.h"
@@ -178,7 +179,8 @@ TEST_F(RetiredTest, WhatCountedSomethingWrongIsUsedNoMoreUntilThatIsRestored) {
   Revision revision = MakeRevision(LoadEdgeWatermark(store_, kRobot).value());
   revision.standing_watermark = Watermark();
   ASSERT_TRUE(AppendRevision(store_, revision));
-  const auto usable = [&] { return LoadUsableRevision(store_, kRobot, 0).value().has_value(); };
+  ASSERT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kApprove, {{4}, "Ada", "checked"}));
+  const auto usable = [&] { return LoadUsableRevision(store_, kRobot).value().has_value(); };
   EXPECT_TRUE(usable());
   ASSERT_TRUE(RetireSession(store_, edge.session, {{5}, "Ada", "blurred"}));
   EXPECT_FALSE(usable());

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "server/calib/joint/explained.h"
+#include "server/calib/joint/slant_bias.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -69,7 +69,10 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
 
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
-  const PoseCovariance covariance = CovarianceOfPoses(explained.refined, CovarianceByFields(explained.misfits));
+  Eigen::MatrixXd beside = CovarianceByFields(explained.misfits);
+  if (const Eigen::MatrixXd by_slants = CovarianceBySlants(explained); by_slants.size() > 0)
+    beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_slants) : by_slants;
+  const PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
   std::vector<int> sensors;
   for (const auto& [id, s] : LastOfEach(problem)) {
     estimate.poses.push_back({id, explained.refined.state.T_ref_sensor[static_cast<std::size_t>(s)],
@@ -81,6 +84,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
+  estimate.slants = SlantsTold(problem, explained.refined);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
@@ -118,7 +122,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   }
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(std::move(*first), estimate);
+  const Explained last = ExplainAll(WithSlants(std::move(*first)), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   return estimate;

@@ -49,8 +49,10 @@ void AddSensorLike(int sensor, const Vector6d& step, SessionStart& start) {
   const auto old = static_cast<std::size_t>(sensor);
   start.problem.sensors.push_back(start.problem.sensors[old]);
   start.problem.range_bias_sigma_m.push_back(start.problem.range_bias_sigma_m[old]);
+  start.problem.slant_bias_sigma_m.push_back(start.problem.slant_bias_sigma_m[old]);
   start.state.T_ref_sensor.push_back((start.state.T_ref_sensor[old] * Se3::Exp(step)).Normalized());
   start.state.range_bias_m.push_back(start.state.range_bias_m[old]);
+  start.state.slant_bias_m.push_back(start.state.slant_bias_m[old]);
   start.noise.push_back(start.noise[old]);
   // What was known of it from all captures together holds for neither of its poses.
   std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {

@@ -135,6 +135,9 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
   for (std::size_t s = 0; s < problem.sensors.size(); ++s)
     if (layout.bias[s] != kNone)
       AddPull(layout.bias[s], state.range_bias_m[s], problem.range_bias_sigma_m[s], linearized.given, linearized.cost);
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
+    if (layout.slant[s] != kNone)
+      AddPull(layout.slant[s], state.slant_bias_m[s], problem.slant_bias_sigma_m[s], linearized.given, linearized.cost);
 }
 
 // Of the own unknowns of a look, from those of the session and of its place.

@@ -63,17 +63,21 @@ Eigen::Matrix<double, 2, Eigen::Dynamic> RefinedColumns(const Lens& lens, const 
   return columns;
 }
 
-// Moments as a quadratic form of g = (n, b n, -d) for the board's plane (n, d) in the lidar, n towards the sensor.
+// Moments as a quadratic form of g = (n, b n, -d) for the board's plane (n, d) in the lidar, n towards the sensor. Of a
+// range that is 2 s (1 + n . u) too short at the ray u, 2 s (n . u + (n . u)^2) more of distance, which is straight
+// about the mean ray u_0 to the plate: (n . u)^2 ~ 2 m (n . u) - m^2 with m = n . u_0.
 struct Plane {
   Vector7d g = Vector7d::Zero();
-  Eigen::Matrix<double, 7, 7> by = Eigen::Matrix<double, 7, 7>::Zero();  // of [board pose, bias]
+  Eigen::Matrix<double, 7, 8> by = Eigen::Matrix<double, 7, 8>::Zero();  // of [board pose, bias, slant bias]
 };
 
-Plane PlaneOf(const Se3& T_lidar_board, double bias_m) {
+Plane PlaneOf(const Se3& T_lidar_board, double range_bias_m, double slant_bias_m, const Eigen::Vector3d& mean_ray) {
   Plane plane;
   const Eigen::Matrix3d R = T_lidar_board.R();
   const Eigen::Vector3d n = -R.col(2), t = T_lidar_board.p_m;
-  plane.g << n, bias_m * n, -n.dot(t);
+  const double m = n.dot(mean_ray), by_ray = 2 + 4 * m;
+  const double bias_m = range_bias_m + by_ray * slant_bias_m;
+  plane.g << n, bias_m * n, -n.dot(t) - 2 * m * m * slant_bias_m;
   // R' = R (I + [w]x): n' = n - R (w x e_z) = n + R [e_z]x w;  t' = t + R v.
   const Eigen::Matrix3d dn = R * Hat(Eigen::Vector3d::UnitZ());
   plane.by.block<3, 3>(0, 3) = dn;
@@ -81,6 +85,7 @@ Plane PlaneOf(const Se3& T_lidar_board, double bias_m) {
   plane.by.block<1, 3>(6, 0) = -n.transpose() * R;
   plane.by.block<1, 3>(6, 3) = -t.transpose() * dn;
   plane.by.block<3, 1>(3, 6) = n;
+  plane.by.col(7) << Eigen::Vector3d::Zero(), by_ray * n, -2 * m * m;
   return plane;
 }
 
@@ -205,10 +210,15 @@ std::vector<Eigen::Vector2d> CornerResiduals(const SessionProblem& problem, cons
 Observation Observe(const SessionProblem&, const Layout& layout, const SessionState& state, const PlateSeen& seen,
                     const SensorNoise& noise, double weight) {
   const auto lidar = static_cast<std::size_t>(seen.sensor);
-  const bool biased = layout.bias[lidar] != kNone;
-  const Eigen::Index own = biased ? 7 : 6;
-  const Plane plane = PlaneOf(T_sensor_board(state, seen), state.range_bias_m[lidar]);
-  const Eigen::MatrixXd by = plane.by.leftCols(own);
+  const bool biased = layout.bias[lidar] != kNone, slanted = layout.slant[lidar] != kNone;
+  const Eigen::Index own = 6 + (biased ? 1 : 0) + (slanted ? 1 : 0);
+  const Eigen::Vector3d mean_ray = seen.moments.sum.block<3, 1>(3, 6).normalized();
+  const Plane plane =
+      PlaneOf(T_sensor_board(state, seen), state.range_bias_m[lidar], state.slant_bias_m[lidar], mean_ray);
+  Eigen::MatrixXd by = plane.by.leftCols<6>();
+  by.conservativeResize(Eigen::NoChange, own);
+  if (biased) by.col(6) = plane.by.col(6);
+  if (slanted) by.col(own - 1) = plane.by.col(7);
   const double scale = 1 / (noise.sigma * noise.sigma);
   Observation look;
   look.A = weight * scale * by.transpose() * seen.moments.sum * by;
@@ -218,6 +228,7 @@ Observation Observe(const SessionProblem&, const Layout& layout, const SessionSt
   look.numbers = 3.0;
   AddPoseColumns(layout, state, seen, own, look);
   if (biased) AddOwnColumn(layout.bias[lidar], own, 6, 1, look);
+  if (slanted) AddOwnColumn(layout.slant[lidar], own, own - 1, 1, look);
   return look;
 }
 

@@ -63,6 +63,7 @@ struct SessionProblem {
   std::vector<std::vector<Eigen::Vector3d>> target_points;  // TargetPoints of each
   std::vector<Lens> cameras;
   std::vector<double> range_bias_sigma_m;  // per sensor; 0: no bias is estimated
+  std::vector<double> slant_bias_sigma_m;  // per sensor; likewise
   std::vector<CornersSeen> corners;
   std::vector<PlateSeen> plates;
   std::vector<PoseTold> poses;
@@ -86,6 +87,7 @@ struct SessionState {
   std::vector<Se3> T_world_ref;              // per place
   std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
   std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
+  std::vector<double> slant_bias_m;          // per sensor: and by this more where rays meet a plate at 60 degrees
   std::vector<Eigen::VectorXd>
       field_px;                   // per camera, or none: coefficients of what shifts its pictures beyond the model
   std::vector<double> field_dof;  // per camera, or none: as many of its numbers have the coefficients taken up
@@ -105,6 +107,7 @@ struct Layout {
   std::vector<int> board;  // per board that stands still, six
   std::vector<int> scale;  // per target, one
   std::vector<int> bias;   // per sensor, one
+  std::vector<int> slant;  // per sensor, one
   int size = 0;            // without the reference's
 };
 // In the order of the members above; held: the reference, the held board, lenses without refined numbers, and scales

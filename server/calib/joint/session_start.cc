@@ -77,6 +77,8 @@ class Starter {
                                                                              : 0.0);
     state().T_ref_sensor.push_back(pose->second);
     state().range_bias_m.push_back(0.0);
+    problem().slant_bias_sigma_m.push_back(0.0);
+    state().slant_bias_m.push_back(0.0);
     start_.noise.push_back(noise);
   }
 

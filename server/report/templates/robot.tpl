@@ -10,6 +10,8 @@
 </header>
 {{>BANNER}}
 {{#NEWER}}<p class="working" role="status">{{TEXT:x-typed}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
+{{#APPROVAL}}<p class="working" dir="auto">{{TEXT:x-typed}}</p>{{/APPROVAL}}
+{{#RUNS}}<p class="working" dir="auto">{{TEXT}}</p>{{/RUNS}}
 {{#NEWEST}}<p class="ways"><a class="button" href="revisions/{{NUMBER}}/">Report of revision {{NUMBER}}</a> <a class="button" href="revisions/{{NUMBER}}/certificate.html">Certificate to print</a>{{#SINCE}} <a class="button" href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">What moved since revision {{BEFORE}}</a>{{/SINCE}}</p>{{/NEWEST}}
 {{#OPEN}}
 <p class="working"><a href="sessions/{{ID}}/">Session {{SHORT}}</a> {{STATE}}: {{DONE}} of {{ALL}} {{UNIT}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress of session {{SHORT}}"></progress></p>
@@ -23,7 +25,7 @@
 <thead><tr><th scope="col">Revision</th><th scope="col">Verdict</th><th scope="col">Solved</th><th scope="col">What changed</th></tr></thead>
 <tbody>
 {{#REVISION}}
-<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span> <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text whole">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
+<tr><th scope="row"><a href="revisions/{{NUMBER}}/">revision {{NUMBER}}</a></th><td class="text"><span class="badge {{LEVEL}}">{{WORD}}</span>{{#STATE}} <span class="badge unknown">{{WORD}}</span>{{/STATE}} <span class="why" dir="auto">{{WHY}}</span></td><td class="text">{{TIME}}<br><span class="soft">{{AGE}}</span></td><td class="text whole">{{#CHANGED}}<a href="compare?a={{BEFORE}}&amp;b={{NUMBER}}">against revision {{BEFORE}}</a>{{/CHANGED}}{{#FIRST}}<span class="soft">the first</span>{{/FIRST}}</td></tr>
 {{/REVISION}}
 </tbody>
 </table>

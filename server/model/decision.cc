@@ -1,0 +1,80 @@
+#include "server/model/decision.h"
+
+#include <array>
+#include <utility>
+
+#include "server/model/validity.h"
+
+namespace rigcal {
+namespace {
+
+constexpr std::array<std::pair<RevisionState, const char*>, 6> kStateNames = {
+    {{RevisionState::kUnusable, "unusable"},
+     {RevisionState::kCandidate, "candidate"},
+     {RevisionState::kApproved, "approved"},
+     {RevisionState::kSuperseded, "superseded"},
+     {RevisionState::kRolledBack, "rolled_back"},
+     {RevisionState::kRejected, "rejected"}}};
+
+// "approved by policy, 3 Nov 2026"
+std::string DecidedText(const Decision& decision) {
+  const std::string how = decision.how == "rolled_back" ? "rolled back to" : decision.how;
+  return how + " by " + decision.word.who + ", " + DayText(decision.word.at);
+}
+
+std::string StateText(const RobotId& robot, int revision, const Approval& approval) {
+  const std::string reason =
+      approval.decision && !approval.decision->word.reason.empty() ? ": " + approval.decision->word.reason : "";
+  switch (approval.state) {
+    case RevisionState::kCandidate:
+      return "this one is a candidate: `rigcal approve " + robot.str() + " " + std::to_string(revision) +
+             " --reason TEXT`";
+    case RevisionState::kSuperseded:
+      return "this one was superseded";
+    case RevisionState::kRolledBack:
+      return "this one was rolled back";
+    case RevisionState::kRejected:
+      return "this one was " + (approval.decision ? DecidedText(*approval.decision) : "rejected") + reason;
+    case RevisionState::kApproved:
+    case RevisionState::kUnusable:
+      break;
+  }
+  return "this one was approved, but what it was made of was retired or moved since";
+}
+
+}  // namespace
+
+std::string NameOf(RevisionState state) {
+  for (const auto& [one, name] : kStateNames)
+    if (one == state) return name;
+  return kStateNames.front().second;
+}
+
+std::string WordFor(RevisionState state) {
+  if (state == RevisionState::kUnusable) return "-";
+  if (state == RevisionState::kApproved) return "in use";
+  return state == RevisionState::kRolledBack ? "rolled back" : NameOf(state);
+}
+
+RevisionState RevisionStateOf(const std::string& name) {
+  for (const auto& [state, one] : kStateNames)
+    if (one == name) return state;
+  return RevisionState::kUnusable;
+}
+
+bool Approves(const Policy& policy, const Verdict& verdict) {
+  if (policy.approval.value_or(ApprovalBy::kAutomatic) == ApprovalBy::kPerson) return false;
+  if (verdict.level == VerdictLevel::kWarn) return policy.approve_warnings.value_or(true);
+  return verdict.level == VerdictLevel::kPass;
+}
+
+std::string ApprovalText(const RobotId& robot, int revision, const Approval& approval) {
+  if (approval.state == RevisionState::kUnusable) return "";
+  if (approval.in_use && approval.in_use->revision == revision) return "";
+  const std::string used = approval.in_use ? "In use: revision " + std::to_string(approval.in_use->revision) + " (" +
+                                                 DecidedText(*approval.in_use) + ")"
+                                           : "No calibration of " + robot.str() + " is in use";
+  return used + "; " + StateText(robot, revision, approval);
+}
+
+}  // namespace rigcal

@@ -1,0 +1,38 @@
+// What a robot says that it runs, beside what it is to run.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/base/ids.h"
+#include "server/base/stamp.h"
+#include "server/model/decision.h"
+#include "server/model/validity.h"
+
+namespace rigcal {
+
+// As it was told over DDS. `who`: the program that applied it, one printable line of at most 64 bytes.
+struct RunsReport {
+  RobotId robot;
+  Digest digest;     // of the revision's document
+  Stamp applied_at;  // by the robot's clock
+  std::string who;
+};
+
+struct RobotRuns {
+  RunsReport report;
+  int revision = 0;  // that has this digest; 0: none of this robot
+  Stamp told_at;
+};
+
+// At a glance.
+struct Runs {
+  int revision = 0;     // 0: none that is known
+  std::string trouble;  // a sentence; empty: it runs what is in use
+  friend bool operator==(const Runs&, const Runs&) = default;
+};
+
+// "It runs revision 3; revision 5 is in use: not applied yet." `was_approved`: that it was ever allowed to.
+[[nodiscard]] Runs RunsOf(const RobotRuns& runs, bool was_approved, const std::optional<UsableRevision>& in_use);
+
+}  // namespace rigcal

@@ -1,0 +1,126 @@
+#include "server/pipeline/decide.h"
+
+#include "server/formats/answers.h"
+#include "server/model/validity.h"
+#include "server/pipeline/asked.h"
+#include "server/pipeline/policies.h"
+#include "server/pipeline/robot_rows.h"
+#include "server/pipeline/subject.h"
+#include "server/pipeline/validity.h"
+#include "storage/decisions.h"
+#include "storage/revisions.h"
+#include "storage/robot_runs.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using formats::Parameters;
+using storage::Deciding;
+
+Deciding DecidingOf(const std::string& verb) {
+  if (verb == "approve") return Deciding::kApprove;
+  return verb == "reject" ? Deciding::kReject : Deciding::kRollBack;
+}
+
+Result<Revision> RevisionAsked(storage::Store& store, const RobotId& robot, Deciding deciding,
+                               const Parameters& parameters) {
+  RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
+  if (number < 1 && (deciding == Deciding::kRollBack || parameters.Text("revision")))
+    return Fail(ErrorCode::kInvalidInput, "the parameter 'revision' is missing, or no number of a revision",
+                "Name the revision: `rigcal history " + robot.str() + "` lists them.");
+  return LoadRevisionSummaryOf(store, robot, number);
+}
+
+// Its poses would be of another rig, or of what somebody took out.
+Status CheckIsUsed(storage::Store& store, const Revision& revision) {
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, revision.robot));
+  if (usable && usable->number == revision.number) return {};
+  return Fail(ErrorCode::kConflict,
+              "revision " + std::to_string(revision.number) + " of robot " + revision.robot.str() +
+                  " cannot be used: what it was made of was retired, or a sensor was moved, since",
+              "Capture again, or name another revision: `rigcal history " + revision.robot.str() + "` lists them.");
+}
+
+// By which the robot uses what it uses.
+Result<std::optional<Decision>> LoadUsingDecision(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, robot));
+  if (!usable) return std::nullopt;
+  RIGCAL_ASSIGN(const auto in_use, storage::LoadInUse(store, robot));
+  if (in_use && in_use->revision == usable->number) return in_use;
+  return storage::LoadDecision(store, robot, usable->number);
+}
+
+}  // namespace
+
+Status ApproveByPolicy(storage::Store& store, const Revision& revision, Stamp now) {
+  if (!IsUsable(revision.verdict)) return {};
+  RIGCAL_ASSIGN(const PolicyInForce in_force, LoadPolicyInForce(store, {PolicyScope::kRobot, revision.robot.str()}));
+  if (!Approves(in_force.policy, revision.verdict)) return {};
+  const Word word{now, kPolicyWho, "the verdict is " + NameOf(revision.verdict.level)};
+  RIGCAL_TRY(storage::AppendDecision(store, revision.robot, revision.number, Deciding::kApprove, word));
+  return {};
+}
+
+Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb,
+                         const Parameters& parameters) {
+  const Deciding deciding = DecidingOf(verb);
+  Word word{clock.Now(), "", ""};
+  RIGCAL_ASSIGN(word.who, RequiredText(parameters, "who", "Say who decides."));
+  RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why, for those who come after."));
+  OrderDone done;
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_ASSIGN(done.robot, KnownRobot(store, parameters));
+    RIGCAL_ASSIGN(const Revision revision, RevisionAsked(store, done.robot, deciding, parameters));
+    RIGCAL_TRY(storage::AppendDecision(store, done.robot, revision.number, deciding, word));
+    if (deciding != Deciding::kReject) RIGCAL_TRY(CheckIsUsed(store, revision));
+    RIGCAL_ASSIGN(const Approval approval, LoadApproval(store, revision));
+    done.decided = revision.number;
+    done.document = formats::WriteDecided(revision, approval);
+    return {};
+  }));
+  return done;
+}
+
+Result<Approval> LoadApproval(storage::Store& store, const Revision& revision) {
+  RIGCAL_ASSIGN(const auto approvals, LoadApprovals(store, revision.robot, {revision}));
+  return approvals.front();
+}
+
+Result<std::vector<Approval>> LoadApprovals(storage::Store& store, const RobotId& robot,
+                                            const std::vector<Revision>& revisions) {
+  std::vector<Approval> approvals;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(const auto in_use, LoadUsingDecision(store, robot));
+    for (const Revision& revision : revisions) {
+      RIGCAL_ASSIGN(const RevisionState state, storage::LoadRevisionState(store, revision));
+      RIGCAL_ASSIGN(const auto decision, storage::LoadDecision(store, robot, revision.number));
+      approvals.push_back({state, decision, in_use});
+    }
+    return {};
+  }));
+  return approvals;
+}
+
+Result<std::optional<Runs>> LoadWhatRuns(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(auto runs, storage::LoadRuns(store, robot));
+  if (!runs) return std::nullopt;
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, robot));
+  if (usable) {
+    RIGCAL_ASSIGN(const Revision in_use, LoadRevisionSummaryOf(store, robot, usable->number));
+    if (in_use.digest == runs->report.digest) runs->revision = usable->number;  // of several with the same document
+  }
+  RIGCAL_ASSIGN(const bool was_approved, storage::WasApproved(store, robot, runs->revision));
+  return RunsOf(*runs, was_approved, usable);
+}
+
+Result<Revision> LoadRevisionInUse(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, robot));
+  if (usable) return LoadRevisionSummaryOf(store, robot, usable->number);
+  RIGCAL_ASSIGN(const Revision newest, LoadRevisionSummaryOf(store, robot, 0));
+  if (!IsUsable(newest.verdict)) return newest;
+  RIGCAL_ASSIGN(const Approval approval, LoadApproval(store, newest));
+  return Fail(ErrorCode::kConflict, ApprovalText(robot, newest.number, approval),
+              "To see it all the same, ask for it by its number: --revision " + std::to_string(newest.number) + ".");
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,55 @@
+// Who approves what, and how it is told where a revision is in its life.
+#include <gtest/gtest.h>
+
+#include "server/model/decision.h"
+
+namespace rigcal {
+namespace {
+
+constexpr Stamp kNoon{1'793'707'200'000'000'000};  // 3 Nov 2026
+
+Verdict Of(VerdictLevel level) { return {level, "", ""}; }
+
+TEST(Decision, ThePolicyApprovesWhatPassesAndWarnsUnlessItSaysOtherwise) {
+  Policy policy;
+  EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kPass)));
+  EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kWarn)));
+  policy.approve_warnings = false;
+  EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kPass)));
+  EXPECT_FALSE(Approves(policy, Of(VerdictLevel::kWarn)));
+  policy.approval = ApprovalBy::kPerson;
+  policy.approve_warnings = true;
+  for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn}) EXPECT_FALSE(Approves(policy, Of(level)));
+  policy.approval = ApprovalBy::kAutomatic;
+  for (const VerdictLevel level : {VerdictLevel::kFail, VerdictLevel::kUnknown})
+    EXPECT_FALSE(Approves(policy, Of(level)));
+}
+
+TEST(Decision, StatesHaveNames) {
+  for (const RevisionState state : {RevisionState::kUnusable, RevisionState::kCandidate, RevisionState::kApproved,
+                                    RevisionState::kSuperseded, RevisionState::kRolledBack, RevisionState::kRejected})
+    EXPECT_EQ(RevisionStateOf(NameOf(state)), state);
+  EXPECT_EQ(RevisionStateOf("of a newer version"), RevisionState::kUnusable);
+  EXPECT_EQ(WordFor(RevisionState::kApproved), "in use");
+}
+
+TEST(Decision, WhatIsInUseIsToldWhereItIsAnother) {
+  const RobotId rig("rig");
+  const Decision third{7, 3, "approved", {kNoon, "policy", "the verdict is pass"}};
+  EXPECT_EQ(ApprovalText(rig, 3, {RevisionState::kApproved, third, third}), "");
+  EXPECT_EQ(ApprovalText(rig, 5, {RevisionState::kUnusable, {}, third}), "") << "the verdict says what to keep";
+  EXPECT_EQ(ApprovalText(rig, 4, {RevisionState::kCandidate, {}, third}),
+            "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 "
+            "--reason TEXT`");
+  EXPECT_EQ(ApprovalText(rig, 1, {RevisionState::kCandidate, {}, {}}),
+            "No calibration of rig is in use; this one is a candidate: `rigcal approve rig 1 --reason TEXT`");
+  const Decision back{9, 2, "rolled_back", {kNoon, "Ada", "bent"}};
+  EXPECT_EQ(ApprovalText(rig, 3, {RevisionState::kRolledBack, third, back}),
+            "In use: revision 2 (rolled back to by Ada, 3 Nov 2026); this one was rolled back");
+  const Decision no{9, 4, "rejected", {kNoon, "Ada", "bent"}};
+  EXPECT_EQ(ApprovalText(rig, 4, {RevisionState::kRejected, no, third}),
+            "In use: revision 3 (approved by policy, 3 Nov 2026); this one was rejected by Ada, 3 Nov 2026: bent");
+}
+
+}  // namespace
+}  // namespace rigcal
