@@ -55,6 +55,7 @@ class AsFoundTest : public PipelineTest {
       sensor.id = camera;
       sensor.sees = board.id;
       manifest.header.sensors.push_back(sensor);
+      AddFile(camera.str() + "/01.png", camera.str() + " on day " + std::to_string(day), manifest);
     }
     return manifest;
   }
