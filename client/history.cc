@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "client/page_options.h"
@@ -15,15 +16,31 @@ struct HistoryOptions {
   int limit = 20, before = 0;
 };
 
+// "right drifted", "unchanged", "not measured"; nothing of a revision without a session.
+std::string FoundText(const Document& as_found) {
+  std::string state = as_found["state"].Text(), names;
+  std::replace(state.begin(), state.end(), '_', ' ');
+  for (const Document& sensor : as_found["drifted"].Items()) names += (names.empty() ? "" : ", ") + sensor.Text();
+  return names.empty() ? state : names + " " + state;
+}
+
 void PrintHistory(const Document& document, const HistoryOptions& options, std::ostream& out) {
   const std::vector<Document> revisions = document["revisions"].Items();
   const char* none = options.before > 0 ? kNoOlderOnes : "There is no revision yet. Send a session with `rigcal push DIR`.\n";
   if (revisions.empty()) out << none;
   if (revisions.empty()) return;
-  Table table({{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"STATE"}, {"WHY"}});
-  for (const Document& revision : revisions)
-    table.Add({CountOf(revision["revision"]), revision["created_at"].Text("-"), revision["verdict"]["level"].Text("unknown"),
-               WordFor(RevisionStateOf(revision["state"].Text())), revision["verdict"]["why"].Text()});
+  const auto is_found = [](const Document& revision) { return !FoundText(revision["as_found"]).empty(); };
+  const bool found = std::any_of(revisions.begin(), revisions.end(), is_found);
+  std::vector<Column> columns = {{"REVISION", Align::kRight}, {"SOLVED"}, {"VERDICT"}, {"STATE"}, {"WHY"}};
+  if (found) columns.insert(columns.end() - 1, {"AS FOUND"});
+  Table table(columns);
+  for (const Document& revision : revisions) {
+    std::vector<std::string> cells = {CountOf(revision["revision"]), revision["created_at"].Text("-"),
+                                      revision["verdict"]["level"].Text("unknown"),
+                                      WordFor(RevisionStateOf(revision["state"].Text())), revision["verdict"]["why"].Text()};
+    if (found) cells.insert(cells.end() - 1, FoundText(revision["as_found"]));
+    table.Add(cells);
+  }
   table.Print(out);
   PrintNextPage(document, "rigcal history " + options.robot + " --limit " + std::to_string(options.limit), out);
 }
@@ -38,7 +55,7 @@ ExitCode RunHistory(const Context& context, const HistoryOptions& options) {
 }  // namespace
 
 void AddHistory(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("history", "List a robot's revisions with their verdicts, the newest first");
+  CLI::App* verb = app.add_subcommand("history", "List a robot's revisions with their verdicts and what their newest session found, the newest first");
   auto options = std::make_shared<HistoryOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--limit", options->limit, "So many revisions (default 20)")

@@ -45,6 +45,12 @@ void PrintPoses(const Document& revision, std::ostream& out) {
     out << RetiredSensorText(revision["robot"].Text("?"), gone) << '\n';
 }
 
+// Of a server that tells it.
+void PrintAsFound(const Document& as_found, std::ostream& out) {
+  const std::string text = as_found["text"].Text();
+  if (!text.empty()) out << Plain(text) << '\n';
+}
+
 void PrintShow(const Document& document, bool whole, std::ostream& out) {
   const Document revision = document["document"];
   out << Plain(document["robot"].Text("?")) << ", revision " << CountOf(document["revision"]) << ", calibrated "
@@ -53,6 +59,7 @@ void PrintShow(const Document& document, bool whole, std::ostream& out) {
   PrintVerdict(revision["verdict"], document, out);
   PrintApproval(document, out);
   PrintCauses(revision["causes"], out);
+  PrintAsFound(document["as_found"], out);
   PrintGlobalError(revision, out);
   PrintDiagnoses(revision["diagnoses"], out);
   PrintPoses(revision, out);
@@ -86,7 +93,7 @@ ExitCode RunShow(const Context& context, const ShowOptions& options) {
 }  // namespace
 
 void AddShow(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, causes, poses with sigma, edges, loops");
+  CLI::App* verb = app.add_subcommand("show", "Show a robot's calibration: verdict, causes, what was found, poses with sigma, edges, loops");
   auto options = std::make_shared<ShowOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")

@@ -1,6 +1,7 @@
 #include "server/formats/answers.h"
 
 #include "server/formats/answer_rows.h"
+#include "server/formats/as_found.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
@@ -189,7 +190,7 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
 }
 
 std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval,
-                      const std::optional<Runs>& runs) {
+                      const std::optional<Runs>& runs, const std::optional<AsFound>& as_found) {
   std::string text = WriteObject([&](JsonWriter& out) {
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
@@ -199,6 +200,7 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     WriteRuns(out, runs);
     out.Flag("published", is_published);
     out.Integer("standing", revision.standing_watermark);
+    if (as_found) out.Object("as_found", [&] { WriteAsFoundMembers(out, *as_found); });
     out.Null("document");
   });
   // Byte for byte, so that whoever reads the answer can check the digest. Free text before it has its quotation marks escaped.
@@ -207,7 +209,7 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
 }
 
 std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next,
-                           const std::vector<Approval>& approvals) {
+                           const std::vector<Approval>& approvals, const std::map<int, AsFoundSummary>& as_found) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");
@@ -218,6 +220,8 @@ std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& re
           WriteAge(out, revisions[i].created_at, now);
           WriteVerdict(out, "verdict", revisions[i].verdict);
           if (i < approvals.size()) WriteApproval(out, approvals[i]);
+          if (const auto found = as_found.find(revisions[i].number); found != as_found.end())
+            out.Object("as_found", [&] { WriteAsFoundMembers(out, found->second); });
         });
     });
   });

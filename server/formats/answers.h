@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 #include "server/base/limits_in_force.h"
 #include "server/base/vitals.h"
 #include "server/formats/documents.h"
+#include "server/model/as_found.h"
 #include "server/model/audit.h"
 #include "server/model/decision.h"
 #include "server/model/policy_version.h"
@@ -80,13 +82,16 @@ struct PolicyAnswer {
 // verbs approve, reject, rollback: the revision as it stands from now on.
 [[nodiscard]] std::string WriteDecided(const Revision& revision, const Approval& approval);
 
-// verb show: number, time and digest around the revision's document, which is put in byte for byte.
+// verb show: number, time and digest around the revision's document, which is put in byte for byte; beside it what its
+// newest session found of the calibration in use.
 [[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
-                                    const Approval& approval = {}, const std::optional<Runs>& runs = {});
+                                    const Approval& approval = {}, const std::optional<Runs>& runs = {},
+                                    const std::optional<AsFound>& as_found = {});
 // verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
-// each revision.
+// each revision. `as_found`: of those that have it.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
-                                         const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {});
+                                         const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {},
+                                         const std::map<int, AsFoundSummary>& as_found = {});
 
 // verb lookup
 struct LookupAnswer {

@@ -24,6 +24,7 @@
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
+#include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
 #include "storage/lost_blobs.h"
@@ -96,7 +97,8 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const Validity validity, LoadValidity(context.store, revision, now));
   RIGCAL_ASSIGN(const Approval approval, LoadApproval(context.store, revision));
   RIGCAL_ASSIGN(const auto runs, LoadWhatRuns(context.store, robot));
-  return formats::WriteShow(revision, is_published, validity, now, approval, runs);
+  RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFound(context.store, {robot, revision.number}));
+  return formats::WriteShow(revision, is_published, validity, now, approval, runs, as_found);
 }
 
 // Those of merged edges scatter as theirs do.

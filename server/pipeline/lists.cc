@@ -8,6 +8,7 @@
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
 #include "server/pipeline/robot_rows.h"
+#include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
@@ -98,8 +99,11 @@ Result<std::string> ListRevisions(const AnswerContext& context, const Parameters
   RIGCAL_ASSIGN(auto revisions, storage::LoadRevisions(context.store, robot, before, RowsToLoad(page_rows)));
   std::optional<int> next;
   if (page_rows > 0) next = CutToPage(page_rows, revisions) ? revisions.back().number : 0;
+  std::vector<int> numbers;
+  for (const Revision& revision : revisions) numbers.push_back(revision.number);
+  RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFoundSummaries(context.store, robot, numbers));
   RIGCAL_ASSIGN(const auto approvals, LoadApprovals(context.store, robot, revisions));
-  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals);
+  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals, as_found);
 }
 
 }  // namespace rigcal::pipeline

@@ -11,6 +11,7 @@
 #include "server/pipeline/earlier_details.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
+#include "storage/as_found.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -116,6 +117,7 @@ Result<report::ReportInput> LoadReportInput(storage::Store& store, const Revisio
   TakeBlocks(input);
   RIGCAL_TRY(TakeSessions(store, input));
   RIGCAL_TRY(TakePrevious(store, input));
+  RIGCAL_ASSIGN(input.as_found, storage::LoadAsFound(store, {revision.robot, revision.number}));
   TakeLimits(input);
   TakeCameras(store, input);
   RIGCAL_ASSIGN(input.detailed_in, LoadDetailedEarlier(store, input, revision.edge_watermark));

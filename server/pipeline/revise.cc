@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "server/base/log.h"
 #include "server/base/sha256.h"
 #include "server/fleet/assess.h"
 #include "server/fleet/partial_poses.h"
@@ -17,11 +18,13 @@
 #include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"
 #include "server/model/past.h"
+#include "server/pipeline/as_found.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
+#include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
 #include "storage/merged_edges.h"
@@ -261,6 +264,13 @@ std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionI
   return fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
 }
 
+// The revision is made without it where what was in use cannot be read any more.
+std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& loaded, const formats::RevisionInput& made) {
+  const auto found = FindAsFound(store, {loaded.current, loaded.refined, loaded.captured_at, loaded.watermark, made});
+  if (!found) LogError(found.error());
+  return found.value_or(std::nullopt);
+}
+
 }  // namespace
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
@@ -280,7 +290,11 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   JointPoses poses;
   formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
   std::vector<std::string> cause_keys;
-  if (pairs_waiting == 0) cause_keys = TakeCauses(loaded, input);
+  std::optional<AsFound> as_found;
+  if (pairs_waiting == 0) {
+    cause_keys = TakeCauses(loaded, input);
+    as_found = TakeAsFound(store, loaded, input);
+  }
 
   revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, merge.merged), SensorsOf(input.solution));
   const auto worst = WorstEdgeOf(input);
@@ -298,6 +312,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
     RIGCAL_TRY(storage::AppendCauseKeys(store, key, cause_keys));
+    if (as_found) RIGCAL_TRY(storage::AppendAsFound(store, key, *as_found));
     if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));

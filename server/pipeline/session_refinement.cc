@@ -160,17 +160,6 @@ Status RefineSession(storage::Store& store, const SessionId& session, calib::Cam
   return {};
 }
 
-// Sensors of which an edge of the session still says something.
-using Counting = std::set<std::pair<SessionId, SensorId>>;
-Counting CountingOf(const std::vector<Edge>& current, const std::vector<Edge>& within) {
-  Counting counting;
-  for (const std::vector<Edge>* edges : {&current, &within})
-    for (const Edge& edge : *edges)
-      if (edge.state == EdgeState::kGood)
-        for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) counting.emplace(edge.session, sensor);
-  return counting;
-}
-
 bool Counts(const SessionId& session, const storage::WhatCounts& counts) {
   return !counts.superseded.contains(session) && !counts.retired_sessions.contains(session);
 }
@@ -206,7 +195,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
     if (row.estimate && Counts(row.session, current.counts)) result.estimates.push_back(std::move(*row.estimate));
   RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
   RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, SessionsOf(result.estimates), current.counts.remounts));
-  const Counting counting = CountingOf(current.edges, result.within);
+  const SessionSensors counting = SensorsThatCount(current, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;
     std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
@@ -216,6 +205,15 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
     LeaveOutGone(current.counts.retired_sensors, estimate);
   }
   return result;
+}
+
+SessionSensors SensorsThatCount(const CurrentEdges& current, const std::vector<Edge>& within) {
+  SessionSensors counting;
+  for (const std::vector<Edge>* edges : {&current.edges, &within})
+    for (const Edge& edge : *edges)
+      if (edge.state == EdgeState::kGood)
+        for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) counting.emplace(edge.session, sensor);
+  return counting;
 }
 
 }  // namespace rigcal::pipeline

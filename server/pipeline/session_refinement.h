@@ -1,6 +1,10 @@
 // READ, joint refinement, WRITE: one estimate per session from the raw observations that its pairs were made from.
 #pragma once
 
+#include <set>
+#include <utility>
+#include <vector>
+
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
 #include "server/model/edge.h"
@@ -32,5 +36,9 @@ struct CurrentEstimates {
 // since, or of which no edge of the session counts any more, are left out, and so is what could have moved unseen of
 // retired ones. Call within one Read, with `current`.
 [[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current);
+
+// Sensors of which a good edge of the session still says something.
+using SessionSensors = std::set<std::pair<SessionId, SensorId>>;
+[[nodiscard]] SessionSensors SensorsThatCount(const CurrentEdges& current, const std::vector<Edge>& within);
 
 }  // namespace rigcal::pipeline

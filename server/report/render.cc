@@ -1,6 +1,7 @@
 #include "server/report/render.h"
 
 #include "report_embedded.h"
+#include "server/report/as_found_section.h"
 #include "server/report/assets.h"
 #include "server/report/banner.h"
 #include "server/report/camera_section.h"
@@ -49,6 +50,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillNotes(page, input.revision);
   FillKeyFigures(page, input.revision, edges);
   FillChanges(page, input);
+  FillAsFound(page, input);
   FillDrawing(page, input.revision, edges);
   FillPoses(page, input.revision);
   FillFused(page, input.revision);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/formats/documents.h"
+#include "server/model/as_found.h"
 #include "server/model/fleet_list.h"
 #include "server/model/validity.h"
 #include "server/report/camera_choice.h"
@@ -53,6 +54,7 @@ struct ReportInput {
   std::map<EdgeId, int> detailed_in;
   std::vector<CameraReport> cameras;  // sorted by name; of the others nothing was kept
   std::optional<PastRevision> previous;
+  std::optional<AsFound> as_found;       // what its newest session found of the calibration in use
   std::optional<Stamp> calibrated_at;    // when what the revision counts was measured
   std::int64_t max_age_ns = kDefaultMaxAge_ns;  // how old that may become
   std::optional<UsableRevision> usable;  // what to use where this one is not to be used

@@ -24,6 +24,24 @@ TEST(HistoryVerbs, HistoryListsRevisionsByPages) {
   EXPECT_EQ(ran.out.front(), '{');
 }
 
+TEST(HistoryVerbs, HistoryTellsWhatSessionsFound) {
+  FakeServer server("r", Always(
+      R"({"robot":"r","revisions":[{"revision":9,"created_at":"2026-01-31T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"candidate",)"
+      R"("as_found":{"session":"aa","state":"drifted","drifted":["right","top"]}},)"
+      R"({"revision":8,"created_at":"2026-01-24T12:00:00Z","verdict":{"level":"pass","why":"well"},"state":"superseded","as_found":{"state":"not_measured","drifted":[]}},)"
+      R"({"revision":7,"created_at":"2026-01-17T12:00:00Z","verdict":{"level":"pass","why":"pushed"}}],"next":null})"));
+  const Ran ran = Rigcal({"history", "r"});
+  EXPECT_NE(ran.out.find("VERDICT  STATE       AS FOUND            WHY\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("pass     candidate   right, top drifted  well\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("pass     superseded  not measured        well\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("pass     -                               pushed\n"), std::string::npos) << ran.out;
+}
+
+TEST(HistoryVerbs, ShowTellsWhatTheNewestSessionFound) {
+  FakeServer server("r", Always(R"({"robot":"r","revision":2,"as_found":{"text":"As found (session of 2026-11-03): left unchanged."},"document":{}})"));
+  EXPECT_NE(Rigcal({"show", "r"}).out.find("As found (session of 2026-11-03): left unchanged.\n"), std::string::npos);
+}
+
 TEST(HistoryVerbs, ListsAreAskedForByPages) {
   std::string asked;
   FakeServer server("r", [&](const std::string& verb, const std::string& json) -> Result<std::string> {

@@ -4,3 +4,4 @@ rigcal_test(fleet_causes_test COMPUTES
           unit/fleet_places_test.cc unit/fleet_told_causes_test.cc unit/fleet_visit.cc unit/calib_virtual_lidar.cc
           unit/calib_virtual_motion.cc unit/calib_virtual_pair.cc
   DEPS rigcal_fleet rigcal_calib)
+rigcal_test(fleet_as_found_test COMPUTES SOURCES unit/fleet_as_found_test.cc unit/fleet_drift_rate_test.cc DEPS rigcal_fleet)

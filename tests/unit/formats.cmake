@@ -4,7 +4,7 @@ rigcal_test(formats_edge_test SOURCES unit/formats_edge_test.cc DEPS rigcal_form
 rigcal_test(formats_session_estimate_test SOURCES unit/formats_session_estimate_test.cc DEPS rigcal_formats)
 rigcal_test(formats_camera_fit_test SOURCES unit/formats_camera_fit_test.cc DEPS rigcal_formats)
 rigcal_test(formats_edge_file_test SOURCES unit/formats_edge_file_test.cc DEPS rigcal_formats)
-rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc unit/formats_measured_part_test.cc unit/formats_causes_test.cc DEPS rigcal_formats)
+rigcal_test(formats_revision_test SOURCES unit/formats_revision_test.cc unit/formats_measured_part_test.cc unit/formats_causes_test.cc unit/formats_as_found_test.cc DEPS rigcal_formats)
 rigcal_test(formats_answers_test SOURCES unit/formats_answers_test.cc unit/formats_decision_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_yaml_test SOURCES unit/formats_session_yaml_test.cc DEPS rigcal_formats)
 rigcal_test(formats_session_folder_test SOURCES unit/formats_session_folder_test.cc DEPS rigcal_formats)

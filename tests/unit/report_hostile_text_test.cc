@@ -59,6 +59,19 @@ INSTANTIATE_TEST_SUITE_P(
               [](ReportInput& in) {
                 in.revision.solution.diagnoses = {{"c", kHostile, kHostile}};
               }},
+        Field{"as_found_text",
+              [](ReportInput& in) {
+                in.as_found.emplace();
+                in.as_found->text = kHostile;
+              }},
+        Field{"as_found_sensors",
+              [](ReportInput& in) {
+                SensorFound found;
+                found.sensor = found.or_else = SensorId(kHostile);
+                in.as_found.emplace();
+                in.as_found->sensors = {found};
+                in.as_found->relative_to = SensorId(kHostile);
+              }},
         Field{"cloud_note", [](ReportInput& in) { in.clouds.notes = {kHostile}; }},
         Field{"cloud_lidar",
               [](ReportInput& in) {
@@ -203,7 +216,7 @@ TEST(HostileTextElsewhere, EveryTemplateEscapesByItself) {
     EXPECT_EQ(first, "{{%AUTOESCAPE context=\"HTML\"}}") << entry.path();
     ++templates;
   }
-  EXPECT_EQ(templates, 20);
+  EXPECT_EQ(templates, 21);
 }
 
 TEST(HostileTextElsewhere, PictureSuffixCannotLeaveTheFolder) {

@@ -2,6 +2,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "server/formats/documents.h"
+#include "storage/as_found.h"
 #include "storage/attempts.h"
 #include "storage/audit.h"
 #include "storage/decisions.h"
@@ -63,6 +64,9 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendRevisionPoses(store_, {kRobot, number}, poses));
       RIGCAL_TRY(AppendWorstEdge(store_, {kRobot, number}, {SensorId("left"), SensorId("right"), 1.5}));
       RIGCAL_TRY(AppendCauseKeys(store_, {kRobot, number}, {"board_unseen rear"}));
+      AsFound found;
+      found.session = session;
+      RIGCAL_TRY(AppendAsFound(store_, {kRobot, number}, found));
       MergedEdge merged;
       merged.frame_a = SensorId("left"), merged.frame_b = SensorId("right"), merged.count = 1;
       merged.constants["board"] = {Vector6d::Ones()};

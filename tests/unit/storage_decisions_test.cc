@@ -62,6 +62,8 @@ TEST_F(DecisionsTest, NothingIsInUseThatNobodyApproved) {
   Approve(3);
   EXPECT_EQ(InUse(), 3);
   EXPECT_THAT(States(), ElementsAre(State::kSuperseded, State::kUnusable, State::kApproved));
+  EXPECT_EQ(LoadUsableRevision(store_, kRobot, 2).value()->number, 1) << "of those of before";
+  EXPECT_FALSE(LoadUsableRevision(store_, kRobot, 0).value());
 }
 
 TEST_F(DecisionsTest, ARollbackLeavesBehindWhatIsNewer) {

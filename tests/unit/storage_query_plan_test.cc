@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "storage/as_found.h"
 #include "storage/audit.h"
 #include "storage/decisions.h"
 #include "storage/edges.h"
@@ -138,6 +139,8 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
   EXPECT_TRUE(LoadNewestCapture(store_, kRobot));
   EXPECT_TRUE(LoadWorstEdge(store_, {kRobot, 1}));
   EXPECT_TRUE(LoadCauseKeys(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadAsFound(store_, {kRobot, 1}));
+  EXPECT_TRUE(LoadAsFoundSummaries(store_, kRobot, {1, 2}));
   EXPECT_TRUE(LoadWaitingSummary(store_, kRobot));
   EXPECT_TRUE(LoadRigModel(store_, kRobot));
   EXPECT_TRUE(HasRigModel(store_, "nobody's"));
@@ -152,6 +155,7 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
 TEST_F(QueryPlanTest, TheLifeOfACalibrationDoesNotScan) {
   (void)Scanned();
   EXPECT_TRUE(LoadUsableRevision(store_, kRobot).value());
+  EXPECT_FALSE(LoadUsableRevision(store_, kRobot, 0).value());
   EXPECT_EQ(LoadNewestApproved(store_, kRobot).value(), 1);
   EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 1);
   EXPECT_EQ(LoadDecision(store_, kRobot, 1).value()->how, "approved");

@@ -48,6 +48,9 @@
 </section>
 {{/CHANGES}}
 {{#FIRST}}<p class="hint first">The first revision of this robot: there is nothing to compare it with.</p>{{/FIRST}}
+{{#AS_FOUND_SECTION}}
+{{>AS_FOUND}}
+{{/AS_FOUND_SECTION}}
 <section class="card" id="rig" data-part="Rig in 3D" aria-label="The rig in 3D" hidden>
 <h2>The rig <span class="soft">select a sensor for its numbers</span></h2>
 <div class="rig">
