@@ -134,21 +134,22 @@ std::string CountsNothingRetired(const std::string& counted, const std::string& 
 
 }  // namespace
 
-Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int up_to) {
+Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot, int up_to, Stamp decided_by) {
   using Found = std::optional<Revision>;
   return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> {
     Query query(
         store,
-        std::string("SELECT ") + kRevisionColumns +
+        std::string("WITH decision AS (SELECT * FROM main.decision WHERE robot_id = ?1 AND at_ns <= ?3) SELECT ") +
+            kRevisionColumns +
             " FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND "
             "revision.number = d.revision_number " +
-            kRevisionJudged + " WHERE d.robot_id = ? AND +d.revision_number <= ? AND verdict IN ('pass', 'warn') AND " + kHolds + " AND " +
+            kRevisionJudged + " WHERE d.robot_id = ?1 AND +d.revision_number <= ?2 AND verdict IN ('pass', 'warn') AND " + kHolds + " AND " +
             CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
             CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
                                  "JOIN counted_edge c ON c.edge_number = e.number",
                                  "session_number") +
             " ORDER BY d.number DESC LIMIT 1");
-    return query.Bind(robot, up_to).Step() ? Found(RevisionAt(query)) : std::nullopt;
+    return query.Bind(robot, up_to, decided_by).Step() ? Found(RevisionAt(query)) : std::nullopt;
   });
 }
 

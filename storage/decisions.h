@@ -23,9 +23,11 @@ enum class Deciding { kApprove, kReject, kRollBack };
 // That by which a revision is in use; nothing: none is. Whether it may still be used: LoadUsableRevision.
 [[nodiscard]] Result<std::optional<Decision>> LoadInUse(Store& store, const RobotId& robot);
 // The revision that is in use, or was before it, and counts no edge which was retired since, itself or with its
-// session; without the document. `up_to`: the same among those with numbers up to this one.
-[[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot,
-                                                                 int up_to = std::numeric_limits<int>::max());
+// session; without the document. `up_to`: the same among those with numbers up to this one. `decided_by`: by what was
+// decided until then, this time included; what was decided later, as of an older revision, changes nothing.
+[[nodiscard]] Result<std::optional<Revision>> LoadUsableRevision(
+    Store& store, const RobotId& robot, int up_to = std::numeric_limits<int>::max(),
+    Stamp decided_by = Stamp{std::numeric_limits<std::int64_t>::max()});
 // The newest revision that was ever approved, also where it is used no more; 0: there is none.
 [[nodiscard]] Result<int> LoadNewestApproved(Store& store, const RobotId& robot);
 

@@ -1,6 +1,7 @@
 #include "server/pipeline/as_found.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "server/fleet/as_found.h"
@@ -42,12 +43,19 @@ Result<int> LoadLastBefore(storage::Store& store, const RevisionInTheMaking& rev
   return earliest == first.end() ? 0 : earliest->second - 1;
 }
 
+// When the revision was made; the end of time for one in the making.
+Result<Stamp> LoadMadeAt(storage::Store& store, const RobotId& robot, int number) {
+  RIGCAL_ASSIGN(const auto known, storage::LoadRevisionSummary(store, robot, number));
+  return known ? known->created_at : Stamp{std::numeric_limits<std::int64_t>::max()};
+}
+
 Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTheMaking& revision,
                                        const SessionSet& sessions) {
   const RobotId& robot = revision.made.robot;
   RIGCAL_ASSIGN(int last, LoadLastBefore(store, revision, sessions));
+  RIGCAL_ASSIGN(const Stamp came_at, LoadMadeAt(store, robot, last + 1));
   while (last > 0) {
-    RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, last));
+    RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, last, came_at));
     if (!usable) break;
     RIGCAL_ASSIGN(auto loaded, storage::LoadRevision(store, robot, usable->number));
     if (!loaded) break;

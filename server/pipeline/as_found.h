@@ -19,9 +19,10 @@ struct RevisionInTheMaking {
   std::int64_t watermark;  // of its edges
   const formats::RevisionInput& made;
 };
-// In use is what the robot is to use by what was decided (storage/decisions.h), among the revisions that have nothing of
-// the session, nor of one of the same pictures that it supersedes; so it is the same however often a revision of the same
-// sessions is made, until somebody rejects, rolls back or retires. Also where a sensor was moved on purpose since: that
+// In use is what the robot was to use by what was decided (storage/decisions.h) until the first revision with the session
+// was made, among the revisions that have nothing of the session, nor of one of the same pictures that it supersedes; so
+// it is the same however often a revision of the same sessions is made and whatever is decided later, until somebody
+// retires. Also where a sensor was moved on purpose since: that
 // is told of the sensor. Nothing where no session was refined.
 [[nodiscard]] Result<std::optional<AsFound>> FindAsFound(storage::Store& store, const RevisionInTheMaking& revision);
 

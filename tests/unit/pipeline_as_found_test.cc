@@ -173,9 +173,22 @@ TEST_F(AsFoundTest, WhatNobodyApprovedIsNotInUse) {
   Visit(30, AtHome());
   EXPECT_EQ(Found(2).in_use, 0);
   EXPECT_THAT(Found(2).text, HasSubstr("not tested. No calibration was in use before it."));
+}
+
+// The robot came in with what was in use then, whatever people decide later.
+TEST_F(AsFoundTest, WhatIsDecidedLaterWasNotInUse) {
+  Visit(0, AtHome());
+  clock_.now.ns += 1'000'000'000;
+  Visit(30, AtHome());
+  Decide(storage::Deciding::kReject, 1);
+  clock_.now.ns += 1'000'000'000;
+  Visit(60, AtHome());
+  EXPECT_EQ(Found(3).in_use, 2);
+  clock_.now.ns += 1'000'000'000;
   Decide(storage::Deciding::kApprove, 1);
-  EXPECT_EQ(Again(), 3);
-  EXPECT_EQ(Found(3).in_use, 1);
+  Decide(storage::Deciding::kReject, 2);
+  EXPECT_EQ(Again(), 4);
+  EXPECT_EQ(Found(4).in_use, 2);
 }
 
 TEST_F(AsFoundTest, WhatWasRemountedIsNoDrift) {
