@@ -51,6 +51,8 @@ void PrintLimits(const Document& document, std::ostream& out) {
   if (limits["approval"].Text() == "person") out << "Each calibration is approved by a person before robots use it.\n";
   if (limits["approval"].Text() == "automatic" && !limits["approve_warnings"].Flag(true))
     out << "A pass is approved by itself, a warning by a person.\n";
+  if (limits["approval"].Text() == "automatic" && !limits["approve_drift"].Flag(true))
+    out << "What a session leaves that found drift is approved by a person.\n";
   if (const std::string all = SaidText("all", policy["all"]); all.find("px_at_10_m") != std::string::npos)
     out << Plain(all) << '\n';
   for (const Document& sensor : policy["sensors"].Items())

@@ -198,7 +198,7 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
   if (auto large = FindLargeDisagreements(edges, judged, policy)) warnings.push_back(std::move(*large));
   if (auto uncertain = FindUncertainPairs(policy, pairs)) warnings.push_back(std::move(*uncertain));
   const auto held_back = FindHeldBack(solution, headers);
-  const std::string remarks = Remarks({held_back ? held_back->why : "", SlantsRemark(estimates), SmallDisagreements(edges, judged, policy),
+  const std::string remarks = Remarks({held_back ? held_back->why : "", TakenOutRemark(estimates), SmallDisagreements(edges, judged, policy),
                                        SmallMoves(estimates, solution, policy, captured_at)},
                                       names);
   Verdict verdict = warnings.empty() ? Pass(UntestedLoops(edges, solution), remarks, SmallestMoveNoticed(estimates, solution))

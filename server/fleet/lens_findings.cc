@@ -12,6 +12,8 @@ namespace {
 // is in the sigmas, and nobody need act on it.
 constexpr double kMatters = 1.5, kMattersMin_m = 5e-5, kMattersMin_rad = 5e-5;
 
+constexpr double kBendToldMin_m = 2e-4;  // flatter boards are hardly made
+
 bool Matters(const LensMisfit& misfit) {
   return misfit.sigma_ratio >= kMatters &&
          (misfit.pose_sigma_m >= kMattersMin_m || misfit.pose_sigma_rad >= kMattersMin_rad);
@@ -82,15 +84,21 @@ std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estim
   return finding;
 }
 
-std::string SlantsRemark(const std::vector<SessionEstimate>& estimates) {
+std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
   const auto newest = std::find_if(estimates.begin(), estimates.end(),
                                    [](const SessionEstimate& estimate) { return estimate.why_not.empty(); });
-  std::string remark;
-  if (newest == estimates.end()) return remark;
+  if (newest == estimates.end()) return {};
+  std::vector<std::string> remarks;
   for (const SlantBias& slant : newest->slants)
-    remark += (remark.empty() ? "" : "; ") + slant.lidar.str() + " measures " +
-              TwoDigits(1e3 * std::abs(slant.too_long_m), "mm") + (slant.too_long_m > 0 ? " too long" : " too short") +
-              " where its beam meets a surface at 60 deg, which was taken out";
+    remarks.push_back(slant.lidar.str() + " measures " + TwoDigits(1e3 * std::abs(slant.too_long_m), "mm") +
+                      (slant.too_long_m > 0 ? " too long" : " too short") +
+                      " where its beam meets a surface at 60 deg, which was taken out");
+  for (const BoardBend& bend : newest->bends)
+    if (bend.height_m >= kBendToldMin_m)
+      remarks.push_back("board " + bend.board.str() + " is bent by " + TwoDigits(1e3 * bend.height_m, "mm") +
+                        ", which was taken out: a stiffer plate is better");
+  std::string remark;
+  for (const std::string& one : remarks) remark += (remark.empty() ? "" : "; ") + one;
   return remark;
 }
 

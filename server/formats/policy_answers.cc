@@ -1,6 +1,7 @@
 #include "server/formats/answers.h"
 #include "server/formats/json_values.h"
 #include "server/formats/policy_fields.h"
+#include "server/model/as_found.h"
 
 namespace rigcal::formats {
 namespace {
@@ -35,6 +36,8 @@ void WriteLimitsInForce(JsonWriter& out, const Policy& policy) {
   policy.captures_min ? out.Integer("captures_min", *policy.captures_min) : out.Null("captures_min");
   out.Text("approval", NameOf(policy.approval.value_or(ApprovalBy::kAutomatic)));
   out.Flag("approve_warnings", policy.approve_warnings.value_or(true));
+  out.Flag("approve_drift", policy.approve_drift.value_or(true));
+  out.Number("drift_false_alarm_ratio", policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha));
 }
 
 }  // namespace

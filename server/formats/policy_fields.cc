@@ -81,6 +81,8 @@ void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force) {
   if (policy.captures_min) out.Integer("captures_min", *policy.captures_min);
   if (policy.approval) out.Text("approval", NameOf(*policy.approval));
   if (policy.approve_warnings) out.Flag("approve_warnings", *policy.approve_warnings);
+  if (policy.approve_drift) out.Flag("approve_drift", *policy.approve_drift);
+  if (policy.drift_false_alarm_ratio) out.Number("drift_false_alarm_ratio", *policy.drift_false_alarm_ratio);
 }
 
 PolicyInForce ReadPolicyMembers(const JsonField& field) {
@@ -100,6 +102,8 @@ PolicyInForce ReadPolicyMembers(const JsonField& field) {
   if (const auto value = field.Find("captures_min")) policy.captures_min = value->Integer(1, INT64_MAX);
   if (const auto value = field.Find("approval")) policy.approval = ApprovalByOf(value->Text());
   if (const auto value = field.Find("approve_warnings")) policy.approve_warnings = value->Flag();
+  if (const auto value = field.Find("approve_drift")) policy.approve_drift = value->Flag();
+  if (const auto value = field.Find("drift_false_alarm_ratio")) policy.drift_false_alarm_ratio = ReadAboveZero(*value);
   return in_force;
 }
 

@@ -23,10 +23,11 @@ struct Bounds {
   double least, most;
   const char* least_told;
 };
-constexpr std::array<Bounds, 4> kBounds = {{{"mm", 1e-3, 10'000, "0.001"},
+constexpr std::array<Bounds, 5> kBounds = {{{"mm", 1e-3, 10'000, "0.001"},
                                             {"deg", 1e-4, 180, "0.0001"},
                                             {"px_at_10_m", 1e-3, 10'000, "0.001"},
-                                            {"days", 1.0 / 24, 36'500, "0.0416667 (1 h)"}}};
+                                            {"days", 1.0 / 24, 36'500, "0.0416667 (1 h)"},
+                                            {"percent", 1e-3, 10, "0.001"}}};
 
 // Of a limit above 0 that is below its least.
 enum class TooSmall { kRefused, kRaised };
@@ -204,6 +205,9 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
   if (key == "captures_min") return policy.captures_min = member.Integer(1, kCapturesMinMost), true;
   if (key == "approval") return policy.approval = ReadApproval(member), true;
   if (key == "approve_warnings") return policy.approve_warnings = ReadTrueOrFalse(member), true;
+  if (key == "approve_drift") return policy.approve_drift = ReadTrueOrFalse(member), true;
+  if (key == "drift_false_alarm_percent")
+    return policy.drift_false_alarm_ratio = ReadBounded(member, "percent", small) / 100, true;
   if (key == "sensors") return ReadSensorLimits(member, small, policy), true;
   if (key == "pairs") return ReadPairLimits(member, small, policy), true;
   return false;
@@ -212,6 +216,7 @@ bool ReadOther(const YamlField& member, TooSmall small, Policy& policy) {
 std::vector<std::string> KeysOfPolicy() {
   std::vector<std::string> keys = LimitKeys(false);
   for (const char* other : {"residual_max_mm", "residual_max_deg", "max_age_days", "captures_min", "approval", "approve_warnings",
+                            "approve_drift", "drift_false_alarm_percent",
                             "sensors", "pairs"})
     keys.emplace_back(other);
   return keys;

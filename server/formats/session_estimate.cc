@@ -110,6 +110,21 @@ SlantBias ReadSlant(const JsonField& field) {
   return {ReadId<SensorId>(field.At("lidar")), field.At("too_long_m").Number(), field.At("sigma_m").Number()};
 }
 
+void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("bends", [&] {
+    for (const BoardBend& bend : estimate.bends)
+      out.Object([&] {
+        out.Text("board", bend.board.str());
+        out.Number("height_m", bend.height_m);
+        out.Number("sigma_m", bend.sigma_m);
+      });
+  });
+}
+
+BoardBend ReadBend(const JsonField& field) {
+  return {ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
+}
+
 RefinedPose ReadRefinedPose(const JsonField& field) {
   RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
                    field.At("dof").Number(), std::nullopt};
@@ -140,6 +155,7 @@ void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
 
 std::string WriteSessionEstimate(const SessionEstimate& estimate) {
   return WriteObject([&](JsonWriter& out) {
+    WriteBends(out, estimate);
     WriteBoardsMoved(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
@@ -174,6 +190,8 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
     for (const JsonField& item : boards->Items(kSensorsMax)) estimate.boards_moved.push_back(ReadBoardMoved(item));
   if (const auto slants = root.Find("slants"))  // nor these
     for (const JsonField& item : slants->Items(kSensorsMax)) estimate.slants.push_back(ReadSlant(item));
+  if (const auto bends = root.Find("bends"))  // nor these
+    for (const JsonField& item : bends->Items(kSensorsMax)) estimate.bends.push_back(ReadBend(item));
   if (const auto misfits = root.Find("misfits"))  // nor these
     for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
   RIGCAL_TRY(document.status());

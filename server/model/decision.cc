@@ -62,8 +62,9 @@ RevisionState RevisionStateOf(const std::string& name) {
   return RevisionState::kUnusable;
 }
 
-bool Approves(const Policy& policy, const Verdict& verdict) {
+bool Approves(const Policy& policy, const Verdict& verdict, bool found_drift) {
   if (policy.approval.value_or(ApprovalBy::kAutomatic) == ApprovalBy::kPerson) return false;
+  if (found_drift && !policy.approve_drift.value_or(true)) return false;
   if (verdict.level == VerdictLevel::kWarn) return policy.approve_warnings.value_or(true);
   return verdict.level == VerdictLevel::kPass;
 }

@@ -43,8 +43,9 @@ struct Approval {
   std::optional<Decision> in_use = {};    // by which a revision is announced now; absent: none is
 };
 
-// Whether the policy approves a revision of this verdict by itself.
-[[nodiscard]] bool Approves(const Policy& policy, const Verdict& verdict);
+// Whether the policy approves a revision of this verdict by itself. `found_drift`: its newest session found a sensor
+// elsewhere than the calibration in use says.
+[[nodiscard]] bool Approves(const Policy& policy, const Verdict& verdict, bool found_drift = false);
 
 // "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 --reason TEXT`".
 // Empty of the revision that is in use, and of one that is unusable: its verdict says it.

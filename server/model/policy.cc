@@ -57,6 +57,8 @@ Policy Overlaid(const Policy& wide, const Policy& narrow) {
   Overlay(narrow.captures_min, sum.captures_min);
   Overlay(narrow.approval, sum.approval);
   Overlay(narrow.approve_warnings, sum.approve_warnings);
+  Overlay(narrow.approve_drift, sum.approve_drift);
+  Overlay(narrow.drift_false_alarm_ratio, sum.drift_false_alarm_ratio);
   return sum;
 }
 

@@ -81,6 +81,9 @@ struct Policy {
   std::optional<std::int64_t> captures_min;  // a pair that was measured from fewer warns
   std::optional<ApprovalBy> approval;        // automatic: a pass is approved as soon as it is there
   std::optional<bool> approve_warnings;      // and so is a warning
+  std::optional<bool> approve_drift;         // and what a session leaves that found drift
+  // Odds of one false alarm or more when a session is tested against the calibration in use.
+  std::optional<double> drift_false_alarm_ratio;
   // An edge beyond this quantile of its test is not explained by chance, corrected for the number of edges.
   double residual_probability = 0.999;
   std::map<SensorId, double> focal_px;  // of cameras, as far as it is known; never written

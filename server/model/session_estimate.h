@@ -67,6 +67,12 @@ struct SlantBias {
   double too_long_m = 0.0, sigma_m = 0.0;
 };
 
+// A board that is surely bent, by this from the lowest to the highest point of its plate; taken out of the poses.
+struct BoardBend {
+  TargetId board;
+  double height_m = 0.0, sigma_m = 0.0;
+};
+
 // The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
 // direction that is seen worst.
 constexpr double kAnyMove_m = 1e3, kAnyMove_rad = 3.14159265358979;  // nothing would be told
@@ -98,6 +104,7 @@ struct SessionEstimate {
   std::vector<HeldBackLook> held_back;    // by sensor, then capture
   std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
   std::vector<SlantBias> slants;          // by lidar
+  std::vector<BoardBend> bends;           // by board
 };
 
 // First of the six rows of a pose; -1: the reference, which has none.

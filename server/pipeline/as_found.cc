@@ -134,7 +134,8 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
     found = fleet::TestAsFound(
-        {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(sessions, *in_use, revision.current)});
+        {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(sessions, *in_use, revision.current),
+         revision.false_alarm_ratio});
     fleet::AddDriftRates(counted.Visits(), left, found);
   }
   if (in_use) found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;

@@ -52,10 +52,10 @@ Result<std::optional<Decision>> LoadUsingDecision(storage::Store& store, const R
 
 }  // namespace
 
-Status ApproveByPolicy(storage::Store& store, const Revision& revision, Stamp now) {
+Status ApproveByPolicy(storage::Store& store, const Revision& revision, bool found_drift, Stamp now) {
   if (!IsUsable(revision.verdict)) return {};
   RIGCAL_ASSIGN(const PolicyInForce in_force, LoadPolicyInForce(store, {PolicyScope::kRobot, revision.robot.str()}));
-  if (!Approves(in_force.policy, revision.verdict)) return {};
+  if (!Approves(in_force.policy, revision.verdict, found_drift)) return {};
   const Word word{now, kPolicyWho, "the verdict is " + NameOf(revision.verdict.level)};
   RIGCAL_TRY(storage::AppendDecision(store, revision.robot, revision.number, Deciding::kApprove, word));
   return {};

@@ -14,8 +14,8 @@
 namespace rigcal::pipeline {
 
 // WRITE: inside the Write that appended the revision: it is approved or left a candidate by the policy that holds then,
-// once for all, whatever ends the process.
-[[nodiscard]] Status ApproveByPolicy(storage::Store& store, const Revision& revision, Stamp now);
+// once for all, whatever ends the process. `found_drift` as in Approves (model/decision.h).
+[[nodiscard]] Status ApproveByPolicy(storage::Store& store, const Revision& revision, bool found_drift, Stamp now);
 
 // Orders approve, reject (`revision`: the newest without it) and rollback (`revision` is needed); `robot`, `who`,
 // `reason`. One transaction; kConflict where the robot could not use the revision after all, because of what was

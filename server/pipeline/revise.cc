@@ -266,7 +266,8 @@ std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionI
 
 // The revision is made without it where what was in use cannot be read any more.
 std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& loaded, const formats::RevisionInput& made) {
-  const auto found = FindAsFound(store, {loaded.current, loaded.refined, loaded.captured_at, loaded.watermark, made});
+  const auto found = FindAsFound(store, {loaded.current, loaded.refined, loaded.captured_at, loaded.watermark, made,
+                                          loaded.policy.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha)});
   if (!found) LogError(found.error());
   return found.value_or(std::nullopt);
 }
@@ -307,7 +308,7 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
-    RIGCAL_TRY(ApproveByPolicy(store, revision, clock.Now()));
+    RIGCAL_TRY(ApproveByPolicy(store, revision, as_found && StateOf(*as_found) == FoundState::kDrifted, clock.Now()));
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));

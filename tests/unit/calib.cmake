@@ -3,7 +3,7 @@ rigcal_test(calib_test COMPUTES
           unit/calib_projection_test.cc unit/calib_projection_map_test.cc unit/calib_camera_fit_test.cc unit/calib_virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_joint_test COMPUTES
-  SOURCES unit/calib_joint_test.cc unit/calib_joint_bursts_test.cc unit/calib_joint_moves_test.cc unit/calib_joint_slant_test.cc unit/calib_lens_misfit_test.cc bench/joint_session.cc bench/feature_session.cc
+  SOURCES unit/calib_joint_test.cc unit/calib_joint_bursts_test.cc unit/calib_joint_moves_test.cc unit/calib_joint_bend_test.cc unit/calib_joint_slant_test.cc unit/calib_lens_misfit_test.cc bench/joint_session.cc bench/feature_session.cc
   DEPS rigcal_calib rigcal_sim rigcal_graph TBB::tbb)
 rigcal_test(calib_models_test COMPUTES
   SOURCES unit/calib_capture_blocks_test.cc unit/calib_pair_captures_test.cc unit/calib_models_test.cc unit/calib_symmetry_test.cc unit/calib_camera_test.cc unit/calib_virtual_pair.cc

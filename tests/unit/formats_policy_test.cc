@@ -28,6 +28,8 @@ max_age_days: 30.5
 captures_min: 20
 approval: person
 approve_warnings: false
+approve_drift: false
+drift_false_alarm_percent: 1
 sensors:
   lidar: {tolerance_mm: 20, moved_min_mm: 3}
   left: {tolerance_px_at_10_m: 1}
@@ -57,6 +59,8 @@ TEST(PolicyYaml, EveryKeyIsRead) {
   EXPECT_EQ(read->captures_min, 20);
   EXPECT_EQ(read->approval, ApprovalBy::kPerson);
   EXPECT_EQ(read->approve_warnings, false);
+  EXPECT_EQ(read->approve_drift, false);
+  EXPECT_EQ(read->drift_false_alarm_ratio, 0.01);
   ASSERT_EQ(read->sensors.size(), 2u);
   EXPECT_EQ(read->sensors.at(SensorId("lidar")).moved_min_m, 0.003);
   EXPECT_FALSE(read->sensors.at(SensorId("lidar")).moved_min_rad);
@@ -107,6 +111,8 @@ TEST(PolicyYaml, ALimitIsAboveZero) {
 TEST(PolicyYaml, WhoApprovesIsOneOfTwo) {
   EXPECT_EQ(ReadPolicy("approval: automatic", "policy.yaml")->approval, ApprovalBy::kAutomatic);
   EXPECT_EQ(Refused("approval: Ada"), "policy.yaml line 1: approval: must be automatic or person, not \"Ada\"");
+  EXPECT_EQ(Refused("drift_false_alarm_percent: 50"),
+            "policy.yaml line 1: drift_false_alarm_percent: must be from 0.001 to 10, not \"50\"");
   EXPECT_EQ(Refused("approve_warnings: yes"), "policy.yaml line 1: approve_warnings: must be true or false, not \"yes\"");
 }
 

@@ -33,6 +33,7 @@ SessionEstimate MakeEstimate() {
   misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
   estimate.misfits = {misfit};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
+  estimate.bends = {{TargetId("board"), 0.0005, 0.00001}};
   return estimate;
 }
 
@@ -62,6 +63,10 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
   EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
   EXPECT_EQ(read->boards_moved[0].step[tangent::kY], 0.02);
+  ASSERT_EQ(read->bends.size(), 1u);
+  EXPECT_EQ(read->bends[0].board, TargetId("board"));
+  EXPECT_EQ(read->bends[0].height_m, 0.0005);
+  EXPECT_EQ(read->bends[0].sigma_m, 0.00001);
   ASSERT_EQ(read->slants.size(), 1u);
   EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
   EXPECT_EQ(read->slants[0].too_long_m, 0.01);

@@ -13,6 +13,9 @@ Verdict Of(VerdictLevel level) { return {level, "", ""}; }
 TEST(Decision, ThePolicyApprovesWhatPassesAndWarnsUnlessItSaysOtherwise) {
   Policy policy;
   EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kPass)));
+  EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kPass), true));
+  policy.approve_drift = false;
+  EXPECT_FALSE(Approves(policy, Of(VerdictLevel::kPass), true));
   EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kWarn)));
   policy.approve_warnings = false;
   EXPECT_TRUE(Approves(policy, Of(VerdictLevel::kPass)));

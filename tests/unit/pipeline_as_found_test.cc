@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/pipeline/answer.h"
+#include "server/pipeline/orders.h"
 #include "server/pipeline/revise.h"
 #include "server/pipeline/session_refinement.h"
 #include "storage/as_found.h"
@@ -99,6 +100,10 @@ class AsFoundTest : public PipelineTest {
     const auto done = storage::AppendDecision(*store_, kRig, revision, deciding, {clock_.now, "Ada", "looked at"});
     EXPECT_TRUE(done && *done) << revision;
   }
+  void SetPolicy(const std::string& text) {
+    const json parameters = {{"text", text}, {"who", "Eve"}, {"reason", "we look at each"}};
+    EXPECT_TRUE(CarryOut(*store_, clock_, "set_policy", parameters.dump()));
+  }
   AsFound Found(int number) { return storage::LoadAsFound(*store_, {kRig, number}).value().value_or(AsFound{}); }
   json Ask(const std::string& verb) {
     const auto answer = Answer({*store_, clock_, revisions_cache_, clock_.now, ""}, verb, R"({"robot":"r"})");
@@ -189,6 +194,27 @@ TEST_F(AsFoundTest, WhatIsDecidedLaterWasNotInUse) {
   Decide(storage::Deciding::kReject, 2);
   EXPECT_EQ(Again(), 4);
   EXPECT_EQ(Found(4).in_use, 2);
+}
+
+// 0.7 mm is a drift, and less than any verdict minds.
+TEST_F(AsFoundTest, WhatFoundDriftMayWaitForAPerson) {
+  SetPolicy("approve_drift: false");
+  Visit(0, AtHome());
+  Visit(30, RightMoved(7e-4));
+  EXPECT_EQ(StateOf(Found(2)), FoundState::kDrifted) << Found(2).text;
+  EXPECT_NE(newest_.verdict.level, VerdictLevel::kFail) << newest_.verdict.why;
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 1);
+  Decide(storage::Deciding::kApprove, 2);
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 2);
+  EXPECT_EQ(Again(), 3);
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 2) << "the same drift, so it waits as well";
+}
+
+TEST_F(AsFoundTest, ThePolicySetsTheOddsOfAFalseAlarm) {
+  SetPolicy("drift_false_alarm_percent: 5");
+  Visit(0, AtHome());
+  Visit(30, AtHome());
+  EXPECT_EQ(Found(2).alpha, 0.05);
 }
 
 TEST_F(AsFoundTest, WhatWasRemountedIsNoDrift) {

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "server/calib/joint/slant_bias.h"
+#include "server/calib/joint/instrument_effects.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -70,8 +70,8 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
   Eigen::MatrixXd beside = CovarianceByFields(explained.misfits);
-  if (const Eigen::MatrixXd by_slants = CovarianceBySlants(explained); by_slants.size() > 0)
-    beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_slants) : by_slants;
+  if (const Eigen::MatrixXd by_instruments = CovarianceByInstruments(explained); by_instruments.size() > 0)
+    beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_instruments) : by_instruments;
   const PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
   std::vector<int> sensors;
   for (const auto& [id, s] : LastOfEach(problem)) {
@@ -85,6 +85,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
   estimate.slants = SlantsTold(problem, explained.refined);
+  estimate.bends = BendsTold(problem, explained.refined);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
@@ -122,7 +123,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   }
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(WithSlants(std::move(*first)), estimate);
+  const Explained last = ExplainAll(WithInstrumentEffects(std::move(*first)), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   return estimate;

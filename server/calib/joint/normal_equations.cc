@@ -138,6 +138,9 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
   for (std::size_t s = 0; s < problem.sensors.size(); ++s)
     if (layout.slant[s] != kNone)
       AddPull(layout.slant[s], state.slant_bias_m[s], problem.slant_bias_sigma_m[s], linearized.given, linearized.cost);
+  for (std::size_t t = 0; t < problem.targets.size(); ++t)
+    for (int i = 0; layout.bend[t] != kNone && i < 3; ++i)
+      AddPull(layout.bend[t] + i, state.board_bend_m[t][i], problem.bend_sigma_m[t], linearized.given, linearized.cost);
 }
 
 // Of the own unknowns of a look, from those of the session and of its place.

@@ -112,8 +112,8 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   const Lens& lens = problem.cameras[camera];
   const auto refined = static_cast<Eigen::Index>(lens.refined.size());
   const FieldGrid grid = FieldGridOf(lens.picture);
-  const bool scales = layout.scale[target] != kNone;
-  const Eigen::Index own = 6 + refined + (scales ? 1 : 0);
+  const bool scales = layout.scale[target] != kNone, bends = layout.bend[target] != kNone;
+  const Eigen::Index scale_at = 6 + refined, bend_at = scale_at + (scales ? 1 : 0), own = bend_at + (bends ? 3 : 0);
   const Se3 T_cam_board = T_sensor_board(state, seen);
   const Eigen::Matrix3d R = T_cam_board.R();
   const double larger = 1 + state.board_scale_ratio[target];
@@ -123,14 +123,18 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   Eigen::Matrix<double, 2, Eigen::Dynamic> J(2, own);
   for (std::size_t i = 0; i < seen.corners.size(); ++i) {
     const Eigen::Vector2d& uv_px = seen.corners.uv_px[i];
+    const auto idx = static_cast<std::size_t>(seen.corners.idx[i]);
+    const Eigen::Vector3d& p_flat = problem.target_points[target][idx];
+    const Eigen::Vector3d& bend = problem.target_bend_shapes[target][idx];
     const Eigen::Vector3d p_board =
-        larger * problem.target_points[target][static_cast<std::size_t>(seen.corners.idx[i])];
+        larger * p_flat + state.board_bend_m[target].dot(bend) * Eigen::Vector3d::UnitZ();
     const Projection projected = Project(lens.model, state.intrinsics[camera], T_cam_board * p_board);
     if (!projected.in_front) return std::nullopt;
     const PointJacobian by_point = projected.d_point * R;
     J.leftCols<6>() = by_point * MovedPoint(p_board);
     J.middleCols(6, refined) = RefinedColumns(lens, projected.d_intrinsics);
-    if (scales) J.rightCols<1>() = by_point * p_board / larger;
+    if (scales) J.col(scale_at) = by_point * p_flat;
+    if (bends) J.rightCols<3>() = by_point.col(2) * bend.transpose();
     const Eigen::Vector2d r_px = projected.uv_px + HeldField(grid, state, camera, uv_px) - uv_px;
     const Eigen::Vector2d r = r_px / noise.sigma;
     const Robust robust = HuberOf(r.norm());
@@ -145,7 +149,8 @@ std::optional<Observation> ObserveCorners(const SessionProblem& problem, const L
   }
   AddPoseColumns(layout, state, seen, own, look);
   AddOwnColumn(layout.lens[camera], own, 6, refined, look);
-  if (scales) AddOwnColumn(layout.scale[target], own, own - 1, 1, look);
+  if (scales) AddOwnColumn(layout.scale[target], own, scale_at, 1, look);
+  if (bends) AddOwnColumn(layout.bend[target], own, bend_at, 3, look);
   return look;
 }
 

@@ -30,6 +30,7 @@ Layout LayoutOf(const SessionProblem& problem) {
     layout.scale.push_back(target.square_sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.range_bias_sigma_m) layout.bias.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.slant_bias_sigma_m) layout.slant.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
+  for (const double sigma_m : problem.bend_sigma_m) layout.bend.push_back(sigma_m > 0 ? Take(3, layout) : kNone);
   layout.pose[static_cast<std::size_t>(problem.reference)] = layout.size;
   return layout;
 }
@@ -50,6 +51,8 @@ SessionState Moved(const SessionProblem& problem, const Layout& layout, const Se
     if (layout.bias[s] != kNone) moved.range_bias_m[s] += step[layout.bias[s]];
   for (std::size_t s = 0; s < layout.slant.size(); ++s)
     if (layout.slant[s] != kNone) moved.slant_bias_m[s] += step[layout.slant[s]];
+  for (std::size_t t = 0; t < layout.bend.size(); ++t)
+    if (layout.bend[t] != kNone) moved.board_bend_m[t] += step.segment<3>(layout.bend[t]);
   for (std::size_t p = 0; p < place_steps.size(); ++p)
     moved.T_world_ref[p] = (state.T_world_ref[p] * Se3::Exp(place_steps[p])).Normalized();
   return moved;

@@ -61,9 +61,11 @@ struct SessionProblem {
   int held_board = kNone;  // of `boards`: its pose is the world's frame; kNone where a tracker tells the world
   std::vector<Target> targets;
   std::vector<std::vector<Eigen::Vector3d>> target_points;  // TargetPoints of each
+  std::vector<std::vector<Eigen::Vector3d>> target_bend_shapes;  // BendShapes of each
   std::vector<Lens> cameras;
   std::vector<double> range_bias_sigma_m;  // per sensor; 0: no bias is estimated
   std::vector<double> slant_bias_sigma_m;  // per sensor; likewise
+  std::vector<double> bend_sigma_m;        // per target; likewise
   std::vector<CornersSeen> corners;
   std::vector<PlateSeen> plates;
   std::vector<PoseTold> poses;
@@ -88,6 +90,7 @@ struct SessionState {
   std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
   std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
   std::vector<double> slant_bias_m;          // per sensor: and by this more where rays meet a plate at 60 degrees
+  std::vector<Eigen::Vector3d> board_bend_m;  // per target: its points are deeper by this along the shapes of bends
   std::vector<Eigen::VectorXd>
       field_px;                   // per camera, or none: coefficients of what shifts its pictures beyond the model
   std::vector<double> field_dof;  // per camera, or none: as many of its numbers have the coefficients taken up
@@ -108,10 +111,11 @@ struct Layout {
   std::vector<int> scale;  // per target, one
   std::vector<int> bias;   // per sensor, one
   std::vector<int> slant;  // per sensor, one
+  std::vector<int> bend;   // per target, three
   int size = 0;            // without the reference's
 };
-// In the order of the members above; held: the reference, the held board, lenses without refined numbers, and scales
-// and biases without a sigma.
+// In the order of the members above; held: the reference, the held board, lenses without refined numbers, and scales,
+// biases and bends without a sigma.
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 
 // The state moved by `step` of the layout (right tangents) and by six numbers per place.

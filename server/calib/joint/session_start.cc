@@ -7,6 +7,7 @@
 
 #include "server/calib/joint/board_candidates.h"
 #include "server/calib/core/capture_blocks.h"
+#include "server/calib/joint/board_bend.h"
 #include "server/calib/joint/observation.h"
 
 namespace rigcal::calib::joint {
@@ -117,7 +118,10 @@ class Starter {
     problem().targets = views_.targets;
     for (const Target& target : views_.targets) {
       problem().target_points.push_back(TargetPoints(target));
+      problem().target_bend_shapes.push_back(BendShapes(target));
+      problem().bend_sigma_m.push_back(0.0);
       state().board_scale_ratio.push_back(0.0);
+      state().board_bend_m.emplace_back(Eigen::Vector3d::Zero());
     }
   }
 
