@@ -162,9 +162,25 @@ int FewestVisits(const AsFoundInput& input, const std::vector<SensorId>& sensors
   return fewest.value_or(0);
 }
 
+// Sensors whose visits tell no scatter get the assumed one: that of the visit in use, and that of the session.
+KnownPoses WithAssumedScatter(KnownPoses in_use, const PoseLimit& scatter) {
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(2 * scatter.m * scatter.m),
+      Eigen::Vector3d::Constant(2 * scatter.rad * scatter.rad);
+  Index row = 0;
+  for (const KnownPose& pose : in_use.poses) {
+    if (pose.sensor == in_use.reference) continue;
+    if (pose.visits < 2) in_use.covariance.diagonal().segment<6>(row) += variance;
+    row += 6;
+  }
+  return in_use;
+}
+
 }  // namespace
 
-AsFound TestAsFound(const AsFoundInput& input) {
+AsFound TestAsFound(const AsFoundInput& told) {
+  AsFoundInput input = told;
+  input.in_use = WithAssumedScatter(std::move(input.in_use), input.assumed_scatter);
   AsFound found;
   found.alpha = input.alpha;
   const std::vector<SensorId> sensors = ToTest(input);

@@ -1,8 +1,8 @@
 // As found: the calibration in use is tested against a session's own estimate, before poses are updated by the session.
 //
 // Per sensor and axis, t = change / sigma with C_session + C_in_use + tau^2 for its covariance, a Student's t of
-// Welch's degrees of freedom. tau^2, what sensors scatter by from visit to visit, is in what a revision tells
-// (graph/session_fusion.h) and not added once more. The odds alpha of a false alarm are those of the whole session:
+// Welch's degrees of freedom, at most those of tau^2. tau^2, what sensors scatter by from visit to visit, is in what a
+// revision tells (graph/session_fusion.h) and not added once more; where one visit tells nothing of it, it is assumed. The odds alpha of a false alarm are those of the whole session:
 // each of m axes is tested at alpha / m (Bonferroni; Dunn 1961), which holds however the axes hang together. README.md
 // has the method.
 #pragma once
@@ -12,6 +12,7 @@
 #include "server/fleet/assess.h"
 #include "server/fleet/known_poses.h"
 #include "server/model/as_found.h"
+#include "server/model/policy.h"
 
 namespace rigcal::fleet {
 
@@ -21,6 +22,8 @@ struct AsFoundInput {
   KnownPoses left;                      // of the revision that is made with the session; its covariance does not matter
   std::set<SensorId> moved_on_purpose;  // since `in_use`
   double alpha = kAsFoundAlpha;
+  // What sensors are taken to scatter by from visit to visit (1 sigma per axis) where fewer than two visits are in use.
+  PoseLimit assumed_scatter = kDefaultMovedMin;
 };
 // From `why_not` on, without rates and text. References may be different ones. Told in the frame of the reference in
 // use, unless that is what moved: then in that of the sensor that is best known against it.

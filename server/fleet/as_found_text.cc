@@ -48,8 +48,8 @@ std::string SmallestText(const AsFound& found) {
 std::string ScatterText(int visits) {
   if (visits >= kVisitsForScatter) return "";
   const std::string in_use = std::to_string(visits) + (visits == 1 ? " visit" : " visits") + " in use";
-  return "with " + in_use + " the scatter from visit to visit is " +
-         (visits < 2 ? "not known yet" : "hardly known yet");
+  if (visits < 2) return "with " + in_use + " the scatter from visit to visit is not known yet: the policy's moved_min is taken for it";
+  return "with " + in_use + " the scatter from visit to visit is hardly known yet";
 }
 
 }  // namespace

@@ -16,23 +16,17 @@ struct PlaceAt {
   Vector6d place = Vector6d::Zero(), variance = Vector6d::Zero();
 };
 
-Vector6d VisitVarianceOf(const KnownPose& pose) {
-  Vector6d variance;
-  variance << Eigen::Vector3d::Constant(std::pow(pose.visit_sigma_m, 2)),
-      Eigen::Vector3d::Constant(std::pow(pose.visit_sigma_rad, 2));
-  return variance;
-}
-
 std::vector<PlaceAt> PlacesOf(const SensorId& sensor, const SensorId& frame, const std::vector<VisitPoses>& visits,
                               const KnownPoses& now) {
   std::vector<PlaceAt> places;
   const std::optional<Se3> T_frame_now = PlaceIn(frame, sensor, now);
   if (!T_frame_now) return places;
+  const Vector6d scatter = SeenFrom(frame, {sensor}, now).scatter;
   for (const VisitPoses& visit : visits) {
     if (visit.poses.Find(sensor) == nullptr || visit.poses.Find(frame) == nullptr) continue;
     const PosesSeen seen = SeenFrom(frame, {sensor}, visit.poses);
     places.push_back({visit.captured_at, (T_frame_now->Inverse() * seen.T_frame_sensor.front()).Log(),
-                      seen.covariance.diagonal() + VisitVarianceOf(*now.Find(sensor))});
+                      seen.covariance.diagonal() + scatter});
   }
   return places;
 }

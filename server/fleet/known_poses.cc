@@ -54,6 +54,13 @@ bool HasAll(const JointCovariance& joint, const KnownPoses& poses) {
   });
 }
 
+Matrix6d ScatterOf(const KnownPose& pose) {
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(std::pow(pose.visit_sigma_m, 2)),
+      Eigen::Vector3d::Constant(std::pow(pose.visit_sigma_rad, 2));
+  return variance.asDiagonal();
+}
+
 }  // namespace
 
 const KnownPose* KnownPoses::Find(const SensorId& sensor) const {
@@ -110,13 +117,20 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
   const Index frame_row = FirstRow(poses, frame);
   MatrixXd J = MatrixXd::Zero(static_cast<Index>(6 * sensors.size()), covariance.rows());
   PosesSeen seen;
+  seen.scatter.resize(J.rows());
   for (const SensorId& sensor : sensors) {
     const auto row = static_cast<Index>(6 * seen.T_frame_sensor.size());
     const KnownPose& pose = *poses.Find(sensor);
     seen.T_frame_sensor.push_back(of_frame.T_ref_sensor.Inverse() * pose.T_ref_sensor);
     seen.dof.push_back(SmallerDof(of_frame.dof, pose.dof));
+    const Matrix6d by_frame = -Adjoint(seen.T_frame_sensor.back().Inverse());
     if (const Index own = FirstRow(poses, sensor); own >= 0) J.block<6, 6>(row, own).setIdentity();
-    if (frame_row >= 0) J.block<6, 6>(row, frame_row) = -Adjoint(seen.T_frame_sensor.back().Inverse());
+    if (frame_row >= 0) J.block<6, 6>(row, frame_row) = by_frame;
+    seen.scatter.segment<6>(row) =
+        (ScatterOf(pose) + by_frame * ScatterOf(of_frame) * by_frame.transpose()).diagonal();
+    seen.visits.push_back(sensor == poses.reference ? of_frame.visits
+                          : frame == poses.reference ? pose.visits
+                                                     : std::min(of_frame.visits, pose.visits));
   }
   seen.covariance = J * covariance * J.transpose();
   return seen;

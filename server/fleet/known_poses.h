@@ -43,7 +43,9 @@ struct KnownPoses {
 struct PosesSeen {
   std::vector<Se3> T_frame_sensor;
   std::vector<double> dof;     // the smaller of both sensors'; 0: known
+  std::vector<int> visits;     // likewise
   Eigen::MatrixXd covariance;  // six rows per sensor
+  Eigen::VectorXd scatter;     // variance per row: what both sensors scatter by from visit to visit
 };
 // What a pose says nothing about (variance not finite, or zero or less) has kNothingKnown for its variance.
 constexpr double kNothingKnown = 1e12;

@@ -135,7 +135,7 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
     found = fleet::TestAsFound(
         {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(sessions, *in_use, revision.current),
-         revision.false_alarm_ratio});
+         revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha), LimitsOf(revision.policy, SensorId()).moved_min});
     fleet::AddDriftRates(counted.Visits(), left, found);
   }
   if (in_use) found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;

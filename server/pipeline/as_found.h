@@ -18,7 +18,7 @@ struct RevisionInTheMaking {
   const fleet::SessionTimes& captured_at;
   std::int64_t watermark;  // of its edges
   const formats::RevisionInput& made;
-  double false_alarm_ratio;  // of the test, by the policy
+  const Policy& policy;
 };
 // In use is what the robot was to use by what was decided (storage/decisions.h) until the first revision with the session
 // was made, among the revisions that have nothing of the session, nor of one of the same pictures that it supersedes; so

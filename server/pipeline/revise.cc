@@ -267,7 +267,7 @@ std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionI
 // The revision is made without it where what was in use cannot be read any more.
 std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& loaded, const formats::RevisionInput& made) {
   const auto found = FindAsFound(store, {loaded.current, loaded.refined, loaded.captured_at, loaded.watermark, made,
-                                          loaded.policy.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha)});
+                                          loaded.policy.policy});
   if (!found) LogError(found.error());
   return found.value_or(std::nullopt);
 }

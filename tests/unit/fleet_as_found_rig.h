@@ -43,6 +43,7 @@ class Draws {
   Eigen::VectorXd Normal(Eigen::Index size) {
     return Eigen::VectorXd::NullaryExpr(size, [&] { return normal_(engine_); });
   }
+  double ChiSquare(double dof) { return std::chi_squared_distribution<>(dof)(engine_); }
   Eigen::VectorXd Of(const Eigen::MatrixXd& C) { return C.llt().matrixL() * Normal(C.rows()); }
   // As estimated from so many draws.
   Eigen::MatrixXd Estimated(const Eigen::MatrixXd& C, int dof) {
@@ -96,23 +97,42 @@ struct Errors {
   Eigen::MatrixXd in_use, session;  // of the mean of visits so far; of the session
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
   int dof = 0;  // of the session's; 0: known
+  int visits = 1'000'000;  // that are in use, and tell what visits scatter by
 };
+
+// A scatter as so many visits of errors `c` tell it, three axes alike: none where it is less than their errors.
+inline double ToldScatter(double sigma, double c, int visits, Draws& draws) {
+  const double numbers = 3.0 * (visits - 1);
+  if (visits < 2) return 0.0;
+  return std::max(0.0, (sigma * sigma + c * c) * draws.ChiSquare(numbers) / numbers - c * c);
+}
 
 // `is`: where sensors sat on this visit, but for what visits scatter by.
 inline AsFoundInput Visit(const KnownPoses& was, const KnownPoses& is, const Errors& errors, Draws& draws) {
-  Eigen::VectorXd visit_variance(errors.in_use.rows());
-  for (Eigen::Index row = 0; row < visit_variance.size(); ++row)
-    visit_variance(row) =
-        row % 6 < 3 ? errors.visit_sigma_m * errors.visit_sigma_m : errors.visit_sigma_rad * errors.visit_sigma_rad;
-  const Eigen::VectorXd scatter = visit_variance.cwiseSqrt().cwiseProduct(draws.Normal(visit_variance.size()));
+  const Eigen::Index rows = errors.in_use.rows();
+  Eigen::VectorXd scatter(rows), told(rows);
   AsFoundInput input;
-  input.in_use = WithErrors(was, draws.Of(errors.in_use));
+  input.in_use.poses = was.poses;
+  Eigen::Index row = 0;
+  for (KnownPose& pose : input.in_use.poses) {
+    if (pose.sensor == was.reference) continue;
+    pose.visits = errors.visits;
+    const double of_m = ToldScatter(errors.visit_sigma_m, std::sqrt(errors.session(row, row)), errors.visits, draws),
+                 of_rad = ToldScatter(errors.visit_sigma_rad, std::sqrt(errors.session(row + 3, row + 3)), errors.visits, draws);
+    pose.visit_sigma_m = std::sqrt(of_m), pose.visit_sigma_rad = std::sqrt(of_rad);
+    told.segment<6>(row) << Eigen::Vector3d::Constant(of_m), Eigen::Vector3d::Constant(of_rad);
+    scatter.segment<6>(row) << Eigen::Vector3d::Constant(errors.visit_sigma_m), Eigen::Vector3d::Constant(errors.visit_sigma_rad);
+    row += 6;
+  }
+  const Eigen::VectorXd of_mean = scatter.cwiseProduct(draws.Normal(rows)) / std::sqrt(errors.visits);
+  KnownPoses in_use = was;
+  in_use.poses = input.in_use.poses;
+  input.in_use = WithErrors(WithErrors(in_use, of_mean), draws.Of(errors.in_use));
   input.in_use.covariance = errors.in_use;
-  input.in_use.covariance.diagonal() += visit_variance;
-  input.session = WithErrors(WithErrors(is, scatter), draws.Of(errors.session));
+  input.in_use.covariance.diagonal() += told * (1 + 1.0 / errors.visits);
+  input.session = WithErrors(WithErrors(is, scatter.cwiseProduct(draws.Normal(rows))), draws.Of(errors.session));
   input.session.covariance = errors.dof > 0 ? draws.Estimated(errors.session, errors.dof) : errors.session;
   for (KnownPose& pose : input.session.poses) pose.dof = errors.dof;
-  for (KnownPose& pose : input.in_use.poses) pose.visits = pose.sensor == was.reference ? 0 : 4;
   input.left = input.session;
   return input;
 }

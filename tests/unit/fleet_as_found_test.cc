@@ -52,6 +52,25 @@ TEST(AsFound, FalseAlarmsAreNoMoreThanAlphaWhereSigmasAreEstimatesThemselves) {
   EXPECT_GE(alarms, 3);
 }
 
+// Robots whose sensors sit elsewhere on each visit, by more than a session errs, and few visits to tell so.
+TEST(AsFound, FalseAlarmsAreNoMoreThanAlphaHoweverFewVisitsAreInUse) {
+  Errors errors = SomeErrors();
+  errors.visit_sigma_m = 5e-4, errors.visit_sigma_rad = 3.5e-4;
+  for (const int visits : {1, 2, 3, 5, 8}) {
+    errors.visits = visits;
+    EXPECT_LE(FalseAlarms(errors, 30 + static_cast<unsigned>(visits)), 45) << visits << " visits";
+  }
+}
+
+TEST(AsFound, ABumpBeyondWhatVisitsMayScatterByIsSeenOnTheSecondVisit) {
+  Errors errors = SomeErrors();
+  errors.visits = 1;
+  Draws draws(40);
+  const AsFound found = TestAsFound(Visit(DrawnRig(), Bumped(DrawnRig(), kRight, Along(1, 0.02)), errors, draws));
+  EXPECT_THAT(Drifted(found), ElementsAre(kRight));
+  EXPECT_GT(SmallestSeen_m(found), 0.005);
+}
+
 // Of 2000 sessions in which the right camera moved by so many times the smallest change: in how many it is seen, as a
 // share.
 double Seen(const Errors& errors, int axis, double times, unsigned seed) {
@@ -98,7 +117,7 @@ TEST(AsFound, TheSensorThatMovedIsNamedWithItsStep) {
     EXPECT_TRUE(named.or_else.empty());
     EXPECT_EQ(found.relative_to, kLeft);
     EXPECT_EQ(found.tests, 18);
-    EXPECT_EQ(found.visits, 4);
+    EXPECT_EQ(found.visits, SomeErrors().visits);
     for (int axis = 0; axis < 6; ++axis) EXPECT_NEAR(named.change(axis), step(axis), 5 * named.sigma(axis)) << axis;
     EXPECT_GT(InSigmas(named), 5);
     EXPECT_LT(named.left->norm(), 1e-9) << "updated by the session alone";

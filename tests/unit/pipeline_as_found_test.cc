@@ -135,7 +135,7 @@ TEST_F(AsFoundTest, ASessionThatFindsAllInPlaceSaysSo) {
   const json right = found["sensors"][1];
   EXPECT_EQ(right["id"], "right");
   EXPECT_NEAR(right["change"][0].get<double>(), 5e-5, 1e-9);
-  EXPECT_NEAR(right["sigma"][0].get<double>(), std::sqrt(2e-8), 1e-7);  // both sides alike
+  EXPECT_NEAR(right["sigma"][0].get<double>(), std::sqrt(2e-8 + 2e-6), 1e-7);  // both sides, and 1 mm of each visit
   EXPECT_NEAR(right["left"][0].get<double>(), 2.5e-5, 1e-8);            // the middle is what is left
   EXPECT_THAT(found["text"].get<std::string>(), HasSubstr("(session of 2023-12-14"));
 }
@@ -143,18 +143,18 @@ TEST_F(AsFoundTest, ASessionThatFindsAllInPlaceSaysSo) {
 TEST_F(AsFoundTest, ADriftIsFoundAgainstWhatWasInUseHoweverOftenTheRevisionIsMade) {
   Visit(0, AtHome());
   Visit(30, AtHome());
-  EXPECT_EQ(Visit(60, RightMoved(3e-3)), 3);
+  EXPECT_EQ(Visit(60, RightMoved(6e-3)), 3);
   EXPECT_EQ(newest_.verdict.level, VerdictLevel::kFail) << newest_.verdict.why;
   const AsFound found = Found(3);
   EXPECT_EQ(found.in_use, 2);
   EXPECT_THAT(SummaryOf(found).drifted, ElementsAre(SensorId("right")));
-  EXPECT_NEAR(found.sensors[1].change(0), 3e-3, 1e-5);
+  EXPECT_NEAR(found.sensors[1].change(0), 6e-3, 1e-5);
   ASSERT_TRUE(found.sensors[1].rate);
   EXPECT_EQ(found.sensors[1].rate->visits, 3);
-  EXPECT_NEAR(found.sensors[1].rate->per_30_days(0), 1.5e-3, 1e-5);
+  EXPECT_NEAR(found.sensors[1].rate->per_30_days(0), 3e-3, 1e-5);
   EXPECT_EQ(Again(), 4);
   EXPECT_EQ(Found(4).text, found.text);
-  EXPECT_EQ(Visit(90, RightMoved(3e-3)), 5);
+  EXPECT_EQ(Visit(90, RightMoved(6e-3)), 5);
   EXPECT_EQ(Found(5).in_use, 2) << "those that failed are in use nowhere";
   const json rows = Ask("revisions")["revisions"];
   EXPECT_EQ(rows[1]["as_found"]["drifted"], json::array({"right"}));
@@ -196,18 +196,18 @@ TEST_F(AsFoundTest, WhatIsDecidedLaterWasNotInUse) {
   EXPECT_EQ(Found(4).in_use, 2);
 }
 
-// 0.7 mm is a drift, and less than any verdict minds.
+// 0.8 mm is a drift, and less than any verdict minds.
 TEST_F(AsFoundTest, WhatFoundDriftMayWaitForAPerson) {
   SetPolicy("approve_drift: false");
-  Visit(0, AtHome());
-  Visit(30, RightMoved(7e-4));
-  EXPECT_EQ(StateOf(Found(2)), FoundState::kDrifted) << Found(2).text;
+  for (const int day : {0, 7, 14, 21, 28}) Visit(day, AtHome());
+  Visit(35, RightMoved(8e-4));
+  EXPECT_EQ(StateOf(Found(6)), FoundState::kDrifted) << Found(6).text;
   EXPECT_NE(newest_.verdict.level, VerdictLevel::kFail) << newest_.verdict.why;
-  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 1);
-  Decide(storage::Deciding::kApprove, 2);
-  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 2);
-  EXPECT_EQ(Again(), 3);
-  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 2) << "the same drift, so it waits as well";
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 5);
+  Decide(storage::Deciding::kApprove, 6);
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 6);
+  EXPECT_EQ(Again(), 7);
+  EXPECT_EQ(storage::LoadInUse(*store_, kRig).value()->revision, 6) << "the same drift, so it waits as well";
 }
 
 TEST_F(AsFoundTest, ThePolicySetsTheOddsOfAFalseAlarm) {

@@ -135,16 +135,24 @@ Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
   int before = freely->layout.size;
   for (const Effect& effect : effects)
     if (const int at = effect.At(freely->layout); at != kNone) before = std::min(before, at);
-  const int size = last.refined.layout.size;
-  Eigen::MatrixXd added = Eigen::MatrixXd::Zero(size, size);
+  // By how much effects of one metre move the unknowns where nobody takes them out: all together, as lidars that share
+  // boards err alike.
+  std::vector<int> rows;
+  std::vector<double> variances_m2;
   for (const Effect& effect : effects) {
     const auto told = ToldOf(effect, *freely);
     if (!told || effect.At(last.refined.layout) != kNone) continue;
-    // By how much an effect of one metre moves the unknowns where nobody takes it out.
-    const Eigen::MatrixXd with = freely->covariance.block(0, effect.At(freely->layout), before, effect.size());
-    const Eigen::MatrixXd moves = told->C_m2.ldlt().solve(with.transpose()).transpose();
-    added.topLeftCorner(before, before) += told->Variance_m2(effect.any_m()) * moves * moves.transpose();
+    const double variance_m2 = told->Variance_m2(effect.any_m());
+    for (int i = 0; i < effect.size(); ++i)
+      rows.push_back(effect.At(freely->layout) + i), variances_m2.push_back(variance_m2);
   }
+  const Eigen::MatrixXd among = freely->covariance(rows, rows);
+  const Eigen::MatrixXd with = freely->covariance(rows, Eigen::seqN(0, before));
+  const Eigen::MatrixXd moves = among.ldlt().solve(with).transpose();
+  const int size = last.refined.layout.size;
+  Eigen::MatrixXd added = Eigen::MatrixXd::Zero(size, size);
+  added.topLeftCorner(before, before) =
+      moves * Eigen::Map<const Eigen::VectorXd>(variances_m2.data(), moves.cols()).asDiagonal() * moves.transpose();
   return added;
 }
 
