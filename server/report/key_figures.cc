@@ -76,10 +76,9 @@ Figure WorstEdgeFigure(const std::vector<ShownEdge>& edges, int dof) {
   const ShownEdge& worst = edges.front();
   if (failed > 0) return {"Worst edge", PairText(*worst.edge), "fail", {"failed", counts}};
   if (dof <= 0) return {"Worst edge", "none is checked", "warn", {"Without a loop every edge fits.", counts}};
-  const char* tone = worst.in_sigmas < kOff_sigmas ? "pass" : "warn";
   return {"Worst edge",
           PairText(*worst.edge),
-          tone,
+          SigmasClass(worst.in_sigmas),
           {SigmasText(worst.in_sigmas) + " \xCF\x83 off the solution", counts}};
 }
 
