@@ -148,10 +148,10 @@ std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
 }  // namespace
 
 void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
+  Add(page, WorstSensorFigure(revision));
+  Add(page, WorstEdgeFigure(edges, revision.solution.dof));
   Add(page, GlobalErrorFigure(revision.solution));
   Add(page, CostFigure(revision.solution));
-  Add(page, WorstEdgeFigure(edges, revision.solution.dof));
-  Add(page, WorstSensorFigure(revision));
 }
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {

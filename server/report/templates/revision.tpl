@@ -151,7 +151,7 @@
 {{>CAMERAS}}
 {{/CAMERAS_SECTION}}
 {{#DETAILS}}<h2 class="part" id="details" data-part="Each edge">Each edge <span class="soft">open one to see what stands behind it</span>{{#WARNED}} <span class="badge warn">{{TEXT}}</span>{{/WARNED}}</h2>
-<p class="paper">Only what was open on the screen is printed here.</p>
+<p class="paper">What failed or has a warning is printed, and what was open on the screen.</p>
 {{/DETAILS}}
 {{#DETAIL_GROUP}}
 <details class="card edge failed group">
