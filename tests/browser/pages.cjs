@@ -312,8 +312,10 @@ async function paper(browser) {
   assert.deepStrictEqual(cut, [], "beyond the paper's edge");
   assert.ok(!(await page.locator("nav.contents").isVisible()), "nothing to press on paper");
   await paperIsLight(page);
+  assert.ok(await page.$eval("#rig .still", (still) => still.getContext("2d").getImageData(3, 3, 1, 1).data[0] > 200), "the rig is light, too");
   await page.emulateMedia({ media: "screen" });
   await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  assert.strictEqual(await page.locator("#rig .still").count(), 0);
   assert.strictEqual(await color("text"), dark, "the screen is as it was");
   await close(page);
 }
