@@ -2,6 +2,7 @@
 import { makeSortable } from "./tables/sorting.js";
 import { addFilter } from "./tables/filter.js";
 import { addContents, addOpenAll, openTarget } from "./tables/contents.js";
+import { openForPaper } from "./tables/paper_folds.js";
 import { closeWaysOut } from "./tables/on_disk.js";
 import { tellOfNewer } from "./tables/newest.js";
 import { watchOverdue } from "./overdue.js";
@@ -13,6 +14,7 @@ if (location.protocol === "file:") {
   watchOverdue(0);
 } else tellOfNewer();
 addOpenAll(document.getElementById("details"));
+openForPaper();
 // After all scripts: which parts there are is known then.
 document.addEventListener("DOMContentLoaded", () => {
   addContents();

@@ -54,6 +54,9 @@ double TimesTheCaptures(double told, double tolerance, double least) {
   return std::max(std::pow(told / tolerance, 2), std::pow((told - least) / (tolerance - least), 2));
 }
 
+// Nobody takes so many: the boards must tell more.
+constexpr long kPlacesMax = 400;
+
 std::string MorePlaces(const Unseen& worst, const Policy& policy) {
   const std::string seen = std::to_string(worst.move.captures), places = " places that " + worst.sensor.str() + " sees";
   if (IsAnyMove(worst.move)) return "Capture more than " + seen + places;
@@ -62,8 +65,11 @@ std::string MorePlaces(const Unseen& worst, const Policy& policy) {
     return "Allow a larger unseen bump: one below 1 mm and 1 mrad is not told";
   const double times = std::max(TimesTheCaptures(std::max(worst.move.m, allowed.m), allowed.m, kMovedMin_m),
                                 TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
-  return "Capture at least " + std::to_string(static_cast<long>(std::ceil(worst.move.captures * times))) + places +
-         ", not " + seen;
+  const long needed = static_cast<long>(std::ceil(std::min(worst.move.captures * times, 1e9)));
+  if (needed > kPlacesMax)
+    return "Capture again, with boards nearer to " + worst.sensor.str() + " and more tilted; with more places alone it would take " +
+           std::to_string(needed) + " (this session had " + seen + ")";
+  return "Capture at least " + std::to_string(needed) + places + "; this session had " + seen;
 }
 
 }  // namespace

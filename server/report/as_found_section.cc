@@ -10,7 +10,6 @@ namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kFoundSensorsMax = 60;
-constexpr double kMostOfChance_sigmas = 2.9;
 
 bool IsShift(int axis) { return axis < tangent::kRotation; }
 double Shown(int axis, double value) { return value * (IsShift(axis) ? kMmPerMetre : kDegPerRad); }
@@ -51,18 +50,18 @@ std::string RateText(int axis, const DriftRate& rate) {
   return AsCertainAs(Shown(axis, rate.per_30_days(axis)), sigma) + " \xC2\xB1 " + WithUnit(axis, Significant(sigma, 2));
 }
 
-// Of many axes some are beyond 3 sigma by chance: only one that drifted is red.
-const char* ClassOf(const SensorFound& sensor, int axis, double in_sigmas) {
-  const bool drifted = sensor.axes[static_cast<std::size_t>(axis)] == FoundState::kDrifted;
-  return SigmasClass(drifted ? in_sigmas : std::min(in_sigmas, kMostOfChance_sigmas));
+// Of many axes some are beyond 3 sigma by chance, and the test of all of them says so: only one that drifted has a colour.
+void FillSigmas(Dictionary& cells, bool drifted, double in_sigmas) {
+  Dictionary* figure = cells.AddSectionDictionary(drifted ? "COLOURED" : "PLAIN");
+  figure->SetValue("SIGMAS", SigmasText(in_sigmas));
+  figure->SetValue("CLASS", SigmasClass(in_sigmas));
 }
 
 void FillOff(Dictionary& row, const char* section, const SensorFound& sensor, int axis, double off) {
   Dictionary* cells = row.AddSectionDictionary(section);
   const double sigma = sensor.sigma(axis), in_sigmas = std::abs(off) / sigma;
   cells->SetValue("OFF", OffBy(axis, off, sigma));
-  cells->SetValue("SIGMAS", SigmasText(in_sigmas));
-  cells->SetValue("CLASS", ClassOf(sensor, axis, in_sigmas));
+  FillSigmas(*cells, sensor.axes[static_cast<std::size_t>(axis)] == FoundState::kDrifted, in_sigmas);
 }
 
 void FillAxis(Dictionary& row, const SensorFound& sensor, int axis, bool rates) {

@@ -9,6 +9,7 @@
 #include "server/report/figure_words.h"
 #include "server/report/influence.h"
 #include "server/report/retired_section.h"
+#include "server/report/sigmas.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 
@@ -38,6 +39,7 @@ void FillFit(Dictionary& good, const ShownEdge& shown, bool unchecked) {
   fit->SetValue("E_MM_KEY", Significant(e.head<3>().norm() * kMmPerMetre, 6));
   fit->SetValue("E_DEG", ThreeNumbers(e, uncertainty, tangent::kRotation, kDegPerRad));
   fit->SetValue("E_SIGMA", Fixed(shown.in_sigmas, 2));
+  fit->SetValue("CLASS", SigmasClass(shown.in_sigmas));
 }
 
 void FillTest(Dictionary& good, const ReportInput& input, const EdgeId& edge) {

@@ -76,10 +76,9 @@ Figure WorstEdgeFigure(const std::vector<ShownEdge>& edges, int dof) {
   const ShownEdge& worst = edges.front();
   if (failed > 0) return {"Worst edge", PairText(*worst.edge), "fail", {"failed", counts}};
   if (dof <= 0) return {"Worst edge", "none is checked", "warn", {"Without a loop every edge fits.", counts}};
-  const char* tone = worst.in_sigmas < kOff_sigmas ? "pass" : "warn";
   return {"Worst edge",
           PairText(*worst.edge),
-          tone,
+          SigmasClass(worst.in_sigmas),
           {SigmasText(worst.in_sigmas) + " \xCF\x83 off the solution", counts}};
 }
 
@@ -149,10 +148,10 @@ std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
 }  // namespace
 
 void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
+  Add(page, WorstSensorFigure(revision));
+  Add(page, WorstEdgeFigure(edges, revision.solution.dof));
   Add(page, GlobalErrorFigure(revision.solution));
   Add(page, CostFigure(revision.solution));
-  Add(page, WorstEdgeFigure(edges, revision.solution.dof));
-  Add(page, WorstSensorFigure(revision));
 }
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {

@@ -76,6 +76,8 @@ Validity ValidityOf(const ReportInput& input) {
   return validity;
 }
 
-std::string StyleSheet() { return std::string(embedded::kstyle_css) + std::string(embedded::kreport_css); }
+std::string StyleSheet() {
+  return std::string(embedded::kstyle_css) + std::string(embedded::kpaper_css) + std::string(embedded::kreport_css);
+}
 
 }  // namespace rigcal::report

@@ -157,6 +157,24 @@ async function fleetColumns(browser) {
   await close(page);
 }
 
+// Whatever the width: no row is cut, and the rule stands whole.
+async function fleetFits(browser) {
+  for (const width of [1280, 1024, 390]) {
+    const page = await open(browser, at("/"), { viewport: { width, height: 844 } });
+    const cut = await page.evaluate(() => [...document.querySelectorAll("#live .scroll, #live td, #live .drive")]
+      .filter((one) => getComputedStyle(one).display !== "inline" && one.scrollWidth > one.clientWidth + 1).map((one) => one.outerHTML.slice(0, 120)));
+    assert.deepStrictEqual(cut, [], `cut at ${width} px`);
+    const rules = await page.$$eval("#live .drive", (all) => all.filter((rule) => {
+      const box = rule.getBoundingClientRect(), cell = rule.closest("td").getBoundingClientRect();
+      return box.width > 0 && (box.right > cell.right + 1 || box.bottom > cell.bottom + 1);
+    }).map((rule) => rule.textContent));
+    assert.deepStrictEqual(rules, [], `not whole at ${width} px`);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${width} px`);
+    await picture(page, `fleet-${width}`);
+    await close(page);
+  }
+}
+
 async function experiments(browser) {
   const page = await open(browser, at("/"));
   await page.click("a:has-text('1 experiment')");
@@ -253,6 +271,33 @@ async function names(browser) {
   await close(page);
 }
 
+// What stands on paper has no dark area behind it; pictures, drawings and lines aside.
+async function paperIsLight(page) {
+  const dark = await page.$$eval("main, main *", (all) => all.filter((one) => one.getClientRects().length && !one.closest("svg, .view, .chart, .key, .swatch, .scale, .pictures, .sheet")).filter((one) => {
+    const [r, g, b, a = 1] = getComputedStyle(one).backgroundColor.match(/[\d.]+/g).map(Number);
+    return a > 0.5 && 0.3 * r + 0.6 * g + 0.1 * b < 200;
+  }).map((one) => one.outerHTML.slice(0, 120)));
+  assert.deepStrictEqual(dark, [], "dark on paper: " + page.url());
+}
+
+// What failed says so on paper though nobody opened it, and is closed again afterwards.
+async function paperOpensWhatFailed(browser) {
+  for (const path of ["/", "/robots/broken/", "/robots/broken/revisions/1/", "/robots/broken/revisions/1/certificate.html"]) {
+    const page = await open(browser, at(path), { colorScheme: "dark", viewport: { width: 703, height: 995 } });
+    const closed = () => page.locator("details.edge.failed:not([open]), .causes details:not([open])").count();
+    await page.$$eval("details", (all) => all.forEach((one) => { one.open = false; }));
+    const before = await closed();
+    await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+    await page.emulateMedia({ media: "print" });
+    assert.strictEqual(await closed(), 0, path);
+    await paperIsLight(page);
+    await page.emulateMedia({ media: "screen" });
+    await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+    assert.strictEqual(await closed(), before, path);
+    await close(page);
+  }
+}
+
 // Paper is light whatever the screen is, holds every chart of what is open, and cuts nothing.
 async function paper(browser) {
   const page = await open(browser, at(`/robots/${facts.pictures ? "stereo/revisions/1" : "rover/revisions/2"}/`), { colorScheme: "dark", viewport: { width: 703, height: 995 } });
@@ -266,8 +311,11 @@ async function paper(browser) {
     one.getBoundingClientRect().right > 704).slice(0, 3).map((one) => one.outerHTML.slice(0, 120)));
   assert.deepStrictEqual(cut, [], "beyond the paper's edge");
   assert.ok(!(await page.locator("nav.contents").isVisible()), "nothing to press on paper");
+  await paperIsLight(page);
+  assert.ok(await page.$eval("#rig .still", (still) => still.getContext("2d").getImageData(3, 3, 1, 1).data[0] > 200), "the rig is light, too");
   await page.emulateMedia({ media: "screen" });
   await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  assert.strictEqual(await page.locator("#rig .still").count(), 0);
   assert.strictEqual(await color("text"), dark, "the screen is as it was");
   await close(page);
 }
@@ -282,6 +330,10 @@ async function certificate(browser) {
     const sheets = (await page.pdf({ preferCSSPageSize: true })).toString("latin1").match(/\/Type \/Page\b/g);
     assert.strictEqual(sheets.length, 1, "sheets of " + robot);
     assert.ok((await page.textContent(".signature")).includes("Signature"));
+    await page.emulateMedia({ media: "print" });
+    const lines = await page.$$eval(".name", (all) => all.filter((one) => one.textContent.length <= 18 && one.getClientRects()[0].height > 1.8 * parseFloat(getComputedStyle(one).fontSize)).map((one) => one.textContent));
+    assert.deepStrictEqual(lines, [], "names in two lines");
+    await page.emulateMedia({ media: "screen" });
   }
   await page.goto(at("/robots/rover/revisions/1/certificate.html"));
   await page.click("header a:text-is('Open revision 2')");
@@ -417,7 +469,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, moved, oldReport, overdue, errors, fleetColumns, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, certificate, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, moved, oldReport, overdue, errors, fleetColumns, fleetFits, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, paperOpensWhatFailed, certificate, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

@@ -120,7 +120,14 @@ TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumber
   EXPECT_EQ(verdict.why,
             "A bump of right and top half-way through the session of 2026-01-31 12:00 UTC would go unseen, of right by up "
             "to 8 mm or 0.115 deg.");
-  EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees, not 20.");
+  EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees; this session had 20.");
+}
+
+TEST(AssessUnseen, NobodyIsAskedForThousandsOfPlaces) {
+  const Verdict verdict =
+      VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.038, 0.002, 24}}, {"top", {0.002, 0.001, 20}}});
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("Capture again, with boards nearer to right and more tilted; with more places alone it would take "));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr(" (this session had 24)."));
 }
 
 TEST(AssessUnseen, ASensorThatNoSessionTellsOfIsNamed) {

@@ -2,6 +2,7 @@
 // mark where a sensor stepped by 3 sigma or more.
 import { colorOf, draw } from "./theme.js";
 import { digits } from "./edge_charts.js";
+import { OFF_SIGMAS, sigmasClass, sigmasText } from "../sigmas.js";
 
 const GROUPS = [
   { title: "Position", unit: "mm", scale: 1000, first: 0, names: ["x", "y", "z"] },
@@ -15,14 +16,9 @@ function band(rows, axis, scale, color) {
   return [{ ...common, data: low }, { ...common, data: width, areaStyle: { color, opacity: 0.16 } }];
 }
 
-const OFF_SIGMAS = 3;
 const isOff = (row) => (row.in_sigmas ?? 0) >= OFF_SIGMAS;
 const farthest = (rows) => rows.reduce((most, row) => ((row.in_sigmas ?? 0) > (most.in_sigmas ?? 0) ? row : most), rows[0]);
-// As the server writes them: never rounded up to the limit.
-const sigmas = (row) => {
-  const value = row.in_sigmas ?? 0;
-  return `${(value < OFF_SIGMAS ? Math.min(value, 2.9) : value).toFixed(1)} \u03c3`;
-};
+const sigmas = (row) => `${sigmasText(row.in_sigmas ?? 0)} \u03c3`;
 
 function steps(rows) {
   return {
@@ -92,7 +88,7 @@ export function heading(sensor, rows) {
   title.append(name, " ");
   const worst = farthest(rows), badge = document.createElement("span");
   if (worst.in_sigmas === undefined) return title;
-  badge.className = "badge " + (isOff(worst) ? "fit3" : "fit" + Math.floor(worst.in_sigmas));
+  badge.className = "badge " + sigmasClass(worst.in_sigmas);
   badge.textContent = sigmas(worst);
   const text = document.createElement("span");
   text.className = "soft";

@@ -37,8 +37,10 @@ export class View {
     window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolor());
     // Paper waits for nobody: it is drawn at once.
     document.addEventListener("rigcal:colors", () => {
+      this.resize();
       this.recolor();
       this.draw();
+      this.keepStill(document.documentElement.hasAttribute("data-paper"));
     });
     this.recolor();
   }
@@ -79,6 +81,18 @@ export class View {
     this.renderer.render(this.scene, this.camera);
     this.afterDraw?.();
     this.place.dataset.frames = String(Number(this.place.dataset.frames ?? 0) + 1);
+  }
+
+  // What is printed of a WebGL canvas may be the frame before: paper gets a copy that is no WebGL.
+  keepStill(paper) {
+    this.still?.remove();
+    this.still = null;
+    if (!paper || !this.canvas.width || !this.canvas.height) return;
+    this.still = document.createElement("canvas");
+    this.still.className = "still";
+    [this.still.width, this.still.height] = [this.canvas.width, this.canvas.height];
+    this.still.getContext("2d", { willReadFrequently: true }).drawImage(this.canvas, 0, 0);
+    this.canvas.after(this.still);
   }
 
   // Sets the distances for things in `box` and looks at all of it: at its corners, or at `points` in it.

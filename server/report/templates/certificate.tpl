@@ -18,7 +18,7 @@
 </thead>
 <tbody>
 {{#SENSOR}}
-<tr><th scope="row">{{NAME}}</th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#CERTAINTY}}<td>{{SIGMA_MM}}{{#LIMIT_MM}} ({{VALUE}}){{/LIMIT_MM}}</td><td>{{SIGMA_DEG}}{{#LIMIT_DEG}} ({{VALUE}}){{/LIMIT_DEG}}</td><td>{{K}}</td><td>{{U_MM}}</td><td>{{U_DEG}}</td><td>{{WITHIN}}</td>{{/CERTAINTY}}{{#FIXED}}<td class="text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}{{/KNOWN}}{{#UNKNOWN}}<td class="text" colspan="12"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
+<tr><th scope="row"><span class="name">{{NAME}}</span></th>{{#KNOWN}}<td>{{X}}</td><td>{{Y}}</td><td>{{Z}}</td><td>{{ROLL}}</td><td>{{PITCH}}</td><td>{{YAW}}</td>{{#CERTAINTY}}<td>{{SIGMA_MM}}{{#LIMIT_MM}} ({{VALUE}}){{/LIMIT_MM}}</td><td>{{SIGMA_DEG}}{{#LIMIT_DEG}} ({{VALUE}}){{/LIMIT_DEG}}</td><td>{{K}}</td><td>{{U_MM}}</td><td>{{U_DEG}}</td><td>{{WITHIN}}</td>{{/CERTAINTY}}{{#FIXED}}<td class="text" colspan="6">reference: fixed, without uncertainty</td>{{/FIXED}}{{/KNOWN}}{{#UNKNOWN}}<td class="text" colspan="12"><span class="badge unknown">unknown</span> {{WHY}}</td>{{/UNKNOWN}}</tr>
 {{/SENSOR}}
 </tbody>
 </table>

@@ -6,7 +6,7 @@
 <table class="small">
 <thead><tr><th scope="col">Sensor</th><th scope="col">Moved, mm</th><th scope="col">Turned, deg</th><th scope="col">in &sigma; of the pairs</th><th scope="col">&sigma; by the pairs, mm</th><th scope="col">&sigma; refined, mm</th>{{#VISITS_HEAD}}<th scope="col">From visit to visit, mm / deg</th>{{/VISITS_HEAD}}</tr></thead>
 <tbody>
-{{#SENSOR}}<tr><th scope="row">{{NAME}}</th><td>{{MM}}</td><td>{{DEG}}</td><td><span class="{{CLASS}}">{{SIGMAS}}</span></td><td>{{BEFORE}}</td><td>{{NOW}}</td>{{#VISITS}}<td>{{TEXT}}</td>{{/VISITS}}</tr>
+{{#SENSOR}}<tr><th scope="row">{{NAME}}</th><td>{{MM}}</td><td>{{DEG}}</td><td><span class="badge {{CLASS}}">{{SIGMAS}}</span></td><td>{{BEFORE}}</td><td>{{NOW}}</td>{{#VISITS}}<td>{{TEXT}}</td>{{/VISITS}}</tr>
 {{/SENSOR}}
 </tbody>
 </table>
