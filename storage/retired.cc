@@ -164,7 +164,7 @@ Result<std::optional<Standing>> LoadStanding(Store& store, const RobotId& robot,
   using Newest = std::optional<Standing>;
   return Load<Newest>(store, "standing of sensor " + sensor.str(), [&]() -> Result<Newest> {
     Query query(store,
-                "SELECT number, how, at_ns, who, reason FROM standing WHERE robot_id = ? AND sensor_id = ? "
+                "SELECT number, how, at_ns, who, reason FROM standing WHERE robot_id = ? AND sensor_id = ? AND how <> 'epoch' "
                 "ORDER BY number DESC LIMIT 1");
     return query.Bind(robot, sensor).Step() ? Newest(StandingAt(query, 0)) : std::nullopt;
   });

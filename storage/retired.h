@@ -31,7 +31,7 @@ namespace rigcal::storage {
 [[nodiscard]] Result<std::map<SessionId, Standing>> LoadRetiredSessions(Store& store, const RobotId& robot);
 [[nodiscard]] Result<std::map<SensorId, Standing>> LoadRetiredSensors(Store& store, const RobotId& robot);
 
-// The newest word about it; nullopt if nobody said any.
+// The newest word about it, but for those that begin an epoch; nullopt if nobody said any.
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const EdgeId& id);
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const RobotId& robot, const SensorId& sensor);
 
