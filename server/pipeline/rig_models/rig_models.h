@@ -1,0 +1,34 @@
+// Rig models: which holds for a robot, what is told of them, how they are set.
+#pragma once
+
+#include <string>
+
+#include "server/base/stamp.h"
+#include "server/formats/parameters.h"
+#include "server/model/order.h"
+#include "server/model/rig_model.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// READ: the newest version of this name; without a name of the model where nobody has set it.
+[[nodiscard]] Result<ExpectedRig> LoadExpectedRig(storage::Store& store, const std::string& rig_model);
+
+// Verb rig_model: `model`. kNotFound where nobody has set it.
+[[nodiscard]] Result<std::string> TellRigModel(storage::Store& store, const formats::Parameters& parameters);
+// Verb rig_models: those that were set or that sessions name, up to kRigModelsMax of either.
+[[nodiscard]] Result<std::string> ListRigModels(storage::Store& store);
+inline constexpr int kRigModelsMax = 1000;
+inline constexpr int kRobotsOfModelMax = 100'000;
+
+// Order set_rig_model: `text` (YAML, which names the model), `who`, `reason`. Robots of the model wait to be judged anew.
+// kNotFound where no session is of it, unless `new_model` says that its sessions are to come.
+[[nodiscard]] Result<OrderDone> SetRigModel(storage::Store& store, const Clock& clock,
+                                            const formats::Parameters& parameters);
+
+// The parameter `model`: one line that a session may name.
+[[nodiscard]] Result<std::string> RequiredRigModel(const formats::Parameters& parameters);
+// kNotFound where nobody has set it and no session names it: what may be meant.
+[[nodiscard]] Status CheckRigModelKnown(storage::Store& store, const std::string& model);
+
+}  // namespace rigcal::pipeline
