@@ -76,7 +76,7 @@ void Insert(Store& store, const Revision& revision, int number, const Blob& docu
       .Bind(revision.robot, revision.policy_watermark)
       .Run();
   Query(store, "DELETE FROM waiting_rig_model WHERE robot_id = ? AND rig_model_number <= ?")
-      .Bind(revision.robot, revision.rig_model_number)
+      .Bind(revision.robot, revision.rig_model_watermark)
       .Run();
 }
 

@@ -49,6 +49,13 @@ Result<std::optional<RigModelVersion>> LoadRigModelVersion(Store& store, const s
   });
 }
 
+Result<std::int64_t> LoadRigModelWatermark(Store& store) {
+  return Load<std::int64_t>(store, "rig models", [&]() -> Result<std::int64_t> {
+    Query query(store, "SELECT coalesce(max(number), 0) FROM rig_model");
+    return query.Step() ? query.Int(0) : 0;
+  });
+}
+
 // From each name to the next: a model may have very many versions.
 Result<std::vector<RigModelVersion>> LoadRigModelVersions(Store& store, int max) {
   using Versions = std::vector<RigModelVersion>;

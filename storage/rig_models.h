@@ -16,6 +16,8 @@ namespace rigcal::storage {
 [[nodiscard]] Result<RigModelVersion> AppendRigModel(Store& store, const std::string& name, const std::string& text,
                                                      const Word& word);
 [[nodiscard]] Result<std::optional<RigModelVersion>> LoadRigModelVersion(Store& store, const std::string& name);
+// Number of the newest of all; 0: none was set.
+[[nodiscard]] Result<std::int64_t> LoadRigModelWatermark(Store& store);
 // Of each name the newest version, by name, up to `max`.
 [[nodiscard]] Result<std::vector<RigModelVersion>> LoadRigModelVersions(Store& store, int max);
 

@@ -15,6 +15,7 @@
 #include "server/model/as_found.h"
 #include "server/model/audit.h"
 #include "server/model/decision.h"
+#include "server/model/epoch.h"
 #include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
@@ -88,10 +89,11 @@ struct PolicyAnswer {
                                     const Approval& approval = {}, const std::optional<Runs>& runs = {},
                                     const std::optional<AsFound>& as_found = {});
 // verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
-// each revision. `as_found`: of those that have it.
+// each revision. `as_found`: of those that have it. `epochs`: all that began of the robot, the earliest first.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
                                          const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {},
-                                         const std::map<int, AsFoundSummary>& as_found = {});
+                                         const std::map<int, AsFoundSummary>& as_found = {},
+                                         const std::vector<Epoch>& epochs = {});
 
 // verb lookup
 struct LookupAnswer {

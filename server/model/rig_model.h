@@ -49,7 +49,8 @@ struct RigModelVersion {
 // What is expected of one robot.
 struct ExpectedRig {
   RigModel model;                       // without a name: nothing is expected
-  std::int64_t version = 0, number = 0;  // RigModelVersion's
+  std::int64_t version = 0;             // RigModelVersion's
+  std::int64_t watermark = 0;           // number of the newest of all rig models: what was set later is not in it
 };
 
 }  // namespace rigcal

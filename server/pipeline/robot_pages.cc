@@ -6,12 +6,14 @@
 #include <memory>
 #include <set>
 
+#include "server/fleet/rig_model/rig_causes.h"
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/compared_lenses.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
+#include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
 #include "server/pipeline/unreadable.h"
@@ -19,7 +21,9 @@
 #include "server/report/robot_pages.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
+#include "storage/epochs.h"
 #include "storage/fleet_facts.h"
+#include "storage/policies.h"
 #include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -159,6 +163,11 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, c
   RIGCAL_TRY(TakeListedSessions(context, robot, sessions_before, input));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(context.store, robot));
   for (const auto& [sensor, standing] : gone) input.retired.push_back({sensor, standing.word});
+  RIGCAL_TRY(context.store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(input.epochs, storage::LoadEpochs(context.store, robot));
+    RIGCAL_ASSIGN(input.rig_model, storage::LoadRigModel(context.store, robot));
+    return {};
+  }));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.row.revision));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
   return PageText{std::move(body), kHtmlType};
@@ -214,6 +223,20 @@ Result<formats::SessionAnswer> SessionOf(const AnswerContext& context, const Rob
   return Fail(ErrorCode::kNotFound, "session " + name + " is of another robot", "See /robots/" + row.robot.str() + "/");
 }
 
+// What the rig model of a session has and the session does not list, as a sentence.
+Result<std::string> LackingOfModel(storage::Store& store, const RobotId& robot, const SessionHeader& header) {
+  std::string lacking;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(const ExpectedRig expected, LoadExpectedRig(store, header.rig_model));
+    RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
+    std::set<SensorId> retired;
+    for (const auto& [sensor, standing] : gone) retired.insert(sensor);
+    lacking = fleet::LackingOf(header, expected.model, retired);
+    return {};
+  }));
+  return lacking.empty() ? lacking : lacking + ".";
+}
+
 Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot, const std::string& name) {
   RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
   report::SessionInput input;
@@ -224,6 +247,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.retired, LoadRetiredSensorsIn(context.store, robot, input.manifest));
+  RIGCAL_ASSIGN(input.lacking, LackingOfModel(context.store, robot, input.manifest.header));
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(input.past, WhyPast(context, robot, input.edges));
   if (input.row.closed && input.row.pairs_waiting == 0) {

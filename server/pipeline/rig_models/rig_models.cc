@@ -3,7 +3,6 @@
 #include <map>
 
 #include "server/base/text.h"
-#include "server/formats/rig_models/rig_model_answers.h"
 #include "server/formats/rig_models/rig_model_yaml.h"
 #include "server/pipeline/subject.h"
 #include "server/pipeline/unknown_names.h"
@@ -24,12 +23,12 @@ Result<std::int64_t> CountOfRobots(storage::Store& store, const std::string& mod
 
 Result<ExpectedRig> LoadExpectedRig(storage::Store& store, const std::string& rig_model) {
   ExpectedRig expected;
+  RIGCAL_ASSIGN(expected.watermark, storage::LoadRigModelWatermark(store));
   if (rig_model.empty()) return expected;
   RIGCAL_ASSIGN(const auto version, storage::LoadRigModelVersion(store, rig_model));
   if (!version) return expected;
   RIGCAL_ASSIGN(expected.model, formats::ReadRigModel(version->text, "rig model " + rig_model));
   expected.version = version->version;
-  expected.number = version->number;
   return expected;
 }
 
@@ -64,7 +63,7 @@ Result<std::string> TellRigModel(storage::Store& store, const Parameters& parame
   return formats::WriteRigModel(answer);
 }
 
-Result<std::string> ListRigModels(storage::Store& store) {
+Result<std::vector<formats::RigModelRow>> LoadRigModelRows(storage::Store& store) {
   std::map<std::string, formats::RigModelRow> rows;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_ASSIGN(const auto named, storage::LoadRigModels(store, kRigModelsMax));
@@ -78,7 +77,12 @@ Result<std::string> ListRigModels(storage::Store& store) {
   }));
   std::vector<formats::RigModelRow> list;
   for (auto& [name, row] : rows) list.push_back(std::move(row));
-  return formats::WriteRigModels(list);
+  return list;
+}
+
+Result<std::string> ListRigModels(storage::Store& store) {
+  RIGCAL_ASSIGN(const auto rows, LoadRigModelRows(store));
+  return formats::WriteRigModels(rows);
 }
 
 Result<OrderDone> SetRigModel(storage::Store& store, const Clock& clock, const Parameters& parameters) {

@@ -2,21 +2,25 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "server/base/stamp.h"
 #include "server/formats/parameters.h"
+#include "server/formats/rig_models/rig_model_answers.h"
 #include "server/model/order.h"
 #include "server/model/rig_model.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {
 
-// READ: the newest version of this name; without a name of the model where nobody has set it.
+// READ: the newest version of this name; without a name of the model where nobody has set it. Call within
+// one Read, so that model and watermark are of one moment.
 [[nodiscard]] Result<ExpectedRig> LoadExpectedRig(storage::Store& store, const std::string& rig_model);
 
 // Verb rig_model: `model`. kNotFound where nobody has set it.
 [[nodiscard]] Result<std::string> TellRigModel(storage::Store& store, const formats::Parameters& parameters);
-// Verb rig_models: those that were set or that sessions name, up to kRigModelsMax of either.
+// Those that were set or that sessions name, up to kRigModelsMax of either, sorted; and as verb rig_models.
+[[nodiscard]] Result<std::vector<formats::RigModelRow>> LoadRigModelRows(storage::Store& store);
 [[nodiscard]] Result<std::string> ListRigModels(storage::Store& store);
 inline constexpr int kRigModelsMax = 1000;
 inline constexpr int kRobotsOfModelMax = 100'000;
