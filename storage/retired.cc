@@ -1,5 +1,7 @@
 #include "storage/retired.h"
 
+#include <algorithm>
+
 #include "storage/audit.h"
 #include "storage/standing.h"
 #include "storage/standing_row.h"
@@ -129,6 +131,20 @@ Result<bool> HasSensor(Store& store, const RobotId& robot, const SensorId& senso
                  "e.frame_b) LIMIT 1")
         .Bind(robot, sensor)
         .Step();
+  });
+}
+
+Result<std::vector<SensorId>> LoadSensorsOf(Store& store, const RobotId& robot) {
+  return Load<std::vector<SensorId>>(store, "sensors of robot " + robot.str(), [&]() -> Result<std::vector<SensorId>> {
+    Query query(store,
+                "SELECT sensor_id FROM listed_sensor WHERE robot_id = ?1 UNION SELECT e.frame_a FROM counted_edge c "
+                "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 UNION SELECT e.frame_b FROM counted_edge c "
+                "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1");
+    query.Bind(robot);
+    std::vector<SensorId> sensors;
+    while (query.Step()) sensors.push_back(query.IdAt<SensorId>(0));
+    std::sort(sensors.begin(), sensors.end());
+    return sensors;
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "server/model/standing.h"
 #include "storage/store.h"
@@ -25,6 +26,9 @@ namespace rigcal::storage {
 [[nodiscard]] Status RetireSensor(Store& store, const RobotId& robot, const SensorId& sensor, const Word& word);
 [[nodiscard]] Status RestoreSensor(Store& store, const RobotId& robot, const SensorId& sensor, const Word& word);
 [[nodiscard]] Result<bool> HasSensor(Store& store, const RobotId& robot, const SensorId& sensor);
+
+// All of the robot, retired ones too: by name.
+[[nodiscard]] Result<std::vector<SensorId>> LoadSensorsOf(Store& store, const RobotId& robot);
 
 // Those that are retired now, with the word by which they are.
 [[nodiscard]] Result<std::map<EdgeId, Standing>> LoadRetired(Store& store, const RobotId& robot);

@@ -11,7 +11,7 @@ namespace rigcal::fleet {
 namespace {
 
 constexpr double kSmallestSigma = 1e-6;    // m and rad: what is more alike is alike by rounding
-constexpr double kSetAsideOdds = 5e-4;     // that any robot of a population of alike ones is set aside
+constexpr double kSetAsideOdds = 1e-4;     // that any robot of a population of alike ones is set aside
 constexpr double kMadEfficiency = 0.37;    // of a robust spread against that of normal values
 constexpr double kAxes = 6.0;
 

@@ -33,15 +33,14 @@ Result<std::set<SensorId>> NamesAsked(const std::string& text) {
 // Those that are named; without a name all that the robot has.
 Result<std::vector<SensorId>> SensorsAsked(storage::Store& store, const RobotId& robot, const Parameters& parameters) {
   const std::string text = parameters.Text("sensors").value_or("");
-  RIGCAL_ASSIGN(const std::set<SensorId> known, LoadSensorNames(store, robot));
+  RIGCAL_ASSIGN(const std::vector<SensorId> known, storage::LoadSensorsOf(store, robot));
   if (text.empty() && known.empty())
     return Fail(ErrorCode::kNotFound, "nothing was measured of robot " + robot.str() + " yet",
                 "There is no epoch to begin: its first session begins one.");
-  if (text.empty()) return std::vector<SensorId>(known.begin(), known.end());
+  if (text.empty()) return known;
   RIGCAL_ASSIGN(const std::set<SensorId> named, NamesAsked(text));
   for (const SensorId& sensor : named) {
-    RIGCAL_ASSIGN(const bool is_known, storage::HasSensor(store, robot, sensor));
-    if (!is_known) return Fail(UnknownSensor(robot, sensor, {known.begin(), known.end()}));
+    if (!std::binary_search(known.begin(), known.end(), sensor)) return Fail(UnknownSensor(robot, sensor, known));
   }
   return std::vector<SensorId>(named.begin(), named.end());
 }
