@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "client/document.h"
-#include "client_run.h"
+#include "tests/unit/client_run.h"
 
 namespace rigcal::client {
 namespace {
