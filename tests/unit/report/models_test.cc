@@ -49,8 +49,8 @@ TEST(ModelPage, ShowsWhoStandsOutAndADotPerRobot) {
   ASSERT_TRUE(page) << Sentence(page.error());
   EXPECT_THAT(*page, HasSubstr("7 robots with a calibration in use, told in the frame of left"));
   EXPECT_THAT(*page, HasSubstr("href=\"../../robots/r6/\""));
-  EXPECT_THAT(*page, HasSubstr("37 mm, 0 deg"));  // from the median
-  EXPECT_THAT(*page, HasSubstr("its tolerance, 5 mm and 0.573 deg"));
+  EXPECT_THAT(*page, HasSubstr("37.0 mm, 0 deg"));  // from the median
+  EXPECT_THAT(*page, HasSubstr("its tolerance, 5.00 mm and 0.573 deg"));
   EXPECT_THAT(*page, HasSubstr("Nobody has set this rig model"));
   EXPECT_EQ(CountOf(*page, "class=\"dots\""), 6U) << "a path per axis";
   EXPECT_EQ(CountOf(*page, "class=\"dots out\""), 6U);
