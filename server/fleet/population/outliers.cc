@@ -46,20 +46,32 @@ std::vector<bool> SetAside(const std::vector<Vector6d>& offsets, const std::vect
 struct Moments {
   double count = 0.0;
   Vector6d mean = Vector6d::Zero();
-  Matrix6d covariance = Matrix6d::Zero();
+  Matrix6d scatter = Matrix6d::Zero();  // sum of (x - mean) (x - mean)^T
+
+  [[nodiscard]] Matrix6d Covariance() const {
+    Matrix6d covariance = scatter / std::max(count - 1.0, 1.0);
+    covariance.diagonal() = covariance.diagonal().cwiseMax(0.0).array() + kSmallestSigma * kSmallestSigma;
+    return covariance;
+  }
 };
 
-// Of all but those set aside and the one that is held against them.
-Moments MomentsOfOthers(const std::vector<Vector6d>& offsets, const std::vector<bool>& aside, std::size_t held) {
+// Of all but those set aside.
+Moments MomentsOf(const std::vector<Vector6d>& offsets, const std::vector<bool>& aside) {
   Moments moments;
   for (std::size_t i = 0; i < offsets.size(); ++i)
-    if (i != held && !aside[i]) moments.count += 1.0, moments.mean += offsets[i];
+    if (!aside[i]) moments.count += 1.0, moments.mean += offsets[i];
   moments.mean /= std::max(moments.count, 1.0);
   for (std::size_t i = 0; i < offsets.size(); ++i)
-    if (i != held && !aside[i])
-      moments.covariance += (offsets[i] - moments.mean) * (offsets[i] - moments.mean).transpose();
-  moments.covariance /= std::max(moments.count - 1.0, 1.0);
-  moments.covariance.diagonal().array() += kSmallestSigma * kSmallestSigma;
+    if (!aside[i]) moments.scatter += (offsets[i] - moments.mean) * (offsets[i] - moments.mean).transpose();
+  return moments;
+}
+
+// As if that one, which is among them, had not been: a fleet of thousands is not walked through for each robot.
+Moments Without(const Vector6d& offset, Moments moments) {
+  const Vector6d d = offset - moments.mean;
+  moments.scatter -= d * d.transpose() * (moments.count / std::max(moments.count - 1.0, 1.0));
+  moments.mean -= d / std::max(moments.count - 1.0, 1.0);
+  moments.count -= 1.0;
   return moments;
 }
 
@@ -77,7 +89,7 @@ Distance AxisByAxis(const Vector6d& d, const Matrix6d& S, double others) {
 Distance DistanceOf(const Vector6d& offset, const Matrix6d& own, const Moments& others) {
   if (!offset.allFinite() || !own.allFinite() || others.count < 2.0) return {};
   const Vector6d d = offset - others.mean;
-  const Matrix6d S = others.covariance * (1.0 + 1.0 / others.count) + own;
+  const Matrix6d S = others.Covariance() * (1.0 + 1.0 / others.count) + own;
   Distance distance = AxisByAxis(d, S, others.count);
   if (others.count < static_cast<double>(kOthersForDistance)) return distance;
   const Eigen::LLT<Matrix6d> root(S);
@@ -91,9 +103,10 @@ Distance DistanceOf(const Vector6d& offset, const Matrix6d& own, const Moments& 
 
 std::vector<Distance> DistancesFromOthers(const std::vector<Vector6d>& offsets, const std::vector<Matrix6d>& covariances) {
   const std::vector<bool> aside = SetAside(offsets, covariances);
+  const Moments kept = MomentsOf(offsets, aside);
   std::vector<Distance> distances;
   for (std::size_t i = 0; i < offsets.size(); ++i)
-    distances.push_back(DistanceOf(offsets[i], covariances[i], MomentsOfOthers(offsets, aside, i)));
+    distances.push_back(DistanceOf(offsets[i], covariances[i], aside[i] ? kept : Without(offsets[i], kept)));
   return distances;
 }
 

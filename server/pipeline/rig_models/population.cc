@@ -14,6 +14,8 @@
 namespace rigcal::pipeline {
 namespace {
 
+constexpr int kPopulationRobotsMax = 10'000;
+
 struct Loaded {
   std::map<RobotId, JointPoses> poses;
   std::vector<std::pair<RobotId, std::string>> left_out;
@@ -32,6 +34,14 @@ Status TakePosesInUse(storage::Store& store, const RobotId& robot, Loaded& loade
   else
     loaded.left_out.emplace_back(robot, "the calibration in use has no poses that can be compared");
   return {};
+}
+
+// What is beyond the bound is told.
+void CutToBound(std::vector<RobotId>& robots, Loaded& loaded) {
+  if (robots.size() <= static_cast<std::size_t>(kPopulationRobotsMax)) return;
+  loaded.left_out.emplace_back(robots.back(), "this and those after it by name are beyond the first " +
+                                                  std::to_string(kPopulationRobotsMax) + " robots of the model");
+  robots.pop_back();
 }
 
 SensorId MostUsedReference(const std::map<RobotId, JointPoses>& all) {
@@ -63,7 +73,8 @@ Result<Population> LoadPopulation(storage::Store& store, const std::string& rig_
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_TRY(CheckRigModelKnown(store, rig_model));
     RIGCAL_ASSIGN(expected, LoadExpectedRig(store, rig_model));
-    RIGCAL_ASSIGN(const auto robots, storage::LoadRobotsOfModel(store, rig_model, kRobotsOfModelMax));
+    RIGCAL_ASSIGN(auto robots, storage::LoadRobotsOfModel(store, rig_model, kPopulationRobotsMax + 1));
+    CutToBound(robots, loaded);
     for (const RobotId& robot : robots) RIGCAL_TRY(TakePosesInUse(store, robot, loaded));
     return {};
   }));
