@@ -16,7 +16,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr Word kAda{{500}, "Ada", "new bracket"};
+const Word kAda{{500}, "Ada", "new bracket"};
 
 class EpochsTest : public StoreTest {
  protected:
