@@ -141,7 +141,7 @@ std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const Next
 }
 
 std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                         const std::vector<RetiredSensor>& retired) {
+                         const std::vector<RetiredSensor>& retired, const std::string& lacking) {
   return WriteObject([&](JsonWriter& out) {
     out.Object("session", [&] { WriteSessionMembers(out, session); });
     out.Object("manifest", [&] { WriteManifestMembers(out, manifest); });
@@ -149,6 +149,7 @@ std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
       for (const Edge& edge : edges) out.Object([&] { WriteEdgeRowMembers(out, edge, nullptr); });
     });
     WriteRetiredSensors(out, retired);
+    if (!lacking.empty()) out.Text("lacking", lacking);
   });
 }
 

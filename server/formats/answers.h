@@ -47,9 +47,9 @@ struct SessionAnswer {
 };
 // A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
-// `retired`: of the sensors that it lists, those that are.
+// `retired`: of the sensors that it lists, those that are. `lacking`: what its rig model has and it does not, a sentence.
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                                       const std::vector<RetiredSensor>& retired = {});
+                                       const std::vector<RetiredSensor>& retired = {}, const std::string& lacking = {});
 
 // verbs retire, restore. Of a session, as it stands; `has_edges`: its robot, so that a revision follows.
 [[nodiscard]] std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges);

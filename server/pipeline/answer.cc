@@ -53,7 +53,8 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   const Manifest manifest = std::move(stored).value_or(Manifest{});
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, id));
   RIGCAL_ASSIGN(const auto retired, LoadRetiredSensorsIn(context.store, row.robot, manifest));
-  return formats::WriteSession(row, manifest, edges, retired);
+  RIGCAL_ASSIGN(const std::string lacking, LoadLacking(context.store, row.robot, manifest.header));
+  return formats::WriteSession(row, manifest, edges, retired, lacking);
 }
 
 // Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids were kept.

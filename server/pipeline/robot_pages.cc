@@ -6,7 +6,6 @@
 #include <memory>
 #include <set>
 
-#include "server/fleet/rig_model/rig_causes.h"
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
 #include "server/pipeline/asked.h"
@@ -223,20 +222,6 @@ Result<formats::SessionAnswer> SessionOf(const AnswerContext& context, const Rob
   return Fail(ErrorCode::kNotFound, "session " + name + " is of another robot", "See /robots/" + row.robot.str() + "/");
 }
 
-// What the rig model of a session has and the session does not list, as a sentence.
-Result<std::string> LackingOfModel(storage::Store& store, const RobotId& robot, const SessionHeader& header) {
-  std::string lacking;
-  RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_ASSIGN(const ExpectedRig expected, LoadExpectedRig(store, header.rig_model));
-    RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
-    std::set<SensorId> retired;
-    for (const auto& [sensor, standing] : gone) retired.insert(sensor);
-    lacking = fleet::LackingOf(header, expected.model, retired);
-    return {};
-  }));
-  return lacking.empty() ? lacking : lacking + ".";
-}
-
 Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot, const std::string& name) {
   RIGCAL_ASSIGN(const auto row, SessionOf(context, robot, name));
   report::SessionInput input;
@@ -247,7 +232,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.retired, LoadRetiredSensorsIn(context.store, robot, input.manifest));
-  RIGCAL_ASSIGN(input.lacking, LackingOfModel(context.store, robot, input.manifest.header));
+  RIGCAL_ASSIGN(input.lacking, LoadLacking(context.store, robot, input.manifest.header));
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(input.past, WhyPast(context, robot, input.edges));
   if (input.row.closed && input.row.pairs_waiting == 0) {

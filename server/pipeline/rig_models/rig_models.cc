@@ -1,12 +1,15 @@
 #include "server/pipeline/rig_models/rig_models.h"
 
 #include <map>
+#include <set>
 
 #include "server/base/text.h"
+#include "server/fleet/rig_model/rig_causes.h"
 #include "server/formats/rig_models/rig_model_yaml.h"
 #include "server/pipeline/subject.h"
 #include "server/pipeline/unknown_names.h"
 #include "storage/policies.h"
+#include "storage/retired.h"
 #include "storage/rig_models.h"
 
 namespace rigcal::pipeline {
@@ -30,6 +33,19 @@ Result<ExpectedRig> LoadExpectedRig(storage::Store& store, const std::string& ri
   RIGCAL_ASSIGN(expected.model, formats::ReadRigModel(version->text, "rig model " + rig_model));
   expected.version = version->version;
   return expected;
+}
+
+Result<std::string> LoadLacking(storage::Store& store, const RobotId& robot, const SessionHeader& header) {
+  std::string lacking;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(const ExpectedRig expected, LoadExpectedRig(store, header.rig_model));
+    RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
+    std::set<SensorId> retired;
+    for (const auto& [sensor, standing] : gone) retired.insert(sensor);
+    lacking = fleet::LackingOf(header, expected.model, retired);
+    return {};
+  }));
+  return lacking.empty() ? lacking : lacking + ".";
 }
 
 Result<std::string> RequiredRigModel(const Parameters& parameters) {

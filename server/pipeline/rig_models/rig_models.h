@@ -17,6 +17,10 @@ namespace rigcal::pipeline {
 // one Read, so that model and watermark are of one moment.
 [[nodiscard]] Result<ExpectedRig> LoadExpectedRig(storage::Store& store, const std::string& rig_model);
 
+// READ: what the rig model of a session has and the session does not list, as a sentence; empty: nothing. Nobody asks for
+// sensors that were retired from the robot.
+[[nodiscard]] Result<std::string> LoadLacking(storage::Store& store, const RobotId& robot, const SessionHeader& header);
+
 // Verb rig_model: `model`. kNotFound where nobody has set it.
 [[nodiscard]] Result<std::string> TellRigModel(storage::Store& store, const formats::Parameters& parameters);
 // Those that were set or that sessions name, up to kRigModelsMax of either, sorted; and as verb rig_models.

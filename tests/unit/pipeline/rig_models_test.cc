@@ -88,6 +88,15 @@ TEST_F(RigModelOrders, SettingOneJudgesItsRobotsAnew) {
   EXPECT_EQ(StepAll(), 0);
 }
 
+TEST_F(RigModelOrders, ASessionSaysWhatItLacks) {
+  Name("r", "mars");
+  const std::string id = Ask("sessions", {{"robot", "r"}})["sessions"][0]["session"];
+  EXPECT_FALSE(Ask("session", {{"id", id}}).contains("lacking"));
+  Done("set_rig_model", {{"text", kMars}});
+  EXPECT_EQ(Ask("session", {{"id", id}})["lacking"], "b and c are in rig model mars but not here.");
+  EXPECT_THAT(Page("/robots/r/sessions/" + id + "/"), HasSubstr("b and c are in rig model mars but not here."));
+}
+
 TEST_F(RigModelOrders, AnotherModelJudgesNobody) {
   Name("r", "mars");
   PushTriangleOf("r");
