@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSmallestSigma = 1e-6;    // m and rad: what is more alike is alike by rounding
 constexpr double kSetAsideOdds = 1e-4;     // that any robot of a population of alike ones is set aside
+constexpr std::size_t kRobotsToSetAside = 10;
 constexpr double kMadEfficiency = 0.37;    // of a robust spread against that of normal values
 constexpr double kAxes = 6.0;
 
@@ -31,6 +32,7 @@ double LimitOfSetAside(std::size_t robots) {
 
 std::vector<bool> SetAside(const std::vector<Vector6d>& offsets, const std::vector<Matrix6d>& covariances) {
   std::vector<bool> aside(offsets.size(), false);
+  if (offsets.size() < kRobotsToSetAside) return aside;
   const double limit = LimitOfSetAside(offsets.size());
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     const std::vector<double> values = AxisOf(offsets, axis);

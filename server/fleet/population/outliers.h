@@ -2,7 +2,7 @@
 //
 // 1. Robots far from the medians of the axes, in robust spreads, are set aside: they must not hide each other. The limit is
 //    Student's t for the few degrees of freedom that a robust spread of n values has (0.37 n, its efficiency), so that chance
-//    alone hardly ever sets one aside.
+//    alone hardly ever sets one aside. Among fewer than ten none is: a median distance of so few is often tiny by chance.
 // 2. Each robot is held against mean and covariance S of the m others that were not set aside:
 //      D^2 = d^T (S (1 + 1/m) + C)^-1 d,   C: how well its own pose is known.
 //    With C = 0 and normal places, D^2 (m - 6) / (6 (m - 1)) is F(6, m - 6): Mahalanobis' distance with an estimated covariance
