@@ -161,7 +161,7 @@ void FillFacts(Dictionary& page, const SessionInput& input) {
 }
 
 // Serial numbers and firmware, as far as the session tells them.
-void FillParts(Dictionary& page, const SessionHeader& header) {
+void FillPartsOfSensors(Dictionary& page, const SessionHeader& header) {
   for (const Sensor& sensor : header.sensors) {
     if (sensor.serial.empty() && sensor.firmware.empty()) continue;
     Dictionary* part = page.AddSectionDictionary("PART_OF");
@@ -184,7 +184,7 @@ Result<std::string> RenderSession(const SessionInput& input) {
   FillOutcome(page, input);
   FillGone(page, input.robot, input.retired);
   if (!input.lacking.empty()) ShowValue(page, "LACKING", "TEXT", input.lacking);
-  FillParts(page, input.manifest.header);
+  FillPartsOfSensors(page, input.manifest.header);
   if (input.row.closed && !input.row.retired) ShowValue(page, "MISLEADS", "COMMAND", RetireCommand(input.row.id));
   FillEdges(page, input);
   FillSheet(page, input);

@@ -15,7 +15,7 @@ constexpr std::array<const char*, 6> kRowNames = {"x", "y", "z", "rx", "ry", "rz
 
 std::string ShownNumber(double value, bool turns) { return Significant(value * (turns ? kDegPerRad : kMmPerMetre), 3); }
 
-void FillAxes(Dictionary& card, const SensorPopulation& sensor) {
+void FillAxisRows(Dictionary& card, const SensorPopulation& sensor) {
   for (std::size_t axis = 0; axis < sensor.axes.size(); ++axis) {
     const bool turns = axis >= 3;
     const AxisSpread& spread = sensor.axes[axis];
@@ -39,7 +39,7 @@ void FillSensorCard(Dictionary& page, const SensorPopulation& sensor) {
   else
     card->ShowSection("NOT_DRAWN");
   FillSpread(*card, sensor);
-  FillAxes(*card, sensor);
+  FillAxisRows(*card, sensor);
 }
 
 void FillOutlierRows(Dictionary& page, const Population& population) {

@@ -9,7 +9,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr double kLeft_px = 26, kPlot_px = 300, kRow_px = 22, kTop_px = 8, kRight_px = 96, kBox_px = 12;
+constexpr double kLineLeft_px = 26, kPlot_px = 300, kLineHeight_px = 22, kLineTop_px = 8, kRight_px = 96, kBox_px = 12;
 constexpr std::array<const char*, 6> kLineNames = {"x", "y", "z", "rx", "ry", "rz"};
 
 // What is at the ends of a line, m or rad.
@@ -20,15 +20,15 @@ double ReachOf(const SensorPopulation& sensor, bool turns) {
   return reach > 0.0 && std::isfinite(reach) ? reach : 1.0;
 }
 
-struct Line {
+struct AxisLine {
   double y_px = 0.0, reach = 1.0;
   [[nodiscard]] std::string X(double value) const {
-    return Fixed(kLeft_px + kPlot_px / 2 * (1.0 + std::clamp(value / reach, -1.0, 1.0)), 1);
+    return Fixed(kLineLeft_px + kPlot_px / 2 * (1.0 + std::clamp(value / reach, -1.0, 1.0)), 1);
   }
 };
 
 // A path of points: a fleet has thousands of them.
-std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const Line& line, const std::set<RobotId>& robots,
+std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const AxisLine& line, const std::set<RobotId>& robots,
                    bool of_these) {
   std::string path;
   for (std::size_t i = 0; i < sensor.robots.size(); ++i)
@@ -43,7 +43,7 @@ std::string MedianText(double value, bool turns) {
 
 void FillLine(Dictionary& svg, const SensorPopulation& sensor, std::size_t axis, const std::set<RobotId>& outlying) {
   const bool turns = axis >= 3;
-  const Line line{kTop_px + kRow_px * (static_cast<double>(axis) + 0.5), ReachOf(sensor, turns)};
+  const AxisLine line{kLineTop_px + kLineHeight_px * (static_cast<double>(axis) + 0.5), ReachOf(sensor, turns)};
   const AxisSpread& spread = sensor.axes[axis];
   Dictionary* row = svg.AddSectionDictionary("LINE");
   row->SetValue("NAME", kLineNames[axis]);
@@ -58,7 +58,7 @@ void FillLine(Dictionary& svg, const SensorPopulation& sensor, std::size_t axis,
   row->SetValue("BOX_H", Fixed(kBox_px, 0));
   row->SetValue("MEDIAN", line.X(spread.median));
   row->SetValue("DOTS", DotsOf(sensor, axis, line, outlying, false));
-  row->SetValue("TEXT_X", Fixed(kLeft_px + kPlot_px + 8, 0));
+  row->SetValue("TEXT_X", Fixed(kLineLeft_px + kPlot_px + 8, 0));
   row->SetValue("TEXT", MedianText(spread.median, turns));
   if (!outlying.empty()) ShowValue(*row, "OUT", "D", DotsOf(sensor, axis, line, outlying, true));
   const double limit = turns ? sensor.tolerance.rad : sensor.tolerance.m;
@@ -78,8 +78,8 @@ void FillSpread(Dictionary& parent, const SensorPopulation& sensor) {
   for (const PopulationOutlier& outlier : sensor.outliers) outlying.insert(outlier.robot);
   Dictionary* svg = parent.AddIncludeDictionary("SPREAD");
   svg->SetFilename("spread.tpl");
-  svg->SetValue("WIDTH", Fixed(kLeft_px + kPlot_px + kRight_px, 0));
-  svg->SetValue("HEIGHT", Fixed(2 * kTop_px + 6 * kRow_px, 0));
+  svg->SetValue("WIDTH", Fixed(kLineLeft_px + kPlot_px + kRight_px, 0));
+  svg->SetValue("HEIGHT", Fixed(2 * kLineTop_px + 6 * kLineHeight_px, 0));
   svg->SetValue("LABEL", sensor.sensor.str() + " on " + Count(sensor.robots.size(), "robot", "robots") +
                              ": places along x y z and turns about them");
   for (std::size_t axis = 0; axis < sensor.axes.size(); ++axis) FillLine(*svg, sensor, axis, outlying);
