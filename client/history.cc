@@ -24,8 +24,20 @@ std::string FoundText(const Document& as_found) {
   return names.empty() ? state : names + " " + state;
 }
 
+// When what was measured of a sensor became past, and why; the newest first.
+void PrintEpochs(const Document& document, std::ostream& out) {
+  const std::vector<Document> epochs = document["epochs"].Items();
+  if (epochs.empty()) return;
+  Table table({{"EPOCH FROM"}, {"SENSOR"}, {"WHY"}});
+  for (const Document& epoch : epochs)
+    table.Add({epoch["begins_at"].Text("-"), epoch["sensor"].Text("?"), Plain(epoch["text"].Text())});
+  out << '\n';
+  table.Print(out);
+}
+
 void PrintHistory(const Document& document, const HistoryOptions& options, std::ostream& out) {
   const std::vector<Document> revisions = document["revisions"].Items();
+  if (revisions.empty()) PrintEpochs(document, out);
   const char* none = options.before > 0 ? kNoOlderOnes : "There is no revision yet. Send a session with `rigcal push DIR`.\n";
   if (revisions.empty()) out << none;
   if (revisions.empty()) return;
@@ -42,6 +54,7 @@ void PrintHistory(const Document& document, const HistoryOptions& options, std::
     table.Add(cells);
   }
   table.Print(out);
+  PrintEpochs(document, out);
   PrintNextPage(document, "rigcal history " + options.robot + " --limit " + std::to_string(options.limit), out);
 }
 
@@ -55,7 +68,7 @@ ExitCode RunHistory(const Context& context, const HistoryOptions& options) {
 }  // namespace
 
 void AddHistory(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("history", "List a robot's revisions with their verdicts and what their newest session found, the newest first");
+  CLI::App* verb = app.add_subcommand("history", "List a robot's revisions with their verdicts and what their newest session found, and epochs of its sensors, the newest first");
   auto options = std::make_shared<HistoryOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--limit", options->limit, "So many revisions (default 20)")

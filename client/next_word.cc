@@ -105,11 +105,16 @@ class TypedWords {
     if (kind == "DIR") next.kind = NextWord::Kind::kFolders;
     if (kind == "SHELL")
       for (const char* shell : kShells) Add(shell, "", next);
-    if (kind == "ACTION")
+    const bool of_model = verb_ != nullptr && verb_->get_name() == "model";
+    if (kind == "ACTION" && of_model)
+      for (const char* action : kModelActions) Add(action, "", next);
+    if (kind == "ACTION" && !of_model)
       for (const char* action : kPolicyActions) Add(action, "", next);
-    if (kind == "WHAT" && !positional_.empty())
-      next.kind = positional_.front() == "show" ? NextWord::Kind::kRobots : NextWord::Kind::kFiles;
-    if ((kind == "A" || kind == "B") && !positional_.empty()) {
+    const bool is_shown = !positional_.empty() && positional_.front() == "show";
+    if (kind == "WHAT" && !positional_.empty() && !is_shown) next.kind = NextWord::Kind::kFiles;
+    if (kind == "WHAT" && is_shown && !of_model) next.kind = NextWord::Kind::kRobots;
+    const bool is_sensor = kind == "A" || kind == "B" || LongName(option) == "sensor";
+    if (is_sensor && !positional_.empty()) {
       next.kind = NextWord::Kind::kSensors;
       next.subject = positional_.front();
     }

@@ -22,6 +22,10 @@ void AddRetire(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kPolicyActions = {"show", "check", "set"};
 // policy, and the verbs that ask the server what it knows.
 void AddPolicy(CLI::App& app, Context& context);
+void AddModel(CLI::App& app, Context& context);   // rig models: show, list, check, set
+void AddFleet(CLI::App& app, Context& context);   // how sensors sit on the robots of a rig model
+void AddEpoch(CLI::App& app, Context& context);
+inline constexpr std::array<const char*, 4> kModelActions = {"show", "list", "check", "set"};
 void AddApprove(CLI::App& app, Context& context);
 void AddReject(CLI::App& app, Context& context);
 void AddRollback(CLI::App& app, Context& context);

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "server/base/sha256.h"
+#include "storage/epochs.h"
 #include "storage/query.h"
 #include "storage/retired.h"
 #include "storage/standing.h"
@@ -143,13 +144,33 @@ std::string RetiredSessionsOutside(Store& store, const RobotId& robot, const Wha
   return outside.empty() ? "" : "retired\n" + outside;
 }
 
+bool AnyOutside(Store& store, const RobotId& robot) {
+  return Query(store,
+               "SELECT 1 FROM counted_edge c WHERE c.robot_id = ?1 AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE "
+               "w.robot_id = ?1 AND w.edge_number = c.edge_number) LIMIT 1")
+      .Bind(robot)
+      .Step();
+}
+
+// What a session says concerns edges that have a date; what a person says also those that were stored before.
+std::string EpochsOutside(Store& store, const RobotId& robot, const std::vector<Epoch>& epochs) {
+  if (epochs.empty() || !AnyOutside(store, robot)) return "";
+  const bool any_dated = AnyDatedOutside(store, robot);
+  std::string outside;
+  for (const Epoch& epoch : epochs) {
+    const bool by_person = epoch.cause == EpochCause::kPerson;
+    const std::string since = by_person ? "since " + std::to_string(epoch.begins_at.ns) : epoch.session.str();
+    if (by_person || any_dated) outside += since + " " + epoch.sensor.str() + "\n";
+  }
+  return outside;
+}
+
 // Of what people said, what concerns edges that are in no window. Empty where nothing does.
 std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts) {
   std::string basis = OutsideOf(store, robot, "session_id", KeysOf(counts.superseded)) +
                       OutsideOf(store, robot, "edge_id", KeysOf(counts.retired)) +
                       RetiredSessionsOutside(store, robot, counts) + SensorsOutside(store, robot, counts);
-  if (!counts.remounts.empty() && AnyDatedOutside(store, robot))
-    for (const Remount& remount : counts.remounts) basis += remount.session.str() + " " + remount.sensor.str() + "\n";
+  basis += EpochsOutside(store, robot, counts.epochs);
   return basis.empty() ? "" : Sha256Of(basis).str();
 }
 
@@ -206,7 +227,7 @@ Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
   WhatCounts counts;
   RIGCAL_ASSIGN(counts.superseded, LoadSuperseded(store, robot));
   RIGCAL_ASSIGN(counts.retired, LoadRetired(store, robot));
-  RIGCAL_ASSIGN(counts.remounts, LoadRemounts(store, robot));
+  RIGCAL_ASSIGN(counts.epochs, LoadEpochs(store, robot));
   RIGCAL_ASSIGN(counts.retired_sessions, LoadRetiredSessions(store, robot));
   RIGCAL_ASSIGN(counts.retired_sensors, LoadRetiredSensors(store, robot));
   return counts;

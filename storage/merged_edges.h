@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "server/model/epoch.h"
 #include "server/model/merged_edge.h"
 #include "server/model/standing.h"
 #include "storage/revisions.h"
@@ -22,14 +23,14 @@ namespace rigcal::storage {
 struct WhatCounts {
   std::map<SessionId, Superseding> superseded;
   std::map<EdgeId, Standing> retired;
-  std::vector<Remount> remounts;
+  std::vector<Epoch> epochs;
   std::map<SessionId, Standing> retired_sessions = {};
   std::map<SensorId, Standing> retired_sensors = {};
 };
 // Several readings: call it inside one Read, so that all are of one moment.
 [[nodiscard]] Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot);
-// True: of what has left the window an edge, session or sensor was retired or restored, a session superseded, or a sensor
-// remounted, after the newest revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.
+// True: of what has left the window an edge, session or sensor was retired or restored, a session superseded, or an
+// epoch of a sensor begun, after the newest revision. Then the merged edges hold no more, and all edges of the robot count as they are until the next revision merges anew.
 [[nodiscard]] Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts);
 
 struct MergeStep {

@@ -27,7 +27,7 @@ namespace rigcal::storage {
 // Those that closed sessions name, sorted, at most `max`.
 [[nodiscard]] Result<std::vector<std::string>> LoadRigModels(Store& store, int max);
 
-// Robots of which a newer policy than that of their newest revision was set, after `after` by id, at most `max` of
+// Robots of which a newer policy, or rig model (rig_models.h), than that of their newest revision was set, after `after` by id, at most `max` of
 // them.
 [[nodiscard]] Result<std::vector<RobotId>> LoadRobotsToJudge(Store& store, const RobotId& after, int max);
 // How many of them wait for the policy of this number.

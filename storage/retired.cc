@@ -1,5 +1,7 @@
 #include "storage/retired.h"
 
+#include <algorithm>
+
 #include "storage/audit.h"
 #include "storage/standing.h"
 #include "storage/standing_row.h"
@@ -132,6 +134,20 @@ Result<bool> HasSensor(Store& store, const RobotId& robot, const SensorId& senso
   });
 }
 
+Result<std::vector<SensorId>> LoadSensorsOf(Store& store, const RobotId& robot) {
+  return Load<std::vector<SensorId>>(store, "sensors of robot " + robot.str(), [&]() -> Result<std::vector<SensorId>> {
+    Query query(store,
+                "SELECT sensor_id FROM listed_sensor WHERE robot_id = ?1 UNION SELECT e.frame_a FROM counted_edge c "
+                "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 UNION SELECT e.frame_b FROM counted_edge c "
+                "JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1");
+    query.Bind(robot);
+    std::vector<SensorId> sensors;
+    while (query.Step()) sensors.push_back(query.IdAt<SensorId>(0));
+    std::sort(sensors.begin(), sensors.end());
+    return sensors;
+  });
+}
+
 Result<std::map<EdgeId, Standing>> LoadRetired(Store& store, const RobotId& robot) {
   return LoadRetiredBy<EdgeId>(
       store, robot,
@@ -164,7 +180,7 @@ Result<std::optional<Standing>> LoadStanding(Store& store, const RobotId& robot,
   using Newest = std::optional<Standing>;
   return Load<Newest>(store, "standing of sensor " + sensor.str(), [&]() -> Result<Newest> {
     Query query(store,
-                "SELECT number, how, at_ns, who, reason FROM standing WHERE robot_id = ? AND sensor_id = ? "
+                "SELECT number, how, at_ns, who, reason FROM standing WHERE robot_id = ? AND sensor_id = ? AND how <> 'epoch' "
                 "ORDER BY number DESC LIMIT 1");
     return query.Bind(robot, sensor).Step() ? Newest(StandingAt(query, 0)) : std::nullopt;
   });

@@ -7,6 +7,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "server/model/standing.h"
 #include "storage/store.h"
@@ -26,12 +27,15 @@ namespace rigcal::storage {
 [[nodiscard]] Status RestoreSensor(Store& store, const RobotId& robot, const SensorId& sensor, const Word& word);
 [[nodiscard]] Result<bool> HasSensor(Store& store, const RobotId& robot, const SensorId& sensor);
 
+// All of the robot, retired ones too: by name.
+[[nodiscard]] Result<std::vector<SensorId>> LoadSensorsOf(Store& store, const RobotId& robot);
+
 // Those that are retired now, with the word by which they are.
 [[nodiscard]] Result<std::map<EdgeId, Standing>> LoadRetired(Store& store, const RobotId& robot);
 [[nodiscard]] Result<std::map<SessionId, Standing>> LoadRetiredSessions(Store& store, const RobotId& robot);
 [[nodiscard]] Result<std::map<SensorId, Standing>> LoadRetiredSensors(Store& store, const RobotId& robot);
 
-// The newest word about it; nullopt if nobody said any.
+// The newest word about it, but for those that begin an epoch; nullopt if nobody said any.
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const EdgeId& id);
 [[nodiscard]] Result<std::optional<Standing>> LoadStanding(Store& store, const RobotId& robot, const SensorId& sensor);
 

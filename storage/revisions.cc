@@ -75,6 +75,9 @@ void Insert(Store& store, const Revision& revision, int number, const Blob& docu
   Query(store, "DELETE FROM waiting_verdict WHERE robot_id = ? AND policy_number <= ?")
       .Bind(revision.robot, revision.policy_watermark)
       .Run();
+  Query(store, "DELETE FROM waiting_rig_model WHERE robot_id = ? AND rig_model_number <= ?")
+      .Bind(revision.robot, revision.rig_model_watermark)
+      .Run();
 }
 
 }  // namespace
@@ -169,7 +172,8 @@ Result<std::map<SessionId, int>> LoadFirstRevisions(Store& store, const RobotId&
 Result<bool> IsUnsolved(Store& store, const RobotId& robot) {
   return Load<bool>(store, RevisionsSubject(robot), [&]() -> Result<bool> {
     return Query(store, kUnsolved).Bind(robot).Step() ||
-           Query(store, "SELECT 1 FROM waiting_verdict WHERE robot_id = ?").Bind(robot).Step();
+           Query(store, "SELECT 1 FROM waiting_verdict WHERE robot_id = ?").Bind(robot).Step() ||
+           Query(store, "SELECT 1 FROM waiting_rig_model WHERE robot_id = ?").Bind(robot).Step();
   });
 }
 

@@ -87,6 +87,13 @@ void InsertListed(Store& store, std::int64_t session_number) {
       .Bind(session_number)
       .Run();
   Query(store,
+        "INSERT OR IGNORE INTO sensor_part SELECT robot_id, json_extract(sensor.value, '$.id'), number, "
+        "json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware') FROM session, "
+        "json_each(session.manifest, '$.sensors') AS sensor WHERE number = ? AND "
+        "coalesce(json_extract(sensor.value, '$.serial'), json_extract(sensor.value, '$.firmware')) IS NOT NULL")
+      .Bind(session_number)
+      .Run();
+  Query(store,
         "INSERT INTO session_model SELECT robot_id, captured_ns, number, json_extract(manifest, '$.rig_model') "
         "FROM session WHERE number = ? AND json_extract(manifest, '$.rig_model') <> ''")
       .Bind(session_number)
@@ -247,31 +254,6 @@ Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorP
     if (!row) return Fail(ErrorCode::kNotFound, Subject(id) + " is not known", "Push the session folder.");
     return row->closed ? Status{} : Close(store, *row, pairs, now);
   });
-}
-
-namespace {
-
-Result<std::vector<Remount>> LoadNamedRemounts(Store& store, const RobotId& robot) {
-  return Load<std::vector<Remount>>(store, Subject(robot), [&]() -> Result<std::vector<Remount>> {
-    Query query(store,
-                "SELECT r.sensor_id, session.session_id, session.captured_ns FROM session_remount r "
-                "JOIN session ON session.number = r.session_number WHERE r.robot_id = ? "
-                "ORDER BY session.captured_ns, session.session_id, r.sensor_id");
-    query.Bind(robot);
-    std::vector<Remount> remounts;
-    while (query.Step()) remounts.push_back({query.IdAt<SensorId>(0), query.IdAt<SessionId>(1), query.Time(2)});
-    return remounts;
-  });
-}
-
-}  // namespace
-
-Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(std::vector<Remount> remounts, LoadNamedRemounts(store, robot));
-  if (remounts.empty()) return remounts;
-  RIGCAL_ASSIGN(const auto superseded, LoadSuperseded(store, robot));
-  std::erase_if(remounts, [&](const Remount& remount) { return superseded.contains(remount.session); });
-  return remounts;
 }
 
 Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot) {

@@ -64,15 +64,6 @@ struct HeldByAnother {
 // kConflict while a payload is not held.
 [[nodiscard]] Status CloseSession(Store& store, const SessionId& id, const std::vector<SensorPair>& pairs, Stamp now);
 
-struct Remount {
-  SensorId sensor;
-  SessionId session;
-  Stamp captured_at;
-};
-// Sensors that closed sessions of the robot name as remounted, the earliest captured first; superseded sessions do not
-// count.
-[[nodiscard]] Result<std::vector<Remount>> LoadRemounts(Store& store, const RobotId& robot);
-
 // All sensors that the closed sessions of a robot list, also those without an edge. Sorted.
 [[nodiscard]] Result<std::vector<SensorId>> LoadListedSensors(Store& store, const RobotId& robot);
 

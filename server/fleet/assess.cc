@@ -170,12 +170,13 @@ std::vector<Finding> FindWarnings(const std::vector<Edge>& edges, const GraphSol
 
 Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
-               const SessionHeaders& headers, const PairCovariances& pairs) {
+               const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
+               const std::set<SensorId>& retired) {
   const std::set<std::string> names = NamesOf(edges, solution);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
     return VerdictFrom(level, findings, names);
   };
-  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at);
+  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
   if (const auto moved = FindMovedWithin(estimates, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});

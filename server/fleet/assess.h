@@ -9,12 +9,14 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "server/base/stamp.h"
 #include "server/model/graph.h"
 #include "server/model/joint_poses.h"
 #include "server/model/policy.h"
+#include "server/model/rig_model.h"
 #include "server/model/session.h"
 #include "server/model/session_estimate.h"
 
@@ -33,10 +35,12 @@ using SessionTimes = std::map<SessionId, Stamp>;
 // the sessions of the edges, as far as they are known: what they say of boards and of nominal poses.
 using SessionHeaders = std::map<SessionId, SessionHeader>;
 // `edges`: all of the robot; `solution`: of them. `pairs`: how well those pairs that the policy names are known, by the
-// same solution, as far as they are.
+// same solution, as far as they are. `expected`: what the robot's rig model says of it, which warns; of sensors that are
+// `retired` nobody asks.
 [[nodiscard]] Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy = {},
                              const SessionTimes& captured_at = {}, const std::vector<SessionEstimate>& estimates = {},
-                             const SessionHeaders& headers = {}, const PairCovariances& pairs = {});
+                             const SessionHeaders& headers = {}, const PairCovariances& pairs = {},
+                             const ExpectedRig& expected = {}, const std::set<SensorId>& retired = {});
 
 // "statistic / limit" of one edge's residual: T^2 by the jackknife covariance of that residual where the solution has
 // it, else e^T Omega e (edge covariance minus what the solution explains is not used: conservative). limit is 0 where

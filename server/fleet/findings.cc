@@ -122,11 +122,15 @@ std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges) {
   for (const Edge& edge : edges)
     if (!IsPast(edge)) measured.insert(PairOf(edge));
   std::vector<std::string> past;
-  for (const Edge& edge : edges)
-    if (IsPast(edge) && edge.diagnoses.front().code == kRemountedCode && measured.insert(PairOf(edge)).second)
-      past.push_back(NameOfEdge(edge));
+  bool all_remounted = true;
+  for (const Edge& edge : edges) {
+    if (!IsOfEarlierEpoch(edge) || !measured.insert(PairOf(edge)).second) continue;
+    past.push_back(NameOfEdge(edge));
+    all_remounted = all_remounted && edge.diagnoses.front().code == kRemountedCode;
+  }
   if (past.empty()) return std::nullopt;
-  return Finding{List(past) + (past.size() == 1 ? " was" : " were") + " not measured since a sensor was remounted",
+  return Finding{List(past) + (past.size() == 1 ? " was" : " were") + " not measured since " +
+                     (all_remounted ? "a sensor was remounted" : "an epoch of a sensor began"),
                  "Push a session that calibrates " + List(past) + " anew"};
 }
 

@@ -101,7 +101,7 @@ struct Contradiction {
 [[nodiscard]] Finding FewCapturesBehind(const std::vector<SensorId>& sensors, const std::vector<Edge>& edges);
 // Of these, each of a pair of its own.
 [[nodiscard]] std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures);
-// Pairs that were measured before one of their sensors was remounted, and not since.
+// Pairs that were measured in an earlier epoch of one of their sensors, as before it was remounted, and not since.
 [[nodiscard]] std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges);
 // Pairs that were measured from fewer captures than the policy wants, as far as their edges say how many: those that
 // were pushed by the degrees of freedom, or the blocks, of their covariance.

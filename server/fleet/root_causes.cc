@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "server/fleet/rig_model/rig_causes.h"
+
 namespace rigcal::fleet {
 namespace {
 
@@ -14,12 +16,14 @@ bool IsWorse(const RootCause& x, const RootCause& y) {
 }  // namespace
 
 std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                      const SessionHeaders& headers, const SessionTimes& captured_at) {
+                                      const SessionHeaders& headers, const SessionTimes& captured_at,
+                                      const ExpectedRig& expected, const std::set<SensorId>& retired) {
   const SessionHeaders current = WithoutPast(headers, edges);
-  CauseSearch search{edges, solution, current, captured_at};
+  CauseSearch search{edges, solution, current, captured_at, expected, retired};
   search.open = FindOpenFailures(edges, captured_at);
   for (const auto find : {FindFileCauses, FindPositionsUnits, FindBoardCounts, FindExchanged, FindBoardSizes,
-                          FindLensModels, FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal, FindNotMeasured})
+                          FindLensModels, FindAlikeBoards, FindUnseenBoards, FindShortSessions, FindFarFromNominal, FindNotMeasured,
+                          FindSensorsMissing, FindPairsMissing, FindOffRigModel})
     find(search);
   std::stable_sort(search.causes.begin(), search.causes.end(), IsWorse);
   return std::move(search.causes);

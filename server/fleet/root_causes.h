@@ -9,6 +9,7 @@
 
 #include "server/fleet/failures.h"
 #include "server/fleet/findings.h"
+#include "server/model/rig_model.h"
 
 namespace rigcal::fleet {
 
@@ -26,7 +27,12 @@ enum class CauseKind {
   kShortSession,     // a session of a few captures
   kFarFromNominal,   // sensors that are not where the drawing has them; or two that sit where it has the other, for
                      // which it may be to blame as well
-  kNotMeasured       // sensors that no edge names
+  kNotMeasured,      // sensors that no edge names
+  kSensorMissing,    // sensors of the rig model that nothing of the robot names
+  kSensorKind,       // a sensor that is of another kind in the rig model
+  kPairMissing,      // pairs that the rig model requires, without a good edge
+  kOffRigModel,      // a sensor farther from where the rig model has it than its tolerance
+  kReferenceNotDrawn // the rig model has places, but none of the robot's reference
 };
 
 struct RootCause {
@@ -43,9 +49,11 @@ struct RootCause {
 
 // Sensors that are exchanged first, then by the number of edges that a cause explains. An edge has one cause, but where
 // lenses of both its cameras are to blame. `headers`: of the sessions of the edges; without them boards have no names,
-// and nothing is held against a drawing.
+// and nothing is held against a drawing. `expected`: of the robot's rig model; of sensors that are `retired` nobody asks.
 [[nodiscard]] std::vector<RootCause> FindRootCauses(const std::vector<Edge>& edges, const GraphSolution& solution,
-                                                    const SessionHeaders& headers, const SessionTimes& captured_at);
+                                                    const SessionHeaders& headers, const SessionTimes& captured_at,
+                                                    const ExpectedRig& expected = {},
+                                                    const std::set<SensorId>& retired = {});
 // The sentence and the action, with the command.
 [[nodiscard]] Finding FindingOf(const RootCause& cause);
 [[nodiscard]] std::set<EdgeId> ExplainedBy(const std::vector<RootCause>& causes);
@@ -56,6 +64,8 @@ struct CauseSearch {
   const GraphSolution& solution;
   const SessionHeaders& headers;
   const SessionTimes& captured_at;
+  const ExpectedRig& expected;
+  const std::set<SensorId>& retired;
   std::vector<const Edge*> open = {};
   std::vector<RootCause> causes = {};
 

@@ -35,6 +35,16 @@ const char* KindWord(CauseKind kind) {
       return "short_session";
     case CauseKind::kFarFromNominal:
       return "far_from_nominal";
+    case CauseKind::kSensorMissing:
+      return "sensor_missing";
+    case CauseKind::kSensorKind:
+      return "sensor_kind";
+    case CauseKind::kPairMissing:
+      return "pair_missing";
+    case CauseKind::kOffRigModel:
+      return "off_rig_model";
+    case CauseKind::kReferenceNotDrawn:
+      return "reference_not_drawn";
     case CauseKind::kNotMeasured:
       break;
   }

@@ -2,6 +2,7 @@
 
 #include "server/formats/answer_rows.h"
 #include "server/formats/as_found.h"
+#include "server/formats/rig_models/rig_model_answers.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
@@ -140,7 +141,7 @@ std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const Next
 }
 
 std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                         const std::vector<RetiredSensor>& retired) {
+                         const std::vector<RetiredSensor>& retired, const std::string& lacking) {
   return WriteObject([&](JsonWriter& out) {
     out.Object("session", [&] { WriteSessionMembers(out, session); });
     out.Object("manifest", [&] { WriteManifestMembers(out, manifest); });
@@ -148,6 +149,7 @@ std::string WriteSession(const SessionAnswer& session, const Manifest& manifest,
       for (const Edge& edge : edges) out.Object([&] { WriteEdgeRowMembers(out, edge, nullptr); });
     });
     WriteRetiredSensors(out, retired);
+    if (!lacking.empty()) out.Text("lacking", lacking);
   });
 }
 
@@ -209,10 +211,12 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
 }
 
 std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now, const std::optional<int>& next,
-                           const std::vector<Approval>& approvals, const std::map<int, AsFoundSummary>& as_found) {
+                           const std::vector<Approval>& approvals, const std::map<int, AsFoundSummary>& as_found,
+                           const std::vector<Epoch>& epochs) {
   return WriteObject([&](JsonWriter& out) {
     out.Text("robot", robot.str());
     if (next) *next > 0 ? out.Integer("next", *next) : out.Null("next");
+    WriteEpochs(out, epochs);
     out.List("revisions", [&] {
       for (std::size_t i = 0; i < revisions.size(); ++i)
         out.Object([&] {

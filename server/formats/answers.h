@@ -15,6 +15,7 @@
 #include "server/model/as_found.h"
 #include "server/model/audit.h"
 #include "server/model/decision.h"
+#include "server/model/epoch.h"
 #include "server/model/policy_version.h"
 #include "server/model/robot_summary.h"
 #include "server/model/standing.h"
@@ -46,9 +47,9 @@ struct SessionAnswer {
 };
 // A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
-// `retired`: of the sensors that it lists, those that are.
+// `retired`: of the sensors that it lists, those that are. `lacking`: what its rig model has and it does not, a sentence.
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                                       const std::vector<RetiredSensor>& retired = {});
+                                       const std::vector<RetiredSensor>& retired = {}, const std::string& lacking = {});
 
 // verbs retire, restore. Of a session, as it stands; `has_edges`: its robot, so that a revision follows.
 [[nodiscard]] std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges);
@@ -88,10 +89,11 @@ struct PolicyAnswer {
                                     const Approval& approval = {}, const std::optional<Runs>& runs = {},
                                     const std::optional<AsFound>& as_found = {});
 // verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
-// each revision. `as_found`: of those that have it.
+// each revision. `as_found`: of those that have it. `epochs`: all that began of the robot, the earliest first.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,
                                          const std::optional<int>& next = {}, const std::vector<Approval>& approvals = {},
-                                         const std::map<int, AsFoundSummary>& as_found = {});
+                                         const std::map<int, AsFoundSummary>& as_found = {},
+                                         const std::vector<Epoch>& epochs = {});
 
 // verb lookup
 struct LookupAnswer {

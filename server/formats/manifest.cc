@@ -53,6 +53,7 @@ void WriteSensor(JsonWriter& out, const Sensor& sensor) {
   out.Object([&] {
     sensor.T_ref_nominal ? WritePose(out, "T_ref_nominal", *sensor.T_ref_nominal) : out.Null("T_ref_nominal");
     if (sensor.layout) WriteLayout(out, *sensor.layout);
+    if (!sensor.firmware.empty()) out.Text("firmware", sensor.firmware);
     out.Text("id", sensor.id.str());
     WriteIntrinsics(out, sensor);
     // Only where it says more than the intrinsics and the default: what could be written before keeps its bytes.
@@ -60,6 +61,7 @@ void WriteSensor(JsonWriter& out, const Sensor& sensor) {
       out.Text("model", NameOf(sensor.camera_model));
     if (sensor.range_bias_sigma_m) out.Number("range_bias_sigma_m", *sensor.range_bias_sigma_m);
     sensor.sees ? out.Text("sees", sensor.sees->str()) : out.Null("sees");
+    if (!sensor.serial.empty()) out.Text("serial", sensor.serial);
     out.Text("type", NameOf(sensor.kind));
   });
 }
@@ -173,6 +175,8 @@ Sensor ReadSensor(const JsonField& field) {
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
   if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
   if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.At("point_type"));
+  if (const auto serial = field.Find("serial")) sensor.serial = serial->Text();
+  if (const auto firmware = field.Find("firmware")) sensor.firmware = firmware->Text();
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T, kUnitTolerance);
   return sensor;
 }

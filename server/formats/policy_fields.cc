@@ -73,6 +73,7 @@ void WritePolicyMembers(JsonWriter& out, const PolicyInForce& in_force) {
     out.Integer("robot", in_force.robot);
   });
   in_force.rig_model.empty() ? out.Null("rig_model") : out.Text("rig_model", in_force.rig_model);
+  if (in_force.rig_model_version > 0) out.Integer("rig_model_version", in_force.rig_model_version);
   out.Object("all", [&] { WriteLimitWords(out, policy.all); });
   WriteLimitsOfSome(out, policy);
   if (policy.residual_max_m) out.Number("residual_max_m", *policy.residual_max_m);
@@ -92,6 +93,7 @@ PolicyInForce ReadPolicyMembers(const JsonField& field) {
   in_force.model = versions.At("model").Integer(0, INT64_MAX);
   in_force.robot = versions.At("robot").Integer(0, INT64_MAX);
   if (const auto model = field.Find("rig_model")) in_force.rig_model = model->Text();
+  if (const auto version = field.Find("rig_model_version")) in_force.rig_model_version = version->Integer(0, INT64_MAX);
   Policy& policy = in_force.policy;
   policy.all = ReadLimitWords(field.At("all"));
   ReadLimitsOfSome(field, policy);

@@ -90,7 +90,8 @@ CloudLayout ReadLayout(const YamlField& fields, const std::optional<YamlField>& 
 
 Sensor ReadSensor(const YamlField& field) {
   field.AllowOnly(
-      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "fields", "point_type", "T_ref_nominal"});
+      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "fields", "point_type", "serial", "firmware",
+       "T_ref_nominal"});
   Sensor sensor;
   sensor.id = SensorId(field.Key());
   const YamlField type = field.At("type");
@@ -107,6 +108,8 @@ Sensor ReadSensor(const YamlField& field) {
   if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.Find("point_type"));
   if (const auto point_type = field.Find("point_type"); point_type && !sensor.layout)
     point_type->Refuse("is given without fields", "Name what a point holds, such as fields: [x, y, z, intensity].");
+  sensor.serial = TextOr(field, "serial", "");
+  sensor.firmware = TextOr(field, "firmware", "");
   if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T);
   if (const Status valid = Validate(sensor); !valid) field.Refuse(valid.error());
   return sensor;

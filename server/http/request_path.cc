@@ -76,7 +76,9 @@ std::optional<std::string> WithSlash(const std::string& path) {
   const bool is_robot = segments.size() == 2 && segments[0] == "robots" && RobotId::Parse(segments[1]).has_value();
   const bool is_experiment = !segments.empty() && segments.size() <= 2 && segments[0] == "experiments" &&
                              (segments.size() == 1 || CheckName("experiment", segments[1]).has_value());
-  if (!is_robot && !is_experiment && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
+  const bool is_model = !segments.empty() && segments.size() <= 2 && segments[0] == "models" &&
+                        (segments.size() == 1 || CheckName("rig model", segments[1]).has_value());
+  if (!is_robot && !is_experiment && !is_model && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
   return path + "/";
 }
 

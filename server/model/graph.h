@@ -148,6 +148,8 @@ struct Revision {
   std::optional<Stamp> calibrated_at = {};  // newest capture of its good edges (of pushed ones: stored); absent: none
   // By what it was judged: the number of the newest policy of all (policy_version.h), and the age that it allows.
   std::int64_t policy_watermark = 0, max_age_ns = kDefaultMaxAge_ns;
+  // Likewise number of the newest of all rig models (rig_model.h); not kept, as the document has the version of its own.
+  std::int64_t rig_model_watermark = 0;
 };
 
 }  // namespace rigcal

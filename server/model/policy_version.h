@@ -35,6 +35,7 @@ struct PolicyInForce {
   Policy policy;
   std::string rig_model;                         // as its newest session says; empty: none does
   std::int64_t fleet = 0, model = 0, robot = 0;  // versions; 0: nobody has set one
+  std::int64_t rig_model_version = 0;            // of the rig model as it was set (rig_model.h); 0: nobody has set it
   std::int64_t watermark = 0;                    // number of the newest of all: what was set later is not in it
 };
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "server/base/text.h"
 #include "server/model/plausible.h"
 #include "server/model/session.h"
 
@@ -93,6 +95,15 @@ Status CheckNominalPose(const Sensor& sensor) {
   return {};
 }
 
+Status CheckPart(const Sensor& sensor) {
+  constexpr std::size_t kPartBytesMax = 256;
+  for (const auto& [name, text] : {std::pair{"serial", &sensor.serial}, std::pair{"firmware", &sensor.firmware}})
+    if (text->size() > kPartBytesMax || !IsPrintableUtf8(*text))
+      return Refuse(sensor, std::string(name) + " " + Quoted(*text) + " is not one line of readable text",
+                    "Use at most " + std::to_string(kPartBytesMax) + " bytes of UTF-8 without control characters.");
+  return {};
+}
+
 }  // namespace
 
 Status Validate(const Sensor& sensor) {
@@ -102,6 +113,7 @@ Status Validate(const Sensor& sensor) {
   RIGCAL_TRY(CheckIntrinsicsSigma(sensor));
   RIGCAL_TRY(CheckRangeBias(sensor));
   RIGCAL_TRY(CheckLayout(sensor));
+  RIGCAL_TRY(CheckPart(sensor));
   return CheckNominalPose(sensor);
 }
 

@@ -38,6 +38,9 @@ struct Sensor {
   std::optional<TargetId> sees;       // the one target this sensor looks at; absent: any
   std::optional<Se3> T_ref_nominal;   // CAD pose of the sensor in the reference sensor
   std::optional<CloudLayout> layout;  // of a lidar: of its .bin files; absent: KITTI's, where a file leaves no doubt
+  // Of the part that is mounted there, one line each; empty: not told. Where it is another one than on the visit before,
+  // an epoch of the sensor begins (epoch.h).
+  std::string serial = {}, firmware = {};
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
 

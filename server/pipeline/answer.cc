@@ -18,6 +18,8 @@
 #include "server/pipeline/names.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/report_files.h"
+#include "server/pipeline/rig_models/population.h"
+#include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
 #include "server/pipeline/summaries.h"
@@ -51,7 +53,8 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   const Manifest manifest = std::move(stored).value_or(Manifest{});
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, id));
   RIGCAL_ASSIGN(const auto retired, LoadRetiredSensorsIn(context.store, row.robot, manifest));
-  return formats::WriteSession(row, manifest, edges, retired);
+  RIGCAL_ASSIGN(const std::string lacking, LoadLacking(context.store, row.robot, manifest.header));
+  return formats::WriteSession(row, manifest, edges, retired, lacking);
 }
 
 // Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids were kept.
@@ -242,6 +245,18 @@ Result<std::string> TellPolicyAsked(const AnswerContext& context, const Paramete
   return TellPolicy(context.store, parameters);
 }
 
+Result<std::string> TellRigModelAsked(const AnswerContext& context, const Parameters& parameters) {
+  return TellRigModel(context.store, parameters);
+}
+
+Result<std::string> ListRigModelsAsked(const AnswerContext& context, const Parameters&) {
+  return ListRigModels(context.store);
+}
+
+Result<std::string> TellPopulationAsked(const AnswerContext& context, const Parameters& parameters) {
+  return TellPopulation(context.store, parameters);
+}
+
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   if (!robot.empty()) RIGCAL_TRY(KnownRobot(context.store, parameters));
@@ -310,6 +325,9 @@ const std::map<std::string, Verb>& Verbs() {
       {"known_files", TellKnownFiles},
       {"status", OfStatus},
       {"policy", TellPolicyAsked},
+      {"rig_model", TellRigModelAsked},
+      {"rig_models", ListRigModelsAsked},
+      {"population", TellPopulationAsked},
       {"audit", ListAudit},
       {"audit_verify", VerifyAudit},
       {"due", Due},

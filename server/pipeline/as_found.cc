@@ -79,10 +79,10 @@ Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use
 std::set<SensorId> MovedOnPurpose(const SessionSet& sessions, const InUse& in_use, const CurrentEdges& current) {
   const std::vector<SessionId>& known = in_use.told.solution.fused.sessions;
   std::set<SensorId> moved;
-  for (const storage::Remount& remount : current.counts.remounts) {
-    const bool is_known = std::find(known.begin(), known.end(), remount.session) != known.end();
-    const bool is_later = in_use.revision.calibrated_at && remount.captured_at >= *in_use.revision.calibrated_at;
-    if (sessions.contains(remount.session) || (is_later && !is_known)) moved.insert(remount.sensor);
+  for (const Epoch& epoch : current.counts.epochs) {
+    const bool is_known = std::find(known.begin(), known.end(), epoch.session) != known.end();
+    const bool is_later = in_use.revision.calibrated_at && epoch.begins_at >= *in_use.revision.calibrated_at;
+    if (sessions.contains(epoch.session) || (is_later && !is_known)) moved.insert(epoch.sensor);
   }
   return moved;
 }

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "server/base/limits.h"
-#include "server/pipeline/remounts.h"
+#include "server/pipeline/epochs.h"
 #include "storage/sessions.h"
 
 namespace rigcal::pipeline {
@@ -119,9 +119,9 @@ CloudChoice ChoiceOf(const SensorId& lidar, const Se3& T_ref_lidar, const Payloa
 }
 
 // Those that are still where they were at the session.
-Poses StillThere(const Poses& poses, const SessionId& session, const Remounts& remounts) {
+Poses StillThere(const Poses& poses, const SessionId& session, const Epochs& epochs) {
   Poses still = poses;
-  std::erase_if(still, [&](const auto& pose) { return remounts.After(session, pose.first) != nullptr; });
+  std::erase_if(still, [&](const auto& pose) { return epochs.After(session, pose.first) != nullptr; });
   return still;
 }
 
@@ -166,12 +166,12 @@ std::optional<CameraIntrinsics> EstimatedIntrinsics(const Edge& edge, const Sens
 Result<CloudChoices> ChooseClouds(storage::Store& store, const formats::RevisionInput& revision) {
   const Poses poses = KnownPoses(revision);
   RIGCAL_ASSIGN(const std::vector<SessionId> sessions, SessionsOf(store, revision));
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, revision.robot));
+  RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, revision.robot));
   for (const SessionId& session : sessions) {
     RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, session));
     if (!manifest) continue;
     CloudChoices choices{std::make_shared<const Manifest>(std::move(*manifest)), {}};
-    choices.lidars = ChoicesIn(*choices.manifest, session, StillThere(poses, session, remounts), revision);
+    choices.lidars = ChoicesIn(*choices.manifest, session, StillThere(poses, session, epochs), revision);
     if (!choices.lidars.empty()) return choices;
   }
   return CloudChoices{};

@@ -1,9 +1,11 @@
 #include "server/pipeline/current_edges.h"
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "server/model/past.h"
-#include "server/pipeline/remounts.h"
+#include "server/pipeline/epochs.h"
 #include "storage/edges.h"
 #include "storage/merged_edges.h"
 
@@ -59,23 +61,50 @@ void MakePastWhatWasRetired(const storage::WhatCounts& counts, Edge& edge) {
   if (const auto found = counts.retired.find(edge.id); found != counts.retired.end()) MakePast(found->second.word, edge);
 }
 
-void MakePast(const storage::Remount& remount, Edge& edge) {
-  MakePast(kRemountedCode,
-           "sensor " + remount.sensor.str() + " was remounted after this was measured, says session " +
-               remount.session.str().substr(0, 16),
+std::string WhyEpoch(const Epoch& epoch) {
+  const std::string by_session = ", says session " + epoch.session.str().substr(0, 16);
+  if (epoch.cause == EpochCause::kRemounted)
+    return "sensor " + epoch.sensor.str() + " was remounted after this was measured" + by_session;
+  if (epoch.cause == EpochCause::kPerson)
+    return TextOf(epoch) + " (" + ToIso(epoch.begins_at) + "), after this was measured";
+  return TextOf(epoch) + ", when this was measured" + by_session;
+}
+
+void MakePast(const Epoch& epoch, Edge& edge) {
+  MakePast(epoch.cause == EpochCause::kRemounted ? kRemountedCode : kEpochCode, WhyEpoch(epoch),
            "Where no later session measured this pair, measure it anew; where one did, that one counts.", edge);
 }
 
-Status MakePastWhatWasRemounted(storage::Store& store, const std::vector<storage::Remount>& all, std::vector<Edge>& edges) {
+// Of edges of which nobody knows when they were measured: when they were stored, where a person began an epoch.
+Result<std::map<EdgeId, Stamp>> StoredAt(storage::Store& store, const std::vector<Epoch>& epochs,
+                                         const std::vector<Edge>& edges) {
+  std::map<EdgeId, Stamp> stored_at;
+  const auto by_person = [](const Epoch& epoch) { return epoch.cause == EpochCause::kPerson; };
+  if (std::none_of(epochs.begin(), epochs.end(), by_person)) return stored_at;
+  std::vector<Edge> undated;
+  for (const Edge& edge : edges)
+    if (edge.session.empty() && !edge.measured_at && edge.state == EdgeState::kGood) undated.push_back(edge);
+  if (undated.empty()) return stored_at;
+  return storage::LoadMeasuredAt(store, undated);
+}
+
+const Epoch* EpochAfter(const Epochs& epochs, const std::map<EdgeId, Stamp>& stored_at, const Edge& edge,
+                        const SensorId& sensor) {
+  if (edge.measured_at) return epochs.After(*edge.measured_at, sensor);
+  const auto stored = stored_at.find(edge.id);
+  return stored == stored_at.end() ? epochs.After(edge.session, sensor) : epochs.SaidAfter(stored->second, sensor);
+}
+
+Status MakePastWhatIsOfEarlierEpochs(storage::Store& store, const std::vector<Epoch>& all, std::vector<Edge>& edges) {
   std::set<SessionId> sessions;
   for (const Edge& edge : edges)
     if (!edge.session.empty()) sessions.insert(edge.session);
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, {sessions.begin(), sessions.end()}, all));
+  RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, {sessions.begin(), sessions.end()}, all));
+  RIGCAL_ASSIGN(const auto stored_at, StoredAt(store, all, edges));
   for (Edge& edge : edges)
     for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) {
-      const auto* remount =
-          edge.measured_at ? remounts.After(*edge.measured_at, sensor) : remounts.After(edge.session, sensor);
-      if (remount != nullptr && edge.state == EdgeState::kGood) MakePast(*remount, edge);
+      const Epoch* epoch = EpochAfter(epochs, stored_at, edge, sensor);
+      if (epoch != nullptr && edge.state == EdgeState::kGood) MakePast(*epoch, edge);
     }
   return {};
 }
@@ -88,7 +117,7 @@ Status MarkPast(storage::Store& store, const storage::WhatCounts& counts, std::v
     MakePastWhatWasRetired(counts, edge);
   }
   SupersedeWhatWasRunAgain(edges);
-  return MakePastWhatWasRemounted(store, counts.remounts, edges);
+  return MakePastWhatIsOfEarlierEpochs(store, counts.epochs, edges);
 }
 
 Result<CurrentEdges> LoadCurrentEdges(storage::Store& store, const RobotId& robot, storage::EdgeParts parts) {

@@ -10,6 +10,7 @@
 #include "server/pipeline/robot_rows.h"
 #include "storage/as_found.h"
 #include "storage/edges.h"
+#include "storage/epochs.h"
 #include "storage/merged_edges.h"
 #include "storage/revisions.h"
 
@@ -60,6 +61,16 @@ Result<std::vector<Edge>> LoadAll(storage::Store& store, const RobotId& robot) {
   return edges;
 }
 
+// Of one moment.
+Result<std::vector<Epoch>> LoadEpochsTogether(storage::Store& store, const RobotId& robot) {
+  std::vector<Epoch> epochs;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(epochs, storage::LoadEpochs(store, robot));
+    return {};
+  }));
+  return epochs;
+}
+
 }  // namespace
 
 Result<std::string> ListSessions(const AnswerContext& context, const Parameters& parameters) {
@@ -103,7 +114,11 @@ Result<std::string> ListRevisions(const AnswerContext& context, const Parameters
   for (const Revision& revision : revisions) numbers.push_back(revision.number);
   RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFoundSummaries(context.store, robot, numbers));
   RIGCAL_ASSIGN(const auto approvals, LoadApprovals(context.store, robot, revisions));
-  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals, as_found);
+  std::vector<Epoch> epochs;
+  if (before == 0) {
+    RIGCAL_ASSIGN(epochs, LoadEpochsTogether(context.store, robot));
+  }
+  return formats::WriteRevisions(robot, revisions, context.clock.Now(), next, approvals, as_found, epochs);
 }
 
 }  // namespace rigcal::pipeline

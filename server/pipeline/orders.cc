@@ -6,6 +6,8 @@
 #include "server/pipeline/next_reference.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/revise.h"
+#include "server/pipeline/rig_models/begin_epoch.h"
+#include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/subject.h"
 #include "storage/edges.h"
@@ -81,13 +83,16 @@ bool IsDecision(const std::string& verb) { return verb == "approve" || verb == "
 }  // namespace
 
 bool IsOrder(const std::string& verb) {
-  return verb == "restore" || verb == "retire" || verb == "set_policy" || IsDecision(verb);
+  return verb == "restore" || verb == "retire" || verb == "set_policy" || verb == "set_rig_model" ||
+         verb == "epoch" || IsDecision(verb);
 }
 
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                            const std::string& json) {
   RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
   if (verb == "set_policy") return SetPolicy(store, clock, parameters);
+  if (verb == "set_rig_model") return SetRigModel(store, clock, parameters);
+  if (verb == "epoch") return BeginEpochBy(store, clock, parameters);
   if (IsDecision(verb)) return Decide(store, clock, verb, parameters);
   RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
   OrderDone done;

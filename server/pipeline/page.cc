@@ -4,6 +4,7 @@
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/experiments.h"
+#include "server/pipeline/rig_models/model_pages.h"
 #include "server/pipeline/robot_pages.h"
 #include "server/pipeline/summaries.h"
 #include "server/report/assets.h"
@@ -95,7 +96,8 @@ PageText Healthz(const AnswerContext& context) {
 }  // namespace
 
 Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
-  const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/";
+  const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/",
+                    models = "/models/";
   if (path == "/") return Fleet(context, query);
   if (path == "/fleet.csv") return FleetAsCsv(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
@@ -104,6 +106,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path == "/metrics") return Metrics(context);
   if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
   if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);
+  if (path.rfind(models, 0) == 0) return AnswerModelPage(context, path.substr(models.size()));
   if (path.rfind(experiments, 0) == 0) return AnswerExperiments(context, path.substr(experiments.size()));
   return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots.");
 }

@@ -22,6 +22,7 @@
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
 #include "server/pipeline/policies.h"
+#include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
 #include "storage/as_found.h"
@@ -40,6 +41,12 @@ std::vector<RetiredSensor> GoneOf(const storage::WhatCounts& counts) {
   std::vector<RetiredSensor> gone;
   for (const auto& [sensor, standing] : counts.retired_sensors) gone.push_back({sensor, standing.word});
   return gone;
+}
+
+std::set<SensorId> SetOf(const std::vector<RetiredSensor>& gone) {
+  std::set<SensorId> sensors;
+  for (const RetiredSensor& one : gone) sensors.insert(one.sensor);
+  return sensors;
 }
 
 std::vector<SensorId> SensorsOf(const std::vector<RetiredSensor>& gone) {
@@ -114,6 +121,7 @@ struct RobotEdges {
   SensorId reference;
   std::int64_t watermark = 0, standing_watermark = 0;
   PolicyInForce policy;
+  ExpectedRig expected;  // of its rig model
 };
 
 // What ties sensors: edges that count, and sessions that were refined as a whole.
@@ -168,6 +176,8 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) 
     RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
     for (const storage::SessionRow& session : open) loaded.unfinished.insert(session.id);
     RIGCAL_ASSIGN(loaded.policy, LoadPolicyInForce(store, {PolicyScope::kRobot, robot.str()}));
+    RIGCAL_ASSIGN(loaded.expected, LoadExpectedRig(store, loaded.policy.rig_model));
+    loaded.policy.rig_model_version = loaded.expected.version;
     return {};
   }));
   TakeFocals(store, loaded.current.edges, loaded.headers, loaded.captured_at, loaded.policy.policy);
@@ -251,7 +261,8 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
                                                           input.solution, honest.jackknife);
   input.verdict = pairs_waiting > 0 ? NotJudged(pairs_waiting)
                                     : fleet::Assess(loaded.edges, input.solution, edges.policy.policy,
-                                                    edges.captured_at, edges.refined.estimates, edges.headers, pairs);
+                                                    edges.captured_at, edges.refined.estimates, edges.headers, pairs,
+                                                    edges.expected, SetOf(edges.gone));
   input.policy = edges.policy;
   input.edges = std::move(loaded.edges);
   return input;
@@ -259,7 +270,8 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
 
 // What failed pairs have in common goes into the revision; its keys, by which robots are counted, come back.
 std::vector<std::string> TakeCauses(const RobotEdges& loaded, formats::RevisionInput& input) {
-  const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at);
+  const auto causes = fleet::FindRootCauses(input.edges, input.solution, loaded.headers, loaded.captured_at,
+                                            loaded.expected, SetOf(loaded.gone));
   input.causes = fleet::ToldCauses(causes);
   return fleet::CauseKeysOf(causes, input.edges, loaded.captured_at);
 }
@@ -304,7 +316,10 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   revision.digest = Sha256Of(revision.document);
   revision.edge_watermark = loaded.watermark;
   revision.standing_watermark = loaded.standing_watermark;
-  if (pairs_waiting == 0) revision.policy_watermark = loaded.policy.watermark;  // else it is still to be judged
+  if (pairs_waiting == 0) {  // else it is still to be judged
+    revision.policy_watermark = loaded.policy.watermark;
+    revision.rig_model_watermark = loaded.expected.watermark;
+  }
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));

@@ -12,6 +12,7 @@
 #include "server/pipeline/compared_lenses.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
+#include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
 #include "server/pipeline/unreadable.h"
@@ -19,7 +20,9 @@
 #include "server/report/robot_pages.h"
 #include "storage/blobs.h"
 #include "storage/edges.h"
+#include "storage/epochs.h"
 #include "storage/fleet_facts.h"
+#include "storage/policies.h"
 #include "storage/retired.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
@@ -159,6 +162,11 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, c
   RIGCAL_TRY(TakeListedSessions(context, robot, sessions_before, input));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(context.store, robot));
   for (const auto& [sensor, standing] : gone) input.retired.push_back({sensor, standing.word});
+  RIGCAL_TRY(context.store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(input.epochs, storage::LoadEpochs(context.store, robot));
+    RIGCAL_ASSIGN(input.rig_model, storage::LoadRigModel(context.store, robot));
+    return {};
+  }));
   RIGCAL_ASSIGN(input.sensors, TrendSensors(context, robot, input.row.revision));
   RIGCAL_ASSIGN(std::string body, report::RenderRobot(input, now));
   return PageText{std::move(body), kHtmlType};
@@ -224,6 +232,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(context.store, row.session));
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.retired, LoadRetiredSensorsIn(context.store, robot, input.manifest));
+  RIGCAL_ASSIGN(input.lacking, LoadLacking(context.store, robot, input.manifest.header));
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(input.past, WhyPast(context, robot, input.edges));
   if (input.row.closed && input.row.pairs_waiting == 0) {

@@ -10,7 +10,7 @@
 #include "server/model/method.h"
 #include "server/model/past.h"
 #include "server/pipeline/pose_inputs.h"
-#include "server/pipeline/remounts.h"
+#include "server/pipeline/epochs.h"
 #include "server/pipeline/sightings.h"
 #include "storage/edges.h"
 #include "storage/jobs.h"
@@ -194,12 +194,12 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
   for (storage::SessionEstimateRow& row : rows)
     if (row.estimate && Counts(row.session, current.counts)) result.estimates.push_back(std::move(*row.estimate));
   RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
-  RIGCAL_ASSIGN(const Remounts remounts, Remounts::Load(store, SessionsOf(result.estimates), current.counts.remounts));
+  RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, SessionsOf(result.estimates), current.counts.epochs));
   const SessionSensors counting = SensorsThatCount(current, result.within);
   for (SessionEstimate& estimate : result.estimates) {
     const SessionId& session = estimate.session;
     std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
-      return remounts.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
+      return epochs.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
     });
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
     LeaveOutGone(current.counts.retired_sensors, estimate);

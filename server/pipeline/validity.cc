@@ -8,6 +8,7 @@
 #include "storage/attempts.h"
 #include "storage/decisions.h"
 #include "storage/edges.h"
+#include "storage/epochs.h"
 #include "storage/jobs.h"
 #include "storage/retired.h"
 #include "storage/revisions.h"
@@ -18,13 +19,17 @@
 namespace rigcal::pipeline {
 namespace {
 
-// Whether a session that came after `solved_at` says that a sensor was moved on purpose, which is not gone since.
-Result<bool> WasRemountedAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
-  RIGCAL_ASSIGN(const auto remounts, storage::LoadRemounts(store, robot));
+// Whether an epoch of a sensor, which is not gone since, began by what was said after `solved_at`: by a session that came
+// later, or by a person.
+Result<bool> BeganEpochAfter(storage::Store& store, const RobotId& robot, Stamp solved_at) {
+  RIGCAL_ASSIGN(const auto epochs, storage::LoadEpochs(store, robot));
   RIGCAL_ASSIGN(const auto gone, storage::LoadRetiredSensors(store, robot));
   std::set<SessionId> named;
-  for (const storage::Remount& remount : remounts)
-    if (!gone.contains(remount.sensor)) named.insert(remount.session);
+  for (const Epoch& epoch : epochs) {
+    if (gone.contains(epoch.sensor)) continue;
+    if (epoch.cause != EpochCause::kPerson) named.insert(epoch.session);
+    if (epoch.cause == EpochCause::kPerson && epoch.word.at > solved_at) return true;
+  }
   for (const SessionId& id : named) {
     RIGCAL_ASSIGN(const auto session, storage::LoadSession(store, id));
     if (session && session->closed_at > solved_at) return true;
@@ -73,8 +78,8 @@ Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const Ro
   if (newest && newest->number == in_use->revision) return UsableRevision{newest->number, newest->created_at};
   RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot));
   if (!usable) return std::nullopt;
-  RIGCAL_ASSIGN(const bool remounted, WasRemountedAfter(store, robot, usable->created_at));
-  if (remounted) return std::nullopt;
+  RIGCAL_ASSIGN(const bool began_epoch, BeganEpochAfter(store, robot, usable->created_at));
+  if (began_epoch) return std::nullopt;
   RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, robot, usable->created_at));
   if (gave_way) return std::nullopt;
   return UsableRevision{usable->number, usable->created_at};

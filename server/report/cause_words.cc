@@ -31,6 +31,11 @@ constexpr std::array kPhrases = {
     Phrase{"short_session", "session of a few captures"},
     Phrase{"far_from_nominal", "{} not where the drawing has it"},
     Phrase{"not_measured", "{} not measured"},
+    Phrase{"sensor_missing", "{} in the rig model but not on the robot"},
+    Phrase{"sensor_kind", "{} of another kind than in the rig model"},
+    Phrase{"pair_missing", "required pairs of {} not calibrated"},
+    Phrase{"off_rig_model", "{} not where the rig model has it"},
+    Phrase{"reference_not_drawn", "{} without a place in the rig model"},
 };
 
 constexpr std::string_view kDisputed = "disputed";  // of a board's size: lidars and trackers do not agree

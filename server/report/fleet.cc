@@ -174,6 +174,7 @@ Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list,
     return Expand("fleet.tpl", page);
   }
   FillSummary(page, fleet);
+  page.ShowSection("RIG_MODELS");
   FillWorkLists(page, fleet);
   Dictionary* robots = page.AddSectionDictionary("ROBOTS");
   FillForm(*robots, query);

@@ -4,6 +4,7 @@
 #include "server/report/assets.h"
 #include "server/report/banner.h"
 #include "server/report/choices.h"
+#include "server/report/models/model_pages.h"
 #include "server/report/page.h"
 #include "server/report/retired_section.h"
 #include "server/report/robot_pages.h"
@@ -13,6 +14,7 @@ namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kOpenSessionsMax = 5;
+constexpr std::size_t kEpochsMax = 50;
 
 // The ways to other pages of a list.
 void FillPages(Dictionary& list, bool is_newest, const std::string& last_shown) {
@@ -123,6 +125,31 @@ void FillGoneSensors(Dictionary& page, const RobotInput& input) {
   if (!input.retired.empty()) FillGone(*page.AddSectionDictionary("GONE_SENSORS"), input.row.robot, input.retired);
 }
 
+void FillEpochs(Dictionary& page, const std::vector<Epoch>& epochs) {
+  if (epochs.empty()) return;
+  Dictionary* list = page.AddSectionDictionary("EPOCHS");
+  const std::size_t shown = std::min(epochs.size(), kEpochsMax);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const Epoch& epoch = epochs[epochs.size() - 1 - i];
+    Dictionary* row = list->AddSectionDictionary("EPOCH");
+    row->SetValue("TIME", TimeText(epoch.begins_at));
+    row->SetValue("TEXT", TextOf(epoch));
+    if (epoch.session.empty()) continue;
+    Dictionary* session = row->AddSectionDictionary("SESSION");
+    session->SetValue("ID", epoch.session.str());
+    session->SetValue("SHORT", ShortDigest(epoch.session.str()));
+  }
+  if (shown < epochs.size())
+    ShowValue(*list, "MORE", "TEXT", std::to_string(epochs.size() - shown) + " older ones: `rigcal history` lists all.");
+}
+
+void FillRigModel(Dictionary& page, const std::string& rig_model) {
+  if (rig_model.empty()) return;
+  Dictionary* model = page.AddSectionDictionary("MODEL");
+  model->SetValue("NAME", rig_model);
+  model->SetValue("PATH", PathOfRigModel(rig_model));
+}
+
 // The way on: the newest report, and what is different in it.
 void FillNewest(Dictionary& page, int number) {
   if (number == 0) return;
@@ -154,6 +181,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
                                          : "Calibrated " + AgeOf(*row.validity.calibrated_at, now)) +
                                ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
                                Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
+  FillRigModel(page, input.rig_model);
   FillBanner(page, row.verdict, row.validity, row.revision > 0);
   if ((row.validity.calculating || !row.validity.given_up.empty()) && row.revision > 0) {
     Dictionary* newer = page.AddSectionDictionary("NEWER");
@@ -166,6 +194,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   FillNewest(page, row.revision);
   FillOpenOnes(page, input.open);
   FillSessions(page, input, now);
+  FillEpochs(page, input.epochs);
   FillGoneSensors(page, input);
   FillRevisions(page, input, now);
   FillCompare(page, row.revision);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/model/decision.h"
+#include "server/model/epoch.h"
 #include "server/model/projection_map.h"
 #include "server/model/standing.h"
 #include "server/report/render.h"
@@ -38,6 +39,8 @@ struct RobotInput {
   bool newest_revisions = true, newest_sessions = true;  // the page is the first
   std::vector<RetiredSensor> retired = {};
   Approval approval = {};                     // of the newest revision
+  std::string rig_model = {};                 // as the newest session says; empty: none does
+  std::vector<Epoch> epochs = {};             // that began, the earliest first
   std::map<int, RevisionState> states = {};  // of `revisions`
 };
 // /robots/<id>/. Ages are as of `now`.
@@ -76,6 +79,7 @@ struct SessionInput {
   std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
   bool all_looked_at = true;                                              // for that; else there may be more
   std::vector<RetiredSensor> retired = {};                                // of the sensors that it lists
+  std::string lacking = {};  // what its rig model has and it does not list, as a sentence; empty: nothing
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

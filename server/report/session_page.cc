@@ -160,6 +160,17 @@ void FillFacts(Dictionary& page, const SessionInput& input) {
   }
 }
 
+// Serial numbers and firmware, as far as the session tells them.
+void FillPartsOfSensors(Dictionary& page, const SessionHeader& header) {
+  for (const Sensor& sensor : header.sensors) {
+    if (sensor.serial.empty() && sensor.firmware.empty()) continue;
+    Dictionary* part = page.AddSectionDictionary("PART_OF");
+    part->SetValue("NAME", sensor.id.str());
+    if (!sensor.serial.empty()) ShowValue(*part, "SERIAL", "TEXT", sensor.serial);
+    if (!sensor.firmware.empty()) ShowValue(*part, "FIRMWARE", "TEXT", sensor.firmware);
+  }
+}
+
 }  // namespace
 
 Result<std::string> RenderSession(const SessionInput& input) {
@@ -172,6 +183,8 @@ Result<std::string> RenderSession(const SessionInput& input) {
   FillFacts(page, input);
   FillOutcome(page, input);
   FillGone(page, input.robot, input.retired);
+  if (!input.lacking.empty()) ShowValue(page, "LACKING", "TEXT", input.lacking);
+  FillPartsOfSensors(page, input.manifest.header);
   if (input.row.closed && !input.row.retired) ShowValue(page, "MISLEADS", "COMMAND", RetireCommand(input.row.id));
   FillEdges(page, input);
   FillSheet(page, input);

@@ -45,6 +45,8 @@ TEST(Completion, OfVerbsWithTheirMeaning) {
   EXPECT_THAT(WordsAfter({""}), Contains("simulate"));
   EXPECT_THAT(WordsAfter({"policy", ""}), ElementsAre("show", "check", "set"));
   EXPECT_THAT(WordsAfter({"policy", "check", ""}), ElementsAre(":files"));
+  EXPECT_THAT(WordsAfter({"model", ""}), ElementsAre("show", "list", "check", "set"));
+  EXPECT_THAT(WordsAfter({"model", "set", ""}), ElementsAre(":files"));
   EXPECT_THAT(WordsAfter({""}), Not(Contains("complete-words")));
   EXPECT_THAT(WordsAfter({"--domain", "3", "stat"}), ElementsAre("status"));
   EXPECT_THAT(WordsAfter({}), Contains("show"));

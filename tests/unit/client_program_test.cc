@@ -35,7 +35,8 @@ Ran Rigcal(const std::string& arguments) {
 
 const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
                                          "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate",
-                                         "completion", "policy", "audit", "approve", "reject", "rollback", "agent"};
+                                         "completion", "policy", "audit", "approve", "reject", "rollback", "agent",
+                                         "model",      "fleet",  "epoch"};
 
 TEST(Program, HelpOfEveryVerbHasExamples) {
   const Ran top = Rigcal("--help");

@@ -19,4 +19,4 @@ rigcal_test(formats_cloud_pcl_test SOURCES unit/formats_cloud_pcl_test.cc DEPS r
 set_target_properties(formats_cloud_pcl_test PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # Qt asks for -fPIC
 target_include_directories(formats_cloud_pcl_test SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
 rigcal_test(formats_limits_text_test SOURCES unit/formats_limits_text_test.cc DEPS rigcal_formats)
-rigcal_test(formats_policy_test SOURCES unit/formats_policy_test.cc DEPS rigcal_formats)
+rigcal_test(formats_policy_test SOURCES unit/formats_policy_test.cc unit/formats/rig_model_test.cc unit/formats/parts_test.cc DEPS rigcal_formats)

@@ -38,6 +38,8 @@ TEST(HttpPath, PagesWithoutTheirLastSlash) {
   EXPECT_EQ(WithSlash("/experiments").value(), "/experiments/");
   EXPECT_EQ(WithSlash("/experiments/noise").value(), "/experiments/noise/");
   EXPECT_EQ(WithSlash("/robots/m").value(), "/robots/m/");
+  EXPECT_EQ(WithSlash("/models").value(), "/models/");
+  EXPECT_EQ(WithSlash("/models/mars-mapper").value(), "/models/mars-mapper/");
   for (const std::string path : {"/", "/experiments/", "/experiments/noise/experiment.json", "/x", "/robots"})
     EXPECT_FALSE(WithSlash(path)) << path;
 }

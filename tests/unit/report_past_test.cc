@@ -34,7 +34,7 @@ ReportInput OnePast(const char* code) {
 }
 
 TEST(ReportPast, APastEdgeIsNoFailure) {
-  for (const char* code : {"superseded", "remounted", "retired", "sensor_retired"}) {
+  for (const char* code : {"superseded", "remounted", "epoch", "retired", "sensor_retired"}) {
     const ReportInput input = OnePast(code);
     const std::string page = RenderRevision(input, "{}").value().at("index.html");
     EXPECT_THAT(page, HasSubstr("5 good, 0 failed, 1 past"));

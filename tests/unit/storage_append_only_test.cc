@@ -6,12 +6,14 @@
 #include "storage/attempts.h"
 #include "storage/audit.h"
 #include "storage/decisions.h"
+#include "storage/epochs.h"
 #include "storage/fleet_facts.h"
 #include "storage/lost_blobs.h"
 #include "storage/merged_edges.h"
 #include "storage/policies.h"
 #include "storage/retired.h"
 #include "storage/revision_poses.h"
+#include "storage/rig_models.h"
 #include "storage/robot_runs.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
@@ -32,6 +34,7 @@ class AppendOnlyTest : public StoreTest {
   void AppendRepeat() {
     Manifest manifest = MakeManifest(3);
     manifest.header.remounted = {SensorId("left")};
+    manifest.header.sensors[0].serial = "SN 1";
     const SessionId id = IdOf(manifest);
     ASSERT_TRUE(AppendSession(store_, id, formats::WriteManifest(manifest), manifest, {10}));
     ASSERT_TRUE(AppendHeld(store_, id, {0, 1, 2}, {11}));
@@ -77,6 +80,8 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       RIGCAL_TRY(AppendPolicy(store_, {}, "tolerance_mm: 4", {{6}, "Ada", "new mounts"}));
+      RIGCAL_TRY(AppendRigModel(store_, "mars", "rig_model: mars", {{6}, "Ada", "drawing 7"}));
+      RIGCAL_TRY(BeginEpoch(store_, kRobot, {SensorId("left")}, {6}, {{6}, "Ada", "new bracket"}));
       RIGCAL_TRY(AppendDecision(store_, kRobot, number, Deciding::kApprove, {{6}, "Ada", "checked"}));
       RIGCAL_TRY(AppendRuns(store_, {kRobot, revision.digest, {7}, "rigcal agent"}, {8}));
       return AppendPublication(store_, {kRobot, number}, {6});

@@ -193,8 +193,8 @@ TEST(MergedEdgesMigration, KeepsWhatVersion14Knew) {
   ASSERT_TRUE(counts);
   EXPECT_EQ(counts->superseded.at(SessionId("s1")).by, SessionId("s2"));
   EXPECT_FALSE(counts->superseded.contains(SessionId("s2")));  // by one that did not come whole
-  ASSERT_EQ(counts->remounts.size(), 1u);
-  EXPECT_EQ(counts->remounts[0].session, SessionId("s2"));
+  ASSERT_EQ(counts->epochs.size(), 1u);
+  EXPECT_EQ(counts->epochs[0].session, SessionId("s2"));
   EXPECT_EQ(*LoadListedSensors(*store, robot), (std::vector<SensorId>{SensorId("left"), SensorId("right")}));
   EXPECT_FALSE(*IsMergeOutdated(*store, robot, *counts));
 }

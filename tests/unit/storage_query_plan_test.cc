@@ -9,6 +9,7 @@
 #include "storage/audit.h"
 #include "storage/decisions.h"
 #include "storage/edges.h"
+#include "storage/epochs.h"
 #include "storage/fleet_facts.h"
 #include "storage/fleet_list.h"
 #include "storage/jobs.h"
@@ -18,6 +19,7 @@
 #include "storage/retired.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
+#include "storage/rig_models.h"
 #include "storage/robot_runs.h"
 #include "storage/robot_summary.h"
 #include "storage/sessions.h"
@@ -167,6 +169,9 @@ TEST_F(QueryPlanTest, TheLifeOfACalibrationDoesNotScan) {
   EXPECT_TRUE(AppendRuns(store_, {kRobot, Digest(std::string(64, 'a')), {1}, "agent"}, {2}).value());
   EXPECT_EQ(LoadRuns(store_, kRobot).value()->revision, 0);
   EXPECT_FALSE(WasApproved(store_, kRobot, 9).value());
+  EXPECT_TRUE(LoadEpochs(store_, kRobot));
+  EXPECT_FALSE(LoadRigModelVersion(store_, "mars").value());
+  EXPECT_TRUE(LoadRobotsOfModel(store_, "mars", 10)->empty());
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 

@@ -6,7 +6,7 @@
 <div id="live" data-fresh data-live="../../api/v1/live?robot={{ROBOT}}">
 <header>
 <h1>{{ROBOT}}</h1>
-<p class="meta">{{SUMMARY}}</p>
+<p class="meta">{{SUMMARY}}{{#MODEL}}, rig model <a href="../../models/{{PATH}}/"><bdi>{{NAME}}</bdi></a>{{/MODEL}}</p>
 </header>
 {{>BANNER}}
 {{#NEWER}}<p class="working" role="status">{{TEXT:x-typed}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
@@ -49,6 +49,16 @@
 {{#PAGES}}<p class="hint">{{#NEWEST_PAGE}}<a href="./#sessions">The newest sessions</a> {{/NEWEST_PAGE}}{{#OLDER}}<a href="?sessions_before={{BEFORE}}#sessions">Older sessions</a>{{/OLDER}}</p>{{/PAGES}}
 </section>
 {{/SESSIONS}}
+{{#EPOCHS}}
+<section class="card">
+<h2 id="epochs">Epochs <span class="soft">what was measured of a sensor before is past; newest first</span></h2>
+<ul>
+{{#EPOCH}}<li dir="auto">{{TIME}}: {{TEXT}}{{#SESSION}} <a href="sessions/{{ID}}/"><code>{{SHORT}}</code></a>{{/SESSION}}</li>
+{{/EPOCH}}
+</ul>
+{{#MORE}}<p class="hint">{{TEXT}}</p>{{/MORE}}
+</section>
+{{/EPOCHS}}
 {{#GONE_SENSORS}}
 <section class="card">
 <h2 id="gone">Retired sensors <span class="soft">what was measured of them is past</span></h2>

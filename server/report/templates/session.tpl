@@ -11,6 +11,8 @@
 <section class="card moved {{OUTCOME_LEVEL}}" aria-label="Outcome">
 <p class="what" role="status">{{OUTCOME}}{{#PROGRESS}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress"></progress>{{/PROGRESS}}</p>
 {{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
+{{#LACKING}}<p dir="auto"><span class="badge warn">rig model</span> {{TEXT:x-typed}}</p>
+{{/LACKING}}
 {{#GONE}}<p dir="auto"><span class="badge unknown">past</span> {{WHY}}; what this session says of it does not count. To bring it back: <code class="typed">{{COMMAND}}</code></p>
 {{/GONE}}
 </section>
@@ -43,6 +45,8 @@
 </table>
 </div>
 {{/SHEET}}
+{{#PART_OF}}<p class="hint"><bdi>{{NAME}}</bdi>:{{#SERIAL}} serial <bdi>{{TEXT}}</bdi>{{/SERIAL}}{{#FIRMWARE}} firmware <bdi>{{TEXT}}</bdi>{{/FIRMWARE}}</p>
+{{/PART_OF}}
 {{#POSES}}<p class="hint">The poses of <bdi>{{NAMES}}</bdi> come as one file per sensor, of the whole session.</p>{{/POSES}}
 {{#MORE}}<p class="hint">{{COUNT}} more captures are in the session's manifest.</p>{{/MORE}}
 <p class="hint"><a href="../../../../api/v1/session?id={{ID}}">Manifest as JSON</a> <code>{{ID}}</code></p>

@@ -1,0 +1,13 @@
+// A small drawing of one sensor on all robots: six lines, one per axis, a dot per robot.
+#pragma once
+
+#include "server/model/population.h"
+#include "server/report/page.h"
+
+namespace rigcal::report {
+
+// {{>SPREAD}}: zero is where the drawing has it, or the median of all robots. Axes of one unit share a scale, which holds every
+// robot and the tolerance. Box: quartiles; stroke: median; dots that stand out are another colour.
+void FillSpread(Dictionary& parent, const SensorPopulation& sensor);
+
+}  // namespace rigcal::report
