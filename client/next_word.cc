@@ -98,6 +98,13 @@ class TypedWords {
       if (option->get_positional() && before-- == 0) return AddValues(*option, next);
   }
 
+  void AddActions(NextWord& next) const {
+    if (verb_ != nullptr && verb_->get_name() == "board")
+      for (const char* action : kBoardActions) Add(action, "", next);
+    else
+      for (const char* action : kPolicyActions) Add(action, "", next);
+  }
+
   void AddValues(const CLI::Option& option, NextWord& next) const {
     const std::string kind = KindText(option);
     if (kind == "ROBOT" || LongName(option) == "robot") next.kind = NextWord::Kind::kRobots;
@@ -105,8 +112,7 @@ class TypedWords {
     if (kind == "DIR") next.kind = NextWord::Kind::kFolders;
     if (kind == "SHELL")
       for (const char* shell : kShells) Add(shell, "", next);
-    if (kind == "ACTION")
-      for (const char* action : kPolicyActions) Add(action, "", next);
+    if (kind == "ACTION") AddActions(next);
     if (kind == "WHAT" && !positional_.empty())
       next.kind = positional_.front() == "show" ? NextWord::Kind::kRobots : NextWord::Kind::kFiles;
     if ((kind == "A" || kind == "B") && !positional_.empty()) {

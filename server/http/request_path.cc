@@ -76,7 +76,8 @@ std::optional<std::string> WithSlash(const std::string& path) {
   const bool is_robot = segments.size() == 2 && segments[0] == "robots" && RobotId::Parse(segments[1]).has_value();
   const bool is_experiment = !segments.empty() && segments.size() <= 2 && segments[0] == "experiments" &&
                              (segments.size() == 1 || CheckName("experiment", segments[1]).has_value());
-  if (!is_robot && !is_experiment && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
+  const bool is_boards = segments.size() == 1 && segments[0] == "boards";
+  if (!is_robot && !is_experiment && !is_boards && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
   return path + "/";
 }
 

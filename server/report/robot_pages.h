@@ -76,6 +76,7 @@ struct SessionInput {
   std::map<std::pair<CaptureId, SensorId>, std::string> unreadable = {};  // why a file could not be read
   bool all_looked_at = true;                                              // for that; else there may be more
   std::vector<RetiredSensor> retired = {};                                // of the sensors that it lists
+  std::vector<BoardRemark> board_remarks = {};
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "server/report/assets.h"
+#include "server/report/boards/boards_page.h"
 #include "server/report/figure_words.h"
 #include "server/report/page.h"
 #include "server/report/retired_section.h"
@@ -172,6 +173,7 @@ Result<std::string> RenderSession(const SessionInput& input) {
   FillFacts(page, input);
   FillOutcome(page, input);
   FillGone(page, input.robot, input.retired);
+  FillBoardRemarks(page, input.board_remarks);
   if (input.row.closed && !input.row.retired) ShowValue(page, "MISLEADS", "COMMAND", RetireCommand(input.row.id));
   FillEdges(page, input);
   FillSheet(page, input);

@@ -4,7 +4,7 @@
 <main>
 <header>
 <h1>Fleet</h1>
-<p class="meta" id="summary" data-fresh>{{SUMMARY}}{{#PART}} &middot; <a href="?verdict={{VALUE}}">{{TEXT}}</a>{{/PART}}{{#EXPERIMENTS}} &middot; <a href="experiments/">{{COUNT}}</a>{{/EXPERIMENTS}}</p>
+<p class="meta" id="summary" data-fresh>{{SUMMARY}}{{#PART}} &middot; <a href="?verdict={{VALUE}}">{{TEXT}}</a>{{/PART}}{{#BOARDS}} &middot; <a href="boards/">{{TEXT}}</a>{{/BOARDS}}{{#EXPERIMENTS}} &middot; <a href="experiments/">{{COUNT}}</a>{{/EXPERIMENTS}}</p>
 </header>
 <div id="work" data-fresh>
 {{#WORK}}
