@@ -12,22 +12,22 @@
 namespace rigcal::client {
 namespace {
 
-std::string CountText(std::int64_t count, const std::string& one, const std::string& many) {
+std::string CountedText(std::int64_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
 // "charuco of 11 x 8 squares, 30 mm"
-std::string WhatText(const Document& board) {
+std::string BoardWhatText(const Document& board) {
   return Plain(board["type"].Text("?")) + " of " + CountOf(board["cols"]) + " x " + CountOf(board["rows"]) + " " +
          Plain(board["counts"].Text()) + ", " + BoardMm(board["square_m"].Number().value_or(0));
 }
 
-std::string SizeText(const Document& board) {
+std::string BoardSizeText(const Document& board) {
   const Document size = board["size"];
   return Scaled(size["x_m"].Number(), kMmPerM, 3) + " x " + Scaled(size["y_m"].Number(), kMmPerM, 3);
 }
 
-std::string SigmaOf(const Document& board) {
+std::string BoardSigmaText(const Document& board) {
   const auto x = board["size"]["sigma_x_m"].Number(), y = board["size"]["sigma_y_m"].Number();
   if (!x || !y) return "-";
   return Scaled(std::max(*x, *y), kMmPerM, 3) + (board["sigma_assumed"].Flag() ? " assumed" : "");
@@ -40,13 +40,13 @@ std::string NextCheckText(const Document& board) {
 }
 
 std::string DependsText(const Document& totals) {
-  return CountText(totals["sessions"].Integer().value_or(0), "session", "sessions") + ", " +
-         CountText(totals["revisions"].Integer().value_or(0), "revision", "revisions") + " and " +
-         CountText(totals["robots"].Integer().value_or(0), "robot", "robots");
+  return CountedText(totals["sessions"].Integer().value_or(0), "session", "sessions") + ", " +
+         CountedText(totals["revisions"].Integer().value_or(0), "revision", "revisions") + " and " +
+         CountedText(totals["robots"].Integer().value_or(0), "robot", "robots");
 }
 
 // "1 to 4, 7": ascending numbers.
-std::string RangesOf(const std::vector<Document>& numbers) {
+std::string RevisionRanges(const std::vector<Document>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size();) {
     const std::int64_t first = numbers[i].Integer().value_or(0);
@@ -63,7 +63,7 @@ std::string RangesOf(const std::vector<Document>& numbers) {
 void PrintChecks(const Document& history, std::ostream& out) {
   Table table({{"CHECKED"}, {"BY"}, {"SQUARE mm"}, {"SIGMA mm"}, {"FLAT mm", Align::kRight}, {"NEXT CHECK"}, {"REMARK"}});
   for (const Document& measure : history.Items())
-    table.Add({DayOf(measure["measured_at"]), measure["who"].Text("?"), SizeText(measure), SigmaOf(measure),
+    table.Add({DayOf(measure["measured_at"]), measure["who"].Text("?"), BoardSizeText(measure), BoardSigmaText(measure),
                FlatnessText(measure), measure["next_check"].Text("-"), measure["reason"].Text()});
   table.Print(out);
 }
@@ -73,7 +73,7 @@ void PrintChecks(const Document& history, std::ostream& out) {
 void PrintBoardList(const Document& document, std::ostream& out) {
   Table table({{"SERIAL"}, {"PATTERN"}, {"SQUARE mm"}, {"SIGMA mm"}, {"FLAT mm", Align::kRight}, {"CHECKED"}, {"NEXT CHECK"}, {"SESSIONS", Align::kRight}});
   for (const Document& board : document["boards"].Items())
-    table.Add({board["serial"].Text("?"), WhatText(board), SizeText(board), SigmaOf(board), FlatnessText(board),
+    table.Add({board["serial"].Text("?"), BoardWhatText(board), BoardSizeText(board), BoardSigmaText(board), FlatnessText(board),
                DayOf(board["measured_at"]), NextCheckText(board), CountOf(board["sessions"])});
   if (table.empty())
     out << "No board is in the registry. `rigcal board print` draws one, `rigcal board measure` enters it.\n";
@@ -82,14 +82,14 @@ void PrintBoardList(const Document& document, std::ostream& out) {
   const std::string next = document["next"].Text();
   if (!next.empty()) out << "More: rigcal board list --after " << TypedSerial(Plain(next)) << '\n';
   for (const Document& board : document["unregistered"].Items())
-    out << "Not in the registry: " << Plain(board["serial"].Text("?")) << ", a " << WhatText(board) << ", in "
-        << CountText(board["sessions"].Integer().value_or(0), "session", "sessions") << '\n';
+    out << "Not in the registry: " << Plain(board["serial"].Text("?")) << ", a " << BoardWhatText(board) << ", in "
+        << CountedText(board["sessions"].Integer().value_or(0), "session", "sessions") << '\n';
 }
 
 void PrintBoard(const Document& document, std::ostream& out) {
   const Document board = document["board"];
-  out << Plain(board["serial"].Text("?")) << ", a " << WhatText(board) << ", in "
-      << CountText(board["sessions"].Integer().value_or(0), "session", "sessions") << '\n';
+  out << Plain(board["serial"].Text("?")) << ", a " << BoardWhatText(board) << ", in "
+      << CountedText(board["sessions"].Integer().value_or(0), "session", "sessions") << '\n';
   if (board["check_due"].Flag())
     out << "Its check was due on " << Plain(board["next_check"].Text("?")) << ": `"
         << MeasureCommand(Plain(board["serial"].Text("?"))) << "`\n";
@@ -104,7 +104,7 @@ void PrintBoardTrace(const Document& document, std::ostream& out) {
   Table sessions({{"ROBOT"}, {"SESSION"}, {"CAPTURED"}, {"COUNTS"}});
   for (const Document& robot : document["robots"].Items()) {
     const std::string name = robot["robot"].Text("?");
-    robots.Add({name, CountOf(robot["sessions_total"]), RangesOf(robot["revisions"].Items())});
+    robots.Add({name, CountOf(robot["sessions_total"]), RevisionRanges(robot["revisions"].Items())});
     for (const Document& session : robot["sessions"].Items())
       sessions.Add({name, session["session"].Text("?").substr(0, 16), session["captured_at"].Text("-"),
                     session["counts"].Flag() ? "yes" : "no"});
@@ -118,11 +118,11 @@ void PrintBoardTrace(const Document& document, std::ostream& out) {
 void PrintBoardMeasured(const Document& document, std::ostream& out) {
   const Document board = document["board"], before = document["before"], depends = document["depends"];
   const std::string serial = Plain(board["serial"].Text("?"));
-  out << "Board " << serial << ", a " << WhatText(board) << ": its squares measure " << SizeText(board) << " mm (sigma "
-      << SigmaOf(board) << "), by " << Plain(board["who"].Text("?")) << ".\n";
+  out << "Board " << serial << ", a " << BoardWhatText(board) << ": its squares measure " << BoardSizeText(board) << " mm (sigma "
+      << BoardSigmaText(board) << "), by " << Plain(board["who"].Text("?")) << ".\n";
   if (const std::string next = board["next_check"].Text(); !next.empty()) out << "Next check: " << Plain(next) << ".\n";
   const bool changed = document["size_changed"].Flag();
-  if (changed) out << "Before, they measured " << SizeText(before) << " mm.\n";
+  if (changed) out << "Before, they measured " << BoardSizeText(before) << " mm.\n";
   if (depends["sessions"].Integer().value_or(0) == 0) return;
   out << DependsText(depends) << " depend on it" << (changed ? ", and stay as they are" : "")
       << ": `rigcal board trace " << TypedSerial(serial) << "` lists them.\n";
