@@ -2,7 +2,7 @@
 #include <map>
 
 #include "server/model/merged_edge.h"
-#include "server/report/boards/boards_page.h"
+#include "server/report/boards/board_remarks.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "server/report/assets.h"
-#include "server/report/boards/boards_page.h"
+#include "server/report/boards/board_remarks.h"
 #include "server/report/figure_words.h"
 #include "server/report/page.h"
 #include "server/report/retired_section.h"

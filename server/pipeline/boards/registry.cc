@@ -136,16 +136,17 @@ Status UnknownBoard(storage::Store& store, const std::string& serial) {
 
 Result<OrderDone> MeasureBoard(storage::Store& store, const Clock& clock, const Parameters& parameters) {
   RIGCAL_ASSIGN(BoardMeasure measure, MeasureAsked(clock, parameters));
-  OrderDone done;
+  std::optional<BoardMeasure> before;
   RIGCAL_TRY(store.Write([&]() -> Status {
-    RIGCAL_ASSIGN(const auto before, storage::LoadBoardMeasure(store, measure.serial));
+    RIGCAL_ASSIGN(before, storage::LoadBoardMeasure(store, measure.serial));
     RIGCAL_ASSIGN(measure.pattern, PatternFor(parameters, measure.serial, before));
-    RIGCAL_ASSIGN(auto kept, storage::AppendBoardMeasure(store, measure));
-    RIGCAL_ASSIGN(const BoardTrace trace, storage::LoadBoardTrace(store, measure.serial));
-    RIGCAL_ASSIGN(const auto row, RowOfBoard(store, std::move(kept), measure.word.at));
-    done.document = formats::WriteBoardMeasured(row, before, trace);
+    RIGCAL_ASSIGN(measure, storage::AppendBoardMeasure(store, measure));
     return {};
   }));
+  RIGCAL_ASSIGN(const BoardTrace trace, storage::LoadBoardTrace(store, measure.serial));  // it may be long
+  RIGCAL_ASSIGN(const auto row, RowOfBoard(store, measure, clock.Now()));
+  OrderDone done;
+  done.document = formats::WriteBoardMeasured(row, before, trace);
   return done;
 }
 

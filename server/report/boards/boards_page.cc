@@ -3,6 +3,8 @@
 #include <set>
 
 #include "server/model/validity.h"
+#include "server/report/boards/board_remarks.h"
+#include "server/report/page.h"
 #include "server/report/text.h"
 
 namespace rigcal::report {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "server/base/result.h"
 #include "server/formats/boards/answers.h"
-#include "server/report/page.h"
 
 namespace rigcal::report {
 
@@ -13,8 +13,6 @@ namespace rigcal::report {
 // `answer` may be a part of the registry: then the page says so.
 [[nodiscard]] Result<std::string> RenderBoards(const formats::BoardsAnswer& answer);
 
-// {{#BOARD_REMARK}} with LEVEL, WORD, WHY, CURE for each; the same words once.
-void FillBoardRemarks(Dictionary& parent, const std::vector<BoardRemark>& remarks);
 // Of one board of a session, behind its name on reports and certificates: ", measured 24.987 x 25.01 mm (sigma 0.05) on
 // 3 Nov 2026", ", not in the registry", ", check overdue". Empty: there is nothing to say.
 [[nodiscard]] std::string StandardText(const SessionBoard& board, const BoardRegistry& registry,
