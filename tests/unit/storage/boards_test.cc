@@ -4,6 +4,9 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "server/base/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/audit.h"
 #include "storage/boards/uses.h"
@@ -179,6 +182,37 @@ TEST_F(BoardsTest, WhatIsSupersededCountsNoMore) {
   EXPECT_THAT(trace.robots.at(0).revisions, ElementsAre(2));
   EXPECT_EQ(trace.robots[0].sessions[0].session, right);
   EXPECT_TRUE(trace.robots[0].sessions[0].counts);
+}
+
+// Version 25: manifests said which boards were used, and nobody looked.
+TEST(BoardsMigration, ClosedSessionsOfBeforeAreTraced) {
+  const TempFolder folder;
+  std::string sql;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (std::size_t i = 0; i < 25; ++i) sql += ReadFile(files[i], 1 << 20).value();
+  Manifest manifest = MakeManifest(0);
+  Target grid;
+  grid.id = TargetId("grid"), grid.kind = TargetKind::kAprilGrid, grid.cols = 6, grid.rows = 5, grid.square_m = 0.088;
+  grid.spacing_ratio = 0.3, grid.dictionary = "DICT_APRILTAG_36h11", grid.serial = "G-1";
+  manifest.header.targets.push_back(grid);
+  const auto insert = [&](int number) {
+    return "INSERT INTO session VALUES (" + std::to_string(number) + ", '" + DigestOf(std::to_string(number)).str() +
+           "', 'mapper-01', 5, 6, 'Ada', 0, 0, '" + formats::WriteManifest(manifest) + "');";
+  };
+  sql += "PRAGMA application_id = 1382499180; PRAGMA user_version = 25; INSERT INTO robot VALUES ('mapper-01', 1);" + insert(1) +
+         insert(2) + "INSERT INTO session_closed VALUES (1, 7);";
+  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(sql); }
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  const SessionId closed(DigestOf("1").str());
+  const auto boards = LoadSessionBoards(*store, {closed, SessionId(DigestOf("2").str())}).value();
+  ASSERT_EQ(boards.size(), 2u) << "of the closed one";
+  EXPECT_EQ(boards[0].serial, "B-7");
+  EXPECT_EQ(boards[1].serial, "G-1");
+  EXPECT_EQ(boards[1].pattern, PatternOf(grid));
+  EXPECT_EQ(LoadBoardTrace(*store, "G-1")->robots.at(0).sessions.at(0).session, closed);
 }
 
 }  // namespace
