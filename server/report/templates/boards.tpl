@@ -41,8 +41,8 @@
 <section class="card empty">
 <h2>No board is in the registry yet</h2>
 <p>Print a board at true size, glue it flat, and measure both of its rulers:</p>
-<pre><code>rigcal board print --type charuco --cols 11 --rows 8 --square-mm 30 --serial B-1 --out B-1.pdf</code></pre>
-<pre><code>rigcal board measure B-1 --type charuco --cols 11 --rows 8 --square-mm 30 --ruler-x-mm A --ruler-y-mm B</code></pre>
+<pre><code>rigcal board print --type charuco --cols 11 --rows 8 --square-mm 25 --serial B-1 --out B-1.pdf</code></pre>
+<pre><code>rigcal board measure B-1 --type charuco --cols 11 --rows 8 --square-mm 25 --ruler-x-mm A --ruler-y-mm B</code></pre>
 <p>Then write <code>serial: B-1</code> into the board's target in <code>session.yaml</code>.</p>
 </section>
 {{/EMPTY}}
