@@ -55,7 +55,7 @@ constexpr AddVerb kVerbs[] = {
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
     AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion, AddPolicy,
     AddApprove, AddReject,   AddRollback,         AddAgent,  AddAudit,
-    AddModel,  AddFleet,     AddEpoch};
+    AddModel,  AddFleet,     AddEpoch,   AddBoard};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

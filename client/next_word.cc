@@ -98,6 +98,16 @@ class TypedWords {
       if (option->get_positional() && before-- == 0) return AddValues(*option, next);
   }
 
+  void AddActions(NextWord& next) const {
+    const std::string verb = verb_ == nullptr ? "" : verb_->get_name();
+    if (verb == "board")
+      for (const char* action : kBoardActions) Add(action, "", next);
+    if (verb == "model")
+      for (const char* action : kModelActions) Add(action, "", next);
+    if (verb == "policy")
+      for (const char* action : kPolicyActions) Add(action, "", next);
+  }
+
   void AddValues(const CLI::Option& option, NextWord& next) const {
     const std::string kind = KindText(option);
     if (kind == "ROBOT" || LongName(option) == "robot") next.kind = NextWord::Kind::kRobots;
@@ -106,10 +116,7 @@ class TypedWords {
     if (kind == "SHELL")
       for (const char* shell : kShells) Add(shell, "", next);
     const bool of_model = verb_ != nullptr && verb_->get_name() == "model";
-    if (kind == "ACTION" && of_model)
-      for (const char* action : kModelActions) Add(action, "", next);
-    if (kind == "ACTION" && !of_model)
-      for (const char* action : kPolicyActions) Add(action, "", next);
+    if (kind == "ACTION") AddActions(next);
     const bool is_shown = !positional_.empty() && positional_.front() == "show";
     if (kind == "WHAT" && !positional_.empty() && !is_shown) next.kind = NextWord::Kind::kFiles;
     if (kind == "WHAT" && is_shown && !of_model) next.kind = NextWord::Kind::kRobots;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "client/approval_text.h"
+#include "client/boards/text.h"
 #include "client/cause_list.h"
 #include "client/edge_table.h"
 #include "client/insight_table.h"
@@ -60,6 +61,7 @@ void PrintShow(const Document& document, bool whole, std::ostream& out) {
   PrintApproval(document, out);
   PrintCauses(revision["causes"], out);
   PrintAsFound(document["as_found"], out);
+  PrintBoardRemarks(document["board_remarks"], out);
   PrintGlobalError(revision, out);
   PrintDiagnoses(revision["diagnoses"], out);
   PrintPoses(revision, out);

@@ -20,6 +20,10 @@ void AddPushEdges(CLI::App& app, Context& context);
 void AddRestore(CLI::App& app, Context& context);
 void AddRetire(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kPolicyActions = {"show", "check", "set"};
+inline constexpr std::array<const char*, 5> kBoardActions = {"print", "measure", "list", "show", "trace"};
+// Boards as reference standards: `print` starts the program `rigcal-board`, which has AddBoardPrint.
+void AddBoard(CLI::App& app, Context& context);
+void AddBoardPrint(CLI::App& app, Context& context);
 // policy, and the verbs that ask the server what it knows.
 void AddPolicy(CLI::App& app, Context& context);
 void AddModel(CLI::App& app, Context& context);   // rig models: show, list, check, set

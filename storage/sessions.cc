@@ -75,6 +75,18 @@ void InsertRepeats(Store& store, std::int64_t session_number) {
       .Run();
 }
 
+void InsertBoards(Store& store, std::int64_t session_number) {
+  Query(store,
+        "INSERT INTO session_board SELECT number, json_extract(t.value, '$.id'), coalesce(json_extract(t.value, "
+        "'$.serial'), ''), json_extract(t.value, '$.type'), "
+        "coalesce(json_extract(t.value, '$.inner_corners[0]'), json_extract(t.value, '$.tags[0]')), "
+        "coalesce(json_extract(t.value, '$.inner_corners[1]'), json_extract(t.value, '$.tags[1]')), "
+        "json_extract(t.value, '$.square_size_m'), coalesce(json_extract(t.value, '$.square_size_sigma_m'), 0.0) "
+        "FROM session, json_each(session.manifest, '$.targets') AS t WHERE number = ?")
+      .Bind(session_number)
+      .Run();
+}
+
 void InsertListed(Store& store, std::int64_t session_number) {
   Query(store,
         "INSERT OR IGNORE INTO listed_sensor SELECT robot_id, json_extract(sensor.value, '$.id') FROM session, "
@@ -103,6 +115,7 @@ void InsertListed(Store& store, std::int64_t session_number) {
         "WHERE number = ? AND json_extract(manifest, '$.reference') IS NOT NULL")
       .Bind(session_number)
       .Run();
+  InsertBoards(store, session_number);
 }
 
 void QueueJob(Store& store, std::int64_t session_number, const RobotId& robot, const SensorPair& pair, Stamp now) {

@@ -3,6 +3,7 @@
 #include "server/formats/answer_rows.h"
 #include "server/formats/as_found.h"
 #include "server/formats/rig_models/rig_model_answers.h"
+#include "server/formats/boards/answers.h"
 #include "server/formats/edge_fields.h"
 #include "server/formats/json_values.h"
 #include "server/formats/manifest_fields.h"
@@ -141,8 +142,10 @@ std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const Next
 }
 
 std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                         const std::vector<RetiredSensor>& retired, const std::string& lacking) {
+                         const std::vector<RetiredSensor>& retired, const std::string& lacking,
+                         const std::vector<BoardRemark>& remarks) {
   return WriteObject([&](JsonWriter& out) {
+    WriteBoardRemarks(out, remarks);
     out.Object("session", [&] { WriteSessionMembers(out, session); });
     out.Object("manifest", [&] { WriteManifestMembers(out, manifest); });
     out.List("edges", [&] {
@@ -192,8 +195,10 @@ std::string WriteEdges(const RobotId& robot, int revision, const std::vector<Edg
 }
 
 std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now, const Approval& approval,
-                      const std::optional<Runs>& runs, const std::optional<AsFound>& as_found) {
+                      const std::optional<Runs>& runs, const std::optional<AsFound>& as_found,
+                      const std::vector<BoardRemark>& remarks) {
   std::string text = WriteObject([&](JsonWriter& out) {
+    WriteBoardRemarks(out, remarks);
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);

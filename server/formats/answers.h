@@ -14,6 +14,7 @@
 #include "server/formats/documents.h"
 #include "server/model/as_found.h"
 #include "server/model/audit.h"
+#include "server/model/boards/remark.h"
 #include "server/model/decision.h"
 #include "server/model/epoch.h"
 #include "server/model/policy_version.h"
@@ -48,8 +49,10 @@ struct SessionAnswer {
 // A row per session; and of one session its row, its manifest and the rows of its edges.
 [[nodiscard]] std::string WriteSessions(const std::vector<SessionAnswer>& sessions, const NextPage& next = {});
 // `retired`: of the sensors that it lists, those that are. `lacking`: what its rig model has and it does not, a sentence.
+// `remarks`: on its boards.
 [[nodiscard]] std::string WriteSession(const SessionAnswer& session, const Manifest& manifest, const std::vector<Edge>& edges,
-                                       const std::vector<RetiredSensor>& retired = {}, const std::string& lacking = {});
+                                       const std::vector<RetiredSensor>& retired = {}, const std::string& lacking = {},
+                                       const std::vector<BoardRemark>& remarks = {});
 
 // verbs retire, restore. Of a session, as it stands; `has_edges`: its robot, so that a revision follows.
 [[nodiscard]] std::string WriteStandingOfSession(const SessionAnswer& session, bool has_edges);
@@ -84,10 +87,11 @@ struct PolicyAnswer {
 [[nodiscard]] std::string WriteDecided(const Revision& revision, const Approval& approval);
 
 // verb show: number, time and digest around the revision's document, which is put in byte for byte; beside it what its
-// newest session found of the calibration in use.
+// newest session found of the calibration in use, and `remarks` on the boards of the sessions that it counts.
 [[nodiscard]] std::string WriteShow(const Revision& revision, bool is_published, const Validity& validity, Stamp now,
                                     const Approval& approval = {}, const std::optional<Runs>& runs = {},
-                                    const std::optional<AsFound>& as_found = {});
+                                    const std::optional<AsFound>& as_found = {},
+                                    const std::vector<BoardRemark>& remarks = {});
 // verb revisions: without documents. `next`: as NextPage, the number of a revision; 0: there is no other page. `approvals`: one of
 // each revision. `as_found`: of those that have it. `epochs`: all that began of the robot, the earliest first.
 [[nodiscard]] std::string WriteRevisions(const RobotId& robot, const std::vector<Revision>& revisions, Stamp now,

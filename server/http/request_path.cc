@@ -78,7 +78,9 @@ std::optional<std::string> WithSlash(const std::string& path) {
                              (segments.size() == 1 || CheckName("experiment", segments[1]).has_value());
   const bool is_model = !segments.empty() && segments.size() <= 2 && segments[0] == "models" &&
                         (segments.size() == 1 || CheckName("rig model", segments[1]).has_value());
-  if (!is_robot && !is_experiment && !is_model && !(segments.size() == 4 && IsRevision(segments))) return std::nullopt;
+  const bool is_boards = segments.size() == 1 && segments[0] == "boards";
+  if (!is_robot && !is_experiment && !is_model && !is_boards && !(segments.size() == 4 && IsRevision(segments)))
+    return std::nullopt;
   return path + "/";
 }
 

@@ -12,6 +12,8 @@
 #include "server/graph/solve.h"
 #include "server/pipeline/asked.h"
 #include "server/pipeline/audit.h"
+#include "server/pipeline/boards/registry.h"
+#include "server/pipeline/boards/remarks.h"
 #include "server/pipeline/decide.h"
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
@@ -54,7 +56,8 @@ Result<std::string> Session(const AnswerContext& context, const Parameters& para
   RIGCAL_ASSIGN(const auto edges, storage::LoadEdges(context.store, id));
   RIGCAL_ASSIGN(const auto retired, LoadRetiredSensorsIn(context.store, row.robot, manifest));
   RIGCAL_ASSIGN(const std::string lacking, LoadLacking(context.store, row.robot, manifest.header));
-  return formats::WriteSession(row, manifest, edges, retired, lacking);
+  RIGCAL_ASSIGN(const auto remarks, LoadBoardRemarks(context.store, {id}));
+  return formats::WriteSession(row, manifest, edges, retired, lacking, remarks);
 }
 
 // Of a robot's newest revision; `robot` where the store does not know whose it is, as its revision is from before ids were kept.
@@ -87,6 +90,14 @@ Result<std::string> WholeDocumentOf(storage::Store& store, const Revision& revis
   return formats::WriteWholeRevisionDocument(whole);
 }
 
+// Of a robot without sessions nothing is read.
+Result<std::vector<BoardRemark>> BoardRemarksOf(const AnswerContext& context, const Revision& revision) {
+  RIGCAL_ASSIGN(const auto captured, storage::LoadNewestCapture(context.store, revision.robot));
+  if (!captured) return std::vector<BoardRemark>();
+  RIGCAL_ASSIGN(const ParsedRevision parsed, context.revisions.Load(context.store, revision.robot, revision.number));
+  return LoadBoardRemarks(context.store, SessionsCountedIn(parsed.document->edges));
+}
+
 Result<std::string> Show(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
   RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
@@ -101,7 +112,8 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const Approval approval, LoadApproval(context.store, revision));
   RIGCAL_ASSIGN(const auto runs, LoadWhatRuns(context.store, robot));
   RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFound(context.store, {robot, revision.number}));
-  return formats::WriteShow(revision, is_published, validity, now, approval, runs, as_found);
+  RIGCAL_ASSIGN(const auto remarks, BoardRemarksOf(context, revision));
+  return formats::WriteShow(revision, is_published, validity, now, approval, runs, as_found, remarks);
 }
 
 // Those of merged edges scatter as theirs do.
@@ -257,6 +269,19 @@ Result<std::string> TellPopulationAsked(const AnswerContext& context, const Para
   return TellPopulation(context.store, parameters);
 }
 
+Result<std::string> ListBoards(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const auto answer, LoadBoardsAnswer(context.store, context.clock.Now(), parameters));
+  return formats::WriteBoards(answer);
+}
+
+Result<std::string> OneBoard(const AnswerContext& context, const Parameters& parameters) {
+  return TellBoard(context.store, context.clock.Now(), parameters);
+}
+
+Result<std::string> TraceOneBoard(const AnswerContext& context, const Parameters& parameters) {
+  return TraceBoard(context.store, parameters);
+}
+
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const RobotId robot, OptionalId<RobotId>(parameters, "robot"));
   if (!robot.empty()) RIGCAL_TRY(KnownRobot(context.store, parameters));
@@ -330,6 +355,9 @@ const std::map<std::string, Verb>& Verbs() {
       {"population", TellPopulationAsked},
       {"audit", ListAudit},
       {"audit_verify", VerifyAudit},
+      {"boards", ListBoards},
+      {"board", OneBoard},
+      {"board_trace", TraceOneBoard},
       {"due", Due},
       {"health", Health},
       {"live", Live},

@@ -1,6 +1,7 @@
 #include "server/pipeline/orders.h"
 
 #include "server/formats/answers.h"
+#include "server/pipeline/boards/registry.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
 #include "server/pipeline/next_reference.h"
@@ -84,7 +85,7 @@ bool IsDecision(const std::string& verb) { return verb == "approve" || verb == "
 
 bool IsOrder(const std::string& verb) {
   return verb == "restore" || verb == "retire" || verb == "set_policy" || verb == "set_rig_model" ||
-         verb == "epoch" || IsDecision(verb);
+         verb == "epoch" || verb == "measure_board" || IsDecision(verb);
 }
 
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
@@ -93,6 +94,7 @@ Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std:
   if (verb == "set_policy") return SetPolicy(store, clock, parameters);
   if (verb == "set_rig_model") return SetRigModel(store, clock, parameters);
   if (verb == "epoch") return BeginEpochBy(store, clock, parameters);
+  if (verb == "measure_board") return MeasureBoard(store, clock, parameters);
   if (IsDecision(verb)) return Decide(store, clock, verb, parameters);
   RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
   OrderDone done;

@@ -3,13 +3,16 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/boards/registry.h"
 #include "server/pipeline/experiments.h"
 #include "server/pipeline/rig_models/model_pages.h"
 #include "server/pipeline/robot_pages.h"
 #include "server/pipeline/summaries.h"
 #include "server/report/assets.h"
+#include "server/report/boards/boards_page.h"
 #include "server/report/fleet_csv.h"
 #include "server/report/render.h"
+#include "storage/boards/measures.h"
 #include "storage/fleet_list.h"
 
 namespace rigcal::pipeline {
@@ -40,13 +43,16 @@ Result<PageText> Fleet(const AnswerContext& context, const std::string& query) {
   static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
   FleetCounts fleet;
   FleetPage list;
+  std::int64_t boards = 0;
   RIGCAL_TRY(context.store.Read([&]() -> Status {
     RIGCAL_ASSIGN(fleet, storage::CountFleet(context.store, now));
     RIGCAL_ASSIGN(list, storage::LoadFleetPage(context.store, asked, now));
+    RIGCAL_ASSIGN(boards, storage::CountBoards(context.store));
     return {};
   }));
   const std::size_t experiments = ListExperiments(context.store.folder()).size();
-  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, list, now, asked, experiments));
+  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, list, now, asked, experiments,
+                                                         static_cast<std::size_t>(boards)));
   return PageText{std::move(body), kHtml};
 }
 
@@ -58,6 +64,12 @@ Result<PageText> FleetAsCsv(const AnswerContext& context, const std::string& que
   const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot); };
   RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
   return PageText{std::move(text), kCsv};
+}
+
+Result<PageText> Boards(const AnswerContext& context) {
+  RIGCAL_ASSIGN(const auto answer, LoadBoardsAnswer(context.store, context.clock.Now(), {}));
+  RIGCAL_ASSIGN(std::string body, report::RenderBoards(answer));
+  return PageText{std::move(body), kHtml};
 }
 
 Result<PageText> Script(const std::string& name) {
@@ -100,6 +112,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
                     models = "/models/";
   if (path == "/") return Fleet(context, query);
   if (path == "/fleet.csv") return FleetAsCsv(context, query);
+  if (path == "/boards/") return Boards(context);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);

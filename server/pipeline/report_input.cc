@@ -6,12 +6,16 @@
 #include "server/base/version.h"
 #include "server/calib/camera/projection_uncertainty.h"
 #include "server/fleet/assess.h"
+#include "server/fleet/boards/remarks.h"
 #include "server/model/unchecked.h"
 #include "server/pipeline/camera_fits.h"
 #include "server/pipeline/earlier_details.h"
 #include "server/pipeline/validity.h"
 #include "server/pipeline/whole_revision.h"
+#include "server/report/boards/boards_page.h"
 #include "storage/as_found.h"
+#include "storage/boards/measures.h"
+#include "storage/boards/uses.h"
 #include "storage/revisions.h"
 #include "storage/sessions.h"
 
@@ -33,8 +37,21 @@ report::SessionFacts FactsOf(const SessionId& id, const Manifest& manifest) {
   facts.operator_name = manifest.header.operator_name;
   facts.rig_model = manifest.header.rig_model;
   facts.files = manifest.payloads.size();
-  for (const Target& target : manifest.header.targets) facts.boards.push_back(BoardText(target));
   return facts;
+}
+
+// With what the registry has of them.
+Status TakeBoards(storage::Store& store, const SessionHeader& header, report::SessionFacts& facts) {
+  RIGCAL_ASSIGN(const auto boards, storage::LoadSessionBoards(store, {facts.id}));
+  RIGCAL_ASSIGN(const BoardRegistry registry, storage::LoadRegistryOf(store, boards));
+  facts.board_remarks = fleet::RemarksOn(boards, registry);
+  for (const Target& target : header.targets) {
+    std::string text = BoardText(target);
+    for (const SessionBoard& board : boards)
+      if (board.target == target.id) text += report::StandardText(board, registry, facts.board_remarks);
+    facts.boards.push_back(std::move(text));
+  }
+  return {};
 }
 
 // Of the reference itself the nominal pose is known without being said.
@@ -57,6 +74,7 @@ Status TakeSessions(storage::Store& store, report::ReportInput& input) {
     RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, id));
     if (!manifest) continue;
     input.sessions.push_back(FactsOf(id, *manifest));
+    RIGCAL_TRY(TakeBoards(store, manifest->header, input.sessions.back()));
     headers.push_back(std::move(manifest->header));
   }
   std::stable_sort(headers.begin(), headers.end(),

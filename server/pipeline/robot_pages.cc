@@ -9,6 +9,7 @@
 #include "server/formats/parameters.h"
 #include "server/model/past.h"
 #include "server/pipeline/asked.h"
+#include "server/pipeline/boards/remarks.h"
 #include "server/pipeline/compared_lenses.h"
 #include "server/pipeline/current_edges.h"
 #include "server/pipeline/decide.h"
@@ -233,6 +234,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   if (manifest) input.manifest = std::move(*manifest);
   RIGCAL_ASSIGN(input.retired, LoadRetiredSensorsIn(context.store, robot, input.manifest));
   RIGCAL_ASSIGN(input.lacking, LoadLacking(context.store, robot, input.manifest.header));
+  RIGCAL_ASSIGN(input.board_remarks, LoadBoardRemarks(context.store, {row.session}));
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(input.past, WhyPast(context, robot, input.edges));
   if (input.row.closed && input.row.pairs_waiting == 0) {

@@ -164,7 +164,7 @@ void FillPager(Dictionary& list, FleetQuery query, const FleetCounts& fleet, con
 }  // namespace
 
 Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now, const FleetQuery& query,
-                                std::size_t experiments) {
+                                std::size_t experiments, std::size_t boards) {
   Dictionary page("fleet");
   FillHead(page, "Fleet", "");
   if (experiments > 0) ShowValue(page, "EXPERIMENTS", "COUNT", Count(experiments, "experiment", "experiments"));
@@ -175,6 +175,7 @@ Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list,
   }
   FillSummary(page, fleet);
   page.ShowSection("RIG_MODELS");
+  ShowValue(page, "BOARDS", "TEXT", boards == 0 ? "boards" : Count(boards, "board", "boards"));
   FillWorkLists(page, fleet);
   Dictionary* robots = page.AddSectionDictionary("ROBOTS");
   FillForm(*robots, query);

@@ -2,6 +2,7 @@
 #include <map>
 
 #include "server/model/merged_edge.h"
+#include "server/report/boards/board_remarks.h"
 #include "server/report/tables.h"
 #include "server/report/text.h"
 
@@ -17,6 +18,7 @@ void FillFacts(Dictionary& row, const ReportInput& input, const SessionId& sessi
     shown->SetValue("FILES", Count(facts.files, "file", "files"));
     if (!facts.operator_name.empty()) ShowValue(*shown, "OPERATOR", "NAME", facts.operator_name);
     if (!facts.rig_model.empty()) ShowValue(*shown, "RIG", "NAME", facts.rig_model);
+    FillBoardRemarks(*shown, facts.board_remarks);
     if (facts.boards.empty()) return;
     Dictionary* boards = shown->AddSectionDictionary("BOARDS");
     for (const std::string& board : facts.boards) ShowValue(*boards, "BOARD", "NAME", board);

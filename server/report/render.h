@@ -8,6 +8,7 @@
 
 #include "server/formats/documents.h"
 #include "server/model/as_found.h"
+#include "server/model/boards/remark.h"
 #include "server/model/fleet_list.h"
 #include "server/model/validity.h"
 #include "server/report/camera_choice.h"
@@ -26,6 +27,7 @@ struct SessionFacts {
   std::string operator_name, rig_model;
   std::vector<std::string> boards;  // "board: checkerboard 9 x 6, 25 mm"
   std::size_t files = 0;
+  std::vector<BoardRemark> board_remarks = {};
 };
 // The test of an edge's residual: beyond `limit` it contradicts; limit 0: nothing tests it.
 struct EdgeLimit {
@@ -68,9 +70,10 @@ struct ReportInput {
 [[nodiscard]] Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& input,
                                                                         const std::string& document);
 
-// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h. `experiments`: how many there are to link to.
+// Fleet index "/" (a page of it). The pages of one robot: robot_pages.h. `experiments`, `boards`: how many there are to link to.
 [[nodiscard]] Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list, Stamp now,
-                                              const FleetQuery& query = {}, std::size_t experiments = 0);
+                                              const FleetQuery& query = {}, std::size_t experiments = 0,
+                                              std::size_t boards = 0);
 // Drawing of the sensor graph alone: circles and edges, labels escaped, failed edges dashed.
 [[nodiscard]] std::string RenderGraphSvg(const formats::RevisionInput& revision);
 [[nodiscard]] std::string StyleSheet();

@@ -80,6 +80,7 @@ struct SessionInput {
   bool all_looked_at = true;                                              // for that; else there may be more
   std::vector<RetiredSensor> retired = {};                                // of the sensors that it lists
   std::string lacking = {};  // what its rig model has and it does not list, as a sentence; empty: nothing
+  std::vector<BoardRemark> board_remarks = {};
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

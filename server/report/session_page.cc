@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "server/report/assets.h"
+#include "server/report/boards/board_remarks.h"
 #include "server/report/figure_words.h"
 #include "server/report/page.h"
 #include "server/report/retired_section.h"
@@ -185,6 +186,7 @@ Result<std::string> RenderSession(const SessionInput& input) {
   FillGone(page, input.robot, input.retired);
   if (!input.lacking.empty()) ShowValue(page, "LACKING", "TEXT", input.lacking);
   FillPartsOfSensors(page, input.manifest.header);
+  FillBoardRemarks(page, input.board_remarks);
   if (input.row.closed && !input.row.retired) ShowValue(page, "MISLEADS", "COMMAND", RetireCommand(input.row.id));
   FillEdges(page, input);
   FillSheet(page, input);

@@ -9,7 +9,7 @@ rigcal_test(client_push_test
   DEPS rigcal_client)
 rigcal_test(client_wire_test
   SOURCES unit/client_connection_test.cc unit/client_one_server_test.cc unit/client_transfer_test.cc unit/client_verbs_test.cc unit/client_standing_test.cc unit/client_history_test.cc unit/client_audit_test.cc unit/client_decide_test.cc unit/client_agent_file_test.cc
-          unit/client_exit_code_test.cc unit/client_policy_test.cc unit/client_unit_doubt_test.cc unit/client_completion_test.cc unit/client_part_text_test.cc unit/client/models_test.cc
+          unit/client_exit_code_test.cc unit/client_policy_test.cc unit/client_unit_doubt_test.cc unit/client_completion_test.cc unit/client_part_text_test.cc unit/client/models_test.cc unit/client/board_verb_test.cc
   DEPS rigcal_client)
 rigcal_test(client_program_test
   SOURCES unit/client_program_test.cc

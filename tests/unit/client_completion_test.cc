@@ -44,6 +44,8 @@ TEST(Completion, OfVerbsWithTheirMeaning) {
   EXPECT_THAT(WordsAfter({"push"}), ElementsAre("push", "push-edges"));
   EXPECT_THAT(WordsAfter({""}), Contains("simulate"));
   EXPECT_THAT(WordsAfter({"policy", ""}), ElementsAre("show", "check", "set"));
+  EXPECT_THAT(WordsAfter({"board", ""}), ElementsAre("print", "measure", "list", "show", "trace"));
+  EXPECT_THAT(WordsAfter({"board", "print", "--out", ""}), ElementsAre(":files"));
   EXPECT_THAT(WordsAfter({"policy", "check", ""}), ElementsAre(":files"));
   EXPECT_THAT(WordsAfter({"model", ""}), ElementsAre("show", "list", "check", "set"));
   EXPECT_THAT(WordsAfter({"model", "set", ""}), ElementsAre(":files"));

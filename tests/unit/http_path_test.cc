@@ -36,6 +36,7 @@ TEST(HttpPath, PublishedFile) {
 
 TEST(HttpPath, PagesWithoutTheirLastSlash) {
   EXPECT_EQ(WithSlash("/experiments").value(), "/experiments/");
+  EXPECT_EQ(WithSlash("/boards").value(), "/boards/");
   EXPECT_EQ(WithSlash("/experiments/noise").value(), "/experiments/noise/");
   EXPECT_EQ(WithSlash("/robots/m").value(), "/robots/m/");
   EXPECT_EQ(WithSlash("/models").value(), "/models/");

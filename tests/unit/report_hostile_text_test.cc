@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "server/report/boards/boards_page.h"
 #include "server/report/certificate.h"
 #include "server/report/page_data.h"
 #include "server/report/robot_pages.h"
@@ -133,6 +134,16 @@ TEST(HostileTextElsewhere, FleetAndRobotPage) {
   RobotInput robot{row, {revision, revision}, {session}, {SensorId(kHostile)}, {session}, true, true};
   robot.retired = {{SensorId(kHostile), *session.retired}};
   ExpectHarmless(RenderRobot(robot, Stamp{2}).value(), "robot");
+}
+
+TEST(HostileTextElsewhere, BoardsPage) {
+  formats::BoardRow row;
+  row.measure.serial = row.measure.word.who = kHostile;
+  row.measure.length_x_m = row.measure.length_y_m = 0.1;
+  row.measure.next_check_at = Stamp{1};
+  row.check_due = true;
+  ExpectHarmless(RenderBoards({{row}, {}, kHostile}).value(), "boards");
+  ExpectHarmless(RenderBoards({{}, {{kHostile, row.measure.pattern, 1}}, ""}).value(), "boards that nobody measured");
 }
 
 TEST(HostileTextElsewhere, SessionPage) {

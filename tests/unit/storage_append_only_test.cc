@@ -5,6 +5,7 @@
 #include "storage/as_found.h"
 #include "storage/attempts.h"
 #include "storage/audit.h"
+#include "storage/boards/measures.h"
 #include "storage/decisions.h"
 #include "storage/epochs.h"
 #include "storage/fleet_facts.h"
@@ -79,6 +80,11 @@ class AppendOnlyTest : public StoreTest {
       estimate.reference = SensorId("left");
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
+      BoardMeasure measure;
+      measure.serial = "B-7", measure.pattern = {TargetKind::kCheckerboard, 9, 6, 0.025};
+      measure.length_x_m = measure.length_y_m = measure.measured_x_m = measure.measured_y_m = 0.2, measure.sigma_m = 0.0002;
+      measure.word = {{6}, "Ada", ""};
+      RIGCAL_TRY(AppendBoardMeasure(store_, measure));
       RIGCAL_TRY(AppendPolicy(store_, {}, "tolerance_mm: 4", {{6}, "Ada", "new mounts"}));
       RIGCAL_TRY(AppendRigModel(store_, "mars", "rig_model: mars", {{6}, "Ada", "drawing 7"}));
       RIGCAL_TRY(BeginEpoch(store_, kRobot, {SensorId("left")}, {6}, {{6}, "Ada", "new bracket"}));

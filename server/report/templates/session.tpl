@@ -15,6 +15,8 @@
 {{/LACKING}}
 {{#GONE}}<p dir="auto"><span class="badge unknown">past</span> {{WHY}}; what this session says of it does not count. To bring it back: <code class="typed">{{COMMAND}}</code></p>
 {{/GONE}}
+{{#BOARD_REMARK}}<p dir="auto"><span class="badge {{LEVEL}}">{{WORD}}</span> {{WHY}}. {{CURE:x-typed}}</p>
+{{/BOARD_REMARK}}
 </section>
 <section class="card">
 <h2 id="edges">What it gave{{#FAILED_FIRST}} <span class="soft">failed pairs first</span>{{/FAILED_FIRST}}</h2>

@@ -1,0 +1,14 @@
+// What the registry of boards says of a session's boards, on pages.
+#pragma once
+
+#include <vector>
+
+#include "server/model/boards/remark.h"
+#include "server/report/page.h"
+
+namespace rigcal::report {
+
+// {{#BOARD_REMARK}} with LEVEL, WORD, WHY, CURE for each; the same words once.
+void FillBoardRemarks(Dictionary& parent, const std::vector<BoardRemark>& remarks);
+
+}  // namespace rigcal::report
