@@ -179,7 +179,7 @@ void CountPair(const PairSources& from, const Sensor& a, const Sensor& b, PairFo
 PairFound FindPair(const PairSources& from, const SensorPair& pair) {
   const Sensor &a = *SensorOf(from.Header(), pair.a), &b = *SensorOf(from.Header(), pair.b);
   PairFound found{pair, *MethodFor(from.Header(), a, b), {}, 0, {}, {}};
-  found.needed = calib::NeededBy(found.method);
+  found.needed = RowOf(found.method).captures;
   switch (found.method) {
     case Method::kStereo:
       EstimateStereo(from, a, b, found);

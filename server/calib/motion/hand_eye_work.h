@@ -13,9 +13,10 @@
 
 namespace rigcal::calib {
 
-constexpr std::size_t kHandEyeMin = 4;           // captures of both
+static_assert(RowOf(Method::kNonOverlapping).captures == RowOf(Method::kTrackerCamera).captures);
+constexpr std::size_t kHandEyeMin = RowOf(Method::kTrackerCamera).captures.least;  // captures of both
 constexpr std::size_t kHandEyeForJackknife = 5;  // fewer: the uncertainty is the model's
-constexpr std::size_t kHandEyeEnough = 10;       // fewer: a note says so
+constexpr std::size_t kHandEyeEnough = RowOf(Method::kTrackerCamera).captures.enough;  // fewer: a note says so
 
 constexpr int kStreamShared = 4;
 
