@@ -1,4 +1,4 @@
-#include "server/calib/joint/field_equations.h"
+#include "server/calib/joint/lens_misfit.h"
 
 #include <algorithm>
 

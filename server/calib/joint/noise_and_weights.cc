@@ -1,4 +1,4 @@
-#include "server/calib/joint/noise_and_weights.h"
+#include "server/calib/joint/refine.h"
 
 #include <algorithm>
 #include <cmath>
