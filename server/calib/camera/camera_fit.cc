@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "server/calib/camera/gathered_views.h"
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/projection.h"
 #include "server/calib/camera/seen_corners.h"
+#include "server/calib/camera/view_moments.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/motion/camera_motion.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "server/calib/camera/intrinsics.h"
-#include "server/calib/core/range_constants.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"

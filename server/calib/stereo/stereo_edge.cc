@@ -197,12 +197,8 @@ Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const StereoProblem& chosen) {
     return ShowsOtherBoard(chosen) ? FailedEdge(chosen, {}) : Solved(chosen, fits);
   };
-  return Guarded(
-      [&] {
-        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>,
-                                estimate);
-      },
-      [&](const Error& error) { return FailedEdge(problem, {FromError(problem, "internal", error)}); });
+  const auto failed = [&](const Error& error) { return FailedEdge(problem, {FromError(problem, "internal", error)}); };
+  return EdgeOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>, estimate, failed);
 }
 
 }  // namespace rigcal::calib

@@ -149,12 +149,9 @@ OrDiagnosis<TrackerLidarResult> EstimateTrackerLidar(const TrackerLidarProblem& 
 }
 
 Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem) {
-  return Guarded(
-      [&] {
-        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<TrackerLidarProblem>,
-                                Solved);
-      },
-      [&](const Error& error) { return FailedEdge(problem, TrackerLidarNotSolvable(problem, error)); });
+  const auto failed = [&](const Error& error) { return FailedEdge(problem, TrackerLidarNotSolvable(problem, error)); };
+  return EdgeOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<TrackerLidarProblem>, Solved,
+                      failed);
 }
 
 }  // namespace rigcal::calib

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/core/range_constants.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/robust.h"
 
 namespace rigcal::calib {
