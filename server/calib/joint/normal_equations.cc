@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/base/parallel_for.h"
+#include "server/math/covariance.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -61,7 +62,7 @@ void AddShared(const Observation& look, NormalEquations& shared) {
 }
 
 Matrix6d InverseOf(const Matrix6d& H) {
-  const Vector6d scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  const Vector6d scale = UnitDiagonal(H);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
   const double least = kOpen * axes.eigenvalues()[5];
   const Vector6d inverse = axes.eigenvalues().unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });

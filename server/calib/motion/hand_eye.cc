@@ -108,10 +108,8 @@ SharedJacobian SharedOf(const CommonPoses& common, std::size_t k) {
 void SetSamples(const CommonPoses& common, HandEyeWork& work) {
   work.captures.clear();
   work.candidates.clear();
-  Vector6d variances;
-  variances << Eigen::Vector3d::Constant(kStreamSigma_m * kStreamSigma_m),
-      Eigen::Vector3d::Constant(kStreamSigma_rad * kStreamSigma_rad);
-  const Matrix6d covariance = variances.asDiagonal();
+  const Matrix6d covariance =
+      EachAxis(kStreamSigma_m * kStreamSigma_m, kStreamSigma_rad * kStreamSigma_rad).asDiagonal();
   for (std::size_t k = 0; k < common.a.size(); ++k) {
     work.captures.emplace_back(SampleName(k));
     MotionCandidates sample;

@@ -29,9 +29,8 @@ std::vector<PoseCandidate> CandidatesOf(const CameraMotion& camera, const Captur
 std::vector<PoseCandidate> CandidatesOf(const TimedPose& row) {
   PoseCandidate candidate;
   candidate.pose.T_world_sensor = row.T_world_body;
-  candidate.pose.covariance.setZero();
-  candidate.pose.covariance.diagonal().head<3>().setConstant(kTrackerSigma_m * kTrackerSigma_m);
-  candidate.pose.covariance.diagonal().tail<3>().setConstant(kTrackerSigma_rad * kTrackerSigma_rad);
+  candidate.pose.covariance =
+      EachAxis(kTrackerSigma_m * kTrackerSigma_m, kTrackerSigma_rad * kTrackerSigma_rad).asDiagonal();
   return {candidate};
 }
 
@@ -63,15 +62,12 @@ bool IsRepeat(const HandEyeSide& side, const CandidateMap& candidates, const Cap
     const BoardView *view_x = ViewOf(side, x), *view_y = ViewOf(side, y);
     return view_x && view_y && ShowSame(*view_x, *view_y, *side.board);
   }
-  const Vector6d xi =
-      (candidates.at(x)[0].pose.T_world_sensor.Inverse() * candidates.at(y)[0].pose.T_world_sensor).Log();
-  return xi.head<3>().norm() < kSamePose_m && xi.tail<3>().norm() < kSamePose_rad;
+  return AreNear(candidates.at(x)[0].pose.T_world_sensor, candidates.at(y)[0].pose.T_world_sensor, kSamePose_m,
+                 kSamePose_rad);
 }
 
 SidePose Scaled(SidePose pose, const SideFactor& factor) {
-  Vector6d scale;
-  scale << Eigen::Vector3d::Constant(std::sqrt(factor.translation)),
-      Eigen::Vector3d::Constant(std::sqrt(factor.rotation));
+  const Vector6d scale = EachAxis(std::sqrt(factor.translation), std::sqrt(factor.rotation));
   pose.covariance = scale.asDiagonal() * pose.covariance * scale.asDiagonal();
   return pose;
 }
