@@ -42,17 +42,12 @@ struct Work {
 
 Work Collected(const CameraProblem& problem) {
   Work work;
-  work.views.model = ModelOf(problem.camera);
-  work.views.corners_board = TargetPoints(problem.board);
+  work.views = ViewsOf(problem);
   for (const auto& [capture, view] : problem.views) {
-    if (std::string why = WhyUnusable(view, problem.board); !why.empty()) {
+    if (std::string why = WhyUnusable(view, problem.board); !why.empty())
       work.unused[capture] = std::move(why);
-      continue;
-    }
-    work.captures.push_back(capture);
-    work.views.seen.push_back(SeenIn(view, problem.board));
-    work.views.width_px = view.image_width_px;
-    work.views.height_px = view.image_height_px;
+    else
+      work.captures.push_back(capture);
   }
   work.joint = OneCamera(work.views, !problem.camera.intrinsics);
   return work;
@@ -106,14 +101,8 @@ void PlaceBoards(Work& work) {
     if (!(rms_px[k] <= limit_px && std::isfinite(rms_px[k]))) work.Drop(k, "no pose of the board explains its corners");
 }
 
-double SumOfSquaresOf(const Work& work) {
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < work.captures.size(); ++k) ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
-  return ssr_px2;
-}
-
 double VarianceOf(const Work& work) {
-  return SumOfSquaresOf(work) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
+  return SumOfSquares_px2(work.joint, work.state) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
 }
 
 OrDiagnosis<void> Solve(const CameraProblem& problem, Work& work) {
@@ -239,7 +228,7 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
     if (!work.alternatives[k].empty()) estimate.alternatives[capture] = work.alternatives[k];
     estimate.rms_by_capture_px[capture] = RmsOf(work, k);
   }
-  estimate.rms_px = std::sqrt(2 * SumOfSquaresOf(work) / ResidualCount(work.joint));
+  estimate.rms_px = std::sqrt(2 * SumOfSquares_px2(work.joint, work.state) / ResidualCount(work.joint));
   const double limit_px = HighRms_px(work.views.width_px);
   if (!(estimate.rms_px <= limit_px)) return tl::unexpected(CameraHighResidual(problem, estimate.rms_px, limit_px));
   return estimate;
@@ -266,6 +255,14 @@ OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const Camera
 
 }  // namespace
 
+std::vector<Se3> CameraEstimate::PosesOf(const CaptureId& capture) const {
+  std::vector<Se3> poses;
+  if (const auto at = T_cam_board.find(capture); at != T_cam_board.end()) poses.push_back(at->second);
+  if (const auto at = alternatives.find(capture); at != alternatives.end())
+    poses.insert(poses.end(), at->second.begin(), at->second.end());
+  return poses;
+}
+
 OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const CameraEstimate* start) {
   auto estimate = Estimated(problem, start);
   if (!estimate && start == nullptr)
@@ -281,7 +278,7 @@ double FitRms_px(const CameraProblem& problem, CameraModel model) {
   double rms_px = std::numeric_limits<double>::infinity();
   try {
     if (const auto work = FromScratch(WithModel(problem, model)))
-      rms_px = std::sqrt(2 * SumOfSquaresOf(*work) / ResidualCount(work->joint));
+      rms_px = std::sqrt(2 * SumOfSquares_px2(work->joint, work->state) / ResidualCount(work->joint));
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;
   }

@@ -146,12 +146,6 @@ bool PlaceAll(const JointProblem& joint, JointState& state) {
   return true;
 }
 
-double RmsOf_px(const JointProblem& joint, const JointState& state) {
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < joint.captures.size(); ++k) ssr_px2 += ErrorOf(joint, state, k).a_px2;
-  return std::sqrt(2 * ssr_px2 / ResidualCount(joint));
-}
-
 double RmsAtFocal_px(const CameraViews& views, double focal_px) {
   JointProblem joint = OneCamera(views, true);
   joint.a.held = {0};  // the other one follows: pixels need not be square
@@ -162,7 +156,7 @@ double RmsAtFocal_px(const CameraViews& views, double focal_px) {
     auto solved = SolveJoint(joint, state);
     if (!solved) break;
     state = std::move(solved->state);
-    least_px = std::min(least_px, RmsOf_px(joint, state));
+    least_px = std::min(least_px, std::sqrt(2 * SumOfSquares_px2(joint, state) / ResidualCount(joint)));
   }
   return least_px;
 }

@@ -29,6 +29,16 @@ Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& b
 // At least one: none would say that nothing was estimated.
 int DofOf(std::size_t carrying) { return carrying > 2 ? static_cast<int>(carrying) - 1 : 1; }
 
+UncertaintySource SourceOf(const std::vector<BlockVector>& blocks) {
+  return blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
+}
+
+Uncertainty With(std::vector<BlockVector> blocks, std::vector<Contribution> contributions, Uncertainty uncertainty) {
+  uncertainty.blocks = std::move(blocks);
+  uncertainty.contributions = std::move(contributions);
+  return uncertainty;
+}
+
 }  // namespace
 
 Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const Se3& T_a_b,
@@ -43,12 +53,6 @@ Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& blo
     blocks.push_back({block_ids[i], (T_a_b.Inverse() * **poses[i]).Log()});
   }
   return blocks;
-}
-
-std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : blocks) d.push_back(block.d);
-  return d;
 }
 
 Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants) {
@@ -68,11 +72,8 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
 Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
                                   std::vector<Contribution> contributions, std::size_t carrying) {
   const Matrix6d C = CovarianceOf(C_model, blocks, contributions);
-  const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
-  RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, DofOf(carrying)));
-  uncertainty.blocks = std::move(blocks);
-  uncertainty.contributions = std::move(contributions);
-  return uncertainty;
+  RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, SourceOf(blocks), DofOf(carrying)));
+  return With(std::move(blocks), std::move(contributions), std::move(uncertainty));
 }
 
 Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::MatrixXd& C_model_along,
@@ -93,12 +94,9 @@ Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::Matrix
     return Fail(ErrorCode::kInvalidInput, "the covariance is not positive definite",
                 "Take more captures from different places.");
   const Eigen::MatrixXd information = llt.solve(Eigen::MatrixXd::Identity(free.cols(), free.cols()));
-  const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
   Uncertainty uncertainty =
-      FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
-  uncertainty.blocks = std::move(blocks);
-  uncertainty.contributions = std::move(contributions);
-  return uncertainty;
+      FromInformation(Symmetrized(free * information * free.transpose()), SourceOf(blocks), DofOf(carrying));
+  return With(std::move(blocks), std::move(contributions), std::move(uncertainty));
 }
 
 namespace {

@@ -22,9 +22,6 @@ using WithoutBlock = std::function<Result<Se3>(std::size_t block_idx)>;
 [[nodiscard]] Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const Se3& T_a_b,
                                                            const WithoutBlock& without);
 
-// Only the vectors, in their order.
-[[nodiscard]] std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks);
-
 // A constant that was given with a sigma.
 struct GivenConstant {
   std::string name;                                // constants of one name, side by side, are one contribution

@@ -44,13 +44,14 @@ bool Better(const StereoProblem& problem, const Attempt& left, const Attempt& ri
   if (!left.status) return false;
   const std::size_t both_left = CountBoth(problem, left.work.used), both_right = CountBoth(problem, right.work.used);
   if (both_left != both_right) return both_left > both_right;
-  return left.work.SumOfSquares_px2() < right.work.SumOfSquares_px2();
+  return SumOfSquares_px2(left.work.joint, left.work.state) < SumOfSquares_px2(right.work.joint, right.work.state);
 }
 
 bool FitsEqually(const StereoProblem& problem, const Attempt& best, const Attempt& other) {
   if (!other.status || CountBoth(problem, other.work.used) != CountBoth(problem, best.work.used)) return false;
   const double variance_px2 = std::max(kVarianceMin_px2, best.work.Variance_px2());
-  return other.work.SumOfSquares_px2() - best.work.SumOfSquares_px2() < kAmbiguousTurnCost * variance_px2;
+  return SumOfSquares_px2(other.work.joint, other.work.state) - SumOfSquares_px2(best.work.joint, best.work.state) <
+         kAmbiguousTurnCost * variance_px2;
 }
 
 // Two attempts may end in the same minimum.

@@ -145,16 +145,9 @@ void StereoWork::Drop(std::size_t position, const std::string& why) {
   EraseAt(position, used, turns_b, joint.captures, state.T_a_board);
 }
 
-double StereoWork::SumOfSquares_px2() const {
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    const CaptureError error = ErrorOf(joint, state, k);
-    ssr_px2 += error.a_px2 + error.b_px2;
-  }
-  return ssr_px2;
+double StereoWork::Variance_px2() const {
+  return SumOfSquares_px2(joint, state) / (ResidualCount(joint) - ParameterCount(joint));
 }
-
-double StereoWork::Variance_px2() const { return SumOfSquares_px2() / (ResidualCount(joint) - ParameterCount(joint)); }
 
 std::vector<CaptureId> PlaceBoards(const StereoProblem& problem, double width_px, StereoWork& work) {
   work.state.T_a_board.resize(work.used.size());
