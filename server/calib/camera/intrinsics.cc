@@ -62,14 +62,7 @@ OrDiagnosis<void> CheckCount(const CameraProblem& problem, const Work& work) {
 }
 
 OrDiagnosis<void> CheckSizes(const CameraProblem& problem) {
-  const BoardView* first = nullptr;
-  std::vector<CaptureId> resized;
-  for (const auto& [capture, view] : problem.views) {
-    if (!view.found) continue;
-    if (first == nullptr) first = &view;
-    if (view.image_width_px != first->image_width_px || view.image_height_px != first->image_height_px)
-      resized.push_back(capture);
-  }
+  const auto resized = Resized(problem, [](const BoardView& view) { return view.found; });
   if (resized.empty()) return {};
   return tl::unexpected(ImageSizeChanged(problem.camera.id, resized));
 }
@@ -158,9 +151,8 @@ OrDiagnosis<Work> FromScratch(const CameraProblem& problem) {
   Work work = Collected(problem);
   if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
   if (auto sizes = CheckSizes(problem); !sizes) return tl::unexpected(sizes.error());
-  const auto start = StartOf(problem, work.views);
-  if (!start) return tl::unexpected(start.error());
-  work.state.intrinsics_a = *start;
+  RIGCAL_ASSIGN(const auto start, StartOf(problem, work.views));
+  work.state.intrinsics_a = start;
   PlaceBoards(work);
   if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
   for (int round = 0; round < kPoseRoundsMax; ++round) {
@@ -243,9 +235,8 @@ CameraProblem WithModel(CameraProblem problem, CameraModel model) {
 
 OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const CameraEstimate* start) {
   try {
-    const auto work = start != nullptr ? FromStart(problem, *start) : FromScratch(problem);
-    if (!work) return tl::unexpected(work.error());
-    return Finished(problem, *work);
+    RIGCAL_ASSIGN(const auto work, start != nullptr ? FromStart(problem, *start) : FromScratch(problem));
+    return Finished(problem, work);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};

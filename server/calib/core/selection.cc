@@ -126,7 +126,7 @@ Selection Select(const StereoProblem& problem) {
         selection.used.push_back(idx);
       } else {
         selection.unused[idx] = "shows the same as " + problem.captures[*earlier].capture.str();
-        selection.repeated.push_back(idx);
+        selection.repeated.push_back(capture.capture);
       }
     }
   }

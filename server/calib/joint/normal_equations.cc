@@ -30,17 +30,12 @@ LooksOfPlaces LooksOf(const SessionProblem& problem) {
 }
 
 std::optional<Observation> ObserveLook(const Linearization& of, const SessionState& state, const Look& look) {
-  const auto noise = [&](const Where& where) { return of.noise[static_cast<std::size_t>(where.sensor)]; };
-  if (look.kind == Kind::kCorners) {
-    const CornersSeen& seen = of.problem.corners[look.idx];
-    return Observe(of.problem, of.layout, state, seen, noise(seen), of.weights.OfCorners(look.idx));
-  }
-  if (look.kind == Kind::kPlate) {
-    const PlateSeen& seen = of.problem.plates[look.idx];
-    return Observe(of.problem, of.layout, state, seen, noise(seen), of.weights.plates[look.idx]);
-  }
-  const PoseTold& told = of.problem.poses[look.idx];
-  return Observe(of.problem, of.layout, state, told, noise(told), of.weights.poses[look.idx]);
+  const auto observe = [&](const auto& seen, double weight) -> std::optional<Observation> {
+    return Observe(of.problem, of.layout, state, seen, of.noise[static_cast<std::size_t>(seen.sensor)], weight);
+  };
+  if (look.kind == Kind::kCorners) return observe(of.problem.corners[look.idx], of.weights.OfCorners(look.idx));
+  if (look.kind == Kind::kPlate) return observe(of.problem.plates[look.idx], of.weights.plates[look.idx]);
+  return observe(of.problem.poses[look.idx], of.weights.poses[look.idx]);
 }
 
 LookFit& FitOf(SessionFit& fit, const Look& look) {
@@ -133,12 +128,12 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
     if (layout.scale[t] != kNone)
       AddPull(layout.scale[t], state.board_scale_ratio[t],
               problem.targets[t].square_sigma_m / problem.targets[t].square_m, linearized.given, linearized.cost);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
-    if (layout.bias[s] != kNone)
-      AddPull(layout.bias[s], state.range_bias_m[s], problem.range_bias_sigma_m[s], linearized.given, linearized.cost);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
-    if (layout.slant[s] != kNone)
-      AddPull(layout.slant[s], state.slant_bias_m[s], problem.slant_bias_sigma_m[s], linearized.given, linearized.cost);
+  const auto pull = [&](const std::vector<int>& at, const std::vector<double>& away, const std::vector<double>& sigma) {
+    for (std::size_t s = 0; s < at.size(); ++s)
+      if (at[s] != kNone) AddPull(at[s], away[s], sigma[s], linearized.given, linearized.cost);
+  };
+  pull(layout.bias, state.range_bias_m, problem.range_bias_sigma_m);
+  pull(layout.slant, state.slant_bias_m, problem.slant_bias_sigma_m);
 }
 
 // Of the own unknowns of a look, from those of the session and of its place.

@@ -248,13 +248,11 @@ OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& p
   if (!problem.camera.intrinsics && camera->T_cam_board.size() < kLidarViewsForIntrinsics)
     return tl::unexpected(TooFewForIntrinsics(problem, camera->T_cam_board.size()));
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
-  auto work = Choose(problem, std::move(*camera), kept);
-  if (!work) return tl::unexpected(work.error());
-  FillPlanes(problem, *work);
-  const auto refined = RefineTold(problem, *work, kept);
-  if (!refined) return tl::unexpected(refined.error());
-  LidarCameraEstimate estimate = Finished(problem, *work);
-  EstimateSystematics(problem, *work, estimate);
+  RIGCAL_ASSIGN(auto work, Choose(problem, std::move(*camera), kept));
+  FillPlanes(problem, work);
+  RIGCAL_TRY(RefineTold(problem, work, kept));
+  LidarCameraEstimate estimate = Finished(problem, work);
+  EstimateSystematics(problem, work, estimate);
   return estimate;
 }
 

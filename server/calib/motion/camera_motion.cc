@@ -42,10 +42,9 @@ double VarianceOf(const CameraMotion& motion) { return std::max(motion.camera.va
 }  // namespace
 
 OrDiagnosis<CameraMotion> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver) {
-  auto camera = EstimateCameraBy(solver, problem);
-  if (!camera) return tl::unexpected(camera.error());
+  RIGCAL_ASSIGN(auto camera, EstimateCameraBy(solver, problem));
   CameraMotion motion;
-  motion.camera = std::move(*camera);
+  motion.camera = std::move(camera);
   motion.estimates_intrinsics = !HoldsIntrinsics(problem.camera);
   motion.turns = SymmetryOf(problem.board);
   motion.centre_board_m = CentreOf(problem.board);

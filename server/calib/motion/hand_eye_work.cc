@@ -83,22 +83,20 @@ void Widen(MotionSide& side) {
 
 OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem) {
   HandEyeWork work;
-  const auto a = CandidatesOf(problem, problem.a, work.camera_a, work.unused);
-  if (!a) return tl::unexpected(a.error());
-  const auto b = CandidatesOf(problem, problem.b, work.camera_b, work.unused);
-  if (!b) return tl::unexpected(b.error());
+  RIGCAL_ASSIGN(const auto a, CandidatesOf(problem, problem.a, work.camera_a, work.unused));
+  RIGCAL_ASSIGN(const auto b, CandidatesOf(problem, problem.b, work.camera_b, work.unused));
   std::set<CaptureId> all;
-  for (const auto* side : {&*a, &*b})
+  for (const auto* side : {&a, &b})
     for (const auto& [capture, candidates] : *side) all.insert(capture);
   std::size_t repeated = 0;
   for (const CaptureId& capture : all) {
-    const auto of_a = a->find(capture), of_b = b->find(capture);
-    if (of_a == a->end() || of_b == b->end()) {
-      work.unused.emplace(capture, (of_a == a->end() ? problem.a : problem.b).sensor.id.str() + " has no pose");
+    const auto of_a = a.find(capture), of_b = b.find(capture);
+    if (of_a == a.end() || of_b == b.end()) {
+      work.unused.emplace(capture, (of_a == a.end() ? problem.a : problem.b).sensor.id.str() + " has no pose");
       continue;
     }
     const auto earlier = std::find_if(work.captures.begin(), work.captures.end(), [&](const CaptureId& other) {
-      return IsRepeat(problem.a, *a, other, capture) && IsRepeat(problem.b, *b, other, capture);
+      return IsRepeat(problem.a, a, other, capture) && IsRepeat(problem.b, b, other, capture);
     });
     if (earlier != work.captures.end()) {
       ++repeated;
@@ -132,12 +130,12 @@ void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, Moti
   problem.b.gradient = SharedVector::Zero(kStreamShared);
 }
 
-MotionNoise NoiseOf(const MotionProblem& problem) {
+MotionNoise NoiseOf(std::initializer_list<const MotionSide*> sides, const std::vector<char>& used) {
   Eigen::Vector2d variance = Eigen::Vector2d::Zero();
   double count = 0;
-  for (std::size_t k = 0; k < problem.used.size(); ++k) {
-    if (!problem.used[k]) continue;
-    for (const MotionSide* side : {&problem.a, &problem.b})
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (!used[k]) continue;
+    for (const MotionSide* side : sides)
       variance += Eigen::Vector2d(side->poses[k].covariance.topLeftCorner<3, 3>().trace() / 3,
                                   side->poses[k].covariance.bottomRightCorner<3, 3>().trace() / 3);
     count += 1;
@@ -242,7 +240,7 @@ void FindReach(const HandEyeProblem& problem, HandEyeWork& work) {
     if (work.problem.used[k]) used.push_back(work.state.T_world_a[k]);
   const MotionKind before = work.reach.kind;
   const bool first = work.reach.free.cols() == 0;
-  MotionNoise noise = NoiseOf(work.problem);
+  MotionNoise noise = NoiseOf({&work.problem.a, &work.problem.b}, work.problem.used);
   if (work.asked == Asked::kClockOffset) noise.noises = kStreamNoises;
   work.reach = ReachOf(used, work.state.X, noise);
   if (first || work.reach.kind != before)

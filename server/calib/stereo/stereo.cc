@@ -89,18 +89,16 @@ OrDiagnosis<Attempt> BestOf(const StereoProblem& problem, std::vector<Attempt> a
 }
 
 OrDiagnosis<StereoWork> SolvedFromScratch(const StereoProblem& problem, std::vector<Diagnosis>& notes) {
-  const auto start = ColdStart(problem);
-  if (!start) return tl::unexpected(start.error());
+  RIGCAL_ASSIGN(const auto start, ColdStart(problem));
   std::vector<Attempt> attempts;
-  for (const Se3& T_a_b : start->T_a_b) {
-    attempts.push_back({start->work, {}, {}});
+  for (const Se3& T_a_b : start.T_a_b) {
+    attempts.push_back({start.work, {}, {}});
     attempts.back().work.state.T_a_b = T_a_b;
-    attempts.back().status = Solve(problem, start->width_px, attempts.back());
+    attempts.back().status = Solve(problem, start.width_px, attempts.back());
   }
-  auto best = BestOf(problem, std::move(attempts), start->distance_m);
-  if (!best) return tl::unexpected(best.error());
-  notes.insert(notes.end(), best->notes.begin(), best->notes.end());
-  return std::move(best->work);
+  RIGCAL_ASSIGN(auto best, BestOf(problem, std::move(attempts), start.distance_m));
+  notes.insert(notes.end(), best.notes.begin(), best.notes.end());
+  return std::move(best.work);
 }
 
 OrDiagnosis<StereoWork> SolvedFrom(const StereoProblem& problem, const StereoEstimate& start) {
@@ -184,9 +182,8 @@ OrDiagnosis<StereoEstimate> EstimateOrDiagnose(const StereoProblem& problem, con
                                                std::vector<Diagnosis>* notes) {
   std::vector<Diagnosis> ignored;
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
-  const auto work = start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept);
-  if (!work) return tl::unexpected(work.error());
-  return Finished(problem, *work);
+  RIGCAL_ASSIGN(const auto work, start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept));
+  return Finished(problem, work);
 }
 
 Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start) {

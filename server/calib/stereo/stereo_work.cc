@@ -97,12 +97,10 @@ OrDiagnosis<StereoStart> ColdStart(const StereoProblem& problem) {
   work.joint = JointOf(problem, work.used);
   const CameraViews views_a = ViewsOf(problem, work.used, &StereoCapture::a),
                     views_b = ViewsOf(problem, work.used, &StereoCapture::b);
-  const auto intrinsics_a = StartOf(problem, problem.camera_a, views_a);
-  if (!intrinsics_a) return tl::unexpected(intrinsics_a.error());
-  const auto intrinsics_b = StartOf(problem, problem.camera_b, views_b);
-  if (!intrinsics_b) return tl::unexpected(intrinsics_b.error());
-  work.state.intrinsics_a = *intrinsics_a;
-  work.state.intrinsics_b = *intrinsics_b;
+  RIGCAL_ASSIGN(const auto intrinsics_a, StartOf(problem, problem.camera_a, views_a));
+  RIGCAL_ASSIGN(const auto intrinsics_b, StartOf(problem, problem.camera_b, views_b));
+  work.state.intrinsics_a = intrinsics_a;
+  work.state.intrinsics_b = intrinsics_b;
   const std::vector<PoseCandidates> candidates = CandidatesOf(problem, work);
   const auto T_a_b = ConsensusOf(candidates);
   if (!T_a_b) return tl::unexpected(NoCommonView(problem));
