@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 
 #include "server/math/covariance.h"
 #include "server/model/merged_edge.h"

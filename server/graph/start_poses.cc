@@ -1,6 +1,5 @@
 #include "server/graph/start_poses.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <map>
 #include <tuple>

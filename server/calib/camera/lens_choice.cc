@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/diagnoses.h"

@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <vector>
 
 #include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"

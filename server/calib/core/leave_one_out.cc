@@ -55,6 +55,14 @@ Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& blo
   return blocks;
 }
 
+void AddBoardSize(const Target& board, double sigma_ratio, const WithSize& solved,
+                  std::vector<GivenConstant>& constants) {
+  if (!(sigma_ratio > 0)) return;
+  constants.push_back({"size of board " + board.id.str(), [=](double steps) { return solved(steps * sigma_ratio); }});
+}
+
+std::string IntrinsicsName(const SensorId& camera) { return "intrinsics of " + camera.str(); }
+
 Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants) {
   std::vector<std::optional<Result<Vector6d>>> shifts(constants.size());
   ParallelFor(shifts.size(), [&](std::size_t i) { shifts[i] = ShiftOf(constants[i]); });

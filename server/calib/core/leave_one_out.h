@@ -11,6 +11,7 @@
 #include "server/calib/core/directions.h"
 #include "server/model/features.h"
 #include "server/model/session.h"
+#include "server/model/target.h"
 #include "server/model/uncertainty.h"
 
 namespace rigcal::calib {
@@ -27,6 +28,13 @@ struct GivenConstant {
   std::string name;                                // constants of one name, side by side, are one contribution
   std::function<Result<Se3>(double steps)> T_a_b;  // the answer with the constant moved by `steps` sigma
 };
+// The answer with all boards larger by a part of their size.
+using WithSize = std::function<Result<Se3>(double larger_ratio)>;
+// "size of board ID", solved anew at every call. Without a sigma nothing is added.
+void AddBoardSize(const Target& board, double sigma_ratio, const WithSize& solved,
+                  std::vector<GivenConstant>& constants);
+// Of the contribution of a camera's given intrinsics.
+[[nodiscard]] std::string IntrinsicsName(const SensorId& camera);
 // Sum of (dT/dtheta) sigma^2 (dT/dtheta)^T per name, by central differences over one sigma either way; in parallel.
 [[nodiscard]] Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants);
 

@@ -1,6 +1,7 @@
 #include "server/calib/core/pair_edge.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/calib/camera/camera_diagnoses.h"

@@ -9,6 +9,7 @@
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/motion/motion_observability.h"
 #include "server/model/camera.h"
+#include "server/model/edge.h"
 #include "server/model/method.h"
 #include "server/model/pose_table.h"
 

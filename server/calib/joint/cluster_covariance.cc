@@ -14,7 +14,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd Selected(const MatrixXd& symmetric, const std::vector<int>& rows) { return symmetric(rows, rows); }
+// Symmetric but for rounding.
+MatrixXd Selected(const MatrixXd& matrix, const std::vector<int>& rows) { return matrix(rows, rows).transpose(); }
 
 std::vector<int> PoseRows(const Refined& refined, std::vector<int>& row_of_sensor) {
   std::vector<int> rows;

@@ -1,7 +1,6 @@
 #include "server/calib/joint/normal_equations.h"
 
 #include <Eigen/Eigenvalues>
-#include <cmath>
 
 #include "server/base/parallel_for.h"
 #include "server/math/covariance.h"

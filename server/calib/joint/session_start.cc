@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 #include "server/calib/joint/board_candidates.h"
 #include "server/calib/core/capture_blocks.h"

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "server/calib/camera/camera_diagnoses.h"
-#include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"

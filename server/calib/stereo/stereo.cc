@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"

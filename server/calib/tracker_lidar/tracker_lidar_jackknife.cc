@@ -1,6 +1,5 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <set>
 
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
