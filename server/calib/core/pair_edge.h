@@ -47,9 +47,9 @@ void AddMotionFigures(const MotionReach& motion, Edge& edge);
 
 // Tells each of the pair's own captures that was left out, with the reason.
 void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge);
-// The edge says in which captures both sensors have one and the same file ("same_picture": SamePictures() of session.h),
-// and lists these as not used; figures that tell places in the list ("first_unreadable_a_idx") go on naming the same
-// captures. Nothing if `same` is empty.
+// The edge says in which captures both sensors have one and the same file ("same_picture": SamePictures() of
+// session.h), and lists these as not used; figures that tell places in the list ("first_unreadable_a_idx") go on naming
+// the same captures. Nothing if `same` is empty.
 void TellSamePictures(const std::vector<CaptureId>& same, Edge& edge);
 
 // `estimate()`; what a library throws becomes `failed(error)`. Throws where there is no memory, which is not the data's
@@ -64,8 +64,8 @@ Edge Guarded(const Estimate& estimate, const Failed& failed) {
   }
 }
 
-// Guarded: the edge of the captures chosen; where that is none, or leaves a direction open, the edge of all. `drop(problem,
-// left_out)` takes captures out of a problem; `of_pair` are those that it has files of.
+// Guarded: the edge of the captures chosen; where that is none, or leaves a direction open, the edge of all.
+// `drop(problem, left_out)` takes captures out of a problem; `of_pair` are those that it has files of.
 template <typename Problem, typename Drop, typename Estimate, typename Failed>
 Edge EdgeOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair, const std::set<CaptureId>& seen_by_both,
                   const Drop& drop, const Estimate& estimate, const Failed& failed) {

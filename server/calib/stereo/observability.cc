@@ -49,8 +49,7 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
     diagnoses.push_back(NoCommonView(problem));
   else
     diagnoses.push_back(TooFewCaptures(problem, both));
-  if (!selection.repeated.empty())
-    diagnoses.insert(diagnoses.begin(), IdenticalCaptures(problem, selection.repeated));
+  if (!selection.repeated.empty()) diagnoses.insert(diagnoses.begin(), IdenticalCaptures(problem, selection.repeated));
   return diagnoses;
 }
 

@@ -1,4 +1,3 @@
-
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/selection.h"
@@ -44,8 +43,9 @@ void AddIntrinsics(const Sensor& camera, const std::vector<Vector6d>& shifts, co
 std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const StereoEstimate& estimate,
                                        const StereoWork& solved) {
   std::vector<GivenConstant> constants;
-  AddBoardSize(problem.board, problem.board.square_sigma_m / problem.board.square_m,
-               [&solved](double ratio) { return PoseOf(WithSquare(solved, 1 + ratio)); }, constants);
+  AddBoardSize(
+      problem.board, problem.board.square_sigma_m / problem.board.square_m,
+      [&solved](double ratio) { return PoseOf(WithSquare(solved, 1 + ratio)); }, constants);
   AddIntrinsics(problem.camera_a, estimate.shifts_a, estimate.T_a_b, constants);
   AddIntrinsics(problem.camera_b, estimate.shifts_b, estimate.T_a_b, constants);
   return constants;
