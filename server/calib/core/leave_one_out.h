@@ -53,7 +53,7 @@ void AddBoardSize(const Target& board, double sigma_ratio, const WithSize& solve
 // What errs of a lidar's ranges alike in all captures: all of them by one bias, and beams of a turning lidar each by a
 // constant of its own. Which beam took a point is not said: points whose elevation is the same to 1.5 degrees count as
 // of one beam, the same groups in every problem of a lidar.
-//
+
 constexpr std::size_t kBeamGroups = 60;
 // By elevation above the plane across the lidar's z, about which beams turn; what is steeper belongs to the last.
 [[nodiscard]] std::size_t BeamGroupOf(const Eigen::Vector3f& p_m);
