@@ -123,7 +123,7 @@ void TellSamePictures(const std::vector<CaptureId>& same, Edge& edge) {
   AddUnused(same, "both sensors have the same file", edge);
   for (const auto& [figure, capture] : told) {
     const auto place = std::find_if(edge.captures.begin(), edge.captures.end(),
-                                    [&](const CaptureResidual& one) { return one.capture == capture; });
+                                    [&id = capture](const CaptureResidual& one) { return one.capture == id; });
     edge.figures[figure] = static_cast<double>(std::distance(edge.captures.begin(), place));
   }
 }
