@@ -133,8 +133,8 @@ bool IsInPair(const Findings& findings, const SensorId& sensor) {
                      [&](const PairFound& pair) { return pair.pair.a == sensor || pair.pair.b == sensor; });
 }
 
-calib::CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor) {
-  calib::CapturesNeeded needed;
+CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor) {
+  CapturesNeeded needed;
   for (const PairFound& pair : findings.pairs) {
     if (pair.pair.a != sensor && pair.pair.b != sensor) continue;
     needed.least = std::max(needed.least, pair.needed.least);

@@ -60,6 +60,6 @@ struct Findings {
 // It takes part in a pair that is calibrated.
 [[nodiscard]] bool IsInPair(const Findings& findings, const SensorId& sensor);
 // What its pairs want most of it; zeros of a sensor in no pair that goes by captures.
-[[nodiscard]] calib::CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor);
+[[nodiscard]] CapturesNeeded NeededOf(const Findings& findings, const SensorId& sensor);
 
 }  // namespace rigcal::check

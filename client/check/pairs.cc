@@ -5,12 +5,12 @@
 #include <set>
 
 #include "server/base/parallel_for.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "server/calib/motion/hand_eye.h"
-#include "server/calib/stereo/same_pictures.h"
 #include "server/calib/stereo/stereo.h"
 
 namespace rigcal::check {
@@ -67,9 +67,9 @@ void EstimateStereo(const PairSources& from, const Sensor& a, const Sensor& b, P
   }
   if (!best) return;
   const std::vector<CaptureId> same = SamePictures(from.session.manifest, found.pair);
-  calib::LeaveOut(same, *best);
+  calib::DropCaptures(*best, {same.begin(), same.end()});
   found.edge = calib::EstimateEdge(*best);
-  calib::TellLeftOut(same, *found.edge);
+  calib::TellSamePictures(same, *found.edge);
   found.both = DifferentCaptures(*found.edge, "captures_both", calib::SeenByBoth(*best).size());
 }
 
@@ -179,7 +179,7 @@ void CountPair(const PairSources& from, const Sensor& a, const Sensor& b, PairFo
 PairFound FindPair(const PairSources& from, const SensorPair& pair) {
   const Sensor &a = *SensorOf(from.Header(), pair.a), &b = *SensorOf(from.Header(), pair.b);
   PairFound found{pair, *MethodFor(from.Header(), a, b), {}, 0, {}, {}};
-  found.needed = calib::NeededBy(found.method);
+  found.needed = RowOf(found.method).captures;
   switch (found.method) {
     case Method::kStereo:
       EstimateStereo(from, a, b, found);

@@ -8,7 +8,6 @@
 
 #include "client/check/cameras.h"
 #include "client/check/seen.h"
-#include "server/calib/core/captures_needed.h"
 #include "server/model/edge.h"
 #include "server/model/method.h"
 
@@ -17,7 +16,7 @@ namespace rigcal::check {
 struct PairFound {
   SensorPair pair;
   Method method = Method::kStereo;
-  calib::CapturesNeeded needed;
+  CapturesNeeded needed;
   // Different captures in which both see what the method goes by; of a lidar those that have a cloud, for boards are
   // not looked for in clouds. 0 of a method that does not go by captures.
   std::size_t both = 0;

@@ -41,7 +41,7 @@ std::string HeldText(const SensorFiles& files, const CameraFound* camera) {
 }
 
 std::optional<Advice> WhyShort(const Findings& findings, const SensorFiles& files) {
-  const calib::CapturesNeeded needed = NeededOf(findings, files.sensor);
+  const CapturesNeeded needed = NeededOf(findings, files.sensor);
   if (files.files == 0) return Advice{{files.sensor.str()}, NoFilesText(files), Urgency::kNoAnswer, 0};
   if (files.usable >= needed.enough) return std::nullopt;
   const auto camera = findings.cameras.find(files.sensor);

@@ -44,19 +44,19 @@ using Status = Result<void>;
 
 }  // namespace rigcal
 
-// RIGCAL_TRY(expr): returns the error of a failed Result/Status from the enclosing function.
+// RIGCAL_TRY(expr): returns the error of a failed Result, Status or other expected from the enclosing function.
 #define RIGCAL_CONCAT_INNER(a, b) a##b
 #define RIGCAL_CONCAT(a, b) RIGCAL_CONCAT_INNER(a, b)
 #define RIGCAL_TRY(expr) RIGCAL_TRY_IMPL(RIGCAL_CONCAT(rigcal_try_, __COUNTER__), expr)
 #define RIGCAL_TRY_IMPL(result, expr)                                       \
   do {                                                                      \
     auto&& result = (expr);                                                 \
-    if (!result) return ::rigcal::Fail(std::move(result).error());          \
+    if (!result) return ::tl::unexpected(std::move(result).error());        \
   } while (false)
 // RIGCAL_ASSIGN(auto value, Compute()): the value, or returns the error.
 #define RIGCAL_ASSIGN(declaration, expr) \
   RIGCAL_ASSIGN_IMPL(RIGCAL_CONCAT(rigcal_result_, __COUNTER__), declaration, expr)
 #define RIGCAL_ASSIGN_IMPL(result, declaration, expr)              \
   auto result = (expr);                                            \
-  if (!result) return ::rigcal::Fail(std::move(result).error());   \
+  if (!result) return ::tl::unexpected(std::move(result).error()); \
   declaration = std::move(*result)

@@ -48,7 +48,7 @@ bool FailedForLoss(const Edge& edge, Loss loss) {
 
 bool SeesAlmostNothing(const Blind& blind) {
   const auto method = MethodNamed(blind.end.edge->method);
-  const double least = method ? static_cast<double>(RowOf(*method).captures_least) : 0.0;
+  const double least = method ? static_cast<double>(RowOf(*method).captures.least) : 0.0;
   return blind.sight.with_board < std::max(least, kAlmostNeverRatio * blind.sight.readable());
 }
 

@@ -1,6 +1,5 @@
 #include "server/graph/graph_jackknife.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>

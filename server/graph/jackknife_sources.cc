@@ -92,12 +92,9 @@ ErrorSource OwnError(std::size_t constraint, const MatrixXd& de, int dof) {
 bool SpeakForTheirEdge(const Uncertainty& uncertainty) {
   if (uncertainty.blocks.size() < kJackknifeBlocksMin) return false;
   std::set<std::string> ids;
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : uncertainty.blocks) {
+  for (const BlockVector& block : uncertainty.blocks)
     if (!block.d.allFinite() || !ids.insert(block.block_id).second) return false;
-    d.push_back(block.d);
-  }
-  return Observable(JackknifeCovariance(d)).rank >= uncertainty.rank;
+  return Observable(JackknifeCovariance(VectorsOf(uncertainty.blocks))).rank >= uncertainty.rank;
 }
 
 }  // namespace

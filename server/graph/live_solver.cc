@@ -1,7 +1,6 @@
 #include "server/graph/live_solver.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "server/graph/conjugate_gradients.h"

@@ -1,5 +1,3 @@
-#include "server/graph/merge_edges.h"
-
 #include <algorithm>
 #include <tuple>
 
@@ -54,7 +52,7 @@ void TakeOlder(std::map<MeasuredPair, std::vector<Timed>> past, std::size_t kept
 
 Merge MergeOlderEdges(const std::vector<MergedEdge>& before, const std::vector<Edge>& edges,
                       const std::map<EdgeId, Stamp>& measured_at, std::size_t kept) {
-  std::map<MeasuredPair, MergedEdge> merged;
+  MergedPairs merged;
   for (const MergedEdge& one : before)
     if (!one.of_sessions) merged.emplace(MeasuredPair{one.frame_a, one.frame_b, one.method}, one);
   std::map<MeasuredPair, std::vector<Timed>> of_pair, past;

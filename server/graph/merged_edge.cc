@@ -28,12 +28,6 @@ bool Agree(const Se3& T_x, const Matrix6d& A, const Se3& T_y, const Matrix6d& B)
   return rank == 0 || ChiSquareTail(e.dot(W * e), rank) >= kContradicts;
 }
 
-Matrix6d ScatterOf(const EdgeBlocks& known) {
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : known.blocks) d.push_back(block.d);
-  return JackknifeCovariance(d);
-}
-
 void AddError(const Edge& edge, MergedEdge& merged) {
   const Matrix6d& Omega = edge.uncertainty.Omega;
   const BlocksByEdge blocks = BlocksOf({edge});
@@ -43,7 +37,7 @@ void AddError(const Edge& edge, MergedEdge& merged) {
   }
   const EdgeBlocks& known = blocks.begin()->second;
   merged.by_blocks = true;
-  merged.scatter += Omega * ScatterOf(known) * Omega;
+  merged.scatter += Omega * JackknifeCovariance(VectorsOf(known.blocks)) * Omega;
   merged.given += Omega * known.C_given * Omega;
   for (const auto& [name, shifts] : known.shifts) {
     std::vector<Vector6d>& scores = merged.constants[name];

@@ -1,6 +1,5 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 #include "server/graph/session_fusion.h"
 #include "server/math/covariance.h"

@@ -50,12 +50,6 @@ double TypicalLength_m(const Problem& problem) {
   return length_m > 1e-6 ? length_m : 1.0;
 }
 
-Vector6d ScaleOf(double length_m) {
-  Vector6d scale;
-  scale << length_m, length_m, length_m, 1.0, 1.0, 1.0;
-  return scale;
-}
-
 // Rows: an orthonormal basis, in scaled units, of the directions of e that the edge sees.
 MatrixXd SeenDirections(const Matrix6d& Omega, const Vector6d& scale) {
   const FreeBasis unseen = Observable(Omega).unobservable_basis;
@@ -181,7 +175,7 @@ Observability Observe(const Problem& problem, const Poses& T_ref) {
   const int free_bodies = static_cast<int>(bodies.first_vertex.size()) - 1;
   if (free_bodies == 0) return result;
   if (free_bodies > kBodiesMax) return LeaveUnjudged(problem, bodies, result), result;
-  result.scale = ScaleOf(TypicalLength_m(problem));
+  result.scale = EachAxis(TypicalLength_m(problem), 1.0);
   const double tolerance = Tolerance(problem, T_ref);
   result.visible = std::clamp(kNoiseFactor * std::sqrt(tolerance), 1e-5, 0.1);
   const MatrixXd null_vectors = NullVectors(GeometryMatrix(problem, T_ref, bodies, result.scale), tolerance);

@@ -1,11 +1,9 @@
 #include "server/graph/problem.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <string_view>
 #include <tuple>
 

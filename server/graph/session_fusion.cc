@@ -1,10 +1,9 @@
 #include "server/graph/session_fusion.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 
+#include "server/math/covariance.h"
 #include "server/model/merged_edge.h"
 #include "server/model/past.h"
 
@@ -140,16 +139,6 @@ void AddRelative(const SessionFusion& fusion, int a, int b, const Se3& T_a_b, Ei
   if (a != kFixed) linear.J.block<6, 6>(row, 6 * a) -= by_b * Adjoint(predicted.Inverse());
 }
 
-// Of a positive definite matrix of mixed units; nothing where it is not that.
-std::optional<MatrixXd> InverseOf(const MatrixXd& H) {
-  if (H.rows() == 0 || !(H.diagonal().minCoeff() > 0)) return std::nullopt;
-  const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
-  if (llt.info() != Eigen::Success || llt.matrixLLT().diagonal().minCoeff() < 1e-7) return std::nullopt;
-  const MatrixXd inverse = llt.solve(MatrixXd::Identity(H.rows(), H.cols()));
-  return MatrixXd(scale.asDiagonal() * inverse * scale.asDiagonal());
-}
-
 struct Normal {
   MatrixXd H;
   VectorXd b;
@@ -229,14 +218,14 @@ LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor
     if (factor.variable[i] != kFixed)
       C.block<6, 6>(row, row) += fusion.scatter[static_cast<std::size_t>(factor.variable[i])].Matrix();
   }
-  linear.W = InverseOf(C).value_or(MatrixXd::Zero(rows, rows));  // no covariance: says nothing
+  linear.W = InverseOfDefinite(C).value_or(MatrixXd::Zero(rows, rows));  // no covariance: says nothing
   return linear;
 }
 
 std::optional<MatrixXd> Settle(SessionFusion& fusion) {
   for (int iteration = 0; iteration < kIterationsMax; ++iteration) {
     const Normal normal = NormalOf(fusion);
-    auto inverse = InverseOf(normal.H);
+    auto inverse = InverseOfDefinite(normal.H);
     if (!inverse) return std::nullopt;
     const VectorXd step = -*inverse * normal.b;
     for (std::size_t v = 0; v < fusion.T_ref.size(); ++v)
@@ -260,11 +249,7 @@ std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& f
   return visits;
 }
 
-Matrix6d VisitVariance::Matrix() const {
-  Vector6d diagonal;
-  diagonal << Eigen::Vector3d::Constant(translation_m2), Eigen::Vector3d::Constant(rotation_rad2);
-  return diagonal.asDiagonal();
-}
+Matrix6d VisitVariance::Matrix() const { return EachAxis(translation_m2, rotation_rad2).asDiagonal(); }
 
 VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
   return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};

@@ -2,7 +2,6 @@
 // (paper, section III-B). Pure and deterministic: edges are sorted by id, the start is fixed, one thread.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "server/model/graph.h"

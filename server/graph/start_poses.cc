@@ -1,13 +1,10 @@
 #include "server/graph/start_poses.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <map>
 #include <tuple>
 #include <utility>
 #include <vector>
-
 
 namespace rigcal::graph {
 namespace {
@@ -125,12 +122,6 @@ RotationSystem MakeRotationSystem(const Problem& problem) {
     }
   }
   return system;
-}
-
-Matrix3d NearestRotation(const Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
 }
 
 bool SolveRotations(const Problem& problem, Poses& T_ref) {

@@ -1,6 +1,5 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "server/graph/edge_checks.h"

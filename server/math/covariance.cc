@@ -33,7 +33,7 @@ Vector6d UnitDiagonalScale(const Matrix6d& Omega, double relative_tolerance) {
 }
 
 // Inverse of a positive definite matrix, scaled to unit diagonal on the way.
-Eigen::MatrixXd InverseOfDefinite(const Eigen::MatrixXd& matrix) {
+Eigen::MatrixXd ScaledInverse(const Eigen::MatrixXd& matrix) {
   const Eigen::VectorXd scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * matrix * scale.asDiagonal();
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols());
@@ -58,6 +58,15 @@ int CountZero(const Vector6d& eigenvalues, double relative_tolerance) {
 }
 
 }  // namespace
+
+std::optional<Eigen::MatrixXd> InverseOfDefinite(const Eigen::MatrixXd& H) {
+  if (H.rows() == 0 || !(H.diagonal().minCoeff() > 0)) return std::nullopt;
+  const Eigen::VectorXd scale = UnitDiagonal(H);
+  const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
+  if (llt.info() != Eigen::Success || llt.matrixLLT().diagonal().minCoeff() < 1e-7) return std::nullopt;
+  const Eigen::MatrixXd inverse = llt.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
+  return Eigen::MatrixXd(scale.asDiagonal() * inverse * scale.asDiagonal());
+}
 
 Matrix6d Symmetrized(const Matrix6d& matrix) { return 0.5 * matrix + 0.5 * matrix.transpose(); }
 
@@ -106,7 +115,7 @@ ObservableSubspace Observable(const Matrix6d& Omega, double relative_tolerance) 
     const Basis null_vectors = scale.asDiagonal() * eigen.eigenvectors().leftCols(unobservable);
     Split(null_vectors, result.unobservable_basis, observable);
   }
-  const Eigen::MatrixXd inverse = InverseOfDefinite(observable.transpose() * symmetric * observable);
+  const Eigen::MatrixXd inverse = ScaledInverse(observable.transpose() * symmetric * observable);
   result.covariance = Symmetrized(observable * inverse * observable.transpose());
   return result;
 }

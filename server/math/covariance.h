@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <optional>
 
 #include "server/math/se3.h"
 
@@ -35,6 +37,14 @@ struct ObservableSubspace {
 // is forgiven.
 [[nodiscard]] bool IsPositiveSemidefinite(const Matrix6d& Omega);
 [[nodiscard]] Matrix6d Symmetrized(const Matrix6d& matrix);
+// 1 / sqrt of the diagonal: by which rows and columns of mixed units come to a unit diagonal. 1 where it is not positive.
+template <typename Matrix>
+[[nodiscard]] Eigen::Matrix<double, Matrix::RowsAtCompileTime, 1, 0, Matrix::MaxRowsAtCompileTime, 1> UnitDiagonal(
+    const Matrix& H) {
+  return H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+}
+// H^-1, scaled to a unit diagonal on the way. Nothing where H is empty, or not clearly positive definite.
+[[nodiscard]] std::optional<Eigen::MatrixXd> InverseOfDefinite(const Eigen::MatrixXd& H);
 // F with F F^T = matrix, for positive semi-definite matrices of mixed units.
 [[nodiscard]] Matrix6d SquareRoot(const Matrix6d& matrix);
 

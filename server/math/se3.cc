@@ -1,5 +1,7 @@
 #include "server/math/se3.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <array>
 #include <cmath>
 
@@ -158,6 +160,17 @@ Eigen::Matrix4d Se3::Matrix() const {
 
 Se3 operator*(const Se3& T_a_b, const Se3& T_b_c) { return {T_a_b * T_b_c.p_m, T_a_b.q * T_b_c.q}; }
 Vector3d operator*(const Se3& T_a_b, const Vector3d& p_b) { return T_a_b.q * p_b + T_a_b.p_m; }
+
+bool AreNear(const Se3& T, const Se3& S, double shift_m, double turn_rad) {
+  const Vector6d apart = (T.Inverse() * S).Log();
+  return apart.head<3>().norm() < shift_m && apart.tail<3>().norm() < turn_rad;
+}
+
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(M, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
 
 Matrix3d Hat(const Vector3d& v) {
   Matrix3d matrix;

@@ -31,6 +31,11 @@ struct Se3 {
 [[nodiscard]] Se3 operator*(const Se3& T_a_b, const Se3& T_b_c);
 [[nodiscard]] Eigen::Vector3d operator*(const Se3& T_a_b, const Eigen::Vector3d& p_b);
 
+// Whether T^-1 S moves by less than `shift_m` and turns by less than `turn_rad`, both parts of its logarithm.
+[[nodiscard]] bool AreNear(const Se3& T, const Se3& S, double shift_m, double turn_rad);
+// The rotation with the largest trace of R^T M; of M = sum u v^T the one that makes sum |u - R v|^2 least.
+[[nodiscard]] Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& M);
+
 // Hat(v) w = v x w.
 [[nodiscard]] Eigen::Matrix3d Hat(const Eigen::Vector3d& v);
 // Ad(T) = [R, [p]x R; 0, R]: T Exp(xi) T^-1 = Exp(Ad(T) xi).

@@ -17,4 +17,11 @@ constexpr int kRotation = 3;     // start of the 3 rotation entries
 constexpr std::array<std::string_view, 6> kNames = {"x", "y", "z", "rx", "ry", "rz"};
 }  // namespace tangent
 
+// One number for all axes of a translation, one for those of a rotation.
+[[nodiscard]] inline Vector6d EachAxis(double translation, double rotation) {
+  Vector6d axes;
+  axes << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);
+  return axes;
+}
+
 }  // namespace rigcal

@@ -15,6 +15,13 @@ namespace rigcal {
 
 enum class Method { kStereo, kNonOverlapping, kLidarCamera, kLidarLidar, kTrackerCamera, kTrackerLidar, kPoseStreams };
 
+// Captures in which both sensors see what a method goes by. Zeros: it does not go by captures.
+struct CapturesNeeded {
+  std::size_t least = 0;   // fewer: there is no answer
+  std::size_t enough = 0;  // fewer: a note on the edge says that its uncertainty is rough
+  friend bool operator==(const CapturesNeeded&, const CapturesNeeded&) = default;
+};
+
 struct MethodRow {
   Method method;
   std::string_view name;           // in edges: stored, on the wire, in files
@@ -22,20 +29,22 @@ struct MethodRow {
   SensorKind a, b;                 // of its sensors, in the order of SensorKind
   std::string_view residual_unit;  // of a capture's rms: "px" | "m"
   bool board_stands_still;         // during the session
-  std::size_t captures_least;      // in which both have to see what it goes by; 0: it does not go by captures
+  CapturesNeeded captures;
 };
 
 inline constexpr std::array<MethodRow, 7> kMethods = {{
-    {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false, 3},
+    {Method::kStereo, "stereo", "stereo", SensorKind::kCamera, SensorKind::kCamera, "px", false, {3, 8}},
     {Method::kNonOverlapping, "non_overlapping", "non-overlapping", SensorKind::kCamera, SensorKind::kCamera, "m", true,
-     4},
-    {Method::kLidarCamera, "lidar_camera", "lidar-camera", SensorKind::kCamera, SensorKind::kLidar, "m", false, 4},
-    {Method::kLidarLidar, "lidar_lidar", "lidar-lidar", SensorKind::kLidar, SensorKind::kLidar, "m", false, 1},
+     {4, 10}},
+    {Method::kLidarCamera, "lidar_camera", "lidar-camera", SensorKind::kCamera, SensorKind::kLidar, "m", false,
+     {4, 10}},
+    {Method::kLidarLidar, "lidar_lidar", "lidar-lidar", SensorKind::kLidar, SensorKind::kLidar, "m", false, {1, 8}},
     {Method::kTrackerCamera, "tracker_camera", "tracker-camera", SensorKind::kCamera, SensorKind::kTracker, "m", true,
-     4},
-    {Method::kTrackerLidar, "tracker_lidar", "tracker-lidar", SensorKind::kLidar, SensorKind::kTracker, "m", true, 4},
+     {4, 10}},
+    {Method::kTrackerLidar, "tracker_lidar", "tracker-lidar", SensorKind::kLidar, SensorKind::kTracker, "m", true,
+     {4, 10}},
     {Method::kPoseStreams, "pose_streams", "pose streams", SensorKind::kPoseStream, SensorKind::kPoseStream, "m", false,
-     0},
+     {}},
 }};
 static_assert([] {
   for (std::size_t i = 0; i < kMethods.size(); ++i)

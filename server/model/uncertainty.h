@@ -19,6 +19,12 @@ struct BlockVector {
   std::string block_id;  // the capture's id
   Vector6d d = Vector6d::Zero();
 };
+// Only the vectors, in their order.
+[[nodiscard]] inline std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
+  std::vector<Vector6d> d;
+  for (const BlockVector& block : blocks) d.push_back(block.d);
+  return d;
+}
 
 // A part of the covariance that given constants bring (board size, given intrinsics): already inside Omega.
 struct Contribution {

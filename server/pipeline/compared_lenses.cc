@@ -3,7 +3,7 @@
 #include <optional>
 #include <set>
 
-#include "server/calib/camera/lens_change.h"
+#include "server/calib/camera/projection_maps.h"
 #include "server/pipeline/camera_fits.h"
 
 namespace rigcal::pipeline {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "server/base/version.h"
-#include "server/calib/camera/projection_uncertainty.h"
+#include "server/calib/camera/projection_maps.h"
 #include "server/fleet/assess.h"
 #include "server/fleet/boards/remarks.h"
 #include "server/model/unchecked.h"

@@ -13,7 +13,6 @@
 #include "server/graph/graph_jackknife.h"
 #include "server/graph/insight.h"
 #include "server/graph/joint_poses.h"
-#include "server/graph/merge_edges.h"
 #include "server/graph/merged_edge.h"
 #include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"

@@ -1,7 +1,7 @@
 #include "server/pipeline/run_edge_job.h"
 
 #include "server/base/log.h"
-#include "server/calib/stereo/same_pictures.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/model/method.h"
 #include "server/model/past.h"
 #include "server/pipeline/attempt.h"
@@ -56,9 +56,9 @@ Result<Inputs> InSession(const Manifest& manifest, Result<Inputs> inputs) {
 Result<Edge> StereoEdge(storage::Store& store, const Manifest& manifest, const SensorPair& pair) {
   const std::vector<CaptureId> same = SamePictures(manifest, pair);
   auto inputs = InSession(manifest, LoadStereo(store, manifest, pair));
-  if (inputs) calib::LeaveOut(same, inputs->problem);
+  if (inputs) calib::DropCaptures(inputs->problem, {same.begin(), same.end()});
   RIGCAL_ASSIGN(Edge edge, EdgeFrom(store, pair, Method::kStereo, std::move(inputs), calib::EstimateEdge));
-  calib::TellLeftOut(same, edge);
+  calib::TellSamePictures(same, edge);
   return edge;
 }
 

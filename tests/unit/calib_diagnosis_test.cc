@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "server/calib/camera/lens_choice.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
-#include "server/calib/stereo/same_pictures.h"
 #include "tests/unit/calib_virtual_pair.h"
 
 namespace rigcal::calib {
@@ -110,9 +110,9 @@ TEST(Diagnosis, TheFirstUnreadableFileStaysTheSameBesideOneAndTheSamePicture) {
     problem.captures[k].b = BoardView{false, "the picture cannot be decoded", TargetId("board"), 0, 0, {}};
   problem.captures[5].a = problem.captures[5].b;
   const std::vector<CaptureId> same = {CaptureId("000"), CaptureId("002")};
-  LeaveOut(same, problem);
+  DropCaptures(problem, {same.begin(), same.end()});
   Edge edge = EstimateEdge(problem);
-  TellLeftOut(same, edge);
+  TellSamePictures(same, edge);
   ASSERT_EQ(edge.state, EdgeState::kFailed);
   ASSERT_EQ(edge.captures.size(), 6U);
   EXPECT_EQ(edge.figures.at("first_unreadable_b_idx"), 3);

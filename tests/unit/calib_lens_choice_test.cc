@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "server/calib/camera/focal_trials.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/selection.h"
 #include "tests/unit/calib_virtual_pair.h"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "server/calib/core/capture_blocks.h"
+#include "server/calib/core/pair_edge.h"
 #include "server/calib/stereo/stereo.h"
 #include "tests/unit/calib_virtual_pair.h"
 
@@ -94,11 +95,13 @@ struct SomeProblem {
 template <typename Tells>
 Edge EdgeOf(const SomeProblem& problem, const Tells& tells) {
   const std::set<CaptureId> captures = CapturesOf(problem);
-  return EstimateOfChosen(problem, captures, captures, DropCaptures<SomeProblem>, [&](const SomeProblem& one) {
+  const auto estimate = [&](const SomeProblem& one) {
     Edge edge = tells(one.captures.size());
     for (const StereoCapture& capture : one.captures) edge.captures.push_back({capture.capture, 0.1, true, ""});
     return edge;
-  });
+  };
+  return EdgeOfChosen(problem, captures, captures, DropCaptures<SomeProblem>, estimate,
+                      [](const Error&) { return Edge{}; });
 }
 
 // A pair that fails with the captures chosen, or leaves a direction open, is tried with all, and tells of none left out.

@@ -9,8 +9,7 @@
 #include <random>
 
 #include "server/calib/camera/camera_fit.h"
-#include "server/calib/camera/lens_change.h"
-#include "server/calib/camera/projection_uncertainty.h"
+#include "server/calib/camera/projection_maps.h"
 #include "server/model/coverage.h"
 #include "tests/unit/calib_virtual_pair.h"
 

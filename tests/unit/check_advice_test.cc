@@ -60,7 +60,7 @@ void AddCamera(const std::string& name, std::size_t found, std::size_t files, Fi
 void AddPair(const std::string& a, const std::string& b, Method method, std::size_t both, std::optional<Edge> edge,
              Findings& findings) {
   findings.pairs.push_back(
-      {{SensorId(a), SensorId(b)}, method, calib::NeededBy(method), both, std::move(edge), std::nullopt});
+      {{SensorId(a), SensorId(b)}, method, RowOf(method).captures, both, std::move(edge), std::nullopt});
 }
 
 Findings TwoCameras(std::size_t both = 12, double sigma_m = 0.0002) {

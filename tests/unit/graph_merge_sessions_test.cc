@@ -5,7 +5,6 @@
 #include <set>
 
 #include "server/graph/graph_jackknife.h"
-#include "server/graph/merge_edges.h"
 #include "server/graph/merged_edge.h"
 
 namespace rigcal::graph {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "server/calib/camera/gathered_views.h"
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/projection.h"
 #include "server/calib/camera/seen_corners.h"
+#include "server/calib/camera/view_moments.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/motion/camera_motion.h"
 
@@ -19,10 +19,6 @@ std::vector<double> SigmaOf(const Eigen::MatrixXd& covariance) {
   return {sigma.begin(), sigma.end()};
 }
 
-Eigen::MatrixXd EstimatedCovariance(const GatheredViews& gathered, bool by_jackknife) {
-  return by_jackknife ? CovarianceByJackknife(gathered) : CovarianceByModel(gathered);
-}
-
 void SetSigma(const Sensor& camera, const GatheredViews& gathered, CameraFit& fit) {
   if (HoldsIntrinsics(camera)) {
     fit.source = IntrinsicsSource::kGiven;
@@ -32,8 +28,9 @@ void SetSigma(const Sensor& camera, const GatheredViews& gathered, CameraFit& fi
   const bool refines = RefinesIntrinsics(camera);
   fit.source = refines ? IntrinsicsSource::kRefined : IntrinsicsSource::kEstimated;
   fit.sigma_by_jackknife = !refines && gathered.views.size() >= kViewsForJackknife;
-  fit.covariance =
-      refines ? CovarianceWithGiven(camera, gathered) : EstimatedCovariance(gathered, fit.sigma_by_jackknife);
+  fit.covariance = refines                  ? CovarianceWithGiven(camera, gathered)
+                   : fit.sigma_by_jackknife ? CovarianceByJackknife(gathered)
+                                            : CovarianceByModel(gathered);
   fit.sigma = SigmaOf(fit.covariance);
   fit.implied_motion = ImpliedMotion(gathered);
   if (fit.covariance.size() == 0 || fit.implied_motion.size() == 0) fit.covariance = fit.implied_motion = {};

@@ -42,17 +42,12 @@ struct Work {
 
 Work Collected(const CameraProblem& problem) {
   Work work;
-  work.views.model = ModelOf(problem.camera);
-  work.views.corners_board = TargetPoints(problem.board);
+  work.views = ViewsOf(problem);
   for (const auto& [capture, view] : problem.views) {
-    if (std::string why = WhyUnusable(view, problem.board); !why.empty()) {
+    if (std::string why = WhyUnusable(view, problem.board); !why.empty())
       work.unused[capture] = std::move(why);
-      continue;
-    }
-    work.captures.push_back(capture);
-    work.views.seen.push_back(SeenIn(view, problem.board));
-    work.views.width_px = view.image_width_px;
-    work.views.height_px = view.image_height_px;
+    else
+      work.captures.push_back(capture);
   }
   work.joint = OneCamera(work.views, !problem.camera.intrinsics);
   return work;
@@ -67,14 +62,7 @@ OrDiagnosis<void> CheckCount(const CameraProblem& problem, const Work& work) {
 }
 
 OrDiagnosis<void> CheckSizes(const CameraProblem& problem) {
-  const BoardView* first = nullptr;
-  std::vector<CaptureId> resized;
-  for (const auto& [capture, view] : problem.views) {
-    if (!view.found) continue;
-    if (first == nullptr) first = &view;
-    if (view.image_width_px != first->image_width_px || view.image_height_px != first->image_height_px)
-      resized.push_back(capture);
-  }
+  const auto resized = Resized(problem, [](const BoardView& view) { return view.found; });
   if (resized.empty()) return {};
   return tl::unexpected(ImageSizeChanged(problem.camera.id, resized));
 }
@@ -106,14 +94,8 @@ void PlaceBoards(Work& work) {
     if (!(rms_px[k] <= limit_px && std::isfinite(rms_px[k]))) work.Drop(k, "no pose of the board explains its corners");
 }
 
-double SumOfSquaresOf(const Work& work) {
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < work.captures.size(); ++k) ssr_px2 += ErrorOf(work.joint, work.state, k).a_px2;
-  return ssr_px2;
-}
-
 double VarianceOf(const Work& work) {
-  return SumOfSquaresOf(work) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
+  return SumOfSquares_px2(work.joint, work.state) / std::max(1, ResidualCount(work.joint) - ParameterCount(work.joint));
 }
 
 OrDiagnosis<void> Solve(const CameraProblem& problem, Work& work) {
@@ -169,9 +151,8 @@ OrDiagnosis<Work> FromScratch(const CameraProblem& problem) {
   Work work = Collected(problem);
   if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
   if (auto sizes = CheckSizes(problem); !sizes) return tl::unexpected(sizes.error());
-  const auto start = StartOf(problem, work.views);
-  if (!start) return tl::unexpected(start.error());
-  work.state.intrinsics_a = *start;
+  RIGCAL_ASSIGN(const auto start, StartOf(problem, work.views));
+  work.state.intrinsics_a = start;
   PlaceBoards(work);
   if (auto enough = CheckCount(problem, work); !enough) return tl::unexpected(enough.error());
   for (int round = 0; round < kPoseRoundsMax; ++round) {
@@ -239,7 +220,7 @@ OrDiagnosis<CameraEstimate> Finished(const CameraProblem& problem, const Work& w
     if (!work.alternatives[k].empty()) estimate.alternatives[capture] = work.alternatives[k];
     estimate.rms_by_capture_px[capture] = RmsOf(work, k);
   }
-  estimate.rms_px = std::sqrt(2 * SumOfSquaresOf(work) / ResidualCount(work.joint));
+  estimate.rms_px = std::sqrt(2 * SumOfSquares_px2(work.joint, work.state) / ResidualCount(work.joint));
   const double limit_px = HighRms_px(work.views.width_px);
   if (!(estimate.rms_px <= limit_px)) return tl::unexpected(CameraHighResidual(problem, estimate.rms_px, limit_px));
   return estimate;
@@ -254,9 +235,8 @@ CameraProblem WithModel(CameraProblem problem, CameraModel model) {
 
 OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const CameraEstimate* start) {
   try {
-    const auto work = start != nullptr ? FromStart(problem, *start) : FromScratch(problem);
-    if (!work) return tl::unexpected(work.error());
-    return Finished(problem, *work);
+    RIGCAL_ASSIGN(const auto work, start != nullptr ? FromStart(problem, *start) : FromScratch(problem));
+    return Finished(problem, work);
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};
@@ -265,6 +245,14 @@ OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const Camera
 }
 
 }  // namespace
+
+std::vector<Se3> CameraEstimate::PosesOf(const CaptureId& capture) const {
+  std::vector<Se3> poses;
+  if (const auto at = T_cam_board.find(capture); at != T_cam_board.end()) poses.push_back(at->second);
+  if (const auto at = alternatives.find(capture); at != alternatives.end())
+    poses.insert(poses.end(), at->second.begin(), at->second.end());
+  return poses;
+}
 
 OrDiagnosis<CameraEstimate> EstimateCamera(const CameraProblem& problem, const CameraEstimate* start) {
   auto estimate = Estimated(problem, start);
@@ -281,7 +269,7 @@ double FitRms_px(const CameraProblem& problem, CameraModel model) {
   double rms_px = std::numeric_limits<double>::infinity();
   try {
     if (const auto work = FromScratch(WithModel(problem, model)))
-      rms_px = std::sqrt(2 * SumOfSquaresOf(*work) / ResidualCount(work->joint));
+      rms_px = std::sqrt(2 * SumOfSquares_px2(work->joint, work->state) / ResidualCount(work->joint));
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;
   }

@@ -39,6 +39,9 @@ struct CameraEstimate {
   // Where the intrinsics were given with sigmas, and so refined: what pulled, and what each view used says of them.
   IntrinsicsPull pull;
   std::map<CaptureId, ViewOfIntrinsics> of_intrinsics;
+
+  // All poses that the capture's view allows, the likeliest first; none of a view that was not used.
+  [[nodiscard]] std::vector<Se3> PosesOf(const CaptureId& capture) const;
 };
 
 // EstimateCamera without a start, or something that remembers what it said (and then must outlive the problem it is put
@@ -60,7 +63,7 @@ using CameraSolver = std::function<OrDiagnosis<CameraEstimate>(const CameraProbl
 [[nodiscard]] CameraEstimate WithoutViews(const CameraEstimate& estimate, const std::set<CaptureId>& captures);
 // What the errors of the corners do to refined or estimated intrinsics: independent changes of one sigma each.
 [[nodiscard]] std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate);
-[[nodiscard]] CameraEstimate WithIntrinsicsMoved(const CameraEstimate& estimate, const IntrinsicsVector& change);
+[[nodiscard]] CameraEstimate WithIntrinsicsMoved(CameraEstimate estimate, const IntrinsicsVector& change);
 // The intrinsic with that index given larger by so many of its sigmas.
 [[nodiscard]] CameraEstimate WithGiven(const CameraEstimate& estimate, int idx, double sigmas);
 

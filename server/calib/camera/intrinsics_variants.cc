@@ -39,7 +39,9 @@ IntrinsicsVector Solved(const CameraEstimate& estimate, Information information,
   return information.ldlt().solve(gradient);
 }
 
-CameraEstimate Moved(CameraEstimate estimate, const IntrinsicsVector& change) {
+}  // namespace
+
+CameraEstimate WithIntrinsicsMoved(CameraEstimate estimate, const IntrinsicsVector& change) {
   const CameraModel model = estimate.intrinsics.model;
   estimate.intrinsics = IntrinsicsOf(model, VectorOf(estimate.intrinsics) + change);
   for (auto& [capture, T_cam_board] : estimate.T_cam_board)
@@ -47,8 +49,6 @@ CameraEstimate Moved(CameraEstimate estimate, const IntrinsicsVector& change) {
       T_cam_board = (T_cam_board * Se3::Exp(view->second.d_board * change)).Normalized();
   return estimate;
 }
-
-}  // namespace
 
 CameraEstimate WithoutViews(const CameraEstimate& estimate, const std::set<CaptureId>& captures) {
   CameraEstimate without = estimate;
@@ -67,7 +67,7 @@ CameraEstimate WithoutViews(const CameraEstimate& estimate, const std::set<Captu
     gradient += view->second.gradient;
     is_told = true;
   }
-  return is_told ? Moved(std::move(without), Solved(estimate, information, gradient)) : without;
+  return is_told ? WithIntrinsicsMoved(std::move(without), Solved(estimate, information, gradient)) : without;
 }
 
 std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate) {
@@ -87,14 +87,10 @@ std::vector<IntrinsicsVector> ChangesByCorners(const CameraEstimate& estimate) {
   return changes;
 }
 
-CameraEstimate WithIntrinsicsMoved(const CameraEstimate& estimate, const IntrinsicsVector& change) {
-  return Moved(estimate, change);
-}
-
 CameraEstimate WithGiven(const CameraEstimate& estimate, int idx, double sigmas) {
   IntrinsicsVector gradient = IntrinsicsVector::Zero();
   gradient[idx] = std::pow(estimate.pull.Weight(idx), 2) * estimate.pull.sigma[idx] * sigmas;
-  return Moved(estimate, Solved(estimate, InformationOf(estimate), gradient));
+  return WithIntrinsicsMoved(estimate, Solved(estimate, InformationOf(estimate), gradient));
 }
 
 }  // namespace rigcal::calib

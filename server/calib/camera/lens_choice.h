@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/intrinsics.h"
 
 namespace rigcal::calib {
@@ -39,5 +40,10 @@ struct BetterLens {
 [[nodiscard]] Diagnosis TiltOrLens(const CameraProblem& problem, Diagnosis diagnosis);
 // "lens_model_suspected": a note on a good edge of a camera that fits its corners to `rms_px`.
 [[nodiscard]] Diagnosis LensSuspected(const CameraProblem& problem, double rms_px, const BetterLens& lens);
+
+// How well a lens model can fit views that do not tell its focal length: the least rms over focal lengths of views of
+// 10 to 150 degrees that are held in turn, the rest refined: boards that are not tilted fit about equally with all of
+// them. Infinite where no minimum is reached, or a view has no pose.
+[[nodiscard]] double LeastRmsOverFocals_px(const CameraViews& views);
 
 }  // namespace rigcal::calib

@@ -1,7 +1,6 @@
 #include "server/calib/camera/projection.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <array>
 #include <cmath>
 

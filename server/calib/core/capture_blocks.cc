@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string>
-#include <vector>
 
 namespace rigcal::calib {
 namespace {
@@ -81,19 +79,6 @@ PairCaptures ChooseCaptures(const std::vector<CaptureId>& session, const std::se
   for (const CaptureId& capture : all)
     if (!chosen.used.contains(capture)) chosen.left_out.insert(capture);
   return chosen;
-}
-
-void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge) {
-  std::size_t left_out = 0;
-  for (const CaptureId& capture : chosen.left_out) left_out += of_pair.contains(capture) ? 1 : 0;
-  const std::string why = std::string(kLeftToRefinement) + ": the pair uses " +
-                          std::to_string(of_pair.size() - left_out) + " of its " + std::to_string(of_pair.size()) +
-                          " captures, spread over the session";
-  for (const CaptureId& capture : chosen.left_out)
-    if (of_pair.contains(capture)) edge.captures.push_back({capture, 0.0, false, why});
-  std::stable_sort(edge.captures.begin(), edge.captures.end(),
-                   [](const CaptureResidual& a, const CaptureResidual& b) { return a.capture < b.capture; });
-  edge.figures["captures_total"] = static_cast<double>(of_pair.size());
 }
 
 }  // namespace rigcal::calib

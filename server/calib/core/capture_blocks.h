@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "server/base/ids.h"
-#include "server/model/edge.h"
 
 namespace rigcal::calib {
 
@@ -43,24 +42,6 @@ struct PairCaptures {
 // used whole.
 [[nodiscard]] PairCaptures ChooseCaptures(const std::vector<CaptureId>& session,
                                           const std::set<CaptureId>& seen_by_both);
-
-// Tells each of the pair's own captures that was left out, with the reason.
-void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge);
-
-// The edge of the captures chosen; where that is none, or leaves a direction open, the edge of all. `drop(problem,
-// left_out)` takes captures out of a problem; `of_pair` are those that it has files of.
-template <typename Problem, typename Drop, typename Estimate>
-Edge EstimateOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair,
-                      const std::set<CaptureId>& seen_by_both, const Drop& drop, const Estimate& estimate) {
-  const PairCaptures chosen = ChooseCaptures(problem.session_captures, seen_by_both);
-  if (chosen.left_out.empty()) return estimate(problem);
-  Problem fewer = problem;
-  drop(fewer, chosen.left_out);
-  Edge edge = estimate(fewer);
-  if (edge.state != EdgeState::kGood || edge.uncertainty.rank < 6) return estimate(problem);
-  AddLeftOut(chosen, of_pair, edge);
-  return edge;
-}
 
 // Of a problem with a list of `captures`: all, or those of which `is_so`.
 template <typename Problem, typename IsSo>

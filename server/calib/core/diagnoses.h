@@ -7,12 +7,14 @@
 
 #include "server/calib/core/wording.h"
 #include "server/calib/stereo/stereo.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 
-constexpr std::size_t kCapturesMin = 3;           // seen by both cameras
+constexpr std::size_t kCapturesMin = RowOf(Method::kStereo).captures.least;  // seen by both cameras
 constexpr std::size_t kCapturesForJackknife = 5;  // likewise; fewer: the uncertainty is the model's
-constexpr std::size_t kCapturesEnough = 8;  // likewise; fewer: the jackknife has so few blocks that a note says so
+// Likewise; fewer: the jackknife has so few blocks that a note says so.
+constexpr std::size_t kCapturesEnough = RowOf(Method::kStereo).captures.enough;
 // Residuals beyond this mean that something is wrong, not noisy: a part of the picture's width, and at least one pixel.
 constexpr double kHighRmsRatio = 1.0 / 600;
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <vector>
 
 #include "server/calib/core/costs.h"
 #include "server/calib/core/pose_block.h"
@@ -157,12 +156,7 @@ Result<JointCovariance> ModelCovariance(const JointProblem& problem, const Joint
   RIGCAL_ASSIGN(const ReducedMatrix normal, ReducedNormal(problem, state));
   const ReducedMatrix pulls = PullsOf(problem);
   RIGCAL_ASSIGN(const ReducedMatrix inverse, InverseOfFree(normal + pulls));
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < problem.captures.size(); ++k) {
-    const CaptureError error = ErrorOf(problem, state, k);
-    ssr_px2 += error.a_px2 + error.b_px2;
-  }
-  return JointCovariance{ssr_px2 / dof * (inverse - inverse * pulls * inverse),
+  return JointCovariance{SumOfSquares_px2(problem, state) / dof * (inverse - inverse * pulls * inverse),
                          ShiftsOf(inverse, kIntrinsicsAStart, problem.a.pull),
                          ShiftsOf(inverse, kIntrinsicsBStart, problem.b.pull)};
 }

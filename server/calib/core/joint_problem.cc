@@ -180,6 +180,15 @@ CaptureError ErrorOf(const JointProblem& problem, const JointState& state, std::
   return error;
 }
 
+double SumOfSquares_px2(const JointProblem& problem, const JointState& state) {
+  double ssr_px2 = 0;
+  for (std::size_t k = 0; k < problem.captures.size(); ++k) {
+    const CaptureError error = ErrorOf(problem, state, k);
+    ssr_px2 += error.a_px2 + error.b_px2;
+  }
+  return ssr_px2;
+}
+
 int ResidualCount(const JointProblem& problem) {
   std::size_t corners = 0;
   for (const JointCapture& capture : problem.captures) corners += capture.a.size() + capture.b.size();

@@ -55,6 +55,8 @@ struct CaptureError {
 [[nodiscard]] Se3 SolveBoardPose(const JointProblem& problem, const JointState& state, std::size_t capture_idx,
                                  const Se3& T_a_board);
 [[nodiscard]] CaptureError ErrorOf(const JointProblem& problem, const JointState& state, std::size_t capture_idx);
+// Of both cameras, over all captures.
+[[nodiscard]] double SumOfSquares_px2(const JointProblem& problem, const JointState& state);
 // Numbers (two per corner and view) and free parameters of the whole problem, less those that a pull tells already.
 [[nodiscard]] int ResidualCount(const JointProblem& problem);
 [[nodiscard]] int ParameterCount(const JointProblem& problem);

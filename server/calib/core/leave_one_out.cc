@@ -1,6 +1,8 @@
 #include "server/calib/core/leave_one_out.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "server/base/parallel_for.h"
@@ -27,6 +29,16 @@ Matrix6d CovarianceOf(const Matrix6d& C_model, const std::vector<BlockVector>& b
 // At least one: none would say that nothing was estimated.
 int DofOf(std::size_t carrying) { return carrying > 2 ? static_cast<int>(carrying) - 1 : 1; }
 
+UncertaintySource SourceOf(const std::vector<BlockVector>& blocks) {
+  return blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
+}
+
+Uncertainty With(std::vector<BlockVector> blocks, std::vector<Contribution> contributions, Uncertainty uncertainty) {
+  uncertainty.blocks = std::move(blocks);
+  uncertainty.contributions = std::move(contributions);
+  return uncertainty;
+}
+
 }  // namespace
 
 Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& block_ids, const Se3& T_a_b,
@@ -43,11 +55,13 @@ Result<std::vector<BlockVector>> LeaveOneOut(const std::vector<std::string>& blo
   return blocks;
 }
 
-std::vector<Vector6d> VectorsOf(const std::vector<BlockVector>& blocks) {
-  std::vector<Vector6d> d;
-  for (const BlockVector& block : blocks) d.push_back(block.d);
-  return d;
+void AddBoardSize(const Target& board, double sigma_ratio, const WithSize& solved,
+                  std::vector<GivenConstant>& constants) {
+  if (!(sigma_ratio > 0)) return;
+  constants.push_back({"size of board " + board.id.str(), [=](double steps) { return solved(steps * sigma_ratio); }});
 }
+
+std::string IntrinsicsName(const SensorId& camera) { return "intrinsics of " + camera.str(); }
 
 Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstant>& constants) {
   std::vector<std::optional<Result<Vector6d>>> shifts(constants.size());
@@ -66,11 +80,8 @@ Result<std::vector<Contribution>> ContributionsOf(const std::vector<GivenConstan
 Result<Uncertainty> UncertaintyOf(const Matrix6d& C_model, std::vector<BlockVector> blocks,
                                   std::vector<Contribution> contributions, std::size_t carrying) {
   const Matrix6d C = CovarianceOf(C_model, blocks, contributions);
-  const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
-  RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, source, DofOf(carrying)));
-  uncertainty.blocks = std::move(blocks);
-  uncertainty.contributions = std::move(contributions);
-  return uncertainty;
+  RIGCAL_ASSIGN(Uncertainty uncertainty, FromCovariance(C, SourceOf(blocks), DofOf(carrying)));
+  return With(std::move(blocks), std::move(contributions), std::move(uncertainty));
 }
 
 Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::MatrixXd& C_model_along,
@@ -91,12 +102,49 @@ Result<Uncertainty> UncertaintyAlong(const Directions& free, const Eigen::Matrix
     return Fail(ErrorCode::kInvalidInput, "the covariance is not positive definite",
                 "Take more captures from different places.");
   const Eigen::MatrixXd information = llt.solve(Eigen::MatrixXd::Identity(free.cols(), free.cols()));
-  const auto source = blocks.empty() ? UncertaintySource::kModel : UncertaintySource::kJackknife;
   Uncertainty uncertainty =
-      FromInformation(Symmetrized(free * information * free.transpose()), source, DofOf(carrying));
-  uncertainty.blocks = std::move(blocks);
-  uncertainty.contributions = std::move(contributions);
-  return uncertainty;
+      FromInformation(Symmetrized(free * information * free.transpose()), SourceOf(blocks), DofOf(carrying));
+  return With(std::move(blocks), std::move(contributions), std::move(uncertainty));
+}
+
+namespace {
+
+constexpr double kGroupsFrom_rad = -M_PI / 4, kGroup_rad = M_PI / 2 / kBeamGroups;
+
+}  // namespace
+
+std::size_t BeamGroupOf(const Eigen::Vector3f& p_m) {
+  const double elevation_rad = std::atan2(p_m.z(), std::hypot(p_m.x(), p_m.y()));
+  const double at = std::floor((elevation_rad - kGroupsFrom_rad) / kGroup_rad);
+  return static_cast<std::size_t>(std::clamp(at, 0.0, kBeamGroups - 1.0));
+}
+
+std::string SingleBeamsOf(const SensorId& lidar) { return "range biases of single beams of " + lidar.str(); }
+
+void MarkBeams(const PlanePatch& patch, std::vector<char>& seen) {
+  for (const Eigen::Vector3f& p : patch.points_m) seen[BeamGroupOf(p)] = 1;
+}
+
+PlanePatch WithBeamsMoved(PlanePatch patch, std::size_t group, double longer_m) {
+  for (Eigen::Vector3f& p : patch.points_m)
+    if (BeamGroupOf(p) == group) p += static_cast<float>(longer_m) * p.normalized();
+  return patch;
+}
+
+void AddRangeBias(const SensorId& lidar, double sigma_m, const WithRanges& solved,
+                  std::vector<GivenConstant>& constants) {
+  if (!(sigma_m > 0)) return;
+  constants.push_back({"range bias of " + lidar.str(), [=](double steps) { return solved(steps * sigma_m); }});
+}
+
+void AddBeams(const Sensor& lidar, const std::vector<char>& seen, const Se3& T_a_b, const WithBeams& solved,
+              std::vector<GivenConstant>& constants) {
+  const double sigma_m = lidar.range_bias_sigma_m.value_or(0.0);
+  if (!(sigma_m > 0)) return;
+  for (std::size_t group = 0; group < seen.size(); ++group)
+    constants.push_back({SingleBeamsOf(lidar.id), [=, is_seen = seen[group]](double steps) -> Result<Se3> {
+                           return is_seen == 0 ? T_a_b : solved(group, steps * sigma_m);
+                         }});
 }
 
 }  // namespace rigcal::calib

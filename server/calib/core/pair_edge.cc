@@ -1,11 +1,24 @@
 #include "server/calib/core/pair_edge.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/calib/camera/camera_diagnoses.h"
+#include "server/calib/core/wording.h"
 #include "server/model/unit_doubt.h"
 
 namespace rigcal::calib {
+namespace {
+
+// In the order of the list's captures.
+void AddUnused(const std::vector<CaptureId>& captures, const std::string& why, Edge& edge) {
+  for (const CaptureId& capture : captures) edge.captures.push_back({capture, 0.0, false, why});
+  std::stable_sort(edge.captures.begin(), edge.captures.end(),
+                   [](const CaptureResidual& a, const CaptureResidual& b) { return a.capture < b.capture; });
+}
+
+}  // namespace
 
 Edge UnsolvedEdge(const SensorId& a, const SensorId& b, Method method, std::size_t captures) {
   Edge edge;
@@ -83,6 +96,36 @@ void AddMotionFigures(const MotionReach& motion, Edge& edge) {
   edge.figures["tilt_rad"] = motion.tilt_rad;
   edge.figures["tilt_noise_rad"] = motion.tilt_noise_rad;
   edge.figures["turn_rad"] = motion.turn_rad;
+}
+
+void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge) {
+  std::vector<CaptureId> left_out;
+  std::set_intersection(chosen.left_out.begin(), chosen.left_out.end(), of_pair.begin(), of_pair.end(),
+                        std::back_inserter(left_out));
+  AddUnused(left_out,
+            Worded("{}: the pair uses {} of its {} captures, spread over the session",
+                   {std::string(kLeftToRefinement), of_pair.size() - left_out.size(), of_pair.size()}),
+            edge);
+  edge.figures["captures_total"] = static_cast<double>(of_pair.size());
+}
+
+void TellSamePictures(const std::vector<CaptureId>& same, Edge& edge) {
+  if (same.empty()) return;
+  edge.diagnoses.insert(edge.diagnoses.begin(),
+                        {"same_picture",
+                         Worded("{} and {} have one and the same file in these captures, which are not used: {}.",
+                                {edge.frame_a, edge.frame_b, NamesOf(same)}),
+                         "Copy each camera's own pictures into its folder and push the session again."});
+  std::map<std::string, CaptureId> told;
+  for (const char* figure : {"first_unreadable_a_idx", "first_unreadable_b_idx"})
+    if (const auto found = edge.figures.find(figure); found != edge.figures.end())
+      told[figure] = edge.captures.at(static_cast<std::size_t>(found->second)).capture;
+  AddUnused(same, "both sensors have the same file", edge);
+  for (const auto& [figure, capture] : told) {
+    const auto place = std::find_if(edge.captures.begin(), edge.captures.end(),
+                                    [&id = capture](const CaptureResidual& one) { return one.capture == id; });
+    edge.figures[figure] = static_cast<double>(std::distance(edge.captures.begin(), place));
+  }
 }
 
 }  // namespace rigcal::calib

@@ -9,6 +9,7 @@
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/motion/motion_observability.h"
 #include "server/model/camera.h"
+#include "server/model/edge.h"
 #include "server/model/method.h"
 #include "server/model/pose_table.h"
 
@@ -44,6 +45,13 @@ void AddIntrinsicsFigures(const CameraIntrinsics& intrinsics, const std::string&
 void AddAxisFigures(const Eigen::Vector3d& axis_a, Edge& edge);
 void AddMotionFigures(const MotionReach& motion, Edge& edge);
 
+// Tells each of the pair's own captures that was left out, with the reason.
+void AddLeftOut(const PairCaptures& chosen, const std::set<CaptureId>& of_pair, Edge& edge);
+// The edge says in which captures both sensors have one and the same file ("same_picture": SamePictures() of
+// session.h), and lists these as not used; figures that tell places in the list ("first_unreadable_a_idx") go on naming
+// the same captures. Nothing if `same` is empty.
+void TellSamePictures(const std::vector<CaptureId>& same, Edge& edge);
+
 // `estimate()`; what a library throws becomes `failed(error)`. Throws where there is no memory, which is not the data's
 // fault: the caller tries again.
 template <typename Estimate, typename Failed>
@@ -54,6 +62,24 @@ Edge Guarded(const Estimate& estimate, const Failed& failed) {
     if (IsOutOfMemory(exception)) throw;
     return failed(Error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."});
   }
+}
+
+// Guarded: the edge of the captures chosen; where that is none, or leaves a direction open, the edge of all.
+// `drop(problem, left_out)` takes captures out of a problem; `of_pair` are those that it has files of.
+template <typename Problem, typename Drop, typename Estimate, typename Failed>
+Edge EdgeOfChosen(const Problem& problem, const std::set<CaptureId>& of_pair, const std::set<CaptureId>& seen_by_both,
+                  const Drop& drop, const Estimate& estimate, const Failed& failed) {
+  const auto of_chosen = [&] {
+    const PairCaptures chosen = ChooseCaptures(problem.session_captures, seen_by_both);
+    if (chosen.left_out.empty()) return estimate(problem);
+    Problem fewer = problem;
+    drop(fewer, chosen.left_out);
+    Edge edge = estimate(fewer);
+    if (edge.state != EdgeState::kGood || edge.uncertainty.rank < 6) return estimate(problem);
+    AddLeftOut(chosen, of_pair, edge);
+    return edge;
+  };
+  return Guarded(of_chosen, failed);
 }
 
 }  // namespace rigcal::calib

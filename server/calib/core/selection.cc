@@ -126,7 +126,7 @@ Selection Select(const StereoProblem& problem) {
         selection.used.push_back(idx);
       } else {
         selection.unused[idx] = "shows the same as " + problem.captures[*earlier].capture.str();
-        selection.repeated.push_back(idx);
+        selection.repeated.push_back(capture.capture);
       }
     }
   }
@@ -164,17 +164,10 @@ void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointP
 }
 
 CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used, View StereoCapture::*camera) {
-  CameraViews views;
-  views.model = ModelOf(SensorOf(problem, camera));
-  views.corners_board = TargetPoints(problem.board);
-  for (const std::size_t idx : used) {
-    const View& view = problem.captures[idx].*camera;
-    if (!Sees(view, problem.board)) continue;
-    views.width_px = view->image_width_px;
-    views.height_px = view->image_height_px;
-    views.seen.push_back(SeenIn(*view, problem.board));
-  }
-  return views;
+  CameraProblem one{SensorOf(problem, camera), problem.board, {}};
+  for (const std::size_t idx : used)
+    if (const View& view = problem.captures[idx].*camera) one.views.emplace_back(problem.captures[idx].capture, *view);
+  return ViewsOf(one);
 }
 
 CameraViews ViewsOf(const CameraProblem& problem) {

@@ -20,7 +20,7 @@ namespace rigcal::calib {
 struct Selection {
   std::vector<std::size_t> used;              // indices into StereoProblem::captures, ascending
   std::map<std::size_t, std::string> unused;  // index, and why in words
-  std::vector<std::size_t> repeated;          // the unused ones that repeat another
+  std::vector<CaptureId> repeated;            // the unused ones that repeat another, sorted
 };
 
 // The model of its given intrinsics, or the one they are to be estimated as.
@@ -43,6 +43,20 @@ struct Selection {
 void SetCornerSigma(const StereoProblem& problem, double corner_sigma_px, JointProblem& joint);
 [[nodiscard]] CameraViews ViewsOf(const StereoProblem& problem, const std::vector<std::size_t>& used,
                                   std::optional<BoardView> StereoCapture::*camera);
+
+// Captures whose picture, of those that count, is not as large as the camera's first.
+template <typename Counts>
+[[nodiscard]] std::vector<CaptureId> Resized(const CameraProblem& problem, const Counts& counts) {
+  std::vector<CaptureId> resized;
+  const BoardView* first = nullptr;
+  for (const auto& [capture, view] : problem.views) {
+    if (!counts(view)) continue;
+    if (first == nullptr) first = &view;
+    if (view.image_width_px != first->image_width_px || view.image_height_px != first->image_height_px)
+      resized.push_back(capture);
+  }
+  return resized;
+}
 
 // The usable ones of a camera by itself, for its own model.
 [[nodiscard]] CameraViews ViewsOf(const CameraProblem& problem);

@@ -23,11 +23,8 @@ Se3 TurnOf(const Target& target, int turn) {
 }  // namespace
 
 std::vector<Candidate> CandidatesOf(const CameraEstimate& camera, const Target& board, const CaptureId& capture) {
-  std::vector<Se3> poses = {camera.T_cam_board.at(capture)};
-  if (const auto other = camera.alternatives.find(capture); other != camera.alternatives.end())
-    poses.insert(poses.end(), other->second.begin(), other->second.end());
   std::vector<Candidate> candidates;
-  for (const Se3& pose : poses)
+  for (const Se3& pose : camera.PosesOf(capture))
     for (int turn = 0; turn < SymmetryOf(board); ++turn)
       candidates.push_back({pose * TurnOf(board, turn), turn});
   return candidates;

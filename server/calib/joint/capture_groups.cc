@@ -9,11 +9,6 @@ namespace {
 // Poses of the rig nearer than this to where a burst began belong to it: a slow drive is not one.
 constexpr double kBurst_m = 0.01, kBurst_rad = 0.01;
 
-bool IsNear(const Se3& T_a, const Se3& T_b) {
-  const Vector6d xi = (T_a.Inverse() * T_b).Log();
-  return xi.head<3>().norm() < kBurst_m && xi.tail<3>().norm() < kBurst_rad;
-}
-
 }  // namespace
 
 CaptureGroups GroupsOf(const SessionProblem& problem, const SessionState& state, int groups_max) {
@@ -21,7 +16,7 @@ CaptureGroups GroupsOf(const SessionProblem& problem, const SessionState& state,
   std::vector<int> burst(places, 0);
   for (std::size_t p = 1, first = 0; p < places; ++p) {
     const bool same = problem.capture_of_place[p] == problem.capture_of_place[p - 1] ||
-                      IsNear(state.T_world_ref[first], state.T_world_ref[p]);
+                      AreNear(state.T_world_ref[first], state.T_world_ref[p], kBurst_m, kBurst_rad);
     burst[p] = burst[p - 1] + (same ? 0 : 1);
     if (!same) first = p;
   }

@@ -14,15 +14,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd SelectedRows(const MatrixXd& matrix, const std::vector<int>& rows) {
-  MatrixXd selected(static_cast<Eigen::Index>(rows.size()), matrix.cols());
-  for (std::size_t i = 0; i < rows.size(); ++i) selected.row(static_cast<Eigen::Index>(i)) = matrix.row(rows[i]);
-  return selected;
-}
-
-MatrixXd SelectedBoth(const MatrixXd& symmetric, const std::vector<int>& rows) {
-  return SelectedRows(SelectedRows(symmetric, rows).transpose(), rows);
-}
+// Symmetric but for rounding.
+MatrixXd Selected(const MatrixXd& matrix, const std::vector<int>& rows) { return matrix(rows, rows).transpose(); }
 
 std::vector<int> PoseRows(const Refined& refined, std::vector<int>& row_of_sensor) {
   std::vector<int> rows;
@@ -87,23 +80,23 @@ PoseCovariance CovarianceOfPoses(const Refined& refined, const MatrixXd& beside)
   const Eigen::LLT<MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
   // Poses moved by a whitened score z: scale L^-T z.
   const MatrixXd unwhiten = scale.asDiagonal() * llt.matrixU().solve(MatrixXd::Identity(size, size));
-  const MatrixXd poses = SelectedRows(unwhiten, rows);
+  const MatrixXd poses = unwhiten(rows, Eigen::all);
   result.model = poses * poses.transpose();
   result.influence = poses * WhitenedScores(refined, llt, scale);
   const VectorXd pose_scale = result.model.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LLT<MatrixXd> of_model(pose_scale.asDiagonal() * result.model * pose_scale.asDiagonal());
   const MatrixXd y = of_model.matrixL().solve(pose_scale.asDiagonal() * result.influence);
   const MatrixXd given_H = refined.at_optimum.given.H.topLeftCorner(size, size);
-  const MatrixXd given = SelectedBoth(refined.covariance * given_H * refined.covariance, rows);
-  result.common = SelectedBoth(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
+  const MatrixXd given = Selected(refined.covariance * given_H * refined.covariance, rows);
+  result.common = Selected(refined.covariance * OfConstants(given_H, rows) * refined.covariance, rows);
   const MatrixXd half = of_model.matrixL().solve(pose_scale.asDiagonal() * given * pose_scale.asDiagonal());
   const MatrixXd known = of_model.matrixL().solve(half.transpose());
   const ShrunkScatter shrunk = ShrinkScatter(y, known);
   const MatrixXd L = pose_scale.cwiseInverse().asDiagonal() * MatrixXd(of_model.matrixL());
   result.joint = result.without_beside = L * shrunk.S * L.transpose();
   if (beside.size() > 0) {
-    result.joint += SelectedBoth(beside, rows);
-    result.common += SelectedBoth(beside, rows);  // a lens is the same on every visit
+    result.joint += Selected(beside, rows);
+    result.common += Selected(beside, rows);  // a lens is the same on every visit
   }
   result.model_ratio = shrunk.model_ratio;
   result.spread_ratio = shrunk.mean;

@@ -1,8 +1,7 @@
-#include "server/calib/joint/field_equations.h"
-
 #include <algorithm>
 
 #include "server/base/parallel_for.h"
+#include "server/calib/joint/lens_misfit.h"
 
 namespace rigcal::calib::joint {
 namespace {

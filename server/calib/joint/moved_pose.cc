@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "server/math/covariance.h"
 #include "server/math/statistics.h"
 
 namespace rigcal::calib::joint {
@@ -24,7 +25,7 @@ struct Inverse {
   int rank = 0;
 };
 Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
-  const Vector6d scale = whole.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  const Vector6d scale = UnitDiagonal(whole);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
   Inverse inverse;
   Vector6d values = Vector6d::Zero(), inverted = Vector6d::Zero();

@@ -1,8 +1,10 @@
-#include "server/calib/joint/noise_and_weights.h"
+#include "server/calib/joint/refine.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+
+#include "server/calib/core/robust.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -46,13 +48,6 @@ std::vector<double> FieldLeverage(const SessionProblem& problem, const SessionSt
   return leverage;
 }
 
-double MedianOf(std::vector<double> values) {
-  if (values.empty()) return 1.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Of each look: what the least of three successive looks of its sensor exceeds, of the three that exceed most.
 template <typename Looks>
 std::vector<double> ExcessOfRun(const Looks& looks, const std::vector<double>& excess, std::size_t sensors) {
@@ -86,7 +81,8 @@ std::vector<double> WeightsOfLooks(const Looks& looks, const std::vector<LookFit
   for (std::size_t i = 0; i < looks.size(); ++i)
     of_sensor[static_cast<std::size_t>(looks[i].sensor)].push_back(ratio(i));
   std::vector<double> usual;
-  for (const auto& ratios : of_sensor) usual.push_back(std::max(least_usual, MedianOf(ratios)));
+  for (const auto& ratios : of_sensor)
+    usual.push_back(std::max(least_usual, ratios.empty() ? 1.0 : MedianOf(ratios)));
   std::vector<double> excess;
   for (std::size_t i = 0; i < looks.size(); ++i)
     excess.push_back(ratio(i) / (usual[static_cast<std::size_t>(looks[i].sensor)] *

@@ -1,9 +1,9 @@
 #include "server/calib/joint/normal_equations.h"
 
 #include <Eigen/Eigenvalues>
-#include <cmath>
 
 #include "server/base/parallel_for.h"
+#include "server/math/covariance.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -29,17 +29,12 @@ LooksOfPlaces LooksOf(const SessionProblem& problem) {
 }
 
 std::optional<Observation> ObserveLook(const Linearization& of, const SessionState& state, const Look& look) {
-  const auto noise = [&](const Where& where) { return of.noise[static_cast<std::size_t>(where.sensor)]; };
-  if (look.kind == Kind::kCorners) {
-    const CornersSeen& seen = of.problem.corners[look.idx];
-    return Observe(of.problem, of.layout, state, seen, noise(seen), of.weights.OfCorners(look.idx));
-  }
-  if (look.kind == Kind::kPlate) {
-    const PlateSeen& seen = of.problem.plates[look.idx];
-    return Observe(of.problem, of.layout, state, seen, noise(seen), of.weights.plates[look.idx]);
-  }
-  const PoseTold& told = of.problem.poses[look.idx];
-  return Observe(of.problem, of.layout, state, told, noise(told), of.weights.poses[look.idx]);
+  const auto observe = [&](const auto& seen, double weight) -> std::optional<Observation> {
+    return Observe(of.problem, of.layout, state, seen, of.noise[static_cast<std::size_t>(seen.sensor)], weight);
+  };
+  if (look.kind == Kind::kCorners) return observe(of.problem.corners[look.idx], of.weights.OfCorners(look.idx));
+  if (look.kind == Kind::kPlate) return observe(of.problem.plates[look.idx], of.weights.plates[look.idx]);
+  return observe(of.problem.poses[look.idx], of.weights.poses[look.idx]);
 }
 
 LookFit& FitOf(SessionFit& fit, const Look& look) {
@@ -61,7 +56,7 @@ void AddShared(const Observation& look, NormalEquations& shared) {
 }
 
 Matrix6d InverseOf(const Matrix6d& H) {
-  const Vector6d scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  const Vector6d scale = UnitDiagonal(H);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
   const double least = kOpen * axes.eigenvalues()[5];
   const Vector6d inverse = axes.eigenvalues().unaryExpr([&](double value) { return value > least ? 1 / value : 0.0; });
@@ -132,12 +127,12 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
     if (layout.scale[t] != kNone)
       AddPull(layout.scale[t], state.board_scale_ratio[t],
               problem.targets[t].square_sigma_m / problem.targets[t].square_m, linearized.given, linearized.cost);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
-    if (layout.bias[s] != kNone)
-      AddPull(layout.bias[s], state.range_bias_m[s], problem.range_bias_sigma_m[s], linearized.given, linearized.cost);
-  for (std::size_t s = 0; s < problem.sensors.size(); ++s)
-    if (layout.slant[s] != kNone)
-      AddPull(layout.slant[s], state.slant_bias_m[s], problem.slant_bias_sigma_m[s], linearized.given, linearized.cost);
+  const auto pull = [&](const std::vector<int>& at, const std::vector<double>& away, const std::vector<double>& sigma) {
+    for (std::size_t s = 0; s < at.size(); ++s)
+      if (at[s] != kNone) AddPull(at[s], away[s], sigma[s], linearized.given, linearized.cost);
+  };
+  pull(layout.bias, state.range_bias_m, problem.range_bias_sigma_m);
+  pull(layout.slant, state.slant_bias_m, problem.slant_bias_sigma_m);
   for (std::size_t t = 0; t < problem.targets.size(); ++t)
     for (int i = 0; layout.bend[t] != kNone && i < 3; ++i)
       AddPull(layout.bend[t] + i, state.board_bend_m[t][i], problem.bend_sigma_m[t], linearized.given, linearized.cost);

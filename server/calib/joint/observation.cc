@@ -243,9 +243,7 @@ Observation Observe(const SessionProblem&, const Layout& layout, const SessionSt
   const Se3& T_ref_body = state.T_ref_sensor[sensor];
   const Vector6d e = (told.T_world_body.Inverse() * state.T_world_ref[place] * T_ref_body).Log();
   const Matrix6d J = RightJacobianInverse(e);
-  Vector6d information;
-  information << Eigen::Vector3d::Constant(std::pow(noise.sigma, -2)),
-      Eigen::Vector3d::Constant(std::pow(noise.sigma_rad, -2));
+  const Vector6d information = EachAxis(std::pow(noise.sigma, -2), std::pow(noise.sigma_rad, -2));
   Observation look;
   look.A = weight * J.transpose() * information.asDiagonal() * J;
   look.b = weight * J.transpose() * information.asDiagonal() * e;

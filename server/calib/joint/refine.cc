@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/math/covariance.h"
+
 namespace rigcal::calib::joint {
 namespace {
 
@@ -16,15 +18,6 @@ constexpr double kSameWeight = 0.01;
 Error NotSolvable(const std::string& why) {
   return {ErrorCode::kInvalidInput, "the joint refinement " + why,
           "The calibration of its pairs stands; more captures from other places would settle it."};
-}
-
-// H^-1, scaled; nothing where H is not positive definite.
-std::optional<Eigen::MatrixXd> CovarianceOf(const Eigen::MatrixXd& H) {
-  const Eigen::VectorXd scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
-  const Eigen::LLT<Eigen::MatrixXd> llt(scale.asDiagonal() * H * scale.asDiagonal());
-  if (llt.info() != Eigen::Success || llt.matrixLLT().diagonal().minCoeff() < 1e-7) return std::nullopt;
-  const Eigen::MatrixXd inverse = llt.solve(Eigen::MatrixXd::Identity(H.rows(), H.cols()));
-  return Eigen::MatrixXd(scale.asDiagonal() * inverse * scale.asDiagonal());
 }
 
 struct Step {
@@ -125,7 +118,7 @@ Result<Refined> Refine(const SessionProblem& problem, const SessionState& start,
     RIGCAL_ASSIGN(Minimum minimum, Minimize(of, refined.state));
     refined.at_optimum = std::move(minimum.at);
     const Eigen::MatrixXd H = refined.at_optimum.Total().H.topLeftCorner(refined.layout.size, refined.layout.size);
-    const auto covariance = CovarianceOf(H);
+    const auto covariance = InverseOfDefinite(H);
     if (!covariance) return Fail(NotSolvable("leaves an unknown open: its captures do not tell every pose"));
     refined.covariance = *covariance;
     AddLeverage(of, refined.state, refined.covariance, refined.at_optimum);
@@ -153,8 +146,8 @@ int OpenSensor(const SessionProblem& problem, const SessionState& state, const s
   const auto at = Linearize({problem, layout, noise, weights, groups}, state);
   if (!at) return kNone;
   const Eigen::MatrixXd H = at->Total().H.topLeftCorner(layout.size, layout.size);
-  if (CovarianceOf(H)) return kNone;
-  const Eigen::VectorXd scale = H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
+  if (InverseOfDefinite(H)) return kNone;
+  const Eigen::VectorXd scale = UnitDiagonal(H);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scale.asDiagonal() * H * scale.asDiagonal());
   int most = 0;
   axes.eigenvectors().col(0).cwiseAbs().maxCoeff(&most);

@@ -45,12 +45,13 @@ SessionState Moved(const SessionProblem& problem, const Layout& layout, const Se
       moved.intrinsics[c][problem.cameras[c].refined[i]] += step[layout.lens[c] + static_cast<int>(i)];
   for (std::size_t b = 0; b < layout.board.size(); ++b)
     moved.T_world_board[b] = MovedPose(state.T_world_board[b], layout.board[b], step);
-  for (std::size_t t = 0; t < layout.scale.size(); ++t)
-    if (layout.scale[t] != kNone) moved.board_scale_ratio[t] += step[layout.scale[t]];
-  for (std::size_t s = 0; s < layout.bias.size(); ++s)
-    if (layout.bias[s] != kNone) moved.range_bias_m[s] += step[layout.bias[s]];
-  for (std::size_t s = 0; s < layout.slant.size(); ++s)
-    if (layout.slant[s] != kNone) moved.slant_bias_m[s] += step[layout.slant[s]];
+  const auto move = [&](const std::vector<int>& at, std::vector<double>& numbers) {
+    for (std::size_t i = 0; i < at.size(); ++i)
+      if (at[i] != kNone) numbers[i] += step[at[i]];
+  };
+  move(layout.scale, moved.board_scale_ratio);
+  move(layout.bias, moved.range_bias_m);
+  move(layout.slant, moved.slant_bias_m);
   for (std::size_t t = 0; t < layout.bend.size(); ++t)
     if (layout.bend[t] != kNone) moved.board_bend_m[t] += step.segment<3>(layout.bend[t]);
   for (std::size_t p = 0; p < place_steps.size(); ++p)

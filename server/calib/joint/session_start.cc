@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 #include "server/calib/joint/board_candidates.h"
 #include "server/calib/core/capture_blocks.h"
@@ -187,19 +186,31 @@ class Starter {
     board_pose_[static_cast<std::size_t>(held_target_)] = Se3{};
   }
 
+  // The pose that most looks agree on: of each that is `wanted` those by its candidates.
+  template <typename Wanted, typename PoseBy>
+  [[nodiscard]] std::optional<Se3> AgreedBy(const Wanted& wanted, const PoseBy& pose_by) const {
+    std::vector<std::vector<Se3>> lists;
+    for (const View& look : looks_) {
+      if (!wanted(look)) continue;
+      lists.emplace_back();
+      for (const Candidate& candidate : look.candidates) lists.back().push_back(pose_by(look, candidate.T_cam_board));
+    }
+    return Agreed(lists);
+  }
+  [[nodiscard]] const std::optional<Se3>& PlaceOf(const View& look) const {
+    return place_of_capture_[static_cast<std::size_t>(look.capture)];
+  }
+  [[nodiscard]] const std::optional<Se3>& BoardOf(const View& look) const {
+    return board_pose_[static_cast<std::size_t>(look.target)];
+  }
+
   bool LocateBoards() {
     bool found = false;
     for (std::size_t t = 0; t < board_pose_.size(); ++t) {
       if (board_pose_[t]) continue;
-      std::vector<std::vector<Se3>> lists;
-      for (const View& look : looks_) {
-        const auto& place = place_of_capture_[static_cast<std::size_t>(look.capture)];
-        if (look.target != static_cast<int>(t) || !place) continue;
-        lists.emplace_back();
-        for (const Candidate& candidate : look.candidates)
-          lists.back().push_back(*place * T_ref(look.sensor) * candidate.T_cam_board);
-      }
-      board_pose_[t] = Agreed(lists);
+      board_pose_[t] = AgreedBy(
+          [&](const View& look) { return look.target == static_cast<int>(t) && PlaceOf(look); },
+          [&](const View& look, const Se3& T_cam_board) { return *PlaceOf(look) * T_ref(look.sensor) * T_cam_board; });
       found |= board_pose_[t].has_value();
     }
     return found;
@@ -209,15 +220,11 @@ class Starter {
     bool found = false;
     for (std::size_t k = 0; k < place_of_capture_.size(); ++k) {
       if (place_of_capture_[k]) continue;
-      std::vector<std::vector<Se3>> lists;
-      for (const View& look : looks_) {
-        const auto& board = board_pose_[static_cast<std::size_t>(look.target)];
-        if (look.capture != static_cast<int>(k) || !board) continue;
-        lists.emplace_back();
-        for (const Candidate& candidate : look.candidates)
-          lists.back().push_back(*board * (T_ref(look.sensor) * candidate.T_cam_board).Inverse());
-      }
-      place_of_capture_[k] = Agreed(lists);
+      place_of_capture_[k] =
+          AgreedBy([&](const View& look) { return look.capture == static_cast<int>(k) && BoardOf(look); },
+                   [&](const View& look, const Se3& T_cam_board) {
+                     return *BoardOf(look) * (T_ref(look.sensor) * T_cam_board).Inverse();
+                   });
       found |= place_of_capture_[k].has_value();
     }
     return found;
@@ -228,14 +235,10 @@ class Starter {
   void LocateByBoards() {
     for (int k = 0; k < static_cast<int>(problem().captures.size()); ++k)
       for (int t = 0; t < static_cast<int>(problem().targets.size()); ++t) {
-        std::vector<std::vector<Se3>> lists;
-        for (const View& look : looks_) {
-          if (look.capture != k || look.target != t) continue;
-          lists.emplace_back();
-          for (const Candidate& candidate : look.candidates)
-            lists.back().push_back((T_ref(look.sensor) * candidate.T_cam_board).Inverse());
-        }
-        if (const auto place = Agreed(lists)) AddPlace(k, t, *place);
+        const auto place = AgreedBy(
+            [&](const View& look) { return look.capture == k && look.target == t; },
+            [&](const View& look, const Se3& T_cam_board) { return (T_ref(look.sensor) * T_cam_board).Inverse(); });
+        if (place) AddPlace(k, t, *place);
       }
   }
 

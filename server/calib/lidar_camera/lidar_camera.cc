@@ -16,18 +16,10 @@ namespace {
 constexpr int kChoicesMax = 4, kRejectionsMax = 5, kReweighingsMax = 3;
 constexpr double kOtherSupportRatio = 0.8;
 
-std::vector<Se3> PosesOf(const CameraEstimate& camera, const CaptureId& capture) {
-  std::vector<Se3> poses;
-  if (const auto at = camera.T_cam_board.find(capture); at != camera.T_cam_board.end()) poses.push_back(at->second);
-  if (const auto at = camera.alternatives.find(capture); at != camera.alternatives.end())
-    poses.insert(poses.end(), at->second.begin(), at->second.end());
-  return poses;
-}
-
 PlaneCandidates CandidatesOf(const LidarCameraProblem& problem, const CameraEstimate& camera, std::size_t idx) {
   const LidarCameraCapture& capture = problem.captures[idx];
   PlaneCandidates candidates;
-  for (const Se3& T_cam_board : PosesOf(camera, capture.capture))
+  for (const Se3& T_cam_board : camera.PosesOf(capture.capture))
     candidates.camera.push_back({-T_cam_board.R().col(2), T_cam_board * CentreOf(problem.board)});
   for (const PlanePatch& patch : capture.cloud->candidates) candidates.lidar.push_back({patch.normal, patch.centre_m});
   return candidates;
@@ -256,13 +248,11 @@ OrDiagnosis<LidarCameraEstimate> EstimateLidarCamera(const LidarCameraProblem& p
   if (!problem.camera.intrinsics && camera->T_cam_board.size() < kLidarViewsForIntrinsics)
     return tl::unexpected(TooFewForIntrinsics(problem, camera->T_cam_board.size()));
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
-  auto work = Choose(problem, std::move(*camera), kept);
-  if (!work) return tl::unexpected(work.error());
-  FillPlanes(problem, *work);
-  const auto refined = RefineTold(problem, *work, kept);
-  if (!refined) return tl::unexpected(refined.error());
-  LidarCameraEstimate estimate = Finished(problem, *work);
-  EstimateSystematics(problem, *work, estimate);
+  RIGCAL_ASSIGN(auto work, Choose(problem, std::move(*camera), kept));
+  FillPlanes(problem, work);
+  RIGCAL_TRY(RefineTold(problem, work, kept));
+  LidarCameraEstimate estimate = Finished(problem, work);
+  EstimateSystematics(problem, work, estimate);
   return estimate;
 }
 

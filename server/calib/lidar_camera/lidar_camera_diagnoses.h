@@ -3,13 +3,14 @@
 
 #include "server/calib/core/wording.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 
-constexpr std::size_t kLidarCapturesMin = 4;           // seen by both
+constexpr std::size_t kLidarCapturesMin = RowOf(Method::kLidarCamera).captures.least;  // seen by both
 constexpr std::size_t kLidarCapturesForJackknife = 5;  // fewer: the uncertainty is the model's
 constexpr std::size_t kLidarViewsForIntrinsics = 8;    // pictures; fewer: intrinsics must be given
-constexpr std::size_t kLidarCapturesEnough = 10;       // fewer: a note says so
+constexpr std::size_t kLidarCapturesEnough = RowOf(Method::kLidarCamera).captures.enough;  // fewer: a note says so
 // With planes known to 10 mm each: worse than this along some direction is no calibration, and a note below.
 constexpr double kNormalSigmaMax_m = 0.05, kNormalSigmaGood_m = 0.02;
 // Residuals beyond these mean that something is wrong, not noisy.

@@ -172,12 +172,9 @@ std::set<CaptureId> SeenByBoth(const LidarCameraProblem& problem) {
 
 Edge EstimateLidarCameraEdge(const LidarCameraProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const LidarCameraProblem& chosen) { return Solved(chosen, fits); };
-  return Guarded(
-      [&] {
-        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<LidarCameraProblem>,
-                                estimate);
-      },
-      [&](const Error& error) { return FailedEdge(problem, {NotSolvable(problem, error)}); });
+  const auto failed = [&](const Error& error) { return FailedEdge(problem, {NotSolvable(problem, error)}); };
+  return EdgeOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<LidarCameraProblem>, estimate,
+                      failed);
 }
 
 }  // namespace rigcal::calib

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "server/calib/camera/intrinsics.h"
-#include "server/calib/core/range_constants.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"
@@ -25,19 +25,18 @@ void AddBoardSize(const LidarCameraProblem& problem, const LidarCameraEstimate& 
                   std::vector<GivenConstant>& constants) {
   const double shown_ratio = estimate.SuspectsBoardSize() ? std::abs(estimate.board_scale_ratio) : 0.0;
   const double ratio = std::max(shown_ratio, problem.board.square_sigma_m / problem.board.square_m);
-  if (!(ratio > 0)) return;
-  constants.push_back({"size of board " + problem.board.id.str(), [&problem, &estimate, ratio](double steps) {
-                         LidarCameraEstimate start = estimate;
-                         for (auto& [capture, T_cam_board] : start.camera.T_cam_board)
-                           T_cam_board.p_m *= 1 + steps * ratio;
-                         return PoseOf(problem, SolvedAgain(problem, start));
-                       }});
+  const auto with_size = [&problem, &estimate](double larger_ratio) {
+    LidarCameraEstimate start = estimate;
+    for (auto& [capture, T_cam_board] : start.camera.T_cam_board) T_cam_board.p_m *= 1 + larger_ratio;
+    return PoseOf(problem, SolvedAgain(problem, start));
+  };
+  AddBoardSize(problem.board, ratio, with_size, constants);
 }
 
 void AddIntrinsics(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate,
                    std::vector<GivenConstant>& constants) {
   for (const int i : RefinedOf(problem.camera))
-    constants.push_back({"intrinsics of " + problem.camera.id.str(), [&problem, &estimate, i](double sigmas) {
+    constants.push_back({IntrinsicsName(problem.camera.id), [&problem, &estimate, i](double sigmas) {
                            return PoseOf(problem,
                                          SolvedWithCamera(problem, estimate, WithGiven(estimate.camera, i, sigmas)));
                          }});

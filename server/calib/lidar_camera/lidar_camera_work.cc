@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "server/calib/camera/intrinsics.h"
-#include "server/calib/core/range_constants.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/robust.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 

@@ -77,7 +77,7 @@ struct NormalSpread {
 [[nodiscard]] std::vector<IntrinsicsVector> ChangesOfIntrinsics(const LidarCameraProblem& problem,
                                                                 const LidarCameraEstimate& estimate);
 
-// Of the groups of beams (range_constants.h): which took a point of a board; all of one with longer ranges.
+// Of the groups of beams (leave_one_out.h): which took a point of a board; all of one with longer ranges.
 [[nodiscard]] std::vector<char> BeamsSeen(const LidarCameraProblem& problem, const LidarCameraEstimate& estimate);
 [[nodiscard]] Result<LidarCameraEstimate> SolvedWithBeamsMoved(const LidarCameraProblem& problem,
                                                                const LidarCameraEstimate& estimate, std::size_t group,

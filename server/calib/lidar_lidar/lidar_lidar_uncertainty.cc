@@ -7,7 +7,6 @@
 #include "server/base/parallel_for.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/leave_one_out.h"
-#include "server/calib/core/range_constants.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"
 #include "server/math/jackknife.h"
 
@@ -67,7 +66,7 @@ Sums SumsOfCapture(const LidarLidarProblem& problem, const LidarLidarWork& work,
 }
 
 // How T_map_moving (right tangent) changes per metre that the ranges of each group of beams are longer, one column per
-// group (range_constants.h): of the lidar that makes the map, of the one that moves. Linear at the pose: a group more
+// group (leave_one_out.h): of the lidar that makes the map, of the one that moves. Linear at the pose: a group more
 // is one more right side, not one more registration. Zero along `unknown`.
 struct BeamShifts {
   Directions of_map, of_moving;

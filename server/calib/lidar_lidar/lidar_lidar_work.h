@@ -8,6 +8,7 @@
 #include "server/calib/lidar_lidar/lidar_clouds.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
 #include "server/calib/lidar_lidar/ndt_fit.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 
@@ -67,7 +68,8 @@ struct LidarLidarBlocks {
 
 // lidar_lidar_uncertainty.cc: how sure the pose is.
 constexpr std::size_t kCloudsForJackknife = 5;  // captures; fewer: the model's
-constexpr std::size_t kCloudsEnough = 8;        // fewer: a note says that sigma is rough
+// Fewer: a note says that sigma is rough.
+constexpr std::size_t kCloudsEnough = RowOf(Method::kLidarLidar).captures.enough;
 
 // Of T_a_b. `d`: block vectors of T_map_moving from LeaveBlocksOut(). The jackknife over captures shrunk towards the
 // model; with few captures the model: the information of the surfaces with the scatter between blocks of voxels. What

@@ -35,8 +35,7 @@ SharedJacobian SharedWithSize(const CameraMotion& camera, bool doubts_focal, con
 
 // On a board that is larger by `ratio`.
 SidePose Enlarged(SidePose pose, double ratio) {
-  Vector6d larger = Vector6d::Ones();
-  larger.head<3>() *= 1 + ratio;
+  const Vector6d larger = EachAxis(1 + ratio, 1.0);
   pose.T_world_sensor.p_m *= 1 + ratio;
   pose.covariance = larger.asDiagonal() * pose.covariance * larger.asDiagonal();
   pose.d_shared = larger.asDiagonal() * pose.d_shared;

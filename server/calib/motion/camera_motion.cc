@@ -42,10 +42,9 @@ double VarianceOf(const CameraMotion& motion) { return std::max(motion.camera.va
 }  // namespace
 
 OrDiagnosis<CameraMotion> CameraMotionOf(const CameraProblem& problem, const CameraSolver& solver) {
-  auto camera = EstimateCameraBy(solver, problem);
-  if (!camera) return tl::unexpected(camera.error());
+  RIGCAL_ASSIGN(auto camera, EstimateCameraBy(solver, problem));
   CameraMotion motion;
-  motion.camera = std::move(*camera);
+  motion.camera = std::move(camera);
   motion.estimates_intrinsics = !HoldsIntrinsics(problem.camera);
   motion.turns = SymmetryOf(problem.board);
   motion.centre_board_m = CentreOf(problem.board);
@@ -54,12 +53,8 @@ OrDiagnosis<CameraMotion> CameraMotionOf(const CameraProblem& problem, const Cam
   const IntrinsicsVector intrinsics = VectorOf(motion.camera.intrinsics);
   const std::vector<Eigen::Vector3d> corners_board = TargetPoints(problem.board);
   for (const auto& [capture, view] : problem.views) {
-    const auto found = motion.camera.T_cam_board.find(capture);
-    if (found == motion.camera.T_cam_board.end()) continue;
-    std::vector<Se3> poses = {found->second};
-    if (const auto other = motion.camera.alternatives.find(capture); other != motion.camera.alternatives.end())
-      poses.insert(poses.end(), other->second.begin(), other->second.end());
-    for (const Se3& T_cam_board : poses)
+    if (!motion.camera.T_cam_board.contains(capture)) continue;
+    for (const Se3& T_cam_board : motion.camera.PosesOf(capture))
       if (auto moments = MomentsAt(model, intrinsics, corners_board, SeenIn(view, problem.board), T_cam_board))
         motion.views[capture].push_back(std::move(*moments));
   }

@@ -18,13 +18,8 @@ constexpr double kOffsetSame_s = 1e-5;
 constexpr std::size_t kStreamBlocks = 20;  // stretches of time that are left out one at a time
 constexpr std::size_t kStreamSamplesMin = 2 * kStreamBlocks;
 
-SideNoise NoiseOf(const MotionSide& side, const std::vector<char>& used, double factor) {
-  MotionProblem one;
-  one.a = side;
-  one.b.poses.assign(side.poses.size(), {});
-  for (SidePose& pose : one.b.poses) pose.covariance.setZero();
-  one.used = used;
-  const MotionNoise noise = NoiseOf(one);
+SideNoise SideNoiseOf(const MotionSide& side, const std::vector<char>& used, double factor) {
+  const MotionNoise noise = NoiseOf({&side}, used);
   return {noise.translation_m, noise.rotation_rad, factor};
 }
 
@@ -33,8 +28,8 @@ HandEyeEstimate EstimateOf(const HandEyeWork& work) {
   estimate.T_a_b = work.state.X;
   estimate.T_world_a_world_b = work.state.Z;
   estimate.reach = work.reach;
-  estimate.noise_a = NoiseOf(work.problem.a, work.problem.used, work.factor_a.translation);
-  estimate.noise_b = NoiseOf(work.problem.b, work.problem.used, work.factor_b.translation);
+  estimate.noise_a = SideNoiseOf(work.problem.a, work.problem.used, work.factor_a.translation);
+  estimate.noise_b = SideNoiseOf(work.problem.b, work.problem.used, work.factor_b.translation);
   estimate.unused = work.unused;
   estimate.captures = work.problem.UsedCount();
   double sum_m2 = 0, sum_rad2 = 0;
@@ -108,10 +103,8 @@ SharedJacobian SharedOf(const CommonPoses& common, std::size_t k) {
 void SetSamples(const CommonPoses& common, HandEyeWork& work) {
   work.captures.clear();
   work.candidates.clear();
-  Vector6d variances;
-  variances << Eigen::Vector3d::Constant(kStreamSigma_m * kStreamSigma_m),
-      Eigen::Vector3d::Constant(kStreamSigma_rad * kStreamSigma_rad);
-  const Matrix6d covariance = variances.asDiagonal();
+  const Matrix6d covariance =
+      EachAxis(kStreamSigma_m * kStreamSigma_m, kStreamSigma_rad * kStreamSigma_rad).asDiagonal();
   for (std::size_t k = 0; k < common.a.size(); ++k) {
     work.captures.emplace_back(SampleName(k));
     MotionCandidates sample;

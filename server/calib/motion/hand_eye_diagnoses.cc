@@ -114,9 +114,7 @@ Diagnosis NoMotion(const HandEyeProblem& problem) {
 
 std::vector<Diagnosis> OpenDirections(const HandEyeProblem& problem, const MotionReach& reach) {
   const SensorId &a = problem.a.sensor.id, &b = problem.b.sensor.id;
-  const MotionWords words =
-      WordsOf(reach.kind, AxisText(reach.axis_a) + " in the frame of " + a.str(),
-              Worded("to within {} (noise {})", {DegreesOf(reach.tilt_rad), DegreesOf(reach.tilt_noise_rad)}));
+  const MotionWords words = WordsOf(reach, AxisText(reach.axis_a) + " in the frame of " + a.str());
   if (words.code.empty()) return {};
   const char* const unknown = reach.kind == MotionKind::kOneAxis ? "how far {} is from {} along this axis is not known."
                               : reach.kind == MotionKind::kOnTheSpot
@@ -124,8 +122,7 @@ std::vector<Diagnosis> OpenDirections(const HandEyeProblem& problem, const Motio
                               : reach.kind == MotionKind::kNoRotation
                                   ? "how {} is turned is known, where it is from {} is not."
                                   : "where {} is from {} is not known, nor how it is turned about this line.";
-  const std::string cure = (reach.kind == MotionKind::kOnTheSpot ? kDriveElsewhere : "") + std::string(kTurnMore);
-  return {{words.code, Worded("{} were {}: ", {PairOf(problem), words.moved}) + Worded(unknown, {b, a}), cure}};
+  return {{words.code, Worded("{} were {}: ", {PairOf(problem), words.moved}) + Worded(unknown, {b, a}), words.cure}};
 }
 
 std::vector<Diagnosis> MissedViews(const HandEyeProblem& problem) {

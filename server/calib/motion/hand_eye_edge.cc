@@ -165,12 +165,9 @@ void Drop(HandEyeProblem& problem, const std::set<CaptureId>& left_out) {
 
 Edge EstimateHandEyeEdge(const HandEyeProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const HandEyeProblem& chosen) { return Solved(chosen, fits); };
-  return Guarded(
-      [&] {
-        if (problem.method == Method::kPoseStreams) return estimate(problem);
-        return EstimateOfChosen(problem, AllCaptures(problem), SeenByBoth(problem), Drop, estimate);
-      },
-      [&](const Error& error) { return FailedEdge(problem, MotionNotSolvable(problem, error)); });
+  const auto failed = [&](const Error& error) { return FailedEdge(problem, MotionNotSolvable(problem, error)); };
+  if (problem.method == Method::kPoseStreams) return Guarded([&] { return estimate(problem); }, failed);
+  return EdgeOfChosen(problem, AllCaptures(problem), SeenByBoth(problem), Drop, estimate, failed);
 }
 
 }  // namespace rigcal::calib

@@ -86,23 +86,20 @@ double AskedSigma(const HandEyeWork& work, const std::vector<double>& asked) {
 // A board that is larger than given puts its camera farther away.
 void AddBoardSize(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
                   std::vector<GivenConstant>& constants) {
-  if (!side.board || !(side.board->square_sigma_m > 0)) return;
-  const double ratio = side.board->square_sigma_m / side.board->square_m;
-  constants.push_back({"size of board " + side.board->id.str(), [&work, poses, ratio](double steps) {
-                         MotionProblem moved = work.problem;
-                         for (SidePose& pose : (moved.*poses).poses) pose.T_world_sensor.p_m *= 1 + steps * ratio;
-                         return SolvedPose(moved, work.state);
-                       }});
+  const auto with_size = [&work, poses](double larger_ratio) {
+    MotionProblem moved = work.problem;
+    for (SidePose& pose : (moved.*poses).poses) pose.T_world_sensor.p_m *= 1 + larger_ratio;
+    return SolvedPose(moved, work.state);
+  };
+  if (side.board) AddBoardSize(*side.board, side.board->square_sigma_m / side.board->square_m, with_size, constants);
 }
-
-std::string IntrinsicsName(const HandEyeSide& side) { return "intrinsics of " + side.sensor.id.str(); }
 
 // A larger value given moves what pulls the shared parameter, 1/2 (s - value)^2 / sigma^2.
 void AddIntrinsics(const HandEyeWork& work, const HandEyeSide& side, MotionSide MotionProblem::*poses,
                    std::vector<GivenConstant>& constants) {
   for (const int i : RefinedOf(side.sensor)) {
     const double sigma = (*side.sensor.intrinsics_sigma)[static_cast<std::size_t>(i)];
-    constants.push_back({IntrinsicsName(side), [&work, poses, i, sigma](double steps) {
+    constants.push_back({IntrinsicsName(side.sensor.id), [&work, poses, i, sigma](double steps) {
                            MotionProblem moved = work.problem;
                            (moved.*poses).gradient[i] -= steps / sigma;
                            return SolvedPose(moved, work.state);
@@ -116,7 +113,7 @@ Eigen::MatrixXd CapturesPart(const HandEyeProblem& problem, const HandEyeWork& w
   const auto& free = work.problem.free;
   Eigen::MatrixXd part = work.fit.C_X;
   for (const Contribution& given : contributions)
-    if (given.name == IntrinsicsName(problem.a) || given.name == IntrinsicsName(problem.b))
+    if (given.name == IntrinsicsName(problem.a.sensor.id) || given.name == IntrinsicsName(problem.b.sensor.id))
       part -= free.transpose() * given.covariance * free;
   return Eigen::LLT<Eigen::MatrixXd>(part).info() == Eigen::Success ? part : work.fit.C_X;
 }

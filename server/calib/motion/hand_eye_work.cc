@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "server/calib/core/selection.h"
 
@@ -29,9 +28,8 @@ std::vector<PoseCandidate> CandidatesOf(const CameraMotion& camera, const Captur
 std::vector<PoseCandidate> CandidatesOf(const TimedPose& row) {
   PoseCandidate candidate;
   candidate.pose.T_world_sensor = row.T_world_body;
-  candidate.pose.covariance.setZero();
-  candidate.pose.covariance.diagonal().head<3>().setConstant(kTrackerSigma_m * kTrackerSigma_m);
-  candidate.pose.covariance.diagonal().tail<3>().setConstant(kTrackerSigma_rad * kTrackerSigma_rad);
+  candidate.pose.covariance =
+      EachAxis(kTrackerSigma_m * kTrackerSigma_m, kTrackerSigma_rad * kTrackerSigma_rad).asDiagonal();
   return {candidate};
 }
 
@@ -63,15 +61,12 @@ bool IsRepeat(const HandEyeSide& side, const CandidateMap& candidates, const Cap
     const BoardView *view_x = ViewOf(side, x), *view_y = ViewOf(side, y);
     return view_x && view_y && ShowSame(*view_x, *view_y, *side.board);
   }
-  const Vector6d xi =
-      (candidates.at(x)[0].pose.T_world_sensor.Inverse() * candidates.at(y)[0].pose.T_world_sensor).Log();
-  return xi.head<3>().norm() < kSamePose_m && xi.tail<3>().norm() < kSamePose_rad;
+  return AreNear(candidates.at(x)[0].pose.T_world_sensor, candidates.at(y)[0].pose.T_world_sensor, kSamePose_m,
+                 kSamePose_rad);
 }
 
 SidePose Scaled(SidePose pose, const SideFactor& factor) {
-  Vector6d scale;
-  scale << Eigen::Vector3d::Constant(std::sqrt(factor.translation)),
-      Eigen::Vector3d::Constant(std::sqrt(factor.rotation));
+  const Vector6d scale = EachAxis(std::sqrt(factor.translation), std::sqrt(factor.rotation));
   pose.covariance = scale.asDiagonal() * pose.covariance * scale.asDiagonal();
   return pose;
 }
@@ -87,22 +82,20 @@ void Widen(MotionSide& side) {
 
 OrDiagnosis<HandEyeWork> CollectMotion(const HandEyeProblem& problem) {
   HandEyeWork work;
-  const auto a = CandidatesOf(problem, problem.a, work.camera_a, work.unused);
-  if (!a) return tl::unexpected(a.error());
-  const auto b = CandidatesOf(problem, problem.b, work.camera_b, work.unused);
-  if (!b) return tl::unexpected(b.error());
+  RIGCAL_ASSIGN(const auto a, CandidatesOf(problem, problem.a, work.camera_a, work.unused));
+  RIGCAL_ASSIGN(const auto b, CandidatesOf(problem, problem.b, work.camera_b, work.unused));
   std::set<CaptureId> all;
-  for (const auto* side : {&*a, &*b})
+  for (const auto* side : {&a, &b})
     for (const auto& [capture, candidates] : *side) all.insert(capture);
   std::size_t repeated = 0;
   for (const CaptureId& capture : all) {
-    const auto of_a = a->find(capture), of_b = b->find(capture);
-    if (of_a == a->end() || of_b == b->end()) {
-      work.unused.emplace(capture, (of_a == a->end() ? problem.a : problem.b).sensor.id.str() + " has no pose");
+    const auto of_a = a.find(capture), of_b = b.find(capture);
+    if (of_a == a.end() || of_b == b.end()) {
+      work.unused.emplace(capture, (of_a == a.end() ? problem.a : problem.b).sensor.id.str() + " has no pose");
       continue;
     }
     const auto earlier = std::find_if(work.captures.begin(), work.captures.end(), [&](const CaptureId& other) {
-      return IsRepeat(problem.a, *a, other, capture) && IsRepeat(problem.b, *b, other, capture);
+      return IsRepeat(problem.a, a, other, capture) && IsRepeat(problem.b, b, other, capture);
     });
     if (earlier != work.captures.end()) {
       ++repeated;
@@ -136,12 +129,12 @@ void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, Moti
   problem.b.gradient = SharedVector::Zero(kStreamShared);
 }
 
-MotionNoise NoiseOf(const MotionProblem& problem) {
+MotionNoise NoiseOf(std::initializer_list<const MotionSide*> sides, const std::vector<char>& used) {
   Eigen::Vector2d variance = Eigen::Vector2d::Zero();
   double count = 0;
-  for (std::size_t k = 0; k < problem.used.size(); ++k) {
-    if (!problem.used[k]) continue;
-    for (const MotionSide* side : {&problem.a, &problem.b})
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (!used[k]) continue;
+    for (const MotionSide* side : sides)
       variance += Eigen::Vector2d(side->poses[k].covariance.topLeftCorner<3, 3>().trace() / 3,
                                   side->poses[k].covariance.bottomRightCorner<3, 3>().trace() / 3);
     count += 1;
@@ -246,7 +239,7 @@ void FindReach(const HandEyeProblem& problem, HandEyeWork& work) {
     if (work.problem.used[k]) used.push_back(work.state.T_world_a[k]);
   const MotionKind before = work.reach.kind;
   const bool first = work.reach.free.cols() == 0;
-  MotionNoise noise = NoiseOf(work.problem);
+  MotionNoise noise = NoiseOf({&work.problem.a, &work.problem.b}, work.problem.used);
   if (work.asked == Asked::kClockOffset) noise.noises = kStreamNoises;
   work.reach = ReachOf(used, work.state.X, noise);
   if (first || work.reach.kind != before)

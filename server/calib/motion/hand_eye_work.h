@@ -1,6 +1,7 @@
 // The numbers of a hand-eye problem as they shrink and improve, for hand_eye*.cc.
 #pragma once
 
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,9 +14,10 @@
 
 namespace rigcal::calib {
 
-constexpr std::size_t kHandEyeMin = 4;           // captures of both
+static_assert(RowOf(Method::kNonOverlapping).captures == RowOf(Method::kTrackerCamera).captures);
+constexpr std::size_t kHandEyeMin = RowOf(Method::kTrackerCamera).captures.least;  // captures of both
 constexpr std::size_t kHandEyeForJackknife = 5;  // fewer: the uncertainty is the model's
-constexpr std::size_t kHandEyeEnough = 10;       // fewer: a note says so
+constexpr std::size_t kHandEyeEnough = RowOf(Method::kTrackerCamera).captures.enough;  // fewer: a note says so
 
 constexpr int kStreamShared = 4;
 
@@ -49,7 +51,8 @@ struct HandEyeWork {
 void SetShared(const HandEyeWork& work, const std::set<CaptureId>& without, MotionProblem& problem);
 // Chooses, solves, finds the noise and what contradicts, until nothing changes. Poses that contradict are not used.
 [[nodiscard]] OrDiagnosis<void> FitMotion(const HandEyeProblem& problem, HandEyeWork& work);
-[[nodiscard]] MotionNoise NoiseOf(const MotionProblem& problem);
+// Of the poses used, one sigma per axis; of several sides together, all `used` long.
+[[nodiscard]] MotionNoise NoiseOf(std::initializer_list<const MotionSide*> sides, const std::vector<char>& used);
 // Zero where nothing is asked for.
 [[nodiscard]] double AskedOf(const HandEyeWork& work, const MotionState& state);
 

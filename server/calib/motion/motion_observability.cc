@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/core/wording.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -121,21 +123,25 @@ MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const Motio
   return reach;
 }
 
-MotionWords WordsOf(MotionKind kind, const std::string& axis, const std::string& tilt) {
-  switch (kind) {
+MotionWords WordsOf(const MotionReach& motion, const std::string& axis) {
+  const auto degrees = [](double angle_rad) { return Formatted("%.2f deg", angle_rad * 180 / M_PI); };
+  const std::string tilt =
+      Worded("to within {} (noise {})", {degrees(motion.tilt_rad), degrees(motion.tilt_noise_rad)});
+  switch (motion.kind) {
     case MotionKind::kOneAxis:
-      return {"planar_motion", "turned about one axis only, " + axis + ", " + tilt, 1};
+      return {"planar_motion", "turned about one axis only, " + axis + ", " + tilt, 1, kTurnMore};
     case MotionKind::kOnTheSpot:
-      return {"turning_on_the_spot", "turned about one fixed line only, along " + axis + ", " + tilt, 2};
+      return {"turning_on_the_spot", "turned about one fixed line only, along " + axis + ", " + tilt, 2,
+              std::string(kDriveElsewhere) + kTurnMore};
     case MotionKind::kNoRotation:
-      return {"pure_translation", "moved but not turned", 3};
+      return {"pure_translation", "moved but not turned", 3, kTurnMore};
     case MotionKind::kOneLine:
-      return {"straight_line", "moved along one line only, " + axis + ", and not turned", 4};
+      return {"straight_line", "moved along one line only, " + axis + ", and not turned", 4, kTurnMore};
     case MotionKind::kGeneral:
     case MotionKind::kStill:
       break;
   }
-  return {};
+  return {{}, {}, 0, kTurnMore};
 }
 
 }  // namespace rigcal::calib

@@ -40,12 +40,13 @@ struct MotionReach {
 [[nodiscard]] MotionReach ReachOf(const std::vector<Se3>& T_world_a, const Se3& X, const MotionNoise& noise);
 
 // Of a motion that leaves directions open by itself: "planar_motion", "turning_on_the_spot", "pure_translation" or
-// "straight_line"; after "was" or "were"; how many directions. Else no code. `axis`, `tilt`: in words.
+// "straight_line"; after "was" or "were"; how many directions; what tells them. Else no code. `axis`: in words.
 struct MotionWords {
   std::string code, moved;
   std::size_t open = 0;
+  std::string cure;
 };
 // A general motion has no code, and neither has one that stands still.
-[[nodiscard]] MotionWords WordsOf(MotionKind kind, const std::string& axis, const std::string& tilt);
+[[nodiscard]] MotionWords WordsOf(const MotionReach& motion, const std::string& axis);
 
 }  // namespace rigcal::calib

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/math/covariance.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -126,15 +128,8 @@ Reduced Reduce(const MotionProblem& problem, const MotionState& state, const Lay
   return reduced;
 }
 
-// Where nothing is known the scale is one, and the direction is left alone.
-GlobalVector ScaleOf(const GlobalMatrix& H) {
-  GlobalVector scale = H.diagonal().cwiseMax(0.0).cwiseSqrt();
-  for (Eigen::Index i = 0; i < scale.size(); ++i) scale[i] = scale[i] > 0 ? 1 / scale[i] : 1.0;
-  return scale;
-}
-
 GlobalVector StepOf(const Reduced& reduced, double damping) {
-  const GlobalVector scale = ScaleOf(reduced.H);
+  const GlobalVector scale = UnitDiagonal(reduced.H);
   const GlobalMatrix scaled = scale.asDiagonal() * reduced.H * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<GlobalMatrix> solver(0.5 * (scaled + scaled.transpose()));
   GlobalVector along = solver.eigenvectors().transpose() * (scale.asDiagonal() * reduced.g);
@@ -255,7 +250,7 @@ bool IsSplit(const MotionSide& side) {
 Result<MotionFit> FitOf(const MotionProblem& problem, const MotionState& state) {
   const Layout at(problem);
   const Reduced reduced = Reduce(problem, state, at);
-  const GlobalVector scale = ScaleOf(reduced.H);
+  const GlobalVector scale = UnitDiagonal(reduced.H);
   const GlobalMatrix scaled = scale.asDiagonal() * reduced.H * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<GlobalMatrix> solver(0.5 * (scaled + scaled.transpose()));
   if (!reduced.H.allFinite() || !(solver.eigenvalues().minCoeff() > kEigenvalueSmallest))

@@ -16,17 +16,10 @@ constexpr int kTurns = 8;
 
 Eigen::Vector3d RotationOf(const Se3& T) { return T.Log().tail<3>(); }
 
-// The proper rotation R that makes sum |u - R v|^2 least, from sum u v^T.
-Eigen::Matrix3d Procrustes(const Eigen::Matrix3d& sum) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-}
-
 // Adds R, and, where `sum` tells one direction only, the same turned about that direction.
 void AddRotations(const Eigen::Matrix3d& sum, std::vector<Eigen::Matrix3d>& rotations) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d R = Procrustes(sum);
+  const Eigen::Matrix3d R = NearestRotation(sum);
   rotations.push_back(R);
   if (svd.singularValues()[1] > kOneAxisRatio * svd.singularValues()[0]) return;
   for (int turn = 1; turn < kTurns; ++turn)
@@ -79,9 +72,9 @@ ClosedForm ClosedFormOf(const std::vector<Se3>& a, const std::vector<Se3>& b) {
       const Eigen::Vector3d u = RotationOf(a[i].Inverse() * a[j]), v = RotationOf(b[i].Inverse() * b[j]);
       if (u.norm() < kNearlyHalfTurn_rad && v.norm() < kNearlyHalfTurn_rad) rotations += u * v.transpose();
     }
-  const Eigen::Matrix3d R_X = Procrustes(rotations);
+  const Eigen::Matrix3d R_X = NearestRotation(rotations);
   for (std::size_t i = 0; i < a.size(); ++i) means += a[i].R() * R_X * b[i].R().transpose();
-  const Eigen::Matrix3d R_Z = Procrustes(means);
+  const Eigen::Matrix3d R_Z = NearestRotation(means);
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -62,8 +62,7 @@ Matrix6d InformationOf(const StaticProblem& problem, const StaticState& state, s
 
 // One sigma of what is still open of a body's pose once its sightings have corrected it, in six independent ways.
 Matrix6d PoseNoise(const StaticNormal::Body& body) {
-  Vector6d least;
-  least << Eigen::Vector3d::Constant(kNoNoise_m * kNoNoise_m), Eigen::Vector3d::Constant(kNoNoise_rad * kNoNoise_rad);
+  const Vector6d least = EachAxis(kNoNoise_m * kNoNoise_m, kNoNoise_rad * kNoNoise_rad);
   return (Symmetrized(body.inverse) + Matrix6d(least.asDiagonal())).llt().matrixL();
 }
 
@@ -84,10 +83,6 @@ Matrix6d OfNoise(const StaticProblem& problem, const StaticState& state, const S
   return noise;
 }
 
-Vector6d ScaleOf(const Matrix6d& H) {
-  return H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
-}
-
 }  // namespace
 
 PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state) {
@@ -96,7 +91,7 @@ PlaneReach ReachOf(const StaticProblem& problem, const StaticState& state) {
   const StaticNormal normal = NormalOf(whole, state);
   const OfLidar of = EliminatePlanes(normal);
   const Matrix6d noise = OfNoise(whole, state, normal, of.planes_follow), both = of.information + noise;
-  const Vector6d scale = ScaleOf(both);
+  const Vector6d scale = UnitDiagonal(both);
   const Matrix6d scaled_both = scale.asDiagonal() * both * scale.asDiagonal();
   const Matrix6d scaled_noise = scale.asDiagonal() * noise * scale.asDiagonal();
   // Shares of noise in what the poses seem to tell, 0 to 1, the most doubtful direction last.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/math/covariance.h"
+
 namespace rigcal::calib {
 namespace {
 
@@ -89,17 +91,13 @@ void AddCapture(const StaticProblem& problem, const StaticState& state, std::siz
   normal.bodies.push_back(std::move(body));
 }
 
-Eigen::VectorXd ScaleOf(const Eigen::MatrixXd& H) {
-  return H.diagonal().unaryExpr([](double h) { return h > 0 ? 1 / std::sqrt(h) : 1.0; });
-}
-
 Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ScaledAxes(const Eigen::MatrixXd& H, const Eigen::VectorXd& scale) {
   const Eigen::MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (scaled + scaled.transpose()));
 }
 
 Eigen::VectorXd StepOf(const StaticNormal& normal) {
-  const Eigen::VectorXd scale = ScaleOf(normal.H);
+  const Eigen::VectorXd scale = UnitDiagonal(normal.H);
   const auto axes = ScaledAxes(normal.H, scale);
   Eigen::VectorXd along = axes.eigenvectors().transpose() * (scale.asDiagonal() * normal.gradient);
   for (Eigen::Index i = 0; i < along.size(); ++i)
@@ -191,7 +189,7 @@ Result<StaticSolution> SolveStatic(const StaticProblem& problem, const StaticSta
 
 Result<StaticFit> FitOf(const StaticProblem& problem, const StaticState& state) {
   const StaticNormal normal = NormalOf(problem, state);
-  const Eigen::VectorXd scale = ScaleOf(normal.H);
+  const Eigen::VectorXd scale = UnitDiagonal(normal.H);
   const auto axes = ScaledAxes(normal.H, scale);
   if (!normal.H.allFinite() || !(axes.eigenvalues().minCoeff() > kEigenvalueSmallest))
     return Fail(ErrorCode::kInvalidInput, "the boards and the motion leave a direction open",

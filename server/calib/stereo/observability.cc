@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "server/calib/camera/camera_diagnoses.h"
-#include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/given_intrinsics.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/diagnoses.h"
@@ -31,24 +30,11 @@ double LargestAngle_deg(const std::vector<Se3>& boards) {
   return std::acos(std::clamp(smallest_cosine, -1.0, 1.0)) * 180 / M_PI;
 }
 
-// Captures whose picture, where it was decoded, is not as large as the camera's first.
-std::vector<CaptureId> ResizedIn(const StereoProblem& problem, View StereoCapture::*camera) {
-  std::vector<CaptureId> resized;
-  const BoardView* first = nullptr;
-  for (const StereoCapture& capture : problem.captures) {
-    const View& view = capture.*camera;
-    if (!view || view->image_width_px == 0) continue;
-    if (first == nullptr) first = &*view;
-    if (view->image_width_px != first->image_width_px || view->image_height_px != first->image_height_px)
-      resized.push_back(capture.capture);
-  }
-  return resized;
-}
-
 std::vector<Diagnosis> CheckSizes(const StereoProblem& problem) {
   std::vector<Diagnosis> diagnoses;
+  const auto decoded = [](const BoardView& view) { return view.image_width_px != 0; };
   for (const auto camera : {&StereoCapture::a, &StereoCapture::b})
-    if (const auto resized = ResizedIn(problem, camera); !resized.empty())
+    if (const auto resized = Resized(CameraOf(problem, camera), decoded); !resized.empty())
       diagnoses.push_back(ImageSizeChanged(SensorOf(problem, camera).id, resized));
   return diagnoses;
 }
@@ -63,10 +49,7 @@ std::vector<Diagnosis> ExplainTooFew(const StereoProblem& problem, const Selecti
     diagnoses.push_back(NoCommonView(problem));
   else
     diagnoses.push_back(TooFewCaptures(problem, both));
-  if (selection.repeated.empty()) return diagnoses;
-  std::vector<CaptureId> repeated;
-  for (const std::size_t idx : selection.repeated) repeated.push_back(problem.captures[idx].capture);
-  diagnoses.insert(diagnoses.begin(), IdenticalCaptures(problem, repeated));
+  if (!selection.repeated.empty()) diagnoses.insert(diagnoses.begin(), IdenticalCaptures(problem, selection.repeated));
   return diagnoses;
 }
 

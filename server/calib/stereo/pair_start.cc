@@ -65,6 +65,19 @@ std::vector<Hypotheses> Voters(const std::vector<PoseCandidates>& captures) {
   return SpreadOver(all, kVotersMax);
 }
 
+// The hypothesis with the least score of those that are `allowed`; null: none is.
+template <typename Allowed>
+const Se3* BestOf(const std::vector<Hypotheses>& voters, double distance_m, const Allowed& allowed) {
+  const Se3* best = nullptr;
+  double best_score = std::numeric_limits<double>::infinity();
+  for (const Hypotheses& voter : voters)
+    for (const Se3& T : voter) {
+      if (!allowed(T)) continue;
+      if (const double score = Score(T, voters, distance_m); score < best_score) best = &T, best_score = score;
+    }
+  return best;
+}
+
 // Median per tangent axis of what lies near T.
 Se3 MedianNear(const Se3& T, const std::vector<Hypotheses>& voters, double distance_m) {
   std::vector<Vector6d> near;
@@ -87,12 +100,7 @@ std::optional<Se3> ConsensusOf(const std::vector<PoseCandidates>& captures) {
   const std::vector<Hypotheses> voters = Voters(captures);
   if (voters.empty()) return std::nullopt;
   const double distance_m = MedianDistance_m(captures);
-  const Se3* best = nullptr;
-  double best_score = std::numeric_limits<double>::infinity();
-  for (const Hypotheses& voter : voters)
-    for (const Se3& T : voter)
-      if (const double score = Score(T, voters, distance_m); score < best_score) best = &T, best_score = score;
-  return MedianNear(*best, voters, distance_m).Normalized();
+  return MedianNear(*BestOf(voters, distance_m, [](const Se3&) { return true; }), voters, distance_m).Normalized();
 }
 
 std::vector<Se3> RivalsOf(const std::vector<PoseCandidates>& captures, const Se3& T_a_b, std::size_t count_max) {
@@ -100,16 +108,13 @@ std::vector<Se3> RivalsOf(const std::vector<PoseCandidates>& captures, const Se3
   const double distance_m = MedianDistance_m(captures);
   const double needed = kRivalRatio * static_cast<double>(Supporters(T_a_b, voters, distance_m));
   std::vector<Se3> all{T_a_b};
+  const auto is_rival = [&](const Se3& T) {
+    return std::all_of(all.begin(), all.end(),
+                       [&](const Se3& other) { return Disagreement(other, T, distance_m) >= 1.0; }) &&
+           static_cast<double>(Supporters(T, voters, distance_m)) >= needed;
+  };
   while (all.size() <= count_max) {
-    const Se3* best = nullptr;
-    double best_score = std::numeric_limits<double>::infinity();
-    for (const Hypotheses& voter : voters)
-      for (const Se3& T : voter) {
-        const bool far = std::all_of(all.begin(), all.end(),
-                                     [&](const Se3& other) { return Disagreement(other, T, distance_m) >= 1.0; });
-        if (!far || static_cast<double>(Supporters(T, voters, distance_m)) < needed) continue;
-        if (const double score = Score(T, voters, distance_m); score < best_score) best = &T, best_score = score;
-      }
+    const Se3* best = BestOf(voters, distance_m, is_rival);
     if (best == nullptr) break;
     all.push_back(MedianNear(*best, voters, distance_m).Normalized());
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
@@ -44,13 +43,14 @@ bool Better(const StereoProblem& problem, const Attempt& left, const Attempt& ri
   if (!left.status) return false;
   const std::size_t both_left = CountBoth(problem, left.work.used), both_right = CountBoth(problem, right.work.used);
   if (both_left != both_right) return both_left > both_right;
-  return left.work.SumOfSquares_px2() < right.work.SumOfSquares_px2();
+  return SumOfSquares_px2(left.work.joint, left.work.state) < SumOfSquares_px2(right.work.joint, right.work.state);
 }
 
 bool FitsEqually(const StereoProblem& problem, const Attempt& best, const Attempt& other) {
   if (!other.status || CountBoth(problem, other.work.used) != CountBoth(problem, best.work.used)) return false;
   const double variance_px2 = std::max(kVarianceMin_px2, best.work.Variance_px2());
-  return other.work.SumOfSquares_px2() - best.work.SumOfSquares_px2() < kAmbiguousTurnCost * variance_px2;
+  return SumOfSquares_px2(other.work.joint, other.work.state) - SumOfSquares_px2(best.work.joint, best.work.state) <
+         kAmbiguousTurnCost * variance_px2;
 }
 
 // Two attempts may end in the same minimum.
@@ -88,18 +88,16 @@ OrDiagnosis<Attempt> BestOf(const StereoProblem& problem, std::vector<Attempt> a
 }
 
 OrDiagnosis<StereoWork> SolvedFromScratch(const StereoProblem& problem, std::vector<Diagnosis>& notes) {
-  const auto start = ColdStart(problem);
-  if (!start) return tl::unexpected(start.error());
+  RIGCAL_ASSIGN(const auto start, ColdStart(problem));
   std::vector<Attempt> attempts;
-  for (const Se3& T_a_b : start->T_a_b) {
-    attempts.push_back({start->work, {}, {}});
+  for (const Se3& T_a_b : start.T_a_b) {
+    attempts.push_back({start.work, {}, {}});
     attempts.back().work.state.T_a_b = T_a_b;
-    attempts.back().status = Solve(problem, start->width_px, attempts.back());
+    attempts.back().status = Solve(problem, start.width_px, attempts.back());
   }
-  auto best = BestOf(problem, std::move(attempts), start->distance_m);
-  if (!best) return tl::unexpected(best.error());
-  notes.insert(notes.end(), best->notes.begin(), best->notes.end());
-  return std::move(best->work);
+  RIGCAL_ASSIGN(auto best, BestOf(problem, std::move(attempts), start.distance_m));
+  notes.insert(notes.end(), best.notes.begin(), best.notes.end());
+  return std::move(best.work);
 }
 
 OrDiagnosis<StereoWork> SolvedFrom(const StereoProblem& problem, const StereoEstimate& start) {
@@ -183,9 +181,8 @@ OrDiagnosis<StereoEstimate> EstimateOrDiagnose(const StereoProblem& problem, con
                                                std::vector<Diagnosis>* notes) {
   std::vector<Diagnosis> ignored;
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
-  const auto work = start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept);
-  if (!work) return tl::unexpected(work.error());
-  return Finished(problem, *work);
+  RIGCAL_ASSIGN(const auto work, start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept));
+  return Finished(problem, work);
 }
 
 Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start) {

@@ -101,9 +101,8 @@ std::vector<CaptureId> WorstOf(const StereoEstimate& estimate) {
 void AddNotes(const StereoProblem& problem, std::size_t both, std::vector<Diagnosis>& notes) {
   if (both < kCapturesEnough) notes.push_back(FewCaptures(problem, both));
   AddMissed(problem, notes);
-  std::vector<CaptureId> repeated;
-  for (const std::size_t idx : Select(problem).repeated) repeated.push_back(problem.captures[idx].capture);
-  if (!repeated.empty()) notes.push_back(IdenticalCaptures(problem, repeated));
+  if (const auto repeated = Select(problem).repeated; !repeated.empty())
+    notes.push_back(IdenticalCaptures(problem, repeated));
   for (const Sensor* camera : {&problem.camera_a, &problem.camera_b})
     if (camera->intrinsics && !camera->intrinsics_sigma) notes.push_back(IntrinsicsTakenAsExact(camera->id));
 }
@@ -197,12 +196,8 @@ Edge EstimateEdge(const StereoProblem& problem, std::vector<CameraFit>* fits) {
   const auto estimate = [&](const StereoProblem& chosen) {
     return ShowsOtherBoard(chosen) ? FailedEdge(chosen, {}) : Solved(chosen, fits);
   };
-  return Guarded(
-      [&] {
-        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>,
-                                estimate);
-      },
-      [&](const Error& error) { return FailedEdge(problem, {FromError(problem, "internal", error)}); });
+  const auto failed = [&](const Error& error) { return FailedEdge(problem, {FromError(problem, "internal", error)}); };
+  return EdgeOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<StereoProblem>, estimate, failed);
 }
 
 }  // namespace rigcal::calib

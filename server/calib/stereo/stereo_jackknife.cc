@@ -1,5 +1,3 @@
-#include <set>
-
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/selection.h"
@@ -38,17 +36,16 @@ Result<Se3> PoseOf(const StereoWork& solved) {
 void AddIntrinsics(const Sensor& camera, const std::vector<Vector6d>& shifts, const Se3& T_a_b,
                    std::vector<GivenConstant>& constants) {
   for (const Vector6d& shift : shifts)
-    constants.push_back({"intrinsics of " + camera.id.str(),
+    constants.push_back({IntrinsicsName(camera.id),
                          [&T_a_b, shift](double steps) { return Result<Se3>(T_a_b * Se3::Exp(steps * shift)); }});
 }
 
 std::vector<GivenConstant> ConstantsOf(const StereoProblem& problem, const StereoEstimate& estimate,
                                        const StereoWork& solved) {
   std::vector<GivenConstant> constants;
-  const double ratio = problem.board.square_sigma_m / problem.board.square_m;
-  if (ratio > 0)
-    constants.push_back({"size of board " + problem.board.id.str(),
-                         [&solved, ratio](double steps) { return PoseOf(WithSquare(solved, 1 + steps * ratio)); }});
+  AddBoardSize(
+      problem.board, problem.board.square_sigma_m / problem.board.square_m,
+      [&solved](double ratio) { return PoseOf(WithSquare(solved, 1 + ratio)); }, constants);
   AddIntrinsics(problem.camera_a, estimate.shifts_a, estimate.T_a_b, constants);
   AddIntrinsics(problem.camera_b, estimate.shifts_b, estimate.T_a_b, constants);
   return constants;

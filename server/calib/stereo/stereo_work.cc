@@ -97,12 +97,10 @@ OrDiagnosis<StereoStart> ColdStart(const StereoProblem& problem) {
   work.joint = JointOf(problem, work.used);
   const CameraViews views_a = ViewsOf(problem, work.used, &StereoCapture::a),
                     views_b = ViewsOf(problem, work.used, &StereoCapture::b);
-  const auto intrinsics_a = StartOf(problem, problem.camera_a, views_a);
-  if (!intrinsics_a) return tl::unexpected(intrinsics_a.error());
-  const auto intrinsics_b = StartOf(problem, problem.camera_b, views_b);
-  if (!intrinsics_b) return tl::unexpected(intrinsics_b.error());
-  work.state.intrinsics_a = *intrinsics_a;
-  work.state.intrinsics_b = *intrinsics_b;
+  RIGCAL_ASSIGN(const auto intrinsics_a, StartOf(problem, problem.camera_a, views_a));
+  RIGCAL_ASSIGN(const auto intrinsics_b, StartOf(problem, problem.camera_b, views_b));
+  work.state.intrinsics_a = intrinsics_a;
+  work.state.intrinsics_b = intrinsics_b;
   const std::vector<PoseCandidates> candidates = CandidatesOf(problem, work);
   const auto T_a_b = ConsensusOf(candidates);
   if (!T_a_b) return tl::unexpected(NoCommonView(problem));
@@ -145,16 +143,9 @@ void StereoWork::Drop(std::size_t position, const std::string& why) {
   EraseAt(position, used, turns_b, joint.captures, state.T_a_board);
 }
 
-double StereoWork::SumOfSquares_px2() const {
-  double ssr_px2 = 0;
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    const CaptureError error = ErrorOf(joint, state, k);
-    ssr_px2 += error.a_px2 + error.b_px2;
-  }
-  return ssr_px2;
+double StereoWork::Variance_px2() const {
+  return SumOfSquares_px2(joint, state) / (ResidualCount(joint) - ParameterCount(joint));
 }
-
-double StereoWork::Variance_px2() const { return SumOfSquares_px2() / (ResidualCount(joint) - ParameterCount(joint)); }
 
 std::vector<CaptureId> PlaceBoards(const StereoProblem& problem, double width_px, StereoWork& work) {
   work.state.T_a_board.resize(work.used.size());

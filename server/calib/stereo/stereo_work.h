@@ -22,9 +22,7 @@ struct StereoWork {
 
   // `position`: in `used`. The capture becomes an unused one, for this reason.
   void Drop(std::size_t position, const std::string& why);
-  // Of the corners' residuals in both cameras, at `state`.
-  [[nodiscard]] double SumOfSquares_px2() const;
-  // Of a corner's u or v: per degree of freedom.
+  // Of a corner's u or v at `state`: per degree of freedom.
   [[nodiscard]] double Variance_px2() const;
 };
 

@@ -134,27 +134,23 @@ std::set<CaptureId> SeenByBoth(const TrackerLidarProblem& problem) {
 }  // namespace
 
 OrDiagnosis<TrackerLidarResult> EstimateTrackerLidar(const TrackerLidarProblem& problem) {
-  auto work = CollectPatches(problem);
-  if (!work) return tl::unexpected(work.error());
-  if (auto fitted = FitPatches(problem, *work); !fitted) return tl::unexpected(fitted.error());
-  auto uncertainty = JackknifeTrackerLidar(problem, *work);
+  RIGCAL_ASSIGN(auto work, CollectPatches(problem));
+  if (auto fitted = FitPatches(problem, work); !fitted) return tl::unexpected(fitted.error());
+  auto uncertainty = JackknifeTrackerLidar(problem, work);
   if (!uncertainty) return tl::unexpected(TrackerLidarNotSolvable(problem, uncertainty.error()));
-  TrackerLidarResult result{EstimateOf(problem, *work), std::move(*uncertainty), {}};
+  TrackerLidarResult result{EstimateOf(problem, work), std::move(*uncertainty), {}};
   result.notes = OpenDirections(problem, result.estimate);
   std::vector<CaptureId> contradicting;
-  for (const std::size_t idx : work->contradicting) contradicting.push_back(problem.captures[idx].capture);
+  for (const std::size_t idx : work.contradicting) contradicting.push_back(problem.captures[idx].capture);
   std::sort(contradicting.begin(), contradicting.end());
   if (!contradicting.empty()) result.notes.push_back(PlacedContradict(problem, contradicting));
   return result;
 }
 
 Edge EstimateTrackerLidarEdge(const TrackerLidarProblem& problem) {
-  return Guarded(
-      [&] {
-        return EstimateOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<TrackerLidarProblem>,
-                                Solved);
-      },
-      [&](const Error& error) { return FailedEdge(problem, TrackerLidarNotSolvable(problem, error)); });
+  const auto failed = [&](const Error& error) { return FailedEdge(problem, TrackerLidarNotSolvable(problem, error)); };
+  return EdgeOfChosen(problem, CapturesOf(problem), SeenByBoth(problem), DropCaptures<TrackerLidarProblem>, Solved,
+                      failed);
 }
 
 }  // namespace rigcal::calib

@@ -33,11 +33,6 @@ std::string AxisText(const Eigen::Vector3d& axis) {
   return text + ")";
 }
 
-std::string AnglesText(const MotionReach& motion) {
-  const auto degrees = [](double angle_rad) { return Formatted("%.2f deg", angle_rad * 180 / M_PI); };
-  return Worded("to within {} (noise {})", {degrees(motion.tilt_rad), degrees(motion.tilt_noise_rad)});
-}
-
 // "(0, 0, 1) in its frame" or "(1, 0, 0) and (0, 1, 0) in its frame".
 std::string ListOf(const std::vector<Eigen::Vector3d>& axes) {
   std::string text;
@@ -120,16 +115,14 @@ std::vector<Diagnosis> OpenDirections(const TrackerLidarProblem& problem, const 
   const std::string body = problem.tracker.id.str();
   const std::string unknown =
       OpenText(problem.lidar.id.str(), body, AxesOf(estimate.reach, estimate.T_body_lidar)) + " is not known.";
-  const MotionReach& motion = estimate.motion;
-  const MotionWords words = WordsOf(motion.kind, AxisText(motion.axis_a), AnglesText(motion));
-  const std::string cure = (motion.kind == MotionKind::kOnTheSpot ? kDriveElsewhere : "") + std::string(kTurnMore);
+  const MotionWords words = WordsOf(estimate.motion, AxisText(estimate.motion.axis_a));
   if (!words.code.empty() && open <= words.open)
-    return {{words.code, Worded("{} was {}: {}", {body, words.moved, unknown}), cure}};
+    return {{words.code, Worded("{} was {}: {}", {body, words.moved, unknown}), words.cure}};
   return {{"few_planes",
            Worded("{}{}the {} that {} sees face too much one way for it: {}",
                   {body, words.code.empty() ? ": beside how it moved, " : " was " + words.moved + ", and ",
                    CountText(estimate.boards.size(), "board"), problem.lidar.id, unknown}),
-           "Put up boards that face different ways, two and more in view. " + cure}};
+           "Put up boards that face different ways, two and more in view. " + words.cure}};
 }
 
 std::vector<Diagnosis> MissedClouds(const TrackerLidarProblem& problem) {

@@ -1,9 +1,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <set>
 
 #include "server/calib/core/leave_one_out.h"
-#include "server/calib/core/range_constants.h"
 #include "server/calib/tracker_lidar/tracker_lidar_work.h"
 #include "server/math/covariance.h"
 

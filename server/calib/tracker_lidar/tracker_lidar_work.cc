@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/calib/core/range_constants.h"
+#include "server/calib/core/leave_one_out.h"
 #include "server/calib/core/robust.h"
 
 namespace rigcal::calib {
@@ -37,11 +37,6 @@ std::string WhyUseless(const TrackerLidarProblem& problem, const TrackerLidarCap
   if (capture.clouds.empty()) return beam + "no cloud";
   if (PatchesOf(capture).empty()) return beam + capture.clouds.front().why_not;
   return {};
-}
-
-bool IsSamePose(const Se3& T, const Se3& S) {
-  const Vector6d apart = (T.Inverse() * S).Log();
-  return apart.head<3>().norm() < kSamePose_m && apart.tail<3>().norm() < kSamePose_rad;
 }
 
 // Body poses in a world whose origin is among them: numbers stay small wherever the tracker's own is.
@@ -89,10 +84,9 @@ void TakeConsensus(const TrackerLidarProblem& problem, const PlaneConsensus& con
 }
 
 Matrix6d CovarianceOf(const TrackerLidarWork& work) {
-  Vector6d variances;
-  variances << Eigen::Vector3d::Constant(work.factor_translation * kTrackerSigma_m * kTrackerSigma_m),
-      Eigen::Vector3d::Constant(work.factor_rotation * kTrackerSigma_rad * kTrackerSigma_rad);
-  return variances.asDiagonal();
+  return EachAxis(work.factor_translation * kTrackerSigma_m * kTrackerSigma_m,
+                  work.factor_rotation * kTrackerSigma_rad * kTrackerSigma_rad)
+      .asDiagonal();
 }
 
 PlaneMoments WeighedMoments(const PlanePatch& patch, double range_sigma_m) {
@@ -273,7 +267,8 @@ OrDiagnosis<TrackerLidarWork> CollectPatches(const TrackerLidarProblem& problem)
     const TrackerLidarCapture& capture = problem.captures[idx];
     std::string why = WhyUseless(problem, capture);
     for (const std::size_t other : both)
-      if (why.empty() && IsSamePose(*problem.captures[other].T_world_body, *capture.T_world_body))
+      if (why.empty() &&
+          AreNear(*problem.captures[other].T_world_body, *capture.T_world_body, kSamePose_m, kSamePose_rad))
         why = "the body was where it was in " + problem.captures[other].capture.str();
     if (why.empty())
       both.push_back(idx);

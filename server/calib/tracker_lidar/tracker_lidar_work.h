@@ -7,12 +7,13 @@
 
 #include "server/calib/planes/plane_consensus.h"
 #include "server/calib/tracker_lidar/tracker_lidar.h"
+#include "server/model/method.h"
 
 namespace rigcal::calib {
 
-constexpr std::size_t kTrackerLidarMin = 4;           // captures of both
+constexpr std::size_t kTrackerLidarMin = RowOf(Method::kTrackerLidar).captures.least;  // captures of both
 constexpr std::size_t kTrackerLidarForJackknife = 5;  // fewer: the uncertainty is the model's
-constexpr std::size_t kTrackerLidarEnough = 10;       // fewer: a note says so
+constexpr std::size_t kTrackerLidarEnough = RowOf(Method::kTrackerLidar).captures.enough;  // fewer: a note says so
 
 // A patch that is a board: which of the capture's, and what it is.
 struct ChosenPatch {

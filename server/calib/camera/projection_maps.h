@@ -1,4 +1,4 @@
-// How uncertain a camera's projections are, for reports: the map that mrcal draws of a camera.
+// What reports draw over a camera's picture: how its lens differs between two revisions, how uncertain projections are.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,18 @@
 
 namespace rigcal::calib {
 
+// Of the far point with the ray v = pi^-1(b0, q) of a pixel q, with b0 the intrinsics before and b1 those now:
+//   shift(q) = pi(b1, R v) - q,   R = argmin sum_i w_i |pi(b1, R v_i) - q_i|^2.
+// The rotation R is the one between the two cameras that the intrinsics imply (of one and the same camera: where a
+// lens points is a matter of its pose); it is found over the middles of the fields, from the identity by Gauss and
+// Newton, with w = n0 n1 / (n0 + n1) of the corners n0 and n1 that the two saw there (all alike where they saw no field
+// both). Source: mrcal (Kogan), "Model differencing", for points at infinity.
+//
+// Nothing where one of both has no intrinsics, or the pictures are of different size.
+[[nodiscard]] std::optional<LensChange> ChangeOfLens(const CameraFit& before, const CameraFit& now);
+
+// How uncertain a camera's projections are: the map that mrcal draws of a camera.
+//
 // For the point p that the camera has at a pixel q, at a given distance from it, to first order in the error db of the
 // intrinsics b (covariance C = fit.covariance):
 //   q + dq = pi(b + db, Exp(K db) p),   dq = P db,   P = J_b + J_p [I, -[p]x] K,   Var(q) = P C P^T,
@@ -17,7 +29,7 @@ namespace rigcal::calib {
 // the intrinsics that a small motion of the camera makes good at all corners does not count, for whoever uses the lens
 // uses it with the pose that the same corners gave.
 // Source: mrcal (Kogan), "Projection uncertainty" and "Projection uncertainty: cross-reprojection"; its measure
-// "worstdirection-stdev". K: gathered_views.h.
+// "worstdirection-stdev". K: view_moments.h.
 //
 // Nothing where the fit has no covariance, or no picture size.
 [[nodiscard]] std::optional<ProjectionUncertainty> UncertaintyOfProjections(const CameraFit& fit);
