@@ -168,7 +168,7 @@ TEST(ExportJsonAndCsv, HaveEveryNumberAtItsPlace) {
   EXPECT_THAT(csv, HasSubstr("\nlidar,lidar,-1.5,0.75,0.125,0.0,0.0,1.0,0.0,0.002,"));
   std::istringstream lines(csv);
   for (std::string line; std::getline(lines, line);)
-    if (line.front() != '#') EXPECT_EQ(std::count(line.begin(), line.end(), ','), 22) << line;
+    EXPECT_TRUE(line.front() == '#' || std::count(line.begin(), line.end(), ',') == 22) << line;
 }
 
 TEST(ExportFormats, TheSuffixOrTheNameTellsWhich) {
