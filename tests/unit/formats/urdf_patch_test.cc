@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <sstream>
-
 #include "server/formats/rig_files/frames.h"
 #include "server/formats/rig_files/urdf_patch.h"
 #include "tests/unit/formats/export_sample.h"
