@@ -53,7 +53,7 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
-    AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion, AddPolicy,
+    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion, AddPolicy,
     AddApprove, AddReject,   AddRollback,         AddAgent,  AddAudit,
     AddModel,  AddFleet,     AddEpoch,   AddBoard};
 

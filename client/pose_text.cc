@@ -8,11 +8,10 @@
 #include <optional>
 
 #include "client/table.h"
+#include "server/math/roll_pitch_yaw.h"
 
 namespace rigcal::client {
 namespace {
-
-constexpr double kGimbalCos = 1e-9;
 
 std::optional<Eigen::Vector4d> QuaternionOf(const Document& list) {
   Eigen::Vector4d q_xyzw;
@@ -27,12 +26,7 @@ std::optional<Eigen::Vector4d> QuaternionOf(const Document& list) {
 
 }  // namespace
 
-Eigen::Vector3d RollPitchYaw(const Eigen::Matrix3d& R) {
-  const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
-  const double pitch = std::atan2(-R(2, 0), cos_pitch);
-  if (cos_pitch < kGimbalCos) return {0.0, pitch, std::atan2(-R(0, 1), R(1, 1))};
-  return {std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0))};
-}
+Eigen::Vector3d RollPitchYaw(const Eigen::Matrix3d& R) { return RollPitchYawOf(R); }
 
 Eigen::Vector3d RollPitchYaw(const Eigen::Vector4d& q_xyzw) {
   return RollPitchYaw(Eigen::Quaterniond(q_xyzw).normalized().toRotationMatrix());

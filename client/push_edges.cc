@@ -16,6 +16,7 @@
 #include "server/base/thread_rank.h"
 #include "server/formats/documents.h"
 #include "server/formats/g2o.h"
+#include "server/formats/rig_files/assumed_edges.h"
 #include "server/model/past.h"
 #include "server/model/unit_doubt.h"
 
@@ -29,10 +30,30 @@ struct PushEdgesOptions {
   std::optional<std::uint64_t> shuffle_seed;
   double give_up_s = 60.0;
   bool no_wait = false, new_robot = false;
+  std::string assumed_sigma;        // of a rig file: "MM,DEG"; empty: the file has edges
+  std::vector<std::string> frames;  // likewise: SENSOR or SENSOR=FRAME
 };
+
+// What a drawing or another tool says of where sensors are, as edges from the first of them.
+Result<EdgesToPush> ReadRig(const PushEdgesOptions& options, const RobotId& robot) {
+  RIGCAL_ASSIGN(const rig_files::AssumedSigma sigma, rig_files::ParseAssumedSigma(options.assumed_sigma));
+  RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, rig_files::kRigFileBytesMax));
+  RIGCAL_ASSIGN(const rig_files::RigFile file, rig_files::ReadRigFile(text, std::filesystem::path(options.file).filename().string()));
+  std::vector<rig_files::SensorFrame> sensors;
+  for (const std::string& frame : options.frames) {
+    RIGCAL_ASSIGN(rig_files::SensorFrame named, rig_files::ParseSensorFrame(frame));
+    sensors.push_back(std::move(named));
+  }
+  if (sensors.empty()) {
+    RIGCAL_ASSIGN(sensors, rig_files::AllFrames(file));
+  }
+  RIGCAL_ASSIGN(std::vector<Edge> edges, rig_files::AssumedEdges(file, robot, sensors, sigma));
+  return EdgesOf(robot, std::move(edges), options.shuffle_seed);
+}
 
 Result<EdgesToPush> ReadEdges(const PushEdgesOptions& options) {
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(options.robot));
+  if (!options.assumed_sigma.empty()) return ReadRig(options, robot);
   RIGCAL_ASSIGN(const std::string text, ReadFile(options.file, limits::kG2oFileBytesMax));
   if (std::filesystem::path(options.file).extension() == ".g2o") {
     RIGCAL_ASSIGN(formats::G2oFile file, formats::ReadG2o(text, robot));
@@ -136,6 +157,12 @@ void AddPushEdges(CLI::App& app, Context& context) {
   auto options = std::make_shared<PushEdgesOptions>();
   verb->add_option("FILE", options->file, "JSON (docs/edges-format.md), or a pose graph by the suffix .g2o")
       ->required();
+  CLI::Option* assumed = verb->add_option("--assumed-sigma", options->assumed_sigma,
+                                          "FILE is a URDF, tf2, Autoware or Kalibr file, and each pose of it is this sure, 1 sigma per axis");
+  assumed->type_name("MM,DEG");
+  verb->add_option("--frame", options->frames, "With it: a sensor, and the frame of FILE that is its; the first is what others are measured from")
+      ->needs(assumed)
+      ->type_name("SENSOR=FRAME");
   verb->add_option("--robot", options->robot, "The robot whose edges they are")->required()->type_name("ID");
   verb->add_flag("--new-robot", options->new_robot, kNewRobotHelp);
   verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
@@ -149,7 +176,8 @@ void AddPushEdges(CLI::App& app, Context& context) {
                "With --no-wait 0, once all is safe.\n"
                "Examples:\n"
                "  rigcal push-edges results.json --robot mapper-01\n"
-               "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n");
+               "  rigcal push-edges graph.g2o --robot bench-garage --no-wait\n"
+               "  rigcal push-edges robot.urdf --robot mapper-01 --assumed-sigma 5,0.5 --frame left --frame top=top_lidar_link\n");
   verb->callback([&context, options] {
     if (const Status done = RunPushEdges(context, *options); !done) context.exit_code = Report(done.error(), context);
   });

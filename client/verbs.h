@@ -47,6 +47,7 @@ void AddReport(CLI::App& app, Context& context);
 void AddDue(CLI::App& app, Context& context);
 void AddCompare(CLI::App& app, Context& context);
 void AddExport(CLI::App& app, Context& context);
+void AddDiff(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
 void AddCompletion(CLI::App& app, Context& context);                            // prints that script

@@ -132,23 +132,22 @@ void ReadIntrinsics(const JsonField& field, CameraFit& fit) {
 
 }  // namespace
 
-std::string WriteCameraFit(const CameraFit& fit) {
-  return WriteObject([&](JsonWriter& out) {
-    out.Text("camera", fit.camera.str());
-    out.Integer("format", 1);
-    out.Integer("height_px", fit.height_px);
-    WriteIntrinsics(out, fit);
-    out.List("views", [&] {
-      for (const ViewFit& view : fit.views) out.Object([&] { WriteView(out, view); });
-    });
-    out.Integer("width_px", fit.width_px);
+void WriteCameraFitMembers(JsonWriter& out, const CameraFit& fit) {
+  out.Text("camera", fit.camera.str());
+  out.Integer("format", 1);
+  out.Integer("height_px", fit.height_px);
+  WriteIntrinsics(out, fit);
+  out.List("views", [&] {
+    for (const ViewFit& view : fit.views) out.Object([&] { WriteView(out, view); });
   });
+  out.Integer("width_px", fit.width_px);
 }
 
-Result<CameraFit> ReadCameraFit(std::string_view text) {
-  RIGCAL_ASSIGN(JsonDocument document,
-                JsonDocument::Parse(text, {"camera fit", "Push the session again.", kCameraFitBytesMax}));
-  const JsonField root = document.Root();
+std::string WriteCameraFit(const CameraFit& fit) {
+  return WriteObject([&](JsonWriter& out) { WriteCameraFitMembers(out, fit); });
+}
+
+CameraFit ReadCameraFitMembers(const JsonField& root) {
   CameraFit fit;
   (void)root.At("format").Integer(1, 1);
   fit.camera = ReadId<SensorId>(root.At("camera"));
@@ -156,6 +155,13 @@ Result<CameraFit> ReadCameraFit(std::string_view text) {
   fit.height_px = static_cast<int>(root.At("height_px").Integer(0, kSizeMax_px));
   if (const auto intrinsics = root.Find("intrinsics")) ReadIntrinsics(*intrinsics, fit);
   for (const JsonField& view : root.At("views").Items(kViewsMax)) fit.views.push_back(ReadView(view));
+  return fit;
+}
+
+Result<CameraFit> ReadCameraFit(std::string_view text) {
+  RIGCAL_ASSIGN(JsonDocument document,
+                JsonDocument::Parse(text, {"camera fit", "Push the session again.", kCameraFitBytesMax}));
+  CameraFit fit = ReadCameraFitMembers(document.Root());
   RIGCAL_TRY(document.status());
   return fit;
 }

@@ -5,6 +5,8 @@
 #include <string_view>
 
 #include "server/base/result.h"
+#include "server/formats/json_field.h"
+#include "server/formats/json_writer.h"
 #include "server/model/camera_fit.h"
 
 namespace rigcal::formats {
@@ -16,5 +18,8 @@ inline constexpr std::size_t kCameraFitBytesMax = 64u << 20;
 // Places to a hundredth, residuals to a thousandth of a pixel.
 [[nodiscard]] std::string WriteCameraFit(const CameraFit& fit);
 [[nodiscard]] Result<CameraFit> ReadCameraFit(std::string_view text);  // bounded, validated
+// The same as members of an object that is written or read.
+void WriteCameraFitMembers(JsonWriter& out, const CameraFit& fit);
+[[nodiscard]] CameraFit ReadCameraFitMembers(const JsonField& root);
 
 }  // namespace rigcal::formats

@@ -24,6 +24,7 @@
 #include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/robot_summary.h"
+#include "server/pipeline/sensor_facts.h"
 #include "server/pipeline/summaries.h"
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
@@ -114,6 +115,14 @@ Result<std::string> Show(const AnswerContext& context, const Parameters& paramet
   RIGCAL_ASSIGN(const auto as_found, storage::LoadAsFound(context.store, {robot, revision.number}));
   RIGCAL_ASSIGN(const auto remarks, BoardRemarksOf(context, revision));
   return formats::WriteShow(revision, is_published, validity, now, approval, runs, as_found, remarks);
+}
+
+Result<std::string> Sensors(const AnswerContext& context, const Parameters& parameters) {
+  RIGCAL_ASSIGN(const RobotId robot, KnownRobot(context.store, parameters));
+  RIGCAL_ASSIGN(const std::int64_t number, parameters.IntegerOr("revision", 0));
+  RIGCAL_ASSIGN(const Revision revision, LoadRevisionOf(context.store, robot, number));
+  RIGCAL_ASSIGN(const auto facts, LoadSensorFacts(context.store, revision));
+  return formats::WriteSensorFacts(facts);
 }
 
 // Those of merged edges scatter as theirs do.
@@ -342,6 +351,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"edges", ListEdges},
       {"edge", OneEdge},
       {"show", Show},
+      {"sensors", Sensors},
       {"lookup", Lookup},
       {"revisions", ListRevisions},
       {"robot_names", TellRobotNames},

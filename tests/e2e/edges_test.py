@@ -53,7 +53,7 @@ def g2o_round_trip(flow):
         worst = max(abs(x - y) / max(abs(x), 1.0) for pair in sent for x, y in zip(sent[pair], came[pair]))
         check(worst <= 1e-12, "%s is off by %g" % (name, worst))
     flow.rigcal("export", "nobody", "--out", flow.folder / "none.g2o", exit_code=4)
-    flow.rigcal("export", "ring", "--out", flow.folder / "ring.urdf", exit_code=4)
+    flow.rigcal("export", "ring", "--out", flow.folder / "ring.drawing", exit_code=4)
 
 
 def many_of_one_pair(flow):

@@ -6,6 +6,18 @@ from flow import Flow, check, stereo_pairs
 from measures.sessions import picture_session
 
 
+def lenses_leave(flow):
+    """The intrinsics in the files of other programs are those that the server tells."""
+    told = json.loads(flow.get("/api/v1/sensors?robot=stereo"))["sensors"]
+    check([one["kind"] for one in told] == ["camera", "camera"] and all(one["camera"]["views"] == [] for one in told), "sensors: %r" % told)
+    folder = flow.folder / "camera_info"
+    flow.rigcal("export", "stereo", "--format", "camera_info", "--out", folder, "--even-if-not-approved")
+    for one in told:
+        fx_px, fy_px, cx_px, cy_px = one["camera"]["intrinsics"]["f_c_px"]
+        text = (folder / (one["id"] + ".yaml")).read_text()
+        check("data: [%r, 0.0, %r, 0.0, %r, %r, 0.0, 0.0, 1.0]" % (fx_px, cx_px, fy_px, cy_px) in text, "K of %s: %s" % (one["id"], text))
+
+
 def main():
     with Flow() as quiet, Flow() as flow:
         session = picture_session(quiet.folder / "session", "stereo", stereo_pairs(quiet.context))
@@ -22,6 +34,7 @@ def main():
         shown = json.loads(flow.rigcal("show", "stereo", "--json").stdout)
         check(shown["document"] == wanted["document"], "killed and undisturbed runs end in the same revision")
 
+        lenses_leave(flow)
         edge = shown["document"]["edges"][0]
         baseline_m = sum(value * value for value in edge["T_a_b"]["p_m"]) ** 0.5
         check(abs(baseline_m - 0.08318) < 0.0003, "baseline %.6f m" % baseline_m)

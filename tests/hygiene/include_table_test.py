@@ -12,7 +12,7 @@ POSIX = re.compile(r"(sys|linux/sched|net|netinet|arpa)/\w+\.h|(unistd|fcntl|sig
 LIBRARIES = [
     ("tl/expected.hpp", "expected"), ("Eigen/", "Eigen"), ("unsupported/Eigen/", "Eigen"), ("openssl/", "OpenSSL"),
     ("spdlog/", "spdlog"), ("fmt/", "spdlog"), ("tbb/", "TBB"), ("oneapi/tbb/", "TBB"), ("boost/math/", "Boost.Math"),
-    ("nlohmann/", "nlohmann-json"), ("yaml-cpp/", "yaml-cpp"), ("lzf.h", "LZF"), ("pcl/", "PCL"), ("SQLiteCpp/", "SQLiteCpp"),
+    ("nlohmann/", "nlohmann-json"), ("yaml-cpp/", "yaml-cpp"), ("lzf.h", "LZF"), ("pugixml.hpp", "XML"), ("pcl/", "PCL"), ("SQLiteCpp/", "SQLiteCpp"),
     ("sqlite3.h", "SQLite"), ("opencv2/", "OpenCV"), ("ceres/", "Ceres"), ("cholmod.h", "CHOLMOD"),
     ("ctemplate/", "ctemplate"), ("zip.h", "libzip"), ("cairo/", "cairo"), ("zstd.h", "zstd"), ("dds/", "Cyclone"), ("civetweb.h", "civetweb"), ("CLI/", "CLI11"),
 ]

@@ -1,7 +1,7 @@
 rigcal_test(client_text_test
   SOURCES unit/client_table_test.cc unit/client_progress_test.cc unit/client_document_test.cc
           unit/client_pose_text_test.cc unit/client_checks_test.cc unit/client_reply_parts_test.cc
-          unit/client_edge_table_test.cc unit/client_cause_list_test.cc unit/client_insight_table_test.cc unit/client_compare_test.cc
+          unit/client_edge_table_test.cc unit/client_cause_list_test.cc unit/client_insight_table_test.cc unit/client_compare_test.cc unit/client/may_leave_test.cc
   DEPS rigcal_client)
 rigcal_test(client_push_test
   SOURCES unit/client_push_engine_test.cc unit/client_push_property_test.cc unit/client_file_pieces_test.cc

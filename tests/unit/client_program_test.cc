@@ -34,7 +34,7 @@ Ran Rigcal(const std::string& arguments) {
 }
 
 const std::vector<std::string> kVerbs = {"push",  "push-edges", "robots", "sessions", "edges",  "show",  "history", "lookup", "status",
-                                         "watch", "report",     "due",    "compare",  "export", "doctor", "check",  "simulate",
+                                         "watch", "report",     "due",    "compare",  "export", "diff", "doctor", "check",  "simulate",
                                          "completion", "policy", "audit", "approve", "reject", "rollback", "agent",
                                          "model",      "fleet",  "epoch", "board"};
 
