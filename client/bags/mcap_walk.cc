@@ -69,7 +69,11 @@ std::optional<McapRecord> McapWalk::NextOfFile() {
   if (!head || end - offset < kRecordHeadBytes) {
     if (!head) damage_.Add(head.error());
     if (head && (chunk_ || !closed_) && offset < size) Lose(offset, "ends within a record");
-    if (chunk_ && head) at_ = end;
+    if (chunk_) {
+      at_ = end;
+      chunk_->trouble.reset();  // it is told
+      chunk_->crc = 0;
+    }
     over_ = over_ || !chunk_ || !head;
     return std::nullopt;
   }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 // The messages of one sensor by stamp, each stamp once.

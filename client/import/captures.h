@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // What one sensor took: a stamp for each of its messages, in the order of the bag.
 struct SensorStamps {

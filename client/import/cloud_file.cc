@@ -8,7 +8,7 @@
 
 #include "client/import/files.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 char TypeLetter(bags::Primitive type) {

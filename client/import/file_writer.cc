@@ -3,7 +3,7 @@
 #include "client/bags/cursor.h"
 #include "server/base/parallel_for.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 using bags::MessageKind;

@@ -9,7 +9,7 @@
 #include "client/import/files.h"
 #include "client/import/session_folder.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // One thread at a time. Holds pictures of kWaitingBytesMax at most.
 class FileWriter {

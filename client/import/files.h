@@ -8,7 +8,7 @@
 #include "client/bags/messages/image.h"
 #include "client/bags/messages/motion.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // The pixels of a picture, away from the message that they came in.
 struct Pixels {

@@ -8,7 +8,7 @@
 #include "client/import/yaml_out.h"
 #include "server/base/limits.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 std::string FolderOf(const std::string& topic) { return topic.substr(0, topic.rfind('/') == std::string::npos ? 0 : topic.rfind('/')); }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 constexpr int kLinksMax = 64;           // of a chain, which may be a ring

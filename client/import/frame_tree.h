@@ -8,7 +8,7 @@
 
 #include "client/bags/messages/motion.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 class FrameTree {
  public:

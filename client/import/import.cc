@@ -15,7 +15,7 @@
 #include "server/base/text.h"
 #include "server/formats/poses.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 constexpr std::int64_t kProgressEvery = 64;

@@ -12,7 +12,7 @@
 #include "client/import/intake.h"
 #include "server/base/result.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 struct ImportInput {
   std::filesystem::path bag, rig, out;

@@ -12,7 +12,7 @@
 #include "server/base/text.h"
 #include "server/formats/first_three.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 constexpr std::int64_t kProgressEvery = 256;

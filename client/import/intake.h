@@ -10,7 +10,7 @@
 #include "client/import/rig_map.h"
 #include "server/math/se3.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // Of one sensor. `stamps_ns`, `ordinals` and, of a tracker or pose stream, `poses` go together.
 struct SensorIntake {

@@ -5,7 +5,7 @@
 #include "client/import/files.h"
 #include "server/base/out_of_memory.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 // How OpenCV gets BGR from it; it names a Bayer pattern by the second row of it, read from the second column.

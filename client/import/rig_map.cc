@@ -9,7 +9,7 @@
 #include "server/base/text.h"
 #include "server/formats/session_folder.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 using formats::YamlField;

@@ -12,7 +12,7 @@
 #include "server/formats/yaml_field.h"
 #include "server/model/session.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 enum class StampSource { kHeader, kLog };  // the driver's stamp, or the time when the message was recorded
 

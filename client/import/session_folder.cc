@@ -5,7 +5,7 @@
 #include "server/base/sha256.h"
 #include "server/formats/json_writer.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 namespace fs = std::filesystem;

@@ -8,7 +8,7 @@
 
 #include "server/base/result.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 class SessionFolder {
  public:

@@ -6,7 +6,7 @@
 #include "client/bags/open_bag.h"
 #include "client/import/topic_tally.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 constexpr std::int64_t kProgressEvery = 256;  // messages

@@ -10,7 +10,7 @@
 
 #include "server/base/result.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // A spread of differences of times, in nanoseconds. The median is that of evenly taken samples where there are many.
 struct OffsetSpread {

@@ -8,7 +8,7 @@
 #include "client/bags/messages/motion.h"
 #include "server/base/text.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 using bags::MessageKind;

@@ -10,7 +10,7 @@
 #include "client/bags/messages/definition.h"
 #include "client/import/survey.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // Values as they come; of many, every second, fourth, ... is kept. The same values give the same samples.
 class Samples {

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
-namespace rigcal::import {
+namespace rigcal::importing {
 namespace {
 
 using formats::YamlNode;

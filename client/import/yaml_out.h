@@ -5,7 +5,7 @@
 
 #include "server/formats/yaml_field.h"
 
-namespace rigcal::import {
+namespace rigcal::importing {
 
 // A word as it stands where YAML takes it for text, else in double quotes.
 [[nodiscard]] std::string YamlWord(const std::string& text);
