@@ -118,12 +118,13 @@ class McapBag : public Bag {
 
   void Finish(bool data_ended) {
     over_ = true;
+    while (data_ended && walk_.Next()) {  // to see whether the file is whole
+    }
     const std::string& name = walk_.source().name();
     if (strays_ > 0)
       walk_.damage().Add({ErrorCode::kInvalidInput, name + ": " + std::to_string(strays_) + " messages are of no Channel that is there", kCure});
     if (!walk_.damage().empty()) return;
-    // The walk stops at DataEnd; without it the recorder did not come to close the file.
-    if (!data_ended)
+    if (!walk_.closed())
       walk_.damage().Add({ErrorCode::kInvalidInput,
                           name + " was not closed: it ends after " + std::to_string(given_) + " messages without the end mark", kCure});
     else if (statistics_ && statistics_->messages != given_)

@@ -60,7 +60,7 @@ class SqliteBag : public Bag {
         if (Take(message)) return true;
     } catch (const std::exception& failure) {
       damage_.Add({ErrorCode::kInvalidInput,
-                   name_ + ": after " + std::to_string(given_) + " messages the database cannot be read (" + failure.what() + ")", kCure});
+                   name_ + ": after " + std::to_string(given_) + " messages the database cannot be read: " + Quoted(failure.what()), kCure});
     }
     Finish();
     return false;
@@ -152,7 +152,7 @@ Result<std::unique_ptr<Bag>> OpenSqliteBag(const fs::path& file) {
     bag->Begin();
     return bag;
   } catch (const std::exception& failure) {
-    return Fail(ErrorCode::kInvalidInput, file.string() + " is no bag in a database: " + std::string(failure.what()),
+    return Fail(ErrorCode::kInvalidInput, file.string() + " is no bag in a database: " + Quoted(failure.what()),
                 "Give the path of a bag, or mend it with sqlite3's `.recover`.");
   }
 }

@@ -2,6 +2,7 @@
 
 #include "client/bags/cursor.h"
 #include "server/base/parallel_for.h"
+#include "server/base/text.h"
 
 namespace rigcal::importing {
 namespace {
@@ -45,7 +46,7 @@ Result<FileWriter::Fate> FileWriter::Take(const std::string& stem, const std::st
       return Fate{true, {}};
     }
     default:
-      return Fate{false, "messages of type " + type + " are neither pictures nor clouds"};
+      return Fate{false, "messages of type " + Quoted(type) + " are neither pictures nor clouds"};
   }
 }
 

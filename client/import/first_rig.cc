@@ -4,9 +4,11 @@
 #include <map>
 #include <set>
 
+#include "client/bags/messages/header.h"
 #include "client/import/rig_map.h"
 #include "client/import/yaml_out.h"
 #include "server/base/limits.h"
+#include "server/base/text.h"
 
 namespace rigcal::importing {
 namespace {
@@ -72,14 +74,14 @@ std::string FirstRigYaml(const BagSurvey& survey) {
   std::string text = kHead;
   for (const TopicSurvey& topic : survey.topics) {
     // "/left/image_raw/compressed" is the same picture as "/left/image_raw".
-    if (topic.sensor_kind.empty() || topic.count == 0 || raw.count(FolderOf(topic.name)) > 0) continue;
+    if (topic.sensor_kind.empty() || topic.count == 0 || !IsPrintableUtf8(topic.name) || raw.count(FolderOf(topic.name)) > 0) continue;
     const std::string name = SensorNameOf(topic.name);
     std::string unique = name;
     for (int i = 2; !taken.insert(unique).second; ++i) unique = name + "_" + std::to_string(i);
     text += SensorLines(topic, unique, lenses);
   }
   for (const TopicSurvey& topic : survey.topics)
-    if (topic.type.find("TFMessage") != std::string::npos || topic.type.find("tfMessage") != std::string::npos)
+    if (bags::KindOf(topic.type) == bags::MessageKind::kTransforms && IsPrintableUtf8(topic.name))
       text += "  # flange: {type: tracker, topic: " + YamlWord(topic.name) + ", frame: base_link, child_frame: tool0}   # " + topic.detail + "\n";
   return text;
 }

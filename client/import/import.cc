@@ -49,7 +49,9 @@ class Importer {
   // Stamps that stand still would make one capture of many.
   Status CheckStamps() const {
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
-      const std::set<std::int64_t> different(intake_.sensors[s].stamps_ns.begin(), intake_.sensors[s].stamps_ns.end());
+      std::vector<std::int64_t> different = intake_.sensors[s].stamps_ns;
+      std::sort(different.begin(), different.end());
+      different.erase(std::unique(different.begin(), different.end()), different.end());
       if (2 * different.size() >= intake_.sensors[s].stamps_ns.size()) continue;
       return Fail(ErrorCode::kInvalidInput,
                   "the headers of " + Quoted(map_.sensors[s].topic) + " have " + std::to_string(different.size()) + " different stamps in " +

@@ -127,13 +127,14 @@ class Taker {
 
 Status CheckTopics(const bags::Bag& bag, const RigMap& map) {
   std::set<std::string> there;
-  for (const auto& topic : bag.Topics()) there.insert(topic->name);
+  for (const auto& topic : bag.Topics())
+    if (IsPrintableUtf8(topic->name)) there.insert(topic->name);
   const std::vector<std::string> names(there.begin(), there.end());
   for (const MappedSensor& sensor : map.sensors) {
     if (there.count(sensor.topic) > 0) continue;
     const std::string near = Suggestion(NearestNames(sensor.topic, names));
     return Fail(ErrorCode::kInvalidInput, "the bag has no topic " + Quoted(sensor.topic) + ", which rig.yaml has for " + Quoted(sensor.id.str()) + near,
-                "It has " + (names.empty() ? "none" : formats::FirstThree(names.size(), [&](std::size_t i) { return names[i]; })) +
+                "It has " + (names.empty() ? "none" : formats::FirstThree(names.size(), [&](std::size_t i) { return Quoted(names[i]); })) +
                     "; `rigcal import BAG --list` shows them.");
   }
   return {};

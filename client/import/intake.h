@@ -32,6 +32,6 @@ using Progress = std::function<void(std::int64_t done, std::int64_t total)>;
 // kInvalidInput: more than kStampsMax messages of mapped sensors in all; a mapped topic that the bag does not have, with those that it has.
 [[nodiscard]] Result<Intake> TakeIn(const std::filesystem::path& bag, const RigMap& map, const Progress& progress);
 
-constexpr std::size_t kStampsMax = 5'000'000;
+constexpr std::size_t kStampsMax = 2'000'000;
 
 }  // namespace rigcal::import

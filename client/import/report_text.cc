@@ -33,23 +33,23 @@ void PrintTable(const BagSurvey& survey, std::ostream& out) {
 
 void PrintClock(const TopicSurvey& topic, std::ostream& out) {
   if (topic.count > 0 && topic.unset_stamps > 0)
-    out << topic.name << ": " << topic.unset_stamps << " of " << topic.count << " headers have no time. `stamp: log` in rig.yaml takes the recorder's.\n";
+    out << client::Plain(topic.name) << ": " << topic.unset_stamps << " of " << topic.count << " headers have no time. `stamp: log` in rig.yaml takes the recorder's.\n";
   else if (topic.stamp_offset && std::abs(static_cast<double>(topic.stamp_offset->median_ns)) > static_cast<double>(kOffsetTold_ns))
-    out << topic.name << ": its stamps are " << SecondsText(topic.stamp_offset->median_ns) << " s off the recorder's clock (" <<
+    out << client::Plain(topic.name) << ": its stamps are " << SecondsText(topic.stamp_offset->median_ns) << " s off the recorder's clock (" <<
         SecondsText(topic.stamp_offset->min_ns) << " to " << SecondsText(topic.stamp_offset->max_ns) << "). Sensors on different clocks make no captures.\n";
   if (topic.backward_stamps > topic.unset_stamps)
-    out << topic.name << ": " << topic.backward_stamps << " stamps are not later than the one before.\n";
+    out << client::Plain(topic.name) << ": " << topic.backward_stamps << " stamps are not later than the one before.\n";
 }
 
 void PrintGap(const TopicSurvey& topic, std::ostream& out) {
   if (!topic.rate_hz || topic.count < 5 || static_cast<double>(topic.longest_gap_ns) * 1e-9 * *topic.rate_hz < kGapsTold) return;
-  out << topic.name << ": nothing for " << SecondsText(topic.longest_gap_ns) << " s after " << SecondsText(topic.gap_at_ns) << " s of the recorder's clock.\n";
+  out << client::Plain(topic.name) << ": nothing for " << SecondsText(topic.longest_gap_ns) << " s after " << SecondsText(topic.gap_at_ns) << " s of the recorder's clock.\n";
 }
 
 std::string CountText(std::size_t count, const std::string& what) { return count == 0 ? "" : ", " + std::to_string(count) + " " + what; }
 
 void PrintSensor(const SensorOutcome& sensor, std::ostream& out) {
-  out << sensor.id << ": " << sensor.written << " of " << sensor.messages << " messages of " << sensor.topic << " written"
+  out << sensor.id << ": " << sensor.written << " of " << sensor.messages << " messages of " << client::Plain(sensor.topic) << " written"
       << CountText(sensor.use.without_partner, "without a partner within the tolerance") << CountText(sensor.use.thinned_out, "too soon after another capture")
       << CountText(sensor.use.repeated_stamp + static_cast<std::size_t>(sensor.repeated_stamps), "with the stamp of another one")
       << CountText(static_cast<std::size_t>(sensor.refused), "refused") << ".\n";

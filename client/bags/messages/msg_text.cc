@@ -122,7 +122,7 @@ Status ReadMsgText(std::string_view text, const std::string& name, Types& types)
       continue;
     }
     auto field = ReadField(line);
-    if (!field) return Fail(field.error().code, type->name + ": " + field.error().what, field.error().cure);
+    if (!field) return Fail(field.error().code, Quoted(type->name) + ": " + field.error().what, field.error().cure);
     if (*field) type->fields.push_back(*std::move(*field));
     if (++fields > limits::kFieldsMax) return Bad("more than " + std::to_string(limits::kFieldsMax) + " lines");
     if (types.size() > limits::kTypesMax) return Bad("more than " + std::to_string(limits::kTypesMax) + " types");
