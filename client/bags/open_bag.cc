@@ -14,6 +14,7 @@
 #include "client/bags/temporary_file.h"
 #include "client/bags/unpack.h"
 #include "server/base/text.h"
+#include "server/formats/first_three.h"
 
 namespace rigcal::bags {
 namespace {
@@ -93,6 +94,10 @@ class PartsBag : public Bag {
   [[nodiscard]] Damage Unread() const override {
     Damage all = damage_;
     if (part_.bag) all.Add(part_.bag->Unread());
+    if (!otherwise_.empty())
+      all.Add({ErrorCode::kInvalidInput,
+               "metadata.yaml has other encodings than the files: " + formats::FirstThree(otherwise_.size(), [&](std::size_t i) { return otherwise_[i]; }),
+               "The bag is read as its files say; mend metadata.yaml if that is right."});
     return all;
   }
   [[nodiscard]] std::int64_t bytes_done() const override { return bytes_done_ + (part_.bag ? part_.bag->bytes_done() : 0); }
@@ -122,10 +127,7 @@ class PartsBag : public Bag {
     if (same) return same;
     const auto stated = parts_.encodings.find(topic->name);
     if (stated != parts_.encodings.end() && stated->second != topic->encoding)
-      damage_.Add({ErrorCode::kInvalidInput,
-                   "metadata.yaml says that " + Quoted(topic->name) + " is encoded as " + Quoted(stated->second) + ", its file says " +
-                       Quoted(topic->encoding),
-                   "It is read as its file says; mend metadata.yaml if that is right."});
+      otherwise_.push_back(Quoted(topic->name) + " as " + Quoted(stated->second));
     known_.push_back(topic);
     return same = topic;
   }
@@ -158,6 +160,7 @@ class PartsBag : public Bag {
   std::int64_t bytes_total_, bytes_done_ = 0, packed_strays_ = 0;
   std::vector<std::shared_ptr<const Topic>> known_;
   std::map<const Topic*, std::shared_ptr<const Topic>> same_;  // of the open part
+  std::vector<std::string> otherwise_;  // topics that metadata.yaml describes otherwise
   std::vector<std::byte> unpacked_;
   Damage damage_;
 };

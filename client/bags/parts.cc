@@ -1,11 +1,13 @@
 #include "client/bags/parts.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <cctype>
 
 #include "client/bags/limits.h"
 #include "server/base/durable_file.h"
-#include "server/formats/yaml_field.h"
+#include "server/base/text.h"
 
 namespace rigcal::bags {
 namespace {
@@ -54,20 +56,36 @@ Result<std::vector<fs::path>> PartsInFolder(const fs::path& folder) {
   return files;
 }
 
-// Old versions wrote paths that begin with the bag's own name, so only the last part of each counts.
+// Text of a member, empty where there is none.
+std::string TextOf(const YAML::Node& map, const char* key) {
+  const YAML::Node member = map.IsMap() ? map[key] : YAML::Node();
+  return member && member.IsScalar() ? member.Scalar() : "";
+}
+
+// Old versions wrote paths that begin with the bag's own name, so only the last part of each counts. Throws what yaml-cpp throws.
+void ReadInfo(const YAML::Node& info, const fs::path& folder, Parts& parts) {
+  for (const YAML::Node& path : info["relative_file_paths"])
+    if (parts.files.size() < limits::kPartsMax && path.IsScalar() && !path.Scalar().empty())
+      parts.files.push_back(folder / fs::path(path.Scalar()).filename());
+  for (const YAML::Node& entry : info["topics_with_message_count"]) {
+    const YAML::Node topic = entry.IsMap() ? entry["topic_metadata"] : YAML::Node();
+    const std::string name = topic ? TextOf(topic, "name") : "", encoding = topic ? TextOf(topic, "serialization_format") : "";
+    if (!name.empty() && !encoding.empty() && parts.encodings.size() < limits::kTopicsMax) parts.encodings[name] = encoding;
+  }
+}
+
+// Its texts of QoS have line breaks, which our own YAML does not take.
 Status ReadMetadata(const fs::path& folder, Parts& parts) {
   RIGCAL_ASSIGN(const std::string text, ReadFile(folder / kMetadata, limits::kMetadataBytesMax));
-  RIGCAL_ASSIGN(const auto tree, formats::ParseYaml(text, (folder / kMetadata).string(), kMetadataCure, limits::kMetadataBytesMax));
-  const formats::YamlField info = formats::YamlField(*tree).At("rosbag2_bagfile_information");
-  for (const formats::YamlField& path : info.At("relative_file_paths").Items())
-    if (parts.files.size() < limits::kPartsMax) parts.files.push_back(folder / fs::path(path.Text()).filename());
-  if (const auto topics = info.Find("topics_with_message_count"); topics && !tree->error)
-    for (const formats::YamlField& entry : topics->Items()) {
-      const formats::YamlField topic = entry.At("topic_metadata");
-      parts.encodings[topic.At("name").Text()] = topic.At("serialization_format").Text();
-    }
-  if (tree->error) return Fail(*tree->error);
-  return {};
+  const std::string name = (folder / kMetadata).string();
+  try {
+    const YAML::Node info = YAML::Load(text)["rosbag2_bagfile_information"];
+    if (info && info.IsMap()) ReadInfo(info, folder, parts);
+  } catch (const std::exception& failure) {
+    return Fail(ErrorCode::kInvalidInput, name + " cannot be read: " + Quoted(failure.what()), kMetadataCure);
+  }
+  if (!parts.files.empty()) return {};
+  return Fail(ErrorCode::kInvalidInput, name + " names no file of the bag", kMetadataCure);
 }
 
 }  // namespace
@@ -84,10 +102,9 @@ Result<Parts> PartsOf(const fs::path& bag) {
     return parts;
   }
   const Status read = ReadMetadata(bag, parts);
-  if (!read) parts.doubts.push_back(read.error());
-  if (!read || parts.files.empty()) {
-    RIGCAL_ASSIGN(parts.files, PartsInFolder(bag));
-  }
+  if (read) return parts;
+  RIGCAL_ASSIGN(parts.files, PartsInFolder(bag));
+  parts.doubts.push_back(read.error());
   return parts;
 }
 

@@ -43,7 +43,7 @@ void PrintClock(const TopicSurvey& topic, std::ostream& out) {
 
 void PrintGap(const TopicSurvey& topic, std::ostream& out) {
   if (!topic.rate_hz || topic.count < 5 || static_cast<double>(topic.longest_gap_ns) * 1e-9 * *topic.rate_hz < kGapsTold) return;
-  out << client::Plain(topic.name) << ": nothing for " << SecondsText(topic.longest_gap_ns) << " s after " << SecondsText(topic.gap_at_ns) << " s of the recorder's clock.\n";
+  out << client::Plain(topic.name) << ": nothing for " << SecondsText(topic.longest_gap_ns) << " s from " << ToIso(Stamp{topic.gap_at_ns}) << " on.\n";
 }
 
 std::string CountText(std::size_t count, const std::string& what) { return count == 0 ? "" : ", " + std::to_string(count) + " " + what; }
@@ -64,8 +64,8 @@ void PrintSurvey(const BagSurvey& survey, std::ostream& out) {
   if (survey.messages > 0) out << ", from " << ToIso(Stamp{survey.first_ns}) << " on, " << SecondsText(survey.last_ns - survey.first_ns) << " s";
   out << ".\n";
   for (const TopicSurvey& topic : survey.topics) {
-    PrintClock(topic, out);
-    PrintGap(topic, out);
+    if (!topic.sensor_kind.empty()) PrintClock(topic, out);
+    if (!topic.sensor_kind.empty()) PrintGap(topic, out);
     if (!topic.trouble.empty()) out << "Not decoded: " << client::Plain(topic.trouble) << '\n';
   }
 }

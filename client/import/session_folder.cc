@@ -1,5 +1,7 @@
 #include "client/import/session_folder.h"
 
+#include <vector>
+
 #include "client/bags/parts.h"
 #include "server/base/durable_file.h"
 #include "server/base/sha256.h"
@@ -21,6 +23,15 @@ Status MakeFolder(const fs::path& folder) {
   return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")", "Check the path and its permissions.");
 }
 
+// What a run that was ended amid a file left beside it.
+void RemoveUnfinished(const fs::path& folder) {
+  std::vector<fs::path> unfinished;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (at->path().filename().string().find(".tmp-") != std::string::npos) unfinished.push_back(at->path());
+  for (const fs::path& file : unfinished) fs::remove(file, failed);
+}
+
 }  // namespace
 
 Result<SessionFolder> SessionFolder::Begin(const fs::path& folder, const std::string& identity) {
@@ -33,7 +44,10 @@ Result<SessionFolder> SessionFolder::Begin(const fs::path& folder, const std::st
     return SessionFolder(folder);
   }
   RIGCAL_ASSIGN(const std::string before, ReadFile(folder / kRecord, kRecordBytesMax));
-  if (before == identity) return SessionFolder(folder);
+  if (before == identity) {
+    RemoveUnfinished(folder);
+    return SessionFolder(folder);
+  }
   return Fail(ErrorCode::kConflict, folder.string() + " holds the import of another bag, or of this one with another rig.yaml or other options",
               "Give the path of a new folder, or remove that one.");
 }

@@ -155,7 +155,7 @@ void TopicTally::AddStamp(std::int64_t stamp_ns, std::int64_t log_ns) {
   found_.backward_stamps += stamp_ns <= last_stamp_ns_ ? 1 : 0;
   last_stamp_ns_ = std::max(last_stamp_ns_, stamp_ns);
   std::int64_t offset_ns = 0;
-  if (!__builtin_sub_overflow(stamp_ns, log_ns, &offset_ns)) offsets_.Add(offset_ns);
+  if (stamp_ns != 0 && !__builtin_sub_overflow(stamp_ns, log_ns, &offset_ns)) offsets_.Add(offset_ns);
 }
 
 TopicSurvey TopicTally::Found() const {
