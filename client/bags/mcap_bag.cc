@@ -68,7 +68,8 @@ class McapBag : public Bag {
     if (schemas_.size() >= limits::kTopicsMax || schema_bytes_ > limits::kDefinitionsBytesMax)
       return Lose(record, "more than " + std::to_string(limits::kTopicsMax) + " Schemas, or " +
                               std::to_string(limits::kDefinitionsBytesMax) + " bytes of them");
-    schemas_[schema->id] = {std::string(schema->name), std::string(schema->encoding), std::string(TextOf(schema->data))};
+    schemas_[schema->id] = {std::string(schema->name), std::string(schema->encoding),
+                            std::string(TextOf(schema->data))};
     return false;
   }
 
@@ -86,10 +87,11 @@ class McapBag : public Bag {
       Lose(record, "the Channel of " + Quoted(channel->topic) + " refers to a Schema that did not come");
     if (schema != schemas_.end()) {
       topic.type = schema->second.name;
-      topic.schema_encoding = schema->second.text.empty() ? "" : schema->second.encoding;
+      topic.schema_encoding = schema->second.encoding;
       topic.schema = schema->second.text;
     }
-    if (topic.encoding == "ros1" && topic.schema_encoding.empty() && !topic.schema.empty()) topic.schema_encoding = kRos1Schema;
+    if (topic.encoding == "ros1" && topic.schema_encoding.empty() && !topic.schema.empty())
+      topic.schema_encoding = kRos1Schema;
     channels_[channel->id] = std::make_shared<const Topic>(std::move(topic));
     return false;
   }
@@ -105,7 +107,8 @@ class McapBag : public Bag {
     constexpr auto kLatest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
     if (read->log_ns > kLatest || read->publish_ns > kLatest)
       return Lose(record, "a Message of " + Quoted(channel->second->name) + " with a time beyond the year 2262");
-    message = {channel->second, static_cast<std::int64_t>(read->log_ns), static_cast<std::int64_t>(read->publish_ns), read->data};
+    message = {channel->second, static_cast<std::int64_t>(read->log_ns), static_cast<std::int64_t>(read->publish_ns),
+               read->data};
     ++given_;
     return true;
   }
@@ -122,15 +125,18 @@ class McapBag : public Bag {
     }
     const std::string& name = walk_.source().name();
     if (strays_ > 0)
-      walk_.damage().Add({ErrorCode::kInvalidInput, name + ": " + std::to_string(strays_) + " messages are of no Channel that is there", kCure});
+      walk_.damage().Add({ErrorCode::kInvalidInput,
+                          name + ": " + std::to_string(strays_) + " messages are of no Channel that is there", kCure});
     if (!walk_.damage().empty()) return;
     if (!walk_.closed())
-      walk_.damage().Add({ErrorCode::kInvalidInput,
-                          name + " was not closed: it ends after " + std::to_string(given_) + " messages without the end mark", kCure});
+      walk_.damage().Add(
+          {ErrorCode::kInvalidInput,
+           name + " was not closed: it ends after " + std::to_string(given_) + " messages without the end mark",
+           kCure});
     else if (statistics_ && statistics_->messages != given_)
       walk_.damage().Add({ErrorCode::kInvalidInput,
-                          name + ": its summary counts " + std::to_string(statistics_->messages) + " messages, " + std::to_string(given_) +
-                              " are there",
+                          name + ": its summary counts " + std::to_string(statistics_->messages) + " messages, " +
+                              std::to_string(given_) + " are there",
                           kCure});
   }
 

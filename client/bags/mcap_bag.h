@@ -8,8 +8,8 @@
 
 namespace rigcal::bags {
 
-// Refuses what is no MCAP file of version 0. Indexed or not, its chunks plain, lz4 or zstd; a file that was cut off is read as far as it
-// goes.
+// Refuses what is no MCAP file of version 0. Indexed or not, its chunks plain, lz4 or zstd; a file that was cut off is
+// read as far as it goes.
 [[nodiscard]] Result<std::unique_ptr<Bag>> OpenMcap(std::unique_ptr<ByteSource> source);
 
 }  // namespace rigcal::bags

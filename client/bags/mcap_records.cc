@@ -17,9 +17,9 @@ std::optional<Record> Whole(const Cursor& cursor, Record record) {
 }  // namespace
 
 std::string NameOf(McapOp op) {
-  constexpr std::array kNames = {"Header",     "Footer",     "Schema",          "Channel",    "Message",
-                                 "Chunk",      "MessageIndex", "ChunkIndex",    "Attachment", "AttachmentIndex",
-                                 "Statistics", "Metadata",   "MetadataIndex",   "SummaryOffset", "DataEnd"};
+  constexpr std::array kNames = {"Header",     "Footer",       "Schema",        "Channel",       "Message",
+                                 "Chunk",      "MessageIndex", "ChunkIndex",    "Attachment",    "AttachmentIndex",
+                                 "Statistics", "Metadata",     "MetadataIndex", "SummaryOffset", "DataEnd"};
   const std::size_t number = static_cast<std::size_t>(op);
   if (number == 0 || number > kNames.size()) return "record of kind " + std::to_string(number);
   return kNames[number - 1];

@@ -32,7 +32,9 @@ void ForEachOfSummary(ByteSource& source, const std::function<void(McapOp, Bytes
   const auto footer = FooterOf(source);
   if (!footer) return;
   const std::uint64_t end = source.size() - kMagicBytes - kFooterBytes;
-  if (footer->summary_start == 0 || footer->summary_start >= end || end - footer->summary_start > limits::kRecordBytesMax) return;
+  if (footer->summary_start == 0 || footer->summary_start >= end ||
+      end - footer->summary_start > limits::kRecordBytesMax)
+    return;
   const auto bytes = ReadPiece(source, footer->summary_start, end - footer->summary_start);
   Cursor in(bytes);
   while (!in.AtEnd()) {

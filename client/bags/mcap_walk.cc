@@ -87,7 +87,8 @@ std::optional<McapRecord> McapWalk::NextOfFile() {
     return std::nullopt;
   }
   if (length > there || length > limits::kRecordBytesMax) {
-    Lose(offset, length > there ? NameOf(op) + " of " + std::to_string(length) + " bytes, of which " + std::to_string(there) + " are there"
+    Lose(offset, length > there ? NameOf(op) + " of " + std::to_string(length) + " bytes, of which " +
+                                      std::to_string(there) + " are there"
                                 : NameOf(op) + " of " + std::to_string(length) + " bytes is beyond the limit of " +
                                       std::to_string(limits::kRecordBytesMax));
     at_ = length > there ? end : content_at + length;
@@ -138,7 +139,8 @@ bool McapWalk::EnterChunk(std::uint64_t content_at, std::uint64_t length) {
   chunk_.emplace();
   chunk_->offset = offset;
   chunk_->crc = chunk->crc;
-  if (there < length) chunk_->trouble = "the file ends within it, " + std::to_string(length - there) + " bytes are missing";
+  if (there < length)
+    chunk_->trouble = "the file ends within it, " + std::to_string(length - there) + " bytes are missing";
   if (packing == Packing::kNone) {
     chunk_->in_file = true;
     at_ = content_at + chunk->head_bytes;
@@ -168,7 +170,8 @@ bool McapWalk::UnpackChunk(const McapChunk& chunk, std::uint64_t records_at, std
   Unpacked unpacked = Unpack(*PackingOf(chunk.packing), *packed, limits::kChunkBytesMax);
   if (unpacked.trouble && !chunk_->trouble) chunk_->trouble = unpacked.trouble;
   if (!chunk_->trouble && unpacked.bytes.size() != chunk.unpacked_bytes)
-    chunk_->trouble = "it unpacks to " + std::to_string(unpacked.bytes.size()) + " bytes, not " + std::to_string(chunk.unpacked_bytes);
+    chunk_->trouble = "it unpacks to " + std::to_string(unpacked.bytes.size()) + " bytes, not " +
+                      std::to_string(chunk.unpacked_bytes);
   chunk_->unpacked = std::move(unpacked.bytes);
   if (chunk.crc != 0) chunk_->crc_so_far = CrcOf(chunk_->unpacked);
   return true;
@@ -183,7 +186,8 @@ void McapWalk::LeaveChunk() {
 
 Result<Bytes> McapWalk::Read(std::uint64_t offset, std::uint64_t count) {
   if (count > buffer_.size()) buffer_.resize(static_cast<std::size_t>(count));
-  RIGCAL_ASSIGN(const std::size_t got, source_->ReadAt(offset, std::span(buffer_).first(static_cast<std::size_t>(count))));
+  RIGCAL_ASSIGN(const std::size_t got,
+                source_->ReadAt(offset, std::span(buffer_).first(static_cast<std::size_t>(count))));
   return Bytes(buffer_).first(got);
 }
 

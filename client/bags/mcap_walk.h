@@ -18,8 +18,9 @@ struct McapRecord {
   std::uint64_t offset = 0;  // of the record, or of the chunk that it lies in
 };
 
-// Chunks are not given, what is in them is. Where a record or a chunk cannot be read, the walk goes on behind it, or at the next chunk that
-// the file's own index names; what was lost is noted. Whether anything is lost that was never written cannot be seen.
+// Chunks are not given, what is in them is. Where a record or a chunk cannot be read, the walk goes on behind it, or at
+// the next chunk that the file's own index names; what was lost is noted. Whether anything is lost that was never
+// written cannot be seen.
 class McapWalk {
  public:
   // Refuses what is no MCAP file, or of another version than 0.
@@ -38,13 +39,13 @@ class McapWalk {
   explicit McapWalk(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
   // The chunk whose records are being given.
   struct OpenChunk {
-    std::uint64_t offset = 0, end = 0;    // of its record; `end` where its records lie in the file as they are
-    std::uint64_t lost_before_end = 0;    // bytes of its records that the file does not have
-    std::vector<std::byte> unpacked;      // else: its records
-    std::size_t read = 0;                 // of `unpacked`
+    std::uint64_t offset = 0, end = 0;  // of its record; `end` where its records lie in the file as they are
+    std::uint64_t lost_before_end = 0;  // bytes of its records that the file does not have
+    std::vector<std::byte> unpacked;    // else: its records
+    std::size_t read = 0;               // of `unpacked`
     bool in_file = false;
     std::uint32_t crc = 0, crc_so_far = 0;
-    std::optional<std::string> trouble;   // told when its records are through
+    std::optional<std::string> trouble;  // told when its records are through
   };
 
   [[nodiscard]] std::optional<McapRecord> NextOfFile();
@@ -64,7 +65,8 @@ class McapWalk {
   Damage damage_;
 };
 
-// Where the summary at the end of the file says that chunks begin, in the order of the file; none where it has no summary.
+// Where the summary at the end of the file says that chunks begin, in the order of the file; none where it has no
+// summary.
 [[nodiscard]] std::vector<std::uint64_t> IndexedChunks(ByteSource& source);
 // The Statistics of that summary.
 [[nodiscard]] std::optional<McapStatistics> SummaryStatistics(ByteSource& source);

@@ -35,7 +35,8 @@ Result<std::unique_ptr<Bag>> OpenPlain(const fs::path& file, const fs::path& nam
   if (text.rfind("#ROSBAG V", 0) == 0) return OpenRos1Bag(std::move(source));
   if (text.rfind("SQLite format 3", 0) == 0) return OpenSqliteBag(file);
   if (got == 0) return Fail(ErrorCode::kInvalidInput, named.string() + " is empty", "Record the bag again.");
-  return Fail(ErrorCode::kInvalidInput, named.string() + " is no bag: it is neither MCAP nor a database of rosbag2 nor a bag of ROS 1",
+  return Fail(ErrorCode::kInvalidInput,
+              named.string() + " is no bag: it is neither MCAP nor a database of rosbag2 nor a bag of ROS 1",
               "Give the path of a bag.");
 }
 
@@ -47,7 +48,8 @@ Result<OpenPart> Open(const fs::path& file, Damage& damage) {
   }
   OpenPart part;
   if (IsZstd(begins)) {
-    RIGCAL_ASSIGN(part.unpacked, TemporaryFile::Make(file.extension() == ".zstd" ? file.stem().extension().string() : ""));
+    RIGCAL_ASSIGN(part.unpacked,
+                  TemporaryFile::Make(file.extension() == ".zstd" ? file.stem().extension().string() : ""));
     RIGCAL_TRY(UnpackZstdFile(file, part.unpacked->path(), [&](Error error) { damage.Add(std::move(error)); }));
   }
   RIGCAL_ASSIGN(part.bag, OpenPlain(part.unpacked ? part.unpacked->path() : file, file));
@@ -67,7 +69,8 @@ class PartsBag : public Bag {
       const Status opened = OpenNext();
       if (!opened && !first) first = opened.error();
     }
-    if (!part_.bag) return Fail(first.value_or(Error{ErrorCode::kInvalidInput, "the bag has no files", "Give the path of a bag."}));
+    if (!part_.bag)
+      return Fail(first.value_or(Error{ErrorCode::kInvalidInput, "the bag has no files", "Give the path of a bag."}));
     return {};
   }
 
@@ -96,11 +99,14 @@ class PartsBag : public Bag {
     if (part_.bag) all.Add(part_.bag->Unread());
     if (!otherwise_.empty())
       all.Add({ErrorCode::kInvalidInput,
-               "metadata.yaml has other encodings than the files: " + formats::FirstThree(otherwise_.size(), [&](std::size_t i) { return otherwise_[i]; }),
+               "metadata.yaml has other encodings than the files: " +
+                   formats::FirstThree(otherwise_.size(), [&](std::size_t i) { return otherwise_[i]; }),
                "The bag is read as its files say; mend metadata.yaml if that is right."});
     return all;
   }
-  [[nodiscard]] std::int64_t bytes_done() const override { return bytes_done_ + (part_.bag ? part_.bag->bytes_done() : 0); }
+  [[nodiscard]] std::int64_t bytes_done() const override {
+    return bytes_done_ + (part_.bag ? part_.bag->bytes_done() : 0);
+  }
   [[nodiscard]] std::int64_t bytes_total() const override { return bytes_total_; }
 
  private:
@@ -133,7 +139,8 @@ class PartsBag : public Bag {
   }
   [[nodiscard]] std::shared_ptr<const Topic> Find(const Topic& topic) const {
     for (const auto& known : known_)
-      if (known->name == topic.name && known->type == topic.type && known->encoding == topic.encoding && known->schema == topic.schema)
+      if (known->name == topic.name && known->type == topic.type && known->encoding == topic.encoding &&
+          known->schema == topic.schema)
         return known;
     return nullptr;
   }
@@ -149,7 +156,8 @@ class PartsBag : public Bag {
   }
   void TellStrays() {
     if (packed_strays_ > 0)
-      damage_.Add({ErrorCode::kInvalidInput, std::to_string(packed_strays_) + " messages are compressed and cannot be unpacked",
+      damage_.Add({ErrorCode::kInvalidInput,
+                   std::to_string(packed_strays_) + " messages are compressed and cannot be unpacked",
                    "They are left out; copy the bag again from where it was recorded."});
     packed_strays_ = 0;
   }
@@ -160,7 +168,7 @@ class PartsBag : public Bag {
   std::int64_t bytes_total_, bytes_done_ = 0, packed_strays_ = 0;
   std::vector<std::shared_ptr<const Topic>> known_;
   std::map<const Topic*, std::shared_ptr<const Topic>> same_;  // of the open part
-  std::vector<std::string> otherwise_;  // topics that metadata.yaml describes otherwise
+  std::vector<std::string> otherwise_;                         // topics that metadata.yaml describes otherwise
   std::vector<std::byte> unpacked_;
   Damage damage_;
 };

@@ -49,9 +49,12 @@ Result<std::vector<fs::path>> PartsInFolder(const fs::path& folder) {
   std::error_code failed;
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
     if (IsPart(at->path()) && files.size() < limits::kPartsMax) files.push_back(at->path());
-  if (failed) return Fail(ErrorCode::kStorage, folder.string() + ": cannot be read (" + failed.message() + ")", "Check its permissions.");
+  if (failed)
+    return Fail(ErrorCode::kStorage, folder.string() + ": cannot be read (" + failed.message() + ")",
+                "Check its permissions.");
   if (files.empty())
-    return Fail(ErrorCode::kInvalidInput, folder.string() + " holds no bag: neither .mcap nor .db3 nor .bag", "Give the path of a bag.");
+    return Fail(ErrorCode::kInvalidInput, folder.string() + " holds no bag: neither .mcap nor .db3 nor .bag",
+                "Give the path of a bag.");
   std::sort(files.begin(), files.end(), ByNumber);
   return files;
 }
@@ -62,15 +65,18 @@ std::string TextOf(const YAML::Node& map, const char* key) {
   return member && member.IsScalar() ? member.Scalar() : "";
 }
 
-// Old versions wrote paths that begin with the bag's own name, so only the last part of each counts. Throws what yaml-cpp throws.
+// Old versions wrote paths that begin with the bag's own name, so only the last part of each counts. Throws what
+// yaml-cpp throws.
 void ReadInfo(const YAML::Node& info, const fs::path& folder, Parts& parts) {
   for (const YAML::Node& path : info["relative_file_paths"])
     if (parts.files.size() < limits::kPartsMax && path.IsScalar() && !path.Scalar().empty())
       parts.files.push_back(folder / fs::path(path.Scalar()).filename());
   for (const YAML::Node& entry : info["topics_with_message_count"]) {
     const YAML::Node topic = entry.IsMap() ? entry["topic_metadata"] : YAML::Node();
-    const std::string name = topic ? TextOf(topic, "name") : "", encoding = topic ? TextOf(topic, "serialization_format") : "";
-    if (!name.empty() && !encoding.empty() && parts.encodings.size() < limits::kTopicsMax) parts.encodings[name] = encoding;
+    const std::string name = topic ? TextOf(topic, "name") : "",
+                      encoding = topic ? TextOf(topic, "serialization_format") : "";
+    if (!name.empty() && !encoding.empty() && parts.encodings.size() < limits::kTopicsMax)
+      parts.encodings[name] = encoding;
   }
 }
 

@@ -103,7 +103,7 @@ class Ros1Bag : public Bag {
     topic.type = described->Text("type");
     topic.encoding = "ros1";
     topic.schema = described->Text("message_definition");
-    topic.schema_encoding = topic.schema.empty() ? "" : "ros1msg";
+    topic.schema_encoding = "ros1msg";
     connections_[*id] = std::make_shared<const Topic>(std::move(topic));
   }
 
@@ -115,12 +115,15 @@ class Ros1Bag : public Bag {
     const bool is_read = packing && *packing != Packing::kZstd;
     const auto data = Block(offset, data_, true);
     if (!data) return false;
-    if (!is_read) return Lose(offset, "the chunk there is compressed with " + Quoted(name) + ", which is neither bz2 nor lz4") || true;
+    if (!is_read)
+      return Lose(offset, "the chunk there is compressed with " + Quoted(name) + ", which is neither bz2 nor lz4") ||
+             true;
     Unpacked unpacked = Unpack(*packing, *data, limits::kChunkBytesMax);
     if (unpacked.trouble && !chunk_trouble_) chunk_trouble_ = unpacked.trouble;
     const auto size = fields.Number("size");
     if (!chunk_trouble_ && size && *size != unpacked.bytes.size())
-      chunk_trouble_ = "it unpacks to " + std::to_string(unpacked.bytes.size()) + " bytes, not " + std::to_string(*size);
+      chunk_trouble_ =
+          "it unpacks to " + std::to_string(unpacked.bytes.size()) + " bytes, not " + std::to_string(*size);
     if (chunk_trouble_) (void)Lose(offset, "of the chunk there not all can be read: " + *chunk_trouble_);
     chunk_ = std::move(unpacked.bytes);
     read_ = 0;
@@ -134,11 +137,12 @@ class Ros1Bag : public Bag {
     const std::uint64_t there = source_->size() - at_;
     if (*size > limits::kRecordBytesMax || (*size > there && !as_far_as_it_goes)) {
       (void)Lose(offset, "a record of " + std::to_string(*size) + " bytes, " +
-                       (*size > there ? "of which " + std::to_string(there) + " are there"
-                                      : "beyond the limit of " + std::to_string(limits::kRecordBytesMax)));
+                             (*size > there ? "of which " + std::to_string(there) + " are there"
+                                            : "beyond the limit of " + std::to_string(limits::kRecordBytesMax)));
       return std::nullopt;
     }
-    if (*size > there) chunk_trouble_ = "the file ends within it, " + std::to_string(*size - there) + " bytes are missing";
+    if (*size > there)
+      chunk_trouble_ = "the file ends within it, " + std::to_string(*size - there) + " bytes are missing";
     buffer.resize(static_cast<std::size_t>(std::min<std::uint64_t>(*size, there)));
     const auto got = source_->ReadAt(at_, buffer);
     if (!got) {
@@ -167,12 +171,14 @@ class Ros1Bag : public Bag {
 
   // False, for the caller to return.
   bool Lose(std::uint64_t offset, const std::string& what) {
-    damage_.Add({ErrorCode::kInvalidInput, source_->name() + " at byte " + std::to_string(offset) + ": " + what, kCure});
+    damage_.Add(
+        {ErrorCode::kInvalidInput, source_->name() + " at byte " + std::to_string(offset) + ": " + what, kCure});
     return false;
   }
   void Finish() {
     if (!over_ && strays_ > 0)
-      damage_.Add({ErrorCode::kInvalidInput, source_->name() + ": " + std::to_string(strays_) + " messages are of no connection that is there",
+      damage_.Add({ErrorCode::kInvalidInput,
+                   source_->name() + ": " + std::to_string(strays_) + " messages are of no connection that is there",
                    kCure});
     over_ = true;
   }
@@ -195,9 +201,11 @@ Result<std::unique_ptr<Bag>> OpenRos1Bag(std::unique_ptr<ByteSource> source) {
   const std::string_view text(begins.data(), got);
   if (got == 0) return Fail(ErrorCode::kInvalidInput, source->name() + " is empty", "Record the bag again.");
   if (text.rfind(kAnyVersion, 0) != 0)
-    return Fail(ErrorCode::kInvalidInput, source->name() + " is no bag of ROS 1: it does not begin as one", "Give the path of a bag.");
+    return Fail(ErrorCode::kInvalidInput, source->name() + " is no bag of ROS 1: it does not begin as one",
+                "Give the path of a bag.");
   if (text != kMagic)
-    return Fail(ErrorCode::kUnsupported, source->name() + " is a bag of another version than 2.0", "Convert it with `rosbag migrate`.");
+    return Fail(ErrorCode::kUnsupported, source->name() + " is a bag of another version than 2.0",
+                "Convert it with `rosbag migrate`.");
   return std::make_unique<Ros1Bag>(std::move(source));
 }
 

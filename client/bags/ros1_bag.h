@@ -8,8 +8,8 @@
 
 namespace rigcal::bags {
 
-// Refuses what is no such bag, and versions before 2.0 by name. Chunks plain, bz2 or lz4; indexed or not (a `.bag.active` that nobody closed): the
-// index is not used. Its messages are encoded as "ros1".
+// Refuses what is no such bag, and versions before 2.0 by name. Chunks plain, bz2 or lz4; indexed or not (a
+// `.bag.active` that nobody closed): the index is not used. Its messages are encoded as "ros1".
 [[nodiscard]] Result<std::unique_ptr<Bag>> OpenRos1Bag(std::unique_ptr<ByteSource> source);
 
 }  // namespace rigcal::bags

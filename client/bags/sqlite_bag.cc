@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kCure = "What could be read is given; record the bag again, or mend it with sqlite3's `.recover`.";
+constexpr const char* kCure =
+    "What could be read is given; record the bag again, or mend it with sqlite3's `.recover`.";
 constexpr int kBusyTimeout_ms = 1000;
 
 // As a URI: a file without a log cannot change under us, and may lie where nothing can be written.
@@ -36,14 +37,18 @@ std::string UriOf(const fs::path& file) {
 class SqliteBag : public Bag {
  public:
   SqliteBag(const fs::path& file, std::int64_t bytes)
-      : name_(file.string()), bytes_(bytes), database_(UriOf(file), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kBusyTimeout_ms) {}
+      : name_(file.string()),
+        bytes_(bytes),
+        database_(UriOf(file), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kBusyTimeout_ms) {}
 
   // Throws what SQLiteCpp throws.
   void Begin() {
     sqlite3_limit(database_.getHandle(), SQLITE_LIMIT_LENGTH, static_cast<int>(limits::kRecordBytesMax));
     database_.exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
     const int tables =
-        database_.execAndGet("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')").getInt();
+        database_
+            .execAndGet("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')")
+            .getInt();
     if (tables != 2) throw SQLite::Exception("it has no tables `topics` and `messages`");
     ReadTopics();
     if (database_.tableExists("message_definitions")) ReadDefinitions();
@@ -60,7 +65,9 @@ class SqliteBag : public Bag {
         if (Take(message)) return true;
     } catch (const std::exception& failure) {
       damage_.Add({ErrorCode::kInvalidInput,
-                   name_ + ": after " + std::to_string(given_) + " messages the database cannot be read: " + Quoted(failure.what()), kCure});
+                   name_ + ": after " + std::to_string(given_) +
+                       " messages the database cannot be read: " + Quoted(failure.what()),
+                   kCure});
     }
     Finish();
     return false;
@@ -72,7 +79,9 @@ class SqliteBag : public Bag {
   }
   [[nodiscard]] Damage Unread() const override { return damage_; }
   [[nodiscard]] std::int64_t bytes_done() const override {
-    return total_ > 0 ? static_cast<std::int64_t>(static_cast<double>(bytes_) * static_cast<double>(given_) / static_cast<double>(total_)) : bytes_;
+    return total_ > 0 ? static_cast<std::int64_t>(static_cast<double>(bytes_) * static_cast<double>(given_) /
+                                                  static_cast<double>(total_))
+                      : bytes_;
   }
   [[nodiscard]] std::int64_t bytes_total() const override { return bytes_; }
 
@@ -88,7 +97,8 @@ class SqliteBag : public Bag {
     }
   }
   void ReadDefinitions() {
-    SQLite::Statement rows(database_, "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
+    SQLite::Statement rows(database_,
+                           "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
     std::size_t bytes = 0;
     while (rows.executeStep()) {
       const std::string type = rows.getColumn(0).getString(), encoding = rows.getColumn(1).getString(),
@@ -96,7 +106,7 @@ class SqliteBag : public Bag {
       bytes += text.size();
       if (bytes > limits::kDefinitionsBytesMax) break;
       for (auto& [id, topic] : reading_) {
-        if (topic.type != type || text.empty()) continue;
+        if (topic.type != type) continue;
         topic.schema_encoding = encoding;
         topic.schema = text;
       }
@@ -146,7 +156,8 @@ class SqliteBag : public Bag {
 Result<std::unique_ptr<Bag>> OpenSqliteBag(const fs::path& file) {
   std::error_code failed;
   const auto bytes = fs::file_size(file, failed);
-  if (failed) return Fail(ErrorCode::kNotFound, file.string() + ": cannot be read (" + failed.message() + ")", "Check the path.");
+  if (failed)
+    return Fail(ErrorCode::kNotFound, file.string() + ": cannot be read (" + failed.message() + ")", "Check the path.");
   try {
     auto bag = std::make_unique<SqliteBag>(file, static_cast<std::int64_t>(bytes));
     bag->Begin();

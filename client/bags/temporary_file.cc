@@ -32,7 +32,8 @@ Status WriteAll(const FileDescriptor& file, const std::filesystem::path& path, c
 // Takes the file piece by piece; what it gave so far is in `to` whatever happens.
 class Unpacking {
  public:
-  Unpacking(const FileDescriptor& to, const std::filesystem::path& path) : to_(to), path_(path), context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
+  Unpacking(const FileDescriptor& to, const std::filesystem::path& path)
+      : to_(to), path_(path), context_(ZSTD_createDCtx(), ZSTD_freeDCtx) {
     if (!context_) throw std::bad_alloc();
   }
   // The name of zstd's trouble, or null.
@@ -47,7 +48,8 @@ class Unpacking {
       given = out.pos;
       written_ += given;
       if (written_ > limits::kPackedFileBytesMax)
-        return Fail(ErrorCode::kInvalidInput, path_.string() + " unpacks to more than " + std::to_string(limits::kPackedFileBytesMax) + " bytes",
+        return Fail(ErrorCode::kInvalidInput,
+                    path_.string() + " unpacks to more than " + std::to_string(limits::kPackedFileBytesMax) + " bytes",
                     "Unpack it with zstd, and split it.");
       RIGCAL_TRY(WriteAll(to_, path_, piece_.data(), given));
     } while (in.pos < in.size || given == piece_.size());
@@ -80,7 +82,8 @@ TemporaryFile::~TemporaryFile() {
   std::filesystem::remove(path_, ignored);
 }
 
-Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::path& to, const std::function<void(Error)>& told) {
+Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::path& to,
+                      const std::function<void(Error)>& told) {
   RIGCAL_ASSIGN(const FileDescriptor packed, OpenToRead(from));
   FileDescriptor unpacked(::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
   if (unpacked.get() < 0) return FileFailure(to, "write", errno);

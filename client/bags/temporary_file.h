@@ -24,7 +24,8 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-// Unpacks a zstd file into `to`. Trouble in the packed data is told to `told`, and what came out before it stays; an error is the disk's, or more than kPackedFileBytesMax.
+// Unpacks a zstd file into `to`. Trouble in the packed data is told to `told`, and what came out before it stays; an
+// error is the disk's, or more than kPackedFileBytesMax.
 [[nodiscard]] Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::path& to,
                                     const std::function<void(Error)>& told);
 

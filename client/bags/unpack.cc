@@ -18,7 +18,7 @@ constexpr int kWindowLogMax = 27;  // 128 MiB: what zstd's own program takes wit
 // What one call of a library took and gave.
 struct Turn {
   std::size_t taken = 0, given = 0;
-  bool ended = false;   // a frame is whole
+  bool ended = false;  // a frame is whole
   const char* error = nullptr;
 };
 

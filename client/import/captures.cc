@@ -15,7 +15,8 @@ struct Sorted {
 };
 
 std::uint64_t Apart(std::int64_t a, std::int64_t b) {
-  return a > b ? static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b) : static_cast<std::uint64_t>(b) - static_cast<std::uint64_t>(a);
+  return a > b ? static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b)
+               : static_cast<std::uint64_t>(b) - static_cast<std::uint64_t>(a);
 }
 
 std::string NameOf(std::int64_t stamp_ns) {
@@ -24,8 +25,8 @@ std::string NameOf(std::int64_t stamp_ns) {
   char text[40];
   // A clock that began before 1970 is no clock, yet its stamps have names: "m12-..." of second -12.
   const std::int64_t seconds = (stamp_ns - nanoseconds) / kSecond_ns;
-  std::snprintf(text, sizeof text, "%s%lld-%09lld", seconds < 0 ? "m" : "", static_cast<long long>(seconds < 0 ? -seconds : seconds),
-                static_cast<long long>(nanoseconds));
+  std::snprintf(text, sizeof text, "%s%lld-%09lld", seconds < 0 ? "m" : "",
+                static_cast<long long>(seconds < 0 ? -seconds : seconds), static_cast<long long>(nanoseconds));
   return text;
 }
 
@@ -41,8 +42,9 @@ class Planner {
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < sensors_.size(); ++s)
       if (sensors_[s].forms_captures) order.push_back(s);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return sorted_[a].messages.size() < sorted_[b].messages.size(); });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return sorted_[a].messages.size() < sorted_[b].messages.size();
+    });
     for (const std::size_t anchor : order)
       for (std::size_t i = 0; i < sorted_[anchor].messages.size(); ++i)
         if (!sorted_[anchor].taken[i]) TryCapture(anchor, i, order.size() > 1 ? 2 : 1);
@@ -59,19 +61,25 @@ class Planner {
     std::vector<std::size_t>& messages = sorted_[s].messages;
     messages.resize(stamps.size());
     std::iota(messages.begin(), messages.end(), std::size_t{0});
-    std::stable_sort(messages.begin(), messages.end(), [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
-    const auto last = std::unique(messages.begin(), messages.end(), [&](std::size_t a, std::size_t b) { return stamps[a] == stamps[b]; });
+    std::stable_sort(messages.begin(), messages.end(),
+                     [&](std::size_t a, std::size_t b) { return stamps[a] < stamps[b]; });
+    const auto last = std::unique(messages.begin(), messages.end(),
+                                  [&](std::size_t a, std::size_t b) { return stamps[a] == stamps[b]; });
     plan_.uses[s].repeated_stamp = static_cast<std::size_t>(messages.end() - last);
     messages.erase(last, messages.end());
     sorted_[s].taken.assign(messages.size(), false);
   }
-  [[nodiscard]] std::int64_t StampOf(std::size_t s, std::size_t i) const { return sensors_[s].stamps_ns[sorted_[s].messages[i]]; }
+  [[nodiscard]] std::int64_t StampOf(std::size_t s, std::size_t i) const {
+    return sensors_[s].stamps_ns[sorted_[s].messages[i]];
+  }
 
-  // The nearest of sensor `s`; of two as near the earlier. A message of a tracker may serve two captures, so that it is never taken.
+  // The nearest of sensor `s`; of two as near the earlier. A message of a tracker may serve two captures, so that it is
+  // never taken.
   [[nodiscard]] std::optional<std::size_t> Nearest(std::size_t s, std::int64_t stamp_ns, bool free_only) const {
     const Sorted& sorted = sorted_[s];
-    const auto first_after = std::lower_bound(sorted.messages.begin(), sorted.messages.end(), stamp_ns,
-                                              [&](std::size_t message, std::int64_t at) { return sensors_[s].stamps_ns[message] < at; });
+    const auto first_after =
+        std::lower_bound(sorted.messages.begin(), sorted.messages.end(), stamp_ns,
+                         [&](std::size_t message, std::int64_t at) { return sensors_[s].stamps_ns[message] < at; });
     std::optional<std::size_t> nearest;
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     const auto consider = [&](std::size_t i) {
@@ -145,4 +153,4 @@ CapturePlan PlanCaptures(const std::vector<SensorStamps>& sensors, std::int64_t 
   return Planner(sensors, tolerance_ns).Plan(every_ns);
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

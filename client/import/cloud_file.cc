@@ -13,7 +13,8 @@ namespace {
 
 char TypeLetter(bags::Primitive type) {
   if (type == bags::Primitive::kFloat32 || type == bags::Primitive::kFloat64) return 'F';
-  const bool is_signed = type == bags::Primitive::kInt8 || type == bags::Primitive::kInt16 || type == bags::Primitive::kInt32;
+  const bool is_signed =
+      type == bags::Primitive::kInt8 || type == bags::Primitive::kInt16 || type == bags::Primitive::kInt32;
   return is_signed ? 'I' : 'U';
 }
 
@@ -36,15 +37,17 @@ std::string Header(const std::vector<bags::PointField>& fields, std::size_t widt
     types += std::string(" ") + TypeLetter(field.type);
     counts += " " + std::to_string(field.count);
   }
-  return "VERSION 0.7\nFIELDS" + names + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " + std::to_string(width) +
-         "\nHEIGHT " + std::to_string(height) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(width * height) + "\nDATA binary\n";
+  return "VERSION 0.7\nFIELDS" + names + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " +
+         std::to_string(width) + "\nHEIGHT " + std::to_string(height) + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " +
+         std::to_string(width * height) + "\nDATA binary\n";
 }
 
 void AppendField(const std::byte* point, const bags::PointField& field, bool swap, std::string& bytes) {
   const std::size_t size = bags::SizeOf(field.type), begin = bytes.size();
   bytes.append(reinterpret_cast<const char*>(point + field.offset_bytes), size * field.count);
   for (std::size_t at = begin; swap && at < bytes.size(); at += size)
-    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
 }
 
 std::string Number(double value) {
@@ -76,7 +79,8 @@ std::string PcdOf(const bags::LaserScan& scan) {
     const double angle_rad = scan.angle_min_rad + static_cast<double>(i) * scan.angle_increment_rad;
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     float point[4] = {returned ? static_cast<float>(range_m * std::cos(angle_rad)) : kNone,
-                      returned ? static_cast<float>(range_m * std::sin(angle_rad)) : kNone, returned ? 0.0F : kNone, 0.0F};
+                      returned ? static_cast<float>(range_m * std::sin(angle_rad)) : kNone, returned ? 0.0F : kNone,
+                      0.0F};
     if (!scan.intensities.empty()) point[3] = scan.intensities[i];
     char raw[sizeof point];
     std::memcpy(raw, point, sizeof point);
@@ -92,4 +96,4 @@ std::string PoseColumns(std::int64_t stamp_ns, const Se3& T) {
   return text + "\n";
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

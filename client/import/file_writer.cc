@@ -13,7 +13,8 @@ FileWriter::Fate Refused(const Error& error) { return {false, Sentence(error)}; 
 
 }  // namespace
 
-Result<FileWriter::Fate> FileWriter::Take(const std::string& stem, const std::string& type, const bags::Value& message) {
+Result<FileWriter::Fate> FileWriter::Take(const std::string& stem, const std::string& type,
+                                          const bags::Value& message) {
   switch (bags::KindOf(type)) {
     case MessageKind::kImage: {
       const auto image = bags::ReadImage(message);
@@ -68,4 +69,4 @@ Status FileWriter::Flush() {
   return {};
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -19,8 +19,8 @@ class FileWriter {
 
   // What became of one message.
   struct Fate {
-    bool written = false;   // or there already, or waiting to be
-    std::string refusal;    // else: why not
+    bool written = false;  // or there already, or waiting to be
+    std::string refusal;   // else: why not
   };
   // "<stem>.png", ".jpg" or ".pcd", as the message is. The error is the disk's.
   [[nodiscard]] Result<Fate> Take(const std::string& stem, const std::string& type, const bags::Value& message);
@@ -43,4 +43,4 @@ class FileWriter {
 
 constexpr std::size_t kWaitingBytesMax = 48 << 20;
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -16,11 +16,12 @@ struct Pixels {
   std::vector<std::byte> data;  // image.data points into it
 };
 [[nodiscard]] Pixels CopyOf(const bags::Image& image);
-// A PNG that holds the same values: grey ones of 8 or 16 bits, else BGR; Bayer patterns and YUV become BGR. The error names what of it cannot be done. Any thread.
+// A PNG that holds the same values: grey ones of 8 or 16 bits, else BGR; Bayer patterns and YUV become BGR. The error
+// names what of it cannot be done. Any thread.
 [[nodiscard]] Result<std::string> PngOf(const bags::Image& image);
 
-// A binary PCD with every field that the cloud has, x y z and others by their names, in the machine's byte order; padding is left out.
-// Values as they were sent, NaN too.
+// A binary PCD with every field that the cloud has, x y z and others by their names, in the machine's byte order;
+// padding is left out. Values as they were sent, NaN too.
 [[nodiscard]] std::string PcdOf(const bags::PointCloud& cloud);
 // The points of a scan, z = 0; beams without a return as NaN, so that the beam's number stays its place.
 [[nodiscard]] std::string PcdOf(const bags::LaserScan& scan);
@@ -28,4 +29,4 @@ struct Pixels {
 // A row of poses.csv behind its first column: numbers in the shortest form that reads back as the same.
 [[nodiscard]] std::string PoseColumns(std::int64_t stamp_ns, const Se3& T_world_body);
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

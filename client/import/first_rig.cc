@@ -13,12 +13,16 @@
 namespace rigcal::importing {
 namespace {
 
-std::string FolderOf(const std::string& topic) { return topic.substr(0, topic.rfind('/') == std::string::npos ? 0 : topic.rfind('/')); }
+std::string FolderOf(const std::string& topic) {
+  return topic.substr(0, topic.rfind('/') == std::string::npos ? 0 : topic.rfind('/'));
+}
 
 // "/left/image_raw" is the sensor "left": words that say what is sent say nothing of who sends it.
 std::string SensorNameOf(const std::string& topic) {
-  static const std::set<std::string> kWhat = {"image", "image_raw", "image_color", "image_mono", "image_rect", "image_rect_color", "compressed",
-                                              "points", "points_raw", "point_cloud", "pointcloud", "velodyne_points", "pose", "raw", "data"};
+  static const std::set<std::string> kWhat = {
+      "image",      "image_raw", "image_color", "image_mono",  "image_rect", "image_rect_color",
+      "compressed", "points",    "points_raw",  "point_cloud", "pointcloud", "velodyne_points",
+      "pose",       "raw",       "data"};
   std::vector<std::string> words(1);
   for (const char c : topic) {
     if (c == '/')
@@ -41,11 +45,13 @@ std::string RateText(const TopicSurvey& topic) {
   return topic.rate_hz ? std::string(", ") + text : "";
 }
 
-std::string SensorLines(const TopicSurvey& topic, const std::string& name, const std::map<std::string, std::string>& lenses) {
-  std::string lines = "  " + name + ":\n    type: " + topic.sensor_kind + "\n    topic: " + YamlWord(topic.name) + "   # " + topic.detail +
-                      RateText(topic) + "\n";
+std::string SensorLines(const TopicSurvey& topic, const std::string& name,
+                        const std::map<std::string, std::string>& lenses) {
+  std::string lines = "  " + name + ":\n    type: " + topic.sensor_kind + "\n    topic: " + YamlWord(topic.name) +
+                      "   # " + topic.detail + RateText(topic) + "\n";
   const auto lens = lenses.find(FolderOf(topic.name));
-  if (topic.sensor_kind == "camera" && lens != lenses.end() && !lens->second.empty()) lines += "    model: " + lens->second + "   # as its camera info says\n";
+  if (topic.sensor_kind == "camera" && lens != lenses.end() && !lens->second.empty())
+    lines += "    model: " + lens->second + "   # as its camera info says\n";
   if (topic.count > 1 && topic.unset_stamps * 2 > topic.count) lines += "    stamp: log   # its header has no time\n";
   return lines;
 }
@@ -74,7 +80,9 @@ std::string FirstRigYaml(const BagSurvey& survey) {
   std::string text = kHead;
   for (const TopicSurvey& topic : survey.topics) {
     // "/left/image_raw/compressed" is the same picture as "/left/image_raw".
-    if (topic.sensor_kind.empty() || topic.count == 0 || !IsPrintableUtf8(topic.name) || raw.count(FolderOf(topic.name)) > 0) continue;
+    if (topic.sensor_kind.empty() || topic.count == 0 || !IsPrintableUtf8(topic.name) ||
+        raw.count(FolderOf(topic.name)) > 0)
+      continue;
     const std::string name = SensorNameOf(topic.name);
     std::string unique = name;
     for (int i = 2; !taken.insert(unique).second; ++i) unique = name + "_" + std::to_string(i);
@@ -82,8 +90,9 @@ std::string FirstRigYaml(const BagSurvey& survey) {
   }
   for (const TopicSurvey& topic : survey.topics)
     if (bags::KindOf(topic.type) == bags::MessageKind::kTransforms && IsPrintableUtf8(topic.name))
-      text += "  # flange: {type: tracker, topic: " + YamlWord(topic.name) + ", frame: base_link, child_frame: tool0}   # " + topic.detail + "\n";
+      text += "  # flange: {type: tracker, topic: " + YamlWord(topic.name) +
+              ", frame: base_link, child_frame: tool0}   # " + topic.detail + "\n";
   return text;
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

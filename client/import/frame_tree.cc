@@ -6,7 +6,7 @@
 namespace rigcal::importing {
 namespace {
 
-constexpr int kLinksMax = 64;           // of a chain, which may be a ring
+constexpr int kLinksMax = 64;  // of a chain, which may be a ring
 constexpr std::size_t kFramesMax = 100'000;
 
 }  // namespace
@@ -19,8 +19,10 @@ void FrameTree::Add(const bags::StampedPose& transform, bool is_static) {
   links_[child] = {PlainFrame(transform.header.frame), transform.T_frame_child, transform.header.stamp_ns, is_static};
 }
 
-std::optional<bags::StampedPose> FrameTree::Pose(const std::string& frame, const std::string& child, std::int64_t tolerance_ns) const {
-  std::int64_t oldest_ns = std::numeric_limits<std::int64_t>::max(), newest_ns = std::numeric_limits<std::int64_t>::min();
+std::optional<bags::StampedPose> FrameTree::Pose(const std::string& frame, const std::string& child,
+                                                 std::int64_t tolerance_ns) const {
+  std::int64_t oldest_ns = std::numeric_limits<std::int64_t>::max(),
+               newest_ns = std::numeric_limits<std::int64_t>::min();
   Se3 T_at_child;
   std::string at = PlainFrame(child);
   for (int i = 0; at != PlainFrame(frame); ++i) {
@@ -36,4 +38,4 @@ std::optional<bags::StampedPose> FrameTree::Pose(const std::string& frame, const
   return bags::StampedPose{{newest_ns, frame}, child, T_at_child.Normalized()};
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -14,9 +14,10 @@ class FrameTree {
  public:
   // The newest transform of its child. A static one holds for all time.
   void Add(const bags::StampedPose& transform, bool is_static);
-  // The pose of `child` in `frame`, which is above it, at the stamp of the newest transform between. Nothing: there is no such chain yet, all of it is static, or its
-  // transforms are further apart than `tolerance_ns`.
-  [[nodiscard]] std::optional<bags::StampedPose> Pose(const std::string& frame, const std::string& child, std::int64_t tolerance_ns) const;
+  // The pose of `child` in `frame`, which is above it, at the stamp of the newest transform between. Nothing: there is
+  // no such chain yet, all of it is static, or its transforms are further apart than `tolerance_ns`.
+  [[nodiscard]] std::optional<bags::StampedPose> Pose(const std::string& frame, const std::string& child,
+                                                      std::int64_t tolerance_ns) const;
 
  private:
   struct Link {
@@ -31,4 +32,4 @@ class FrameTree {
 // "/base_link" of ROS 1 is "base_link".
 [[nodiscard]] std::string PlainFrame(const std::string& frame);
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -30,7 +30,8 @@ struct Chosen {
 
 class Importer {
  public:
-  Importer(const ImportInput& input, const RigMap& map, const SessionFolder& folder) : input_(input), map_(map), folder_(folder), writer_(folder) {}
+  Importer(const ImportInput& input, const RigMap& map, const SessionFolder& folder)
+      : input_(input), map_(map), folder_(folder), writer_(folder) {}
 
   Result<ImportOutcome> Run(const Progress& progress) {
     RIGCAL_ASSIGN(intake_, TakeIn(input_.bag, map_, progress));
@@ -54,9 +55,10 @@ class Importer {
       different.erase(std::unique(different.begin(), different.end()), different.end());
       if (2 * different.size() >= intake_.sensors[s].stamps_ns.size()) continue;
       return Fail(ErrorCode::kInvalidInput,
-                  "the headers of " + Quoted(map_.sensors[s].topic) + " have " + std::to_string(different.size()) + " different stamps in " +
-                      std::to_string(intake_.sensors[s].stamps_ns.size()) + " messages",
-                  "Its driver does not stamp them: set `stamp: log` for " + Quoted(map_.sensors[s].id.str()) + " in rig.yaml, if the recorder's time will do.");
+                  "the headers of " + Quoted(map_.sensors[s].topic) + " have " + std::to_string(different.size()) +
+                      " different stamps in " + std::to_string(intake_.sensors[s].stamps_ns.size()) + " messages",
+                  "Its driver does not stamp them: set `stamp: log` for " + Quoted(map_.sensors[s].id.str()) +
+                      " in rig.yaml, if the recorder's time will do.");
     }
     return {};
   }
@@ -65,17 +67,20 @@ class Importer {
     std::vector<SensorStamps> stamps;
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
       const bool is_stream = map_.sensors[s].kind == SensorKind::kPoseStream;
-      stamps.push_back({is_stream ? std::vector<std::int64_t>() : intake_.sensors[s].stamps_ns, MakesFiles(map_.sensors[s].kind)});
+      stamps.push_back(
+          {is_stream ? std::vector<std::int64_t>() : intake_.sensors[s].stamps_ns, MakesFiles(map_.sensors[s].kind)});
     }
     plan_ = PlanCaptures(stamps, map_.tolerance_ns, map_.every_ns);
     outcome_.tolerance_ns = map_.tolerance_ns;
     chosen_.resize(map_.sensors.size());
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
       const SensorIntake& taken = intake_.sensors[s];
-      outcome_.sensors.push_back({map_.sensors[s].id.str(), map_.sensors[s].topic, taken.messages, 0, taken.refused, taken.first_refusal, plan_.uses[s]});
+      outcome_.sensors.push_back({map_.sensors[s].id.str(), map_.sensors[s].topic, taken.messages, 0, taken.refused,
+                                  taken.first_refusal, plan_.uses[s]});
       for (std::size_t k = 0; MakesFiles(map_.sensors[s].kind) && k < plan_.captures.size(); ++k)
         if (const auto& message = plan_.captures[k].message[s]) chosen_[s].push_back({taken.ordinals[*message], k});
-      std::sort(chosen_[s].begin(), chosen_[s].end(), [](const Chosen& a, const Chosen& b) { return a.ordinal < b.ordinal; });
+      std::sort(chosen_[s].begin(), chosen_[s].end(),
+                [](const Chosen& a, const Chosen& b) { return a.ordinal < b.ordinal; });
     }
   }
 
@@ -94,7 +99,8 @@ class Importer {
       if (sensors == by_topic.end()) continue;
       const std::uint32_t ordinal = ordinals[message.topic->name]++;
       for (const std::size_t s : sensors->second)
-        if (next[s] < chosen_[s].size() && chosen_[s][next[s]].ordinal == ordinal) RIGCAL_TRY(WriteFile(s, chosen_[s][next[s]++], message));
+        if (next[s] < chosen_[s].size() && chosen_[s][next[s]].ordinal == ordinal)
+          RIGCAL_TRY(WriteFile(s, chosen_[s][next[s]++], message));
     }
     return writer_.Flush();
   }
@@ -131,7 +137,8 @@ class Importer {
     if (outcome.written == 0) return {};  // a table without rows would be refused; that there is none is told
     if (static_cast<std::size_t>(outcome.written) > limits::kPoseTableRowsMax)
       return Fail(ErrorCode::kInvalidInput,
-                  "the poses of " + Quoted(sensor.id.str()) + " are " + std::to_string(outcome.written) + "; a session takes " + std::to_string(limits::kPoseTableRowsMax),
+                  "the poses of " + Quoted(sensor.id.str()) + " are " + std::to_string(outcome.written) +
+                      "; a session takes " + std::to_string(limits::kPoseTableRowsMax),
                   "Split the bag.");
     return folder_.Write(sensor.id.str() + "/poses.csv", text);
   }
@@ -153,7 +160,8 @@ class Importer {
     const SensorIntake& taken = intake_.sensors[s];
     std::vector<std::size_t> order(taken.stamps_ns.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return taken.stamps_ns[a] < taken.stamps_ns[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return taken.stamps_ns[a] < taken.stamps_ns[b]; });
     std::string rows;
     std::int64_t last_ns = -1;
     for (const std::size_t i : order) {
@@ -198,4 +206,4 @@ Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress)
   return Importer(input, map, folder).Run(progress);
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -19,7 +19,9 @@ constexpr std::int64_t kProgressEvery = 256;
 
 bool HasPoses(SensorKind kind) { return kind == SensorKind::kTracker || kind == SensorKind::kPoseStream; }
 
-bool EndsIn(const std::string& text, std::string_view end) { return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0; }
+bool EndsIn(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
 
 class Taker {
  public:
@@ -30,7 +32,8 @@ class Taker {
 
   Status Take(const bags::Message& message) {
     const auto sensors = by_topic_.find(message.topic->name);
-    const bool is_static = bags::KindOf(message.topic->type) == bags::MessageKind::kTransforms && EndsIn(message.topic->name, "tf_static");
+    const bool is_static =
+        bags::KindOf(message.topic->type) == bags::MessageKind::kTransforms && EndsIn(message.topic->name, "tf_static");
     if (sensors == by_topic_.end() && !is_static) return {};
     const bags::Definition* definition = DefinitionOf(message.topic);
     if (is_static && definition != nullptr) TakeStatic(message, *definition);
@@ -38,7 +41,8 @@ class Taker {
     for (const std::size_t s : sensors->second) {
       TakeFor(s, message, definition);
       if (++taken_ > kStampsMax)
-        return Fail(ErrorCode::kInvalidInput, "the sensors of the rig have more than " + std::to_string(kStampsMax) + " messages in this bag",
+        return Fail(ErrorCode::kInvalidInput,
+                    "the sensors of the rig have more than " + std::to_string(kStampsMax) + " messages in this bag",
                     "Split the bag, or take a fast topic out of rig.yaml.");
     }
     return {};
@@ -47,7 +51,9 @@ class Taker {
     intake_.damage = bag.Unread().All();
     return std::move(intake_);
   }
-  void Begin(std::int64_t log_ns) { intake_.first = Stamp{began_ ? std::min(intake_.first.ns, log_ns) : log_ns}, began_ = true; }
+  void Begin(std::int64_t log_ns) {
+    intake_.first = Stamp{began_ ? std::min(intake_.first.ns, log_ns) : log_ns}, began_ = true;
+  }
 
  private:
   // Null: it has none, and every message of it is refused.
@@ -71,7 +77,8 @@ class Taker {
     Keep(sensor, (*header)->stamp_ns, ordinal);
   }
 
-  void TakePoses(std::size_t s, const bags::Message& message, const bags::Definition& definition, std::uint32_t ordinal) {
+  void TakePoses(std::size_t s, const bags::Message& message, const bags::Definition& definition,
+                 std::uint32_t ordinal) {
     SensorIntake& sensor = intake_.sensors[s];
     const auto value = bags::Decode(*message.topic, definition, message.bytes);
     if (!value) return Refuse(sensor, Sentence(value.error()));
@@ -86,13 +93,15 @@ class Taker {
 
   void TakeTransforms(std::size_t s, const bags::Value& value, std::int64_t log_ns, std::uint32_t ordinal) {
     const MappedSensor& mapped = map_.sensors[s];
-    if (mapped.child_frame.empty()) return Refuse(intake_.sensors[s], "it has the poses of many frames. Set `frame` and `child_frame` in rig.yaml");
+    if (mapped.child_frame.empty())
+      return Refuse(intake_.sensors[s], "it has the poses of many frames. Set `frame` and `child_frame` in rig.yaml");
     const auto transforms = bags::ReadTransforms(value);
     if (!transforms) return Refuse(intake_.sensors[s], Sentence(transforms.error()));
     for (const bags::StampedPose& one : *transforms) trees_[s].Add(one, false);
     const auto pose = trees_[s].Pose(mapped.frame, mapped.child_frame, map_.tolerance_ns);
     const std::vector<std::int64_t>& stamps = intake_.sensors[s].stamps_ns;
-    const bool is_new = pose && (stamps.empty() || mapped.stamp == StampSource::kLog || pose->header.stamp_ns > stamps.back());
+    const bool is_new =
+        pose && (stamps.empty() || mapped.stamp == StampSource::kLog || pose->header.stamp_ns > stamps.back());
     if (is_new) KeepPose(s, *pose, log_ns, ordinal);
   }
   void TakeStatic(const bags::Message& message, const bags::Definition& definition) {
@@ -133,9 +142,13 @@ Status CheckTopics(const bags::Bag& bag, const RigMap& map) {
   for (const MappedSensor& sensor : map.sensors) {
     if (there.count(sensor.topic) > 0) continue;
     const std::string near = Suggestion(NearestNames(sensor.topic, names));
-    return Fail(ErrorCode::kInvalidInput, "the bag has no topic " + Quoted(sensor.topic) + ", which rig.yaml has for " + Quoted(sensor.id.str()) + near,
-                "It has " + (names.empty() ? "none" : formats::FirstThree(names.size(), [&](std::size_t i) { return Quoted(names[i]); })) +
-                    "; `rigcal import BAG --list` shows them.");
+    return Fail(
+        ErrorCode::kInvalidInput,
+        "the bag has no topic " + Quoted(sensor.topic) + ", which rig.yaml has for " + Quoted(sensor.id.str()) + near,
+        "It has " +
+            (names.empty() ? "none"
+                           : formats::FirstThree(names.size(), [&](std::size_t i) { return Quoted(names[i]); })) +
+            "; `rigcal import BAG --list` shows them.");
   }
   return {};
 }
@@ -155,4 +168,4 @@ Result<Intake> TakeIn(const std::filesystem::path& path, const RigMap& map, cons
   return taker.Finish(*bag);
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -17,8 +17,8 @@ struct SensorIntake {
   std::vector<std::int64_t> stamps_ns;
   std::vector<std::uint32_t> ordinals;  // which message of its topic, from 0
   std::vector<Se3> poses;
-  std::uint32_t messages = 0;           // of its topic
-  std::int64_t refused = 0;             // that have no stamp, or no pose that can be read
+  std::uint32_t messages = 0;  // of its topic
+  std::int64_t refused = 0;    // that have no stamp, or no pose that can be read
   std::string first_refusal;
 };
 
@@ -29,9 +29,10 @@ struct Intake {
 };
 
 using Progress = std::function<void(std::int64_t done, std::int64_t total)>;
-// kInvalidInput: more than kStampsMax messages of mapped sensors in all; a mapped topic that the bag does not have, with those that it has.
+// kInvalidInput: more than kStampsMax messages of mapped sensors in all; a mapped topic that the bag does not have,
+// with those that it has.
 [[nodiscard]] Result<Intake> TakeIn(const std::filesystem::path& bag, const RigMap& map, const Progress& progress);
 
 constexpr std::size_t kStampsMax = 2'000'000;
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -10,12 +10,21 @@ namespace {
 
 // How OpenCV gets BGR from it; it names a Bayer pattern by the second row of it, read from the second column.
 const std::map<std::string, int>& Conversions() {
-  static const std::map<std::string, int> kConversions = {
-      {"rgb8", cv::COLOR_RGB2BGR},           {"bgra8", cv::COLOR_BGRA2BGR},         {"rgba8", cv::COLOR_RGBA2BGR},
-      {"bayer_rggb8", cv::COLOR_BayerBG2BGR}, {"bayer_bggr8", cv::COLOR_BayerRG2BGR}, {"bayer_gbrg8", cv::COLOR_BayerGR2BGR},
-      {"bayer_grbg8", cv::COLOR_BayerGB2BGR}, {"bayer_rggb16", cv::COLOR_BayerBG2BGR}, {"bayer_bggr16", cv::COLOR_BayerRG2BGR},
-      {"bayer_gbrg16", cv::COLOR_BayerGR2BGR}, {"bayer_grbg16", cv::COLOR_BayerGB2BGR}, {"yuv422", cv::COLOR_YUV2BGR_UYVY},
-      {"uyvy", cv::COLOR_YUV2BGR_UYVY},      {"yuv422_yuy2", cv::COLOR_YUV2BGR_YUY2}, {"yuyv", cv::COLOR_YUV2BGR_YUY2}};
+  static const std::map<std::string, int> kConversions = {{"rgb8", cv::COLOR_RGB2BGR},
+                                                          {"bgra8", cv::COLOR_BGRA2BGR},
+                                                          {"rgba8", cv::COLOR_RGBA2BGR},
+                                                          {"bayer_rggb8", cv::COLOR_BayerBG2BGR},
+                                                          {"bayer_bggr8", cv::COLOR_BayerRG2BGR},
+                                                          {"bayer_gbrg8", cv::COLOR_BayerGR2BGR},
+                                                          {"bayer_grbg8", cv::COLOR_BayerGB2BGR},
+                                                          {"bayer_rggb16", cv::COLOR_BayerBG2BGR},
+                                                          {"bayer_bggr16", cv::COLOR_BayerRG2BGR},
+                                                          {"bayer_gbrg16", cv::COLOR_BayerGR2BGR},
+                                                          {"bayer_grbg16", cv::COLOR_BayerGB2BGR},
+                                                          {"yuv422", cv::COLOR_YUV2BGR_UYVY},
+                                                          {"uyvy", cv::COLOR_YUV2BGR_UYVY},
+                                                          {"yuv422_yuy2", cv::COLOR_YUV2BGR_YUY2},
+                                                          {"yuyv", cv::COLOR_YUV2BGR_YUY2}};
   return kConversions;
 }
 
@@ -33,7 +42,8 @@ cv::Mat MatOf(const bags::Image& image) {
 
 cv::Mat Swapped(const cv::Mat& words) {
   cv::Mat swapped = words.clone();
-  swapped.forEach<std::uint16_t>([](std::uint16_t& word, const int*) { word = static_cast<std::uint16_t>(word << 8 | word >> 8); });
+  swapped.forEach<std::uint16_t>(
+      [](std::uint16_t& word, const int*) { word = static_cast<std::uint16_t>(word << 8 | word >> 8); });
   return swapped;
 }
 
@@ -60,9 +70,11 @@ Result<std::string> PngOf(const bags::Image& image) {
       return bags::RefuseMessage("the picture cannot be written as PNG");
     return std::string(png.begin(), png.end());
   } catch (const std::exception& failure) {
-    if (IsOutOfMemory(failure)) return Fail(ErrorCode::kBusy, "there is no memory for a picture", "Close other programs and go on with the same command.");
+    if (IsOutOfMemory(failure))
+      return Fail(ErrorCode::kBusy, "there is no memory for a picture",
+                  "Close other programs and go on with the same command.");
     return bags::RefuseMessage(std::string("the picture cannot be written as PNG: ") + failure.what());
   }
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

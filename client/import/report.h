@@ -17,4 +17,4 @@ void PrintSurvey(const BagSurvey& survey, std::ostream& out);
 void PrintOutcome(const ImportOutcome& outcome, const std::string& folder, std::ostream& out);
 [[nodiscard]] std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder);
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -28,8 +28,10 @@ void WriteTopic(JsonWriter& out, const TopicSurvey& topic) {
   out.Text("encoding", topic.encoding);
   out.Integer("messages", topic.count);
   out.Integer("bytes", topic.bytes);
-  if (topic.rate_hz) out.Number("rate_hz", *topic.rate_hz);
-  else out.Null("rate_hz");
+  if (topic.rate_hz)
+    out.Number("rate_hz", *topic.rate_hz);
+  else
+    out.Null("rate_hz");
   out.Integer("first_log_ns", topic.first_ns);
   out.Integer("last_log_ns", topic.last_ns);
   out.Integer("longest_gap_ns", topic.longest_gap_ns);
@@ -83,4 +85,4 @@ std::string OutcomeJson(const ImportOutcome& outcome, const std::string& folder)
   });
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -54,7 +54,9 @@ void RefuseTwins(const YamlField& sensors, const RigMap& map) {
 YamlNode SessionTree(const YamlNode& root) {
   YamlNode session = root;
   const auto drop = [](YamlNode& map, const auto& is_own) {
-    map.items.erase(std::remove_if(map.items.begin(), map.items.end(), [&](const YamlNode& item) { return is_own(item.key); }), map.items.end());
+    map.items.erase(
+        std::remove_if(map.items.begin(), map.items.end(), [&](const YamlNode& item) { return is_own(item.key); }),
+        map.items.end());
   };
   drop(session, [](const std::string& key) { return key == "import"; });
   for (YamlNode& member : session.items)
@@ -72,11 +74,13 @@ Result<RigMap> ReadRigMap(std::string_view text, const std::string& name) {
   if (root.Find("captured_at")) root.Refuse("captured_at is taken from the bag: take it out");
   if (const auto options = root.Find("import")) {
     options->AllowOnly({"tolerance_s", "every_s"});
-    if (const auto tolerance = options->Find("tolerance_s")) map.tolerance_ns = Nanoseconds(*tolerance, kTolerance_sMax);
+    if (const auto tolerance = options->Find("tolerance_s"))
+      map.tolerance_ns = Nanoseconds(*tolerance, kTolerance_sMax);
     if (const auto every = options->Find("every_s")) map.every_ns = Nanoseconds(*every, kEvery_sMax);
   }
   const YamlField sensors = root.At("sensors");
-  for (const YamlField& sensor : sensors.Members()) map.sensors.push_back(ReadSensor(sensor.Called("sensor '" + sensor.Key() + "'")));
+  for (const YamlField& sensor : sensors.Members())
+    map.sensors.push_back(ReadSensor(sensor.Called("sensor '" + sensor.Key() + "'")));
   RefuseTwins(sensors, map);
   if (tree->error) return Fail(*tree->error);
   map.session = SessionTree(tree->root);
@@ -89,4 +93,4 @@ std::string SessionYaml(const RigMap& map, Stamp captured_at) {
   return "captured_at: " + YamlWord(ToIso(captured_at)) + "\n" + YamlLines(map.session, 0);
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -20,7 +20,8 @@ Status MakeFolder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (!failed) return {};
-  return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")", "Check the path and its permissions.");
+  return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")",
+              "Check the path and its permissions.");
 }
 
 // What a run that was ended amid a file left beside it.
@@ -48,8 +49,10 @@ Result<SessionFolder> SessionFolder::Begin(const fs::path& folder, const std::st
     RemoveUnfinished(folder);
     return SessionFolder(folder);
   }
-  return Fail(ErrorCode::kConflict, folder.string() + " holds the import of another bag, or of this one with another rig.yaml or other options",
-              "Give the path of a new folder, or remove that one.");
+  return Fail(
+      ErrorCode::kConflict,
+      folder.string() + " holds the import of another bag, or of this one with another rig.yaml or other options",
+      "Give the path of a new folder, or remove that one.");
 }
 
 bool SessionFolder::complete() const { return Has(kSession); }
@@ -64,9 +67,12 @@ Status SessionFolder::Write(const std::string& file, std::string_view bytes) con
   return WriteDurably(folder_ / file, bytes);
 }
 
-Status SessionFolder::Finish(std::string_view session_yaml) const { return WriteDurably(folder_ / kSession, session_yaml); }
+Status SessionFolder::Finish(std::string_view session_yaml) const {
+  return WriteDurably(folder_ / kSession, session_yaml);
+}
 
-Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, std::int64_t tolerance_ns, std::int64_t every_ns) {
+Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, std::int64_t tolerance_ns,
+                               std::int64_t every_ns) {
   RIGCAL_ASSIGN(const bags::Parts parts, bags::PartsOf(bag));
   return formats::WriteObject([&](formats::JsonWriter& out) {
     out.Integer("format", 1);
@@ -86,4 +92,4 @@ Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, s
   });
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -12,7 +12,8 @@ namespace rigcal::importing {
 
 class SessionFolder {
  public:
-  // Makes the folder, or goes on with one that the same import (`identity`, a text of its input) began. kConflict: it holds something else.
+  // Makes the folder, or goes on with one that the same import (`identity`, a text of its input) began. kConflict: it
+  // holds something else.
   [[nodiscard]] static Result<SessionFolder> Begin(const std::filesystem::path& folder, const std::string& identity);
   // Whether the import came to its end before.
   [[nodiscard]] bool complete() const;
@@ -29,6 +30,7 @@ class SessionFolder {
 };
 
 // What makes two imports the same: the names and sizes of the bag's files, the rig's text, the options.
-[[nodiscard]] Result<std::string> IdentityOf(const std::filesystem::path& bag, std::string_view rig_yaml, std::int64_t tolerance_ns, std::int64_t every_ns);
+[[nodiscard]] Result<std::string> IdentityOf(const std::filesystem::path& bag, std::string_view rig_yaml,
+                                             std::int64_t tolerance_ns, std::int64_t every_ns);
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

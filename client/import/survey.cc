@@ -13,7 +13,8 @@ constexpr std::int64_t kProgressEvery = 256;  // messages
 
 }  // namespace
 
-Result<BagSurvey> SurveyBag(const std::filesystem::path& path, const std::function<void(std::int64_t, std::int64_t)>& progress) {
+Result<BagSurvey> SurveyBag(const std::filesystem::path& path,
+                            const std::function<void(std::int64_t, std::int64_t)>& progress) {
   RIGCAL_ASSIGN(const std::unique_ptr<bags::Bag> bag, bags::OpenBag(path));
   std::map<std::pair<std::string, std::string>, TopicTally> tallies;
   BagSurvey survey;
@@ -31,4 +32,4 @@ Result<BagSurvey> SurveyBag(const std::filesystem::path& path, const std::functi
   return survey;
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

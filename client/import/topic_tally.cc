@@ -23,7 +23,9 @@ std::string LensModelOf(const std::string& distortion_model) {
   return distortion_model == "equidistant" || distortion_model == "fisheye" ? "fisheye_kb4" : "";
 }
 
-std::string SizeText(std::int64_t width, std::int64_t height) { return std::to_string(width) + " x " + std::to_string(height); }
+std::string SizeText(std::int64_t width, std::int64_t height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
 
 void Describe(const bags::CameraInfo& info, TopicSurvey& found) {
   found.detail = SizeText(info.width_px, info.height_px) + " " + info.distortion_model;
@@ -42,7 +44,9 @@ void Describe(const bags::PointCloud& cloud, TopicSurvey& found) {
   for (const bags::PointField& field : cloud.fields) found.detail += " " + field.name;
   found.sensor_kind = "lidar";
 }
-void Describe(const bags::LaserScan& scan, TopicSurvey& found) { found.detail = std::to_string(scan.ranges_m.size()) + " ranges in a plane"; }
+void Describe(const bags::LaserScan& scan, TopicSurvey& found) {
+  found.detail = std::to_string(scan.ranges_m.size()) + " ranges in a plane";
+}
 void Describe(const bags::StampedPose& pose, TopicSurvey& found) {
   if (!pose.child.empty()) found.detail = pose.header.frame + " -> " + pose.child;
   found.sensor_kind = "pose_stream";
@@ -51,7 +55,8 @@ void Describe(const bags::Imu&, TopicSurvey& found) { found.detail = "no pose of
 void Describe(const std::vector<bags::StampedPose>& transforms, TopicSurvey& found) {
   if (transforms.empty()) return;
   found.frame = transforms[0].header.frame;
-  for (const bags::StampedPose& one : transforms) found.detail += (found.detail.empty() ? "" : ", ") + one.header.frame + " -> " + one.child;
+  for (const bags::StampedPose& one : transforms)
+    found.detail += (found.detail.empty() ? "" : ", ") + one.header.frame + " -> " + one.child;
 }
 
 template <typename T>
@@ -138,8 +143,10 @@ void TopicTally::LookInto(const bags::Message& message) {
   if (!definition_) return;
   if (found_.count == 1) {
     const auto value = bags::Decode(*message.topic, *definition_, message.bytes);
-    if (value) Describe(message.topic->type, *value, found_);
-    else found_.trouble = Sentence(value.error());
+    if (value)
+      Describe(message.topic->type, *value, found_);
+    else
+      found_.trouble = Sentence(value.error());
     if (found_.detail.size() > kDetailBytesMax) found_.detail = found_.detail.substr(0, kDetailBytesMax) + "...";
     if (!IsPrintableUtf8(found_.detail)) found_.detail = Quoted(found_.detail);
   }
@@ -167,4 +174,4 @@ TopicSurvey TopicTally::Found() const {
   return found;
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

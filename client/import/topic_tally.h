@@ -45,4 +45,4 @@ class TopicTally {
   std::int64_t last_stamp_ns_ = INT64_MIN;
 };
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

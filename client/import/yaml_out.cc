@@ -12,8 +12,12 @@ using formats::YamlNode;
 bool IsPlain(const std::string& text) {
   if (text.empty() || text == "~" || text == "null" || text == "Null" || text == "NULL") return false;
   const auto is_alnum = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
-  if (!is_alnum(text[0]) && text[0] != '/' && text[0] != '_' && !(text[0] == '-' && text.size() > 1 && is_alnum(text[1]))) return false;
-  return std::all_of(text.begin(), text.end(), [&](char c) { return is_alnum(c) || std::string_view("/_.+-").find(c) != std::string_view::npos; });
+  if (!is_alnum(text[0]) && text[0] != '/' && text[0] != '_' &&
+      !(text[0] == '-' && text.size() > 1 && is_alnum(text[1])))
+    return false;
+  return std::all_of(text.begin(), text.end(), [&](char c) {
+    return is_alnum(c) || std::string_view("/_.+-").find(c) != std::string_view::npos;
+  });
 }
 
 std::string Inline(const YamlNode& node) {
@@ -58,4 +62,4 @@ std::string YamlLines(const YamlNode& map, int indent) {
   return lines;
 }
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -12,4 +12,4 @@ namespace rigcal::importing {
 // The members of a map, a line each, indented by `indent`. Reads back as the same tree.
 [[nodiscard]] std::string YamlLines(const formats::YamlNode& map, int indent);
 
-}  // namespace rigcal::import
+}  // namespace rigcal::importing

@@ -32,8 +32,8 @@ struct PointCloud {
 struct LaserScan {
   Header header;
   double angle_min_rad = 0, angle_increment_rad = 0, time_increment_s = 0, range_min_m = 0, range_max_m = 0;
-  std::vector<float> ranges_m;      // beyond the limits or not finite: no return
-  std::vector<float> intensities;   // as many, or none
+  std::vector<float> ranges_m;     // beyond the limits or not finite: no return
+  std::vector<float> intensities;  // as many, or none
 };
 // kInvalidInput: angles that are not finite, other counts.
 [[nodiscard]] Result<LaserScan> ReadLaserScan(const Value& message);

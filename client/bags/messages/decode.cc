@@ -1,5 +1,6 @@
-// CDR (OMG DDSI-RTPS, XCDR1 without parameter lists) and ROS 1's serialisation differ in three things: CDR has a head that says the byte order,
-// aligns each number to its own size, and gives a text a zero at its end and an empty message a byte.
+// CDR (OMG DDSI-RTPS, XCDR1 without parameter lists) and ROS 1's serialisation differ in three things: CDR has a head
+// that says the byte order, aligns each number to its own size, and gives a text a zero at its end and an empty message
+// a byte.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -41,7 +42,8 @@ class Decoder {
     if (field.arity == Arity::kSequence) {
       RIGCAL_ASSIGN(count, Count());
       if (field.count_max > 0 && count > field.count_max)
-        return Bad(Quoted(field.name) + " has " + std::to_string(count) + " elements, not at most " + std::to_string(field.count_max));
+        return Bad(Quoted(field.name) + " has " + std::to_string(count) + " elements, not at most " +
+                   std::to_string(field.count_max));
     }
     return SizeOf(field.primitive) > 0 ? Numbers(field, count) : List(field, count);
   }
@@ -73,7 +75,9 @@ class Decoder {
     value.count_ = 0;
     return value;
   }
-  static bool IsReal(Primitive primitive) { return primitive == Primitive::kFloat32 || primitive == Primitive::kFloat64; }
+  static bool IsReal(Primitive primitive) {
+    return primitive == Primitive::kFloat32 || primitive == Primitive::kFloat64;
+  }
   [[nodiscard]] std::int64_t Integer64(Primitive primitive, Bytes taken) const {
     std::uint64_t bits = 0;
     std::memcpy(&bits, taken.data(), sizeof bits);
@@ -96,7 +100,8 @@ class Decoder {
     const std::size_t size = SizeOf(field.primitive);
     Value value = Plain(Value::Kind::kNumbers, field.primitive);
     if (count == 0) return value;
-    if (count > left() / size) return Bad(Quoted(field.name) + " claims " + std::to_string(count) + " elements, which are not there");
+    if (count > left() / size)
+      return Bad(Quoted(field.name) + " claims " + std::to_string(count) + " elements, which are not there");
     RIGCAL_ASSIGN(value.bytes_, Take(count * size, size));
     value.count_ = count;
     return value;
@@ -129,7 +134,8 @@ class Decoder {
   }
   Result<Bytes> Take(std::size_t size, std::size_t alignment) {
     const std::size_t padding = is_cdr_ ? (alignment - at_ % alignment) % alignment : 0;
-    if (padding > left() || size > left() - padding) return Bad("it ends within a field, " + std::to_string(left()) + " bytes before its end");
+    if (padding > left() || size > left() - padding)
+      return Bad("it ends within a field, " + std::to_string(left()) + " bytes before its end");
     at_ += padding + size;
     return bytes_.subspan(at_ - size, size);
   }
@@ -138,7 +144,8 @@ class Decoder {
     return Bad("it has more than " + std::to_string(limits::kValuesMax) + " values");
   }
   static tl::unexpected<Error> Bad(std::string what) {
-    return Fail(ErrorCode::kInvalidInput, std::move(what), "The message is left out; record it again with its right definition.");
+    return Fail(ErrorCode::kInvalidInput, std::move(what),
+                "The message is left out; record it again with its right definition.");
   }
 
   Bytes bytes_;
@@ -157,8 +164,11 @@ Result<Decoder> BeginCdr(Bytes bytes) {
     return Fail(ErrorCode::kInvalidInput, "its " + std::to_string(bytes.size()) + " bytes are no CDR message", kCure);
   const unsigned kind = static_cast<unsigned>(bytes[0]) * 256 + static_cast<unsigned>(bytes[1]);
   if (kind > 1) {
-    const std::string name = kind <= 3 ? "PL_CDR, a list of parameters" : kind >= 6 && kind <= 11 ? "XCDR2" : "an unknown encoding";
-    return Fail(ErrorCode::kUnsupported, "it is written as " + name + " (" + std::to_string(kind) + "), which is not read", kCure);
+    const std::string name = kind <= 3                 ? "PL_CDR, a list of parameters"
+                             : kind >= 6 && kind <= 11 ? "XCDR2"
+                                                       : "an unknown encoding";
+    return Fail(ErrorCode::kUnsupported,
+                "it is written as " + name + " (" + std::to_string(kind) + "), which is not read", kCure);
   }
   return Decoder(bytes.subspan(kCdrHeadBytes), true, kind == 0);
 }
@@ -166,7 +176,8 @@ Result<Decoder> BeginCdr(Bytes bytes) {
 Result<Value> DecodeBytes(const Topic& topic, const Definition& definition, Bytes bytes, std::size_t fields_max) {
   const bool is_cdr = topic.encoding == "cdr";
   if (!is_cdr && topic.encoding != "ros1")
-    return Fail(ErrorCode::kUnsupported, "it is encoded as " + Quoted(topic.encoding) + ", which is neither cdr nor ros1",
+    return Fail(ErrorCode::kUnsupported,
+                "it is encoded as " + Quoted(topic.encoding) + ", which is neither cdr nor ros1",
                 "The topic is left out.");
   Decoder decoder(bytes, false, false);
   if (is_cdr) {
@@ -174,7 +185,8 @@ Result<Value> DecodeBytes(const Topic& topic, const Definition& definition, Byte
   }
   auto value = decoder.Message(*definition.root, fields_max);
   if (!value || fields_max != SIZE_MAX || decoder.left() <= (is_cdr ? kPaddingMax : 0)) return value;
-  return Fail(ErrorCode::kInvalidInput, "it has " + std::to_string(decoder.left()) + " bytes more than its definition says",
+  return Fail(ErrorCode::kInvalidInput,
+              "it has " + std::to_string(decoder.left()) + " bytes more than its definition says",
               "The message is left out; record it again with its right definition.");
 }
 

@@ -6,7 +6,8 @@
 namespace rigcal::bags {
 namespace {
 
-constexpr const char* kCure = "Its topic is listed and left out; record it with a recorder that writes message definitions.";
+constexpr const char* kCure =
+    "Its topic is listed and left out; record it with a recorder that writes message definitions.";
 
 Error Refusal(ErrorCode code, const Topic& topic, const std::string& what) {
   return {code, "topic " + Quoted(topic.name) + " of type " + Quoted(topic.type) + ": " + what, kCure};
@@ -21,7 +22,8 @@ class Resolver {
 
   // The type of this name with all below it.
   Result<const MessageType*> Resolve(const std::string& name, std::size_t depth) {
-    if (depth > limits::kNestingMax) return Bad("messages are nested deeper than " + std::to_string(limits::kNestingMax));
+    if (depth > limits::kNestingMax)
+      return Bad("messages are nested deeper than " + std::to_string(limits::kNestingMax));
     auto found = types_.find(name);
     if (found == types_.end()) {
       const std::string text = KnownMsgText(name, is_ros1_);
@@ -65,8 +67,14 @@ class Resolver {
 
 Status ReadText(const Topic& topic, const std::string& name, bool is_ros1, Types& types) {
   if (topic.schema.size() > limits::kDefinitionBytesMax)
-    return Fail(Refusal(ErrorCode::kInvalidInput, topic, "its definition has " + std::to_string(topic.schema.size()) + " bytes"));
-  if (topic.schema_encoding == "ros2msg" || topic.schema_encoding == "ros1msg") return ReadMsgText(topic.schema, name, types);
+    return Fail(Refusal(ErrorCode::kInvalidInput, topic,
+                        "its definition has " + std::to_string(topic.schema.size()) + " bytes"));
+  // An empty text is that of an empty message, or of a recorder that did not find the definition.
+  if (topic.schema.empty() && !KnownMsgText(name, is_ros1).empty()) return {};
+  if (topic.schema.find("\n---") != std::string::npos || topic.schema.rfind("---", 0) == 0)
+    return Fail(Refusal(ErrorCode::kUnsupported, topic, "it is of a service, not of a message"));
+  if (topic.schema_encoding == "ros2msg" || topic.schema_encoding == "ros1msg")
+    return ReadMsgText(topic.schema, name, types);
   if (topic.schema_encoding == "ros2idl" || topic.schema_encoding == "omgidl") return ReadIdlText(topic.schema, types);
   if (!topic.schema_encoding.empty() && KnownMsgText(name, is_ros1).empty())
     return Fail(Refusal(ErrorCode::kUnsupported, topic,

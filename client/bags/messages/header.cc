@@ -8,12 +8,15 @@ std::optional<Header> HeaderOf(const Value& header) {
   const Value& stamp = header["stamp"];
   if (stamp["sec"].IsAbsent() || stamp["nanosec"].IsAbsent()) return std::nullopt;
   // Both have 32 bits: no sum of theirs is beyond int64.
-  return Header{stamp["sec"].Integer() * 1'000'000'000 + stamp["nanosec"].Integer(), std::string(header["frame_id"].Text())};
+  return Header{stamp["sec"].Integer() * 1'000'000'000 + stamp["nanosec"].Integer(),
+                std::string(header["frame_id"].Text())};
 }
 
 Result<std::optional<Header>> ReadHeader(const Topic& topic, const Definition& definition, Bytes bytes) {
   const auto& fields = definition.root->fields;
-  if (fields.empty() || fields[0].type == nullptr || fields[0].type->name != "std_msgs/Header" || fields[0].arity != Arity::kOne) return std::nullopt;
+  if (fields.empty() || fields[0].type == nullptr || fields[0].type->name != "std_msgs/Header" ||
+      fields[0].arity != Arity::kOne)
+    return std::nullopt;
   RIGCAL_ASSIGN(const Value value, Decode(topic, definition, bytes, 1));
   return HeaderOf(value.items()[0]);
 }
@@ -36,6 +39,8 @@ MessageKind KindOf(std::string_view type) {
   return found == kKinds.end() ? MessageKind::kOther : found->second;
 }
 
-tl::unexpected<Error> RefuseMessage(const std::string& what, const std::string& cure) { return Fail(ErrorCode::kInvalidInput, what, cure); }
+tl::unexpected<Error> RefuseMessage(const std::string& what, const std::string& cure) {
+  return Fail(ErrorCode::kInvalidInput, what, cure);
+}
 
 }  // namespace rigcal::bags

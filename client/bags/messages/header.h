@@ -19,11 +19,23 @@ struct Header {
 [[nodiscard]] Result<std::optional<Header>> ReadHeader(const Topic& topic, const Definition& definition, Bytes bytes);
 
 // What a message type is to Rigcal.
-enum class MessageKind { kImage, kCompressedImage, kCameraInfo, kCloud, kScan, kImu, kPose, kOdometry, kTransforms, kOther };
+enum class MessageKind {
+  kImage,
+  kCompressedImage,
+  kCameraInfo,
+  kCloud,
+  kScan,
+  kImu,
+  kPose,
+  kOdometry,
+  kTransforms,
+  kOther
+};
 // By the type's name, however it is spelt.
 [[nodiscard]] MessageKind KindOf(std::string_view type);
 
 // Of one that a typed reader refuses. `what` says what of the message is wrong.
-[[nodiscard]] tl::unexpected<Error> RefuseMessage(const std::string& what, const std::string& cure = "The message is left out; mend what sends it.");
+[[nodiscard]] tl::unexpected<Error> RefuseMessage(
+    const std::string& what, const std::string& cure = "The message is left out; mend what sends it.");
 
 }  // namespace rigcal::bags

@@ -16,11 +16,12 @@ tl::unexpected<Error> Bad(std::string what) { return Fail(ErrorCode::kUnsupporte
 
 std::optional<Primitive> PrimitiveOf(std::string_view word) {
   static const std::map<std::string_view, Primitive> kWords = {
-      {"boolean", Primitive::kBool},  {"octet", Primitive::kUint8},    {"char", Primitive::kUint8},    {"int8", Primitive::kInt8},
-      {"uint8", Primitive::kUint8},   {"short", Primitive::kInt16},    {"int16", Primitive::kInt16},   {"uint16", Primitive::kUint16},
-      {"long", Primitive::kInt32},    {"int32", Primitive::kInt32},    {"uint32", Primitive::kUint32}, {"int64", Primitive::kInt64},
-      {"uint64", Primitive::kUint64}, {"float", Primitive::kFloat32},  {"double", Primitive::kFloat64}, {"string", Primitive::kString},
-      {"wstring", Primitive::kWstring}};
+      {"boolean", Primitive::kBool},  {"octet", Primitive::kUint8},    {"char", Primitive::kUint8},
+      {"int8", Primitive::kInt8},     {"uint8", Primitive::kUint8},    {"short", Primitive::kInt16},
+      {"int16", Primitive::kInt16},   {"uint16", Primitive::kUint16},  {"long", Primitive::kInt32},
+      {"int32", Primitive::kInt32},   {"uint32", Primitive::kUint32},  {"int64", Primitive::kInt64},
+      {"uint64", Primitive::kUint64}, {"float", Primitive::kFloat32},  {"double", Primitive::kFloat64},
+      {"string", Primitive::kString}, {"wstring", Primitive::kWstring}};
   const auto found = kWords.find(word);
   return found == kWords.end() ? std::nullopt : std::optional(found->second);
 }
@@ -48,7 +49,8 @@ class IdlReader {
   }
 
   Status EnterModule() {
-    if (modules_.size() >= limits::kNestingMax) return Bad("the IDL's modules are nested deeper than " + std::to_string(limits::kNestingMax));
+    if (modules_.size() >= limits::kNestingMax)
+      return Bad("the IDL's modules are nested deeper than " + std::to_string(limits::kNestingMax));
     modules_.emplace_back(Take());
     return Expect("{");
   }
@@ -84,7 +86,8 @@ class IdlReader {
     RIGCAL_TRY(Expect("{"));
     MessageType type{name, {}};
     while (Peek() != "}") {
-      if (AtEnd() || ++fields_ > limits::kFieldsMax) return Bad("the IDL's struct " + Quoted(name) + " has no end, or too many fields");
+      if (AtEnd() || ++fields_ > limits::kFieldsMax)
+        return Bad("the IDL's struct " + Quoted(name) + " has no end, or too many fields");
       FieldType field;
       RIGCAL_TRY(ReadType(field));
       RIGCAL_TRY(ReadDeclarator(field));
@@ -149,11 +152,13 @@ class IdlReader {
     field.name = Take();
     if (Peek() == "[") {
       (void)Take();
-      if (field.arity != Arity::kOne) return Bad("the IDL's " + Quoted(field.name) + " is an array of arrays, which is not read");
+      if (field.arity != Arity::kOne)
+        return Bad("the IDL's " + Quoted(field.name) + " is an array of arrays, which is not read");
       field.arity = Arity::kFixed;
       RIGCAL_ASSIGN(field.count, TakeCount());
       RIGCAL_TRY(Expect("]"));
-      if (Peek() == "[") return Bad("the IDL's " + Quoted(field.name) + " is an array of two dimensions, which is not read");
+      if (Peek() == "[")
+        return Bad("the IDL's " + Quoted(field.name) + " is an array of two dimensions, which is not read");
     }
     return Expect(";");
   }

@@ -39,13 +39,16 @@ class Scanner {
       rest_.remove_prefix(1);
     }
   }
-  [[nodiscard]] bool IsNoIdl() const { return rest_[0] == '#' || rest_.rfind("===", 0) == 0 || rest_.rfind("IDL:", 0) == 0; }
+  [[nodiscard]] bool IsNoIdl() const {
+    return rest_[0] == '#' || rest_.rfind("===", 0) == 0 || rest_.rfind("IDL:", 0) == 0;
+  }
 
   Result<std::string_view> Token() {
     line_begins_ = false;
     if (rest_[0] == '"' || rest_[0] == '\'') return Text();
     std::size_t size = 0;
-    while (size < rest_.size() && (IsNameChar(rest_[size]) || rest_.substr(size, 2) == "::")) size += rest_[size] == ':' ? 2 : 1;
+    while (size < rest_.size() && (IsNameChar(rest_[size]) || rest_.substr(size, 2) == "::"))
+      size += rest_[size] == ':' ? 2 : 1;
     return Take(size == 0 ? 1 : size);
   }
 

@@ -19,17 +19,18 @@ bool IsSide(std::int64_t side_px) { return side_px >= 1 && side_px <= limits::kP
 
 int PixelBytes(std::string_view encoding) {
   static const std::map<std::string_view, int> kBytes = {
-      {"mono8", 1},        {"8UC1", 1},         {"bayer_rggb8", 1},  {"bayer_bggr8", 1},  {"bayer_gbrg8", 1}, {"bayer_grbg8", 1},
-      {"mono16", 2},       {"16UC1", 2},        {"bayer_rggb16", 2}, {"bayer_bggr16", 2}, {"bayer_gbrg16", 2}, {"bayer_grbg16", 2},
-      {"yuv422", 2},       {"uyvy", 2},         {"yuv422_yuy2", 2},  {"yuyv", 2},         {"bgr8", 3},        {"rgb8", 3},
-      {"8UC3", 3},         {"bgra8", 4},        {"rgba8", 4}};
+      {"mono8", 1},  {"8UC1", 1},  {"bayer_rggb8", 1},  {"bayer_bggr8", 1},  {"bayer_gbrg8", 1},  {"bayer_grbg8", 1},
+      {"mono16", 2}, {"16UC1", 2}, {"bayer_rggb16", 2}, {"bayer_bggr16", 2}, {"bayer_gbrg16", 2}, {"bayer_grbg16", 2},
+      {"yuv422", 2}, {"uyvy", 2},  {"yuv422_yuy2", 2},  {"yuyv", 2},         {"bgr8", 3},         {"rgb8", 3},
+      {"8UC3", 3},   {"bgra8", 4}, {"rgba8", 4}};
   const auto found = kBytes.find(encoding);
   return found == kBytes.end() ? 0 : found->second;
 }
 
 Result<Image> ReadImage(const Value& message) {
   const auto header = HeaderOf(message["header"]);
-  const std::int64_t width = message["width"].Integer(), height = message["height"].Integer(), step = message["step"].Integer();
+  const std::int64_t width = message["width"].Integer(), height = message["height"].Integer(),
+                     step = message["step"].Integer();
   if (!header) return RefuseMessage("the picture has no header");
   Image image;
   image.header = *header;
@@ -43,8 +44,9 @@ Result<Image> ReadImage(const Value& message) {
   image.data = message["data"].bytes();
   if (step < width * pixel || step > static_cast<std::int64_t>(limits::kRecordBytesMax) ||
       static_cast<std::int64_t>(image.data.size()) < step * (height - 1) + width * pixel)
-    return RefuseMessage("the picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels as " + Quoted(image.encoding) +
-                         " has " + std::to_string(image.data.size()) + " bytes in rows of " + std::to_string(step));
+    return RefuseMessage("the picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels as " +
+                         Quoted(image.encoding) + " has " + std::to_string(image.data.size()) + " bytes in rows of " +
+                         std::to_string(step));
   if (pixel == 2 && image.encoding[0] != 'b' && image.encoding.find("16") == std::string::npos && width % 2 != 0)
     return RefuseMessage("the picture as " + Quoted(image.encoding) + " has an odd width");
   image.width_px = static_cast<int>(width);
@@ -64,7 +66,8 @@ Result<CompressedImage> ReadCompressedImage(const Value& message) {
   if (begins.rfind("\xFF\xD8\xFF", 0) == 0) image.suffix = "jpg";
   if (begins == "\x89PNG\r\n\x1A\n") image.suffix = "png";
   if (!image.suffix.empty()) return image;
-  return Fail(ErrorCode::kUnsupported, "the picture is compressed as " + Quoted(message["format"].Text()) + " and is neither JPEG nor PNG",
+  return Fail(ErrorCode::kUnsupported,
+              "the picture is compressed as " + Quoted(message["format"].Text()) + " and is neither JPEG nor PNG",
               "Record the camera's uncompressed topic.");
 }
 

@@ -15,8 +15,8 @@ struct StampedPose {
   std::string child;  // of odometry and transforms; else empty
   Se3 T_frame_child;  // metres; the quaternion of unit length
 };
-// PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry (its pose). kInvalidInput: values that are not finite, a quaternion that is not of
-// unit length within 0.01.
+// PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry (its pose). kInvalidInput: values that are not
+// finite, a quaternion that is not of unit length within 0.01.
 [[nodiscard]] Result<StampedPose> ReadPose(const Value& message);
 // All of a TFMessage, in its order; errors as of ReadPose.
 [[nodiscard]] Result<std::vector<StampedPose>> ReadTransforms(const Value& message);

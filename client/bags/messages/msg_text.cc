@@ -44,14 +44,15 @@ std::optional<std::size_t> CountOf(std::string_view text) {
   return count;
 }
 
-// Of .msg text. `byte` differs between ROS 1 (int8) and ROS 2 (uint8): the bytes are the same, and nothing here asks for it.
+// Of .msg text. `byte` differs between ROS 1 (int8) and ROS 2 (uint8): the bytes are the same, and nothing here asks
+// for it.
 std::optional<Primitive> PrimitiveOf(std::string_view word) {
   static const std::map<std::string_view, Primitive> kWords = {
-      {"bool", Primitive::kBool},       {"byte", Primitive::kUint8},      {"char", Primitive::kUint8},
-      {"int8", Primitive::kInt8},       {"uint8", Primitive::kUint8},     {"int16", Primitive::kInt16},
-      {"uint16", Primitive::kUint16},   {"int32", Primitive::kInt32},     {"uint32", Primitive::kUint32},
-      {"int64", Primitive::kInt64},     {"uint64", Primitive::kUint64},   {"float32", Primitive::kFloat32},
-      {"float64", Primitive::kFloat64}, {"string", Primitive::kString},   {"wstring", Primitive::kWstring}};
+      {"bool", Primitive::kBool},       {"byte", Primitive::kUint8},    {"char", Primitive::kUint8},
+      {"int8", Primitive::kInt8},       {"uint8", Primitive::kUint8},   {"int16", Primitive::kInt16},
+      {"uint16", Primitive::kUint16},   {"int32", Primitive::kInt32},   {"uint32", Primitive::kUint32},
+      {"int64", Primitive::kInt64},     {"uint64", Primitive::kUint64}, {"float32", Primitive::kFloat32},
+      {"float64", Primitive::kFloat64}, {"string", Primitive::kString}, {"wstring", Primitive::kWstring}};
   const auto found = kWords.find(word);
   return found == kWords.end() ? std::nullopt : std::optional(found->second);
 }
@@ -84,7 +85,9 @@ Status ReadType(std::string_view word, FieldType& field) {
     return {};
   }
   field.primitive = Primitive::kMessage;
-  field.message = word == "time" ? "builtin_interfaces/Time" : word == "duration" ? "builtin_interfaces/Duration" : std::string(word);
+  field.message = word == "time"       ? "builtin_interfaces/Time"
+                  : word == "duration" ? "builtin_interfaces/Duration"
+                                       : std::string(word);
   return {};
 }
 
@@ -96,7 +99,8 @@ Result<std::optional<FieldType>> ReadField(std::string_view line) {
   RIGCAL_TRY(ReadType(TakeWord(line), field));
   line = Trimmed(line);
   const std::size_t name_end = line.find_first_of("= \t");
-  const std::string_view name = line.substr(0, name_end), rest = name_end == std::string_view::npos ? "" : Trimmed(line.substr(name_end));
+  const std::string_view name = line.substr(0, name_end),
+                         rest = name_end == std::string_view::npos ? "" : Trimmed(line.substr(name_end));
   if (name.empty()) return Bad("a field has a type and no name");
   if (rest.rfind('=', 0) == 0) return std::nullopt;
   field.name = name;

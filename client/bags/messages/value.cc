@@ -78,7 +78,8 @@ double Value::RealAt(std::size_t idx) const {
 }
 
 bool Value::SameAs(const Value& other) const {
-  if (kind_ != other.kind_ || integer_ != other.integer_ || !Same(real_, other.real_) || text_ != other.text_) return false;
+  if (kind_ != other.kind_ || integer_ != other.integer_ || !Same(real_, other.real_) || text_ != other.text_)
+    return false;
   if (count_ != other.count_ || items_.size() != other.items_.size()) return false;
   if (kind_ == Kind::kMessage && type_->name != other.type_->name) return false;
   for (std::size_t i = 0; i < items_.size(); ++i) {

@@ -12,8 +12,8 @@
 
 namespace rigcal::bags {
 
-// Points into the message's bytes and its definition, which outlive it. What is asked for and not there is absent, or the given fallback: a
-// reader runs straight through and judges what it got.
+// Points into the message's bytes and its definition, which outlive it. What is asked for and not there is absent, or
+// the given fallback: a reader runs straight through and judges what it got.
 class Value {
  public:
   enum class Kind { kAbsent, kInteger, kReal, kText, kNumbers, kList, kMessage };
@@ -30,7 +30,8 @@ class Value {
   [[nodiscard]] double Real(double fallback = 0) const;
   [[nodiscard]] std::int64_t Integer(std::int64_t fallback = 0) const;
   [[nodiscard]] std::string_view Text() const { return text_; }
-  // Of an array of numbers: how many, one of them, and the bytes as they stand (of one byte each, or in the machine's order).
+  // Of an array of numbers: how many, one of them, and the bytes as they stand (of one byte each, or in the machine's
+  // order).
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] double RealAt(std::size_t idx) const;
   [[nodiscard]] Bytes bytes() const { return bytes_; }
@@ -52,8 +53,9 @@ class Value {
   const MessageType* type_ = nullptr;
 };
 
-// A message of this topic. `fields_max`: decodes only its first fields, if that is all one wants to know. kInvalidInput: shorter or longer than its definition
-// says, too many values; kUnsupported: an encoding other than "cdr" (plain, of either byte order) and "ros1". Errors name the topic.
+// A message of this topic. `fields_max`: decodes only its first fields, if that is all one wants to know.
+// kInvalidInput: shorter or longer than its definition says, too many values; kUnsupported: an encoding other than
+// "cdr" (plain, of either byte order) and "ros1". Errors name the topic.
 [[nodiscard]] Result<Value> Decode(const Topic& topic, const Definition& definition, Bytes bytes,
                                    std::size_t fields_max = SIZE_MAX);
 

@@ -24,7 +24,9 @@ class CdrMessage {
     bytes_.insert(bytes_.end(), raw, raw + text.size() + 1);
     return *this;
   }
-  CdrMessage& Header(std::int32_t sec, std::uint32_t nanosec, const std::string& frame) { return Put(sec).Put(nanosec).Text(frame); }
+  CdrMessage& Header(std::int32_t sec, std::uint32_t nanosec, const std::string& frame) {
+    return Put(sec).Put(nanosec).Text(frame);
+  }
   CdrMessage& Block(const std::string& bytes) {
     Put(static_cast<std::uint32_t>(bytes.size()));
     const auto* raw = reinterpret_cast<const std::byte*>(bytes.data());

@@ -16,20 +16,28 @@ std::string Little(std::uint64_t value, int size) {
   return bytes;
 }
 std::string Block(const std::string& bytes) { return Little(bytes.size(), 4) + bytes; }
-std::string Record(int op, const std::string& content) { return Little(static_cast<std::uint64_t>(op), 1) + Little(content.size(), 8) + content; }
-std::string MessageOf(int k) { return Record(5, Little(1, 2) + Little(0, 4) + Little(static_cast<std::uint64_t>(k), 8) + Little(7, 8) + std::string(40, 'm')); }
+std::string Record(int op, const std::string& content) {
+  return Little(static_cast<std::uint64_t>(op), 1) + Little(content.size(), 8) + content;
+}
+std::string MessageOf(int k) {
+  return Record(
+      5, Little(1, 2) + Little(0, 4) + Little(static_cast<std::uint64_t>(k), 8) + Little(7, 8) + std::string(40, 'm'));
+}
 
 // Two chunks of two messages each, and an index of the chunks.
 std::string File() {
   const std::string magic("\x89MCAP0\r\n", 8);
-  const std::string head = Record(3, Little(1, 2) + Block("std_msgs/msg/String") + Block("ros2msg") + Block("string data\n")) +
-                           Record(4, Little(1, 2) + Little(1, 2) + Block("/t") + Block("cdr") + Block(""));
+  const std::string head =
+      Record(3, Little(1, 2) + Block("std_msgs/msg/String") + Block("ros2msg") + Block("string data\n")) +
+      Record(4, Little(1, 2) + Little(1, 2) + Block("/t") + Block("cdr") + Block(""));
   std::string file = magic + Record(1, Block("ros2") + Block("test")), index;
   for (int chunk = 0; chunk < 2; ++chunk) {
     const std::string records = head + MessageOf(2 * chunk) + MessageOf(2 * chunk + 1);
     const std::size_t offset = file.size();
-    file += Record(6, Little(0, 8) + Little(9, 8) + Little(records.size(), 8) + Little(0, 4) + Block("") + Little(records.size(), 8) + records);
-    index += Record(8, Little(0, 8) + Little(9, 8) + Little(offset, 8) + Little(file.size() - offset, 8) + Block("") + Little(0, 8) + Block("") + Little(0, 8) + Little(0, 8));
+    file += Record(6, Little(0, 8) + Little(9, 8) + Little(records.size(), 8) + Little(0, 4) + Block("") +
+                          Little(records.size(), 8) + records);
+    index += Record(8, Little(0, 8) + Little(9, 8) + Little(offset, 8) + Little(file.size() - offset, 8) + Block("") +
+                           Little(0, 8) + Block("") + Little(0, 8) + Little(0, 8));
   }
   file += Record(15, Little(0, 4));
   const std::size_t summary = file.size();

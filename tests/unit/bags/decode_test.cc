@@ -21,11 +21,12 @@ std::vector<std::byte> BytesOf(std::initializer_list<int> values) {
 
 constexpr const char* kText = "uint8 a\nint32 b\nfloat64 c\nstring d\nuint16[] e\nbool[2] f\n";
 // a = 5, b = -2, c = 1.5, d = "hi", e = [1, 258], f = [true, false]
-const auto kLittle = BytesOf({0, 1, 0, 0, 5, 0, 0, 0, 0xFE, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0xF8, 0x3F,
-                              3, 0, 0, 0, 'h', 'i', 0, 0, 2, 0, 0, 0, 1, 0, 2, 1, 1, 0});
-const auto kBig = BytesOf({0, 0, 0, 0, 5, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFE, 0x3F, 0xF8, 0, 0, 0, 0, 0, 0,
-                           0, 0, 0, 3, 'h', 'i', 0, 0, 0, 0, 0, 2, 0, 1, 1, 2, 1, 0});
-const auto kRos1 = BytesOf({5, 0xFE, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 2, 0, 0, 0, 'h', 'i', 2, 0, 0, 0, 1, 0, 2, 1, 1, 0});
+const auto kLittle = BytesOf({0,    1, 0, 0, 5, 0,   0,   0, 0xFE, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0xF8,
+                              0x3F, 3, 0, 0, 0, 'h', 'i', 0, 0,    2,    0,    0,    0, 1, 0, 2, 1, 1, 0});
+const auto kBig = BytesOf({0, 0, 0, 0, 5, 0,   0,   0, 0xFF, 0xFF, 0xFF, 0xFE, 0x3F, 0xF8, 0, 0, 0, 0, 0,
+                           0, 0, 0, 0, 3, 'h', 'i', 0, 0,    0,    0,    0,    2,    0,    1, 1, 2, 1, 0});
+const auto kRos1 = BytesOf(
+    {5, 0xFE, 0xFF, 0xFF, 0xFF, 0, 0, 0, 0, 0, 0, 0xF8, 0x3F, 2, 0, 0, 0, 'h', 'i', 2, 0, 0, 0, 1, 0, 2, 1, 1, 0});
 
 void ExpectAll(const Value& value) {
   EXPECT_EQ(value["a"].Integer(), 5);
@@ -44,7 +45,8 @@ void ExpectAll(const Value& value) {
 TEST(Decode, BothByteOrdersAndRos1AreTheSame) {
   const Topic cdr = TopicOf(kText, "cdr"), ros1 = TopicOf(kText, "ros1");
   const auto definition = DefinitionOf(cdr).value(), definition1 = DefinitionOf(ros1).value();
-  const auto little = Decode(cdr, *definition, kLittle), big = Decode(cdr, *definition, kBig), old = Decode(ros1, *definition1, kRos1);
+  const auto little = Decode(cdr, *definition, kLittle), big = Decode(cdr, *definition, kBig),
+             old = Decode(ros1, *definition1, kRos1);
   ASSERT_TRUE(little && big && old);
   ExpectAll(*little);
   ExpectAll(*big);
@@ -79,7 +81,8 @@ TEST(Decode, EveryCutIsRefusedAndNoneAborts) {
 
 TEST(Decode, ClaimsAreNotBelieved) {
   const auto huge = BytesOf({0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 1, 2, 3});
-  for (const char* text : {"float64[] x\n", "string x\n", "string[] x\n", "Inner[] x\n===\nMSG: a/Inner\n", "uint8[] x\n"}) {
+  for (const char* text :
+       {"float64[] x\n", "string x\n", "string[] x\n", "Inner[] x\n===\nMSG: a/Inner\n", "uint8[] x\n"}) {
     const Topic topic = TopicOf(text, "cdr");
     EXPECT_FALSE(Decode(topic, *DefinitionOf(topic).value(), huge)) << text;
   }
@@ -95,8 +98,10 @@ TEST(Decode, OtherEncodingsAreRefusedByName) {
   const auto definition = DefinitionOf(topic).value();
   EXPECT_THAT(Decode(topic, *definition, BytesOf({0, 3, 0, 0, 1})).error().what, HasSubstr("PL_CDR"));
   EXPECT_THAT(Decode(topic, *definition, BytesOf({0, 7, 0, 0, 1})).error().what, HasSubstr("XCDR2"));
-  EXPECT_THAT(Decode(topic, *definition, BytesOf({0, 1, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10})).error().what, HasSubstr("more than its definition"));
-  EXPECT_THAT(Decode({"/t", "a/A", "json", "", ""}, *definition, BytesOf({'{', '}'})).error().what, HasSubstr("\"json\""));
+  EXPECT_THAT(Decode(topic, *definition, BytesOf({0, 1, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10})).error().what,
+              HasSubstr("more than its definition"));
+  EXPECT_THAT(Decode({"/t", "a/A", "json", "", ""}, *definition, BytesOf({'{', '}'})).error().what,
+              HasSubstr("\"json\""));
 }
 
 }  // namespace

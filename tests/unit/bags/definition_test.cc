@@ -7,7 +7,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Topic TopicOf(const std::string& type, const std::string& encoding, const std::string& text, const std::string& message_encoding = "cdr") {
+Topic TopicOf(const std::string& type, const std::string& encoding, const std::string& text,
+              const std::string& message_encoding = "cdr") {
   return {"/topic", type, message_encoding, encoding, text};
 }
 
@@ -15,7 +16,8 @@ Topic TopicOf(const std::string& type, const std::string& encoding, const std::s
 std::string Drawn(const MessageType& type, int depth = 0) {
   std::string text;
   for (const FieldType& field : type.fields) {
-    text += std::string(static_cast<std::size_t>(depth), ' ') + field.name + " " + std::to_string(SizeOf(field.primitive)) + " " + field.message;
+    text += std::string(static_cast<std::size_t>(depth), ' ') + field.name + " " +
+            std::to_string(SizeOf(field.primitive)) + " " + field.message;
     if (field.arity == Arity::kFixed) text += "[" + std::to_string(field.count) + "]";
     if (field.arity == Arity::kSequence) text += "[<=" + std::to_string(field.count_max) + "]";
     text += "\n" + (field.type != nullptr ? Drawn(*field.type, depth + 1) : "");

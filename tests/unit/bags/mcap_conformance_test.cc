@@ -46,21 +46,31 @@ json FieldsOfData(McapOp op, Bytes content) {
     }
     case McapOp::kSchema: {
       const auto schema = ReadMcapSchema(content).value();
-      return {{"data", ByteList(schema.data)}, {"encoding", schema.encoding}, {"id", Digits(schema.id)}, {"name", schema.name}};
+      return {{"data", ByteList(schema.data)},
+              {"encoding", schema.encoding},
+              {"id", Digits(schema.id)},
+              {"name", schema.name}};
     }
     case McapOp::kChannel: {
       const auto channel = ReadMcapChannel(content).value();
-      return {{"id", Digits(channel.id)}, {"message_encoding", channel.message_encoding}, {"metadata", channel.metadata},
-              {"schema_id", Digits(channel.schema_id)}, {"topic", channel.topic}};
+      return {{"id", Digits(channel.id)},
+              {"message_encoding", channel.message_encoding},
+              {"metadata", channel.metadata},
+              {"schema_id", Digits(channel.schema_id)},
+              {"topic", channel.topic}};
     }
     case McapOp::kMessage: {
       const auto message = ReadMcapMessage(content).value();
-      return {{"channel_id", Digits(message.channel_id)}, {"data", ByteList(message.data)}, {"log_time", Digits(message.log_ns)},
-              {"publish_time", Digits(message.publish_ns)}, {"sequence", Digits(message.sequence)}};
+      return {{"channel_id", Digits(message.channel_id)},
+              {"data", ByteList(message.data)},
+              {"log_time", Digits(message.log_ns)},
+              {"publish_time", Digits(message.publish_ns)},
+              {"sequence", Digits(message.sequence)}};
     }
     case McapOp::kFooter: {
       const auto footer = ReadMcapFooter(content).value();
-      return {{"summary_crc", Digits(footer.summary_crc)}, {"summary_offset_start", Digits(footer.summary_offset_start)},
+      return {{"summary_crc", Digits(footer.summary_crc)},
+              {"summary_offset_start", Digits(footer.summary_offset_start)},
               {"summary_start", Digits(footer.summary_start)}};
     }
     default:
@@ -78,7 +88,8 @@ json FieldsOfIndex(McapOp op, Bytes content) {
   if (op == McapOp::kMetadata) text("name"), fields["metadata"] = PairsOf(in);
   if (op == McapOp::kMetadataIndex) u64("offset"), u64("length"), text("name");
   if (op == McapOp::kAttachmentIndex)
-    u64("offset"), u64("length"), u64("log_time"), u64("create_time"), u64("data_size"), text("name"), text("media_type");
+    u64("offset"), u64("length"), u64("log_time"), u64("create_time"), u64("data_size"), text("name"),
+        text("media_type");
   if (op == McapOp::kAttachment) {
     u64("log_time"), u64("create_time"), text("name"), text("media_type");
     fields["data"] = ByteList(in.Bytes(in.Number<std::uint64_t>()));
@@ -96,7 +107,8 @@ json FieldsOfIndex(McapOp op, Bytes content) {
   if (op == McapOp::kStatistics) {
     u64("message_count");
     fields["schema_count"] = Digits(in.Number<std::uint16_t>());
-    for (const char* name : {"channel_count", "attachment_count", "metadata_count", "chunk_count"}) fields[name] = Digits(in.Number<std::uint32_t>());
+    for (const char* name : {"channel_count", "attachment_count", "metadata_count", "chunk_count"})
+      fields[name] = Digits(in.Number<std::uint32_t>());
     u64("message_start_time"), u64("message_end_time");
     fields["channel_message_counts"] = NumbersOf<std::uint16_t>(in);
     EXPECT_EQ(Digits(ReadMcapStatistics(content)->messages), fields["message_count"]);

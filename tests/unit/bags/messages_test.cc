@@ -12,9 +12,16 @@ namespace {
 
 using ::testing::HasSubstr;
 
-DecodedMessage ImageOf(std::uint32_t width, std::uint32_t height, const std::string& encoding, std::uint32_t step, std::size_t bytes) {
+DecodedMessage ImageOf(std::uint32_t width, std::uint32_t height, const std::string& encoding, std::uint32_t step,
+                       std::size_t bytes) {
   CdrMessage message;
-  message.Header(12, 34, "cam").Put(height).Put(width).Text(encoding).Put(std::uint8_t{0}).Put(step).Block(std::string(bytes, 'p'));
+  message.Header(12, 34, "cam")
+      .Put(height)
+      .Put(width)
+      .Text(encoding)
+      .Put(std::uint8_t{0})
+      .Put(step)
+      .Block(std::string(bytes, 'p'));
   return {"sensor_msgs/msg/Image", message};
 }
 
@@ -38,10 +45,12 @@ TEST(Messages, ACompressedPictureIsWhatItsBytesSay) {
   jpeg.Header(1, 2, "c").Text("png; of course").Block("\xFF\xD8\xFF\xE0 and so on");
   depth.Header(1, 2, "c").Text("16UC1; compressedDepth png").Block("0123456789");
   EXPECT_EQ(ReadCompressedImage(DecodedMessage("sensor_msgs/CompressedImage", jpeg).value)->suffix, "jpg");
-  EXPECT_THAT(ReadCompressedImage(DecodedMessage("sensor_msgs/CompressedImage", depth).value).error().what, HasSubstr("compressedDepth"));
+  EXPECT_THAT(ReadCompressedImage(DecodedMessage("sensor_msgs/CompressedImage", depth).value).error().what,
+              HasSubstr("compressedDepth"));
 }
 
-DecodedMessage CloudOf(std::uint32_t width, std::uint32_t height, std::uint32_t offset_z, std::uint32_t point_step, std::uint32_t row_step, std::size_t bytes) {
+DecodedMessage CloudOf(std::uint32_t width, std::uint32_t height, std::uint32_t offset_z, std::uint32_t point_step,
+                       std::uint32_t row_step, std::size_t bytes) {
   CdrMessage message;
   message.Header(0, 1, "lidar").Put(height).Put(width).Put(std::uint32_t{3});
   message.Text("z").Put(offset_z).Put(std::uint8_t{7}).Put(std::uint32_t{1});
@@ -83,10 +92,20 @@ TEST(Messages, PosesAreOfUnitLengthAndFinite) {
 
 TEST(Messages, ACameraInfoHasItsLens) {
   CdrMessage message;
-  message.Header(3, 0, "c").Put(std::uint32_t{480}).Put(std::uint32_t{640}).Text("plumb_bob").List<double>({1, 2, 3, 4, 5});
+  message.Header(3, 0, "c")
+      .Put(std::uint32_t{480})
+      .Put(std::uint32_t{640})
+      .Text("plumb_bob")
+      .List<double>({1, 2, 3, 4, 5});
   for (const double k : {500.0, 0.0, 320.0, 0.0, 501.0, 240.0, 0.0, 0.0, 1.0}) message.Put(k);
   for (int i = 0; i < 21; ++i) message.Put(0.0);
-  message.Put(std::uint32_t{0}).Put(std::uint32_t{0}).Put(std::uint32_t{0}).Put(std::uint32_t{0}).Put(std::uint32_t{0}).Put(std::uint32_t{0}).Put(std::uint8_t{0});
+  message.Put(std::uint32_t{0})
+      .Put(std::uint32_t{0})
+      .Put(std::uint32_t{0})
+      .Put(std::uint32_t{0})
+      .Put(std::uint32_t{0})
+      .Put(std::uint32_t{0})
+      .Put(std::uint8_t{0});
   const DecodedMessage decoded("sensor_msgs/msg/CameraInfo", message);
   const auto info = ReadCameraInfo(decoded.value);
   ASSERT_TRUE(info) << info.error().what;
@@ -97,7 +116,16 @@ TEST(Messages, ACameraInfoHasItsLens) {
 
 TEST(Messages, AScanHasItsAngles) {
   CdrMessage message;
-  message.Header(3, 0, "l").Put(-1.5F).Put(1.5F).Put(0.5F).Put(0.0F).Put(0.1F).Put(0.2F).Put(30.0F).List<float>({1, 2, 3}).List<float>({});
+  message.Header(3, 0, "l")
+      .Put(-1.5F)
+      .Put(1.5F)
+      .Put(0.5F)
+      .Put(0.0F)
+      .Put(0.1F)
+      .Put(0.2F)
+      .Put(30.0F)
+      .List<float>({1, 2, 3})
+      .List<float>({});
   const auto scan = ReadLaserScan(DecodedMessage("sensor_msgs/msg/LaserScan", message).value);
   ASSERT_TRUE(scan) << scan.error().what;
   EXPECT_EQ(scan->angle_min_rad, -1.5);

@@ -113,7 +113,8 @@ TEST(RecordedBags, SplitBagsAreReadInTheirOrder) {
   SKIP_WITHOUT_BAGS();
   for (const char* form : {"mcap", "sqlite3"}) {
     const std::string folder = std::string("ros2_rosbag2/rosbag2_py/") + form;
-    EXPECT_GT(ReadAll(Bag_(folder + "/reindex_test_bags/multiple_files")).messages, 0) << form;  // without metadata.yaml
+    EXPECT_GT(ReadAll(Bag_(folder + "/reindex_test_bags/multiple_files")).messages, 0)
+        << form;  // without metadata.yaml
     const Told told = ReadAll(Bag_(folder + "/wbag"));
     EXPECT_GT(told.messages, 0) << form;
     EXPECT_THAT(told.damage, SizeIs(0)) << form << ": " << (told.damage.empty() ? "" : told.damage[0].what);
@@ -122,7 +123,8 @@ TEST(RecordedBags, SplitBagsAreReadInTheirOrder) {
 
 TEST(RecordedBags, EachDamagedOneIsOneSentenceAndGivesWhatItHas) {
   SKIP_WITHOUT_BAGS();
-  const Told whole = ReadAll(Bag_("truncated/test_sample.mcap")), cut = ReadAll(Bag_("truncated/test_sample_truncated.mcap"));
+  const Told whole = ReadAll(Bag_("truncated/test_sample.mcap")),
+             cut = ReadAll(Bag_("truncated/test_sample_truncated.mcap"));
   EXPECT_THAT(whole.damage, SizeIs(0));
   ASSERT_THAT(cut.damage, SizeIs(1));
   EXPECT_THAT(cut.damage[0].what, HasSubstr("test_sample_truncated.mcap"));
@@ -158,7 +160,8 @@ TEST(RecordedBags, AnUnknownEncodingIsRefusedByName) {
 TEST(RecordedBags, MessagesOfEveryKindOfTypeDecode) {
   SKIP_WITHOUT_BAGS();
   for (const char* form : {"mcap", "sqlite3"})
-    for (const auto& [topic, messages] : DecodeAll(Bag_(std::string("ros2_rosbag2/rosbag2_tests/") + form + "/cdr_test")))
+    for (const auto& [topic, messages] :
+         DecodeAll(Bag_(std::string("ros2_rosbag2/rosbag2_tests/") + form + "/cdr_test")))
       for (const auto& message : messages) EXPECT_FALSE(message->value.IsAbsent()) << topic;
 }
 

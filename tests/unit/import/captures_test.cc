@@ -10,7 +10,8 @@ constexpr std::int64_t kMs = 1'000'000;
 std::size_t Sum(const SensorUse& use) { return use.used + use.without_partner + use.repeated_stamp + use.thinned_out; }
 
 TEST(Captures, TheNearestWithinTheToleranceAreOne) {
-  const CapturePlan plan = PlanCaptures({{{0, 100 * kMs, 200 * kMs}}, {{3 * kMs, 99 * kMs, 101 * kMs, 206 * kMs}}}, 5 * kMs, 0);
+  const CapturePlan plan =
+      PlanCaptures({{{0, 100 * kMs, 200 * kMs}}, {{3 * kMs, 99 * kMs, 101 * kMs, 206 * kMs}}}, 5 * kMs, 0);
   ASSERT_EQ(plan.captures.size(), 2U);
   EXPECT_EQ(plan.captures[0].message[1], 0U);
   EXPECT_EQ(plan.captures[1].message[1], 1U);  // of two as near the earlier
@@ -61,7 +62,8 @@ TEST(Captures, NamesSortAsStampsAndEveryOneIsAccountedFor) {
   for (std::size_t s = 0; s < 3; ++s) EXPECT_EQ(Sum(plan.uses[s]), sensors[s].stamps_ns.size());
   for (const PlannedCapture& capture : plan.captures)
     for (std::size_t s = 0; s < 3; ++s)
-      if (capture.message[s]) EXPECT_LE(std::abs(sensors[s].stamps_ns[*capture.message[s]] - capture.stamp_ns), 5 * kMs);
+      if (capture.message[s])
+        EXPECT_LE(std::abs(sensors[s].stamps_ns[*capture.message[s]] - capture.stamp_ns), 5 * kMs);
 }
 
 TEST(Captures, StampsOfEveryKindHaveNames) {

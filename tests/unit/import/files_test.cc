@@ -10,7 +10,8 @@
 namespace rigcal::importing {
 namespace {
 
-bags::Image ImageOf(const std::string& encoding, int width, int height, const std::vector<unsigned char>& bytes, bool big_endian = false) {
+bags::Image ImageOf(const std::string& encoding, int width, int height, const std::vector<unsigned char>& bytes,
+                    bool big_endian = false) {
   bags::Image image;
   image.encoding = encoding;
   image.width_px = width;
@@ -41,8 +42,11 @@ TEST(Files, BayerPatternsAreReadByTheirNames) {
   for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
     std::vector<unsigned char> bytes;
     for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) bytes.push_back(pattern[static_cast<std::size_t>(y % 2 * 2 + x % 2)] == 'r' ? 200 : 0);
-    EXPECT_EQ(DecodedOf(ImageOf("bayer_" + pattern + "8", kSide, kSide, bytes)).at<cv::Vec3b>(4, 4), cv::Vec3b(0, 0, 200)) << pattern;
+      for (int x = 0; x < kSide; ++x)
+        bytes.push_back(pattern[static_cast<std::size_t>(y % 2 * 2 + x % 2)] == 'r' ? 200 : 0);
+    EXPECT_EQ(DecodedOf(ImageOf("bayer_" + pattern + "8", kSide, kSide, bytes)).at<cv::Vec3b>(4, 4),
+              cv::Vec3b(0, 0, 200))
+        << pattern;
   }
 }
 
@@ -68,8 +72,11 @@ TEST(Files, CloudsKeepEveryField) {
   cloud.height = 1;
   cloud.point_bytes = sizeof(Point);
   cloud.row_bytes = 2 * sizeof(Point);
-  cloud.fields = {{"x", bags::Primitive::kFloat32, 0}, {"y", bags::Primitive::kFloat32, 4}, {"z", bags::Primitive::kFloat32, 8},
-                  {"ring", bags::Primitive::kUint16, 12}, {"time", bags::Primitive::kFloat64, 16}};
+  cloud.fields = {{"x", bags::Primitive::kFloat32, 0},
+                  {"y", bags::Primitive::kFloat32, 4},
+                  {"z", bags::Primitive::kFloat32, 8},
+                  {"ring", bags::Primitive::kUint16, 12},
+                  {"time", bags::Primitive::kFloat64, 16}};
   cloud.data = std::as_bytes(std::span(points));
   const std::string pcd = PcdOf(cloud);
   const auto read = formats::ReadCloud(std::as_bytes(std::span(pcd)), "pcd", "top/01", std::nullopt);

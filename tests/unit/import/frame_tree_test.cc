@@ -5,7 +5,8 @@
 namespace rigcal::importing {
 namespace {
 
-bags::StampedPose Link(std::int64_t stamp_ns, const std::string& parent, const std::string& child, const Eigen::Vector3d& p_m, double yaw_rad = 0) {
+bags::StampedPose Link(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
+                       const Eigen::Vector3d& p_m, double yaw_rad = 0) {
   return {{stamp_ns, parent}, child, {p_m, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))}};
 }
 

@@ -59,7 +59,8 @@ TEST(RigMap, WrongOnesAreRefusedByName) {
 
 TEST(RigMap, TheFirstOneAsksForWhatABagCannotTell) {
   BagSurvey survey;
-  const auto add = [&](const std::string& name, const std::string& type, const std::string& kind, const std::string& lens = "") {
+  const auto add = [&](const std::string& name, const std::string& type, const std::string& kind,
+                       const std::string& lens = "") {
     TopicSurvey topic;
     topic.name = name;
     topic.type = type;
