@@ -156,6 +156,7 @@ bool McapWalk::EnterChunk(std::uint64_t content_at, std::uint64_t length) {
 }
 
 bool McapWalk::UnpackChunk(const McapChunk& chunk, std::uint64_t records_at, std::uint64_t there) {
+  const Packing packing = *PackingOf(chunk.packing);  // before its head is read over
   if (there > limits::kRecordBytesMax || chunk.unpacked_bytes > limits::kChunkBytesMax) {
     chunk_->trouble = "it has " + std::to_string(std::max(there, chunk.unpacked_bytes)) + " bytes; the limit is " +
                       std::to_string(limits::kChunkBytesMax);
@@ -167,7 +168,7 @@ bool McapWalk::UnpackChunk(const McapChunk& chunk, std::uint64_t records_at, std
     over_ = true;
     return true;
   }
-  Unpacked unpacked = Unpack(*PackingOf(chunk.packing), *packed, limits::kChunkBytesMax);
+  Unpacked unpacked = Unpack(packing, *packed, limits::kChunkBytesMax);
   if (unpacked.trouble && !chunk_->trouble) chunk_->trouble = unpacked.trouble;
   if (!chunk_->trouble && unpacked.bytes.size() != chunk.unpacked_bytes)
     chunk_->trouble = "it unpacks to " + std::to_string(unpacked.bytes.size()) + " bytes, not " +
