@@ -17,6 +17,7 @@ constexpr const char* kFooter =
     "overdue, 6 verdict unknown. A verdict is told by push, push-edges, show, lookup and status, of several robots the "
     "worst.\n"
     "Examples:\n"
+    "  rigcal import drive.mcap --list          what is in a bag, and which topic may be which sensor\n"
     "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"
     "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
     "  rigcal lookup mapper-01 front_left lidar  the pose of the lidar in the front left camera\n"
@@ -53,9 +54,9 @@ void Apply(const CLI::App& app, const GlobalOptions& options, Context& context) 
 constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
-    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion, AddPolicy,
-    AddApprove, AddReject,   AddRollback,         AddAgent,  AddAudit,
-    AddModel,  AddFleet,     AddEpoch,   AddBoard};
+    AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddCompletion,
+    AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddAudit,
+    AddModel,   AddFleet,    AddEpoch,            AddBoard};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

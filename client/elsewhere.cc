@@ -56,4 +56,6 @@ void AddSimulateElsewhere(CLI::App& app, Context& context) {
 
 void AddCheckElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "check", kCheckDescription); }
 
+void AddImportElsewhere(CLI::App& app, Context& context) { AddElsewhere(app, context, "import", kImportDescription); }
+
 }  // namespace rigcal::client

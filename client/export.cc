@@ -10,6 +10,7 @@
 #include "server/base/durable_file.h"
 #include "server/formats/export/formats.h"
 #include "server/formats/json_writer.h"
+#include "server/formats/rig_files/frames.h"
 #include "server/formats/rig_files/urdf_patch.h"
 
 namespace rigcal::client {

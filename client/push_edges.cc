@@ -17,6 +17,7 @@
 #include "server/formats/documents.h"
 #include "server/formats/g2o.h"
 #include "server/formats/rig_files/assumed_edges.h"
+#include "server/formats/rig_files/frames.h"
 #include "server/model/past.h"
 #include "server/model/unit_doubt.h"
 

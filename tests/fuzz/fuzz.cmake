@@ -39,3 +39,8 @@ rigcal_fuzz(http DEPS rigcal_http)
 rigcal_fuzz(document DEPS rigcal_math rigcal_model
   SOURCES client/document.cc client/edge_table.cc client/pose_text.cc client/reply_parts.cc client/table.cc)
 rigcal_fuzz(wire DEPS rigcal_formats rigcal_idl SOURCES server/dds/from_idl.cc server/dds/arrival.cc)
+rigcal_fuzz(mcap DEPS rigcal_bags)
+rigcal_fuzz(ros1_bag DEPS rigcal_bags)
+rigcal_fuzz(bag_database DEPS rigcal_bags)
+rigcal_fuzz(message DEPS rigcal_bags)
+rigcal_fuzz(rig_map DEPS rigcal_import)

@@ -1,0 +1,36 @@
+// The session folder that an import writes: whole files only, and nothing of another import.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "server/base/result.h"
+
+namespace rigcal::importing {
+
+class SessionFolder {
+ public:
+  // Makes the folder, or goes on with one that the same import (`identity`, a text of its input) began. kConflict: it
+  // holds something else.
+  [[nodiscard]] static Result<SessionFolder> Begin(const std::filesystem::path& folder, const std::string& identity);
+  // Whether the import came to its end before.
+  [[nodiscard]] bool complete() const;
+  // Of "left/1586406456-763032325.png": written already.
+  [[nodiscard]] bool Has(const std::string& file) const;
+  // The whole file or none; durable when it returns. Any thread.
+  [[nodiscard]] Status Write(const std::string& file, std::string_view bytes) const;
+  // session.yaml, which is the end of it.
+  [[nodiscard]] Status Finish(std::string_view session_yaml) const;
+
+ private:
+  explicit SessionFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  std::filesystem::path folder_;
+};
+
+// What makes two imports the same: the names and sizes of the bag's files, the rig's text, the options.
+[[nodiscard]] Result<std::string> IdentityOf(const std::filesystem::path& bag, std::string_view rig_yaml,
+                                             std::int64_t tolerance_ns, std::int64_t every_ns);
+
+}  // namespace rigcal::importing

@@ -1,0 +1,112 @@
+#include "client/import/files.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+
+#include "server/formats/cloud.h"
+
+namespace rigcal::importing {
+namespace {
+
+bags::Image ImageOf(const std::string& encoding, int width, int height, const std::vector<unsigned char>& bytes,
+                    bool big_endian = false) {
+  bags::Image image;
+  image.encoding = encoding;
+  image.width_px = width;
+  image.height_px = height;
+  image.step_bytes = width * bags::PixelBytes(encoding);
+  image.big_endian = big_endian;
+  image.data = std::as_bytes(std::span(bytes));
+  return image;
+}
+cv::Mat DecodedOf(const bags::Image& image) {
+  const auto png = PngOf(image);
+  EXPECT_TRUE(png) << png.error().what;
+  return cv::imdecode(std::vector<unsigned char>(png->begin(), png->end()), cv::IMREAD_UNCHANGED);
+}
+
+TEST(Files, PicturesKeepTheirValues) {
+  const std::vector<unsigned char> colour = {10, 20, 30, 40, 50, 60};
+  EXPECT_EQ(DecodedOf(ImageOf("bgr8", 2, 1, colour)).at<cv::Vec3b>(0, 1), cv::Vec3b(40, 50, 60));
+  EXPECT_EQ(DecodedOf(ImageOf("rgb8", 2, 1, colour)).at<cv::Vec3b>(0, 1), cv::Vec3b(60, 50, 40));
+  EXPECT_EQ(DecodedOf(ImageOf("mono8", 3, 2, colour)).at<unsigned char>(1, 2), 60);
+  EXPECT_EQ(DecodedOf(ImageOf("mono16", 3, 1, colour)).at<std::uint16_t>(0, 1), 40 * 256 + 30);
+  EXPECT_EQ(DecodedOf(ImageOf("16UC1", 3, 1, colour, true)).at<std::uint16_t>(0, 1), 30 * 256 + 40);
+}
+
+// A red picture through each pattern: red pixels have the value, the others none.
+TEST(Files, BayerPatternsAreReadByTheirNames) {
+  constexpr int kSide = 8;
+  for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
+    std::vector<unsigned char> bytes;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x)
+        bytes.push_back(pattern[static_cast<std::size_t>(y % 2 * 2 + x % 2)] == 'r' ? 200 : 0);
+    EXPECT_EQ(DecodedOf(ImageOf("bayer_" + pattern + "8", kSide, kSide, bytes)).at<cv::Vec3b>(4, 4),
+              cv::Vec3b(0, 0, 200))
+        << pattern;
+  }
+}
+
+TEST(Files, Yuv422HasItsTwoOrders) {
+  const auto grey_of = [](const std::string& encoding, const std::vector<unsigned char>& bytes) {
+    return DecodedOf(ImageOf(encoding, 2, 1, bytes)).at<cv::Vec3b>(0, 0);
+  };
+  EXPECT_EQ(grey_of("yuv422", {128, 126, 128, 126}), grey_of("yuv422_yuy2", {126, 128, 126, 128}));
+  EXPECT_NEAR(grey_of("yuv422", {128, 126, 128, 126})[1], 128, 2);
+}
+
+// Read back by the reader of session folders.
+TEST(Files, CloudsKeepEveryField) {
+  struct Point {
+    float x, y, z;
+    std::uint16_t ring;
+    std::uint8_t padding[2];
+    double time;
+  };
+  std::vector<Point> points = {{1, 2, 3, 7, {}, 0.25}, {4, 5, 6, 8, {}, 0.5}};
+  bags::PointCloud cloud;
+  cloud.width = 2;
+  cloud.height = 1;
+  cloud.point_bytes = sizeof(Point);
+  cloud.row_bytes = 2 * sizeof(Point);
+  cloud.fields = {{"x", bags::Primitive::kFloat32, 0},
+                  {"y", bags::Primitive::kFloat32, 4},
+                  {"z", bags::Primitive::kFloat32, 8},
+                  {"ring", bags::Primitive::kUint16, 12},
+                  {"time", bags::Primitive::kFloat64, 16}};
+  cloud.data = std::as_bytes(std::span(points));
+  const std::string pcd = PcdOf(cloud);
+  const auto read = formats::ReadCloud(std::as_bytes(std::span(pcd)), "pcd", "top/01", std::nullopt);
+  ASSERT_TRUE(read) << read.error().what;
+  ASSERT_EQ(read->points_m.size(), 2U);
+  EXPECT_EQ(read->points_m[1], Eigen::Vector3f(4, 5, 6));
+  ASSERT_EQ(read->fields.size(), 2U);
+  EXPECT_EQ(read->fields[0].values, (std::vector<double>{7, 8}));
+  EXPECT_EQ(read->fields[1].values, (std::vector<double>{0.25, 0.5}));
+}
+
+TEST(Files, AScanLiesInItsPlane) {
+  bags::LaserScan scan;
+  scan.angle_increment_rad = M_PI / 2;
+  scan.range_min_m = 0.1;
+  scan.range_max_m = 30;
+  scan.ranges_m = {1, 2, 100};
+  const std::string pcd = PcdOf(scan);
+  const auto read = formats::ReadCloud(std::as_bytes(std::span(pcd)), "pcd", "scan/01", std::nullopt);
+  ASSERT_TRUE(read) << read.error().what;
+  ASSERT_EQ(read->points_m.size(), 2U);  // the third is beyond its range
+  EXPECT_NEAR(read->points_m[1].y(), 2, 1e-6);
+  EXPECT_NEAR(read->points_m[1].x(), 0, 1e-6);
+}
+
+TEST(Files, PosesAreTheShortestNumbers) {
+  Se3 T;
+  T.p_m = {0.1, -2, 1e-20};
+  EXPECT_EQ(PoseColumns(5, T), "5,0.1,-2,1e-20,0,0,0,1\n");
+}
+
+}  // namespace
+}  // namespace rigcal::importing
