@@ -38,7 +38,7 @@ std::string DoneText(const Document& data) {
 
 std::string VerdictAndKeep(const Document& data) {
   const std::string keep = FallbackText(data["verdict"], data);
-  return VerdictText(data["verdict"]) + (keep.empty() ? "" : " " + keep);
+  return VerdictText(data["verdict"], data) + (keep.empty() ? "" : " " + keep);
 }
 
 std::string TextOf(const std::string& kind, const Document& data) {

@@ -21,7 +21,7 @@ std::string CountsNothingRetired(const std::string& counted, const std::string& 
 
 }  // namespace
 
-Result<std::optional<Revision>> LoadFallback(Store& store, const RobotId& robot, int up_to, Stamp decided_by) {
+Result<std::optional<Revision>> LoadStillUsable(Store& store, const RobotId& robot, int up_to, Stamp decided_by) {
   using Found = std::optional<Revision>;
   return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> {
     Query query(
@@ -43,7 +43,7 @@ Result<std::optional<Revision>> LoadFallback(Store& store, const RobotId& robot,
 Result<std::optional<Revision>> LoadUsableRevision(Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const auto in_use, LoadInUse(store, robot));
   if (!in_use) return std::nullopt;
-  RIGCAL_ASSIGN(auto usable, LoadFallback(store, robot));
+  RIGCAL_ASSIGN(auto usable, LoadStillUsable(store, robot));
   if (usable && usable->number != in_use->revision) usable.reset();
   return usable;
 }

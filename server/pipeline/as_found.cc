@@ -6,9 +6,9 @@
 
 #include "server/fleet/as_found.h"
 #include "server/graph/session_fusion.h"
-#include "storage/decisions.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
+#include "storage/usable_revision.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -55,7 +55,7 @@ Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTh
   RIGCAL_ASSIGN(int last, LoadLastBefore(store, revision, sessions));
   RIGCAL_ASSIGN(const Stamp came_at, LoadMadeAt(store, robot, last + 1));
   while (last > 0) {
-    RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, last, came_at));
+    RIGCAL_ASSIGN(const auto usable, storage::LoadStillUsable(store, robot, last, came_at));
     if (!usable) break;
     RIGCAL_ASSIGN(auto loaded, storage::LoadRevision(store, robot, usable->number));
     if (!loaded) break;

@@ -40,7 +40,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   summary.revision = revision.number;
   summary.verdict = revision.verdict;
   RIGCAL_ASSIGN(summary.validity, LoadValidity(store, revision, now));
-  RIGCAL_ASSIGN(summary.state, storage::LoadRevisionState(store, revision));
+  RIGCAL_ASSIGN(summary.state, storage::LoadRevisionState(store, revision, summary.validity.usable));
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
   RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
   if (!summary.validity.calculating) return {};

@@ -75,6 +75,12 @@ Result<std::string> RequiredText(const Parameters& parameters, const std::string
   return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", cure);
 }
 
+Result<std::string> RequiredWho(const Parameters& parameters, const std::string& cure) {
+  RIGCAL_ASSIGN(std::string who, RequiredText(parameters, "who", cure));
+  RIGCAL_TRY(CheckPerson(who));
+  return who;
+}
+
 Result<Subject> FindSubject(storage::Store& store, const Parameters& parameters) {
   const auto of_robot = parameters.Text("robot");
   RIGCAL_ASSIGN(const RobotId robot, of_robot ? RobotId::Parse(*of_robot) : RobotId());

@@ -29,4 +29,8 @@ CREATE TRIGGER audit_row_no_delete BEFORE DELETE ON audit_row BEGIN SELECT RAISE
 
 -- What the robot runs, as its drive rule says it: "revision 3, which was rejected".
 ALTER TABLE summary_robot ADD COLUMN runs_what TEXT NOT NULL DEFAULT '';
+DROP INDEX summary_robot_sorted;
+CREATE INDEX summary_robot_sorted ON summary_robot (name_key, verdict, revision_number, calibrated_ns, last_session_ns,
+                                                    worst_ratio, sessions, edges, jobs_waiting, max_age_ns, usable_number,
+                                                    runs_trouble);
 INSERT INTO changed_robot SELECT robot_id FROM robot;
