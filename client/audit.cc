@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/page_options.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/limits.h"
@@ -69,7 +70,7 @@ void AddAudit(CLI::App& app, Context& context) {
                            ->check(CLI::Range(std::int64_t{1}, limits::kPageRowsMax));
   CLI::Option* before = verb->add_option("--before", options->before, "Only those before this row")
                             ->type_name("N")
-                            ->check(CLI::PositiveNumber);
+                            ->check(Positive());
   verb->footer(
       "Every decision of a person or a policy is a row that is never changed, and holds the hash of the row before "
       "it.\n"

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "client/positive.h"
 #include "client/verbs.h"
 #include "server/base/durable_file.h"
 #include "server/formats/documents.h"
@@ -75,7 +76,7 @@ void AddExport(CLI::App& app, Context& context) {
       ->required()
       ->type_name("FILE.g2o");
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->type_name("N");
   verb->footer(
       "Good edges with their information, and the solved poses; before one of which a direction was not measured a comment "

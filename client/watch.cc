@@ -8,6 +8,7 @@
 
 #include "client/approval_text.h"
 #include "client/edge_table.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/stamp.h"
@@ -141,7 +142,7 @@ void AddWatch(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("watch", "Print what happens as it happens, until Ctrl-C");
   auto options = std::make_shared<WatchOptions>();
   verb->add_option("ROBOT", options->robot, "Only this robot");
-  verb->add_option("--count", options->count, "End after so many events")->check(CLI::PositiveNumber)->type_name("N");
+  verb->add_option("--count", options->count, "End after so many events")->check(Positive())->type_name("N");
   verb->footer(
       "Times are UTC. With --json: one JSON object a line, every event. --timeout S ends after S seconds.\n"
       "Examples:\n"

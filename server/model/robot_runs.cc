@@ -24,7 +24,7 @@ std::string TroubleOf(int runs, const std::string& what, const std::optional<Usa
 Runs RunsOf(const RobotRuns& runs, bool was_approved, const std::optional<Decision>& decision,
             const std::optional<UsableRevision>& in_use) {
   const std::string what = WhatRuns(runs, was_approved, decision);
-  return {runs.revision, TroubleOf(runs.revision, what, in_use), what};
+  return {runs.revision, TroubleOf(runs.revision, what, in_use), what, runs.report.digest};
 }
 
 }  // namespace rigcal

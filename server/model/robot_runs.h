@@ -30,6 +30,7 @@ struct Runs {
   int revision = 0;     // 0: none that is known
   std::string trouble;  // a sentence; empty: it runs what is in use
   std::string what = {};  // "revision 3, which was rejected by Ada, 3 Nov 2026"
+  Digest digest = {};     // of its document; empty: not asked for
   friend bool operator==(const Runs&, const Runs&) = default;
 };
 

@@ -66,6 +66,7 @@ Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robo
   RIGCAL_ASSIGN(summary.jobs_waiting, storage::CountJobs(store, robot));
   RIGCAL_ASSIGN(summary.last_session_at, storage::LoadNewestCapture(store, robot));
   RIGCAL_ASSIGN(summary.runs, LoadWhatRuns(store, robot));
+  if (summary.runs) summary.runs->digest = {};  // it is told of one robot that is asked for alone
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, 0));
   RIGCAL_TRY(revision ? TakeRevision(store, *revision, now, summary) : TakeArrivals(store, summary));
   return summary;
