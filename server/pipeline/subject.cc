@@ -1,6 +1,7 @@
 #include "server/pipeline/subject.h"
 
 #include "server/base/text.h"
+#include "server/model/decision.h"
 #include "server/pipeline/unknown_names.h"
 #include "storage/retired.h"
 #include "storage/sessions.h"
