@@ -1,5 +1,6 @@
 // From the candidate to the calibration that robots use: by the policy, by a person, back again; and what is told of
 // it.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
