@@ -33,7 +33,7 @@ constexpr std::array<HeldKind, 3> kHeldKinds = {{
     {"policy", "policies",
      "number || char(10) || scope || char(10) || subject || char(10) || version || char(10) || at_ns || char(10) || who "
      "|| char(10) || reason || char(10) || text",
-     "version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who", "0"},
+     "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who", "0"},
 }};
 
 const HeldKind* HeldKindOf(const std::string& kind) {
