@@ -10,6 +10,7 @@
 #include "client/order.h"
 #include "client/table.h"
 #include "client/verbs.h"
+#include "server/model/decision.h"
 #include "idl/convert.h"
 
 namespace rigcal::client {
@@ -35,6 +36,7 @@ struct AgentLook {
   std::int64_t revision = 0;  // that the file holds now; 0: nothing that is announced is in use
   Digest digest;
   bool written = false;
+  Stamp applied_at = {};
 };
 
 class Agent {
@@ -47,7 +49,10 @@ class Agent {
   void LookAgain() { again_at_ = Clock::now() + kAgentAgain; }
   // Of a file that is there already.
   [[nodiscard]] Status TellOld();
-  // Why nothing is announced.
+  // Until the server says that it has kept the report of `look`, however often the report has to be sent again.
+  // kUnreachable where the time is over before.
+  [[nodiscard]] Status AwaitKept(const AgentLook& look);
+  // Why nothing was applied: it was interrupted, nothing is in use, or what is was not announced yet.
   [[nodiscard]] Error WhyNothing();
 
  private:
@@ -63,6 +68,9 @@ class Agent {
         reports_(std::move(reports)),
         waitset_(std::move(waitset)) {}
   [[nodiscard]] Result<std::string> Show(std::int64_t revision);
+  [[nodiscard]] Result<bool> IsKept(const AgentLook& look);
+  // "revision 4 is a candidate: ..."; of none that nobody can approve any.
+  [[nodiscard]] Result<std::string> Candidates();
   [[nodiscard]] Status Tell(const Digest& digest, std::int64_t revision, Stamp applied_at);
 
   const Context* context_;
@@ -124,7 +132,8 @@ Result<AgentLook> Agent::Look() {
   if (look.written) RIGCAL_TRY(Apply(DocumentIn(text), look.digest, options_.file));
   RIGCAL_ASSIGN(const auto applied, LookAtApplied(options_.file));
   look.revision = in_use;
-  RIGCAL_TRY(Tell(look.digest, in_use, applied ? applied->applied_at : SystemClock().Now()));
+  look.applied_at = applied ? applied->applied_at : SystemClock().Now();
+  RIGCAL_TRY(Tell(look.digest, in_use, look.applied_at));
   return look;
 }
 
@@ -145,12 +154,65 @@ Status Agent::TellOld() {
   return old ? Tell(old->digest, 0, old->applied_at) : Status();
 }
 
+// A server of before tells the number alone.
+Result<bool> Agent::IsKept(const AgentLook& look) {
+  RIGCAL_ASSIGN(const std::string text, Show(last_));
+  RIGCAL_ASSIGN(const Document shown, Document::Parse(text, "the server's answer to 'show'"));
+  const Document runs = shown["runs"];
+  if (!runs.Has("digest")) return runs["revision"].Integer() == look.revision;
+  return runs["digest"].Text() == look.digest.str();
+}
+
+Status Agent::AwaitKept(const AgentLook& look) {
+  const auto until = Clock::now() + context_->timeout;
+  while (!agent_interrupted) {
+    RIGCAL_ASSIGN(const bool kept, IsKept(look));
+    if (kept) return {};
+    if (Clock::now() >= until) break;
+    RIGCAL_TRY(HasNews());  // a moment
+    RIGCAL_TRY(Tell(look.digest, look.revision, look.applied_at));
+  }
+  return Fail(ErrorCode::kUnreachable,
+              options_.file + " is revision " + std::to_string(look.revision) + " of " + options_.robot +
+                  ", but the server has not kept the report of it" + (agent_interrupted ? ": interrupted" : ""),
+              "Run it again: the file is left as it is, and reported once more.");
+}
+
+// The newest first.
+Result<std::string> Agent::Candidates() {
+  constexpr std::int64_t kLookedAt = 20;
+  RIGCAL_ASSIGN(const std::string text,
+                connection_.Ask("revisions", JsonObject({{"robot", options_.robot}, {"limit", kLookedAt}}),
+                                context_->timeout));
+  RIGCAL_ASSIGN(const Document told, Document::Parse(text, "the server's answer to 'revisions'"));
+  std::string numbers, newest;
+  for (const Document& row : told["revisions"].Items()) {
+    if (RevisionStateOf(row["state"].Text()) != RevisionState::kCandidate) continue;
+    if (newest.empty()) newest = CountOf(row["revision"]);
+    numbers += (numbers.empty() ? "" : ", ") + CountOf(row["revision"]);
+  }
+  if (numbers.empty()) return "`rigcal show " + options_.robot + "` says why: there is no candidate that can be approved.";
+  return "Look at what can be approved, revision " + numbers + ", then `rigcal approve " + options_.robot + " " +
+         newest + " --reason TEXT`.";
+}
+
 Error Agent::WhyNothing() {
-  const auto shown = Show(0);
+  const std::string stays = ": " + options_.file + " stays as it is";
+  if (agent_interrupted)
+    return {ErrorCode::kBusy, "interrupted before a calibration of robot '" + options_.robot + "' was applied" + stays,
+            "Run it again."};
+  const auto text = Show(0);
+  if (!text) return text.error();
+  const auto shown = Document::Parse(*text, "the server's answer to 'show'");
   if (!shown) return shown.error();
-  return {ErrorCode::kConflict,
-          "no calibration of robot '" + options_.robot + "' is in use: " + options_.file + " stays as it is",
-          "`rigcal show " + options_.robot + "` says why, and which revision can be approved"};
+  if (const auto in_use = (*shown)["in_use"]["revision"].Integer())
+    return {ErrorCode::kUnreachable,
+            "revision " + std::to_string(*in_use) + " of robot '" + options_.robot +
+                "' is in use, but was not announced yet" + stays,
+            "Run it again, or give it longer: --timeout."};
+  const auto candidates = Candidates();
+  return {ErrorCode::kConflict, "no calibration of robot '" + options_.robot + "' is in use" + stays,
+          candidates ? *candidates : "`rigcal show " + options_.robot + "` says why."};
 }
 
 void PrintLook(const Context& context, const AgentOptions& options, const AgentLook& look) {
@@ -166,7 +228,7 @@ void PrintLook(const Context& context, const AgentOptions& options, const AgentL
                 << options.robot << ", sha256 " << look.digest.str() << std::endl;
 }
 
-// Until what is announced is applied, or the time is over.
+// Until what is announced is applied, and the server knows it, or the time is over.
 Status RunOnce(const Context& context, const AgentOptions& options, Agent& agent) {
   const auto until = std::chrono::steady_clock::now() + context.timeout;
   while (!agent_interrupted && std::chrono::steady_clock::now() < until) {
@@ -175,7 +237,7 @@ Status RunOnce(const Context& context, const AgentOptions& options, Agent& agent
     RIGCAL_ASSIGN(const AgentLook look, agent.Look());
     if (look.revision == 0) continue;
     PrintLook(context, options, look);
-    return {};
+    return agent.AwaitKept(look);
   }
   return Fail(agent.WhyNothing());
 }
@@ -222,7 +284,8 @@ void AddAgent(CLI::App& app, Context& context) {
   verb->add_option("--by", options->who, "The program that applies it, as it is reported (default: rigcal agent)")
       ->type_name("NAME");
   verb->add_flag("--once", options->once,
-                 "End when the file is what is announced; an error if nothing is, within --timeout");
+                 "End when the file is what is announced, and the server has kept the report of it; an error if not, within "
+                 "--timeout");
   verb->footer(
       "Only what is announced, and so was approved, is ever written; at once and whole, also where the power goes. On "
       "any error\n"

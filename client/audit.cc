@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/page_options.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/limits.h"
@@ -28,18 +29,38 @@ void PrintAudit(const Document& document, const AuditOptions& options, std::ostr
   PrintNextPage(document, "rigcal audit" + robot + " --limit " + std::to_string(options.limit), out);
 }
 
+std::string FromBeforeText(const Document& document) {
+  const std::int64_t rows = document["from_before"].Integer().value_or(0);
+  if (rows == 0) return "";
+  return std::to_string(rows) + " decisions, standings and policies are from before the audit held each: it holds " +
+         "them together, as they were then.\n";
+}
+
+// Those that are not told yet.
+void PrintRowFaults(const Document& document, std::size_t told, std::ostream& out) {
+  const std::vector<Document> faults = document["row_faults"].Items();
+  for (std::size_t i = told; i < faults.size(); ++i) out << "! " << Plain(faults[i]["what"].Text("?")) << ".\n";
+  const std::int64_t total = document["row_faults_total"].Integer().value_or(0);
+  if (total > static_cast<std::int64_t>(faults.size()))
+    out << "! " << total - static_cast<std::int64_t>(faults.size()) << " more do not hold either.\n";
+}
+
 void PrintAuditCheck(const Document& document, std::ostream& out) {
   const Document fault = document["fault"], head = document["head"];
   const std::string rows = CountOf(document["rows"]);
   if (!fault.IsNull()) {
-    const std::string before = rows == "0" ? "" : " The " + rows + " before it are as they were written.";
+    const bool chain_holds = document["chain_holds"].Flag();
+    const std::string before = rows == "0"     ? ""
+                               : chain_holds ? " Its " + rows + " rows are as they were written."
+                                             : " The " + rows + " before it are as they were written.";
     out << "The audit does not hold: " << Plain(fault["what"].Text("?")) << '.' << before
         << " Compare it with a backup, and find out who can write to the server's disk.\n";
+    PrintRowFaults(document, chain_holds ? 1 : 0, out);
     return;
   }
   out << "The audit is as it was written: " << rows << (rows == "1" ? " row" : " rows")
       << ", each with the hash of the one before.\n"
-      << "head  " << CountOf(head["number"]) << ' ' << Plain(head["hash"].Text("?")) << '\n'
+      << FromBeforeText(document) << "head  " << CountOf(head["number"]) << ' ' << Plain(head["hash"].Text("?")) << '\n'
       << "That the newest rows were cut off is seen only by a head that is kept elsewhere: note it down.\n";
 }
 
@@ -69,7 +90,7 @@ void AddAudit(CLI::App& app, Context& context) {
                            ->check(CLI::Range(std::int64_t{1}, limits::kPageRowsMax));
   CLI::Option* before = verb->add_option("--before", options->before, "Only those before this row")
                             ->type_name("N")
-                            ->check(CLI::PositiveNumber);
+                            ->check(Positive());
   verb->footer(
       "Every decision of a person or a policy is a row that is never changed, and holds the hash of the row before "
       "it.\n"

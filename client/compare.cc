@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/exchange/comparison.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/model/unit_doubt.h"
@@ -64,18 +65,18 @@ void AddCompare(CLI::App& app, Context& context) {
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   CLI::Option_group* with = verb->add_option_group("with");
   with->add_option("--with", options->with_revision, "The revision to compare with")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   with->add_option("--poses", options->poses_file, "A YAML file with sensors: {NAME: {T_ref_sensor: {p_m, q_xyzw}}}")
       ->type_name("FILE");
   with->require_option(1);
   verb->add_option("--sigmas-max", options->sigmas_max,
                    "Exit with 1 if any axis is off by more of its sigmas, 6 if a sigma is not known")
       ->type_name("K")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   verb->footer(
       "Both are laid together at the reference sensor; e = Log(T_other^-1 T), along and about each sensor's axes.\n"
       "Examples:\n"

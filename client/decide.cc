@@ -3,6 +3,7 @@
 
 #include "client/approval_text.h"
 #include "client/order.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -29,8 +30,8 @@ void AddDecide(CLI::App& app, Context& context, const std::string& name, const s
   auto options = std::make_shared<DecideOptions>();
   const bool needs_revision = name == "rollback";
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
-  verb->add_option("REVISION", options->revision, needs_revision ? "Its number" : "Its number (default: the newest)")
-      ->check(CLI::PositiveNumber)
+  verb->add_option("REVISION", options->revision, "Its number: that which was looked at")
+      ->check(Positive())
       ->required(needs_revision);
   verb->add_option("--reason", options->reason, "Why, for those who come after")->required()->type_name("TEXT");
   verb->add_option("--by", options->who, "Who decides (default: the login name)")->type_name("NAME");
@@ -44,7 +45,8 @@ void AddApprove(CLI::App& app, Context& context) {
   AddDecide(app, context, "approve", "Let a robot use a revision",
             "Only what passes or warns can be approved. Where the policy says `approval: person` nothing else lets a "
             "robot use a\n"
-            "revision; else a pass is approved by itself (docs/approval.md).\n"
+            "revision; else a pass is approved by itself (docs/approval.md). Without a number nothing is approved: the\n"
+            "answer names the newest candidate.\n"
             "Examples:\n"
             "  rigcal show mapper-01              what is in use, and what is a candidate\n"
             "  rigcal approve mapper-01 4 --reason \"checked against the wall\"\n");

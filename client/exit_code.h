@@ -13,8 +13,8 @@ enum class ExitCode {
   kUsage = 2,
   kUnreachable = 3,
   kRefused = 4,         // the input, or the thing asked for, was refused
-  kVerdictWarn = 5,     // the answer came and says "warn", or "pass" of a calibration that is overdue
-  kVerdictUnknown = 6,  // the answer came, and nothing is known: there is no result, or no verdict
+  kVerdictWarn = 5,     // the answer came and says "warn"
+  kVerdictUnknown = 6,  // the answer came, and nothing is known: no result, no verdict, or not of what the robot runs
 };
 
 // kUnreachable stays; every other error is kRefused.

@@ -5,6 +5,7 @@
 #include "client/exchange/calibration_query.h"
 #include "client/exchange/graph_export.h"
 #include "client/pose_text.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/durable_file.h"
@@ -173,7 +174,7 @@ void AddExport(CLI::App& app, Context& context) {
       ->type_name("FILE");
   verb->add_option("--frame", options->frames, "Another name of a sensor's frame in the file; may be repeated")->type_name("SENSOR=FRAME");
   verb->add_option("--revision", options->revision, "A numbered revision (default: the one that is in use; of g2o the newest)")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->type_name("N");
   verb->add_flag("--even-if-not-approved", options->even_if_not_approved,
                  "Also what failed, is unknown or waits for an approval; the file says so");

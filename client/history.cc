@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "client/page_options.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/limits.h"
@@ -76,7 +77,7 @@ void AddHistory(CLI::App& app, Context& context) {
       ->check(CLI::Range(std::int64_t{1}, limits::kPageRowsMax));
   verb->add_option("--before", options->before, "Only those before this revision")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   verb->footer(
       "Exit code 0, whatever the verdicts: `rigcal show ROBOT --revision N` ends with that of one revision.\n"
       "Examples:\n"

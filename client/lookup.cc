@@ -4,6 +4,7 @@
 #include "client/approval_text.h"
 #include "client/part_text.h"
 #include "client/pose_text.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -71,7 +72,7 @@ void AddLookup(CLI::App& app, Context& context) {
   verb->add_option("A", options->a, "Sensor in whose frame the pose is given")->required();
   verb->add_option("B", options->b, "Sensor whose pose it is")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the one that is in use)")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->type_name("N");
   verb->footer("p_A = T_A_B * p_B, of the calibration that is in use: robots are told the same. " + std::string(kVerdictCodes) +
                "6 also where a direction of the pose was not measured: then it is told what was, and --json has T_a_b null.\n"

@@ -49,7 +49,7 @@ void PrintResult(const Awaited& awaited, std::ostream& out) {
 }
 
 ExitCode JudgeResult(const Awaited& awaited) {
-  return awaited.has_revision ? Judge(awaited.show["document"]["verdict"], awaited.show) : ExitCode::kVerdictUnknown;
+  return awaited.has_revision ? JudgeMeasured(awaited.show["document"]["verdict"], awaited.show) : ExitCode::kVerdictUnknown;
 }
 
 std::string ResultJson(const PushSummary& summary, const Awaited* awaited) {

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "client/positive.h"
 #include "client/report_zip.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -78,7 +79,7 @@ void AddReport(CLI::App& app, Context& context) {
   auto options = std::make_shared<ReportOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->type_name("N");
   verb->add_option("--out", options->out, "Write the whole report into this zip: it opens without the server")
       ->type_name("FILE.zip");

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 
@@ -49,7 +50,7 @@ void AddRobots(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("robots", "List the robots with their verdict and the age of their calibration");
   auto options = std::make_shared<PartOptions>();
   verb->add_option("--limit", options->limit, "List so many of them, by id (default: all)")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->type_name("N");
   verb->add_option("--after", options->after, "Begin after this robot")->type_name("ROBOT");
   verb->footer(

@@ -10,6 +10,7 @@
 #include "client/insight_table.h"
 #include "client/part_text.h"
 #include "client/pose_text.h"
+#include "client/positive.h"
 #include "client/standing_text.h"
 #include "client/table.h"
 #include "client/verbs.h"
@@ -99,7 +100,7 @@ void AddShow(CLI::App& app, Context& context) {
   auto options = std::make_shared<ShowOptions>();
   verb->add_option("ROBOT", options->robot, "The robot's id")->required();
   verb->add_option("--revision", options->revision, "A numbered revision (default: the newest)")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->type_name("N");
   verb->add_flag("--whole", options->whole,
                  "Each failed pair with its own reason; with --json: every edge with its captures, evidence, information "

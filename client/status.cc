@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <array>
 #include <map>
 #include <memory>
 #include <utility>
@@ -29,16 +28,12 @@ void PrintOpenBatches(const Document& document, std::ostream& out) {
 
 // "3 robots: 1 do not drive, 2 OK to drive".
 void PrintCounts(const std::vector<Document>& rows, std::ostream& out) {
-  constexpr std::array<std::pair<ExitCode, const char*>, 4> kKinds = {{{ExitCode::kVerdictFail, "do not drive"},
-                                                                       {ExitCode::kVerdictUnknown, "not verified"},
-                                                                       {ExitCode::kVerdictWarn, "warn or overdue"},
-                                                                       {ExitCode::kGood, "OK to drive"}}};
-  std::map<ExitCode, int> counts;
-  for (const Document& row : rows) ++counts[Judge(row["verdict"], row)];
+  std::map<DriveKind, int> counts;
+  for (const Document& row : rows) ++counts[KindOf(row["verdict"], row)];
   out << rows.size() << (rows.size() == 1 ? " robot:" : " robots:");
   const char* between = " ";
-  for (const auto& [code, words] : kKinds)
-    if (counts[code] > 0) out << std::exchange(between, ", ") << counts[code] << ' ' << words;
+  for (const DriveKind kind : kDriveKinds)
+    if (counts[kind] > 0) out << std::exchange(between, ", ") << counts[kind] << ' ' << WordsFor(kind);
   out << '\n';
 }
 
@@ -56,7 +51,7 @@ void PrintStatus(const Document& document, bool of_one, std::ostream& out) {
     const std::string drive = of_one ? "" : DriveText(row);
     const std::string in_use = InUseText(row), runs = RunsText(row);
     table.Add({row["robot"].Text("?"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
-               drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"]) +
+               drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"], row) +
                    (in_use.empty() ? "" : " " + in_use) + (runs.empty() ? "" : " " + runs)});
   }
   table.Print(out);

@@ -5,6 +5,7 @@
 #include "client/table.h"
 #include "server/base/stamp.h"
 #include "server/formats/answers.h"
+#include "server/model/decision.h"
 #include "server/model/unit_doubt.h"
 #include "server/model/validity.h"
 
@@ -34,18 +35,43 @@ ExitCode Answer(const Context& context, const Question& question) {
   return question.judge ? question.judge(*document) : ExitCode::kGood;
 }
 
-ExitCode Judge(const Document& verdict, const Document& validity) {
-  switch (VerdictLevelOf(verdict["level"].Text())) {
-    case VerdictLevel::kPass:
-      return validity["overdue"].Flag() ? ExitCode::kVerdictWarn : ExitCode::kGood;
-    case VerdictLevel::kWarn:
+namespace {
+
+// Of the verdict and the date alone.
+DriveKind MeasuredKind(const Document& verdict, const Document& validity) {
+  const VerdictLevel level = VerdictLevelOf(verdict["level"].Text());
+  if (level == VerdictLevel::kFail) return DriveKind::kDoNotDrive;
+  if (level == VerdictLevel::kUnknown || validity["overdue"].Flag()) return DriveKind::kNotVerified;
+  return level == VerdictLevel::kWarn ? DriveKind::kOkWithAction : DriveKind::kOk;
+}
+
+ExitCode CodeOf(DriveKind kind) {
+  switch (kind) {
+    case DriveKind::kOk:
+      return ExitCode::kGood;
+    case DriveKind::kOkWithAction:
       return ExitCode::kVerdictWarn;
-    case VerdictLevel::kFail:
+    case DriveKind::kDoNotDrive:
       return ExitCode::kVerdictFail;
-    case VerdictLevel::kUnknown:
+    case DriveKind::kNotVerified:
+    case DriveKind::kNotApplied:
+    case DriveKind::kToApprove:
+    case DriveKind::kSuperseded:
       break;
   }
   return ExitCode::kVerdictUnknown;
+}
+
+}  // namespace
+
+DriveKind KindOf(const Document& verdict, const Document& validity) {
+  return DriveKindOf(validity["drive"]["kind"].Text()).value_or(MeasuredKind(verdict, validity));
+}
+
+ExitCode Judge(const Document& verdict, const Document& validity) { return CodeOf(KindOf(verdict, validity)); }
+
+ExitCode JudgeMeasured(const Document& verdict, const Document& validity) {
+  return CodeOf(MeasuredKind(verdict, validity));
 }
 
 namespace {
@@ -85,10 +111,13 @@ std::string FallbackText(const Document& verdict, const Document& validity) {
 
 std::string OverdueBefore(const Document& validity) { return validity["overdue"].Flag() ? "overdue, " : ""; }
 
-std::string VerdictText(const Document& verdict) {
+std::string VerdictText(const Document& verdict, const Document& of) {
   std::string text = verdict["level"].Text("unknown");
-  for (const char* part : {"why", "what_to_do"}) {
-    std::string sentence = Plain(verdict[part].Text());
+  const Verdict told{VerdictLevelOf(text), "", verdict["what_to_do"].Text()};
+  const std::string action = WhatToDo(RobotId(of["robot"].Text("?")), static_cast<int>(of["revision"].Integer().value_or(0)),
+                                      RevisionStateOf(of["state"].Text()), told);
+  for (const std::string& part : {verdict["why"].Text(), action}) {
+    std::string sentence = Plain(part);
     if (sentence.empty()) continue;
     if (sentence.back() != '.') sentence += '.';
     text += (text.find(':') == std::string::npos ? ": " : " ") + sentence;
@@ -99,7 +128,7 @@ std::string VerdictText(const Document& verdict) {
 void PrintVerdict(const Document& verdict, const Document& validity, std::ostream& out) {
   const bool in_rule = IsUsable({VerdictLevelOf(verdict["level"].Text()), "", ""}) && !DriveText(validity).empty();
   if (validity["overdue"].Flag() && !in_rule) out << OverdueText(StampOf(validity["valid_until"])) << '\n';
-  out << "verdict  " << VerdictText(verdict) << '\n';
+  out << "verdict  " << VerdictText(verdict, validity) << '\n';
   if (const std::string text = FallbackText(verdict, validity); !text.empty()) out << "         " << text << '\n';
   if (validity["calculating"].Flag()) out << "         " << kCalculatingText << '\n';
   if (const std::string text = Plain(validity["given_up"].Text()); !text.empty()) out << "         " << text << '\n';

@@ -10,6 +10,7 @@
 #include "client/connection.h"
 #include "client/document.h"
 #include "client/exit_code.h"
+#include "server/model/drive_rule.h"
 
 namespace rigcal::client {
 
@@ -41,10 +42,15 @@ ExitCode Answer(const Context& context, const Question& question);
 [[nodiscard]] Result<std::string> AskOnce(const Context& context, const std::string& verb,
                                           const std::string& parameters);
 
-// Of one robot: a verdict of docs/api.md, and the document that has `overdue` beside it.
+// Of one robot: a verdict of docs/api.md, and the document that has `drive` and `overdue` beside it: what its drive rule
+// says; of a server of before, what the verdict and the date say.
+[[nodiscard]] DriveKind KindOf(const Document& verdict, const Document& validity);
 [[nodiscard]] ExitCode Judge(const Document& verdict, const Document& validity);
+// By the verdict and the date alone, of what was just measured: that nobody approved it or that the robot did not apply
+// it yet is no fault of the measurement.
+[[nodiscard]] ExitCode JudgeMeasured(const Document& verdict, const Document& validity);
 // For the help of each verb that ends with Judge.
-inline constexpr const char* kVerdictCodes = "Exit code: 0 pass, 1 fail, 5 warn or overdue, 6 unknown.\n";
+inline constexpr const char* kVerdictCodes = "Exit code: 0 pass, 1 fail, 5 warn, 6 unknown (or overdue, not approved, not what the robot runs).\n";
 // Of several robots the worst.
 [[nodiscard]] ExitCode Worse(ExitCode a, ExitCode b);
 // "OK to drive until 20 Feb 2027.", "Do not drive.", as the server says it; empty where it does not. `document` is one
@@ -59,7 +65,9 @@ void PrintVerdict(const Document& verdict, const Document& validity, std::ostrea
 [[nodiscard]] std::string FallbackText(const Document& verdict, const Document& validity);
 // "overdue, " where it is so, for what is told of a robot in one line.
 [[nodiscard]] std::string OverdueBefore(const Document& validity);
-[[nodiscard]] std::string VerdictText(const Document& verdict);
+// "pass: why. What to do." `of`: the document that has `robot`, `revision` and `state` beside it: of a candidate approving
+// it comes first.
+[[nodiscard]] std::string VerdictText(const Document& verdict, const Document& of);
 // "31 Jan 2026" of a time of docs/api.md, or "-".
 [[nodiscard]] std::string DayOf(const Document& time);
 // "12 days", or "-".

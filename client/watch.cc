@@ -8,6 +8,7 @@
 
 #include "client/approval_text.h"
 #include "client/edge_table.h"
+#include "client/positive.h"
 #include "client/table.h"
 #include "client/verbs.h"
 #include "server/base/stamp.h"
@@ -38,7 +39,7 @@ std::string DoneText(const Document& data) {
 
 std::string VerdictAndKeep(const Document& data) {
   const std::string keep = FallbackText(data["verdict"], data);
-  return VerdictText(data["verdict"]) + (keep.empty() ? "" : " " + keep);
+  return VerdictText(data["verdict"], data) + (keep.empty() ? "" : " " + keep);
 }
 
 std::string TextOf(const std::string& kind, const Document& data) {
@@ -141,7 +142,7 @@ void AddWatch(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("watch", "Print what happens as it happens, until Ctrl-C");
   auto options = std::make_shared<WatchOptions>();
   verb->add_option("ROBOT", options->robot, "Only this robot");
-  verb->add_option("--count", options->count, "End after so many events")->check(CLI::PositiveNumber)->type_name("N");
+  verb->add_option("--count", options->count, "End after so many events")->check(Positive())->type_name("N");
   verb->footer(
       "Times are UTC. With --json: one JSON object a line, every event. --timeout S ends after S seconds.\n"
       "Examples:\n"

@@ -1,5 +1,8 @@
 #include "storage/audit.h"
 
+#include <limits>
+
+#include "storage/audited_rows.h"
 #include "storage/query.h"
 
 namespace rigcal::storage {
@@ -7,7 +10,9 @@ namespace {
 
 constexpr const char* kAuditSubject = "the audit";
 
-// Columns number, at_ns, robot_id, who, what, hash.
+const std::string kAuditColumns = "a.number, a.at_ns, c.robot_id, a.who, a.what, c.hash";
+
+// Columns kAuditColumns.
 AuditRow AuditRowOf(const Query& query) {
   AuditRow row;
   row.number = query.Int(0);
@@ -19,12 +24,17 @@ AuditRow AuditRowOf(const Query& query) {
   return row;
 }
 
-// The next number after all that there are, also where one of both tables was cut.
-std::int64_t NextAuditNumber(Store& store) {
+// The next number after all that there are, also where one of the tables was cut.
+Result<std::int64_t> NextAuditNumber(Store& store) {
   Query query(store,
               "SELECT max(coalesce((SELECT max(number) FROM audit), 0), coalesce((SELECT max(number) FROM "
-              "audit_chain), 0)) + 1");
-  return query.Step() ? query.Int(0) : 1;
+              "audit_chain), 0), coalesce((SELECT max(number) FROM audit_row), 0))");
+  const std::int64_t newest = query.Step() ? query.Int(0) : 0;
+  if (newest < std::numeric_limits<std::int64_t>::max()) return newest + 1;
+  return Fail(ErrorCode::kStorage,
+              "the audit is damaged: its newest row has the number " + std::to_string(newest) +
+                  ", so that no row can follow, and nothing can be decided",
+              "`rigcal audit verify` names what is wrong; put the store back from a backup.");
 }
 
 Digest AuditHead(Store& store) {
@@ -49,10 +59,12 @@ std::optional<AuditFault> AuditFaultOf(const AuditRow& row, const Digest& before
 // Up to the first row that does not hold.
 void WalkAudit(Store& store, AuditCheck& check) {
   Query query(store,
-              "SELECT a.number, a.at_ns, c.robot_id, a.who, a.what, c.hash FROM audit a "
-              "LEFT JOIN audit_chain c ON c.number = a.number ORDER BY a.number");
+              "SELECT " + kAuditColumns +
+                  ", r.kind, r.row_number, r.hash FROM audit a LEFT JOIN audit_chain c ON c.number = a.number "
+                  "LEFT JOIN audit_row r ON r.number = a.number ORDER BY a.number");
   while (query.Step()) {
-    const AuditRow row = AuditRowOf(query);
+    AuditRow row = AuditRowOf(query);
+    if (!query.IsNull(6)) row.holds = HeldRow{query.Text(6), query.Int(7), query.IdAt<Digest>(8)};
     check.fault = AuditFaultOf(row, check.head);
     if (check.fault) return;
     check.head = *row.hash;
@@ -63,13 +75,50 @@ void WalkAudit(Store& store, AuditCheck& check) {
 
 }  // namespace
 
-Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what, const RobotId& robot) {
+namespace {
+
+std::string KindNameOf(AuditedKind kind) {
+  if (kind == AuditedKind::kDecision) return "decision";
+  return kind == AuditedKind::kStanding ? "standing" : "policy";
+}
+
+Result<HeldRow> HeldRowOf(Store& store, const AuditedRow& about) {
+  const std::string kind = KindNameOf(about.kind);
+  const auto hash = HashOfHeldRow(store.database(), kind, about.number);
+  if (hash) return HeldRow{kind, about.number, *hash};
+  return Fail(ErrorCode::kInternal, kind + " " + std::to_string(about.number) + " was never written",
+              "This is a fault of rigcald: please report it.");
+}
+
+void InsertAudit(Store& store, const AuditRow& row) {
+  Query(store, "INSERT INTO audit VALUES (?, ?, ?, ?)").Bind(row.number, row.at, row.who, row.what).Run();
+  Query(store, "INSERT INTO audit_chain VALUES (?, ?, ?)")
+      .Bind(row.number, NullIfEmpty(row.robot), AuditHash(AuditHead(store), row))
+      .Run();
+  if (!row.holds) return;
+  Query(store, "INSERT INTO audit_row VALUES (?, ?, ?, ?)")
+      .Bind(row.number, row.holds->kind, row.holds->number, row.holds->hash)
+      .Run();
+}
+
+}  // namespace
+
+Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::string& what, const RobotId& robot,
+                   const std::optional<AuditedRow>& about) {
   return store.connection().Append(kAuditSubject, [&]() -> Status {
-    const AuditRow row{NextAuditNumber(store), now, robot, who, what};
-    Query(store, "INSERT INTO audit VALUES (?, ?, ?, ?)").Bind(row.number, now, who, what).Run();
-    Query(store, "INSERT INTO audit_chain VALUES (?, ?, ?)")
-        .Bind(row.number, NullIfEmpty(robot), AuditHash(AuditHead(store), row))
-        .Run();
+    RIGCAL_ASSIGN(const std::int64_t number, NextAuditNumber(store));
+    AuditRow row{number, now, robot, who, what};
+    if (about) {
+      RIGCAL_ASSIGN(row.holds, HeldRowOf(store, *about));
+    }
+    InsertAudit(store, row);
+    return {};
+  });
+}
+
+Status CheckAuditGoesOn(Store& store) {
+  return store.connection().Load(kAuditSubject, [&]() -> Status {
+    RIGCAL_TRY(NextAuditNumber(store));
     return {};
   });
 }
@@ -77,12 +126,11 @@ Status AppendAudit(Store& store, Stamp now, const std::string& who, const std::s
 Result<std::vector<AuditRow>> LoadAudit(Store& store, const RobotId& robot, std::int64_t before, std::int64_t limit) {
   return Load<std::vector<AuditRow>>(store, kAuditSubject, [&]() -> Result<std::vector<AuditRow>> {
     const std::int64_t below = before > 0 ? before : kAllRows;
-    Query query(store, robot.empty() ? "SELECT a.number, a.at_ns, c.robot_id, a.who, a.what, c.hash FROM audit a "
-                                       "LEFT JOIN audit_chain c ON c.number = a.number "
-                                       "WHERE a.number < ?1 ORDER BY a.number DESC LIMIT ?2"
-                                     : "SELECT a.number, a.at_ns, c.robot_id, a.who, a.what, c.hash FROM audit_chain c "
-                                       "JOIN audit a ON a.number = c.number "
-                                       "WHERE c.number < ?1 AND c.robot_id = ?3 ORDER BY c.number DESC LIMIT ?2");
+    const std::string of_all = " FROM audit a LEFT JOIN audit_chain c ON c.number = a.number WHERE a.number < ?1 "
+                               "ORDER BY a.number DESC LIMIT ?2";
+    const std::string of_robot = " FROM audit_chain c JOIN audit a ON a.number = c.number WHERE c.number < ?1 AND "
+                                 "c.robot_id = ?3 ORDER BY c.number DESC LIMIT ?2";
+    Query query(store, "SELECT " + kAuditColumns + (robot.empty() ? of_all : of_robot));
     query.Bind(below, limit);
     if (!robot.empty()) query.Bind(robot);
     std::vector<AuditRow> rows;
@@ -99,6 +147,7 @@ Result<AuditCheck> VerifyAudit(Store& store) {
       const auto missing = FirstMissingAudit(store);
       if (missing && (!check.fault || *missing < check.fault->number))
         check.fault = AuditFault{AuditFault::Kind::kMissing, *missing};
+      CheckHeldRows(store.database(), check);
       return {};
     }));
     return check;

@@ -16,11 +16,16 @@ const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL 
 const std::string kIsDueThisWeek = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND calibrated_ns + max_age_ns < ?2)";
 const std::string kIsDueNextWeek = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?2 AND calibrated_ns + max_age_ns < ?3)";
 const std::string kIsDueLater = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?3)";
+// As DriveRuleOf (model/drive_rule.h) has it of the newest revision.
+const std::string kDriveKind =
+    "(CASE WHEN verdict = 'fail' THEN 'do_not_drive' WHEN runs_trouble <> '' THEN 'not_applied' WHEN verdict = 'unknown' "
+    "THEN 'not_verified' WHEN revision_number > 0 AND coalesce(usable_number, 0) <> revision_number THEN 'to_approve' WHEN " +
+    kIsOverdue + " THEN 'not_verified' WHEN verdict = 'warn' THEN 'ok_with_action' ELSE 'ok' END)";
 const std::string kIsLike =
     "CASE ?4 WHEN '' THEN 1 WHEN 'overdue' THEN " + kIsOverdue + " WHEN 'this_week' THEN " + kIsDueThisWeek +
     " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
     " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
-    "ELSE verdict = ?4 END AND "
+    "ELSE ?4 IN (verdict, " + kDriveKind + ") END AND "
     "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7))";
 
 // "overdue" stands in a row, but comes with the time.
@@ -31,7 +36,7 @@ const std::string kHasWords = " AND " + HasWord("?8") +
                               " AND (?9 = '' OR NOT EXISTS (SELECT 1 FROM json_each(?9, '$.words') AS word WHERE NOT " +
                               HasWord("word.value") + "))";
 
-// What is overdue may be relied on no more than a warning allows: it goes before those. Of what passes that goes first
+// What is overdue is relied on no more: it goes before warnings. Of what passes that goes first
 // which is due by the end of next week.
 const std::string kUrgency = "CASE verdict WHEN 'fail' THEN 1 - " + kIsOverdue + " WHEN 'unknown' THEN 3 - " +
                              kIsOverdue + " WHEN 'warn' THEN 6 - 2 * " + kIsOverdue + " ELSE CASE WHEN " + kIsOverdue +
@@ -112,6 +117,15 @@ std::optional<RobotSummary> LoadRow(Store& store, std::int64_t number, Stamp now
   return query.Bind(number).Step() ? std::optional(SummaryOf(query, now)) : std::nullopt;
 }
 
+std::map<DriveKind, std::int64_t> CountKinds(Store& store, Stamp now) {
+  Query query(store, "SELECT " + kDriveKind + " AS kind, count(*) FROM summary_robot GROUP BY kind");
+  query.Bind(now);
+  std::map<DriveKind, std::int64_t> kinds;
+  while (query.Step())
+    if (const auto kind = DriveKindOf(query.Text(0))) kinds[*kind] = query.Int(1);
+  return kinds;
+}
+
 }  // namespace
 
 Result<FleetCounts> CountFleet(Store& store, Stamp now) {
@@ -138,6 +152,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     counts.due_this_week = query.Int(9);
     counts.due_next_week = query.Int(10);
     counts.due_later = query.Int(11);
+    counts.kinds = CountKinds(store, now);
     RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));
     return counts;
   });

@@ -2,6 +2,7 @@
 
 #include "schema.h"
 #include "storage/audit_chain.h"
+#include "storage/audited_rows.h"
 
 namespace rigcal::storage {
 namespace {
@@ -20,8 +21,10 @@ Status RunMissing(Connection& connection) {
   // Another process may have migrated since the version was read.
   const int version = SchemaVersionOf(connection);
   for (int next = version; next < NewestSchemaVersion(); ++next) {
-    connection.database().exec(std::string(schema::kEmbeddedFiles.at(static_cast<std::size_t>(next)).second));
+    const auto& [name, sql] = schema::kEmbeddedFiles.at(static_cast<std::size_t>(next));
+    connection.database().exec(std::string(sql));
     if (next + 1 == kAuditChainVersion) ChainOldAudit(connection.database());
+    if (name == kAuditedRowsSchema) HoldRowsOfBefore(connection.database(), SystemClock().Now());
   }
   connection.database().exec("PRAGMA application_id = " + std::to_string(kApplicationId) +
                              "; PRAGMA user_version = " + std::to_string(NewestSchemaVersion()));

@@ -40,7 +40,8 @@ Result<PolicyVersion> AppendPolicy(Store& store, const PolicyPlace& place, const
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            "set version " + std::to_string(next.version) + " of " + PolicySubject(place) +
                                Because(word),
-                           RobotId(place.scope == PolicyScope::kRobot ? place.subject : "")));
+                           RobotId(place.scope == PolicyScope::kRobot ? place.subject : ""),
+                           AuditedRow{AuditedKind::kPolicy, next.number}));
     return next;
   });
 }

@@ -52,8 +52,9 @@ Status Say(Store& store, const SaidOf<Key>& thing, const std::string& how, const
         "INSERT INTO standing (robot_id, at_ns, how, " + thing.column + ", who, reason) VALUES (?, ?, ?, ?, ?, ?)")
       .Bind(thing.robot, word.at, how, thing.key, word.who, word.reason)
       .Run();
+  const AuditedRow row{AuditedKind::kStanding, store.database().getLastInsertRowid()};
   return AppendAudit(store, word.at, word.who,
-                     how + " " + thing.name + " of robot " + thing.robot.str() + Because(word), thing.robot);
+                     how + " " + thing.name + " of robot " + thing.robot.str() + Because(word), thing.robot, row);
 }
 
 Result<SaidOf<std::int64_t>> EdgeSaidOf(Store& store, const EdgeId& id) {

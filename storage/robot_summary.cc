@@ -19,8 +19,8 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
   Query(store,
         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, last_session_ns, "
         "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, worst_frame_a, "
-        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, runs_revision, runs_trouble) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, runs_revision, runs_trouble, runs_what) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
@@ -30,7 +30,7 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
       .Bind(summary.verdict.why, summary.verdict.what_to_do, validity.given_up, ListOfKeys(summary.causes))
       .Bind(validity.max_age_ns, summary.verdict.unverified, NameOf(summary.state))
       .Bind(summary.runs ? std::optional(summary.runs->revision) : std::nullopt,
-            summary.runs ? summary.runs->trouble : Text())
+            summary.runs ? summary.runs->trouble : Text(), summary.runs ? summary.runs->what : Text())
       .Run();
 }
 
@@ -56,7 +56,7 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   if (!query.IsNull(16)) summary.worst = WorstEdge{query.IdAt<SensorId>(14), query.IdAt<SensorId>(15), query.Real(16)};
   summary.causes = KeysOfList(query.Text(17));
   summary.state = RevisionStateOf(query.Text(20));
-  if (!query.IsNull(21)) summary.runs = Runs{static_cast<int>(query.Int(21)), query.Text(22)};
+  if (!query.IsNull(21)) summary.runs = Runs{static_cast<int>(query.Int(21)), query.Text(22), query.Text(23)};
   return summary;
 }
 

@@ -148,10 +148,11 @@ Result<bool> MakeCurrent(Store& store, const SessionId& id, MadeCurrent how, con
     if (was.empty()) return false;
     const bool restored = how == MadeCurrent::kRestored;
     InsertCurrent(store, id, restored ? "restored" : "pushed_again", word);
+    const AuditedRow standing{AuditedKind::kStanding, store.database().getLastInsertRowid()};
     RIGCAL_TRY(AppendAudit(store, word.at, word.who,
                            (restored ? "restored session " : "pushed again session ") + id.str() + " of robot " +
                                row.robot.str() + was + Because(word),
-                           row.robot));
+                           row.robot, standing));
     return true;
   });
 }

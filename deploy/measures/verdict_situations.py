@@ -117,8 +117,8 @@ def level(robot, sensors, motion, open_):
 
 
 def overdue(robot, days):
-    return Situation(robot, drawn(FRONT, days=days), Wanted("warn", r"overdue|days? old|out of date", r"calibrat|" + AGAIN, in_text=True,
-                                                            drive="OK to drive; |Not verified: do not rely on"))
+    return Situation(robot, drawn(FRONT, days=days), Wanted("unknown", r"overdue|days? old|out of date", r"calibrat|" + AGAIN, in_text=True,
+                                                            drive="Not verified: do not rely on"))
 
 
 def foreign(robot, owner, spoil):

@@ -33,10 +33,10 @@ def ask(server, situation, pushed):
         return not_stored(pushed)
     answer, text = json.loads(shown.stdout), server.rigcal("show", situation.robot).stdout
     verdict = answer["document"]["verdict"]
-    is_late = verdict["level"] == "pass" and answer["overdue"]
+    is_late = verdict["level"] in ("pass", "warn") and answer["overdue"]
     why, action = (before_the_verdict(text),) * 2 if situation.wanted.in_text else (verdict["why"], verdict["what_to_do"])
     codes = {"push": pushed.returncode, "show": shown.returncode, "status": server.rigcal("status", situation.robot).returncode}
-    return Told("warn" if is_late else verdict["level"], why, action, text, codes)
+    return Told("unknown" if is_late else verdict["level"], why, action, text, codes)
 
 
 def judged(bench, situation):

@@ -29,9 +29,11 @@ void WriteValidity(JsonWriter& out, const Validity& validity) {
   validity.given_up.empty() ? out.Null("given_up") : out.Text("given_up", validity.given_up);
 }
 
-void WriteDrive(JsonWriter& out, const Verdict& verdict, const Validity& validity) {
-  const DriveRule drive = DriveRuleOf(verdict, validity);
+void WriteDrive(JsonWriter& out, const Verdict& verdict, const Validity& validity,
+                const std::optional<Runs>& runs = {}) {
+  const DriveRule drive = DriveRuleOf(verdict, validity, runs);
   out.Object("drive", [&] {
+    out.Text("kind", NameOf(drive.kind));
     out.Text("rule", drive.rule);
     WriteStamp(out, "until", drive.until);
   });
@@ -45,7 +47,7 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     robot.revision > 0 ? out.Text("state", NameOf(robot.state)) : out.Null("state");
     WriteRuns(out, robot.runs);
     WriteValidity(out, robot.validity);
-    WriteDrive(out, robot.verdict, robot.validity);
+    WriteDrive(out, robot.verdict, robot.validity, robot.runs);
     WriteAge(out, robot.validity.calibrated_at, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
@@ -202,7 +204,7 @@ std::string WriteShow(const Revision& revision, bool is_published, const Validit
     WriteRevisionMembers(out, revision);
     WriteAge(out, revision.created_at, now);
     WriteValidity(out, validity);
-    WriteDrive(out, revision.verdict, validity);
+    WriteDrive(out, revision.verdict, validity, runs);
     WriteApproval(out, approval);
     WriteRuns(out, runs);
     out.Flag("published", is_published);
@@ -246,7 +248,7 @@ std::string WriteLookup(const LookupAnswer& answer) {
     answer.unobservable_basis.empty() ? WriteWholePose(out, answer) : WritePoseInPart(out, answer);
     WriteVerdict(out, "verdict", answer.verdict);
     WriteValidity(out, answer.validity);
-    WriteDrive(out, answer.verdict, answer.validity);
+    WriteDrive(out, answer.verdict, answer.validity, answer.runs);
     WriteApproval(out, answer.approval);
   });
 }

@@ -111,6 +111,7 @@ struct LookupAnswer {
   Verdict verdict;                         // of the revision
   Validity validity;
   Approval approval = {};                  // likewise
+  std::optional<Runs> runs = {};           // what the robot says that it runs; absent: it never told
 };
 // "known" is true of a whole pose only; one in part has what was measured, axis by axis.
 [[nodiscard]] std::string WriteLookup(const LookupAnswer& answer);

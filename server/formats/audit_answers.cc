@@ -13,13 +13,16 @@ void WriteAuditRow(JsonWriter& out, const AuditRow& row) {
   row.hash ? out.Text("hash", row.hash->str()) : out.Null("hash");
 }
 
-void WriteAuditFault(JsonWriter& out, const std::optional<AuditFault>& fault) {
-  if (!fault) return out.Null("fault");
-  out.Object("fault", [&] {
-    out.Integer("number", fault->number);
-    WriteStamp(out, "at", fault->at);
-    out.Text("what", TextOf(*fault));
-  });
+void WriteAuditFaultMembers(JsonWriter& out, const AuditFault& fault) {
+  fault.number > 0 ? out.Integer("number", fault.number) : out.Null("number");
+  WriteStamp(out, "at", fault.at);
+  out.Text("what", TextOf(fault));
+}
+
+// Who asks for one alone is told of a row as well.
+void WriteAuditFault(JsonWriter& out, const AuditCheck& check) {
+  if (Holds(check)) return out.Null("fault");
+  out.Object("fault", [&] { WriteAuditFaultMembers(out, check.fault ? *check.fault : check.row_faults.front()); });
 }
 
 }  // namespace
@@ -40,7 +43,13 @@ std::string WriteAuditCheck(const AuditCheck& check) {
       out.Integer("number", check.head_number);
       out.Text("hash", check.head.str());
     });
-    WriteAuditFault(out, check.fault);
+    WriteAuditFault(out, check);
+    out.Flag("chain_holds", !check.fault);
+    out.Integer("from_before", check.from_before);
+    out.Integer("row_faults_total", check.row_faults_count);
+    out.List("row_faults", [&] {
+      for (const AuditFault& fault : check.row_faults) out.Object([&] { WriteAuditFaultMembers(out, fault); });
+    });
   });
 }
 

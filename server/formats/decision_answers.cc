@@ -27,6 +27,7 @@ void WriteRuns(JsonWriter& out, const std::optional<Runs>& runs) {
   if (!runs) return out.Null("runs");
   out.Object("runs", [&] {
     runs->revision > 0 ? out.Integer("revision", runs->revision) : out.Null("revision");
+    if (!runs->digest.empty()) out.Text("digest", runs->digest.str());
     runs->trouble.empty() ? out.Null("trouble") : out.Text("trouble", runs->trouble);
   });
 }

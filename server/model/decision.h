@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "server/base/result.h"
 #include "server/model/diagnosis.h"
 #include "server/model/policy.h"
 #include "server/model/standing.h"
@@ -13,6 +14,9 @@
 namespace rigcal {
 
 inline constexpr const char* kPolicyWho = "policy";  // who decides where nobody has to
+// kInvalidInput of a name that stands for the policy or the server themselves, however it is written: no person may
+// decide by it.
+[[nodiscard]] Status CheckPerson(const std::string& who);
 
 struct Decision {
   std::int64_t number = 0;  // order of arrival among those of all robots
@@ -25,15 +29,16 @@ enum class RevisionState {
   kUnusable,    // it failed, or nothing is known: nobody can approve it
   kCandidate,   // nobody has decided about it
   kApproved,    // and no other since: the robot is to use it
+  kTakenBack,   // likewise, but what it was made of was retired, or a sensor moved, since: the robot is not to use it
   kSuperseded,  // another was approved after it
   kRolledBack,  // the robot was rolled back behind it
   kRejected
 };
-// "unusable", "candidate", "approved", "superseded", "rolled_back", "rejected"; what is not known is unusable.
+// "unusable", "candidate", "approved", "taken_back", "superseded", "rolled_back", "rejected"; what is not known is unusable.
 [[nodiscard]] std::string NameOf(RevisionState state);
 [[nodiscard]] RevisionState RevisionStateOf(const std::string& name);
 
-// For people: "in use", "candidate", "rolled back"; "-" of what is unusable.
+// For people: "in use", "candidate", "taken back", "rolled back"; "-" of what is unusable.
 [[nodiscard]] std::string WordFor(RevisionState state);
 
 // Of a revision; `in_use` is of its robot.
@@ -46,6 +51,9 @@ struct Approval {
 // Whether the policy approves a revision of this verdict by itself. `found_drift`: its newest session found a sensor
 // elsewhere than the calibration in use says.
 [[nodiscard]] bool Approves(const Policy& policy, const Verdict& verdict, bool found_drift = false);
+
+// What to do about a revision: of a candidate approving it comes first, and alone where its verdict asks for nothing.
+[[nodiscard]] std::string WhatToDo(const RobotId& robot, int revision, RevisionState state, const Verdict& verdict);
 
 // "In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve rig 4 --reason TEXT`".
 // Empty of the revision that is in use, and of one that is unusable: its verdict says it.

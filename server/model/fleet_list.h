@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/model/drive_rule.h"
 #include "server/model/robot_summary.h"
 
 namespace rigcal {
@@ -17,7 +18,7 @@ inline constexpr std::int64_t kQuiet_ns = 30LL * 24 * 3600 * 1'000'000'000;  // 
 // Each part comes from the address of a page and may be anything.
 struct FleetQuery {
   std::string search;   // words that a robot's row must hold: what the list shows of it, dates as "31 Jan 2026" or 2026-01-31
-  // "pass", "warn", "fail", "unknown", "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
+  // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
   // when it is due: "this_week", "next_week", "later"; empty: all
   std::string verdict;
   // "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
@@ -43,6 +44,7 @@ inline constexpr std::size_t kCausesListedMax = 12;
 struct FleetCounts {
   std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
   std::map<VerdictLevel, std::int64_t> verdicts;
+  std::map<DriveKind, std::int64_t> kinds = {};  // by what their drive rules say: each robot once
   // That are not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
   std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed

@@ -29,10 +29,14 @@ struct RobotRuns {
 struct Runs {
   int revision = 0;     // 0: none that is known
   std::string trouble;  // a sentence; empty: it runs what is in use
+  std::string what = {};  // "revision 3, which was rejected by Ada, 3 Nov 2026"
+  Digest digest = {};     // of its document; empty: not asked for
   friend bool operator==(const Runs&, const Runs&) = default;
 };
 
-// "It runs revision 3; revision 5 is in use: not applied yet." `was_approved`: that it was ever allowed to.
-[[nodiscard]] Runs RunsOf(const RobotRuns& runs, bool was_approved, const std::optional<UsableRevision>& in_use);
+// "It runs revision 3; revision 5 is in use: not applied yet." `was_approved`: that it was ever allowed to. `decision`:
+// the newest about the revision that it runs.
+[[nodiscard]] Runs RunsOf(const RobotRuns& runs, bool was_approved, const std::optional<Decision>& decision,
+                          const std::optional<UsableRevision>& in_use);
 
 }  // namespace rigcal

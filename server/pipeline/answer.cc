@@ -229,6 +229,7 @@ Result<std::string> Lookup(const AnswerContext& context, const Parameters& param
   answer.verdict = revision.verdict;
   RIGCAL_ASSIGN(answer.validity, LoadValidity(context.store, revision, context.clock.Now()));
   RIGCAL_ASSIGN(answer.approval, LoadApproval(context.store, revision));
+  RIGCAL_ASSIGN(answer.runs, LoadWhatRuns(context.store, robot));
   return formats::WriteLookup(answer);
 }
 

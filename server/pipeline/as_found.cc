@@ -6,9 +6,9 @@
 
 #include "server/fleet/as_found.h"
 #include "server/graph/session_fusion.h"
-#include "storage/decisions.h"
 #include "storage/revision_poses.h"
 #include "storage/revisions.h"
+#include "storage/usable_revision.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -55,7 +55,7 @@ Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTh
   RIGCAL_ASSIGN(int last, LoadLastBefore(store, revision, sessions));
   RIGCAL_ASSIGN(const Stamp came_at, LoadMadeAt(store, robot, last + 1));
   while (last > 0) {
-    RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot, last, came_at));
+    RIGCAL_ASSIGN(const auto usable, storage::LoadStillUsable(store, robot, last, came_at));
     if (!usable) break;
     RIGCAL_ASSIGN(auto loaded, storage::LoadRevision(store, robot, usable->number));
     if (!loaded) break;
@@ -75,13 +75,28 @@ Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use
   return fleet::Some(all, [&](const SensorId& sensor) { return !current.counts.retired_sensors.contains(sensor); });
 }
 
-// Since the calibration in use was measured, says the session or one between both.
-std::set<SensorId> MovedOnPurpose(const SessionSet& sessions, const InUse& in_use, const CurrentEdges& current) {
+// As of when the calibration in use has the pose of the sensor: the newest of the edges that it counts of it. Where none
+// of these has a date of its own, as of when it has all of them.
+std::optional<Stamp> PoseMeasuredAt(const SensorId& sensor, const InUse& in_use, const fleet::SessionTimes& captured_at) {
+  std::optional<Stamp> newest;
+  for (const Edge& edge : in_use.told.edges) {
+    if (edge.state != EdgeState::kGood || (edge.frame_a != sensor && edge.frame_b != sensor)) continue;
+    const auto session = captured_at.find(edge.session);
+    const std::optional<Stamp> at = session == captured_at.end() ? edge.measured_at : std::optional(session->second);
+    if (at && (!newest || *newest < *at)) newest = at;
+  }
+  return newest ? newest : in_use.revision.calibrated_at;
+}
+
+// Since the calibration in use has its pose, says the session or one between both, refined or not.
+std::set<SensorId> MovedOnPurpose(const RevisionInTheMaking& revision, const SessionSet& sessions, const InUse& in_use) {
   const std::vector<SessionId>& known = in_use.told.solution.fused.sessions;
   std::set<SensorId> moved;
-  for (const Epoch& epoch : current.counts.epochs) {
+  for (const Epoch& epoch : revision.current.counts.epochs) {
     const bool is_known = std::find(known.begin(), known.end(), epoch.session) != known.end();
-    const bool is_later = in_use.revision.calibrated_at && epoch.begins_at >= *in_use.revision.calibrated_at;
+    const auto measured_at = PoseMeasuredAt(epoch.sensor, in_use, revision.captured_at);
+    const bool by_hand = epoch.session.empty();  // what was measured at that very time is of before
+    const bool is_later = measured_at && (by_hand ? *measured_at <= epoch.begins_at : *measured_at < epoch.begins_at);
     if (sessions.contains(epoch.session) || (is_later && !is_known)) moved.insert(epoch.sensor);
   }
   return moved;
@@ -134,7 +149,7 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
     const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
     found = fleet::TestAsFound(
-        {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(sessions, *in_use, revision.current),
+        {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(revision, sessions, *in_use),
          revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha), LimitsOf(revision.policy, SensorId()).moved_min});
     fleet::AddDriftRates(counted.Visits(), left, found);
   }

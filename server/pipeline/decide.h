@@ -14,11 +14,16 @@
 namespace rigcal::pipeline {
 
 // WRITE: inside the Write that appended the revision: it is approved or left a candidate by the policy that holds then,
-// once for all, whatever ends the process. `found_drift` as in Approves (model/decision.h).
+// once for all, whatever ends the process. A candidate it stays, too, where a person's no holds the policy back
+// (storage/usable_revision.h), and where the audit can take no row. `found_drift` as in Approves (model/decision.h).
 [[nodiscard]] Status ApproveByPolicy(storage::Store& store, const Revision& revision, bool found_drift, Stamp now);
 
-// Orders approve, reject (`revision`: the newest without it) and rollback (`revision` is needed); `robot`, `who`,
-// `reason`. One transaction; kConflict where the robot could not use the revision after all, because of what was
+// WRITE: inside the Write that retired something. Where that was of the revision in use, the one before it is in use by
+// the policy, if it approves by itself; else none is, until somebody decides.
+[[nodiscard]] Status FallBackByPolicy(storage::Store& store, const RobotId& robot, Stamp now);
+
+// Orders approve, reject and rollback: `robot`, `revision`, `who`, `reason`. One transaction; kInvalidInput without a
+// revision names the one that may be meant; kConflict where the robot could not use the revision after all, because of what was
 // retired or moved since.
 [[nodiscard]] Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb,
                                        const formats::Parameters& parameters);

@@ -27,7 +27,7 @@ struct Saying {
 };
 
 Result<Saying> SayingOf(const Clock& clock, const std::string& verb, const Parameters& parameters) {
-  RIGCAL_ASSIGN(std::string who, RequiredText(parameters, "who", "Say who asks for it."));
+  RIGCAL_ASSIGN(std::string who, RequiredWho(parameters, "Say who asks for it."));
   const bool retires = verb == "retire";
   if (retires) RIGCAL_TRY(RequiredText(parameters, "reason", "Say why it is to take no part."));
   return Saying{retires, {clock.Now(), std::move(who), parameters.Text("reason").value_or("")}};
@@ -101,7 +101,7 @@ Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std:
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(const Subject subject, FindSubject(store, parameters));
     RIGCAL_ASSIGN(done, std::visit([&](const auto& of) { return SayOf(store, saying, of); }, subject));
-    return {};
+    return saying.retires ? FallBackByPolicy(store, done.robot, saying.word.at) : Status();
   }));
   return done;
 }

@@ -97,6 +97,8 @@ Result<PageText> Metrics(const AnswerContext& context) {
             "\nrigcal_part_failures_total{part=\"" + part.name + "\"} " + std::to_string(part.failures) + "\n";
   for (const std::string verdict : {"fail", "pass", "unknown", "warn"})
     text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(fleet.verdicts[VerdictLevelOf(verdict)]) + "\n";
+  for (const DriveKind kind : kDriveKinds)
+    text += "rigcal_robots_by_drive_rule{rule=\"" + NameOf(kind) + "\"} " + std::to_string(fleet.kinds[kind]) + "\n";
   return PageText{text, "text/plain; version=0.0.4; charset=utf-8"};
 }
 

@@ -156,7 +156,7 @@ Result<std::string> TellPolicy(storage::Store& store, const Parameters& paramete
 
 Result<OrderDone> SetPolicy(storage::Store& store, const Clock& clock, const Parameters& parameters) {
   Word word{clock.Now(), "", ""};
-  RIGCAL_ASSIGN(word.who, RequiredText(parameters, "who", "Say who sets it."));
+  RIGCAL_ASSIGN(word.who, RequiredWho(parameters, "Say who sets it."));
   RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why these limits."));
   RIGCAL_ASSIGN(const PolicyPlace place, PlaceAsked(store, parameters));
   const std::string text = parameters.Text("text").value_or("");

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "server/base/stamp.h"
-#include "storage/decisions.h"
+#include "storage/usable_revision.h"
 #include "storage/revisions.h"
 
 namespace rigcal::pipeline {
@@ -66,7 +66,7 @@ Result<Freed> RemoveOldReports(storage::Store& store, const RobotId& robot, std:
   if (static_cast<std::int64_t>(numbers.size()) <= kept) return Freed{};
   const std::vector<int> older(numbers.begin() + kept, numbers.end());
   RIGCAL_ASSIGN(std::set<int> stay, NewestOfMonths(store, robot, older));
-  RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot));
+  RIGCAL_ASSIGN(const auto usable, storage::LoadStillUsable(store, robot));
   if (usable) stay.insert(usable->number);
   Freed freed;
   for (const int number : older) {

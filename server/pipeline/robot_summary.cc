@@ -40,7 +40,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   summary.revision = revision.number;
   summary.verdict = revision.verdict;
   RIGCAL_ASSIGN(summary.validity, LoadValidity(store, revision, now));
-  RIGCAL_ASSIGN(summary.state, storage::LoadRevisionState(store, revision));
+  RIGCAL_ASSIGN(summary.state, storage::LoadRevisionState(store, revision, summary.validity.usable));
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
   RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
   if (!summary.validity.calculating) return {};
@@ -66,6 +66,7 @@ Result<RobotSummary> LoadRobotSummary(storage::Store& store, const RobotId& robo
   RIGCAL_ASSIGN(summary.jobs_waiting, storage::CountJobs(store, robot));
   RIGCAL_ASSIGN(summary.last_session_at, storage::LoadNewestCapture(store, robot));
   RIGCAL_ASSIGN(summary.runs, LoadWhatRuns(store, robot));
+  if (summary.runs) summary.runs->digest = {};  // it is told of one robot that is asked for alone
   RIGCAL_ASSIGN(const auto revision, storage::LoadRevisionSummary(store, robot, 0));
   RIGCAL_TRY(revision ? TakeRevision(store, *revision, now, summary) : TakeArrivals(store, summary));
   return summary;

@@ -1,6 +1,7 @@
 #include "server/pipeline/subject.h"
 
 #include "server/base/text.h"
+#include "server/model/decision.h"
 #include "server/pipeline/unknown_names.h"
 #include "storage/retired.h"
 #include "storage/sessions.h"
@@ -73,6 +74,12 @@ Result<std::string> RequiredText(const Parameters& parameters, const std::string
   const auto text = parameters.Text(name);
   if (text && text->find_first_not_of(' ') != std::string::npos) return *text;
   return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", cure);
+}
+
+Result<std::string> RequiredWho(const Parameters& parameters, const std::string& cure) {
+  RIGCAL_ASSIGN(std::string who, RequiredText(parameters, "who", cure));
+  RIGCAL_TRY(CheckPerson(who));
+  return who;
 }
 
 Result<Subject> FindSubject(storage::Store& store, const Parameters& parameters) {

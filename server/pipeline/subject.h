@@ -16,6 +16,8 @@ struct SensorOfRobot {
 };
 using Subject = std::variant<EdgeId, SessionId, SensorOfRobot>;
 
+// Who decides, in the parameter `who`: kInvalidInput also of a name that is no person's (CheckPerson).
+[[nodiscard]] Result<std::string> RequiredWho(const formats::Parameters& parameters, const std::string& cure);
 // kInvalidInput, with `cure`, where the parameter is missing or blank.
 [[nodiscard]] Result<std::string> RequiredText(const formats::Parameters& parameters, const std::string& name,
                                                const std::string& cure);

@@ -6,7 +6,6 @@
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/session_refinement.h"
 #include "storage/attempts.h"
-#include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/epochs.h"
 #include "storage/jobs.h"
@@ -15,6 +14,7 @@
 #include "storage/session_estimates.h"
 #include "storage/sessions.h"
 #include "storage/standing.h"
+#include "storage/usable_revision.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -54,6 +54,16 @@ Result<bool> GaveWayAfter(storage::Store& store, const RobotId& robot, Stamp sol
   return false;
 }
 
+// Whether its poses are those of the rig as the newest revision knows it.
+Result<bool> IsOfThisRig(storage::Store& store, const Revision& revision) {
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, revision.robot, 0));
+  if (newest && newest->number == revision.number) return true;
+  RIGCAL_ASSIGN(const bool began_epoch, BeganEpochAfter(store, revision.robot, revision.created_at));
+  if (began_epoch) return false;
+  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, revision.robot, revision.created_at));
+  return !gave_way;
+}
+
 Result<std::string> LoadGivenUp(storage::Store& store, const RobotId& robot) {
   RIGCAL_ASSIGN(const std::int64_t edges, storage::LoadEdgeWatermark(store, robot));
   RIGCAL_ASSIGN(const std::int64_t standing, storage::LoadStandingWatermark(store, robot));
@@ -72,17 +82,19 @@ bool IsKept(const Revision& revision, const Revision& newest, const std::optiona
 }  // namespace
 
 Result<std::optional<UsableRevision>> LoadUsable(storage::Store& store, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto in_use, storage::LoadInUse(store, robot));
-  if (!in_use) return std::nullopt;
-  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, robot, 0));
-  if (newest && newest->number == in_use->revision) return UsableRevision{newest->number, newest->created_at};
   RIGCAL_ASSIGN(const auto usable, storage::LoadUsableRevision(store, robot));
   if (!usable) return std::nullopt;
-  RIGCAL_ASSIGN(const bool began_epoch, BeganEpochAfter(store, robot, usable->created_at));
-  if (began_epoch) return std::nullopt;
-  RIGCAL_ASSIGN(const bool gave_way, GaveWayAfter(store, robot, usable->created_at));
-  if (gave_way) return std::nullopt;
+  RIGCAL_ASSIGN(const bool is_of_this_rig, IsOfThisRig(store, *usable));
+  if (!is_of_this_rig) return std::nullopt;
   return UsableRevision{usable->number, usable->created_at};
+}
+
+Result<std::optional<Revision>> LoadFallback(storage::Store& store, const RobotId& robot) {
+  RIGCAL_ASSIGN(auto fallback, storage::LoadStillUsable(store, robot));
+  if (!fallback) return std::nullopt;
+  RIGCAL_ASSIGN(const bool is_of_this_rig, IsOfThisRig(store, *fallback));
+  if (!is_of_this_rig) fallback.reset();
+  return fallback;
 }
 
 Status LoadWhatIsNew(storage::Store& store, const RobotId& robot, Validity& validity) {

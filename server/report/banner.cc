@@ -31,41 +31,43 @@ void FillBadge(Dictionary& row, VerdictLevel level) {
 namespace {
 
 // What is said of it once it is overdue: what else it is changes no rule.
-std::string LateText(const Verdict& verdict, Validity validity) {
+std::string LateText(const Verdict& verdict, Validity validity, const std::optional<Runs>& runs) {
   if (!IsUsable(verdict)) return OverdueText(ValidUntil(validity));
   validity.overdue = true;
-  return DriveRuleOf(verdict, validity).rule + ".";
+  return DriveRuleOf(verdict, validity, runs).rule + ".";
 }
 
 }  // namespace
 
-void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity) {
+void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity,
+                 const std::optional<Runs>& runs) {
   const auto valid_until = ValidUntil(validity);
-  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", LateText(verdict, validity));
+  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", LateText(verdict, validity, runs));
   if (!valid_until) return;
   Dictionary* later = row.AddSectionDictionary("LATER");
   later->SetValue("UNTIL", ToIso(*valid_until));
-  later->SetValue("TEXT", LateText(verdict, validity));
+  later->SetValue("TEXT", LateText(verdict, validity, runs));
 }
 
-void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity) {
+void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity, const std::optional<Runs>& runs) {
   if (validity.overdue && IsUsable(verdict)) return;
-  const DriveRule drive = DriveRuleOf(verdict, validity);
+  const DriveRule drive = DriveRuleOf(verdict, validity, runs);
   Dictionary* section = row.AddSectionDictionary("DRIVE");
   section->SetValue("TEXT", drive.rule + ".");
   if (drive.until) section->ShowSection("ENDS");
 }
 
-void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision) {
+void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision,
+                const std::optional<Runs>& runs) {
   Dictionary* banner = page.AddIncludeDictionary("BANNER");
   banner->SetFilename("banner.tpl");
   FillBadge(*banner, verdict.level);
   banner->SetValue("ICON", IconOf(verdict.level));
   banner->SetValue("WHY", verdict.why.empty() ? "There is no verdict yet." : verdict.why);
   if (!verdict.what_to_do.empty()) ShowValue(*banner, "DO", "WHAT_TO_DO", verdict.what_to_do);
-  FillDrive(*banner, verdict, validity);
+  FillDrive(*banner, verdict, validity, runs);
   if (!has_revision) return;
-  FillOverdue(*banner, verdict, validity);
+  FillOverdue(*banner, verdict, validity, runs);
   if (!IsUsable(verdict)) ShowValue(*banner, "KEEP", "TEXT", KeepText(verdict.level, validity.usable));
 }
 

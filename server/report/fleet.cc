@@ -30,16 +30,16 @@ std::string CountOfRobots(const FleetCounts& fleet) {
 // Each count leads to the robots that it counts.
 void FillSummary(Dictionary& page, const FleetCounts& fleet) {
   page.SetValue("SUMMARY", CountOfRobots(fleet));
-  const auto add = [&](const std::string& value, std::int64_t count) {
+  const auto add = [&](const std::string& value, const std::string& words, std::int64_t count) {
     if (count == 0) return;
     Dictionary* part = page.AddSectionDictionary("PART");
     part->SetValue("VALUE", value);
-    part->SetValue("TEXT", std::to_string(count) + " " + value);
+    part->SetValue("TEXT", std::to_string(count) + " " + words);
   };
-  add("overdue", fleet.overdue);
-  for (const VerdictLevel level :
-       {VerdictLevel::kFail, VerdictLevel::kUnknown, VerdictLevel::kWarn, VerdictLevel::kPass})
-    if (const auto found = fleet.verdicts.find(level); found != fleet.verdicts.end()) add(NameOf(level), found->second);
+  add("overdue", "overdue", fleet.overdue);
+  for (const DriveKind kind : kDriveKinds)
+    if (const auto found = fleet.kinds.find(kind); found != fleet.kinds.end())
+      add(NameOf(kind), WordsFor(kind), found->second);
 }
 
 void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
@@ -53,12 +53,13 @@ void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
 
 void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
-  FillOverdue(row, robot.verdict, robot.validity);
-  FillDrive(row, robot.verdict, robot.validity);
+  FillOverdue(row, robot.verdict, robot.validity, robot.runs);
+  FillDrive(row, robot.verdict, robot.validity, robot.runs);
   FillBadge(row, robot.verdict.level);
   row.SetValue("WHY", robot.verdict.why);
-  if (robot.verdict.level != VerdictLevel::kPass && !robot.verdict.what_to_do.empty())
-    ShowValue(row, "DO", "WHAT_TO_DO", robot.verdict.what_to_do);
+  const bool asks = robot.verdict.level != VerdictLevel::kPass || robot.state == RevisionState::kCandidate;
+  if (const std::string action = WhatToDo(robot.robot, robot.revision, robot.state, robot.verdict); asks && !action.empty())
+    ShowValue(row, "DO", "WHAT_TO_DO", action);
   if (robot.revision > 0 && !IsUsable(robot.verdict)) ShowValue(row, "KEEP", "TEXT", KeepText(robot.verdict.level, robot.validity.usable));
   if (robot.runs && !robot.runs->trouble.empty()) ShowValue(row, "RUNS", "TEXT", robot.runs->trouble);
   if (robot.jobs_waiting > 0)
@@ -76,7 +77,13 @@ void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   revision->SetValue("ROBOT", robot.robot.str());
 }
 
-constexpr std::array<std::pair<const char*, const char*>, 11> kChoices = {{{"", "all"},
+constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {{{"", "all"},
+                                                                          {"do_not_drive", "do not drive"},
+                                                                          {"not_verified", "not verified"},
+                                                                          {"not_applied", "not applied"},
+                                                                          {"to_approve", "to be approved"},
+                                                                          {"ok_with_action", "OK to drive, with a warning"},
+                                                                          {"ok", "OK to drive"},
                                                                           {"fail", "fail"},
                                                                           {"unknown", "unknown"},
                                                                           {"warn", "warn"},

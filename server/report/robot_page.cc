@@ -182,7 +182,9 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
                                ", " + Count(static_cast<std::size_t>(row.sessions), "session", "sessions") + ", " +
                                Count(static_cast<std::size_t>(row.edges), "edge", "edges"));
   FillRigModel(page, input.rig_model);
-  FillBanner(page, row.verdict, row.validity, row.revision > 0);
+  Verdict verdict = row.verdict;
+  verdict.what_to_do = WhatToDo(row.robot, row.revision, row.state, row.verdict);
+  FillBanner(page, verdict, row.validity, row.revision > 0, row.runs);
   if ((row.validity.calculating || !row.validity.given_up.empty()) && row.revision > 0) {
     Dictionary* newer = page.AddSectionDictionary("NEWER");
     newer->SetValue("TEXT", row.validity.given_up.empty() ? kCalculatingText : row.validity.given_up);

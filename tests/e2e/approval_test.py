@@ -12,7 +12,7 @@ from flow import Flow, check
 
 ROBOT = "rig"
 WHY = "checked against the wall"
-FAIL, REFUSED = 1, 4
+FAIL, REFUSED, UNKNOWN = 1, 4, 6
 
 
 def push(flow, ab_m, more=(), exit_code=None):
@@ -56,7 +56,10 @@ def nothing_runs_unapproved(flow):
     told = flow.rigcal("show", ROBOT).stdout
     check("No calibration of rig is in use; this one is a candidate: `rigcal approve rig 1 --reason TEXT`" in told, "show says so: " + told)
     check("rigcal approve rig 1 --reason TEXT" in flow.get("/robots/rig/"), "and the page")
-    said = flow.rigcal("approve", ROBOT, "--reason", WHY, "--by", "Ada").stdout
+    refused = flow.rigcal("approve", ROBOT, "--reason", WHY, exit_code=REFUSED).stderr
+    check("revision 1 is the newest candidate, `rigcal approve rig 1 --reason TEXT`" in refused, "what nobody looked at is not approved: " + refused)
+    check("the policy itself decides" in flow.rigcal("approve", ROBOT, 1, "--reason", WHY, "--by", "policy", exit_code=REFUSED).stderr, "nobody poses as the policy")
+    said = flow.rigcal("approve", ROBOT, 1, "--reason", WHY, "--by", "Ada").stdout
     check(said == "Revision 1 of rig was approved by Ada: %s. It is in use now.\n" % WHY, "approve: " + said)
     flow.kill_and_restart()
     check(in_use(flow) == 1, "an answered approval is on disk")
@@ -96,18 +99,25 @@ def a_robot_applies_it(flow):
     told = json.loads(agent(flow).stdout)
     check(told["revision"] == 1 and told["written"], "it was applied: %r" % told)
     check(hashlib.sha256(file.read_bytes()).hexdigest() == told["digest"], "the file is the revision's document")
-    check(trouble(flow, "none")["revision"] == 1, "the server knows")
+    flow.kill_and_restart()
+    known = json.loads(flow.rigcal("show", ROBOT, "--json").stdout)["runs"]
+    check(known == {"revision": 1, "digest": told["digest"], "trouble": None}, "whoever ends with 0 was heard, on disk: %r" % known)
     check(not json.loads(agent(flow).stdout)["written"], "once more is no more")
     flow.rigcal("rollback", ROBOT, 2, "--reason", "it was the wall")
     check("It runs revision 1; revision 2 is in use: not applied yet." in trouble(flow, "not applied yet")["trouble"], "the server says what is not applied")
     check("It runs revision 1; revision 2 is in use: not applied yet." in flow.get("/robots/rig/"), "so does the page")
+    said = flow.rigcal("status", ROBOT, exit_code=UNKNOWN).stdout
+    check(said.startswith("Not applied: the robot runs revision 1; revision 2 is in use.\n"), "nobody may drive by it: " + said)
     flow.kill_and_restart()
     check(json.loads(agent(flow).stdout)["revision"] == 2, "then it is")
     trouble(flow, "none")
     flow.rigcal("reject", ROBOT, 2, "--reason", "no")
     flow.rigcal("reject", ROBOT, 1, "--reason", "no")
     kept = file.read_bytes()
-    check("no calibration of robot 'rig' is in use" in agent(flow, exit_code=REFUSED, timeout_s=3).stderr, "nothing is announced")
+    said = agent(flow, exit_code=REFUSED, timeout_s=3).stderr
+    check("no calibration of robot 'rig' is in use" in said and "no candidate" in said, "nothing is announced: " + said)
+    check("the robot runs revision 2, which was rejected by " in flow.rigcal("status", ROBOT, exit_code=UNKNOWN).stdout, "what it runs was rejected")
+    check("nobody goes back to it" in flow.rigcal("rollback", ROBOT, 2, "--reason", "no", exit_code=REFUSED).stderr, "nor is it rolled back to")
     check(file.read_bytes() == kept, "the file stays as it is")
     file.write_text("{}")
     agent(flow, exit_code=REFUSED, timeout_s=3)
@@ -118,13 +128,14 @@ def a_robot_applies_it(flow):
 
 def refusals(flow):
     push(flow, 1.0, more=[edge("a", "c", 5.0)], exit_code=FAIL)
-    check("verdict fail" in flow.rigcal("approve", ROBOT, "--reason", WHY, exit_code=REFUSED).stderr, "a fail is not approved")
+    check("verdict fail" in flow.rigcal("approve", ROBOT, max(states(flow)), "--reason", WHY, exit_code=REFUSED).stderr, "a fail is not approved")
     check("no revision 9" in flow.rigcal("rollback", ROBOT, 9, "--reason", WHY, exit_code=REFUSED).stderr, "nor what there is not")
     check(in_use(flow) == 1, "what was in use is")
 
 
 def kills(flow):
     """Wherever the kill falls, the decision is whole or was never made."""
+    flow.rigcal("approve", ROBOT, 2, "--reason", "the second look")
     for go in range(6):
         before = in_use(flow), len(audit(flow))
         wanted = 3 - before[0]
@@ -143,9 +154,20 @@ def kills(flow):
         verified(flow)
 
 
+def a_row_put_in(flow):
+    """What decides stands in another table than the audit."""
+    flow.server.kill()
+    with sqlite3.connect(flow.server.data / "rigcal.db") as database:
+        database.execute("INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason) VALUES ('rig', 1, 'approved', 5, 'policy', 'the verdict is pass')")
+    database.close()
+    flow.kill_and_restart()
+    told = flow.rigcal("audit", "verify", exit_code=1).stdout
+    check(re.search(r"decision \d+ \(approved revision 1 of robot rig, by policy\) has no audit row: rigcald did not write it", told), "it is named: " + told)
+
+
 def a_flipped_byte(flow):
     """One bit, in the file itself."""
-    row = next(one for one in audit(flow) if one["what"].startswith("approved revision 2 "))
+    row = next(one for one in audit(flow) if one["what"] == "approved revision 2 of robot rig: " + WHY)
     flow.server.kill()
     store = flow.server.data / "rigcal.db"
     with sqlite3.connect(store) as database:
@@ -168,6 +190,7 @@ def main():
         refusals(flow)
         verified(flow)
         kills(flow)
+        a_row_put_in(flow)
         a_flipped_byte(flow)
     print("approval: good")
 

@@ -45,6 +45,32 @@ TEST(AuditVerb, VerifyEndsWithOneWhereARowDoesNotHold) {
       << ran.out;
 }
 
+TEST(AuditVerb, VerifyNamesEachRowThatDecidesAndDoesNotHold) {
+  std::string faults = R"({"number":null,"at":null,"what":"decision 7 has no audit row: rigcald did not write it"},)"
+                       R"({"number":9,"at":null,"what":"policy 2, which audit row 9 is about, is missing"})";
+  FakeServer server("r", Always(R"({"rows":16,"head":{"number":16,"hash":"abc"},"chain_holds":true,"fault":{"what":)"
+                                R"("decision 7 has no audit row: rigcald did not write it"},"row_faults":[)" +
+                                faults + R"(],"row_faults_total":5})"));
+  const Ran ran = Rigcal({"audit", "verify"});
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_EQ(ran.out.rfind("The audit does not hold: decision 7 has no audit row: rigcald did not write it. Its 16 rows "
+                          "are as they were written.",
+                          0),
+            0u)
+      << ran.out;
+  EXPECT_NE(ran.out.find("\n! policy 2, which audit row 9 is about, is missing.\n! 3 more do not hold either.\n"),
+            std::string::npos)
+      << ran.out;
+}
+
+TEST(AuditVerb, VerifyTellsWhatIsFromBefore) {
+  FakeServer server("r", Always(R"({"rows":16,"head":{"number":16,"hash":"abc"},"fault":null,"from_before":5})"));
+  const Ran ran = Rigcal({"audit", "verify"});
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_NE(ran.out.find("5 decisions, standings and policies are from before the audit held each"), std::string::npos)
+      << ran.out;
+}
+
 TEST(AuditVerb, TakesAnEmptyDocument) {
   FakeServer server("r", Always("{}"));
   EXPECT_EQ(Rigcal({"audit"}).out, "Nobody has decided anything yet.\n");

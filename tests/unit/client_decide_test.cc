@@ -32,6 +32,10 @@ TEST(DecideVerbs, AskAsOrdersAndSayWhatIsInUse) {
   ran = Rigcal({"rollback", "r", "3", "--reason", "bent", "--by", "Ada"});
   EXPECT_EQ(asked, R"(rollback {"robot":"r","who":"Ada","reason":"bent","revision":3})");
   EXPECT_EQ(ran.out, "Robot r was rolled back to revision 3 by Ada: bent. It is in use now.\n");
+  const Ran none = Rigcal({"approve", "r", "0", "--reason", "x"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.err.find("0 is out of range: give a number above 0"), std::string::npos) << none.err;
+  EXPECT_LT(none.err.size(), 200U) << none.err;
   EXPECT_EQ(Rigcal({"approve", "r"}).code, 2);
   EXPECT_EQ(Rigcal({"rollback", "r", "--reason", "x"}).code, 2);
 }
@@ -46,6 +50,9 @@ TEST(DecideVerbs, ShowAndStatusTellWhatIsInUse) {
   const std::string shown = Rigcal({"show", "r"}).out;
   EXPECT_NE(shown.find("In use: revision 3 (approved by policy, 3 Nov 2026); this one is a candidate: `rigcal approve "
                        "r 4 --reason TEXT`\n"),
+            std::string::npos)
+      << shown;
+  EXPECT_NE(shown.find("verdict  pass: all agree. `rigcal approve r 4 --reason TEXT`, if it is right.\n"),
             std::string::npos)
       << shown;
   const std::string status = Rigcal({"status", "r"}).out;

@@ -1,5 +1,7 @@
-// What a verb ends with says what the robot's verdict is: 0 pass, 1 fail, 5 warn or overdue, 6 unknown.
+// What a verb ends with says what the robot's verdict is: 0 pass, 1 fail, 5 warn, 6 unknown or overdue.
 #include <gtest/gtest.h>
+
+#include <map>
 
 #include "client_run.h"
 
@@ -12,8 +14,8 @@ struct Case {
   int code = 0;
   const char* rule = "Drive as you like";  // as the server says it
 };
-constexpr Case kCases[] = {{"pass", false, 0},    {"pass", true, 5},    {"warn", false, 5},
-                           {"warn", true, 5},     {"fail", false, 1},   {"fail", true, 1},
+constexpr Case kCases[] = {{"pass", false, 0},    {"pass", true, 6},    {"warn", false, 5},
+                           {"warn", true, 6},     {"fail", false, 1},   {"fail", true, 1},
                            {"unknown", false, 6}, {"unknown", true, 6}, {"of a newer server", false, 6}};
 
 // The edge of kEdgeFile, as the server tells it: its id is what the client makes of it.
@@ -111,9 +113,29 @@ TEST(ExitCode, OfStatusIsThatOfTheWorstRobot) {
   };
   EXPECT_EQ(code(""), 0);
   EXPECT_EQ(code(row("pass") + "," + row("pass")), 0);
-  EXPECT_EQ(code(row("pass") + "," + row("pass", true)), 5);
+  EXPECT_EQ(code(row("pass") + "," + row("pass", true)), 6);
   EXPECT_EQ(code(row("warn") + "," + row("unknown") + "," + row("pass")), 6);
   EXPECT_EQ(code(row("unknown") + "," + row("fail") + "," + row("warn")), 1);
+}
+
+// By what the drive rule says, not by the verdict.
+TEST(ExitCode, OfWhatIsNotInUseIsUnknown) {
+  const auto row = [](const char* kind) {
+    return std::string(R"({"robot":"r1","revision":5,"drive":{"kind":")") + kind +
+           R"(","rule":"so"},"overdue":false,"verdict":{"level":"pass"},"document":{"verdict":{"level":"pass"}}})";
+  };
+  for (const auto& [kind, code] : std::map<const char*, int>{
+           {"ok", 0}, {"ok_with_action", 5}, {"do_not_drive", 1}, {"not_applied", 6}, {"to_approve", 6}, {"not_verified", 6}}) {
+    FakeServer server("r1", [text = row(kind)](const std::string& verb, const std::string&) -> Result<std::string> {
+      return verb == "status" ? R"({"robots":[)" + text + "]}" : text;
+    });
+    EXPECT_EQ(Rigcal({"show", "r1"}).code, code) << kind;
+    EXPECT_EQ(Rigcal({"lookup", "r1", "a", "b"}).code, code) << kind;
+    EXPECT_EQ(Rigcal({"status", "r1"}).code, code) << kind;
+  }
+  FakeServer server("r1", Always(R"({"robots":[)" + row("to_approve") + "," + row("to_approve") + "," + row("ok") + "]}"));
+  const std::string status = Rigcal({"status"}).out;
+  EXPECT_EQ(status.find("3 robots: 2 to be approved, 1 OK to drive\n"), 0U) << status;
 }
 
 TEST(Drive, TheRuleComesBeforeTheVerdict) {
@@ -146,12 +168,12 @@ TEST(Drive, EachLimitStandsBesideItsSigma) {
 
 TEST(Validity, OverdueIsSaidFirst) {
   const std::string overdue = "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again.";
-  FakeServer server("r1", Telling({"pass", true, 5, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again"}));
+  FakeServer server("r1", Telling({"pass", true, 6, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again"}));
   const std::string shown = Rigcal({"show", "r1"}).out;
   EXPECT_EQ(shown.find("r1, revision 5, calibrated 22 Nov 2026, solved 1 min ago\n" + overdue + "\nverdict  pass"), 0U)
       << shown;
   EXPECT_NE(Rigcal({"robots"}).out.find("overdue, pass"), std::string::npos);
-  EXPECT_NE(Rigcal({"status"}).out.find("1 robot: 1 warn or overdue"), std::string::npos);
+  EXPECT_NE(Rigcal({"status"}).out.find("1 robot: 1 not verified"), std::string::npos);
   EXPECT_NE(Rigcal({"lookup", "r1", "a", "b"}).out.find(overdue + "\nverdict"), std::string::npos);
 }
 

@@ -25,7 +25,7 @@ SessionAnswer SampleSession() {
 TEST(Answers, Robots) {
   EXPECT_EQ(WriteRobots({SampleRobot()}, kNow),
             "{\"robots\":[{\"age_ns\":86400000000000,\"calculating\":true,\"calibrated_at\":\"2026-01-31T12:00:00Z\","
-            "\"drive\":{\"rule\":\"OK to drive until 1 May 2026\",\"until\":\"2026-05-01T12:00:00Z\"},"
+            "\"drive\":{\"kind\":\"ok\",\"rule\":\"OK to drive until 1 May 2026\",\"until\":\"2026-05-01T12:00:00Z\"},"
             "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\","
             "\"runs\":null,\"sessions\":2,\"state\":\"unusable\","
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
@@ -133,7 +133,7 @@ TEST(Answers, ShowHoldsTheDocumentByteForByte) {
   EXPECT_EQ(document["published"], true);
   EXPECT_EQ(document["overdue"], true);
   EXPECT_EQ(document["valid_until"], "2026-05-01T12:00:00Z");
-  EXPECT_EQ(document["drive"], (json{{"rule", "Not verified: do not rely on it, overdue since 1 May 2026; capture again"}, {"until", nullptr}}));
+  EXPECT_EQ(document["drive"], (json{{"kind", "not_verified"}, {"rule", "Not verified: do not rely on it, overdue since 1 May 2026; capture again"}, {"until", nullptr}}));
   EXPECT_EQ(document["usable"]["revision"], 3);
   EXPECT_EQ(document["calculating"], false);
   EXPECT_EQ(Digest(document["digest"].get<std::string>()), Sha256Of(revision.document));

@@ -60,6 +60,22 @@ TEST(AuditAnswers, RowsHeadAndFault) {
   const json told = json::parse(WriteAuditCheck(check));
   EXPECT_EQ(told["head"], (json{{"number", 16}, {"hash", Sha256Of("x").str()}}));
   EXPECT_EQ(told["fault"]["what"], "audit row 17 of 3 Nov 2026 was changed, or one before it is missing");
+  EXPECT_EQ(told["chain_holds"], false);
+}
+
+TEST(AuditAnswers, ARowThatDecidesAndDoesNotHoldIsAFaultToo) {
+  AuditCheck check{16, 16, Sha256Of("x"), {}};
+  check.row_faults = {{AuditFault::Kind::kRowUnheld, 0, {}, "decision 7 (approved revision 2 of robot rig, by policy)"}};
+  check.row_faults_count = 1;
+  check.from_before = 5;
+  const json told = json::parse(WriteAuditCheck(check));
+  EXPECT_EQ(told["chain_holds"], true);
+  EXPECT_EQ(told["fault"]["what"],
+            "decision 7 (approved revision 2 of robot rig, by policy) has no audit row: rigcald did not write it");
+  EXPECT_TRUE(told["fault"]["number"].is_null());
+  EXPECT_EQ(told["row_faults"], json::array({told["fault"]}));
+  EXPECT_EQ(told["row_faults_total"], 1);
+  EXPECT_EQ(told["from_before"], 5);
 }
 
 }  // namespace

@@ -30,10 +30,30 @@ TEST(Decision, ThePolicyApprovesWhatPassesAndWarnsUnlessItSaysOtherwise) {
 
 TEST(Decision, StatesHaveNames) {
   for (const RevisionState state : {RevisionState::kUnusable, RevisionState::kCandidate, RevisionState::kApproved,
-                                    RevisionState::kSuperseded, RevisionState::kRolledBack, RevisionState::kRejected})
+                                    RevisionState::kTakenBack, RevisionState::kSuperseded, RevisionState::kRolledBack, RevisionState::kRejected})
     EXPECT_EQ(RevisionStateOf(NameOf(state)), state);
   EXPECT_EQ(RevisionStateOf("of a newer version"), RevisionState::kUnusable);
   EXPECT_EQ(WordFor(RevisionState::kApproved), "in use");
+  EXPECT_EQ(WordFor(RevisionState::kTakenBack), "taken back");
+  EXPECT_EQ(WordFor(RevisionState::kRolledBack), "rolled back");
+}
+
+TEST(Decision, NobodyPosesAsThePolicyOrTheServer) {
+  for (const char* name : {"policy", "Policy", " policy", "POLICY.", "rigcald"}) {
+    const Status checked = CheckPerson(name);
+    ASSERT_FALSE(checked) << name;
+    EXPECT_EQ(checked.error().code, ErrorCode::kInvalidInput);
+  }
+  for (const char* name : {"Ada", "policy office", "\xC3\x84" "da"}) EXPECT_TRUE(CheckPerson(name)) << name;
+}
+
+TEST(Decision, OfACandidateApprovingItComesFirst) {
+  const RobotId rig("rig");
+  const Verdict warns{VerdictLevel::kWarn, "", "Capture top."}, passes{VerdictLevel::kPass, "", "Nothing; it is well."};
+  EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kCandidate, passes), "`rigcal approve rig 4 --reason TEXT`, if it is right.");
+  EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kCandidate, warns),
+            "`rigcal approve rig 4 --reason TEXT`, if it is right; then: Capture top.");
+  EXPECT_EQ(WhatToDo(rig, 4, RevisionState::kApproved, passes), "Nothing; it is well.");
 }
 
 TEST(Decision, WhatIsInUseIsToldWhereItIsAnother) {

@@ -25,9 +25,10 @@ TEST(DriveRule, WhatIsOverdueIsNoPass) {
     const DriveRule rule = DriveRuleOf(Of(level, "Capture top."), kDue, kAfter);
     EXPECT_EQ(rule.rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
     EXPECT_FALSE(rule.until);
-    EXPECT_EQ(rule.level, VerdictLevel::kWarn);
+    EXPECT_EQ(rule.level, VerdictLevel::kUnknown) << "issue 21: this sentence is that of what is not known";
+    EXPECT_EQ(rule.kind, DriveKind::kNotVerified);
   }
-  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), std::nullopt, kBefore).level, VerdictLevel::kWarn);
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), std::nullopt, kBefore).level, VerdictLevel::kUnknown);
 }
 
 TEST(DriveRule, AWarningSaysTheFirstThingToDoAndByWhen) {
@@ -84,6 +85,35 @@ TEST(DriveRule, OfAValidityAsOfWhenItWasWorkedOut) {
   validity.overdue = true;
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).rule, "Not verified: do not rely on it, overdue since 20 Feb 2027; capture again");
   EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity).rule, "Do not drive");
+}
+
+TEST(DriveRule, WhatTheRobotDoesNotRunIsNotOkToDriveBy) {
+  Validity validity;
+  validity.calibrated_at = Stamp{kDue.ns - 30};
+  validity.max_age_ns = 30;
+  validity.usable = UsableRevision{2, kBefore};
+  const Runs older{1, "It runs revision 1; revision 2 is in use: not applied yet.", "revision 1"};
+  const DriveRule rule = DriveRuleOf(Of(VerdictLevel::kPass), validity, older);
+  EXPECT_EQ(rule.rule, "Not applied: the robot runs revision 1; revision 2 is in use");
+  EXPECT_EQ(rule.kind, DriveKind::kNotApplied);
+  EXPECT_EQ(rule.level, VerdictLevel::kUnknown);
+  EXPECT_FALSE(rule.until);
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kFail), validity, older).rule, "Do not drive");
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity, Runs{2, "", "revision 2"}).kind, DriveKind::kOk);
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).kind, DriveKind::kOk) << "it never told";
+  validity.usable.reset();
+  validity.approved = false;
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity).kind, DriveKind::kToApprove);
+  const Runs rejected{1, "It runs ...", "revision 1, which was rejected by Ada, 3 Nov 2026"};
+  EXPECT_EQ(DriveRuleOf(Of(VerdictLevel::kPass), validity, rejected).rule,
+            "Do not rely on it: the robot runs revision 1, which was rejected by Ada, 3 Nov 2026, and no calibration of "
+            "it is in use");
+}
+
+TEST(DriveRule, KindsHaveNames) {
+  for (const DriveKind kind : kDriveKinds) EXPECT_EQ(DriveKindOf(NameOf(kind)), kind);
+  EXPECT_FALSE(DriveKindOf("of a newer server"));
+  EXPECT_EQ(WordsFor(DriveKind::kToApprove), "to be approved");
 }
 
 }  // namespace

@@ -225,6 +225,19 @@ TEST_F(AsFoundTest, WhatWasRemountedIsNoDrift) {
   EXPECT_THAT(found.text, HasSubstr("rear unchanged; right moved on purpose"));
 }
 
+// The remount is in the pose that is in use since, though the rest of the rig was measured before it, and its session was
+// never refined: from then on a move is a move.
+TEST_F(AsFoundTest, WhatWasRemountedInASessionThatWasNotRefinedIsTestedAfterIt) {
+  Visit(0, AtHome());
+  Visit(30, RightMoved(0.02), {SensorId("right")}, false);
+  if (storage::LoadInUse(*store_, kRig).value()->revision != 2) Decide(storage::Deciding::kApprove, 2);
+  Visit(60, RightMoved(0.023));
+  const AsFound found = Found(3);
+  ASSERT_EQ(found.in_use, 2) << found.text;
+  EXPECT_THAT(SummaryOf(found).drifted, ElementsAre(SensorId("right"))) << found.text;
+  EXPECT_THAT(found.text, testing::Not(HasSubstr("moved on purpose")));
+}
+
 TEST_F(AsFoundTest, ASessionWithoutAnEstimateSaysWhy) {
   Visit(0, AtHome());
   Visit(30, AtHome(), {}, false);

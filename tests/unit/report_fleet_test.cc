@@ -29,6 +29,7 @@ std::string PageWith(const std::vector<RobotSummary>& robots, Stamp now, const F
   for (const RobotSummary& robot : robots) {
     ++fleet.robots;
     ++fleet.verdicts[robot.verdict.level];
+    ++fleet.kinds[DriveRuleOf(robot.verdict, robot.validity, robot.runs).kind];
     fleet.overdue += robot.validity.overdue ? 1 : 0;
   }
   return RenderFleet(fleet, {robots, robots.size(), 1, 1}, now, query, experiments).value();
@@ -55,7 +56,21 @@ TEST(ReportFleet, RowsWithAgeAndLinks) {
   EXPECT_THAT(page, HasSubstr("<strong class=\"drive until\" dir=\"auto\">OK to drive until 10 Jul 1970.</strong>"));
   EXPECT_THAT(page, Not(HasSubstr("badge fail\">overdue"))) << "amber";
   EXPECT_THAT(page, HasSubstr("3 robots &middot; <a href=\"?verdict=overdue\">1 overdue</a> &middot; "
-                              "<a href=\"?verdict=fail\">1 fail</a> &middot; <a href=\"?verdict=pass\">2 pass</a>"));
+                              "<a href=\"?verdict=do_not_drive\">1 do not drive</a> &middot; <a "
+                              "href=\"?verdict=not_verified\">1 not verified</a> &middot; <a href=\"?verdict=ok\">1 OK to "
+                              "drive</a>"));
+}
+
+// A pass that nobody approved is counted as its row says.
+TEST(ReportFleet, ACandidateIsToBeApproved) {
+  RobotSummary candidate = RowOf("new", VerdictLevel::kPass, 2);
+  candidate.state = RevisionState::kCandidate;
+  candidate.validity.approved = false;
+  candidate.verdict.what_to_do = "Nothing; calibrate again when it is due.";
+  const std::string page = PageWith({candidate}, Stamp{103 * kDay_ns});
+  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=to_approve\">1 to be approved</a>"));
+  EXPECT_THAT(page, HasSubstr("rigcal approve new 2 --reason TEXT"));
+  EXPECT_THAT(page, Not(HasSubstr("Nothing; calibrate")));
 }
 
 TEST(ReportFleet, SaysWhatToDoAndWhatIsUnderWay) {

@@ -6,6 +6,7 @@
 #include "storage/audit.h"
 #include "storage/decisions.h"
 #include "storage/retired.h"
+#include "storage/usable_revision.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -41,11 +42,15 @@ class DecisionsTest : public StoreTest {
     }
     return in_use ? in_use->revision : 0;
   }
+  std::optional<UsableRevision> Usable() {
+    const auto usable = LoadUsableRevision(store_, kRobot).value();
+    return usable ? std::optional(UsableRevision{usable->number, usable->created_at}) : std::nullopt;
+  }
   std::vector<State> States() {
     std::vector<State> states;
     const std::vector<Revision> revisions = LoadRevisions(store_, kRobot).value();
     for (const Revision& revision : revisions)
-      states.insert(states.begin(), LoadRevisionState(store_, revision).value());
+      states.insert(states.begin(), LoadRevisionState(store_, revision, Usable()).value());
     return states;
   }
 
@@ -62,8 +67,8 @@ TEST_F(DecisionsTest, NothingIsInUseThatNobodyApproved) {
   Approve(3);
   EXPECT_EQ(InUse(), 3);
   EXPECT_THAT(States(), ElementsAre(State::kSuperseded, State::kUnusable, State::kApproved));
-  EXPECT_EQ(LoadUsableRevision(store_, kRobot, 2).value()->number, 1) << "of those of before";
-  EXPECT_FALSE(LoadUsableRevision(store_, kRobot, 0).value());
+  EXPECT_EQ(LoadStillUsable(store_, kRobot, 2).value()->number, 1) << "of those of before";
+  EXPECT_FALSE(LoadStillUsable(store_, kRobot, 0).value());
 }
 
 TEST_F(DecisionsTest, ARollbackLeavesBehindWhatIsNewer) {
@@ -127,7 +132,8 @@ TEST_F(DecisionsTest, WhatCannotBeDecidedIsRefusedAndLeavesNoTrace) {
   EXPECT_EQ(InUse(), 0);
 }
 
-TEST_F(DecisionsTest, WhatCountsARetiredEdgeMakesWayForTheOneBefore) {
+// Nobody decided that the one before it is in use again.
+TEST_F(DecisionsTest, WhatCountsARetiredEdgeIsTakenBackAndNothingIsInUse) {
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
   ASSERT_TRUE(AppendRevision(store_, MakeRevision(1)));
   ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {1}));
@@ -136,7 +142,54 @@ TEST_F(DecisionsTest, WhatCountsARetiredEdgeMakesWayForTheOneBefore) {
   Approve(2);
   ASSERT_TRUE(RetireEdge(store_, MakeEdge(2).id, {{5}, "Ada", "typed wrong"}));
   EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 2);
-  EXPECT_EQ(LoadUsableRevision(store_, kRobot).value()->number, 1);
+  EXPECT_FALSE(LoadUsableRevision(store_, kRobot).value());
+  EXPECT_EQ(LoadStillUsable(store_, kRobot).value()->number, 1) << "it could take its place";
+  EXPECT_THAT(States(), ElementsAre(State::kSuperseded, State::kTakenBack));
+  ASSERT_TRUE(RestoreEdge(store_, MakeEdge(2).id, {{6}, "Ada", ""}));
+  EXPECT_EQ(InUse(), 2);
+  EXPECT_THAT(States(), ElementsAre(State::kSuperseded, State::kApproved));
+}
+
+// A person's no holds until something is measured.
+TEST_F(DecisionsTest, ThePolicyIsHeldBackUntilAnEdgeBeganToCount) {
+  const Digest another(std::string(64, 'd'));
+  const auto held_back = [&](const Digest& digest, std::int64_t edges) {
+    return IsHeldBack(store_, kRobot, digest, edges).value();
+  };
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(1), {1}));
+  AppendGood(2);
+  const Digest made = LoadRevisionSummary(store_, kRobot, 2).value()->digest;
+  EXPECT_FALSE(held_back(made, 1));
+  Approve(1);
+  Approve(2);
+  EXPECT_FALSE(held_back(another, 1)) << "a yes holds nobody back";
+  RollBack(1);
+  EXPECT_TRUE(held_back(another, 1));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(2), {1}));
+  EXPECT_FALSE(held_back(another, 2));
+  Reject(2);
+  EXPECT_TRUE(held_back(another, 2));
+  ASSERT_TRUE(AppendEdge(store_, MakeEdge(3), {1}));
+  EXPECT_FALSE(held_back(another, 3));
+  EXPECT_TRUE(held_back(made, 3)) << "the document of a rejected revision";
+  Approve(2);
+  EXPECT_FALSE(held_back(made, 3));
+}
+
+TEST_F(DecisionsTest, NobodyGoesBackToWhatWasRejected) {
+  AppendGood(2);
+  Approve(1);
+  Approve(2);
+  Reject(1);
+  const auto refused = Decide(Deciding::kRollBack, 1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kConflict);
+  EXPECT_EQ(refused.error().what,
+            "revision 1 of robot mapper-01 was rejected by Ada, 1 Jan 1970: nobody goes back to it before somebody "
+            "approves it");
+  EXPECT_EQ(InUse(), 2);
+  Approve(1);
+  EXPECT_EQ(InUse(), 1);
 }
 
 // Version 22: what passed or warned was announced; the newest of these is in use.
@@ -164,7 +217,8 @@ TEST(DecisionsMigration, WhatWasAnnouncedIsApproved) {
   EXPECT_EQ(in_use->revision, 2);
   EXPECT_EQ(in_use->word.who, kPolicyWho);
   EXPECT_EQ(LoadUsableRevision(*store, kRobot).value()->number, 2);
-  EXPECT_EQ(LoadRevisionState(*store, LoadRevisionSummary(*store, kRobot, 1)->value()).value(), State::kSuperseded);
+  EXPECT_EQ(LoadRevisionState(*store, LoadRevisionSummary(*store, kRobot, 1)->value(), UsableRevision{2, {}}).value(),
+            State::kSuperseded);
   EXPECT_FALSE(LoadInUse(*store, RobotId("b")).value());
   EXPECT_TRUE(AppendDecision(*store, kRobot, 1, Deciding::kRollBack, {{9}, "Ada", "back"}).value());
   EXPECT_EQ(LoadInUse(*store, kRobot).value()->revision, 1);

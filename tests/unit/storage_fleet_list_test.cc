@@ -178,7 +178,37 @@ TEST_F(FleetListTest, AllAreCounted) {
   EXPECT_EQ(fleet.verdicts[VerdictLevel::kFail], 1);
   EXPECT_EQ(fleet.verdicts[VerdictLevel::kUnknown], 1);
   EXPECT_EQ(fleet.verdicts[VerdictLevel::kWarn], 0);
+  EXPECT_EQ(fleet.kinds, (std::map<DriveKind, std::int64_t>{
+                             {DriveKind::kDoNotDrive, 1}, {DriveKind::kNotVerified, 1}, {DriveKind::kToApprove, 2}}));
   EXPECT_EQ(CountFleet(store_, {kNow.ns + kDefaultMaxAge_ns})->overdue, 4);
+}
+
+// The counts and the choices of the list, which the database works out, are those of the rules that the rows show.
+TEST_F(FleetListTest, KindsAreThoseOfTheDriveRules) {
+  std::vector<RobotSummary> robots;
+  const std::vector<std::optional<Runs>> all_runs = {
+      std::nullopt, Runs{1, "", "revision 1"}, Runs{3, "It runs revision 3; revision 1 is in use: not applied yet.", "revision 3"}};
+  for (const VerdictLevel level : {VerdictLevel::kPass, VerdictLevel::kWarn, VerdictLevel::kFail, VerdictLevel::kUnknown})
+    for (const bool late : {false, true})
+      for (const bool approved : {false, true})
+        for (const auto& runs : all_runs) {
+          const std::string name = "r" + std::to_string(robots.size());
+          RobotSummary robot = late ? Overdue(name, level) : Robot(name, level);
+          if (approved) robot.validity.usable = UsableRevision{1, {}};
+          robot.runs = runs;
+          robots.push_back(robot);
+        }
+  Append(robots);
+  std::map<DriveKind, std::int64_t> kinds;
+  for (const RobotSummary& row : Page({"", "", "robot", false, 1}).rows)
+    ++kinds[DriveRuleOf(row.verdict, row.validity, row.runs).kind];
+  EXPECT_EQ(CountFleet(store_, kNow)->kinds, kinds);
+  for (const DriveKind kind : kDriveKinds) {
+    const FleetPage page = Page({"", NameOf(kind), "robot", false, 1});
+    EXPECT_EQ(static_cast<std::int64_t>(page.matches), kinds[kind]) << NameOf(kind);
+    for (const RobotSummary& row : page.rows)
+      EXPECT_EQ(DriveRuleOf(row.verdict, row.validity, row.runs).kind, kind) << row.robot.str();
+  }
 }
 
 }  // namespace

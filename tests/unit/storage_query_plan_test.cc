@@ -24,6 +24,7 @@
 #include "storage/robot_summary.h"
 #include "storage/sessions.h"
 #include "storage/standing.h"
+#include "storage/usable_revision.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {
@@ -157,11 +158,12 @@ TEST_F(QueryPlanTest, QuestionsAboutSessionsEdgesAndRevisionsOfOneRobotDoNotScan
 TEST_F(QueryPlanTest, TheLifeOfACalibrationDoesNotScan) {
   (void)Scanned();
   EXPECT_TRUE(LoadUsableRevision(store_, kRobot).value());
-  EXPECT_FALSE(LoadUsableRevision(store_, kRobot, 0).value());
+  EXPECT_FALSE(LoadStillUsable(store_, kRobot, 0).value());
+  EXPECT_FALSE(IsHeldBack(store_, kRobot, Digest(std::string(64, 'a')), 1).value());
   EXPECT_EQ(LoadNewestApproved(store_, kRobot).value(), 1);
   EXPECT_EQ(LoadInUse(store_, kRobot).value()->revision, 1);
   EXPECT_EQ(LoadDecision(store_, kRobot, 1).value()->how, "approved");
-  EXPECT_EQ(LoadRevisionState(store_, LoadRevisionSummary(store_, kRobot, 1)->value()).value(), RevisionState::kApproved);
+  EXPECT_EQ(LoadRevisionState(store_, LoadRevisionSummary(store_, kRobot, 1)->value(), UsableRevision{1, {}}).value(), RevisionState::kApproved);
   EXPECT_TRUE(AppendDecision(store_, kRobot, 1, Deciding::kReject, {{3}, "Ada", "bent"}).value());
   EXPECT_FALSE(LoadAudit(store_, kRobot, 0, 9)->empty());
   EXPECT_EQ(LoadAudit(store_, RobotId(), 2, 9)->size(), 1U);  // a page of all robots'

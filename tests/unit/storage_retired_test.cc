@@ -8,6 +8,7 @@
 #include "storage/decisions.h"
 #include "storage/retired.h"
 #include "storage/standing.h"
+#include "storage/usable_revision.h"
 #include "tests/unit/storage_fixture.h"
 
 namespace rigcal::storage {

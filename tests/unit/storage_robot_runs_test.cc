@@ -48,14 +48,19 @@ TEST_F(RobotRunsTest, WhatCannotBeKeptIsRefused) {
 TEST(RobotRuns, AreToldBesideWhatIsInUse) {
   RobotRuns runs{{kRobot, Digest(std::string(64, 'a')), {5}, "agent"}, 3, {6}};
   const UsableRevision third{3, {}}, fifth{5, {}};
-  EXPECT_EQ(RunsOf(runs, true, third).trouble, "");
-  EXPECT_EQ(RunsOf(runs, true, fifth).trouble, "It runs revision 3; revision 5 is in use: not applied yet.");
-  EXPECT_EQ(RunsOf(runs, false, fifth).trouble,
+  EXPECT_EQ(RunsOf(runs, true, {}, third).trouble, "");
+  EXPECT_EQ(RunsOf(runs, true, {}, fifth).trouble, "It runs revision 3; revision 5 is in use: not applied yet.");
+  EXPECT_EQ(RunsOf(runs, false, {}, fifth).trouble,
             "It runs revision 3, which nobody approved; revision 5 is in use: not applied yet.");
-  EXPECT_EQ(RunsOf(runs, true, std::nullopt).trouble, "It runs revision 3; no calibration of it is in use.");
-  EXPECT_EQ(RunsOf(runs, true, fifth).revision, 3);
+  EXPECT_EQ(RunsOf(runs, true, {}, std::nullopt).trouble, "It runs revision 3; no calibration of it is in use.");
+  EXPECT_EQ(RunsOf(runs, true, {}, fifth).revision, 3);
+  EXPECT_EQ(RunsOf(runs, true, {}, fifth).digest, runs.report.digest);
+  const Decision no{9, 3, "rejected", {{1'793'707'200'000'000'000}, "Ada", "bent"}};
+  EXPECT_EQ(RunsOf(runs, true, no, fifth).trouble,
+            "It runs revision 3, which was rejected by Ada, 3 Nov 2026; revision 5 is in use: not applied yet.");
+  EXPECT_EQ(RunsOf(runs, true, no, fifth).what, "revision 3, which was rejected by Ada, 3 Nov 2026");
   runs.revision = 0;
-  EXPECT_EQ(RunsOf(runs, false, fifth).trouble,
+  EXPECT_EQ(RunsOf(runs, false, {}, fifth).trouble,
             "It runs a calibration that nobody approved here (sha256 aaaaaaaaaaaa).");
 }
 
