@@ -63,7 +63,7 @@ class DrawnRobot {
   DrawnRobot(const FleetPlan& plan, int number)
       : plan_(plan), number_(number), joins_(number * (plan.weeks / 4) / plan.robots), places_(Mounted()),
         draws_(plan.seed, static_cast<unsigned>(number)), beside_(plan.seed + 1'000'000, static_cast<unsigned>(number)),
-        history_(RobotId("robot-" + std::to_string(number))), where_(DrawnWhere(draws_)) {
+        history_(RobotId("robot-" + std::to_string(number)), Names()[kReference]), where_(DrawnWhere(draws_)) {
     const int first = joins_ + kSettledWeeks, last = plan.weeks - 4;
     happens_ = fate_ == Fate::kDrifts ? first : first + draws_.Below(std::max(1, last - first));
   }

@@ -8,7 +8,6 @@
 #include "server/graph/solve.h"
 #include "server/model/decision.h"
 #include "server/model/past.h"
-#include "tests/bench/fleet/drawn_robot.h"
 
 namespace rigcal::drawn_fleet {
 namespace {
@@ -84,22 +83,21 @@ void RobotHistory::Revise(const std::vector<Edge>& within) {
   std::vector<Edge> edges = window_;
   for (const MergedEdge& merged : merged_) edges.push_back(graph::EdgeOf(merged, robot_, false));
   std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
-  const SensorId& reference = Names()[kReference];
-  GraphSolution solution = graph::Solve(graph::GraphOf(edges, reference));
-  graph::FuseSessions(edges, within, reference, {newest_first_.begin(), newest_first_.end()}, solution);
-  newest_ = fleet::PosesOf(solution, reference);
+  GraphSolution solution = graph::Solve(graph::GraphOf(edges, reference_));
+  graph::FuseSessions(edges, within, reference_, {newest_first_.begin(), newest_first_.end()}, solution);
+  newest_ = fleet::PosesOf(solution, reference_);
   Verdict verdict;
   verdict.level = solution.fused.moved.empty() ? VerdictLevel::kPass : VerdictLevel::kFail;
   if (Approves(Policy(), verdict) || !HasRevision()) in_use_ = newest_;
 }
 
 void RobotHistory::Take(SessionEstimate estimate, Stamp captured_at) {
+  const std::size_t kept = kSessionsKept * (estimate.poses.size() - 1);
   for (Edge& edge : EdgesOf(estimate)) {
     measured_at_[edge.id] = captured_at;
     window_.push_back(edge);
     all_.push_back(std::move(edge));
   }
-  const std::size_t kept = kSessionsKept * (kSensors - 1);
   if (all_.size() > kept) all_.erase(all_.begin(), all_.end() - static_cast<std::ptrdiff_t>(kept));
   captured_at_[estimate.session] = captured_at;
   newest_first_.push_front(std::move(estimate));

@@ -15,7 +15,7 @@ namespace rigcal::drawn_fleet {
 
 class RobotHistory {
  public:
-  explicit RobotHistory(RobotId robot) : robot_(std::move(robot)) {}
+  RobotHistory(RobotId robot, SensorId reference) : robot_(std::move(robot)), reference_(std::move(reference)) {}
 
   [[nodiscard]] bool HasRevision() const { return !in_use_.poses.empty(); }
   // The session against what is in use. `moved_on_purpose`: its header says so.
@@ -34,6 +34,7 @@ class RobotHistory {
   void Revise(const std::vector<Edge>& within);
 
   RobotId robot_;
+  SensorId reference_;
   std::deque<SessionEstimate> newest_first_;
   std::map<SessionId, Stamp> captured_at_;
   std::set<std::pair<SessionId, SensorId>> of_before_;  // what a session says of a sensor that moved since
