@@ -2,6 +2,11 @@
 rigcal_program(durable_write_bench SOURCES bench/durable_write_bench.cc DEPS rigcal_base)
 rigcal_program(receipt_recorder SOURCES bench/receipt_recorder.cc DEPS rigcal_idl)
 rigcal_program(query_bench SOURCES bench/query_bench.cc DEPS rigcal_client)
+rigcal_program(fleet_measure
+  SOURCES bench/fleet/fleet_measure.cc bench/fleet/drawn_fleet.cc bench/fleet/drawn_robot.cc bench/fleet/fleet_tally.cc
+          bench/fleet/robot_history.cc
+  DEPS rigcal_graph rigcal_fleet)
+rigcal_program(fleet_history SOURCES bench/fleet/fleet_history.cc bench/fleet/robot_history.cc DEPS rigcal_graph rigcal_fleet)
 rigcal_program(misspelt_robots SOURCES bench/misspelt_robots.cc DEPS rigcal_idl)
 rigcal_program(edge_load SOURCES bench/edge_load.cc DEPS rigcal_client)
 rigcal_program(graph_honesty_measure SOURCES bench/graph_honesty_measure.cc DEPS rigcal_graph)

@@ -1,0 +1,47 @@
+// One robot's visits through the server's own steps, as its pipeline takes them (server/pipeline/revise.cc, as_found.cc):
+// the calibration in use is tested, then a revision is made of the newest visits' estimates.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "server/fleet/as_found.h"
+#include "server/model/merged_edge.h"
+#include "server/model/session_estimate.h"
+
+namespace rigcal::drawn_fleet {
+
+class RobotHistory {
+ public:
+  RobotHistory(RobotId robot, SensorId reference) : robot_(std::move(robot)), reference_(std::move(reference)) {}
+
+  [[nodiscard]] bool HasRevision() const { return !in_use_.poses.empty(); }
+  // The session against what is in use. `moved_on_purpose`: its header says so.
+  [[nodiscard]] fleet::AsFoundInput InputOf(const SessionEstimate& estimate, std::set<SensorId> moved_on_purpose = {}) const;
+  [[nodiscard]] AsFound Test(const SessionEstimate& estimate, std::set<SensorId> moved_on_purpose = {}) const;
+  // What sessions of before say of the sensor counts no more.
+  void BeginEpoch(const SensorId& sensor);
+  // The revision with it, in use from now on but where it fails for a move between sessions.
+  void Take(SessionEstimate estimate, Stamp captured_at);
+  // With what a revision's visits say of how a place goes on changing.
+  void AddRates(AsFound& found) const;
+
+ private:
+  std::vector<Edge> EdgesOf(const SessionEstimate& estimate) const;
+  std::vector<Edge> MergeOlder();
+  void Revise(const std::vector<Edge>& within);
+
+  RobotId robot_;
+  SensorId reference_;
+  std::deque<SessionEstimate> newest_first_;
+  std::map<SessionId, Stamp> captured_at_;
+  std::set<std::pair<SessionId, SensorId>> of_before_;  // what a session says of a sensor that moved since
+  std::vector<Edge> all_, window_;
+  std::vector<MergedEdge> merged_;
+  std::map<EdgeId, Stamp> measured_at_;
+  fleet::KnownPoses in_use_, newest_;
+};
+
+}  // namespace rigcal::drawn_fleet
