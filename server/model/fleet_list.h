@@ -24,7 +24,9 @@ struct FleetQuery {
   std::string sort;
   bool descending = false;
   std::size_t page = 1;
-  std::string cause = {};  // a key of cause.h; empty: all
+  std::string cause = {};   // a key of cause.h; empty: all
+  std::string status = {};  // of robot_status.h: "ok", "due", ...; empty: all
+  std::string site = {};    // as a robot's newest session names it; empty: all
 };
 
 struct FleetPage {
@@ -43,6 +45,7 @@ inline constexpr std::size_t kCausesListedMax = 12;
 struct FleetCounts {
   std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
   std::map<VerdictLevel, std::int64_t> verdicts;
+  std::map<StatusWord, std::int64_t> statuses = {};  // of each word, also where it is none
   // That are not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
   std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed

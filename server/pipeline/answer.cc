@@ -13,6 +13,7 @@
 #include "server/pipeline/asked.h"
 #include "server/pipeline/audit.h"
 #include "server/pipeline/decide.h"
+#include "server/pipeline/due_list.h"
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/names.h"
@@ -23,6 +24,7 @@
 #include "server/pipeline/summaries.h"
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
+#include "server/pipeline/webhooks.h"
 #include "server/pipeline/whole_revision.h"
 #include "storage/as_found.h"
 #include "storage/edges.h"
@@ -313,6 +315,8 @@ const std::map<std::string, Verb>& Verbs() {
       {"audit", ListAudit},
       {"audit_verify", VerifyAudit},
       {"due", Due},
+      {"due_ics", TellDueCalendar},
+      {"webhooks", ListWebhooks},
       {"health", Health},
       {"live", Live},
       {"report_files", FilesOfReport},

@@ -7,6 +7,7 @@
 #include "server/pipeline/robot_rows.h"
 #include "server/pipeline/subject.h"
 #include "server/pipeline/validity.h"
+#include "storage/alerts/outbox.h"
 #include "storage/decisions.h"
 #include "storage/revisions.h"
 #include "storage/robot_runs.h"
@@ -29,6 +30,12 @@ Result<Revision> RevisionAsked(storage::Store& store, const RobotId& robot, Deci
     return Fail(ErrorCode::kInvalidInput, "the parameter 'revision' is missing, or no number of a revision",
                 "Name the revision: `rigcal history " + robot.str() + "` lists them.");
   return LoadRevisionSummaryOf(store, robot, number);
+}
+
+// What was so already is no news.
+Status TellDecided(storage::Store& store, const RobotId& robot, int revision) {
+  RIGCAL_ASSIGN(const auto decision, storage::LoadDecision(store, robot, revision));
+  return decision ? storage::AppendAlert(store, formats::DecisionAlert(robot, *decision)) : Status{};
 }
 
 // Its poses would be of another rig, or of what somebody took out.
@@ -57,8 +64,9 @@ Status ApproveByPolicy(storage::Store& store, const Revision& revision, Stamp no
   RIGCAL_ASSIGN(const PolicyInForce in_force, LoadPolicyInForce(store, {PolicyScope::kRobot, revision.robot.str()}));
   if (!Approves(in_force.policy, revision.verdict)) return {};
   const Word word{now, kPolicyWho, "the verdict is " + NameOf(revision.verdict.level)};
-  RIGCAL_TRY(storage::AppendDecision(store, revision.robot, revision.number, Deciding::kApprove, word));
-  return {};
+  RIGCAL_ASSIGN(const bool is_new,
+                storage::AppendDecision(store, revision.robot, revision.number, Deciding::kApprove, word));
+  return is_new ? TellDecided(store, revision.robot, revision.number) : Status{};
 }
 
 Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb,
@@ -71,7 +79,9 @@ Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::s
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(done.robot, KnownRobot(store, parameters));
     RIGCAL_ASSIGN(const Revision revision, RevisionAsked(store, done.robot, deciding, parameters));
-    RIGCAL_TRY(storage::AppendDecision(store, done.robot, revision.number, deciding, word));
+    RIGCAL_ASSIGN(const bool is_new,
+                  storage::AppendDecision(store, done.robot, revision.number, deciding, word));
+    if (is_new) RIGCAL_TRY(TellDecided(store, done.robot, revision.number));
     if (deciding != Deciding::kReject) RIGCAL_TRY(CheckIsUsed(store, revision));
     RIGCAL_ASSIGN(const Approval approval, LoadApproval(store, revision));
     done.decided = revision.number;

@@ -3,9 +3,11 @@
 #include "server/formats/answers.h"
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
+#include "server/pipeline/due_list.h"
 #include "server/pipeline/experiments.h"
 #include "server/pipeline/robot_pages.h"
 #include "server/pipeline/summaries.h"
+#include "server/pipeline/webhooks.h"
 #include "server/report/assets.h"
 #include "server/report/fleet_csv.h"
 #include "server/report/render.h"
@@ -18,6 +20,7 @@ constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kJson = "application/json; charset=utf-8";
 constexpr const char* kCsv = "text/csv; charset=utf-8";
+constexpr const char* kCalendar = "text/calendar; charset=utf-8";
 
 Result<FleetQuery> FleetQueryOf(const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
@@ -28,6 +31,8 @@ Result<FleetQuery> FleetQueryOf(const std::string& query) {
   asked.sort = parameters.Text("sort").value_or("");
   asked.descending = parameters.Text("order") == "down";
   asked.cause = parameters.Text("cause").value_or("");
+  asked.status = parameters.Text("status").value_or("");
+  asked.site = parameters.Text("site").value_or("");
   RIGCAL_ASSIGN(const std::int64_t page, parameters.IntegerOr("page", 1));
   asked.page = static_cast<std::size_t>(std::max<std::int64_t>(page, 1));
   return asked;
@@ -59,6 +64,13 @@ Result<PageText> FleetAsCsv(const AnswerContext& context, const std::string& que
   return PageText{std::move(text), kCsv};
 }
 
+Result<PageText> DueAsCalendar(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(DueCalendar calendar, MakeDueCalendar(context, parameters));
+  return PageText{std::move(calendar.text), kCalendar};
+}
+
 Result<PageText> Script(const std::string& name) {
   for (const report::Asset& asset : report::Assets())
     if (asset.name == name) return PageText{std::string(asset.bytes), kScript, true};
@@ -84,7 +96,8 @@ Result<PageText> Metrics(const AnswerContext& context) {
             "\nrigcal_part_failures_total{part=\"" + part.name + "\"} " + std::to_string(part.failures) + "\n";
   for (const std::string verdict : {"fail", "pass", "unknown", "warn"})
     text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(fleet.verdicts[VerdictLevelOf(verdict)]) + "\n";
-  return PageText{text, "text/plain; version=0.0.4; charset=utf-8"};
+  RIGCAL_ASSIGN(const std::string alerts, AlertMetrics(context.store, fleet));
+  return PageText{text + alerts, "text/plain; version=0.0.4; charset=utf-8"};
 }
 
 PageText Healthz(const AnswerContext& context) {
@@ -98,6 +111,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/";
   if (path == "/") return Fleet(context, query);
   if (path == "/fleet.csv") return FleetAsCsv(context, query);
+  if (path == "/due.ics") return DueAsCalendar(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);
