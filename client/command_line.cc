@@ -54,7 +54,8 @@ constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
     AddCompare, AddExport,   AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddCompletion, AddPolicy,
-    AddApprove, AddReject,   AddRollback,         AddAgent,  AddAudit};
+    AddApprove, AddReject,   AddRollback,         AddAgent,  AddAudit,
+    AddWebhooks};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

@@ -52,8 +52,14 @@ std::string StatusCounts() {
   return counts;
 }
 
+// What is worst comes first.
+std::string StatusRankSql() {
+  return "instr(' failed out-of-tolerance unknown overdue drifted due ok', ' ' || " + StatusSql() + ")";
+}
+
 // A number to sort by, the smallest first.
 std::string SortKeyOf(const std::string& sort) {
+  if (sort == "status") return StatusRankSql();
   if (sort == "calibrated") return "coalesce(calibrated_ns, 0)";
   if (sort == "session") return "coalesce(last_session_ns, 0)";
   // A thousandth of sigma tells edges apart; beyond 1e12 sigma all are alike.

@@ -20,7 +20,7 @@ struct FleetQuery {
   // "pass", "warn", "fail", "unknown", "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
   // when it is due: "this_week", "next_week", "later"; empty: all
   std::string verdict;
-  // "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
+  // "robot", "status", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
   std::string sort;
   bool descending = false;
   std::size_t page = 1;

@@ -59,8 +59,9 @@ Result<PageText> FleetAsCsv(const AnswerContext& context, const std::string& que
   RIGCAL_ASSIGN(const FleetQuery asked, FleetQueryOf(query));
   static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
   std::string text = report::FleetCsvHeading();
-  const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot); };
-  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
+  const Stamp now = context.clock.Now();
+  const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot, now); };
+  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, now, add); }));
   return PageText{std::move(text), kCsv};
 }
 
