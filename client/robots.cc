@@ -34,11 +34,12 @@ void PrintRobots(const Document& document, const PartOptions& options, std::ostr
                {"SESSIONS", Align::kRight},
                {"EDGES", Align::kRight},
                {"JOBS", Align::kRight},
+               {"STATUS"},
                {"DRIVE"}});
   for (const Document& row : document["robots"].Items())
     table.Add({row["robot"].Text("?"), OverdueBefore(row) + row["verdict"]["level"].Text("unknown"),
                CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["sessions"]), CountOf(row["edges"]),
-               CountOf(row["jobs_waiting"]), DriveText(row)});
+               CountOf(row["jobs_waiting"]), row["status"]["word"].Text("-"), DriveText(row)});
   table.Print(out);
   const std::string next = Plain(document["next"].Text());
   if (!next.empty()) out << "More: rigcal robots --limit " << options.limit << " --after " << next << '\n';

@@ -37,20 +37,34 @@ void PrintCounts(const std::vector<Document>& rows, std::ostream& out) {
   out << '\n';
 }
 
+// Of one robot: its status in words, and of each sensor that is not all right.
+void PrintStatusOfOne(const Document& row, std::ostream& out) {
+  const auto print = [&](const std::string& of, const Document& status) {
+    out << of << Plain(status["word"].Text("unknown")) << ": " << Plain(status["why"].Text()) << ' '
+        << Plain(status["next_step"].Text()) << '\n';
+  };
+  if (row["status"].IsNull()) return;
+  print("Status ", row["status"]);
+  for (const Document& sensor : row["sensors"].Items())
+    if (const Document status = sensor["status"]; status["word"].Text() != "ok" && status["why"].Text() != row["status"]["why"].Text())
+      print("  " + Plain(sensor["id"].Text("?")) + " ", status);
+}
+
 // What may be driven comes first: of one robot its rule, of several how many there are of each kind.
 void PrintStatus(const Document& document, bool of_one, std::ostream& out) {
   const std::vector<Document> rows = document["robots"].Items();
   if (of_one && !rows.empty()) PrintDrive(rows.front(), out);
+  if (of_one && !rows.empty()) PrintStatusOfOne(rows.front(), out);
   if (!of_one && !rows.empty()) PrintCounts(rows, out);
   PrintServer(document, out);
   PrintOpenBatches(document, out);
   if (document["robots"].size() == 0) out << "No robot is known yet. Send a session with `rigcal push DIR`.\n";
   if (document["robots"].size() == 0) return;
-  Table table({{"ROBOT"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
+  Table table({{"ROBOT"}, {"STATUS"}, {"REVISION", Align::kRight}, {"AGE", Align::kRight}, {"JOBS", Align::kRight}, {"VERDICT"}});
   for (const Document& row : rows) {
     const std::string drive = of_one ? "" : DriveText(row);
     const std::string in_use = InUseText(row), runs = RunsText(row);
-    table.Add({row["robot"].Text("?"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
+    table.Add({row["robot"].Text("?"), row["status"]["word"].Text("-"), CountOf(row["revision"]), AgeOf(row["age_ns"]), CountOf(row["jobs_waiting"]),
                drive + (drive.empty() ? "" : " ") + OverdueBefore(row) + VerdictText(row["verdict"], row) +
                    (in_use.empty() ? "" : " " + in_use) + (runs.empty() ? "" : " " + runs)});
   }

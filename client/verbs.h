@@ -35,6 +35,7 @@ void AddReject(CLI::App& app, Context& context);
 void AddRollback(CLI::App& app, Context& context);
 void AddAgent(CLI::App& app, Context& context);
 void AddAudit(CLI::App& app, Context& context);
+void AddWebhooks(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);
 void AddSessions(CLI::App& app, Context& context);
 void AddEdges(CLI::App& app, Context& context);

@@ -55,12 +55,24 @@ void AddOptions(CLI::App& app, Config& config) {
   app.add_option("--limit", config.limits, "One limit, over the file's; may be repeated: " + LimitNames())
       ->allow_extra_args(false)
       ->type_name("NAME=VALUE");
+  app.add_option("--webhook", config.webhooks,
+                 "Address that is told of changes (docs/alerts.md): statuses of robots, approvals, rollbacks, failed "
+                 "sessions; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("URL");
+  app.add_option("--webhook-secret-file", config.webhook_secrets,
+                 "File with the secret that alerts are signed with: one for all receivers, or one for each in their order")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  app.set_config("--config", "", "File of these options, NAME=VALUE a line or NAME=[VALUE,VALUE]; the command line wins")
+      ->type_name("FILE");
   app.add_flag("--verbose", config.verbose, "Log every event");
   app.footer(
       "One rigcald serves on a DDS domain and tag: a second one ends with exit code 4 and names the first, or waits.\n"
       "Examples:\n  rigcald\n  rigcald --data /srv/rigcal --http 0.0.0.0:8420\n  rigcald --domain 7 --http "
       "127.0.0.1:0\n  rigcald --http 0.0.0.0:8420 --public-url https://rigs.example.org\n  rigcald --data /srv/rigcal-2 "
-      "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB");
+      "--standby\n  rigcald --limit open_sessions=16 --limit intake_bytes=256MiB\n  rigcald --webhook https://alerts.example.org/rigcal "
+      "--webhook-secret-file /etc/rigcal/webhook-secret");
 }
 
 Result<limits::Limits> LimitsOf(const Config& config) {
@@ -100,6 +112,24 @@ Result<http::Options> HttpOptions(const Config& config) {
 
 Result<std::string> PublicUrl(const Config& config) {
   return config.public_url.empty() ? Result<std::string>(std::string()) : http::ReadPublicUrl(config.public_url);
+}
+
+Result<std::vector<webhook::Receiver>> ReceiversOf(const Config& config) {
+  constexpr std::size_t kSecretBytesMax = 4096;
+  const std::size_t files = config.webhook_secrets.size(), receivers = config.webhooks.size();
+  if (receivers == 0 ? files != 0 : files != 1 && files != receivers)
+    return Fail(ErrorCode::kInvalidInput,
+                std::to_string(receivers) + " of --webhook and " + std::to_string(files) +
+                    " of --webhook-secret-file do not go together",
+                "Give one file with a secret for all receivers, or one for each.");
+  std::vector<webhook::Receiver> read;
+  for (std::size_t i = 0; i < receivers; ++i) {
+    RIGCAL_ASSIGN(std::string secret, ReadFile(config.webhook_secrets[files == 1 ? 0 : i], kSecretBytesMax));
+    while (!secret.empty() && (secret.back() == '\n' || secret.back() == '\r')) secret.pop_back();
+    read.push_back({config.webhooks[i], std::move(secret)});
+    RIGCAL_TRY(webhook::CheckReceiver(read.back()));
+  }
+  return read;
 }
 
 std::vector<std::string> WorkerCommand(const Config& config) {

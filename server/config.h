@@ -8,6 +8,7 @@
 #include "idl/dds.h"
 #include "server/base/limits_in_force.h"
 #include "server/http/server.h"
+#include "server/webhook/post.h"
 
 namespace CLI {
 class App;
@@ -26,6 +27,8 @@ struct Config {
   bool worker = false;   // works for a server that started it (pipeline/worker.h), and serves nobody
   std::filesystem::path limits_file;  // empty: none
   std::vector<std::string> limits;    // NAME=VALUE; they win over the file
+  std::vector<std::string> webhooks;                     // addresses that are told of changes
+  std::vector<std::filesystem::path> webhook_secrets;    // one for all of them, or one for each in their order
 };
 
 // $HOME/.local/share/rigcal.
@@ -41,6 +44,8 @@ void AddOptions(CLI::App& app, Config& config);
 // By what name and arguments this program works for the server that has this configuration, with the limits in force: a file of
 // limits that is changed meanwhile is not read.
 [[nodiscard]] std::vector<std::string> WorkerCommand(const Config& config);
+// --webhook with its secret, as webhook/post.h takes it. kInvalidInput where secrets are missing or too many.
+[[nodiscard]] Result<std::vector<webhook::Receiver>> ReceiversOf(const Config& config);
 // Puts them in force, before any thread is made; the log tells of those that are not the default.
 [[nodiscard]] Status EnforceLimits(const Config& config);
 

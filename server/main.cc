@@ -23,6 +23,7 @@
 #include "server/pipeline/summaries.h"
 #include "server/pipeline/worker.h"
 #include "server/standby.h"
+#include "server/webhook/sender.h"
 #include "storage/folder_lock.h"
 #include "storage/room.h"
 
@@ -43,11 +44,12 @@ struct WakeRelay {
   }
 };
 
-pipeline::Announcer AnnouncerTo(dds::Service& service) {
+pipeline::Announcer AnnouncerTo(dds::Service& service, webhook::Sender& alerts) {
   pipeline::Announcer announcer;
-  announcer.event = [&service](const RobotId& robot, const std::string& kind, const std::string& subject,
+  announcer.event = [&service, &alerts](const RobotId& robot, const std::string& kind, const std::string& subject,
                                const std::string& json) {
     service.Announce({robot, kind, subject, SystemClock().Now(), json});
+    alerts.Wake();
   };
   announcer.state = [&service](const RobotId& robot) { service.Tell(robot); };
   return announcer;
@@ -69,6 +71,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
   RIGCAL_ASSIGN(const std::string public_url, PublicUrl(config));
+  RIGCAL_ASSIGN(auto receivers, ReceiversOf(config));
   RIGCAL_ASSIGN(auto only, ClaimPlace(config, http_options, signals));
   if (!only) return {};
   RIGCAL_TRY(storage::LockFolder(config.data));
@@ -93,13 +96,17 @@ Status Serve(const Config& config, const sigset_t& signals) {
       public_url.empty() ? http::AddressOf(http_options, http.port(), http::MachineName()) : public_url;
   address_promise.set_value(address);
 
+  RIGCAL_ASSIGN(webhook::Sender alerts,
+                webhook::Sender::Start({config.data, &SystemClock(), std::move(receivers), &health.vitals()}));
   dds::Callbacks callbacks;
   callbacks.answer = [&](storage::Store& store, const std::string& verb, const std::string& json) {
     return pipeline::Answer(context_of(store), verb, json);
   };
   callbacks.is_order = pipeline::IsOrder;
-  callbacks.carry_out = [](storage::Store& store, const std::string& verb, const std::string& json) {
-    return pipeline::CarryOut(store, SystemClock(), verb, json);
+  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json) {
+    auto done = pipeline::CarryOut(store, SystemClock(), verb, json);
+    alerts.Wake();
+    return done;
   };
   callbacks.state_of = pipeline::LoadRobotState;
   callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
@@ -108,7 +115,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
                 dds::Service::Start(
                     {only->Named(config.participant), config.data, &SystemClock(), &health.vitals()}, callbacks));
   SetThreadRank(ThreadRank::kServes);
-  const pipeline::Announcer announcer = AnnouncerTo(service);
+  const pipeline::Announcer announcer = AnnouncerTo(service, alerts);
   RIGCAL_ASSIGN(
       pipeline::Runner runner,
       pipeline::Runner::Start({config.data, &SystemClock(), config.threads, &health.vitals(), &undrawn, WorkerCommand(config)}, announcer));

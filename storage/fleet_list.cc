@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/formats/json_writer.h"
+#include "storage/alerts/robot_status.h"
 #include "storage/summary_row.h"
 #include "storage/summary_text.h"
 
@@ -10,8 +11,8 @@ namespace rigcal::storage {
 namespace {
 
 // ?1, ?2, ?3: what is valid until before is overdue, or will be this week, or by the end of the next; ?4: the choice;
-// ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8, ?9: the first word and the
-// others.
+// ?5: a session before is long ago; ?6: sigmas from which an edge is off; ?7: the cause; ?8: the status; ?9: the
+// site; ?10, ?11: the first word and the others.
 const std::string kIsOverdue = "(revision_number > 0 AND (calibrated_ns IS NULL OR calibrated_ns + max_age_ns < ?1))";
 const std::string kIsDueThisWeek = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?1 AND calibrated_ns + max_age_ns < ?2)";
 const std::string kIsDueNextWeek = "(revision_number > 0 AND calibrated_ns + max_age_ns >= ?2 AND calibrated_ns + max_age_ns < ?3)";
@@ -26,14 +27,15 @@ const std::string kIsLike =
     " WHEN 'next_week' THEN " + kIsDueNextWeek + " WHEN 'later' THEN " + kIsDueLater +
     " WHEN 'off' THEN worst_ratio >= ?6 WHEN 'quiet' THEN last_session_ns IS NULL OR last_session_ns < ?5 "
     "ELSE ?4 IN (verdict, " + kDriveKind + ") END AND "
-    "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7))";
+    "(?7 = '' OR number IN (SELECT robot_number FROM summary_cause WHERE cause_key = ?7)) AND (?8 = '' OR " +
+    StatusSql() + " = ?8) AND (?9 = '' OR site = ?9)";
 
 // "overdue" stands in a row, but comes with the time.
 std::string HasWord(const std::string& word) {
   return "(instr(search, " + word + ") > 0 OR (" + word + " = 'overdue' AND " + kIsOverdue + "))";
 }
-const std::string kHasWords = " AND " + HasWord("?8") +
-                              " AND (?9 = '' OR NOT EXISTS (SELECT 1 FROM json_each(?9, '$.words') AS word WHERE NOT " +
+const std::string kHasWords = " AND " + HasWord("?10") +
+                              " AND (?11 = '' OR NOT EXISTS (SELECT 1 FROM json_each(?11, '$.words') AS word WHERE NOT " +
                               HasWord("word.value") + "))";
 
 // What is overdue is relied on no more: it goes before warnings. Of what passes that goes first
@@ -47,8 +49,22 @@ void BindDue(Query& query, Stamp now) {
   query.Bind(now.ns, this_week_ns, this_week_ns + kWeek_ns);
 }
 
+// ", count of one, count of the next, ..." in the order of kStatusWords.
+std::string StatusCounts() {
+  std::string counts;
+  for (const StatusWord word : kStatusWords)
+    counts += ", count(*) FILTER (WHERE " + StatusSql() + " = '" + NameOf(word) + "')";
+  return counts;
+}
+
+// What is worst comes first.
+std::string StatusRankSql() {
+  return "instr(' failed out-of-tolerance unknown overdue drifted due ok', ' ' || " + StatusSql() + ")";
+}
+
 // A number to sort by, the smallest first.
 std::string SortKeyOf(const std::string& sort) {
+  if (sort == "status") return StatusRankSql();
   if (sort == "calibrated") return "coalesce(calibrated_ns, 0)";
   if (sort == "session") return "coalesce(last_session_ns, 0)";
   // A thousandth of sigma tells edges apart; beyond 1e12 sigma all are alike.
@@ -102,7 +118,7 @@ class Matches {
   }
   void Bind(Query& query) const {
     BindDue(query, now_);
-    query.Bind(asked_.verdict, now_.ns - kQuiet_ns, kOff_sigmas, asked_.cause);
+    query.Bind(asked_.verdict, now_.ns - kQuiet_ns, kOff_sigmas, asked_.cause, asked_.status, asked_.site);
     if (!words_.empty()) query.Bind(words_.front(), OtherWords(words_));
   }
 
@@ -136,7 +152,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                            "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass'), "
                            "count(*) FILTER (WHERE " +
                            kIsDueThisWeek + "), count(*) FILTER (WHERE " + kIsDueNextWeek +
-                           "), count(*) FILTER (WHERE " + kIsDueLater + ") FROM summary_robot");
+                           "), count(*) FILTER (WHERE " + kIsDueLater + ")" + StatusCounts() + " FROM summary_robot");
     FleetCounts counts;
     BindDue(query, now);
     if (!query.Step()) return counts;
@@ -153,6 +169,8 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     counts.due_next_week = query.Int(10);
     counts.due_later = query.Int(11);
     counts.kinds = CountKinds(store, now);
+    int column = 12;
+    for (const StatusWord word : kStatusWords) counts.statuses[word] = query.Int(column++);
     RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));
     return counts;
   });

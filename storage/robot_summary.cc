@@ -16,11 +16,13 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
   const Validity& validity = summary.validity;
   const auto& usable = validity.usable;
   const auto& worst = summary.worst;
+  const auto& drift = summary.drift_due;
   Query(store,
         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, calibrated_ns, last_session_ns, "
         "worst_ratio, sessions, edges, jobs_waiting, search, calculating, usable_number, usable_created_ns, worst_frame_a, "
-        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, runs_revision, runs_trouble, runs_what) "
-        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
+        "worst_frame_b, verdict_why, verdict_what_to_do, given_up, causes, max_age_ns, unverified, state, runs_revision, runs_trouble, "
+        "runs_what, found, found_why, found_next_step, drift_due_ns, drift_sensor, drift_law, drift_visits, drift_robots, site) "
+        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (robot_id) DO NOTHING")
       .Bind(summary.robot, changes, NameKeyOf(summary.robot), summary.revision, NameOf(summary.verdict.level))
       .Bind(validity.calibrated_at, summary.last_session_at, worst ? std::optional(worst->in_sigmas) : std::nullopt)
       .Bind(summary.sessions, summary.edges, summary.jobs_waiting, SearchTextOf(summary), validity.calculating)
@@ -31,6 +33,9 @@ void InsertSummary(Store& store, const RobotSummary& summary, std::int64_t chang
       .Bind(validity.max_age_ns, summary.verdict.unverified, NameOf(summary.state))
       .Bind(summary.runs ? std::optional(summary.runs->revision) : std::nullopt,
             summary.runs ? summary.runs->trouble : Text(), summary.runs ? summary.runs->what : Text())
+      .Bind(NameOf(summary.found.word), summary.found.why, summary.found.next_step)
+      .Bind(drift ? std::optional(drift->at) : std::nullopt, drift ? drift->sensor.str() : Text(),
+            drift ? NameOf(drift->law) : Text(), drift ? drift->visits : 0, drift ? drift->robots : 0, summary.site)
       .Run();
 }
 
@@ -56,7 +61,12 @@ RobotSummary SummaryOf(const Query& query, Stamp now) {
   if (!query.IsNull(16)) summary.worst = WorstEdge{query.IdAt<SensorId>(14), query.IdAt<SensorId>(15), query.Real(16)};
   summary.causes = KeysOfList(query.Text(17));
   summary.state = RevisionStateOf(query.Text(20));
-  if (!query.IsNull(21)) summary.runs = Runs{static_cast<int>(query.Int(21)), query.Text(22), query.Text(23)};
+  summary.found = {StatusWordOf(query.Text(23)), query.Text(24), query.Text(25)};
+  if (!query.IsNull(26))
+    summary.drift_due = DriftDue{query.IdAt<SensorId>(27), query.Time(26), DriftLawOf(query.Text(28)),
+                                 static_cast<int>(query.Int(29)), static_cast<int>(query.Int(30))};
+  summary.site = query.Text(31);
+  if (!query.IsNull(21)) summary.runs = Runs{static_cast<int>(query.Int(21)), query.Text(22), query.Text(32)};
   return summary;
 }
 

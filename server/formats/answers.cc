@@ -1,5 +1,6 @@
 #include "server/formats/answers.h"
 
+#include "server/formats/alerts/status_fields.h"
 #include "server/formats/answer_rows.h"
 #include "server/formats/as_found.h"
 #include "server/formats/rig_models/rig_model_answers.h"
@@ -49,6 +50,7 @@ void WriteRobotRow(JsonWriter& out, const RobotSummary& robot, Stamp now) {
     WriteValidity(out, robot.validity);
     WriteDrive(out, robot.verdict, robot.validity, robot.runs);
     WriteAge(out, robot.validity.calibrated_at, now);
+    WriteStatusMembers(out, robot, now);
     out.Integer("sessions", robot.sessions);
     out.Integer("edges", robot.edges);
     out.Integer("jobs_waiting", robot.jobs_waiting);
@@ -326,6 +328,7 @@ std::string WriteDue(const std::vector<RobotSummary>& robots, std::optional<std:
     WriteAge(out, calibrated_at, now);
     out.Flag("overdue", IsOverdue(calibrated_at, max_age_ns.value_or(robot.validity.max_age_ns), now));
     WriteVerdict(out, "verdict", robot.verdict);
+    WriteStatusMembers(out, robot, now);
   };
   return WriteObject([&](JsonWriter& out) {
     max_age_ns ? out.Integer("max_age_ns", *max_age_ns) : out.Null("max_age_ns");

@@ -21,11 +21,13 @@ struct FleetQuery {
   // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
   // when it is due: "this_week", "next_week", "later"; empty: all
   std::string verdict;
-  // "robot", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
+  // "robot", "status", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
   std::string sort;
   bool descending = false;
   std::size_t page = 1;
-  std::string cause = {};  // a key of cause.h; empty: all
+  std::string cause = {};   // a key of cause.h; empty: all
+  std::string status = {};  // of robot_status.h: "ok", "due", ...; empty: all
+  std::string site = {};    // as a robot's newest session names it; empty: all
 };
 
 struct FleetPage {
@@ -45,6 +47,7 @@ struct FleetCounts {
   std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
   std::map<VerdictLevel, std::int64_t> verdicts;
   std::map<DriveKind, std::int64_t> kinds = {};  // by what their drive rules say: each robot once
+  std::map<StatusWord, std::int64_t> statuses = {};  // of each word, also where it is none
   // That are not overdue, by when they will be.
   std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
   std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed

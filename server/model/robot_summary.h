@@ -11,6 +11,7 @@
 #include "server/model/decision.h"
 #include "server/model/diagnosis.h"
 #include "server/model/robot_runs.h"
+#include "server/model/robot_status.h"
 #include "server/model/validity.h"
 
 namespace rigcal {
@@ -35,6 +36,11 @@ struct RobotSummary {
   std::vector<std::string> causes = {};       // of that revision: keys of cause.h, sorted; each is of some characters of ids
   RevisionState state = RevisionState::kUnusable;  // of that revision
   std::optional<Runs> runs = {};                   // what the robot says that it runs; absent: it never told
+  CalibrationStatus found = {};                    // of that revision: the worst of its sensors, whatever the time
+  std::optional<DriftDue> drift_due = {};          // likewise the earliest of their dates
+  std::string site = {};                           // likewise, where it stands, as its newest session says; empty: not known
+  std::vector<SensorStatus> sensors = {};          // likewise; not in lists
 };
+[[nodiscard]] CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now);
 
 }  // namespace rigcal

@@ -15,6 +15,7 @@
 #include "server/pipeline/boards/registry.h"
 #include "server/pipeline/boards/remarks.h"
 #include "server/pipeline/decide.h"
+#include "server/pipeline/due_list.h"
 #include "server/pipeline/lists.h"
 #include "server/pipeline/live.h"
 #include "server/pipeline/names.h"
@@ -28,6 +29,7 @@
 #include "server/pipeline/summaries.h"
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
+#include "server/pipeline/webhooks.h"
 #include "server/pipeline/whole_revision.h"
 #include "storage/as_found.h"
 #include "storage/edges.h"
@@ -370,6 +372,8 @@ const std::map<std::string, Verb>& Verbs() {
       {"board", OneBoard},
       {"board_trace", TraceOneBoard},
       {"due", Due},
+      {"due_ics", TellDueCalendar},
+      {"webhooks", ListWebhooks},
       {"health", Health},
       {"live", Live},
       {"report_files", FilesOfReport},

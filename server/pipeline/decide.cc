@@ -11,6 +11,7 @@
 #include "server/pipeline/subject.h"
 #include "server/pipeline/validity.h"
 #include "storage/audit.h"
+#include "storage/alerts/outbox.h"
 #include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/revisions.h"
@@ -55,6 +56,12 @@ Result<Revision> RevisionAsked(storage::Store& store, const RobotId& robot, cons
               std::move(cure));
 }
 
+// What was so already is no news.
+Status TellDecided(storage::Store& store, const RobotId& robot, int revision) {
+  RIGCAL_ASSIGN(const auto decision, storage::LoadDecision(store, robot, revision));
+  return decision ? storage::AppendAlert(store, formats::DecisionAlert(robot, *decision)) : Status{};
+}
+
 // Its poses would be of another rig, or of what somebody took out.
 Status CheckIsUsed(storage::Store& store, const Revision& revision) {
   RIGCAL_ASSIGN(const auto usable, LoadUsable(store, revision.robot));
@@ -93,8 +100,9 @@ Status ApproveByPolicy(storage::Store& store, const Revision& revision, bool fou
   RIGCAL_ASSIGN(const bool is_for_it, IsForThePolicy(store, revision, found_drift, revision.edge_watermark));
   if (!is_for_it) return {};
   const Word word{now, kPolicyWho, "the verdict is " + NameOf(revision.verdict.level)};
-  RIGCAL_TRY(storage::AppendDecision(store, revision.robot, revision.number, Deciding::kApprove, word));
-  return {};
+  RIGCAL_ASSIGN(const bool is_new,
+                storage::AppendDecision(store, revision.robot, revision.number, Deciding::kApprove, word));
+  return is_new ? TellDecided(store, revision.robot, revision.number) : Status{};
 }
 
 Status FallBackByPolicy(storage::Store& store, const RobotId& robot, Stamp now) {
@@ -122,7 +130,9 @@ Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::s
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(done.robot, KnownRobot(store, parameters));
     RIGCAL_ASSIGN(const Revision revision, RevisionAsked(store, done.robot, verb, parameters));
-    RIGCAL_TRY(storage::AppendDecision(store, done.robot, revision.number, deciding, word));
+    RIGCAL_ASSIGN(const bool is_new,
+                  storage::AppendDecision(store, done.robot, revision.number, deciding, word));
+    if (is_new) RIGCAL_TRY(TellDecided(store, done.robot, revision.number));
     if (deciding != Deciding::kReject) RIGCAL_TRY(CheckIsUsed(store, revision));
     RIGCAL_ASSIGN(const Approval approval, LoadApproval(store, revision));
     done.decided = revision.number;

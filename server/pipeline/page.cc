@@ -4,10 +4,12 @@
 #include "server/formats/parameters.h"
 #include "server/pipeline/answer.h"
 #include "server/pipeline/boards/registry.h"
+#include "server/pipeline/due_list.h"
 #include "server/pipeline/experiments.h"
 #include "server/pipeline/rig_models/model_pages.h"
 #include "server/pipeline/robot_pages.h"
 #include "server/pipeline/summaries.h"
+#include "server/pipeline/webhooks.h"
 #include "server/report/assets.h"
 #include "server/report/boards/boards_page.h"
 #include "server/report/fleet_csv.h"
@@ -22,6 +24,7 @@ constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kScript = "text/javascript; charset=utf-8";
 constexpr const char* kJson = "application/json; charset=utf-8";
 constexpr const char* kCsv = "text/csv; charset=utf-8";
+constexpr const char* kCalendar = "text/calendar; charset=utf-8";
 
 Result<FleetQuery> FleetQueryOf(const std::string& query) {
   RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
@@ -32,6 +35,8 @@ Result<FleetQuery> FleetQueryOf(const std::string& query) {
   asked.sort = parameters.Text("sort").value_or("");
   asked.descending = parameters.Text("order") == "down";
   asked.cause = parameters.Text("cause").value_or("");
+  asked.status = parameters.Text("status").value_or("");
+  asked.site = parameters.Text("site").value_or("");
   RIGCAL_ASSIGN(const std::int64_t page, parameters.IntegerOr("page", 1));
   asked.page = static_cast<std::size_t>(std::max<std::int64_t>(page, 1));
   return asked;
@@ -61,8 +66,9 @@ Result<PageText> FleetAsCsv(const AnswerContext& context, const std::string& que
   RIGCAL_ASSIGN(const FleetQuery asked, FleetQueryOf(query));
   static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
   std::string text = report::FleetCsvHeading();
-  const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot); };
-  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
+  const Stamp now = context.clock.Now();
+  const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot, now); };
+  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, now, add); }));
   return PageText{std::move(text), kCsv};
 }
 
@@ -70,6 +76,13 @@ Result<PageText> Boards(const AnswerContext& context) {
   RIGCAL_ASSIGN(const auto answer, LoadBoardsAnswer(context.store, context.clock.Now(), {}));
   RIGCAL_ASSIGN(std::string body, report::RenderBoards(answer));
   return PageText{std::move(body), kHtml};
+}
+
+Result<PageText> DueAsCalendar(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(DueCalendar calendar, MakeDueCalendar(context, parameters));
+  return PageText{std::move(calendar.text), kCalendar};
 }
 
 Result<PageText> Script(const std::string& name) {
@@ -99,7 +112,8 @@ Result<PageText> Metrics(const AnswerContext& context) {
     text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(fleet.verdicts[VerdictLevelOf(verdict)]) + "\n";
   for (const DriveKind kind : kDriveKinds)
     text += "rigcal_robots_by_drive_rule{rule=\"" + NameOf(kind) + "\"} " + std::to_string(fleet.kinds[kind]) + "\n";
-  return PageText{text, "text/plain; version=0.0.4; charset=utf-8"};
+  RIGCAL_ASSIGN(const std::string alerts, AlertMetrics(context.store, fleet));
+  return PageText{text + alerts, "text/plain; version=0.0.4; charset=utf-8"};
 }
 
 PageText Healthz(const AnswerContext& context) {
@@ -115,6 +129,7 @@ Result<PageText> AnswerPage(const AnswerContext& context, const std::string& pat
   if (path == "/") return Fleet(context, query);
   if (path == "/fleet.csv") return FleetAsCsv(context, query);
   if (path == "/boards/") return Boards(context);
+  if (path == "/due.ics") return DueAsCalendar(context, query);
   if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
   if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
   if (path == "/healthz") return Healthz(context);

@@ -22,8 +22,11 @@
 #include "server/pipeline/decide.h"
 #include "server/pipeline/policies.h"
 #include "server/pipeline/rig_models/rig_models.h"
+#include "server/pipeline/robot_status.h"
 #include "server/pipeline/session_refinement.h"
 #include "server/report/edge_order.h"
+#include "storage/alerts/outbox.h"
+#include "storage/alerts/revision_status.h"
 #include "storage/as_found.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
@@ -283,6 +286,44 @@ std::optional<AsFound> TakeAsFound(storage::Store& store, const RobotEdges& load
   return found.value_or(std::nullopt);
 }
 
+// What follows from a revision that was judged, beside its document.
+struct JudgedBeside {
+  std::vector<std::string> cause_keys;
+  std::optional<AsFound> as_found;
+  std::optional<StatusFacts> status;
+};
+
+// The revision is made without its status where what that is learnt from cannot be read.
+JudgedBeside TakeBeside(storage::Store& store, const RobotEdges& loaded, const Revision& revision,
+                        formats::RevisionInput& input) {
+  JudgedBeside beside;
+  beside.cause_keys = TakeCauses(loaded, input);
+  beside.as_found = TakeAsFound(store, loaded, input);
+  auto status =
+      FindStatus(store, {input, loaded.policy, beside.as_found, revision.calibrated_at, revision.max_age_ns,
+                         loaded.headers});
+  if (!status) LogError(status.error());
+  if (status) beside.status = std::move(*status);
+  return beside;
+}
+
+Status AppendBeside(storage::Store& store, const storage::RevisionKey& key, const std::string& rig_model,
+                    const JudgedBeside& beside) {
+  RIGCAL_TRY(storage::AppendCauseKeys(store, key, beside.cause_keys));
+  if (beside.status) RIGCAL_TRY(storage::AppendRevisionStatus(store, key, *beside.status));
+  if (!beside.as_found) return {};
+  RIGCAL_TRY(storage::AppendAsFound(store, key, *beside.as_found));
+  return storage::AppendModelVisit(store, rig_model, key, beside.as_found->session);
+}
+
+// In the transaction of the revision. While pairs wait it is not known yet.
+Status TellFailedSession(storage::Store& store, const RobotEdges& loaded, const formats::RevisionInput& input,
+                         const Revision& revision) {
+  RIGCAL_ASSIGN(const auto failed,
+                FindFailedSession(store, input, loaded.captured_at, revision.number, revision.created_at));
+  return failed ? storage::AppendAlert(store, *failed) : Status{};
+}
+
 }  // namespace
 
 Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
@@ -301,14 +342,10 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
   const storage::MergeStep merge = MergeOlder(robot, loaded);
   JointPoses poses;
   formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
-  std::vector<std::string> cause_keys;
-  std::optional<AsFound> as_found;
-  if (pairs_waiting == 0) {
-    cause_keys = TakeCauses(loaded, input);
-    as_found = TakeAsFound(store, loaded, input);
-  }
-
   revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, merge.merged), SensorsOf(input.solution));
+  revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
+  JudgedBeside beside;
+  if (pairs_waiting == 0) beside = TakeBeside(store, loaded, revision, input);
   const auto worst = WorstEdgeOf(input);
   revision.verdict = input.verdict;
   revision.document = formats::WriteRevisionDocument(input);
@@ -326,8 +363,8 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
-    RIGCAL_TRY(storage::AppendCauseKeys(store, key, cause_keys));
-    if (as_found) RIGCAL_TRY(storage::AppendAsFound(store, key, *as_found));
+    RIGCAL_TRY(AppendBeside(store, key, loaded.policy.rig_model, beside));
+    if (pairs_waiting == 0) RIGCAL_TRY(TellFailedSession(store, loaded, input, revision));
     if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));

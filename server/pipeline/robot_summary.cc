@@ -3,6 +3,7 @@
 #include "server/pipeline/decide.h"
 #include "server/pipeline/unknown_names.h"
 #include "server/pipeline/validity.h"
+#include "storage/alerts/revision_status.h"
 #include "storage/decisions.h"
 #include "storage/edges.h"
 #include "storage/fleet_facts.h"
@@ -36,6 +37,17 @@ Status TakeArrivals(storage::Store& store, RobotSummary& summary) {
   return {};
 }
 
+// Nothing of one that waited for pairs, or from before it was kept.
+Status TakeStatus(storage::Store& store, const Revision& revision, RobotSummary& summary) {
+  RIGCAL_ASSIGN(auto facts, storage::LoadRevisionStatus(store, {revision.robot, revision.number}));
+  if (!facts) return {};
+  summary.found = FoundOf(*facts);
+  summary.drift_due = DriftDueOf(*facts);
+  summary.site = std::move(facts->site);
+  summary.sensors = std::move(facts->sensors);
+  return {};
+}
+
 Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, RobotSummary& summary) {
   summary.revision = revision.number;
   summary.verdict = revision.verdict;
@@ -43,6 +55,7 @@ Status TakeRevision(storage::Store& store, const Revision& revision, Stamp now, 
   RIGCAL_ASSIGN(summary.state, storage::LoadRevisionState(store, revision, summary.validity.usable));
   RIGCAL_ASSIGN(summary.worst, storage::LoadWorstEdge(store, {revision.robot, revision.number}));
   RIGCAL_ASSIGN(summary.causes, storage::LoadCauseKeys(store, {revision.robot, revision.number}));
+  RIGCAL_TRY(TakeStatus(store, revision, summary));
   if (!summary.validity.calculating) return {};
   // What arrived since is told once it is in a revision: one page shows the numbers of one revision.
   RIGCAL_ASSIGN(summary.edges, storage::CountEdges(store, revision.robot, revision.edge_watermark));

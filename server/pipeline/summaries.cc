@@ -6,6 +6,7 @@
 #include "server/base/log.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/robot_summary.h"
+#include "storage/alerts/robot_status.h"
 #include "storage/robot_summary.h"
 
 namespace rigcal::pipeline {
@@ -70,8 +71,12 @@ void TakeTurn(const WaitingMade& done, SummaryTurn& turn) {
       LogError({error.code, "lists do not show what is new of robot " + robot.str() + ": " + error.what, error.cure});
 }
 
-Status Keep(storage::Store& store, const std::vector<MadeSummary>& made) {
-  for (const MadeSummary& one : made) RIGCAL_TRY(storage::ReplaceSummary(store, one.summary, one.changes));
+// What that changes of a robot's status is told in the same transaction.
+Status Keep(storage::Store& store, const std::vector<MadeSummary>& made, Stamp now) {
+  for (const MadeSummary& one : made) {
+    RIGCAL_TRY(storage::ReplaceSummary(store, one.summary, one.changes));
+    RIGCAL_TRY(storage::NoteStatus(store, one.summary.robot, now));
+  }
   return {};
 }
 
@@ -106,7 +111,7 @@ void PutIn(std::vector<RobotSummary> newer, const RobotId& after, std::optional<
 Result<RefreshedSummaries> RefreshSummaries(storage::Store& store, const Clock& clock, int max, SummaryTurn& turn) {
   RIGCAL_ASSIGN(const WaitingMade done, MakeWaiting(store, clock.Now(), max, turn.after));
   TakeTurn(done, turn);
-  if (!done.made.empty()) RIGCAL_TRY(store.Write([&] { return Keep(store, done.made); }));
+  if (!done.made.empty()) RIGCAL_TRY(store.Write([&] { return Keep(store, done.made, clock.Now()); }));
   return RefreshedSummaries{static_cast<int>(done.made.size()), done.full && !done.made.empty()};
 }
 
@@ -119,7 +124,7 @@ Status RefreshSummary(storage::Store& store, const Clock& clock, const RobotId& 
     made.push_back({std::move(summary), waiting->changes});
     return {};
   }));
-  return made.empty() ? Status{} : store.Write([&] { return Keep(store, made); });
+  return made.empty() ? Status{} : store.Write([&] { return Keep(store, made, clock.Now()); });
 }
 
 void RefreshAllSummaries(storage::Store& store, const Clock& clock) {
@@ -135,7 +140,7 @@ void RefreshAllSummaries(storage::Store& store, const Clock& clock) {
 std::vector<RobotSummary> FreshenSummaries(storage::Store& store, const Clock& clock) {
   auto done = MakeWaiting(store, clock.Now(), kFreshenedMax, RobotId());
   std::vector<RobotSummary> not_kept;
-  if (!done || done->made.empty() || store.WriteSoon([&] { return Keep(store, done->made); })) return not_kept;
+  if (!done || done->made.empty() || store.WriteSoon([&] { return Keep(store, done->made, clock.Now()); })) return not_kept;
   for (MadeSummary& one : done->made) not_kept.push_back(std::move(one.summary));  // the next one keeps them
   return not_kept;
 }

@@ -51,6 +51,25 @@ void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
   one->SetValue("LEVEL", SigmasClass(worst->in_sigmas));
 }
 
+const char* LevelOfStatus(StatusWord word) {
+  if (word == StatusWord::kOk) return "pass";
+  if (word == StatusWord::kUnknown) return "unknown";
+  return word == StatusWord::kFailed || word == StatusWord::kOutOfTolerance ? "fail" : "warn";
+}
+
+// Of what the verdict says by itself there is the word alone.
+void FillStatus(Dictionary& row, const RobotSummary& robot, Stamp now) {
+  const CalibrationStatus status = StatusAt(robot, now);
+  row.SetValue("STATUS", NameOf(status.word));
+  row.SetValue("STATUS_LEVEL", LevelOfStatus(status.word));
+  const bool found = status.word == StatusWord::kDrifted || status.word == StatusWord::kOutOfTolerance;
+  if (found) ShowValue(row, "STATUS_WHY", "TEXT", status.why);
+  if (found) ShowValue(row, "STATUS_DO", "TEXT", status.next_step);
+  if (robot.drift_due && DueAt(robot.validity, robot.drift_due) == robot.drift_due->at)
+    ShowValue(row, "DRIFT", "TEXT", DayText(robot.drift_due->at) + " by drift of " + robot.drift_due->sensor.str());
+  if (!robot.site.empty()) ShowValue(row, "SITE", "TEXT", robot.site);
+}
+
 void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("ROBOT", robot.robot.str());
   FillOverdue(row, robot.verdict, robot.validity, robot.runs);
@@ -68,6 +87,7 @@ void FillRow(Dictionary& row, const RobotSummary& robot, Stamp now) {
   row.SetValue("AGE", IsNever(robot) ? "never" : AgeOf(*robot.validity.calibrated_at, now));
   if (!IsNever(robot)) ShowValue(row, "DUE", "DAY", DayText(*ValidUntil(robot.validity)));
   row.SetValue("LAST", robot.last_session_at ? AgeOf(*robot.last_session_at, now) : "none");
+  FillStatus(row, robot, now);
   FillWorst(row, robot.worst);
   row.SetValue("SESSIONS", std::to_string(robot.sessions));
   row.SetValue("EDGES", std::to_string(robot.edges));
@@ -94,14 +114,26 @@ constexpr std::array<std::pair<const char*, const char*>, 17> kChoices = {{{"", 
                                                                           {"later", "due later"},
                                                                           {"off", "an edge beyond 3 \xCF\x83"},
                                                                           {"quiet", "no session for 30 days"}}};
-constexpr std::array<std::pair<const char*, const char*>, 8> kColumns = {{{"robot", "Robot"},
+constexpr std::array<std::pair<const char*, const char*>, 9> kColumns = {{{"robot", "Robot"},
                                                                           {"", "Verdict"},
+                                                                          {"status", "Status"},
                                                                           {"calibrated", "Calibrated"},
                                                                           {"session", "Last session"},
                                                                           {"worst", "Worst edge"},
                                                                           {"revision", "Revision"},
                                                                           {"sessions", "Sessions"},
                                                                           {"edges", "Edges"}}};
+
+void FillStatusChoices(Dictionary& list, const FleetQuery& query) {
+  const auto add = [&](const std::string& value, const std::string& name) {
+    Dictionary* choice = list.AddSectionDictionary("STATUS_CHOICE");
+    choice->SetValue("VALUE", value);
+    choice->SetValue("NAME", name);
+    if (query.status == value) choice->ShowSection("CHOSEN");
+  };
+  add("", "all");
+  for (const StatusWord word : kStatusWords) add(NameOf(word), NameOf(word));
+}
 
 void FillForm(Dictionary& list, const FleetQuery& query) {
   list.SetValue("SEARCH", query.search);
@@ -114,6 +146,8 @@ void FillForm(Dictionary& list, const FleetQuery& query) {
     choice->SetValue("NAME", name);
     if (query.verdict == value) choice->ShowSection("CHOSEN");
   }
+  FillStatusChoices(list, query);
+  if (!query.site.empty()) ShowValue(list, "FORM_SITE", "PLACE", query.site);
 }
 
 // The address of another view of the same fleet: SEARCH, VERDICT, SORT, ORDER, PAGE, and CAUSE with its KEY.
@@ -124,6 +158,8 @@ void FillAddress(Dictionary& link, const FleetQuery& query) {
   link.SetValue("ORDER", query.descending ? "down" : "");
   link.SetValue("PAGE", std::to_string(query.page));
   if (!query.cause.empty()) ShowValue(link, "CAUSE", "KEY", InAddress(query.cause));
+  if (!query.status.empty()) ShowValue(link, "ONLY_STATUS", "WORD", InAddress(query.status));
+  if (!query.site.empty()) ShowValue(link, "ONLY_SITE", "PLACE", InAddress(query.site));
 }
 
 // What is shown is of one cause: which, and the way back.
@@ -189,7 +225,9 @@ Result<std::string> RenderFleet(const FleetCounts& fleet, const FleetPage& list,
   FillColumns(*robots, query);
   FillOnly(*robots, query);
   FillPager(*robots, query, fleet, list);
-  FillAddress(*robots->AddSectionDictionary("CSV"), query);
+  Dictionary* downloads = robots->AddSectionDictionary("CSV");
+  FillAddress(*downloads, query);
+  if (!query.site.empty()) ShowValue(*downloads, "CALENDAR_SITE", "PLACE", InAddress(query.site));
   for (const RobotSummary& row : list.rows) FillRow(*robots->AddSectionDictionary("ROW"), row, now);
   return Expand("fleet.tpl", page);
 }

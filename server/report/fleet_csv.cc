@@ -22,6 +22,15 @@ std::string LifeFields(const RobotSummary& robot) {
          (runs ? std::to_string(robot.runs->revision) : "") + "," + CsvField(robot.runs ? robot.runs->trouble : "");
 }
 
+// Its status, by when it is due, and by what.
+std::string StatusFields(const RobotSummary& robot, Stamp now) {
+  const CalibrationStatus status = StatusAt(robot, now);
+  const auto& drift = robot.drift_due;
+  return "," + NameOf(status.word) + "," + CsvField(status.why) + "," + CsvField(status.next_step) +
+         TimeField(DueAt(robot.validity, drift)) + TimeField(drift ? std::optional(drift->at) : std::nullopt) + "," +
+         (drift ? CsvField(drift->sensor.str()) : "") + "," + CsvField(robot.site);
+}
+
 std::string CausesField(const std::vector<std::string>& causes) {
   std::string text;
   for (const std::string& cause : causes) text += (text.empty() ? "" : "; ") + CauseText(cause);
@@ -32,17 +41,17 @@ std::string CausesField(const std::vector<std::string>& causes) {
 
 std::string FleetCsvHeading() {
   return "robot,verdict,overdue,valid_until,calibrated_at,last_session_at,revision,sessions,edges,pairs_waiting,"
-         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble\r\n";
+         "worst_frame_a,worst_frame_b,worst_sigmas,causes,why,what_to_do,state,in_use,runs,runs_trouble,status,status_why,next_step,due_at,drift_due_at,drift_sensor,site\r\n";
 }
 
-std::string FleetCsvRow(const RobotSummary& robot) {
+std::string FleetCsvRow(const RobotSummary& robot, Stamp now) {
   const Validity& validity = robot.validity;
   return CsvField(robot.robot.str()) + "," + NameOf(robot.verdict.level) + "," + (validity.overdue ? "yes" : "no") +
          TimeField(ValidUntil(validity)) + TimeField(validity.calibrated_at) +
          TimeField(robot.last_session_at) + "," + (robot.revision > 0 ? std::to_string(robot.revision) : "") + "," +
          std::to_string(robot.sessions) + "," + std::to_string(robot.edges) + "," + std::to_string(robot.jobs_waiting) +
          WorstFields(robot.worst) + CausesField(robot.causes) + "," + CsvField(robot.verdict.why) + "," +
-         CsvField(robot.verdict.what_to_do) + LifeFields(robot) + "\r\n";
+         CsvField(robot.verdict.what_to_do) + LifeFields(robot) + StatusFields(robot, now) + "\r\n";
 }
 
 }  // namespace rigcal::report

@@ -9,7 +9,7 @@ namespace rigcal::report {
 
 // The names of FleetCsvRow's columns, with its line end.
 [[nodiscard]] std::string FleetCsvHeading();
-// Times in UTC; empty where nothing is known.
-[[nodiscard]] std::string FleetCsvRow(const RobotSummary& robot);
+// Times in UTC; empty where nothing is known. The status is as of `now`.
+[[nodiscard]] std::string FleetCsvRow(const RobotSummary& robot, Stamp now);
 
 }  // namespace rigcal::report

@@ -40,6 +40,18 @@ void FillByWeek(Dictionary& work, const FleetCounts& fleet) {
   }
 }
 
+// Those that are all right are no work.
+void FillByStatus(Dictionary& work, const std::map<StatusWord, std::int64_t>& statuses) {
+  Dictionary* list = nullptr;
+  for (const auto& [word, robots] : statuses) {
+    if (robots == 0 || word == StatusWord::kOk) continue;
+    if (list == nullptr) list = work.AddSectionDictionary("STATUSES");
+    Dictionary* item = list->AddSectionDictionary("ITEM");
+    item->SetValue("VALUE", NameOf(word));
+    item->SetValue("ROBOTS", RobotsText(robots));
+  }
+}
+
 }  // namespace
 
 void FillWorkLists(Dictionary& page, const FleetCounts& fleet) {
@@ -47,6 +59,7 @@ void FillWorkLists(Dictionary& page, const FleetCounts& fleet) {
   if (fleet.causes.empty() && dated == 0) return;
   Dictionary* work = page.AddSectionDictionary("WORK");
   FillByCause(*work, fleet.causes);
+  FillByStatus(*work, fleet.statuses);
   if (dated > 0) FillByWeek(*work->AddSectionDictionary("WEEKS"), fleet);
 }
 

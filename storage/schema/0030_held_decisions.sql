@@ -32,5 +32,5 @@ ALTER TABLE summary_robot ADD COLUMN runs_what TEXT NOT NULL DEFAULT '';
 DROP INDEX summary_robot_sorted;
 CREATE INDEX summary_robot_sorted ON summary_robot (name_key, verdict, revision_number, calibrated_ns, last_session_ns,
                                                     worst_ratio, sessions, edges, jobs_waiting, max_age_ns, usable_number,
-                                                    runs_trouble);
+                                                    runs_trouble, found, drift_due_ns, calculating, robot_id, site);
 INSERT INTO changed_robot SELECT robot_id FROM robot;

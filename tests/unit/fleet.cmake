@@ -6,3 +6,4 @@ rigcal_test(fleet_causes_test COMPUTES
   DEPS rigcal_fleet rigcal_calib)
 rigcal_test(fleet_as_found_test COMPUTES SOURCES unit/fleet_as_found_test.cc unit/fleet_drift_rate_test.cc DEPS rigcal_fleet)
 rigcal_test(fleet_population_test COMPUTES SOURCES unit/fleet/population_test.cc DEPS rigcal_fleet)
+rigcal_test(fleet_status_test COMPUTES SOURCES unit/fleet/drift_forecast_test.cc unit/fleet/sensor_status_test.cc DEPS rigcal_fleet)

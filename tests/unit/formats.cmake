@@ -20,3 +20,4 @@ set_target_properties(formats_cloud_pcl_test PROPERTIES DISABLE_PRECOMPILE_HEADE
 target_include_directories(formats_cloud_pcl_test SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
 rigcal_test(formats_limits_text_test SOURCES unit/formats_limits_text_test.cc DEPS rigcal_formats)
 rigcal_test(formats_policy_test SOURCES unit/formats_policy_test.cc unit/formats/rig_model_test.cc unit/formats/parts_test.cc DEPS rigcal_formats)
+rigcal_test(formats_alerts_test SOURCES unit/formats/calendar_test.cc DEPS rigcal_formats)

@@ -2,6 +2,9 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "server/formats/documents.h"
+#include "storage/alerts/outbox.h"
+#include "storage/alerts/revision_status.h"
+#include "storage/alerts/robot_status.h"
 #include "storage/as_found.h"
 #include "storage/attempts.h"
 #include "storage/audit.h"
@@ -16,6 +19,7 @@
 #include "storage/revision_poses.h"
 #include "storage/rig_models.h"
 #include "storage/robot_runs.h"
+#include "storage/robot_summary.h"
 #include "storage/session_estimates.h"
 #include "tests/unit/storage_fixture.h"
 
@@ -90,6 +94,15 @@ class AppendOnlyTest : public StoreTest {
       RIGCAL_TRY(BeginEpoch(store_, kRobot, {SensorId("left")}, {6}, {{6}, "Ada", "new bracket"}));
       RIGCAL_TRY(AppendDecision(store_, kRobot, number, Deciding::kApprove, {{6}, "Ada", "checked"}));
       RIGCAL_TRY(AppendRuns(store_, {kRobot, revision.digest, {7}, "rigcal agent"}, {8}));
+      RIGCAL_TRY(AppendRevisionStatus(store_, {kRobot, number}, {}));
+      RIGCAL_TRY(AppendModelVisit(store_, "mars", {kRobot, number}, session));
+      RIGCAL_TRY(SetReceivers(store_, {"http://localhost/a"}, {8}));
+      RIGCAL_TRY(AppendAlert(store_, formats::StatusAlert(kRobot, number, StatusWord::kOk, {}, {8})));
+      RIGCAL_TRY(MarkDelivered(store_, "http://localhost/a", 1, 204, {9}));
+      RobotSummary summary;
+      summary.robot = kRobot;
+      RIGCAL_TRY(ReplaceSummary(store_, summary, 1'000'000));
+      RIGCAL_TRY(NoteStatus(store_, kRobot, {9}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }

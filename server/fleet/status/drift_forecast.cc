@@ -1,0 +1,205 @@
+#include "server/fleet/status/drift_forecast.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace rigcal::fleet {
+namespace {
+
+using Eigen::Index;
+
+// Values of s, in tolerances per root of a month (random walk) or per month (linear), evenly in their logarithm.
+constexpr int kScales = 48;
+constexpr double kScaleMin = 1e-3, kScaleMax = 10.0, kDaysOfMonth = 30.0;
+using PerScale = std::array<double, kScales>;
+
+double ScaleOf(int scale, double tolerance) {
+  return tolerance * kScaleMin * std::pow(kScaleMax / kScaleMin, scale / double{kScales - 1});
+}
+
+// One half of the steps: their shifts, or their turns.
+struct ForecastHalf {
+  Index first = 0;
+  double tolerance = 0.0;
+};
+
+// What a robot's visits tell of the rate of one axis: precision, and precision times rate.
+struct RateInformation {
+  double A = 0.0, B = 0.0;
+};
+using RobotRates = std::array<RateInformation, 3>;
+using RatesByRobot = std::map<RobotId, RobotRates>;
+
+bool IsUsableStep(const DriftStep& step) {
+  return step.days > 0 && std::isfinite(step.days) && step.change.allFinite() && step.sigma.allFinite() &&
+         step.sigma.maxCoeff() > 0;
+}
+
+template <typename Take>  // (step, axis of the half, months, change, variance)
+void ForEachAxis(const std::vector<DriftStep>& steps, const ForecastHalf& half, const Take& take) {
+  for (const DriftStep& step : steps)
+    for (Index axis = 0; axis < 3; ++axis)
+      if (const double sigma = step.sigma(half.first + axis); sigma > 0)
+        take(step, static_cast<std::size_t>(axis), step.days / kDaysOfMonth, step.change(half.first + axis), sigma * sigma);
+}
+
+PerScale RandomWalkLikelihood(const std::vector<DriftStep>& steps, const ForecastHalf& half) {
+  PerScale log_likelihood{};
+  for (int j = 0; j < kScales; ++j) {
+    const double s2 = std::pow(ScaleOf(j, half.tolerance), 2);
+    double& sum = log_likelihood[static_cast<std::size_t>(j)];
+    ForEachAxis(steps, half, [&](const DriftStep&, std::size_t, double months, double change, double variance) {
+      const double whole = variance + s2 * months;
+      sum -= 0.5 * (std::log(whole) + change * change / whole);
+    });
+  }
+  return log_likelihood;
+}
+
+RatesByRobot RatesOf(const std::vector<DriftStep>& steps, const ForecastHalf& half) {
+  RatesByRobot rates;
+  ForEachAxis(steps, half, [&](const DriftStep& step, std::size_t axis, double months, double change, double variance) {
+    RateInformation& one = rates[step.robot][axis];
+    one.A += months * months / variance;
+    one.B += months * change / variance;
+  });
+  return rates;
+}
+
+// A robot's rate integrated out: its visits are normal with diagonal plus s^2 t t^T (Sherman and Morrison 1950).
+PerScale LinearLikelihood(const std::vector<DriftStep>& steps, const ForecastHalf& half, const RatesByRobot& rates) {
+  double still = 0.0;  // nothing moves
+  ForEachAxis(steps, half, [&](const DriftStep&, std::size_t, double, double change, double variance) {
+    still -= 0.5 * (std::log(variance) + change * change / variance);
+  });
+  PerScale log_likelihood{};
+  for (int j = 0; j < kScales; ++j) {
+    const double s2 = std::pow(ScaleOf(j, half.tolerance), 2);
+    double sum = still;
+    for (const auto& [robot, axes] : rates)
+      for (const RateInformation& one : axes)
+        sum -= 0.5 * (std::log1p(s2 * one.A) - s2 * one.B * one.B / (1 + s2 * one.A));
+    log_likelihood[static_cast<std::size_t>(j)] = sum;
+  }
+  return log_likelihood;
+}
+
+double Best(const PerScale& log_likelihood) { return *std::max_element(log_likelihood.begin(), log_likelihood.end()); }
+
+// Flat in s: the grid is one of its logarithm.
+PerScale Weights(const PerScale& log_likelihood) {
+  const double best = Best(log_likelihood);
+  PerScale weights{};
+  double sum = 0.0;
+  for (int j = 0; j < kScales; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    weights[at] = std::exp(log_likelihood[at] - best) * ScaleOf(j, 1.0);
+    sum += weights[at];
+  }
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+// Where a sensor will be, of each scale: about `distance` away per month, give or take `sigma` per month or its root.
+struct Outlook {
+  PerScale weight{}, distance{}, sigma{};
+  DriftLaw law = DriftLaw::kRandomWalk;
+  double tolerance = 0.0;
+
+  [[nodiscard]] double OddsBeyond(double months) const {
+    const double spread = law == DriftLaw::kLinear ? months : std::sqrt(months);
+    double odds = 0.0;
+    for (std::size_t j = 0; j < weight.size(); ++j)
+      odds += weight[j] * BeyondBall(distance[j] * months, sigma[j] * spread, tolerance);
+    return odds;
+  }
+};
+
+Outlook RandomWalkOutlook(const PerScale& log_likelihood, const ForecastHalf& half) {
+  Outlook outlook{Weights(log_likelihood), {}, {}, DriftLaw::kRandomWalk, half.tolerance};
+  for (int j = 0; j < kScales; ++j) outlook.sigma[static_cast<std::size_t>(j)] = ScaleOf(j, half.tolerance);
+  return outlook;
+}
+
+// The robot's rate after its own visits; of axes that are known differently the least known stands for all.
+Outlook LinearOutlook(const PerScale& log_likelihood, const ForecastHalf& half, const RobotRates& own) {
+  Outlook outlook{Weights(log_likelihood), {}, {}, DriftLaw::kLinear, half.tolerance};
+  for (int j = 0; j < kScales; ++j) {
+    const double s2 = std::pow(ScaleOf(j, half.tolerance), 2);
+    double variance = 0.0, squares = 0.0;
+    for (const RateInformation& one : own) {
+      const double of_axis = s2 / (1 + s2 * one.A);
+      variance = std::max(variance, of_axis);
+      squares += std::pow(of_axis * one.B, 2);
+    }
+    outlook.sigma[static_cast<std::size_t>(j)] = std::sqrt(variance);
+    outlook.distance[static_cast<std::size_t>(j)] = std::sqrt(squares);
+  }
+  return outlook;
+}
+
+// Both halves by the law that is likelier for both together.
+std::vector<Outlook> OutlooksOf(const std::vector<DriftStep>& steps, const RobotId& robot, const PoseLimit& tolerance) {
+  const std::array<ForecastHalf, 2> halves = {{{0, tolerance.m}, {3, tolerance.rad}}};
+  std::vector<Outlook> walking, linear;
+  double walk = 0.0, line = 0.0;
+  for (const ForecastHalf& half : halves) {
+    const RatesByRobot rates = RatesOf(steps, half);
+    const PerScale by_walk = RandomWalkLikelihood(steps, half), by_line = LinearLikelihood(steps, half, rates);
+    const auto own = rates.find(robot);
+    walk += Best(by_walk);
+    line += Best(by_line);
+    walking.push_back(RandomWalkOutlook(by_walk, half));
+    linear.push_back(LinearOutlook(by_line, half, own == rates.end() ? RobotRates{} : own->second));
+  }
+  return line > walk ? linear : walking;
+}
+
+double OddsOfEither(const std::vector<Outlook>& outlooks, double days) {
+  double within = 1.0;
+  for (const Outlook& one : outlooks) within *= 1 - one.OddsBeyond(days / kDaysOfMonth);
+  return 1 - within;
+}
+
+// The odds grow with the time.
+double DaysUntilOdds(const std::vector<Outlook>& outlooks, double days_max) {
+  double early = 0.0, late = days_max;
+  for (int i = 0; i < 48; ++i) {
+    const double middle = 0.5 * (early + late);
+    (OddsOfEither(outlooks, middle) < kForecastOdds ? early : late) = middle;
+  }
+  return early;
+}
+
+double Phi(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+double Bell(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2 * std::numbers::pi); }
+
+}  // namespace
+
+double BeyondBall(double distance, double sigma, double radius) {
+  if (!(sigma > 0)) return distance > radius ? 1.0 : 0.0;
+  const double r = radius / sigma, d = distance / sigma;
+  // Where both are close to each other the difference of the two bells is their slope.
+  const double flow = d < 1e-6 ? 2 * r * Bell(r) : (Bell(r - d) - Bell(r + d)) / d;
+  return std::clamp(1 - (Phi(r - d) - Phi(-r - d)) + flow, 0.0, 1.0);
+}
+
+std::optional<DriftForecast> ForecastDrift(const std::vector<DriftStep>& steps, const RobotId& robot,
+                                           const PoseLimit& tolerance, double days_max) {
+  std::vector<DriftStep> usable = steps;
+  std::erase_if(usable, [](const DriftStep& step) { return !IsUsableStep(step); });
+  if (static_cast<int>(usable.size()) < kForecastVisitsMin) return std::nullopt;
+  if (!(tolerance.m > 0) || !(tolerance.rad > 0) || !(days_max > 0)) return std::nullopt;
+  const std::vector<Outlook> outlooks = OutlooksOf(usable, robot, tolerance);
+  if (!(OddsOfEither(outlooks, days_max) > kForecastOdds)) return std::nullopt;
+  std::set<RobotId> robots;
+  for (const DriftStep& step : usable) robots.insert(step.robot);
+  return DriftForecast{outlooks.front().law, DaysUntilOdds(outlooks, days_max), static_cast<int>(usable.size()),
+                       static_cast<int>(robots.size())};
+}
+
+}  // namespace rigcal::fleet

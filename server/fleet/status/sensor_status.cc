@@ -1,0 +1,110 @@
+#include "server/fleet/status/sensor_status.h"
+
+#include <algorithm>
+#include <set>
+
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+namespace {
+
+constexpr double kDay_ns = 86'400e9;
+
+const SensorFound* FoundOfSensor(const std::optional<AsFound>& found, const SensorId& sensor) {
+  if (!found || !found->why_not.empty()) return nullptr;
+  const auto one = std::find_if(found->sensors.begin(), found->sensors.end(),
+                                [&](const SensorFound& other) { return other.sensor == sensor; });
+  return one == found->sensors.end() ? nullptr : &*one;
+}
+
+// "revision 2 of 3 Nov 2026"
+std::string SinceWhat(const AsFound& found) {
+  const std::string revision = "revision " + std::to_string(found.in_use);
+  return found.made_at ? revision + " of " + DayText(*found.made_at) : revision;
+}
+
+// What was done in that time was done by a pose that was no longer true.
+std::string MayBeAffected(const AsFound& found) {
+  if (!found.made_at) return "what was done before " + DayText(found.captured_at) + " may be affected";
+  return "what was done from " + DayText(*found.made_at) + " to " + DayText(found.captured_at) + " may be affected";
+}
+
+std::string WhoMoved(const SensorFound& sensor) {
+  return sensor.or_else.empty() ? sensor.sensor.str() : sensor.sensor.str() + " or " + sensor.or_else.str();
+}
+
+std::string CheckMount(const SensorFound& sensor) {
+  return sensor.or_else.empty() ? "Check its mount" : "Check the mounts of both";
+}
+
+CalibrationStatus DriftedStatus(const SensorFound& sensor, const AsFound& found, const PoseLimit& tolerance) {
+  const std::string moved = WhoMoved(sensor) + " moved by " + OffList(sensor.change) + " (" +
+                            Number(InSigmas(sensor), "sigma") + ") since " + SinceWhat(found);
+  if (!IsBeyond(sensor.change, tolerance))
+    return {StatusWord::kDrifted, moved + "; the calibration was updated.",
+            CheckMount(sensor) + "; if it was moved on purpose, name it as remounted in the next session."};
+  return {StatusWord::kOutOfTolerance,
+          moved + ", beyond the tolerance of " + LimitText(tolerance) + ": " + MayBeAffected(found) + ".",
+          CheckMount(sensor) + ", and what was done in that time."};
+}
+
+bool HasTwoPoses(const GraphSolution& solution, const SensorId& sensor) {
+  const auto& two = solution.suspects.two_poses;
+  return std::any_of(two.begin(), two.end(), [&](const TwoPoses& one) { return one.sensor == sensor; });
+}
+
+CalibrationStatus UncertainStatus(const SensorPose& pose, const PoseLimit& tolerance,
+                                  const std::optional<Stamp>& calibrated_at) {
+  const Vector6d sigma = pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const double sigma_m = sigma.head<3>().maxCoeff(), sigma_rad = sigma.tail<3>().maxCoeff();
+  if (sigma_m <= tolerance.m && sigma_rad <= tolerance.rad) return {};
+  const std::string since = calibrated_at ? " since " + DayText(*calibrated_at) : "";
+  return {StatusWord::kOutOfTolerance,
+          "The pose of " + pose.sensor.str() + " is known to " + SigmaText(sigma_m, sigma_rad) +
+              " only, more than the tolerance of " + LimitText(tolerance) + ": what was done by it" + since +
+              " may be affected.",
+          "Capture it again at more distances and tilts."};
+}
+
+CalibrationStatus StatusOfSensor(const SensorPose& pose, const StatusInput& input) {
+  const PoseLimit tolerance = LimitsOf(input.policy, pose.sensor).tolerance;
+  const SensorFound* found = FoundOfSensor(input.found, pose.sensor);
+  if (found != nullptr && found->state == FoundState::kDrifted) return DriftedStatus(*found, *input.found, tolerance);
+  if (HasTwoPoses(input.solution, pose.sensor))
+    return {StatusWord::kFailed, "Its edges give " + pose.sensor.str() + " two poses.", "Do what the verdict says."};
+  if (!pose.known)
+    return {StatusWord::kUnknown, "The pose of " + pose.sensor.str() + " is not known.", "Do what the verdict says."};
+  if (pose.sensor == input.reference) return {};
+  return UncertainStatus(pose, tolerance, input.calibrated_at);
+}
+
+std::optional<DriftDue> DueOfSensor(const SensorId& sensor, const StatusInput& input) {
+  const auto steps = input.steps.find(sensor);
+  if (steps == input.steps.end() || !input.calibrated_at) return std::nullopt;
+  const PoseLimit tolerance = LimitsOf(input.policy, sensor).tolerance;
+  const auto forecast =
+      ForecastDrift(steps->second, input.robot, tolerance, static_cast<double>(input.max_age_ns) / kDay_ns);
+  if (!forecast) return std::nullopt;
+  const Stamp at{input.calibrated_at->ns + static_cast<std::int64_t>(forecast->days * kDay_ns)};
+  return DriftDue{sensor, at, forecast->law, forecast->visits, forecast->robots};
+}
+
+}  // namespace
+
+void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps) {
+  if (!found.why_not.empty()) return;
+  for (const SensorFound& sensor : found.sensors)
+    if (sensor.state == FoundState::kUnchanged || sensor.state == FoundState::kDrifted)
+      steps[sensor.sensor].push_back({robot, days, sensor.change, sensor.sigma});
+}
+
+StatusFacts JudgeStatus(const StatusInput& input) {
+  StatusFacts facts;
+  for (const SensorPose& pose : input.solution.poses)
+    facts.sensors.push_back({pose.sensor, StatusOfSensor(pose, input), DueOfSensor(pose.sensor, input)});
+  std::sort(facts.sensors.begin(), facts.sensors.end(),
+            [](const SensorStatus& x, const SensorStatus& y) { return x.sensor < y.sensor; });
+  return facts;
+}
+
+}  // namespace rigcal::fleet

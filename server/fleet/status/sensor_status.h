@@ -1,0 +1,35 @@
+// What a revision says of the status of its robot, sensor by sensor, whatever the time (model/robot_status.h).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/fleet/status/drift_forecast.h"
+#include "server/model/as_found.h"
+#include "server/model/graph.h"
+#include "server/model/robot_status.h"
+
+namespace rigcal::fleet {
+
+using DriftSteps = std::map<SensorId, std::vector<DriftStep>>;
+
+// The steps that an as-found test tells, of each sensor that it measured: `days` since the calibration in use was measured.
+void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps);
+
+struct StatusInput {
+  RobotId robot;
+  const GraphSolution& solution;
+  SensorId reference;
+  const Policy& policy;
+  const std::optional<AsFound>& found;  // by the newest session of the revision
+  const DriftSteps& steps;              // of the robots of its rig model
+  std::optional<Stamp> calibrated_at;   // of the revision
+  std::int64_t max_age_ns = kDefaultMaxAge_ns;
+};
+// `site` is left empty. Of a sensor the first of: out-of-tolerance as it was found moved, drifted, failed (it has two
+// poses), unknown (no pose), out-of-tolerance as its pose is less certain than the tolerance (any axis, 1 sigma), ok.
+[[nodiscard]] StatusFacts JudgeStatus(const StatusInput& input);
+
+}  // namespace rigcal::fleet

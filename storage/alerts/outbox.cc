@@ -1,0 +1,156 @@
+#include "storage/alerts/outbox.h"
+
+#include <algorithm>
+
+#include "storage/query.h"
+
+namespace rigcal::storage {
+namespace {
+
+constexpr const char* kOutboxSubject = "the alerts";
+const std::string kToldNow =
+    "SELECT url FROM webhook w WHERE is_told = 1 AND number = (SELECT max(number) FROM webhook o WHERE o.url = w.url)";
+// The oldest of its robot: what comes later waits for it.
+const std::string kIsHead =
+    "NOT EXISTS (SELECT 1 FROM waiting_alert e WHERE e.url = w.url AND e.robot_id = w.robot_id AND e.alert_number < "
+    "w.alert_number)";
+
+std::int64_t NextAlertNumber(Store& store) {
+  Query query(store, "SELECT coalesce(max(number), 0) + 1 FROM alert");
+  return query.Step() ? query.Int(0) : 1;
+}
+
+// Columns number, id, robot_id, kind, subject, at_ns, body.
+Alert AlertAt(const Query& query) {
+  return {query.Int(0),  query.IdAt<Digest>(1), query.IdAt<RobotId>(2), query.Text(3),
+          query.Text(4), query.Time(5),         query.Text(6)};
+}
+
+std::vector<std::string> ReceiversNow(Store& store) {
+  Query query(store, kToldNow + " ORDER BY url");
+  std::vector<std::string> urls;
+  while (query.Step()) urls.push_back(query.Text(0));
+  return urls;
+}
+
+void SayOfReceiver(Store& store, const std::string& url, bool is_told, Stamp now) {
+  Query(store, "INSERT INTO webhook (url, at_ns, is_told) VALUES (?, ?, ?)").Bind(url, now, is_told).Run();
+}
+
+bool IsAmong(const std::vector<std::string>& urls, const std::string& url) {
+  return std::find(urls.begin(), urls.end(), url) != urls.end();
+}
+
+ReceiverState StateOfReceiver(Store& store, const std::string& url, bool is_told) {
+  ReceiverState state;
+  state.url = ShownUrl(url);
+  state.is_told = is_told;
+  Query waiting(store,
+                "SELECT count(*), min(a.at_ns), max(w.attempts), min(w.next_try_ns) FILTER (WHERE w.next_try_ns > 0) FROM "
+                "waiting_alert w JOIN alert a ON a.number = w.alert_number WHERE w.url = ?");
+  if (waiting.Bind(url).Step() && waiting.Int(0) > 0) {
+    state.waiting = waiting.Int(0);
+    state.oldest_at = waiting.Time(1);
+    state.attempts = static_cast<int>(waiting.Int(2));
+    if (!waiting.IsNull(3)) state.next_try_at = waiting.Time(3);
+  }
+  Query error(store,
+              "SELECT last_error FROM waiting_alert WHERE url = ? AND last_error <> '' ORDER BY next_try_ns DESC LIMIT 1");
+  if (error.Bind(url).Step()) state.last_error = error.Text(0);
+  Query delivered(store, "SELECT count(*) FROM alert_delivered WHERE url = ?");
+  if (delivered.Bind(url).Step()) state.delivered = delivered.Int(0);
+  return state;
+}
+
+}  // namespace
+
+Status AppendAlert(Store& store, const formats::AlertDraft& draft) {
+  return store.connection().Append(kOutboxSubject, [&]() -> Status {
+    const Alert alert = formats::AlertOf(draft, NextAlertNumber(store));
+    Query(store, "INSERT INTO alert VALUES (?, ?, ?, ?, ?, ?, ?)")
+        .Bind(alert.number, alert.id, alert.robot, alert.kind, alert.subject, alert.at, alert.body)
+        .Run();
+    return {};
+  });
+}
+
+Result<bool> HasAlert(Store& store, const RobotId& robot, const std::string& kind, const std::string& subject) {
+  return Load<bool>(store, kOutboxSubject, [&]() -> Result<bool> {
+    Query query(store, "SELECT 1 FROM alert WHERE robot_id = ? AND kind = ? AND subject = ? LIMIT 1");
+    return query.Bind(robot, kind, subject).Step();
+  });
+}
+
+Status SetReceivers(Store& store, const std::vector<std::string>& urls, Stamp now) {
+  return store.connection().Append(kOutboxSubject, [&]() -> Status {
+    const std::vector<std::string> told = ReceiversNow(store);
+    for (const std::string& url : told)
+      if (!IsAmong(urls, url)) SayOfReceiver(store, url, false, now);
+    for (const std::string& url : urls) {
+      if (!IsAmong(told, url)) SayOfReceiver(store, url, true, now);
+      Query(store, "UPDATE waiting_alert SET next_try_ns = 0 WHERE url = ? AND next_try_ns > 0").Bind(url).Run();
+    }
+    return {};
+  });
+}
+
+Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::string& url, Stamp now) {
+  using Next = std::optional<WaitingAlert>;
+  return Load<Next>(store, kOutboxSubject, [&]() -> Result<Next> {
+    Query query(store,
+                "SELECT number, id, a.robot_id, kind, subject, at_ns, body, attempts FROM waiting_alert w "
+                "CROSS JOIN alert a ON a.number = w.alert_number WHERE w.url = ? AND w.next_try_ns <= ? AND " +
+                    kIsHead + " ORDER BY w.alert_number LIMIT 1");
+    if (!query.Bind(url, now).Step()) return std::nullopt;
+    return WaitingAlert{AlertAt(query), static_cast<int>(query.Int(7))};
+  });
+}
+
+Result<std::optional<Stamp>> LoadNextTry(Store& store, const std::string& url) {
+  using Next = std::optional<Stamp>;
+  return Load<Next>(store, kOutboxSubject, [&]() -> Result<Next> {
+    Query query(store, "SELECT min(next_try_ns) FROM waiting_alert w WHERE w.url = ? AND " + kIsHead);
+    return query.Bind(url).Step() && !query.IsNull(0) ? Next(query.Time(0)) : std::nullopt;
+  });
+}
+
+Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status, Stamp now) {
+  return store.connection().Append(kOutboxSubject, [&]() -> Status {
+    const int waited =
+        Query(store, "DELETE FROM waiting_alert WHERE url = ? AND alert_number = ?").Bind(url, number).Run();
+    if (waited > 0)
+      Query(store, "INSERT INTO alert_delivered VALUES (?, ?, ?, ?)").Bind(url, number, now, http_status).Run();
+    return {};
+  });
+}
+
+Status NoteAttempt(Store& store, const std::string& url, std::int64_t number, const std::string& error,
+                   Stamp next_try_at) {
+  return store.connection().Append(kOutboxSubject, [&]() -> Status {
+    Query(store,
+          "UPDATE waiting_alert SET attempts = attempts + 1, next_try_ns = ?, last_error = ? WHERE url = ? AND "
+          "alert_number = ?")
+        .Bind(next_try_at, error, url, number)
+        .Run();
+    return {};
+  });
+}
+
+std::string ShownUrl(const std::string& url) { return url.substr(0, url.find('?')); }
+
+Result<std::vector<ReceiverState>> LoadReceivers(Store& store) {
+  using States = std::vector<ReceiverState>;
+  return Load<States>(store, kOutboxSubject, [&]() -> Result<States> {
+    const std::vector<std::string> told = ReceiversNow(store);
+    std::vector<std::string> urls = told;
+    Query waiting(store, "SELECT DISTINCT url FROM waiting_alert");
+    while (waiting.Step())
+      if (!IsAmong(told, waiting.Text(0))) urls.push_back(waiting.Text(0));
+    std::sort(urls.begin(), urls.end());
+    States states;
+    for (const std::string& url : urls) states.push_back(StateOfReceiver(store, url, IsAmong(told, url)));
+    return states;
+  });
+}
+
+}  // namespace rigcal::storage

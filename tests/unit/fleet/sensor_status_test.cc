@@ -1,0 +1,127 @@
+// What a revision says of each of its sensors: moved, beyond tolerance, uncertain, unknown.
+#include <gmock/gmock.h>
+
+#include "server/fleet/status/sensor_status.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using ::testing::HasSubstr;
+
+const SensorId kLeft("left"), kRight("right"), kTop("top");
+
+SensorPose Known(const SensorId& sensor, double sigma_m) {
+  SensorPose pose;
+  pose.sensor = sensor;
+  pose.known = true;
+  pose.covariance = Matrix6d::Identity() * sigma_m * sigma_m;
+  return pose;
+}
+
+struct Rig {
+  GraphSolution solution;
+  Policy policy;
+  std::optional<AsFound> found;
+  DriftSteps steps;
+  std::optional<Stamp> calibrated_at = ParseIso("2026-11-10").value();
+
+  Rig() { solution.poses = {Known(kLeft, 0.0), Known(kRight, 1e-3), Known(kTop, 1e-3)}; }
+  [[nodiscard]] StatusFacts Judge() const {
+    return JudgeStatus({RobotId("r"), solution, kLeft, policy, found, steps, calibrated_at, kDefaultMaxAge_ns});
+  }
+  void Move(const SensorId& sensor, double m, const SensorId& or_else = {}) {
+    found.emplace();
+    found->in_use = 2;
+    found->made_at = ParseIso("2026-11-03").value();
+    found->captured_at = ParseIso("2026-11-10").value();
+    found->sensors.emplace_back();
+    found->sensors.back().sensor = sensor;
+    found->sensors.back().or_else = or_else;
+    found->sensors.back().state = FoundState::kDrifted;
+    found->sensors.back().axes.fill(FoundState::kDrifted);
+    found->sensors.back().change(0) = m;
+    found->sensors.back().sigma.setConstant(2e-4);
+  }
+};
+
+CalibrationStatus Of(const SensorId& sensor, const StatusFacts& facts) {
+  for (const SensorStatus& one : facts.sensors)
+    if (one.sensor == sensor) return one.status;
+  return {StatusWord::kUnknown, "there is none", ""};
+}
+
+TEST(SensorStatus, IsOkWhereNothingSpeaksAgainstIt) {
+  const StatusFacts facts = Rig().Judge();
+  ASSERT_EQ(facts.sensors.size(), 3u);
+  for (const SensorStatus& one : facts.sensors) EXPECT_EQ(one.status, CalibrationStatus{}) << one.sensor.str();
+}
+
+TEST(SensorStatus, OfASensorThatMovedNamesItAndSinceWhen) {
+  Rig rig;
+  rig.Move(kRight, 1.2e-3);
+  const CalibrationStatus status = Of(kRight, rig.Judge());
+  EXPECT_EQ(status.word, StatusWord::kDrifted);
+  EXPECT_THAT(status.why, HasSubstr("right moved by 1.2 mm"));
+  EXPECT_THAT(status.why, HasSubstr("since revision 2 of 3 Nov 2026; the calibration was updated."));
+  EXPECT_THAT(status.next_step, HasSubstr("Check its mount"));
+  EXPECT_EQ(FoundOf(rig.Judge()), status);
+}
+
+TEST(SensorStatus, BeyondTheToleranceSaysWhatMayBeAffected) {
+  Rig rig;
+  rig.Move(kRight, 8e-3, kTop);
+  const CalibrationStatus status = Of(kRight, rig.Judge());
+  EXPECT_EQ(status.word, StatusWord::kOutOfTolerance);
+  EXPECT_THAT(status.why, HasSubstr("right or top moved by 8 mm"));
+  EXPECT_THAT(status.why, HasSubstr("what was done from 3 Nov 2026 to 10 Nov 2026 may be affected"));
+  rig.policy.sensors[kRight].tolerance_m = 0.02;
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kDrifted) << "the policy allows it";
+}
+
+TEST(SensorStatus, AnUncertainPoseIsOutOfTolerance) {
+  Rig rig;
+  rig.solution.poses[2] = Known(kTop, 6e-3);
+  const CalibrationStatus status = Of(kTop, rig.Judge());
+  EXPECT_EQ(status.word, StatusWord::kOutOfTolerance);
+  EXPECT_THAT(status.why, HasSubstr("The pose of top is known to 6 mm"));
+  EXPECT_THAT(status.why, HasSubstr("since 10 Nov 2026 may be affected"));
+}
+
+TEST(SensorStatus, WithoutAPoseItIsUnknownAndWithTwoItFailed) {
+  Rig rig;
+  rig.solution.poses[1].known = false;
+  rig.solution.suspects.two_poses.push_back({kTop, {}, {}});
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kUnknown);
+  EXPECT_EQ(Of(kTop, rig.Judge()).word, StatusWord::kFailed);
+}
+
+TEST(SensorStatus, WhatWasNotTestedMovedNobody) {
+  Rig rig;
+  rig.Move(kRight, 8e-3);
+  rig.found->why_not = "No calibration was in use before it.";
+  EXPECT_EQ(Of(kRight, rig.Judge()).word, StatusWord::kOk);
+  DriftSteps steps;
+  AddSteps(RobotId("r"), *rig.found, 7.0, steps);
+  EXPECT_TRUE(steps.empty());
+}
+
+TEST(SensorStatus, IsDueByItsDriftAfterItWasMeasured) {
+  Rig rig;
+  for (int visit = 1; visit <= 8; ++visit) {
+    DriftStep step{RobotId("r"), 7.0};
+    step.change(visit % 3) = visit % 2 == 0 ? 2e-3 : -2e-3;
+    step.sigma.setConstant(1e-4);
+    rig.steps[kRight].push_back(step);
+  }
+  for (const SensorStatus& one : rig.Judge().sensors) {
+    EXPECT_EQ(one.due.has_value(), one.sensor == kRight);
+    if (!one.due) continue;
+    EXPECT_GT(one.due->at, *rig.calibrated_at);
+    EXPECT_LT(one.due->at.ns, rig.calibrated_at->ns + kDefaultMaxAge_ns);
+    EXPECT_EQ(one.due->visits, 8);
+    EXPECT_EQ(one.due->robots, 1);
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::fleet
