@@ -356,10 +356,10 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     revision.policy_watermark = loaded.policy.watermark;
     revision.rig_model_watermark = loaded.expected.watermark;
   }
-  revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
-    RIGCAL_TRY(ApproveByPolicy(store, revision, as_found && StateOf(*as_found) == FoundState::kDrifted, clock.Now()));
+    const bool found_drift = beside.as_found && StateOf(*beside.as_found) == FoundState::kDrifted;
+    RIGCAL_TRY(ApproveByPolicy(store, revision, found_drift, clock.Now()));
     const storage::RevisionKey key{robot, revision.number};
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
