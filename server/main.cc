@@ -67,6 +67,23 @@ http::Answer PagesOf(const std::filesystem::path& folder, const ContextOf& conte
   };
 }
 
+// All outlive the service.
+dds::Callbacks CallbacksOf(const ContextOf& context_of, WakeRelay& relay, webhook::Sender& alerts) {
+  dds::Callbacks callbacks;
+  callbacks.answer = [&context_of](storage::Store& store, const std::string& verb, const std::string& json) {
+    return pipeline::Answer(context_of(store), verb, json);
+  };
+  callbacks.is_order = pipeline::IsOrder;
+  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json) {
+    auto done = pipeline::CarryOut(store, SystemClock(), verb, json);
+    alerts.Wake();
+    return done;
+  };
+  callbacks.state_of = pipeline::LoadRobotState;
+  callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
+  return callbacks;
+}
+
 Status Serve(const Config& config, const sigset_t& signals) {
   RIGCAL_TRY(EnforceLimits(config));
   RIGCAL_ASSIGN(const http::Options http_options, HttpOptions(config));
@@ -98,18 +115,7 @@ Status Serve(const Config& config, const sigset_t& signals) {
 
   RIGCAL_ASSIGN(webhook::Sender alerts,
                 webhook::Sender::Start({config.data, &SystemClock(), std::move(receivers), &health.vitals()}));
-  dds::Callbacks callbacks;
-  callbacks.answer = [&](storage::Store& store, const std::string& verb, const std::string& json) {
-    return pipeline::Answer(context_of(store), verb, json);
-  };
-  callbacks.is_order = pipeline::IsOrder;
-  callbacks.carry_out = [&alerts](storage::Store& store, const std::string& verb, const std::string& json) {
-    auto done = pipeline::CarryOut(store, SystemClock(), verb, json);
-    alerts.Wake();
-    return done;
-  };
-  callbacks.state_of = pipeline::LoadRobotState;
-  callbacks.work_arrived = [&relay](const RobotId&) { relay.Wake(); };
+  const dds::Callbacks callbacks = CallbacksOf(context_of, relay, alerts);
   SetThreadRank(ThreadRank::kTakes);  // DDS makes threads of its own
   RIGCAL_ASSIGN(dds::Service service,
                 dds::Service::Start(

@@ -138,7 +138,8 @@ struct Sender::Impl {
   // The end of the pause, or soon.
   [[nodiscard]] std::chrono::nanoseconds UntilNext(Stamp paused_until) const {
     const std::chrono::nanoseconds pause{paused_until.ns - options.clock->Now().ns};
-    return std::clamp<std::chrono::nanoseconds>(pause, std::chrono::milliseconds(10), kLookAgain);
+    if (pause.count() <= 0) return kLookAgain;
+    return std::min<std::chrono::nanoseconds>(pause, kLookAgain);
   }
 
   void Wake() {

@@ -106,14 +106,6 @@ Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::strin
   });
 }
 
-Result<std::optional<Stamp>> LoadNextTry(Store& store, const std::string& url) {
-  using Next = std::optional<Stamp>;
-  return Load<Next>(store, kOutboxSubject, [&]() -> Result<Next> {
-    Query query(store, "SELECT min(next_try_ns) FROM waiting_alert w WHERE w.url = ? AND " + kIsHead);
-    return query.Bind(url).Step() && !query.IsNull(0) ? Next(query.Time(0)) : std::nullopt;
-  });
-}
-
 Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status, Stamp now) {
   return store.connection().Append(kOutboxSubject, [&]() -> Status {
     const int waited =

@@ -23,8 +23,6 @@ namespace rigcal::storage {
 
 // What is to be sent to the receiver next: of each robot the oldest that waits, of these the oldest that may be tried by `now`.
 [[nodiscard]] Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::string& url, Stamp now);
-// When the soonest of those may be tried; nothing: none waits.
-[[nodiscard]] Result<std::optional<Stamp>> LoadNextTry(Store& store, const std::string& url);
 // The receiver answered with `http_status`, 200 to 299. It waits no more; a no-op if it did not.
 [[nodiscard]] Status MarkDelivered(Store& store, const std::string& url, std::int64_t number, int http_status, Stamp now);
 // It was tried once more in vain, is to be tried again then, and `error` says why.

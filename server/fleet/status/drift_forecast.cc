@@ -17,7 +17,7 @@ constexpr int kScales = 48;
 constexpr double kScaleMin = 1e-3, kScaleMax = 10.0, kDaysOfMonth = 30.0;
 using PerScale = std::array<double, kScales>;
 
-double ScaleOf(int scale, double tolerance) {
+double DriftScale(int scale, double tolerance) {
   return tolerance * kScaleMin * std::pow(kScaleMax / kScaleMin, scale / double{kScales - 1});
 }
 
@@ -50,7 +50,7 @@ void ForEachAxis(const std::vector<DriftStep>& steps, const ForecastHalf& half, 
 PerScale RandomWalkLikelihood(const std::vector<DriftStep>& steps, const ForecastHalf& half) {
   PerScale log_likelihood{};
   for (int j = 0; j < kScales; ++j) {
-    const double s2 = std::pow(ScaleOf(j, half.tolerance), 2);
+    const double s2 = std::pow(DriftScale(j, half.tolerance), 2);
     double& sum = log_likelihood[static_cast<std::size_t>(j)];
     ForEachAxis(steps, half, [&](const DriftStep&, std::size_t, double months, double change, double variance) {
       const double whole = variance + s2 * months;
@@ -78,7 +78,7 @@ PerScale LinearLikelihood(const std::vector<DriftStep>& steps, const ForecastHal
   });
   PerScale log_likelihood{};
   for (int j = 0; j < kScales; ++j) {
-    const double s2 = std::pow(ScaleOf(j, half.tolerance), 2);
+    const double s2 = std::pow(DriftScale(j, half.tolerance), 2);
     double sum = still;
     for (const auto& [robot, axes] : rates)
       for (const RateInformation& one : axes)
@@ -97,7 +97,7 @@ PerScale Weights(const PerScale& log_likelihood) {
   double sum = 0.0;
   for (int j = 0; j < kScales; ++j) {
     const auto at = static_cast<std::size_t>(j);
-    weights[at] = std::exp(log_likelihood[at] - best) * ScaleOf(j, 1.0);
+    weights[at] = std::exp(log_likelihood[at] - best) * DriftScale(j, 1.0);
     sum += weights[at];
   }
   for (double& weight : weights) weight /= sum;
@@ -121,7 +121,7 @@ struct Outlook {
 
 Outlook RandomWalkOutlook(const PerScale& log_likelihood, const ForecastHalf& half) {
   Outlook outlook{Weights(log_likelihood), {}, {}, DriftLaw::kRandomWalk, half.tolerance};
-  for (int j = 0; j < kScales; ++j) outlook.sigma[static_cast<std::size_t>(j)] = ScaleOf(j, half.tolerance);
+  for (int j = 0; j < kScales; ++j) outlook.sigma[static_cast<std::size_t>(j)] = DriftScale(j, half.tolerance);
   return outlook;
 }
 
@@ -129,7 +129,7 @@ Outlook RandomWalkOutlook(const PerScale& log_likelihood, const ForecastHalf& ha
 Outlook LinearOutlook(const PerScale& log_likelihood, const ForecastHalf& half, const RobotRates& own) {
   Outlook outlook{Weights(log_likelihood), {}, {}, DriftLaw::kLinear, half.tolerance};
   for (int j = 0; j < kScales; ++j) {
-    const double s2 = std::pow(ScaleOf(j, half.tolerance), 2);
+    const double s2 = std::pow(DriftScale(j, half.tolerance), 2);
     double variance = 0.0, squares = 0.0;
     for (const RateInformation& one : own) {
       const double of_axis = s2 / (1 + s2 * one.A);

@@ -8,7 +8,7 @@
 namespace rigcal::fleet {
 namespace {
 
-constexpr double kDay_ns = 86'400e9;
+constexpr double kStatusDay_ns = 86'400e9;
 
 const SensorFound* FoundOfSensor(const std::optional<AsFound>& found, const SensorId& sensor) {
   if (!found || !found->why_not.empty()) return nullptr;
@@ -83,9 +83,9 @@ std::optional<DriftDue> DueOfSensor(const SensorId& sensor, const StatusInput& i
   if (steps == input.steps.end() || !input.calibrated_at) return std::nullopt;
   const PoseLimit tolerance = LimitsOf(input.policy, sensor).tolerance;
   const auto forecast =
-      ForecastDrift(steps->second, input.robot, tolerance, static_cast<double>(input.max_age_ns) / kDay_ns);
+      ForecastDrift(steps->second, input.robot, tolerance, static_cast<double>(input.max_age_ns) / kStatusDay_ns);
   if (!forecast) return std::nullopt;
-  const Stamp at{input.calibrated_at->ns + static_cast<std::int64_t>(forecast->days * kDay_ns)};
+  const Stamp at{input.calibrated_at->ns + static_cast<std::int64_t>(forecast->days * kStatusDay_ns)};
   return DriftDue{sensor, at, forecast->law, forecast->visits, forecast->robots};
 }
 
