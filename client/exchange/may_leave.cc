@@ -24,7 +24,7 @@ std::string RevisionText(const Document& shown) {
 }
 
 std::string WhyItStays(const Document& shown, RevisionState state) {
-  if (state == RevisionState::kUnusable) return RevisionText(shown) + " has the verdict " + VerdictText(shown["document"]["verdict"]);
+  if (state == RevisionState::kUnusable) return RevisionText(shown) + " has the verdict " + VerdictText(shown["document"]["verdict"], shown);
   return RevisionText(shown) + " is not approved: it is " + WordFor(state);
 }
 
