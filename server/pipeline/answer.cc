@@ -265,33 +265,9 @@ Result<std::string> OfStatus(const AnswerContext& context, const Parameters& par
   return formats::WriteStatus(answer, now);
 }
 
-Result<std::string> TellPolicyAsked(const AnswerContext& context, const Parameters& parameters) {
-  return TellPolicy(context.store, parameters);
-}
-
-Result<std::string> TellRigModelAsked(const AnswerContext& context, const Parameters& parameters) {
-  return TellRigModel(context.store, parameters);
-}
-
-Result<std::string> ListRigModelsAsked(const AnswerContext& context, const Parameters&) {
-  return ListRigModels(context.store);
-}
-
-Result<std::string> TellPopulationAsked(const AnswerContext& context, const Parameters& parameters) {
-  return TellPopulation(context.store, parameters);
-}
-
 Result<std::string> ListBoards(const AnswerContext& context, const Parameters& parameters) {
   RIGCAL_ASSIGN(const auto answer, LoadBoardsAnswer(context.store, context.clock.Now(), parameters));
   return formats::WriteBoards(answer);
-}
-
-Result<std::string> OneBoard(const AnswerContext& context, const Parameters& parameters) {
-  return TellBoard(context.store, context.clock.Now(), parameters);
-}
-
-Result<std::string> TraceOneBoard(const AnswerContext& context, const Parameters& parameters) {
-  return TraceBoard(context.store, parameters);
 }
 
 Result<std::string> Live(const AnswerContext& context, const Parameters& parameters) {
@@ -346,6 +322,11 @@ Result<std::string> Health(const AnswerContext& context, const Parameters&) {
   return formats::WriteHealth(answer, context.clock.Now());
 }
 
+// Of one that needs the store alone.
+Verb OfStore(Result<std::string> (*tell)(storage::Store&, const Parameters&)) {
+  return [tell](const AnswerContext& context, const Parameters& parameters) { return tell(context.store, parameters); };
+}
+
 const std::map<std::string, Verb>& Verbs() {
   static const std::map<std::string, Verb> verbs = {
       {"robots", Robots},
@@ -362,15 +343,15 @@ const std::map<std::string, Verb>& Verbs() {
       {"known_robot", TellKnownRobot},
       {"known_files", TellKnownFiles},
       {"status", OfStatus},
-      {"policy", TellPolicyAsked},
-      {"rig_model", TellRigModelAsked},
-      {"rig_models", ListRigModelsAsked},
-      {"population", TellPopulationAsked},
+      {"policy", OfStore(TellPolicy)},
+      {"rig_model", OfStore(TellRigModel)},
+      {"rig_models", [](const AnswerContext& context, const Parameters&) { return ListRigModels(context.store); }},
+      {"population", OfStore(TellPopulation)},
       {"audit", ListAudit},
       {"audit_verify", VerifyAudit},
       {"boards", ListBoards},
-      {"board", OneBoard},
-      {"board_trace", TraceOneBoard},
+      {"board", [](const AnswerContext& of, const Parameters& asked) { return TellBoard(of.store, of.clock.Now(), asked); }},
+      {"board_trace", OfStore(TraceBoard)},
       {"due", Due},
       {"due_ics", TellDueCalendar},
       {"webhooks", ListWebhooks},

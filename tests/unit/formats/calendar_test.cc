@@ -48,9 +48,14 @@ std::vector<Properties> EventsOf(const std::string& text) {
   for (const std::string& line : Unfolded(text)) {
     const std::size_t colon = line.find(':');
     const std::string name = line.substr(0, colon), value = line.substr(colon + 1);
-    if (line == "BEGIN:VEVENT") events.emplace_back(), inside = true;
-    else if (line == "END:VEVENT") inside = false;
-    else if (inside) EXPECT_TRUE(events.back().emplace(name, name[0] == 'D' && name[1] == 'T' ? value : Unescaped(value)).second) << name;
+    if (line == "BEGIN:VEVENT") {
+      events.emplace_back(), inside = true;
+    } else if (line == "END:VEVENT") {
+      inside = false;
+    } else if (inside) {
+      const bool is_time = name.rfind("DT", 0) == 0;
+      EXPECT_TRUE(events.back().emplace(name, is_time ? value : Unescaped(value)).second) << name;
+    }
   }
   EXPECT_FALSE(inside);
   return events;
@@ -91,7 +96,9 @@ TEST(Calendar, FoldsBetweenCharacters) {
     for (int i = 0; i < 60; ++i) entry.summary += "\xE2\x82\xAC";
     std::istringstream lines(WriteCalendar("c", {entry}));
     for (std::string line; std::getline(lines, line);)
-      if (line.size() > 1) EXPECT_NE(static_cast<unsigned char>(line[1]) & 0xC0, 0x80) << "a character was cut";
+      if (line.size() > 1) {
+        EXPECT_NE(static_cast<unsigned char>(line[1]) & 0xC0, 0x80) << "a character was cut";
+      }
     EXPECT_EQ(EventsOf(WriteCalendar("c", {entry}))[0].at("SUMMARY"), entry.summary);
   }
 }
