@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/graph/merge_edges.h"
+#include "server/graph/merged_edge.h"
 #include "server/graph/merged_edge.h"
 #include "server/graph/session_fusion.h"
 #include "server/graph/solve.h"

@@ -105,8 +105,10 @@ TEST(RecordedBags, AllOfARealRobotDecodes) {
   ASSERT_THAT(all.at("/husky_velocity_controller/odom"), SizeIs(3952));
   for (const auto& message : all.at("/husky_velocity_controller/odom")) ASSERT_TRUE(ReadPose(message->value));
   for (const auto& [topic, messages] : all)
-    for (const auto& message : messages)
-      if (KindOf(message->topic->type) == MessageKind::kImu) ASSERT_TRUE(ReadImu(message->value)) << topic;
+    for (const auto& message : messages) {
+      if (KindOf(message->topic->type) != MessageKind::kImu) continue;
+      ASSERT_TRUE(ReadImu(message->value)) << topic;
+    }
 }
 
 TEST(RecordedBags, SplitBagsAreReadInTheirOrder) {
