@@ -26,8 +26,12 @@ TEST(Answers, Robots) {
   EXPECT_EQ(WriteRobots({SampleRobot()}, kNow),
             "{\"robots\":[{\"age_ns\":86400000000000,\"calculating\":true,\"calibrated_at\":\"2026-01-31T12:00:00Z\","
             "\"drive\":{\"kind\":\"ok\",\"rule\":\"OK to drive until 1 May 2026\",\"until\":\"2026-05-01T12:00:00Z\"},"
+            "\"due\":{\"at\":\"2026-05-01T12:00:00Z\",\"by_age_at\":\"2026-05-01T12:00:00Z\",\"by_drift\":null,"
+            "\"text\":\"due 1 May 2026 by age\"},"
             "\"edges\":7,\"given_up\":null,\"jobs_waiting\":1,\"overdue\":false,\"revision\":3,\"robot\":\"mapper-01\","
-            "\"runs\":null,\"sessions\":2,\"state\":\"unusable\","
+            "\"runs\":null,\"sessions\":2,\"site\":null,\"state\":\"unusable\","
+            "\"status\":{\"next_step\":\"Nothing is to be done.\","
+            "\"why\":\"It is within its tolerances; due 1 May 2026 by age.\",\"word\":\"ok\"},"
             "\"usable\":{\"created_at\":\"2026-01-31T12:00:00Z\",\"revision\":3},"
             "\"valid_until\":\"2026-05-01T12:00:00Z\",\"verdict\":{\"level\":\"pass\",\"what_to_do\":\"Nothing.\","
             "\"why\":\"All is well.\"}}]}");

@@ -129,7 +129,7 @@ TEST(ExportColmap, CountsPixelsFromTheCornerAndMapsRigPointsIntoTheCamera) {
     if (line.front() != '#') rows.push_back(line);
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0], "1 FULL_OPENCV 640 480 500.5 510.25 320.625 240.25 -0.25 0.0625 0.001 -0.002 0.0 0.0 0.0 0.0");
-  EXPECT_EQ(rows[1], "2 OPENCV_FISHEYE 640 480 500.5 510.25 320.625 240.25 0.03 -0.004 0.0005 1.0e-05");
+  EXPECT_EQ(rows[1], "2 OPENCV_FISHEYE 640 480 500.5 510.25 320.625 240.25 0.03 -0.004 5.0e-04 1.0e-05");
   const json cameras = json::parse(written->files[1].text)[0]["cameras"];
   EXPECT_TRUE(cameras[0]["ref_sensor"].get<bool>());
   EXPECT_EQ(cameras[1]["image_prefix"].get<std::string>(), "right/");

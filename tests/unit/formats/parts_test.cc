@@ -45,9 +45,9 @@ TEST(Parts, ASessionThatTellsNoneKeepsItsBytes) {
 TEST(Parts, MoreThanALineIsRefused) {
   const auto lines = ReadSessionYaml(SessionWith(", serial: \"a\\nb\""), "session.yaml");
   ASSERT_FALSE(lines);
-  EXPECT_THAT(Sentence(lines.error()), HasSubstr("sensor left: serial"));
+  EXPECT_THAT(Sentence(lines.error()), HasSubstr("control characters"));
   EXPECT_FALSE(ReadSessionYaml(SessionWith(", firmware: " + std::string(300, 'x')), "session.yaml"));
-  EXPECT_THAT(Sentence(ReadSessionYaml(SessionWith(", seriel: A1"), "session.yaml").error()), HasSubstr("did you mean serial?"));
+  EXPECT_THAT(Sentence(ReadSessionYaml(SessionWith(", seriel: A1"), "session.yaml").error()), HasSubstr("did you mean \"serial\"?"));
 }
 
 }  // namespace

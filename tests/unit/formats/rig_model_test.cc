@@ -78,7 +78,7 @@ TEST(RigModelYaml, WhatIsWrongIsNamed) {
   EXPECT_THAT(Refused(""), HasSubstr("mars.yaml"));
   EXPECT_THAT(Refused("rig_model: m\nsensors: {}\n"), HasSubstr("mars.yaml"));
   EXPECT_THAT(Refused("rig_model: m\nsensors: {left: {type: camra}}\n"), HasSubstr("line 2"));
-  EXPECT_THAT(Refused("rig_model: m\nsensor: {left: {type: camera}}\n"), HasSubstr("did you mean sensors?"));
+  EXPECT_THAT(Refused("rig_model: m\nsensor: {left: {type: camera}}\n"), HasSubstr("did you mean \"sensors\"?"));
   const std::string drawn = "rig_model: m\nsensors:\n  a: {type: camera}\n  b: {type: camera, T_ref_sensor: {p_m: ";
   EXPECT_THAT(Refused(drawn + "[1, 0, 0]}}\n"), HasSubstr("sensor b: its pose has no tolerance"));
   EXPECT_THAT(Refused(drawn + "[1, 0]}, tolerance_mm: 1, tolerance_deg: 1}\n"), HasSubstr("line 4"));
