@@ -12,10 +12,13 @@
 namespace rigcal::fleet {
 namespace {
 
-std::set<std::string> NamesOf(const std::vector<Edge>& edges, const GraphSolution& solution) {
+std::set<std::string> NamesOf(const std::vector<Edge>& edges, const GraphSolution& solution,
+                              const std::vector<RootCause>& causes) {
   std::set<std::string> names;
   for (const Edge& edge : edges) names.insert({edge.frame_a.str(), edge.frame_b.str()});
   for (const SensorPose& pose : solution.poses) names.insert(pose.sensor.str());
+  for (const RootCause& cause : causes)
+    for (const SensorId& sensor : cause.sensors) names.insert(sensor.str());
   return names;
 }
 
@@ -172,11 +175,11 @@ Verdict Assess(const std::vector<Edge>& edges, const GraphSolution& solution, co
                const SessionTimes& captured_at, const std::vector<SessionEstimate>& estimates,
                const SessionHeaders& headers, const PairCovariances& pairs, const ExpectedRig& expected,
                const std::set<SensorId>& retired) {
-  const std::set<std::string> names = NamesOf(edges, solution);
+  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
+  const std::set<std::string> names = NamesOf(edges, solution, causes);
   const auto say = [&](VerdictLevel level, const std::vector<Finding>& findings) {
     return VerdictFrom(level, findings, names);
   };
-  const std::vector<RootCause> causes = FindRootCauses(edges, solution, headers, captured_at, expected, retired);
   if (const auto nothing = FindNothing(edges, captured_at, causes); !nothing.empty())
     return say(VerdictLevel::kUnknown, nothing);
   if (const auto moved = FindMovedWithin(estimates, policy, captured_at)) return say(VerdictLevel::kFail, {*moved});

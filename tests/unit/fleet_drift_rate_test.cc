@@ -132,7 +132,7 @@ TEST(AsFoundText, OfTwoNamesBothAndSaysWhatIsNotKnown) {
   const std::string text = TextOf(found);
   EXPECT_THAT(text, HasSubstr("right moved against left 1.2 mm, 0.0401 deg (12 sigma), either of the two may have; "));
   EXPECT_THAT(text, HasSubstr("rear moved on purpose; top new; "));
-  EXPECT_THAT(text, HasSubstr("; with 1 visit in use the scatter from visit to visit is not known yet."));
+  EXPECT_THAT(text, HasSubstr("; with 1 visit in use the scatter from visit to visit is not known yet: the policy's moved_min is taken for it."));
   EXPECT_THAT(text, Not(HasSubstr("unchanged")));
   found.visits = 2;
   EXPECT_THAT(TextOf(found), HasSubstr("with 2 visits in use the scatter from visit to visit is hardly known yet."));

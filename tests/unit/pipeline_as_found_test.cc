@@ -231,7 +231,7 @@ TEST_F(AsFoundTest, WhatWasRemountedInASessionThatWasNotRefinedIsTestedAfterIt) 
   Visit(0, AtHome());
   Visit(30, RightMoved(0.02), {SensorId("right")}, false);
   if (storage::LoadInUse(*store_, kRig).value()->revision != 2) Decide(storage::Deciding::kApprove, 2);
-  Visit(60, RightMoved(0.023));
+  Visit(60, RightMoved(0.04));
   const AsFound found = Found(3);
   ASSERT_EQ(found.in_use, 2) << found.text;
   EXPECT_THAT(SummaryOf(found).drifted, ElementsAre(SensorId("right"))) << found.text;

@@ -33,7 +33,7 @@ ReportInput Sample() {
 std::string CertificateOf(const ReportInput& input) { return RenderCertificate(input).value(); }
 
 std::string RowOf(const std::string& page, const std::string& sensor) {
-  const auto from = page.find("<th scope=\"row\">" + sensor + "</th>");
+  const auto from = page.find("<th scope=\"row\"><span class=\"name\">" + sensor + "</span></th>");
   return from == std::string::npos ? "" : page.substr(from, page.find("</tr>", from) - from);
 }
 
@@ -55,7 +55,7 @@ TEST(Certificate, TellsPosesWithLimitsAndIntervals) {
   const std::string page = CertificateOf(Sample());
   EXPECT_EQ(RowOf(page, "front_right"),
             "<th "
-            "scope=\"row\">front_right</th><td>83.18</td><td>0.40</td><td>-1.20</td><td>0.000</td><td>0.000</"
+            "scope=\"row\"><span class=\"name\">front_right</span></th><td>83.18</td><td>0.40</td><td>-1.20</td><td>0.000</td><td>0.000</"
             "td><td>0.498</td>"
             "<td>0.28 (1.0)</td><td>0.032 (0.29)</td><td>2.23</td><td>0.62</td><td>0.071</td><td>yes</td>");
   EXPECT_THAT(page, HasSubstr("&sigma; (limit)"));

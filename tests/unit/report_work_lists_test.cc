@@ -108,7 +108,7 @@ TEST(WorkLists, AListOfOneCauseSaysSoAndStaysWithIt) {
 }
 
 TEST(FleetRows, SayUntilWhenARobotIsCalibrated) {
-  EXPECT_THAT(PageOf(Counts()), HasSubstr("<span class=\"soft\">due 1 May 2026</span>"));
+  EXPECT_THAT(PageOf(Counts()), HasSubstr("<span class=\"soft due\">due 1 May 2026</span>"));
 }
 
 TEST(FleetCsv, HasARowForARobot) {

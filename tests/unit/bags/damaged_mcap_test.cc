@@ -73,7 +73,7 @@ TEST(DamagedMcap, CutAnywhereItIsOneSentenceAndWhatWasBefore) {
     EXPECT_GE(told.times.size(), most) << size;
     most = told.times.size();
   }
-  EXPECT_EQ(most, 4U);
+  EXPECT_EQ(most, 3U);  // the last of four needs its last byte
 }
 
 TEST(DamagedMcap, ALengthThatIsWrongLosesItsChunkAlone) {

@@ -23,7 +23,7 @@ TEST(BoardVerb, MeasureAsksInMetresAndSaysWhatDependsOnIt) {
   EXPECT_EQ(ran.code, 0) << ran.err;
   EXPECT_EQ(asked,
             R"(measure_board {"serial":"B-7","who":"Ada","type":"charuco","cols":11,"rows":8,"square_m":"0.03",)"
-            R"("measured_x_m":"0.199","measured_y_m":"0.0999","sigma_m":"0.0001","next_check":"2027-05-31"})");
+            R"("measured_x_m":"0.199","measured_y_m":"0.0999","sigma_m":"1e-04","next_check":"2027-05-31"})");
   EXPECT_EQ(ran.out,
             "Board B-7, a charuco of 11 x 8 squares, 30 mm: its squares measure 29.850 x 30.000 mm (sigma 0.030 assumed), by Ada.\n"
             "Next check: 2027-05-31.\nBefore, they measured 30.000 x 30.000 mm.\n"
