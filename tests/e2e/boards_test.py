@@ -20,7 +20,7 @@ def prints(flow):
     out = flow.folder / "board.pdf"
     said = json.loads(flow.rigcal("board", "print", *WHAT, "--serial", SERIAL, "--paper", "A3", "--out", out, "--json").stdout)
     check(out.read_bytes().startswith(b"%PDF-"), "a PDF was written")
-    check(said["paper"] == "A3" and said["ruler_x_m"] == 0.3, "on A3, with rulers: %r" % said)
+    check(said["paper"] == "A3" and said["ruler_x_m"] == 0.2 and said["ruler_y_m"] == 0.3, "on A3, with rulers: %r" % said)
     again = flow.folder / "again.svg"
     flow.rigcal("board", "print", *WHAT, "--serial", SERIAL, "--out", again)
     check('width="' in again.read_text() and SERIAL in again.read_text(), "an SVG was written")
