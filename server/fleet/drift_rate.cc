@@ -21,7 +21,7 @@ std::vector<PlaceAt> PlacesOf(const SensorId& sensor, const SensorId& frame, con
   std::vector<PlaceAt> places;
   const std::optional<Se3> T_frame_now = PlaceIn(frame, sensor, now);
   if (!T_frame_now) return places;
-  const Vector6d scatter = SeenFrom(frame, {sensor}, now).scatter;
+  const Vector6d scatter = ScatterSeenFrom(frame, sensor, now);
   for (const VisitPoses& visit : visits) {
     if (visit.poses.Find(sensor) == nullptr || visit.poses.Find(frame) == nullptr) continue;
     const PosesSeen seen = SeenFrom(frame, {sensor}, visit.poses);

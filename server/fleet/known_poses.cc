@@ -126,14 +126,19 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
     const Matrix6d by_frame = -Adjoint(seen.T_frame_sensor.back().Inverse());
     if (const Index own = FirstRow(poses, sensor); own >= 0) J.block<6, 6>(row, own).setIdentity();
     if (frame_row >= 0) J.block<6, 6>(row, frame_row) = by_frame;
-    seen.scatter.segment<6>(row) =
-        (ScatterOf(pose) + by_frame * ScatterOf(of_frame) * by_frame.transpose()).diagonal();
+    seen.scatter.segment<6>(row) = ScatterSeenFrom(frame, sensor, poses);
     seen.visits.push_back(sensor == poses.reference ? of_frame.visits
                           : frame == poses.reference ? pose.visits
                                                      : std::min(of_frame.visits, pose.visits));
   }
   seen.covariance = J * covariance * J.transpose();
   return seen;
+}
+
+Vector6d ScatterSeenFrom(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses) {
+  const KnownPose &of_frame = *poses.Find(frame), &pose = *poses.Find(sensor);
+  const Matrix6d by_frame = Adjoint((of_frame.T_ref_sensor.Inverse() * pose.T_ref_sensor).Inverse());
+  return (ScatterOf(pose) + by_frame * ScatterOf(of_frame) * by_frame.transpose()).diagonal();
 }
 
 std::optional<Se3> PlaceIn(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses) {

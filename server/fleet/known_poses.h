@@ -51,6 +51,8 @@ struct PosesSeen {
 constexpr double kNothingKnown = 1e12;
 // `frame` and `sensors` must be among the poses.
 [[nodiscard]] PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, const KnownPoses& poses);
+// Of one sensor's six rows, what PosesSeen::scatter has; both must be among the poses, whose covariance does not matter.
+[[nodiscard]] Vector6d ScatterSeenFrom(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses);
 // T_frame_sensor; nothing where one of both is not among them.
 [[nodiscard]] std::optional<Se3> PlaceIn(const SensorId& frame, const SensorId& sensor, const KnownPoses& poses);
 
