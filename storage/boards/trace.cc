@@ -32,7 +32,7 @@ std::map<RobotId, std::vector<UsedIn>> LoadUses(Store& store, const std::string&
 }
 
 // Whether sessions of a robot counted when its standings up to some number were known. As LoadSuperseded and
-// LoadRetiredSessions have it for now.
+// LoadRetiredSessions say it of the newest.
 class Standings {
  public:
   Standings(Store& store, const RobotId& robot) {
