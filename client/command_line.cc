@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "client/command_words.h"
-#include "client/completion.h"
+#include "client/completion/command_words.h"
+#include "client/completion/completion.h"
 #include "client/verbs.h"
 #include "server/base/version.h"
 

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "client/table.h"
+#include "client/text/table.h"
 #include "server/base/limits.h"
 
 namespace rigcal::client {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "client/document.h"
+#include "client/text/document.h"
 
 namespace CLI {
 class App;

@@ -2,12 +2,12 @@
 
 #include <array>
 
-#include "client/table.h"
+#include "client/text/table.h"
 #include "server/base/stamp.h"
-#include "server/formats/answers.h"
-#include "server/model/decision.h"
-#include "server/model/unit_doubt.h"
-#include "server/model/validity.h"
+#include "server/formats/answers/answers.h"
+#include "server/model/approval/decision.h"
+#include "server/model/approval/validity.h"
+#include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::client {
 

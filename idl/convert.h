@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "rigcal.h"
-#include "server/model/edge.h"
-#include "server/model/robot_state.h"
+#include "server/model/edges/edge.h"
+#include "server/model/robots/robot_state.h"
 
 namespace rigcal::wire {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/base/log.h"
-#include "server/base/memory_budget.h"
+#include "server/base/process/memory_budget.h"
 #include "server/base/version.h"
-#include "server/formats/limits_text.h"
+#include "server/formats/yaml/limits_text.h"
 #include "server/http/public_address.h"
 
 namespace rigcal {

@@ -24,7 +24,7 @@ struct Config {
   int threads = 2;
   bool verbose = false;
   bool standby = false;  // waits while another server is there, instead of ending
-  bool worker = false;   // works for a server that started it (pipeline/worker.h), and serves nobody
+  bool worker = false;   // works for a server that started it (pipeline/workers/worker.h), and serves nobody
   std::filesystem::path limits_file;  // empty: none
   std::vector<std::string> limits;    // NAME=VALUE; they win over the file
   std::vector<std::string> webhooks;                     // addresses that are told of changes

@@ -8,24 +8,24 @@
 #include <iostream>
 #include <mutex>
 
-#include "server/base/leave_soon.h"
 #include "server/base/log.h"
-#include "server/base/thread_rank.h"
+#include "server/base/process/leave_soon.h"
+#include "server/base/process/thread_rank.h"
 #include "server/base/version.h"
 #include "server/config.h"
 #include "server/dds/service.h"
 #include "server/http/public_address.h"
 #include "server/http/server.h"
-#include "server/pipeline/answer.h"
-#include "server/pipeline/orders.h"
-#include "server/pipeline/robot_state.h"
+#include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/orders.h"
+#include "server/pipeline/robots/robot_state.h"
+#include "server/pipeline/robots/summaries.h"
 #include "server/pipeline/runner.h"
-#include "server/pipeline/summaries.h"
-#include "server/pipeline/worker.h"
+#include "server/pipeline/workers/worker.h"
 #include "server/standby.h"
 #include "server/webhook/sender.h"
-#include "storage/folder_lock.h"
-#include "storage/room.h"
+#include "storage/files/folder_lock.h"
+#include "storage/files/room.h"
 
 namespace rigcal {
 namespace {

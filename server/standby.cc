@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "server/base/log.h"
-#include "server/base/thread_rank.h"
+#include "server/base/process/thread_rank.h"
 #include "server/base/version.h"
 
 namespace rigcal {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "storage/audited_rows.h"
-#include "storage/query.h"
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {

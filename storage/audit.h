@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/model/audit.h"
+#include "server/model/approval/audit.h"
 #include "storage/store.h"
 
 namespace rigcal::storage {

@@ -3,7 +3,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "server/model/audit.h"
+#include "server/model/approval/audit.h"
 
 namespace rigcal::storage {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "server/base/sha256.h"
+#include "server/base/digests/sha256.h"
 
 namespace rigcal::storage {
 namespace {

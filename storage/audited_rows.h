@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "server/model/audit.h"
+#include "server/model/approval/audit.h"
 
 namespace rigcal::storage {
 

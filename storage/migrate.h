@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "storage/connection.h"
+#include "storage/database/connection.h"
 
 namespace rigcal::storage {
 

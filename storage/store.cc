@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "storage/connection.h"
-#include "storage/folders.h"
+#include "storage/database/connection.h"
+#include "storage/files/folders.h"
+#include "storage/files/room.h"
 #include "storage/migrate.h"
-#include "storage/room.h"
 
 namespace rigcal::storage {
 namespace fs = std::filesystem;

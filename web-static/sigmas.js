@@ -1,4 +1,4 @@
-// How far something is off, counted in its own sigmas: server/report/sigmas.h for scripts, with the same limits, classes (and so
+// How far something is off, counted in its own sigmas: server/report/text/sigmas.h for scripts, with the same limits, classes (and so
 // colours) and texts.
 export const OFF_SIGMAS = 3;  // from here on it is "off"
 const MOST_BELOW_SIGMAS = 2.9;

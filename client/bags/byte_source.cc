@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "server/base/file_descriptor.h"
+#include "server/base/files/file_descriptor.h"
 
 namespace rigcal::bags {
 namespace {

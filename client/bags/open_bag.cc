@@ -7,14 +7,14 @@
 #include "client/bags/byte_source.h"
 #include "client/bags/cursor.h"
 #include "client/bags/limits.h"
-#include "client/bags/mcap_bag.h"
+#include "client/bags/mcap/mcap_bag.h"
 #include "client/bags/parts.h"
 #include "client/bags/ros1_bag.h"
 #include "client/bags/sqlite_bag.h"
 #include "client/bags/temporary_file.h"
 #include "client/bags/unpack.h"
 #include "server/base/text.h"
-#include "server/formats/first_three.h"
+#include "server/formats/edges/first_three.h"
 
 namespace rigcal::bags {
 namespace {

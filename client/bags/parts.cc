@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "client/bags/limits.h"
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/base/text.h"
 
 namespace rigcal::bags {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "client/bags/limits.h"
-#include "server/base/file_descriptor.h"
+#include "server/base/files/file_descriptor.h"
 
 namespace rigcal::bags {
 namespace {

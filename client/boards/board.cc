@@ -5,8 +5,8 @@
 
 #include "client/boards/options.h"
 #include "client/boards/text.h"
+#include "client/change/order.h"
 #include "client/elsewhere.h"
-#include "client/order.h"
 #include "client/verbs.h"
 
 namespace rigcal::client {

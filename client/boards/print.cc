@@ -7,7 +7,7 @@
 #include "client/print/sheet_words.h"
 #include "client/print/svg.h"
 #include "client/verbs.h"
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 
 namespace rigcal::client {
 namespace {

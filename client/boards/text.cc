@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include "client/pose_text.h"
-#include "client/table.h"
+#include "client/text/pose_text.h"
+#include "client/text/table.h"
 #include "client/verb.h"
 #include "server/model/boards/measure.h"
 

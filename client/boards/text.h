@@ -3,7 +3,7 @@
 
 #include <ostream>
 
-#include "client/document.h"
+#include "client/text/document.h"
 
 namespace rigcal::client {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "client/check/edge_width.h"
-#include "server/base/out_of_memory.h"
+#include "server/base/process/out_of_memory.h"
 #include "server/calib/camera/camera_fit.h"
 #include "server/calib/camera/camera_start.h"
 #include "server/calib/core/selection.h"

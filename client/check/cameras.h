@@ -8,7 +8,7 @@
 #include "client/check/seen.h"
 #include "client/check/tilt_ring.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/model/coverage.h"
+#include "server/model/sensors/coverage.h"
 
 namespace rigcal::check {
 

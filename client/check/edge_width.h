@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "server/detect/grey_image.h"
-#include "server/model/features.h"
-#include "server/model/target.h"
+#include "server/detect/pictures/grey_image.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal::check {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "client/check/capture_names.h"
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/motion/stream_motion.h"
-#include "server/model/unit_doubt.h"
+#include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::check {
 namespace {

@@ -3,15 +3,15 @@
 #include <mutex>
 
 #include "client/check/edge_width.h"
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/base/limits.h"
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/detect/board.h"
-#include "server/formats/cloud.h"
-#include "server/formats/cloud_oddities.h"
-#include "server/formats/payload_path.h"
-#include "server/formats/poses.h"
-#include "server/formats/session_folder.h"
+#include "server/formats/clouds/cloud.h"
+#include "server/formats/clouds/cloud_oddities.h"
+#include "server/formats/sessions/payload_path.h"
+#include "server/formats/sessions/poses.h"
+#include "server/formats/sessions/session_folder.h"
 
 namespace rigcal::check {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "client/check/seen.h"
-#include "server/model/cloud_layout.h"
+#include "server/model/sensors/cloud_layout.h"
 
 namespace rigcal::check {
 

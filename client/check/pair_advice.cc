@@ -4,10 +4,10 @@
 
 #include "client/check/advice.h"
 #include "client/check/words.h"
-#include "client/pose_text.h"
-#include "client/table.h"
+#include "client/text/pose_text.h"
+#include "client/text/table.h"
 #include "server/calib/core/wording.h"
-#include "server/model/policy.h"
+#include "server/model/approval/policy.h"
 
 namespace rigcal::check {
 namespace {

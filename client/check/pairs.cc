@@ -4,7 +4,7 @@
 #include <mutex>
 #include <set>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/core/pair_edge.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"

@@ -8,8 +8,8 @@
 
 #include "client/check/cameras.h"
 #include "client/check/seen.h"
-#include "server/model/edge.h"
-#include "server/model/method.h"
+#include "server/model/edges/edge.h"
+#include "server/model/edges/method.h"
 
 namespace rigcal::check {
 

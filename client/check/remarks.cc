@@ -3,9 +3,9 @@
 #include "client/check/advice.h"
 #include "client/check/capture_names.h"
 #include "client/check/words.h"
-#include "client/table.h"
+#include "client/text/table.h"
 #include "server/calib/core/wording.h"
-#include "server/model/unit_doubt.h"
+#include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::check {
 namespace {

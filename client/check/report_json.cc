@@ -1,6 +1,6 @@
 #include "client/check/report.h"
-#include "server/formats/json_values.h"
-#include "server/model/policy.h"
+#include "server/formats/json/json_values.h"
+#include "server/model/approval/policy.h"
 
 namespace rigcal::check {
 namespace {

@@ -2,10 +2,10 @@
 
 #include "client/check/report.h"
 #include "client/check/words.h"
-#include "client/pose_text.h"
-#include "client/table.h"
+#include "client/text/pose_text.h"
+#include "client/text/table.h"
 #include "server/calib/core/wording.h"
-#include "server/model/validity.h"
+#include "server/model/approval/validity.h"
 
 namespace rigcal::check {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "server/model/features.h"
-#include "server/model/pose_table.h"
-#include "server/model/session.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sensors/pose_table.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::check {
 

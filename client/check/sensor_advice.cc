@@ -2,7 +2,7 @@
 
 #include "client/check/advice.h"
 #include "client/check/words.h"
-#include "client/table.h"
+#include "client/text/table.h"
 #include "server/calib/core/wording.h"
 
 namespace rigcal::check {

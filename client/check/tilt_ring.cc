@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "client/check/words.h"
-#include "server/model/coverage.h"
+#include "server/model/sensors/coverage.h"
 
 namespace rigcal::check {
 

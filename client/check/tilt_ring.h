@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "server/model/camera_fit.h"
-#include "server/model/target.h"
+#include "server/model/sensors/camera_fit.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal::check {
 

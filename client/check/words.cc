@@ -1,8 +1,8 @@
 #include "client/check/words.h"
 
-#include "client/pose_text.h"
-#include "client/table.h"
-#include "server/model/policy.h"
+#include "client/text/pose_text.h"
+#include "client/text/table.h"
+#include "server/model/approval/policy.h"
 
 namespace rigcal::check {
 

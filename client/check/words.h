@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/model/diagnosis.h"
-#include "server/model/session.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::check {
 

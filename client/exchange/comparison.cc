@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "client/pose_text.h"
-#include "client/table.h"
-#include "server/formats/json_values.h"
+#include "client/text/pose_text.h"
+#include "client/text/table.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::client {
 namespace {

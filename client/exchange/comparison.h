@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "client/exit_code.h"
-#include "client/pose_comparison.h"
+#include "client/text/pose_comparison.h"
 
 namespace rigcal::client {
 

@@ -6,9 +6,9 @@
 
 #include "client/exchange/calibration_query.h"
 #include "client/exchange/comparison.h"
-#include "client/table.h"
+#include "client/text/table.h"
 #include "client/verbs.h"
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/formats/rig_files/frames.h"
 
 namespace rigcal::client {

@@ -1,8 +1,8 @@
 #include "client/exchange/graph_export.h"
 
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
-#include "server/formats/g2o.h"
+#include "server/formats/edges/g2o.h"
 
 namespace rigcal::client {
 namespace {

@@ -1,9 +1,9 @@
 #include "client/exchange/may_leave.h"
 
-#include "client/table.h"
+#include "client/text/table.h"
 #include "client/verb.h"
-#include "server/model/decision.h"
-#include "server/model/validity.h"
+#include "server/model/approval/decision.h"
+#include "server/model/approval/validity.h"
 
 namespace rigcal::client {
 namespace {

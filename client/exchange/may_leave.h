@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "client/document.h"
+#include "client/text/document.h"
 #include "server/base/result.h"
 
 namespace rigcal::client {

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "client/bags/messages/header.h"
+#include "client/import/files/yaml_out.h"
 #include "client/import/rig_map.h"
-#include "client/import/yaml_out.h"
 #include "server/base/limits.h"
 #include "server/base/text.h"
 

@@ -7,13 +7,13 @@
 #include <set>
 
 #include "client/bags/open_bag.h"
-#include "client/import/file_writer.h"
+#include "client/import/files/file_writer.h"
+#include "client/import/files/session_folder.h"
 #include "client/import/rig_map.h"
-#include "client/import/session_folder.h"
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/base/limits.h"
 #include "server/base/text.h"
-#include "server/formats/poses.h"
+#include "server/formats/sessions/poses.h"
 
 namespace rigcal::importing {
 namespace {

@@ -10,7 +10,7 @@
 #include "client/import/frame_tree.h"
 #include "server/base/near_names.h"
 #include "server/base/text.h"
-#include "server/formats/first_three.h"
+#include "server/formats/edges/first_three.h"
 
 namespace rigcal::importing {
 namespace {

@@ -1,6 +1,6 @@
 #include "client/import/report.h"
-#include "server/formats/json_values.h"
-#include "server/formats/json_writer.h"
+#include "server/formats/json/json_values.h"
+#include "server/formats/json/json_writer.h"
 
 namespace rigcal::importing {
 namespace {

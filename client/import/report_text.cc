@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "client/import/report.h"
-#include "client/table.h"
+#include "client/text/table.h"
 #include "server/base/stamp.h"
 
 namespace rigcal::importing {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "client/import/yaml_out.h"
+#include "client/import/files/yaml_out.h"
 #include "server/base/limits.h"
 #include "server/base/text.h"
-#include "server/formats/session_folder.h"
+#include "server/formats/sessions/session_folder.h"
 
 namespace rigcal::importing {
 namespace {

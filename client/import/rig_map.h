@@ -9,8 +9,8 @@
 
 #include "client/import/survey.h"
 #include "server/base/stamp.h"
-#include "server/formats/yaml_field.h"
-#include "server/model/session.h"
+#include "server/formats/yaml/yaml_field.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::importing {
 

@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "client/order.h"
-#include "client/table.h"
+#include "client/change/order.h"
+#include "client/text/table.h"
 #include "client/verbs.h"
 
 namespace rigcal::client {

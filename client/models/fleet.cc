@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "client/table.h"
+#include "client/text/table.h"
 #include "client/verbs.h"
-#include "server/model/policy.h"
+#include "server/model/approval/policy.h"
 
 namespace rigcal::client {
 namespace {

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "client/order.h"
-#include "client/table.h"
+#include "client/change/order.h"
+#include "client/text/table.h"
 #include "client/verbs.h"
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/formats/rig_models/rig_model_answers.h"
 #include "server/formats/rig_models/rig_model_yaml.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/base/result.h"
-#include "server/model/target.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal::print {
 

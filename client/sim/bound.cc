@@ -3,9 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "client/sim/lens.h"
-#include "client/sim/observe.h"
-#include "server/base/parallel_for.h"
+#include "client/sim/rig/lens.h"
+#include "client/sim/visit/observe.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::sim {
 namespace {

@@ -6,10 +6,10 @@
 #include <mutex>
 #include <thread>
 
-#include "client/sim/random.h"
-#include "client/sim/scan.h"
-#include "client/sim/session_text.h"
-#include "server/base/parallel_for.h"
+#include "client/sim/rig/random.h"
+#include "client/sim/views/scan.h"
+#include "client/sim/visit/session_text.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::sim {
 namespace {

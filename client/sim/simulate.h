@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "client/sim/picture.h"
 #include "client/sim/truth.h"
+#include "client/sim/views/picture.h"
 
 namespace rigcal::sim {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "client/sim/yaml_text.h"
-#include "server/formats/yaml_field.h"
+#include "client/sim/visit/yaml_text.h"
+#include "server/formats/yaml/yaml_field.h"
 
 namespace rigcal::sim {
 namespace {

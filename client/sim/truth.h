@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client/sim/experiment.h"
+#include "client/sim/visit/experiment.h"
 
 namespace rigcal::sim {
 

@@ -6,7 +6,8 @@ from . import fuzz
 from .measure import at_least, at_most, equal
 from .server import Server
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"))
+E2E = pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"
+sys.path[:0] = [str(E2E / "hostile"), str(E2E)]
 
 
 def table(context):

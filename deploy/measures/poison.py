@@ -8,7 +8,8 @@ import time
 from .measure import at_most, equal, info, skip
 from .server import ANSWERED, Server
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"))
+E2E = pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"
+sys.path[:0] = [str(E2E / "hostile"), str(E2E)]
 PICTURES, RUNS, QUESTIONS = 12, 5, 400
 PATIENCE_S = 240
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "server/base/limits.h"
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::cloud {
 namespace {

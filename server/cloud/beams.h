@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/cloud/facing.h"
-#include "server/model/cloud.h"
+#include "server/model/sensors/cloud.h"
 
 namespace rigcal::cloud {
 

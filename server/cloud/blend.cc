@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::cloud {
 namespace {

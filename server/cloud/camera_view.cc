@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/cloud/depth_buffer.h"
 #include "server/cloud/lens.h"
 

@@ -7,8 +7,8 @@
 
 #include "server/cloud/beams.h"
 #include "server/math/se3.h"
-#include "server/model/camera.h"
-#include "server/model/picture.h"
+#include "server/model/sensors/camera.h"
+#include "server/model/sensors/picture.h"
 
 namespace rigcal::cloud {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::cloud {
 namespace {

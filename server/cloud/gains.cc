@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::cloud {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "server/model/camera.h"
+#include "server/model/sensors/camera.h"
 
 namespace rigcal::cloud {
 

@@ -4,10 +4,10 @@
 #include <thread>
 
 #include "server/base/limits_in_force.h"
-#include "server/dds/intake.h"
-#include "server/dds/recorder.h"
-#include "server/dds/requests.h"
-#include "server/dds/teller.h"
+#include "server/dds/intake/intake.h"
+#include "server/dds/record/recorder.h"
+#include "server/dds/requests/requests.h"
+#include "server/dds/tell/teller.h"
 
 namespace rigcal::dds {
 namespace {

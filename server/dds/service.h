@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "idl/dds.h"
+#include "server/base/process/vitals.h"
 #include "server/base/stamp.h"
-#include "server/base/vitals.h"
-#include "server/model/order.h"
-#include "server/model/robot_state.h"
+#include "server/model/approval/order.h"
+#include "server/model/robots/robot_state.h"
 #include "storage/store.h"
 
 namespace rigcal::dds {

@@ -7,15 +7,15 @@
 #include <opencv2/core/version.hpp>
 #include <sstream>
 
-#include "server/base/out_of_memory.h"
+#include "server/base/process/out_of_memory.h"
 #include "server/base/text.h"
-#include "server/detect/annotate.h"
-#include "server/detect/charuco.h"
-#include "server/detect/corners.h"
-#include "server/detect/image_header.h"
-#include "server/detect/markers.h"
-#include "server/detect/orientation.h"
-#include "server/detect/tag_grid.h"
+#include "server/detect/checkerboard/corners.h"
+#include "server/detect/checkerboard/orientation.h"
+#include "server/detect/markers/charuco.h"
+#include "server/detect/markers/markers.h"
+#include "server/detect/markers/tag_grid.h"
+#include "server/detect/pictures/annotate.h"
+#include "server/detect/pictures/image_header.h"
 
 namespace rigcal::detect {
 namespace {

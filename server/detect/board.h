@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-#include "server/detect/grey_image.h"
-#include "server/model/features.h"
-#include "server/model/session.h"
+#include "server/detect/pictures/grey_image.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::detect {
 

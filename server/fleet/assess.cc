@@ -4,10 +4,10 @@
 #include <cctype>
 #include <set>
 
-#include "server/fleet/cause_findings.h"
-#include "server/fleet/effect.h"
+#include "server/fleet/causes/cause_findings.h"
+#include "server/fleet/findings/effect.h"
 #include "server/fleet/wording.h"
-#include "server/model/past.h"
+#include "server/model/edges/past.h"
 
 namespace rigcal::fleet {
 namespace {

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "server/base/stamp.h"
-#include "server/model/graph.h"
-#include "server/model/joint_poses.h"
-#include "server/model/policy.h"
-#include "server/model/rig_model.h"
-#include "server/model/session.h"
-#include "server/model/session_estimate.h"
+#include "server/model/approval/policy.h"
+#include "server/model/graph/graph.h"
+#include "server/model/graph/joint_poses.h"
+#include "server/model/robots/rig_model.h"
+#include "server/model/sessions/session.h"
+#include "server/model/sessions/session_estimate.h"
 
 namespace rigcal::fleet {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "server/base/stamp.h"
-#include "server/model/edge.h"
-#include "server/model/policy.h"
+#include "server/model/approval/policy.h"
+#include "server/model/edges/edge.h"
 
 namespace rigcal::fleet {
 

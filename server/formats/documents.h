@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "server/model/approval/policy_version.h"
+#include "server/model/approval/standing.h"
 #include "server/model/cause.h"
-#include "server/model/edge.h"
-#include "server/model/graph.h"
-#include "server/model/policy_version.h"
-#include "server/model/session.h"
-#include "server/model/standing.h"
+#include "server/model/edges/edge.h"
+#include "server/model/graph/graph.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::formats {
 
@@ -39,7 +39,7 @@ struct RevisionInput {
   Verdict verdict;
   std::optional<PolicyInForce> policy = {};  // that judged it; absent: it is from before there were any
   std::vector<RetiredSensor> retired = {};  // sorted by sensor; in the document only where there is any
-  bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/whole_revision.h)
+  bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/revisions/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first
 };
 // In format 2, for which `input` need not be whole.

@@ -14,7 +14,7 @@
 #include <thread>
 #include <unordered_map>
 
-#include "server/base/file_descriptor.h"
+#include "server/base/files/file_descriptor.h"
 
 namespace rigcal::http {
 

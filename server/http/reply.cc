@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "server/base/sha256.h"
+#include "server/base/digests/sha256.h"
 #include "server/http/conditions.h"
 #include "server/http/error_body.h"
 #include "server/http/request_path.h"

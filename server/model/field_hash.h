@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "server/base/sha256.h"
+#include "server/base/digests/sha256.h"
 #include "server/math/se3.h"
 
 namespace rigcal {

@@ -1,7 +1,7 @@
 #include "server/pipeline/attempt.h"
 
 #include "server/base/log.h"
-#include "server/base/out_of_memory.h"
+#include "server/base/process/out_of_memory.h"
 
 namespace rigcal::pipeline {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "server/base/stamp.h"
-#include "storage/attempts.h"
+#include "storage/work/attempts.h"
 
 namespace rigcal::pipeline {
 

@@ -5,10 +5,10 @@
 #include <thread>
 #include <vector>
 
-#include "server/base/last_run.h"
 #include "server/base/log.h"
-#include "server/base/thread_rank.h"
-#include "storage/attempts.h"
+#include "server/base/process/last_run.h"
+#include "server/base/process/thread_rank.h"
+#include "storage/work/attempts.h"
 
 namespace rigcal::pipeline {
 namespace {

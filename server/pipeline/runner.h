@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "server/base/vitals.h"
+#include "server/base/process/vitals.h"
 #include "server/pipeline/step.h"
 
 namespace rigcal::pipeline {

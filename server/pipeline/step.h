@@ -11,10 +11,10 @@
 
 #include "server/base/stamp.h"
 #include "server/calib/camera/camera_memory.h"
-#include "server/pipeline/live_graphs.h"
-#include "server/pipeline/missing_report.h"
-#include "server/pipeline/summaries.h"
-#include "server/pipeline/worker_pool.h"
+#include "server/pipeline/reports/missing_report.h"
+#include "server/pipeline/revisions/live_graphs.h"
+#include "server/pipeline/robots/summaries.h"
+#include "server/pipeline/workers/worker_pool.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {

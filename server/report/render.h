@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "server/formats/documents.h"
-#include "server/model/as_found.h"
+#include "server/model/approval/validity.h"
 #include "server/model/boards/remark.h"
-#include "server/model/fleet_list.h"
-#include "server/model/validity.h"
-#include "server/report/camera_choice.h"
-#include "server/report/cloud_section.h"
+#include "server/model/robots/fleet_list.h"
+#include "server/model/sessions/as_found.h"
+#include "server/report/cameras/camera_choice.h"
+#include "server/report/sections/cloud_section.h"
 
 namespace rigcal::report {
 

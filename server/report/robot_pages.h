@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "server/model/decision.h"
-#include "server/model/epoch.h"
-#include "server/model/projection_map.h"
-#include "server/model/standing.h"
+#include "server/model/approval/decision.h"
+#include "server/model/approval/epoch.h"
+#include "server/model/approval/standing.h"
+#include "server/model/sensors/projection_map.h"
 #include "server/report/render.h"
 
 namespace rigcal::report {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "server/base/hmac.h"
+#include "server/base/digests/hmac.h"
 #include "server/base/text.h"
 #include "server/base/version.h"
 

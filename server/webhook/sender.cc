@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "server/base/log.h"
-#include "server/base/thread_rank.h"
+#include "server/base/process/thread_rank.h"
 #include "storage/alerts/outbox.h"
-#include "storage/alerts/robot_status.h"
+#include "storage/fleet/robot_status.h"
 #include "storage/store.h"
 
 namespace rigcal::webhook {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "server/base/vitals.h"
+#include "server/base/process/vitals.h"
 #include "server/webhook/post.h"
 
 namespace rigcal::webhook {

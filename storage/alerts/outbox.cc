@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "storage/query.h"
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {

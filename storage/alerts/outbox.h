@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/formats/alerts/alert_body.h"
-#include "server/model/alert.h"
+#include "server/model/robots/alert.h"
 #include "storage/store.h"
 
 namespace rigcal::storage {

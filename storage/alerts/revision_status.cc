@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "server/formats/alerts/status_fields.h"
-#include "storage/compressed.h"
-#include "storage/query.h"
+#include "storage/database/compressed.h"
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {

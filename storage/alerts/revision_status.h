@@ -1,4 +1,4 @@
-// What each revision says of the status of its robot, sensor by sensor (server/model/robot_status.h), and which visits of
+// What each revision says of the status of its robot, sensor by sensor (server/model/robots/robot_status.h), and which visits of
 // which rig model found something of the calibration in use.
 #pragma once
 
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "server/model/robot_status.h"
-#include "storage/revisions.h"
+#include "server/model/robots/robot_status.h"
+#include "storage/revisions/revisions.h"
 
 namespace rigcal::storage {
 

@@ -3,9 +3,9 @@
 #include <set>
 
 #include "storage/audit.h"
-#include "storage/query.h"
-#include "storage/standing.h"
-#include "storage/standing_row.h"
+#include "storage/database/query.h"
+#include "storage/sessions/standing.h"
+#include "storage/sessions/standing_row.h"
 
 namespace rigcal::storage {
 namespace {

@@ -2,7 +2,7 @@
 #include <map>
 
 #include "storage/boards/uses.h"
-#include "storage/query.h"
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {

@@ -1,6 +1,6 @@
 #include "storage/boards/uses.h"
 
-#include "storage/query.h"
+#include "storage/database/query.h"
 
 namespace rigcal::storage {
 namespace {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <thread>
 
-#include "tests/unit/dds_fixture.h"
+#include "tests/unit/dds/fixture.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "storage/audit.h"
 #include "storage/migrate.h"
 #include "tests/fault/fault_disk.h"
-#include "tests/unit/storage_fixture.h"
+#include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
 namespace {

@@ -8,8 +8,8 @@
 #include <csignal>
 #include <random>
 
-#include "storage/blobs.h"
-#include "tests/unit/storage_fixture.h"
+#include "storage/files/blobs.h"
+#include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
 namespace {

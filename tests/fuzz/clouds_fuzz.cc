@@ -1,6 +1,6 @@
 #include <array>
 
-#include "server/formats/cloud.h"
+#include "server/formats/clouds/cloud.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

@@ -1,9 +1,9 @@
 #include <sstream>
 
-#include "client/document.h"
-#include "client/edge_table.h"
-#include "client/pose_text.h"
-#include "client/reply_parts.h"
+#include "client/text/document.h"
+#include "client/text/edge_table.h"
+#include "client/text/pose_text.h"
+#include "client/wire/reply_parts.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

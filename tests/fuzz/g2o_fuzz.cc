@@ -1,4 +1,4 @@
-#include "server/formats/g2o.h"
+#include "server/formats/edges/g2o.h"
 #include "tests/fuzz/document_checks.h"
 
 using namespace rigcal;

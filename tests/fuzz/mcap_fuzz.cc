@@ -1,4 +1,4 @@
-#include "client/bags/mcap_bag.h"
+#include "client/bags/mcap/mcap_bag.h"
 #include "tests/fuzz/bag_checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

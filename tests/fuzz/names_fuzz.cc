@@ -1,6 +1,6 @@
 #include "server/base/ids.h"
 #include "server/base/stamp.h"
-#include "server/formats/payload_path.h"
+#include "server/formats/sessions/payload_path.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

@@ -1,4 +1,4 @@
-#include "server/formats/parameters.h"
+#include "server/formats/answers/parameters.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

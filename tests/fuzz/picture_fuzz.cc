@@ -1,5 +1,5 @@
-#include "server/detect/grey_image.h"
-#include "server/detect/image_header.h"
+#include "server/detect/pictures/grey_image.h"
+#include "server/detect/pictures/image_header.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

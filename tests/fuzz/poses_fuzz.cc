@@ -1,4 +1,4 @@
-#include "server/formats/poses.h"
+#include "server/formats/sessions/poses.h"
 
 #include "tests/fuzz/fuzz.h"
 

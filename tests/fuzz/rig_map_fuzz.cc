@@ -1,5 +1,5 @@
 #include "client/import/rig_map.h"
-#include "server/formats/session_folder.h"
+#include "server/formats/sessions/session_folder.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace rigcal;

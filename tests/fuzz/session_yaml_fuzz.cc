@@ -1,4 +1,4 @@
-#include "server/formats/session_folder.h"
+#include "server/formats/sessions/session_folder.h"
 #include "tests/fuzz/document_checks.h"
 
 using namespace rigcal;

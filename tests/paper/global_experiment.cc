@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include "client/sim/random.h"
-#include "server/base/parallel_for.h"
-#include "server/graph/problem.h"
+#include "client/sim/rig/random.h"
+#include "server/base/process/parallel_for.h"
+#include "server/graph/solve/problem.h"
 #include "server/math/covariance.h"
 
 namespace rigcal::paper {

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "server/graph/graph_jackknife.h"
-#include "server/graph/start_poses.h"
+#include "server/graph/solve/start_poses.h"
+#include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/math/covariance.h"
 #include "server/math/statistics.h"
 

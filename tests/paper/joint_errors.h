@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "server/graph/graph_jackknife.h"
+#include "server/graph/uncertainty/graph_jackknife.h"
 
 namespace rigcal::paper {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tests/unit/graph_random.h"
+#include "tests/unit/graph/random.h"
 
 namespace rigcal::paper {
 namespace {

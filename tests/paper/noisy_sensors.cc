@@ -1,4 +1,4 @@
-#include "client/sim/rig_yaml.h"
+#include "client/sim/rig/rig_yaml.h"
 #include "tests/paper/global_experiment.h"
 
 namespace rigcal::paper {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "client/sim/rig_yaml.h"
+#include "client/sim/rig/rig_yaml.h"
 #include "tests/paper/experiment_json.h"
 
 namespace rigcal::paper {

@@ -4,13 +4,13 @@
 
 #include <cmath>
 
-#include "client/sim/random.h"
-#include "client/sim/rig_yaml.h"
+#include "client/sim/rig/random.h"
+#include "client/sim/rig/rig_yaml.h"
 #include "server/math/covariance.h"
 #include "tests/paper/experiment_json.h"
 #include "tests/paper/paths.h"
 #include "tests/paper/plots.h"
-#include "tests/unit/graph_random.h"
+#include "tests/unit/graph/random.h"
 
 namespace rigcal::paper {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/model/edge.h"
+#include "server/model/edges/edge.h"
 
 namespace rigcal::paper {
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "client/sim/random.h"
-#include "client/sim/scan.h"
-#include "client/sim/scene.h"
-#include "server/base/parallel_for.h"
-#include "server/base/sha256.h"
+#include "client/sim/rig/random.h"
+#include "client/sim/rig/scene.h"
+#include "client/sim/views/scan.h"
+#include "server/base/digests/sha256.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
 #include "server/calib/motion/hand_eye.h"

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "client/sim/observe.h"
-#include "server/model/edge.h"
+#include "client/sim/visit/observe.h"
+#include "server/model/edges/edge.h"
 
 namespace rigcal::paper {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "server/model/cloud.h"
+#include "server/model/sensors/cloud.h"
 
 namespace rigcal {
 

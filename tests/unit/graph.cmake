@@ -1,22 +1,22 @@
-rigcal_program(graph_bench SOURCES bench/graph_bench.cc bench/graph_reference.cc
+rigcal_program(graph_bench SOURCES bench/graph/graph_bench.cc bench/graph/graph_reference.cc
   DEPS rigcal_graph rigcal_formats Ceres::ceres)
 
 rigcal_test(graph_test COMPUTES
-  SOURCES unit/graph_solve_test.cc unit/graph_uncertainty_test.cc unit/graph_observability_test.cc
-          unit/graph_of_test.cc unit/graph_g2o_test.cc unit/graph_data_test.cc unit/graph_live_test.cc
+  SOURCES unit/graph/solve_test.cc unit/graph/uncertainty/uncertainty_test.cc unit/graph/observability_test.cc
+          unit/graph/of_test.cc unit/graph/g2o_test.cc unit/graph/data_test.cc unit/graph/live_test.cc
   DEPS rigcal_graph rigcal_formats)
 
 # Ceres's templates are compiled once for both of its tests.
-rigcal_library(graph_ceres SOURCES unit/graph_ceres.cc DEPS rigcal_graph Ceres::ceres)
+rigcal_library(graph_ceres SOURCES unit/graph/ceres.cc DEPS rigcal_graph Ceres::ceres)
 
 rigcal_test(graph_numbers_test COMPUTES
-  SOURCES unit/graph_numbers_test.cc unit/graph_lanes_test.cc unit/clique_tree_test.cc
+  SOURCES unit/graph/large/numbers_test.cc unit/graph/large/lanes_test.cc unit/graph/large/clique_tree_test.cc
   DEPS rigcal_graph rigcal_formats graph_ceres)
 
 rigcal_test(graph_honesty_test COMPUTES
-  SOURCES unit/graph_jackknife_test.cc unit/graph_joint_poses_test.cc unit/graph_weights_test.cc unit/graph_suspects_test.cc unit/graph_insight_test.cc
-          unit/graph_measured_part_test.cc unit/graph_fuse_sessions_test.cc unit/graph_merge_edges_test.cc unit/graph_merge_sessions_test.cc
+  SOURCES unit/graph/uncertainty/jackknife_test.cc unit/graph/uncertainty/joint_poses_test.cc unit/graph/uncertainty/weights_test.cc unit/graph/suspects_test.cc unit/graph/insight_test.cc
+          unit/graph/uncertainty/measured_part_test.cc unit/graph/fusion/fuse_sessions_test.cc unit/graph/fusion/merge_edges_test.cc unit/graph/fusion/merge_sessions_test.cc
   DEPS rigcal_graph rigcal_formats)
 rigcal_test(graph_property_test COMPUTES
-  SOURCES unit/graph_property_test.cc
+  SOURCES unit/graph/property_test.cc
   DEPS rigcal_graph rigcal_formats graph_ceres)

@@ -1,3 +1,3 @@
 rigcal_test(http_test
-  SOURCES unit/http_server_test.cc unit/http_static_test.cc unit/http_robust_test.cc unit/http_path_test.cc unit/http_public_address_test.cc
+  SOURCES unit/http/server_test.cc unit/http/static_test.cc unit/http/robust_test.cc unit/http/path_test.cc unit/http/public_address_test.cc
   DEPS rigcal_http)

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "server/model/cloud.h"
+#include "server/model/sensors/cloud.h"
 
 namespace rigcal {
 

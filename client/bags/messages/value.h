@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client/bags/mcap_records.h"
+#include "client/bags/mcap/mcap_records.h"
 #include "client/bags/messages/definition.h"
 
 namespace rigcal::bags {

@@ -7,9 +7,9 @@
 
 #include "server/base/result.h"
 #include "server/calib/camera/intrinsics.h"
-#include "server/model/board_layout.h"
 #include "server/model/diagnosis.h"
-#include "server/model/target.h"
+#include "server/model/sensors/board_layout.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal::calib {
 

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "server/calib/camera/intrinsics.h"
-#include "server/model/camera_fit.h"
+#include "server/model/sensors/camera_fit.h"
 
 namespace rigcal::calib {
 

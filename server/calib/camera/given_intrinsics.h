@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/calib/camera/projection.h"
-#include "server/model/session.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/base/out_of_memory.h"
+#include "server/base/process/out_of_memory.h"
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_start.h"
 #include "server/calib/camera/lens_choice.h"

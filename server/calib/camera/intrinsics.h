@@ -12,8 +12,8 @@
 #include "server/calib/camera/view_moments.h"
 #include "server/calib/core/wording.h"
 #include "server/model/diagnosis.h"
-#include "server/model/features.h"
-#include "server/model/session.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

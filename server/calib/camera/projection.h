@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "server/model/camera.h"
+#include "server/model/sensors/camera.h"
 
 namespace rigcal::calib {
 

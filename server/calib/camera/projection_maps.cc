@@ -6,7 +6,7 @@
 
 #include "server/calib/camera/projection.h"
 #include "server/math/se3.h"
-#include "server/model/coverage.h"
+#include "server/model/sensors/coverage.h"
 
 namespace rigcal::calib {
 namespace {

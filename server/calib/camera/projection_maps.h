@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "server/model/camera_fit.h"
-#include "server/model/projection_map.h"
+#include "server/model/sensors/camera_fit.h"
+#include "server/model/sensors/projection_map.h"
 
 namespace rigcal::calib {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "server/model/features.h"
-#include "server/model/target.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal::calib {
 

@@ -9,7 +9,7 @@
 #include "server/calib/camera/projection.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/math/se3.h"
-#include "server/model/session.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

@@ -7,7 +7,7 @@
 
 #include "server/calib/core/wording.h"
 #include "server/calib/stereo/stereo.h"
-#include "server/model/method.h"
+#include "server/model/edges/method.h"
 
 namespace rigcal::calib {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/math/jackknife.h"
 
 namespace rigcal::calib {

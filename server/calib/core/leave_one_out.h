@@ -9,10 +9,10 @@
 
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/directions.h"
-#include "server/model/features.h"
-#include "server/model/session.h"
-#include "server/model/target.h"
-#include "server/model/uncertainty.h"
+#include "server/model/edges/uncertainty.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sensors/target.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

@@ -6,7 +6,7 @@
 
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/core/wording.h"
-#include "server/model/unit_doubt.h"
+#include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::calib {
 namespace {

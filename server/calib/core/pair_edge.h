@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "server/base/out_of_memory.h"
+#include "server/base/process/out_of_memory.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/motion/motion_observability.h"
-#include "server/model/camera.h"
-#include "server/model/edge.h"
-#include "server/model/method.h"
-#include "server/model/pose_table.h"
+#include "server/model/edges/edge.h"
+#include "server/model/edges/method.h"
+#include "server/model/sensors/camera.h"
+#include "server/model/sensors/pose_table.h"
 
 namespace rigcal::calib {
 

@@ -11,7 +11,7 @@
 #include "server/base/ids.h"
 #include "server/base/result.h"
 #include "server/model/diagnosis.h"
-#include "server/model/target.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal::calib {
 

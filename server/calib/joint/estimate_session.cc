@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "server/calib/joint/instrument_effects.h"
+#include "server/calib/joint/misfit/instrument_effects.h"
 
 namespace rigcal::calib::joint {
 namespace {

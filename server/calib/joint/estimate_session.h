@@ -1,8 +1,8 @@
 // The session estimate: start, refinement, covariance, and whether one rig is behind all captures.
 #pragma once
 
-#include "server/calib/joint/session_start.h"
-#include "server/model/session_estimate.h"
+#include "server/calib/joint/problem/session_start.h"
+#include "server/model/sessions/session_estimate.h"
 
 namespace rigcal::calib::joint {
 

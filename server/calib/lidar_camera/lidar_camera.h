@@ -11,10 +11,10 @@
 #include "server/calib/core/wording.h"
 #include "server/calib/lidar_camera/plane_problem.h"
 #include "server/math/se3.h"
-#include "server/model/camera_fit.h"
-#include "server/model/edge.h"
-#include "server/model/features.h"
-#include "server/model/session.h"
+#include "server/model/edges/edge.h"
+#include "server/model/sensors/camera_fit.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

@@ -3,7 +3,7 @@
 
 #include "server/calib/core/wording.h"
 #include "server/calib/lidar_camera/lidar_camera.h"
-#include "server/model/method.h"
+#include "server/model/edges/method.h"
 
 namespace rigcal::calib {
 

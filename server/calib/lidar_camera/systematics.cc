@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/camera/intrinsics.h"
 #include "server/calib/lidar_camera/lidar_camera_diagnoses.h"
 #include "server/calib/lidar_camera/lidar_camera_work.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/core/robust.h"
 #include "server/math/covariance.h"
 

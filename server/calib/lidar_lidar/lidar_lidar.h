@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "server/calib/core/wording.h"
-#include "server/model/edge.h"
-#include "server/model/session.h"
+#include "server/model/edges/edge.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/leave_one_out.h"
 #include "server/calib/lidar_lidar/lidar_lidar_work.h"

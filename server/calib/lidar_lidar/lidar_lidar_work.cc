@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::calib {
 namespace {

@@ -8,7 +8,7 @@
 #include "server/calib/lidar_lidar/lidar_clouds.h"
 #include "server/calib/lidar_lidar/lidar_lidar.h"
 #include "server/calib/lidar_lidar/ndt_fit.h"
-#include "server/model/method.h"
+#include "server/model/edges/method.h"
 
 namespace rigcal::calib {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::calib {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 
 namespace rigcal::calib {
 namespace {

@@ -11,10 +11,10 @@
 #include "server/calib/camera/intrinsics.h"
 #include "server/calib/core/wording.h"
 #include "server/calib/motion/motion_observability.h"
-#include "server/model/camera_fit.h"
-#include "server/model/edge.h"
-#include "server/model/method.h"
-#include "server/model/pose_table.h"
+#include "server/model/edges/edge.h"
+#include "server/model/edges/method.h"
+#include "server/model/sensors/camera_fit.h"
+#include "server/model/sensors/pose_table.h"
 
 namespace rigcal::calib {
 

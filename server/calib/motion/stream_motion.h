@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/calib/motion/motion_problem.h"
-#include "server/model/pose_table.h"
+#include "server/model/sensors/pose_table.h"
 
 namespace rigcal::calib {
 

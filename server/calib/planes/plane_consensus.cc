@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "server/base/parallel_for.h"
+#include "server/base/process/parallel_for.h"
 #include "server/calib/core/robust.h"
 
 namespace rigcal::calib {

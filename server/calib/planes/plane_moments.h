@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "server/model/features.h"
+#include "server/model/sensors/features.h"
 
 namespace rigcal::calib {
 

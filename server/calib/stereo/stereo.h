@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "server/model/camera_fit.h"
-#include "server/model/edge.h"
-#include "server/model/features.h"
-#include "server/model/session.h"
+#include "server/model/edges/edge.h"
+#include "server/model/sensors/camera_fit.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

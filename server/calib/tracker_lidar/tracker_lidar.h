@@ -12,9 +12,9 @@
 #include "server/calib/motion/motion_observability.h"
 #include "server/calib/planes/plane_moments.h"
 #include "server/calib/planes/static_planes.h"
-#include "server/model/edge.h"
-#include "server/model/features.h"
-#include "server/model/session.h"
+#include "server/model/edges/edge.h"
+#include "server/model/sensors/features.h"
+#include "server/model/sessions/session.h"
 
 namespace rigcal::calib {
 

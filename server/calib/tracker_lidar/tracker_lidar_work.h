@@ -7,7 +7,7 @@
 
 #include "server/calib/planes/plane_consensus.h"
 #include "server/calib/tracker_lidar/tracker_lidar.h"
-#include "server/model/method.h"
+#include "server/model/edges/method.h"
 
 namespace rigcal::calib {
 

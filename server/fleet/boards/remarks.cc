@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "server/model/validity.h"
+#include "server/model/approval/validity.h"
 
 namespace rigcal::fleet {
 namespace {

@@ -9,8 +9,8 @@
 #include <map>
 #include <vector>
 
-#include "server/model/population.h"
-#include "server/model/rig_model.h"
+#include "server/model/robots/population.h"
+#include "server/model/robots/rig_model.h"
 
 namespace rigcal::fleet {
 

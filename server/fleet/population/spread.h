@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "server/model/population.h"
+#include "server/model/robots/population.h"
 
 namespace rigcal::fleet {
 

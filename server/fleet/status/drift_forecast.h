@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "server/model/policy.h"
-#include "server/model/robot_status.h"
+#include "server/model/approval/policy.h"
+#include "server/model/robots/robot_status.h"
 
 namespace rigcal::fleet {
 

@@ -1,4 +1,4 @@
-// What a revision says of the status of its robot, sensor by sensor, whatever the time (model/robot_status.h).
+// What a revision says of the status of its robot, sensor by sensor, whatever the time (model/robots/robot_status.h).
 #pragma once
 
 #include <map>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "server/fleet/status/drift_forecast.h"
-#include "server/model/as_found.h"
-#include "server/model/graph.h"
-#include "server/model/robot_status.h"
+#include "server/model/graph/graph.h"
+#include "server/model/robots/robot_status.h"
+#include "server/model/sessions/as_found.h"
 
 namespace rigcal::fleet {
 

@@ -1,7 +1,7 @@
 #include "server/formats/alerts/alert_body.h"
 
-#include "server/base/sha256.h"
-#include "server/formats/json_values.h"
+#include "server/base/digests/sha256.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::formats {
 namespace {

@@ -5,10 +5,10 @@
 #include <functional>
 #include <string>
 
-#include "server/formats/json_writer.h"
-#include "server/model/alert.h"
-#include "server/model/decision.h"
-#include "server/model/robot_status.h"
+#include "server/formats/json/json_writer.h"
+#include "server/model/approval/decision.h"
+#include "server/model/robots/alert.h"
+#include "server/model/robots/robot_status.h"
 
 namespace rigcal::formats {
 

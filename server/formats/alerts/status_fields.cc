@@ -3,7 +3,7 @@
 #include <climits>
 
 #include "server/base/limits.h"
-#include "server/formats/json_values.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::formats {
 namespace {

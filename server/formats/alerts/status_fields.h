@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "server/formats/json_writer.h"
-#include "server/model/robot_status.h"
-#include "server/model/robot_summary.h"
+#include "server/formats/json/json_writer.h"
+#include "server/model/robots/robot_status.h"
+#include "server/model/robots/robot_summary.h"
 
 namespace rigcal::formats {
 

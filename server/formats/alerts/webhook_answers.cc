@@ -1,6 +1,6 @@
 #include "server/formats/alerts/webhook_answers.h"
 
-#include "server/formats/json_values.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::formats {
 

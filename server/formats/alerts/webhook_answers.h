@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/base/result.h"
-#include "server/model/alert.h"
+#include "server/model/robots/alert.h"
 
 namespace rigcal::formats {
 

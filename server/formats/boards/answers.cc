@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/formats/json_values.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::formats {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/formats/json_writer.h"
+#include "server/formats/json/json_writer.h"
 #include "server/model/boards/remark.h"
 #include "server/model/boards/trace.h"
 

@@ -3,7 +3,7 @@
 // of an IMU and the vignette are not calibrated by Rigcal and are not made up. What Basalt does not read comes last, in an
 // object of its own: it takes the first member of the file for the calibration.
 #include "server/formats/export/formats.h"
-#include "server/formats/json_writer.h"
+#include "server/formats/json/json_writer.h"
 
 namespace rigcal::exports {
 namespace {

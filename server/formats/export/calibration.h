@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "server/base/stamp.h"
+#include "server/formats/answers/sensor_facts.h"
 #include "server/formats/documents.h"
-#include "server/formats/sensor_facts.h"
 
 namespace rigcal::exports {
 

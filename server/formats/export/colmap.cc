@@ -2,7 +2,7 @@
 // camera, named as its frame. cam_from_rig maps points of the reference camera into the camera, quaternion w x y z. COLMAP counts
 // pixels from the corner of the first one, we from its centre: cx and cy are larger by half a pixel.
 #include "server/formats/export/formats.h"
-#include "server/formats/json_writer.h"
+#include "server/formats/json/json_writer.h"
 
 namespace rigcal::exports {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "server/formats/nearest.h"
+#include "server/formats/json/nearest.h"
 
 namespace rigcal::exports {
 namespace {

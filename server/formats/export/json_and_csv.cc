@@ -3,9 +3,9 @@
 // along and about the sensor's own axes.
 #include <cmath>
 
-#include "server/formats/camera_fit.h"
+#include "server/formats/edges/camera_fit.h"
 #include "server/formats/export/formats.h"
-#include "server/formats/json_values.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::exports {
 namespace {

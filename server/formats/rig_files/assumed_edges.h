@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/formats/rig_files/frames.h"
-#include "server/model/edge.h"
+#include "server/model/edges/edge.h"
 
 namespace rigcal::rig_files {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "server/formats/rig_axes.h"
-#include "server/formats/yaml_field.h"
+#include "server/formats/yaml/yaml_field.h"
 #include "server/math/roll_pitch_yaw.h"
 #include "server/model/plausible.h"
 

@@ -1,4 +1,4 @@
-#include "server/formats/json_values.h"
+#include "server/formats/json/json_values.h"
 #include "server/formats/rig_models/rig_model_answers.h"
 
 namespace rigcal::formats {

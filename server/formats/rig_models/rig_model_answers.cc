@@ -1,6 +1,6 @@
 #include "server/formats/rig_models/rig_model_answers.h"
 
-#include "server/formats/json_values.h"
+#include "server/formats/json/json_values.h"
 
 namespace rigcal::formats {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "server/formats/json_writer.h"
-#include "server/model/epoch.h"
-#include "server/model/population.h"
-#include "server/model/rig_model.h"
+#include "server/formats/json/json_writer.h"
+#include "server/model/approval/epoch.h"
+#include "server/model/robots/population.h"
+#include "server/model/robots/rig_model.h"
 
 namespace rigcal::formats {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "server/base/text.h"
-#include "server/formats/yaml_field.h"
+#include "server/formats/yaml/yaml_field.h"
 
 namespace rigcal::formats {
 namespace {

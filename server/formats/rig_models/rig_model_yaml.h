@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "server/base/result.h"
-#include "server/model/rig_model.h"
+#include "server/model/robots/rig_model.h"
 
 namespace rigcal::formats {
 

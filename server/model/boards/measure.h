@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "server/model/standing.h"
-#include "server/model/target.h"
+#include "server/model/approval/standing.h"
+#include "server/model/sensors/target.h"
 
 namespace rigcal {
 

@@ -5,7 +5,7 @@
 
 #include "server/base/limits.h"
 #include "server/base/text.h"
-#include "server/pipeline/subject.h"
+#include "server/pipeline/robots/subject.h"
 #include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
 

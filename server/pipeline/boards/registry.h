@@ -4,8 +4,8 @@
 #include <string>
 
 #include "server/formats/boards/answers.h"
-#include "server/formats/parameters.h"
-#include "server/model/order.h"
+#include "server/formats/answers/parameters.h"
+#include "server/model/approval/order.h"
 #include "server/base/stamp.h"
 #include "storage/store.h"
 

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "server/fleet/boards/remarks.h"
-#include "server/model/past.h"
+#include "server/model/edges/past.h"
 #include "storage/boards/measures.h"
 #include "storage/boards/uses.h"
 

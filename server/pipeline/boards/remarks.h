@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/model/boards/remark.h"
-#include "server/model/edge.h"
+#include "server/model/edges/edge.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {

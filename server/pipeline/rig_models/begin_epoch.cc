@@ -4,13 +4,13 @@
 #include <set>
 
 #include "server/formats/rig_models/rig_model_answers.h"
-#include "server/pipeline/asked.h"
-#include "server/pipeline/subject.h"
-#include "server/pipeline/unknown_names.h"
-#include "storage/edges.h"
-#include "storage/epochs.h"
-#include "storage/retired.h"
-#include "storage/standing.h"
+#include "server/pipeline/robots/asked.h"
+#include "server/pipeline/robots/subject.h"
+#include "server/pipeline/robots/unknown_names.h"
+#include "storage/edges/edges.h"
+#include "storage/sessions/epochs.h"
+#include "storage/sessions/retired.h"
+#include "storage/sessions/standing.h"
 
 namespace rigcal::pipeline {
 namespace {

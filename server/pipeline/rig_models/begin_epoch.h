@@ -2,8 +2,8 @@
 #pragma once
 
 #include "server/base/stamp.h"
-#include "server/formats/parameters.h"
-#include "server/model/order.h"
+#include "server/formats/answers/parameters.h"
+#include "server/model/approval/order.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {

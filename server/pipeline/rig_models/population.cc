@@ -5,11 +5,11 @@
 
 #include "server/fleet/population/population.h"
 #include "server/formats/rig_models/rig_model_answers.h"
-#include "server/graph/joint_poses.h"
+#include "server/graph/uncertainty/joint_poses.h"
 #include "server/pipeline/rig_models/rig_models.h"
-#include "storage/decisions.h"
-#include "storage/revision_poses.h"
-#include "storage/rig_models.h"
+#include "storage/revisions/decisions.h"
+#include "storage/revisions/revision_poses.h"
+#include "storage/settings/rig_models.h"
 
 namespace rigcal::pipeline {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "server/formats/parameters.h"
-#include "server/model/population.h"
+#include "server/formats/answers/parameters.h"
+#include "server/model/robots/population.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {

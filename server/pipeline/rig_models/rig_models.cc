@@ -4,13 +4,13 @@
 #include <set>
 
 #include "server/base/text.h"
-#include "server/fleet/rig_model/rig_causes.h"
+#include "server/fleet/causes/rig_causes.h"
 #include "server/formats/rig_models/rig_model_yaml.h"
-#include "server/pipeline/subject.h"
-#include "server/pipeline/unknown_names.h"
-#include "storage/policies.h"
-#include "storage/retired.h"
-#include "storage/rig_models.h"
+#include "server/pipeline/robots/subject.h"
+#include "server/pipeline/robots/unknown_names.h"
+#include "storage/sessions/retired.h"
+#include "storage/settings/policies.h"
+#include "storage/settings/rig_models.h"
 
 namespace rigcal::pipeline {
 namespace {

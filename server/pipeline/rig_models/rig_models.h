@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "server/base/stamp.h"
-#include "server/formats/parameters.h"
+#include "server/formats/answers/parameters.h"
 #include "server/formats/rig_models/rig_model_answers.h"
-#include "server/model/order.h"
-#include "server/model/rig_model.h"
+#include "server/model/approval/order.h"
+#include "server/model/robots/rig_model.h"
 #include "storage/store.h"
 
 namespace rigcal::pipeline {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/model/boards/remark.h"
-#include "server/report/page.h"
+#include "server/report/frame/page.h"
 
 namespace rigcal::report {
 

@@ -2,10 +2,10 @@
 
 #include <set>
 
-#include "server/model/validity.h"
+#include "server/model/approval/validity.h"
 #include "server/report/boards/board_remarks.h"
-#include "server/report/page.h"
-#include "server/report/text.h"
+#include "server/report/frame/page.h"
+#include "server/report/text/text.h"
 
 namespace rigcal::report {
 namespace {

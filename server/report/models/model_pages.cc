@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "server/report/frame/page.h"
 #include "server/report/models/spread_drawing.h"
-#include "server/report/page.h"
-#include "server/report/text.h"
+#include "server/report/text/text.h"
 
 namespace rigcal::report {
 namespace {

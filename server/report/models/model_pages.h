@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "server/base/result.h"
-#include "server/model/population.h"
-#include "server/model/rig_model.h"
+#include "server/model/robots/population.h"
+#include "server/model/robots/rig_model.h"
 
 namespace rigcal::report {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "server/report/text.h"
+#include "server/report/text/text.h"
 
 namespace rigcal::report {
 namespace {

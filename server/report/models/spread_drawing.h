@@ -1,8 +1,8 @@
 // A small drawing of one sensor on all robots: six lines, one per axis, a dot per robot.
 #pragma once
 
-#include "server/model/population.h"
-#include "server/report/page.h"
+#include "server/model/robots/population.h"
+#include "server/report/frame/page.h"
 
 namespace rigcal::report {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <random>
 
-#include "server/model/session_estimate.h"
+#include "server/model/sessions/session_estimate.h"
 
 namespace rigcal::drawn_fleet {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/model/as_found.h"
+#include "server/model/sessions/as_found.h"
 
 namespace rigcal::drawn_fleet {
 

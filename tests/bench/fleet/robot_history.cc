@@ -2,17 +2,17 @@
 
 #include <algorithm>
 
-#include "server/graph/merged_edge.h"
-#include "server/graph/merged_edge.h"
-#include "server/graph/session_fusion.h"
-#include "server/graph/solve.h"
-#include "server/model/decision.h"
-#include "server/model/past.h"
+#include "server/graph/fusion/merged_edge.h"
+#include "server/graph/fusion/merged_edge.h"
+#include "server/graph/fusion/session_fusion.h"
+#include "server/graph/solve/solve.h"
+#include "server/model/approval/decision.h"
+#include "server/model/edges/past.h"
 
 namespace rigcal::drawn_fleet {
 namespace {
 
-// Of server/pipeline/session_refinement.h.
+// Of server/pipeline/sessions/session_refinement.h.
 constexpr std::size_t kSessionsFused = 32;
 // Edges of older sessions say nothing of a fused pose.
 constexpr std::size_t kSessionsKept = kSessionsFused + graph::kSessionsKept;

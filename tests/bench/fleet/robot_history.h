@@ -1,4 +1,4 @@
-// One robot's visits through the server's own steps, as its pipeline takes them (server/pipeline/revise.cc, as_found.cc):
+// One robot's visits through the server's own steps, as its pipeline takes them (server/pipeline/revisions/revise.cc, as_found.cc):
 // the calibration in use is tested, then a revision is made of the newest visits' estimates.
 #pragma once
 
@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
-#include "server/fleet/as_found.h"
-#include "server/model/merged_edge.h"
-#include "server/model/session_estimate.h"
+#include "server/fleet/as_found/as_found.h"
+#include "server/model/edges/merged_edge.h"
+#include "server/model/sessions/session_estimate.h"
 
 namespace rigcal::drawn_fleet {
 

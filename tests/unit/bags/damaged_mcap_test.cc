@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "client/bags/mcap_bag.h"
+#include "client/bags/mcap/mcap_bag.h"
 #include "client/bags/ros1_bag.h"
 
 namespace rigcal::bags {

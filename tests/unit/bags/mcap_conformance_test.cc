@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client/bags/cursor.h"
-#include "client/bags/mcap_walk.h"
+#include "client/bags/mcap/mcap_walk.h"
 #include "tests/unit/recordings.h"
 
 namespace rigcal::bags {

@@ -1,7 +1,7 @@
 // `rigcal board` against a server in memory: what is asked, what is printed.
 #include <gtest/gtest.h>
 
-#include "tests/unit/client_run.h"
+#include "tests/unit/client/run.h"
 
 namespace rigcal::client {
 namespace {

@@ -1,8 +1,8 @@
 // `rigcal model`, `fleet` and `epoch`: what is asked, what is printed, how it ends.
 #include <gtest/gtest.h>
 
-#include "client/document.h"
-#include "tests/unit/client_run.h"
+#include "client/text/document.h"
+#include "tests/unit/client/run.h"
 
 namespace rigcal::client {
 namespace {

@@ -1,8 +1,8 @@
 // What a robot lacks of its rig model: each sentence, and what is no lack.
 #include <gmock/gmock.h>
 
-#include "server/fleet/rig_model/rig_causes.h"
-#include "server/fleet/told_causes.h"
+#include "server/fleet/causes/rig_causes.h"
+#include "server/fleet/causes/told_causes.h"
 
 namespace rigcal::fleet {
 namespace {

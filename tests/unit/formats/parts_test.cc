@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "server/formats/documents.h"
-#include "server/formats/session_folder.h"
+#include "server/formats/sessions/session_folder.h"
 
 namespace rigcal::formats {
 namespace {

@@ -5,7 +5,7 @@
 #include "server/formats/rig_files/frames.h"
 #include "server/formats/rig_files/urdf_patch.h"
 #include "tests/unit/formats/export_sample.h"
-#include "tests/unit/formats_samples.h"
+#include "tests/unit/formats/samples.h"
 #include "tests/unit/recordings.h"
 
 namespace rigcal::rig_files {

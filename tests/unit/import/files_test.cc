@@ -5,7 +5,7 @@
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
-#include "server/formats/cloud.h"
+#include "server/formats/clouds/cloud.h"
 
 namespace rigcal::importing {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/pipeline/answer.h"
-#include "server/pipeline/orders.h"
-#include "server/pipeline/report_input.h"
-#include "tests/unit/pipeline_fixture.h"
+#include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/orders.h"
+#include "server/pipeline/reports/report_input.h"
+#include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
 namespace {

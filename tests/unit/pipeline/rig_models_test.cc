@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/pipeline/answer.h"
-#include "server/pipeline/orders.h"
-#include "tests/unit/pipeline_fixture.h"
+#include "server/pipeline/answers/answer.h"
+#include "server/pipeline/orders/orders.h"
+#include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {
 namespace {

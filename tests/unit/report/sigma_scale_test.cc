@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "server/report/robot_pages.h"
-#include "server/report/sigmas.h"
-#include "tests/unit/report_sample.h"
+#include "server/report/text/sigmas.h"
+#include "tests/unit/report/sample.h"
 
 namespace rigcal::report {
 namespace {

@@ -6,13 +6,13 @@
 
 #include <algorithm>
 
-#include "server/base/durable_file.h"
+#include "server/base/files/durable_file.h"
 #include "server/formats/documents.h"
 #include "storage/audit.h"
 #include "storage/boards/uses.h"
-#include "storage/retired.h"
-#include "storage/standing.h"
-#include "tests/unit/storage_fixture.h"
+#include "storage/sessions/retired.h"
+#include "storage/sessions/standing.h"
+#include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
 namespace {

@@ -3,10 +3,10 @@
 
 #include "server/formats/documents.h"
 #include "storage/audit.h"
-#include "storage/epochs.h"
-#include "storage/retired.h"
-#include "storage/rig_models.h"
-#include "tests/unit/storage_fixture.h"
+#include "storage/sessions/epochs.h"
+#include "storage/sessions/retired.h"
+#include "storage/settings/rig_models.h"
+#include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
 namespace {

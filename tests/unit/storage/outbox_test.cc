@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 
 #include "storage/alerts/outbox.h"
-#include "storage/alerts/robot_status.h"
-#include "storage/fleet_list.h"
-#include "storage/robot_summary.h"
-#include "tests/unit/storage_fixture.h"
+#include "storage/fleet/fleet_list.h"
+#include "storage/fleet/robot_status.h"
+#include "storage/fleet/robot_summary.h"
+#include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
 namespace {

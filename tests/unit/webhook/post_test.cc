@@ -1,7 +1,7 @@
 // What is signed, whom it goes to, and when it is tried again.
 #include <gtest/gtest.h>
 
-#include "server/base/hmac.h"
+#include "server/base/digests/hmac.h"
 #include "server/webhook/sender.h"
 
 namespace rigcal::webhook {

@@ -10,8 +10,8 @@
 #include "client/print/pdf.h"
 #include "client/print/sheet.h"
 #include "client/print/svg.h"
-#include "server/base/durable_file.h"
-#include "tests/unit/storage_fixture.h"
+#include "server/base/files/durable_file.h"
+#include "tests/unit/storage/fixture.h"
 
 namespace rigcal::print {
 

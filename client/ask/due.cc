@@ -1,0 +1,104 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/text/table.h"
+#include "client/verbs.h"
+#include "server/base/stamp.h"
+
+namespace rigcal::client {
+namespace {
+
+bool AnyOverdue(const Document& document) {
+  for (const Document& row : document["robots"].Items())
+    if (row["overdue"].Flag()) return true;
+  return false;
+}
+
+void PrintDue(const Document& document, std::ostream& out) {
+  if (!AnyOverdue(document)) {
+    out << "No robot is overdue: " << document["robots"].size() << " known, all calibrated within "
+        << (document["max_age_ns"].IsNull() ? "the time that their policies allow" : AgeOf(document["max_age_ns"]))
+        << ".\n";
+    return;
+  }
+  Table table({{"OVERDUE"}, {"CALIBRATED"}, {"AGE", Align::kRight}, {"VERDICT"}});
+  for (const Document& row : document["robots"].Items())
+    if (row["overdue"].Flag())
+      table.Add({row["robot"].Text("?"), row["calibrated_at"].Text("never"), AgeOf(row["age_ns"]),
+                 row["verdict"]["level"].Text("unknown")});
+  table.Print(out);
+}
+
+// Those that are due soon, by their age or by the drift of a sensor.
+void PrintSoon(const Document& document, std::ostream& out) {
+  Table table({{"DUE"}, {"BY"}, {"DATES"}, {"SITE"}});
+  bool any = false;
+  for (const Document& row : document["robots"].Items()) {
+    if (row["overdue"].Flag() || row["status"]["word"].Text() != "due") continue;
+    const Document due = row["due"];
+    table.Add({row["robot"].Text("?"), DayOf(due["at"]), due["text"].Text("-"), row["site"].Text("-")});
+    any = true;
+  }
+  if (any) table.Print(out);
+}
+
+void PrintAllDue(const Document& document, std::ostream& out) {
+  PrintDue(document, out);
+  PrintSoon(document, out);
+}
+
+ExitCode AskDue(const Context& context, const std::string& parameters) {
+  return Answer(context, {"due", parameters, PrintAllDue, [](const Document& document) {
+                            return AnyOverdue(document) ? ExitCode::kVerdictFail : ExitCode::kGood;
+                          }});
+}
+
+// The calendar as it is: for a file, or for a program that reads it.
+ExitCode AskCalendar(const Context& context, const std::string& site) {
+  const std::string parameters = site.empty() ? "{}" : JsonObject({{"site", site}});
+  const auto print = [](const Document& document, std::ostream& out) { out << document["ics"].Text(); };
+  return Answer(context, {"due_ics", parameters, print, {}});
+}
+
+struct DueOptions {
+  std::string max_age, site;
+  bool ics = false;
+};
+
+// Without an age the policy of each robot decides.
+ExitCode RunDue(const Context& context, const std::string& max_age) {
+  if (max_age.empty()) return AskDue(context, "{}");
+  const auto max_age_ns = ParseDuration(max_age);
+  if (!max_age_ns) {
+    Report(max_age_ns.error(), context);
+    return ExitCode::kUsage;
+  }
+  return AskDue(context, JsonObject({{"max_age_ns", *max_age_ns}}));
+}
+
+}  // namespace
+
+void AddDue(CLI::App& app, Context& context) {
+  CLI::App* verb = app.add_subcommand("due", "List the robots whose calibration is older than an age");
+  auto options = std::make_shared<DueOptions>();
+  CLI::Option* max_age = verb->add_option("--max-age", options->max_age,
+                   "Oldest age that is good: 90d, 12h, 30m, 45s (default: as the policies say, else 90d)")
+      ->type_name("AGE");
+  CLI::Option* ics = verb->add_flag("--ics", options->ics, "Print the due dates of all robots as a calendar (RFC 5545)");
+  ics->excludes(max_age);
+  verb->add_option("--site", options->site, "With --ics: only robots of this site, as session.yaml names it under conditions")
+      ->needs(ics)
+      ->type_name("SITE");
+  verb->footer(
+      "A robot that was never calibrated is overdue. Exit code 1 if any is; --json lists all robots.\n"
+      "Below stand those that are due within a week, or were by the drift of a sensor. Server: /due.ics\n"
+      "Examples:\n"
+      "  rigcal due\n"
+      "  rigcal due --ics --site 'hall 3' > due.ics\n"
+      "  rigcal due --max-age 30d || mail -s 'robots to calibrate' team@example.org\n");
+  verb->callback([&context, options] {
+    context.exit_code = options->ics ? AskCalendar(context, options->site) : RunDue(context, options->max_age);
+  });
+}
+
+}  // namespace rigcal::client

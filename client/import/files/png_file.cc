@@ -1,0 +1,80 @@
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "client/import/files.h"
+#include "server/base/process/out_of_memory.h"
+
+namespace rigcal::importing {
+namespace {
+
+// How OpenCV gets BGR from it; it names a Bayer pattern by the second row of it, read from the second column.
+const std::map<std::string, int>& Conversions() {
+  static const std::map<std::string, int> kConversions = {{"rgb8", cv::COLOR_RGB2BGR},
+                                                          {"bgra8", cv::COLOR_BGRA2BGR},
+                                                          {"rgba8", cv::COLOR_RGBA2BGR},
+                                                          {"bayer_rggb8", cv::COLOR_BayerBG2BGR},
+                                                          {"bayer_bggr8", cv::COLOR_BayerRG2BGR},
+                                                          {"bayer_gbrg8", cv::COLOR_BayerGR2BGR},
+                                                          {"bayer_grbg8", cv::COLOR_BayerGB2BGR},
+                                                          {"bayer_rggb16", cv::COLOR_BayerBG2BGR},
+                                                          {"bayer_bggr16", cv::COLOR_BayerRG2BGR},
+                                                          {"bayer_gbrg16", cv::COLOR_BayerGR2BGR},
+                                                          {"bayer_grbg16", cv::COLOR_BayerGB2BGR},
+                                                          {"yuv422", cv::COLOR_YUV2BGR_UYVY},
+                                                          {"uyvy", cv::COLOR_YUV2BGR_UYVY},
+                                                          {"yuv422_yuy2", cv::COLOR_YUV2BGR_YUY2},
+                                                          {"yuyv", cv::COLOR_YUV2BGR_YUY2}};
+  return kConversions;
+}
+
+bool HasWords(const std::string& encoding) { return encoding.find("16") != std::string::npos; }
+
+int TypeOf(const std::string& encoding) {
+  if (HasWords(encoding)) return CV_16UC1;
+  return CV_8UC(bags::PixelBytes(encoding));
+}
+
+cv::Mat MatOf(const bags::Image& image) {
+  auto* pixels = const_cast<std::byte*>(image.data.data());  // read only, as OpenCV cannot say
+  return {image.height_px, image.width_px, TypeOf(image.encoding), pixels, static_cast<std::size_t>(image.step_bytes)};
+}
+
+cv::Mat Swapped(const cv::Mat& words) {
+  cv::Mat swapped = words.clone();
+  swapped.forEach<std::uint16_t>(
+      [](std::uint16_t& word, const int*) { word = static_cast<std::uint16_t>(word << 8 | word >> 8); });
+  return swapped;
+}
+
+}  // namespace
+
+Pixels CopyOf(const bags::Image& image) {
+  Pixels pixels{image, std::vector<std::byte>(image.data.begin(), image.data.end())};
+  pixels.image.data = pixels.data;
+  return pixels;
+}
+
+Result<std::string> PngOf(const bags::Image& image) {
+  try {
+    cv::Mat mat = MatOf(image);
+    if (HasWords(image.encoding) && image.big_endian) mat = Swapped(mat);
+    const auto conversion = Conversions().find(image.encoding);
+    if (conversion != Conversions().end()) {
+      cv::Mat bgr;
+      cv::cvtColor(mat, bgr, conversion->second);
+      mat = bgr;
+    }
+    std::vector<unsigned char> png;
+    if (!cv::imencode(".png", mat, png, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+      return bags::RefuseMessage("the picture cannot be written as PNG");
+    return std::string(png.begin(), png.end());
+  } catch (const std::exception& failure) {
+    if (IsOutOfMemory(failure))
+      return Fail(ErrorCode::kBusy, "there is no memory for a picture",
+                  "Close other programs and go on with the same command.");
+    return bags::RefuseMessage(std::string("the picture cannot be written as PNG: ") + failure.what());
+  }
+}
+
+}  // namespace rigcal::importing

@@ -1,0 +1,95 @@
+#include "client/import/files/session_folder.h"
+
+#include <vector>
+
+#include "client/bags/parts.h"
+#include "server/base/digests/sha256.h"
+#include "server/base/files/durable_file.h"
+#include "server/formats/json/json_writer.h"
+
+namespace rigcal::importing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecord = ".rigcal-import.json";  // session folders do not look at files that begin with a dot
+constexpr const char* kSession = "session.yaml";
+constexpr std::size_t kRecordBytesMax = 16 << 20;
+
+Status MakeFolder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (!failed) return {};
+  return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")",
+              "Check the path and its permissions.");
+}
+
+// What a run that was ended amid a file left beside it.
+void RemoveUnfinished(const fs::path& folder) {
+  std::vector<fs::path> unfinished;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
+    if (at->path().filename().string().find(".tmp-") != std::string::npos) unfinished.push_back(at->path());
+  for (const fs::path& file : unfinished) fs::remove(file, failed);
+}
+
+}  // namespace
+
+Result<SessionFolder> SessionFolder::Begin(const fs::path& folder, const std::string& identity) {
+  RIGCAL_TRY(MakeFolder(folder));
+  std::error_code failed;
+  if (!fs::exists(folder / kRecord, failed)) {
+    if (!fs::is_empty(folder, failed) || failed)
+      return Fail(ErrorCode::kConflict, folder.string() + " is not empty", "Give the path of a new folder.");
+    RIGCAL_TRY(WriteDurably(folder / kRecord, identity));
+    return SessionFolder(folder);
+  }
+  RIGCAL_ASSIGN(const std::string before, ReadFile(folder / kRecord, kRecordBytesMax));
+  if (before == identity) {
+    RemoveUnfinished(folder);
+    return SessionFolder(folder);
+  }
+  return Fail(
+      ErrorCode::kConflict,
+      folder.string() + " holds the import of another bag, or of this one with another rig.yaml or other options",
+      "Give the path of a new folder, or remove that one.");
+}
+
+bool SessionFolder::complete() const { return Has(kSession); }
+
+bool SessionFolder::Has(const std::string& file) const {
+  std::error_code failed;
+  return fs::exists(folder_ / file, failed);
+}
+
+Status SessionFolder::Write(const std::string& file, std::string_view bytes) const {
+  RIGCAL_TRY(MakeFolder((folder_ / file).parent_path()));
+  return WriteDurably(folder_ / file, bytes);
+}
+
+Status SessionFolder::Finish(std::string_view session_yaml) const {
+  return WriteDurably(folder_ / kSession, session_yaml);
+}
+
+Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, std::int64_t tolerance_ns,
+                               std::int64_t every_ns) {
+  RIGCAL_ASSIGN(const bags::Parts parts, bags::PartsOf(bag));
+  return formats::WriteObject([&](formats::JsonWriter& out) {
+    out.Integer("format", 1);
+    out.Text("rig_sha256", Sha256Of(rig_yaml).str());
+    out.Integer("tolerance_ns", tolerance_ns);
+    out.Integer("every_ns", every_ns);
+    out.List("bag", [&] {
+      for (const fs::path& file : parts.files) {
+        std::error_code missing;
+        const auto size = fs::file_size(file, missing);
+        out.Object([&] {
+          out.Text("file", file.filename().string());
+          out.Integer("size_bytes", missing ? -1 : static_cast<std::int64_t>(size));
+        });
+      }
+    });
+  });
+}
+
+}  // namespace rigcal::importing

@@ -1,0 +1,165 @@
+#include "client/programs/simulate_disturbances.h"
+
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+namespace rigcal::client {
+namespace {
+
+constexpr const char* kDrawn = "drawn";
+
+// What stands before and after the first `mark`; the second is empty without it.
+std::pair<std::string, std::string> SplitAt(const std::string& text, char mark) {
+  const std::size_t at = text.find(mark);
+  if (at == std::string::npos) return {text, ""};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+std::optional<double> NumberIn(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return is_number ? std::optional(value) : std::nullopt;
+}
+
+struct Example {
+  const char* option;
+  const char* form;  // how it is written
+};
+
+tl::unexpected<Error> NotRead(const Example& example, const std::string& text) {
+  return Fail(ErrorCode::kInvalidInput, std::string(example.option) + " cannot be read from '" + text + "'",
+              std::string("Write it as ") + example.form + ".");
+}
+
+// "LENGTH,DEG", the length in units of `unit_m`.
+Result<sim::Displacement> ReadDisplacement(const Example& example, const std::string& text, double unit_m) {
+  const auto [length, angle] = SplitAt(text, ',');
+  const auto metres = NumberIn(length), degrees = NumberIn(angle);
+  if (!metres || !degrees) return NotRead(example, text);
+  return sim::Displacement{*metres * unit_m, *degrees * M_PI / 180};
+}
+
+Result<sim::Recording> ReadRecording(const Example& example, const std::string& text) {
+  const auto [capture, sensor] = SplitAt(text, ':');
+  const auto capture_id = CaptureId::Parse(capture);
+  const auto sensor_id = SensorId::Parse(sensor);
+  if (!capture_id || !sensor_id) return NotRead(example, text);
+  return sim::Recording{*capture_id, *sensor_id};
+}
+
+// "M,DEG[@RATIO][:BOARD]"
+Result<sim::BoardMove> ReadBoardMove(const std::string& text) {
+  const Example example{"--board-moved", "M,DEG, M,DEG@RATIO or M,DEG@RATIO:BOARD: 0.005,0.5@0.25:front"};
+  sim::BoardMove move;
+  const auto [size, board] = SplitAt(text, ':');
+  if (!board.empty()) {
+    const auto id = TargetId::Parse(board);
+    if (!id) return NotRead(example, text);
+    move.board = *id;
+  }
+  const auto [by, at] = SplitAt(size, '@');
+  RIGCAL_ASSIGN(move.by, ReadDisplacement(example, by, 1.0));
+  if (at.empty()) return move;
+  const auto ratio = NumberIn(at);
+  if (!ratio) return NotRead(example, text);
+  move.at_ratio = *ratio;
+  return move;
+}
+
+// "PX[@CAPTURE:SENSOR]"
+Result<sim::CaptureShift> ReadCaptureShift(const std::string& text) {
+  const Example example{"--shift-capture", "PX or PX@CAPTURE:SENSOR: 8@07:front_right"};
+  const auto [px, of] = SplitAt(text, '@');
+  const auto size_px = NumberIn(px);
+  if (!size_px) return NotRead(example, text);
+  sim::CaptureShift shift{*size_px, {}};
+  if (of.empty()) return shift;
+  RIGCAL_ASSIGN(shift.of, ReadRecording(example, of));
+  return shift;
+}
+
+Result<sim::WrongInstant> ReadWrongInstant(const std::string& text) {
+  sim::WrongInstant wrong;
+  if (text == kDrawn) return wrong;
+  RIGCAL_ASSIGN(wrong.of, ReadRecording({"--wrong-instant", "CAPTURE:SENSOR or drawn: 07:front_right"}, text));
+  return wrong;
+}
+
+Status ReadBump(const DisturbanceWords& words, sim::Options& simulation) {
+  if (!words.bump.empty()) simulation.bump = SensorId(words.bump);
+  if (words.bump_by.empty()) return {};
+  RIGCAL_ASSIGN(const sim::Displacement by, ReadDisplacement({"--bump-by", "M,DEG: 0.005,0.5"}, words.bump_by, 1.0));
+  simulation.bump_m = by.m;
+  simulation.bump_rad = by.rad;
+  return {};
+}
+
+}  // namespace
+
+Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation) {
+  sim::Disturbances& disturb = simulation.disturb;
+  RIGCAL_TRY(ReadBump(words, simulation));
+  if (!words.board_moved.empty()) {
+    RIGCAL_ASSIGN(disturb.board_move, ReadBoardMove(words.board_moved));
+  }
+  if (!words.shift_capture.empty()) {
+    RIGCAL_ASSIGN(disturb.capture_shift, ReadCaptureShift(words.shift_capture));
+  }
+  if (!words.wrong_instant.empty()) {
+    RIGCAL_ASSIGN(disturb.wrong_instant, ReadWrongInstant(words.wrong_instant));
+  }
+  if (!words.visit_scatter.empty()) {
+    RIGCAL_ASSIGN(disturb.visit_scatter,
+                  ReadDisplacement({"--visit-scatter", "MM,DEG: 0.3,0.01"}, words.visit_scatter, 1e-3));
+  }
+  return {};
+}
+
+void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simulation) {
+  sim::Disturbances& disturb = simulation.disturb;
+  // In brackets, as the manual page reads groups.
+  const std::string group = "[What calibration takes for granted, broken]";
+  verb.add_option("--bump", words.bump, "A sensor that is moved during the visit")->type_name("SENSOR")->group(group);
+  verb.add_option("--bump-by", words.bump_by, "How far (default 0.005,0.5); the direction is drawn")
+      ->type_name("M,DEG")
+      ->group(group);
+  verb.add_option("--bump-at", simulation.bump_at_ratio, "After which part of the captures (default 0.5)")
+      ->type_name("RATIO")
+      ->group(group);
+  verb.add_option("--board-moved", words.board_moved, "A board that is moved during the visit, drawn unless named")
+      ->type_name("M,DEG[@RATIO][:BOARD]")
+      ->group(group);
+  verb.add_option("--wrong-instant", words.wrong_instant,
+                  "What a sensor tells of a capture is of another instant; drawn: some camera's picture")
+      ->type_name("CAPTURE:SENSOR|drawn")
+      ->group(group);
+  verb.add_option("--shift-capture", words.shift_capture, "One picture is shifted, drawn unless named")
+      ->type_name("PX[@CAPTURE:SENSOR]")
+      ->group(group);
+  verb.add_option("--lens-misfit", disturb.lens_misfit_px,
+                  "Every camera's pictures are bent by a fixed smooth field: rms of each coordinate")
+      ->type_name("PX")
+      ->group(group);
+  verb.add_option("--visit-scatter", words.visit_scatter,
+                  "Sigma per axis of every sensor's pose on this visit (this seed) about the rig's")
+      ->type_name("MM,DEG")
+      ->group(group);
+  verb.add_option("--board-bend", disturb.board_bend_m, "Boards are cylinders or saddles: height at the corner")
+      ->type_name("M")
+      ->group(group);
+  verb.add_option("--mixed-pixels", disturb.mixed_pixels_ratio,
+                  "Part of a lidar's beams at edges that measure between both surfaces")
+      ->type_name("RATIO")
+      ->group(group);
+  verb.add_option("--incidence-bias", disturb.incidence_bias_m,
+                  "Lidars measure too long by this at 60 degrees of incidence")
+      ->type_name("M")
+      ->group(group);
+  verb.add_option("--bursts", disturb.burst, "Captures in a row from nearly one place (default 1)")
+      ->type_name("N")
+      ->group(group);
+}
+
+}  // namespace rigcal::client

@@ -1,0 +1,102 @@
+#include "server/base/files/durable_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "server/base/files/file_descriptor.h"
+
+namespace rigcal {
+namespace {
+
+std::filesystem::path FolderOf(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
+// Unlinks a temporary file unless it was renamed away.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::filesystem::path path) : path_(std::move(path)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!kept_) ::unlink(path_.c_str());
+  }
+  void Keep() { kept_ = true; }
+
+ private:
+  std::filesystem::path path_;
+  bool kept_ = false;
+};
+
+// A new file beside `path`: same file system, so that rename is atomic. Sets `temporary` to its name.
+FileDescriptor CreateBeside(const std::filesystem::path& path, std::filesystem::path& temporary) {
+  static std::atomic<unsigned> counter{0};
+  int fd = -1;
+  do {
+    temporary = path;
+    temporary += ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
+    fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (fd < 0 && (errno == EEXIST || errno == EINTR));
+  return FileDescriptor(fd);
+}
+
+bool WriteAll(const FileDescriptor& file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+Status Sync(const std::filesystem::path& path, int flags) {
+  const FileDescriptor file(::open(path.c_str(), flags | O_CLOEXEC));
+  if (file.get() < 0) return FileFailure(path, "open", errno);
+  if (::fsync(file.get()) != 0) return FileFailure(path, "sync", errno);
+  return {};
+}
+
+tl::unexpected<Error> TooLarge(const std::filesystem::path& path, std::size_t bytes_max) {
+  return Fail(ErrorCode::kInvalidInput, path.string() + " is larger than " + std::to_string(bytes_max) + " bytes",
+              "Check that it is the file that was meant, or make it smaller.");
+}
+
+}  // namespace
+
+Status SyncFile(const std::filesystem::path& path) { return Sync(path, O_RDONLY); }
+Status SyncFolder(const std::filesystem::path& folder) { return Sync(folder, O_RDONLY | O_DIRECTORY); }
+
+Status WriteDurably(const std::filesystem::path& path, std::string_view bytes) {
+  std::filesystem::path temporary;
+  FileDescriptor file = CreateBeside(path, temporary);
+  if (file.get() < 0) return FileFailure(path, "create", errno);
+  TemporaryFile guard(temporary);
+  if (!WriteAll(file, bytes)) return FileFailure(path, "write", errno);
+  if (::fsync(file.get()) != 0 || !file.Close()) return FileFailure(path, "write", errno);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) return FileFailure(path, "replace", errno);
+  guard.Keep();
+  return SyncFolder(FolderOf(path));
+}
+
+Result<std::string> ReadFile(const std::filesystem::path& path, std::size_t bytes_max) {
+  RIGCAL_ASSIGN(const FileDescriptor file, OpenToRead(path));
+  constexpr std::size_t kPieceBytes = 1 << 16;
+  std::string bytes;
+  while (true) {
+    const std::size_t size = bytes.size();
+    // One byte beyond the limit is asked for, so that a file of exactly the limit is told from a larger one.
+    const std::size_t piece = std::min(std::max(kPieceBytes, size), bytes_max - size + (bytes_max - size < SIZE_MAX));
+    bytes.resize(size + piece);
+    const std::ptrdiff_t got = ReadSome(file, bytes.data() + size, piece);
+    if (got < 0) return FileFailure(path, "read", errno);
+    bytes.resize(size + static_cast<std::size_t>(got));
+    if (bytes.size() > bytes_max) return TooLarge(path, bytes_max);
+    if (got == 0) return bytes;
+  }
+}
+
+}  // namespace rigcal

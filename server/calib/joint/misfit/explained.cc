@@ -1,0 +1,215 @@
+#include "server/calib/joint/misfit/explained.h"
+
+#include <cmath>
+
+#include "server/math/covariance.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr int kMovesMax = 4;     // in one session: more is no bump, but a rig that is not rigid
+constexpr int kMovesTried = 3;   // of the likeliest; those too small to be told hide no other
+constexpr int kFieldRounds = 3;  // of fields and everything else in turn
+
+bool IsOf(const Move& move, const Where& look) {
+  return move.board == kNone ? look.sensor == move.sensor : look.board == move.board;
+}
+
+bool IsAfter(const Refined& refined, const Move& move, const Where& look) {
+  return refined.groups.group_of_place[static_cast<std::size_t>(look.place)] >= move.group;
+}
+
+// Captures on both sides of the first place of `group` in which the one that moved was seen; kNone: in none.
+struct Sides {
+  int before = kNone, after = kNone;
+};
+Sides SidesOf(const SessionProblem& problem, const Refined& refined, const Move& move) {
+  Sides sides;
+  ForEachLook(problem, [&](const Where& look) {
+    if (!IsOf(move, look)) return;
+    const bool is_after = IsAfter(refined, move, look);
+    if (is_after && (sides.after == kNone || look.place < sides.after)) sides.after = look.place;
+    if (!is_after && look.place > sides.before) sides.before = look.place;
+  });
+  return sides;
+}
+
+void Tell(const SessionProblem& problem, const Refined& refined, const Move& move, SessionEstimate& told) {
+  const Sides sides = SidesOf(problem, refined, move);
+  const CaptureId &before = CaptureAt(problem, sides.before), &after = CaptureAt(problem, sides.after);
+  if (move.board == kNone)
+    told.moved.push_back(
+        {problem.sensors[static_cast<std::size_t>(move.sensor)], before, after, move.step, move.odds});
+  else
+    told.boards_moved.push_back(
+        {problem.boards[static_cast<std::size_t>(move.board)], before, after, move.step, move.odds});
+}
+
+void AddSensorLike(int sensor, const Vector6d& step, SessionStart& start) {
+  const auto old = static_cast<std::size_t>(sensor);
+  start.problem.sensors.push_back(start.problem.sensors[old]);
+  start.problem.range_bias_sigma_m.push_back(start.problem.range_bias_sigma_m[old]);
+  start.problem.slant_bias_sigma_m.push_back(start.problem.slant_bias_sigma_m[old]);
+  start.state.T_ref_sensor.push_back((start.state.T_ref_sensor[old] * Se3::Exp(step)).Normalized());
+  start.state.range_bias_m.push_back(start.state.range_bias_m[old]);
+  start.state.slant_bias_m.push_back(start.state.slant_bias_m[old]);
+  start.noise.push_back(start.noise[old]);
+  // What was known of it from all captures together holds for neither of its poses.
+  std::erase_if(start.problem.relatives, [&](const RelativeKnown& known) {
+    return known.sensor_a == sensor || known.sensor_b == sensor;
+  });
+}
+
+void AddBoardLike(int board, const Vector6d& step, SessionStart& start) {
+  const auto old = static_cast<std::size_t>(board);
+  start.problem.boards.push_back(start.problem.boards[old]);
+  start.state.T_world_board.push_back((start.state.T_world_board[old] * Se3::Exp(step)).Normalized());
+}
+
+// Looks from `group` on become those of a second sensor, or at a second board, with a pose of its own.
+SessionStart Split(SessionStart start, const Refined& refined, const Move& move) {
+  start.state = refined.state;
+  start.noise = refined.noise;
+  const bool is_board = move.board != kNone;
+  const int added = static_cast<int>(is_board ? start.problem.boards.size() : start.problem.sensors.size());
+  if (is_board)
+    AddBoardLike(move.board, move.step, start);
+  else
+    AddSensorLike(move.sensor, move.step, start);
+  const auto split = [&](auto& looks) {
+    for (auto& look : looks)
+      if (IsOf(move, look) && IsAfter(refined, move, look)) (is_board ? look.board : look.sensor) = added;
+  };
+  split(start.problem.corners);
+  split(start.problem.plates);
+  split(start.problem.poses);
+  return start;
+}
+
+std::optional<Explained> Again(SessionStart start, const CaptureGroups& groups) {
+  auto explained = Explain(std::move(start), groups);
+  return explained ? std::optional(std::move(*explained)) : std::nullopt;
+}
+
+// Fields are taken out and everything is refined again, until they stay as they are.
+std::optional<Explained> WithMisfitsHeld(Explained now) {
+  for (int round = 0; round < kFieldRounds; ++round) {
+    SessionStart start = now.start;
+    start.state = WithFields(start.problem, now.misfits, now.refined.state);
+    start.noise = now.refined.noise;
+    auto next = Again(std::move(start), now.refined.groups);
+    if (!next) return now.misfits.held ? std::optional(std::move(now)) : std::nullopt;
+    const bool same = SameFields(now.misfits, next->misfits);
+    now = std::move(*next);
+    if (same) break;
+  }
+  return now;
+}
+
+// Twice the negative logarithm of the likelihood of all that was seen, but for what is the same for any explanation, at
+// the noise that it leaves; with what its fields and its moves had to choose from (Schwarz 1978).
+// `in_burst`: of looks of corners, the same for all explanations that are compared.
+double LeftOver(const Explained& explained, const std::vector<double>& in_burst) {
+  const SessionProblem& problem = explained.start.problem;
+  const SessionFit& fit = explained.refined.at_optimum.fit;
+  double left = explained.misfits.held ? explained.misfits.components.complexity : 0.0;
+  const auto add = [&](const LookFit& look, double weight, double share, const SensorNoise& noise) {
+    left += share * (weight * look.squares.sum() + 2 * look.numbers[0] * std::log(noise.sigma));
+    if (look.numbers[1] > 0) left += 2 * look.numbers[1] * std::log(noise.sigma_rad);
+  };
+  const auto add_all = [&](const auto& looks, const std::vector<LookFit>& fits, const std::vector<double>& weights,
+                           const auto& share) {
+    for (std::size_t i = 0; i < looks.size(); ++i)
+      add(fits[i], weights[i], share(i), explained.refined.noise[static_cast<std::size_t>(looks[i].sensor)]);
+  };
+  const LookWeights& weights = explained.refined.weights;
+  const auto alone = [](std::size_t) { return 1.0; };
+  add_all(problem.corners, fit.corners, weights.corners, [&](std::size_t i) { return in_burst[i]; });
+  add_all(problem.plates, fit.plates, weights.plates, alone);
+  add_all(problem.poses, fit.poses, weights.poses, alone);
+  const auto poses = static_cast<double>(problem.sensors.size() + problem.boards.size());
+  return left + 6 * std::log(static_cast<double>(problem.corners.size())) * poses;
+}
+
+// T_before^-1 T_after of the two that `move` has become, and the information on it: the scan's own step is that of a sensor whose
+// noise holds the bump.
+struct Step {
+  Vector6d step = Vector6d::Zero();
+  Matrix6d information = Matrix6d::Zero();
+};
+Step StepOf(const Refined& split, const Move& move) {
+  const bool is_board = move.board != kNone;
+  const auto& T = is_board ? split.state.T_world_board : split.state.T_ref_sensor;
+  const std::vector<int>& rows = is_board ? split.layout.board : split.layout.pose;
+  const auto before = static_cast<std::size_t>(is_board ? move.board : move.sensor);
+  const Se3 T_before_after = T[before].Inverse() * T.back();
+  Matrix6d C = Matrix6d::Zero();
+  const auto add = [&](const Matrix6d& by_row, int row, const Matrix6d& by_column, int column) {
+    if (row + 6 <= split.layout.size && column + 6 <= split.layout.size)  // the reference has none
+      C += by_row * split.covariance.block<6, 6>(row, column) * by_column.transpose();
+  };
+  const Matrix6d by_after = Matrix6d::Identity(), by_before = -Adjoint(T_before_after.Inverse());
+  add(by_before, rows[before], by_before, rows[before]);
+  add(by_before, rows[before], by_after, rows.back());
+  add(by_after, rows.back(), by_before, rows[before]);
+  add(by_after, rows.back(), by_after, rows.back());
+  return {T_before_after.Log(), Observable(C).covariance / std::max(1.0, move.scatter)};
+}
+
+struct Next {
+  std::optional<Explained> explained;
+  std::optional<Move> move;
+};
+
+// The likeliest move that is none of chance and, by the refined poses on both its sides, large enough to be told.
+Next ByMove(const Explained& now) {
+  if (now.refined.groups.groups() < kGroupsForMoves) return {};
+  int tried = 0;
+  for (Move move : ScanForMoves(now.refined)) {
+    if (move.odds >= kMovedOdds || tried == kMovesTried) break;
+    const Sides sides = SidesOf(now.start.problem, now.refined, move);
+    if (sides.before == kNone || sides.after == kNone) continue;
+    ++tried;
+    auto split = Again(Split(now.start, now.refined, move), now.refined.groups);
+    // One side may tell too little for a pose of its own: then the scan's step is all there is.
+    const Step step = split ? StepOf(split->refined, move) : Step{move.step, move.information};
+    if (!IsMove(step.step, step.information, move.odds)) continue;
+    move.step = step.step;
+    return {split && split->misfits.held ? WithMisfitsHeld(std::move(*split)) : std::move(split), move};
+  }
+  return {};
+}
+
+// A bump is in time, a misfit in the picture, and either looks a little like the other: of the two the one is taken out
+// first that leaves less.
+Next NextOf(const Explained& now, bool may_move) {
+  const bool bent = !now.misfits.held && now.misfits.any();
+  Next by_move = may_move ? ByMove(now) : Next{};
+  if (!bent) return by_move;
+  Next by_field{WithMisfitsHeld(now), std::nullopt};
+  if (!by_field.explained) return by_move;
+  if (by_move.explained && LeftOver(*by_move.explained, now.refined.weights.in_burst) <
+                               LeftOver(*by_field.explained, now.refined.weights.in_burst)) return by_move;
+  return by_field;
+}
+
+}  // namespace
+
+Result<Explained> Explain(SessionStart start, const CaptureGroups& groups) {
+  RIGCAL_ASSIGN(Refined refined, Refine(start.problem, start.state, start.noise, groups));
+  FoundMisfits misfits = FindMisfits(start.problem, refined);
+  return Explained{std::move(start), std::move(refined), std::move(misfits)};
+}
+
+// What is found is taken out before the next is looked for, so that it does not hide it.
+Explained ExplainAll(Explained now, SessionEstimate& told) {
+  for (int moves = 0;;) {
+    Next next = NextOf(now, moves < kMovesMax);
+    if (next.move) Tell(now.start.problem, now.refined, *next.move, told);
+    moves += next.move ? 1 : 0;
+    if (!next.explained) return now;
+    now = std::move(*next.explained);
+  }
+}
+
+}  // namespace rigcal::calib::joint

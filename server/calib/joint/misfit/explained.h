@@ -1,0 +1,26 @@
+// What is behind a session besides one rig before boards that stand still: sensors and boards that were moved and lenses
+// that bend, taken out one after the other.
+#pragma once
+
+#include "server/calib/joint/misfit/lens_misfit.h"
+#include "server/calib/joint/misfit/moved_pose.h"
+#include "server/calib/joint/problem/session_start.h"
+
+namespace rigcal::calib::joint {
+
+// A session as it is explained so far: a sensor or board that was moved is two of one name, a lens that bends has its field
+// held in the state.
+struct Explained {
+  SessionStart start;
+  Refined refined;
+  FoundMisfits misfits;
+};
+
+// Fails as Refine does.
+[[nodiscard]] Result<Explained> Explain(SessionStart start, const CaptureGroups& groups);
+
+// With all that is found, poses too: of a sensor or a board that moved those before and after. What moved is added to
+// `told`, the one that explains most first.
+[[nodiscard]] Explained ExplainAll(Explained now, SessionEstimate& told);
+
+}  // namespace rigcal::calib::joint

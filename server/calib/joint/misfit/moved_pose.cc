@@ -1,0 +1,203 @@
+#include "server/calib/joint/misfit/moved_pose.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/math/covariance.h"
+#include "server/math/statistics.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr double kOpen = 1e-6;  // of the sensor's own information: less is what rounding leaves
+
+// Groups in which a sensor must have seen something on either side of a change: one picture of another instant is none.
+constexpr std::size_t kSideMin = 2;
+
+constexpr double kPower = 0.95, kPowerSigmas = 1.645;  // P(z < kPowerSigmas) = kPower
+
+// Pseudo-inverse and rank of an information matrix, along what `whole` tells and it does not lack.
+struct Inverse {
+  Matrix6d matrix = Matrix6d::Zero();
+  Matrix6d of = Matrix6d::Zero();  // H without what counts as rounding
+  int rank = 0;
+};
+Inverse InverseOf(const Matrix6d& H, const Matrix6d& whole) {
+  const Vector6d scale = UnitDiagonal(whole);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(scale.asDiagonal() * H * scale.asDiagonal());
+  Inverse inverse;
+  Vector6d values = Vector6d::Zero(), inverted = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i)
+    if (axes.eigenvalues()[i] > kOpen) values[i] = axes.eigenvalues()[i], inverted[i] = 1 / values[i], ++inverse.rank;
+  const Matrix6d half = scale.asDiagonal() * axes.eigenvectors(), other = scale.cwiseInverse().asDiagonal() * axes.eigenvectors();
+  inverse.matrix = half * inverted.asDiagonal() * half.transpose();
+  inverse.of = other * values.asDiagonal() * other.transpose();
+  return inverse;
+}
+
+// What the groups say of one pose by its own columns, from `at` on.
+struct Scores {
+  std::vector<Vector6d> b;
+  std::vector<Eigen::MatrixXd> H;  // 6 x unknowns
+  std::vector<Matrix6d> own;
+};
+Scores ScoresOf(const Refined& refined, int at) {
+  Scores scores;
+  for (const NormalEquations& group : refined.at_optimum.groups) {
+    scores.b.emplace_back(group.b.segment<6>(at));
+    scores.H.emplace_back(group.H.middleRows(at, 6).leftCols(refined.layout.size));
+    scores.own.emplace_back(group.H.block<6, 6>(at, at));
+  }
+  return scores;
+}
+
+// A change from `group` on: the step that fits it best, and the gain of the cost.
+struct Change {
+  Vector6d step = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero(), information = Matrix6d::Zero();
+  Eigen::VectorXd others;  // what the unknowns move by with it
+  double gain = 0.0;
+  int rank = 0;
+};
+Change ChangeFrom(const Scores& scores, const Eigen::MatrixXd& covariance, std::size_t group) {
+  Vector6d b = Vector6d::Zero();
+  Matrix6d own = Matrix6d::Zero();
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(6, covariance.rows());
+  for (std::size_t g = group; g < scores.b.size(); ++g) {
+    b += scores.b[g];
+    own += scores.own[g];
+    cross += scores.H[g];
+  }
+  const Eigen::MatrixXd half = cross * covariance;
+  const Inverse inverse = InverseOf(own - half * cross.transpose(), own);
+  Change change;
+  change.step = -inverse.matrix * b;
+  change.covariance = inverse.matrix;
+  change.information = inverse.of;
+  change.others = -half.transpose() * change.step;
+  change.gain = -b.dot(change.step);
+  change.rank = inverse.rank;
+  return change;
+}
+
+// Mean square of the groups' scores beside the change, and its degrees of freedom.
+struct Scatter {
+  double mean_square = 1.0, dof = 0.0;
+};
+Scatter ScatterBeside(const Scores& scores, const Change& change, std::size_t group) {
+  double squares = 0.0;
+  int numbers = 0;
+  for (std::size_t g = 0; g < scores.b.size(); ++g) {
+    const Inverse inverse = InverseOf(scores.own[g], scores.own[g]);
+    Vector6d score = scores.b[g] + scores.H[g] * change.others;
+    if (g >= group) score += scores.own[g] * change.step;
+    squares += score.dot(inverse.matrix * score);
+    numbers += inverse.rank;
+  }
+  const double dof = numbers - 2.0 * change.rank;
+  return {dof > 0 ? squares / dof : 1.0, std::max(0.0, dof)};
+}
+
+// Per group, and behind the last: how many groups before it see the sensor.
+std::vector<std::size_t> SeenBefore(const Scores& scores) {
+  std::vector<std::size_t> seen_before = {0};
+  for (const Matrix6d& own : scores.own) seen_before.push_back(seen_before.back() + (own.trace() > 0 ? 1 : 0));
+  return seen_before;
+}
+
+// Groups at which a change would have kSideMin groups on either side that see the sensor.
+std::vector<std::size_t> ChangePoints(const Scores& scores) {
+  const std::vector<std::size_t> seen_before = SeenBefore(scores);
+  std::vector<std::size_t> points;
+  for (std::size_t group = 1; group < scores.b.size(); ++group)
+    if (std::min(seen_before[group], seen_before.back() - seen_before[group]) >= kSideMin) points.push_back(group);
+  return points;
+}
+
+Move LikeliestMove(const Refined& refined, int at) {
+  const Scores scores = ScoresOf(refined, at);
+  Move best;
+  for (const std::size_t group : ChangePoints(scores)) {
+    const Change change = ChangeFrom(scores, refined.covariance, group);
+    if (change.rank == 0) continue;
+    const Scatter scatter = ScatterBeside(scores, change, group);
+    const double statistic = change.gain / change.rank / std::max(scatter.mean_square, 1e-12);
+    const double odds = FisherTail(statistic, change.rank, scatter.dof);
+    if (best.statistic >= statistic) continue;
+    best = {kNone, kNone, static_cast<int>(group), change.step, change.gain, statistic, scatter.dof, odds,
+            scatter.mean_square, change.information / std::max(scatter.mean_square, 1e-12)};
+  }
+  return best;
+}
+
+// Of `points`, not empty, the first with half of the groups that see the sensor before it.
+std::size_t HalfWay(const Scores& scores, const std::vector<std::size_t>& points) {
+  const std::vector<std::size_t> seen_before = SeenBefore(scores);
+  const auto half = std::find_if(points.begin(), points.end(), [&](std::size_t group) {
+    return 2 * seen_before[group] >= seen_before.back();
+  });
+  return half == points.end() ? points.back() : *half;
+}
+
+int CapturesOf(const SessionProblem& problem, int sensor) {
+  std::set<int> captures;  // a board that is carried about makes a place of its own in each
+  ForEachLook(problem, [&](const Where& look) {
+    if (look.sensor == sensor) captures.insert(problem.capture_of_place[static_cast<std::size_t>(look.place)]);
+  });
+  return static_cast<int>(captures.size());
+}
+
+// Largest standard deviation along any direction.
+double WorstSigma(const Matrix6d& covariance, int at) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance.block<3, 3>(at, at), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, axes.eigenvalues()[2]));
+}
+
+// Beyond the scan's limit, and surely larger than what is no move (IsMove).
+double ToldFrom(double sigma, double noncentrality, double least) {
+  return std::max(std::sqrt(noncentrality) * sigma, least + (kMovedMinSigmas + kPowerSigmas) * sigma);
+}
+
+}  // namespace
+
+SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor) {
+  SmallestMove told{kAnyMove_m, kAnyMove_rad, CapturesOf(problem, sensor)};
+  const Scores scores = ScoresOf(refined, refined.layout.pose[static_cast<std::size_t>(sensor)]);
+  const std::vector<std::size_t> points = ChangePoints(scores);
+  if (refined.groups.groups() < kGroupsForMoves || points.empty()) return told;
+  const double looks = static_cast<double>(problem.sensors.size() + problem.boards.size()) * (refined.groups.groups() - 1);
+  const std::size_t half_way = HalfWay(scores, points);
+  const Change change = ChangeFrom(scores, refined.covariance, half_way);
+  const Scatter scatter = ScatterBeside(scores, change, half_way);
+  if (change.rank < 6 || scatter.dof <= 0) return told;
+  const double limit = FisherQuantile(kMovedOdds / looks, change.rank, scatter.dof);
+  const double noncentrality = FisherNoncentrality(limit, change.rank, scatter.dof, kPower);
+  const Matrix6d covariance = std::max(scatter.mean_square, 1e-12) * change.covariance;
+  told.m = std::min(kAnyMove_m, ToldFrom(WorstSigma(covariance, tangent::kTranslation), noncentrality, kMovedMin_m));
+  told.rad = std::min(kAnyMove_rad, ToldFrom(WorstSigma(covariance, tangent::kRotation), noncentrality, kMovedMin_rad));
+  return told;
+}
+
+std::vector<Move> ScanForMoves(const Refined& refined) {
+  std::vector<Move> moves;
+  const auto look_for = [&](const std::vector<int>& columns, int Move::* which) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (columns[i] == kNone) continue;
+      Move move = LikeliestMove(refined, columns[i]);
+      move.*which = static_cast<int>(i);
+      if (move.statistic > 0) moves.push_back(move);
+    }
+  };
+  look_for(refined.layout.pose, &Move::sensor);
+  look_for(refined.layout.board, &Move::board);
+  const double looks = static_cast<double>(moves.size()) * std::max(1, refined.groups.groups() - 1);
+  for (Move& move : moves) move.odds = std::min(1.0, move.odds * looks);
+  std::stable_sort(moves.begin(), moves.end(), [](const Move& x, const Move& y) {
+    return x.odds != y.odds ? x.odds < y.odds : x.statistic > y.statistic;
+  });
+  return moves;
+}
+
+}  // namespace rigcal::calib::joint

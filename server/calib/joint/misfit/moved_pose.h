@@ -1,0 +1,36 @@
+// Is one rig before boards that stand still behind all captures? A scan over sensors, the reference included, boards and
+// captures for a change of one pose during the session (score test for a change point; Andrews 1993).
+#pragma once
+
+#include "server/calib/joint/refine/refine.h"
+#include "server/model/sessions/session_estimate.h"
+
+namespace rigcal::calib::joint {
+
+constexpr int kGroupsForMoves = 6;  // fewer do not tell a bump from chance
+
+struct Move {
+  int sensor = kNone, board = kNone;  // of which one moved
+  int group = 0;                      // of captures; the first after the move
+  Vector6d step = Vector6d::Zero();   // T_after = T_before Exp(step), right tangent at the sensor or the board
+  double gain = 0.0;         // of the cost, which is twice that of the likelihood's logarithm
+  double statistic = 0.0;    // F of 6 and `dof` degrees of freedom
+  double dof = 0.0;
+  double odds = 1.0;         // of so large a statistic anywhere in the scan by chance, at most
+  double scatter = 1.0;      // mean square of the groups' scores beside the change
+  Matrix6d information = Matrix6d::Zero();  // on the step, scatter included; none along what is left open
+};
+
+// The likeliest change of each sensor and board that was seen in two groups or more, the least odds first. The board
+// that is the world's frame is left out: where it moves, all others move.
+// The scatter of a sensor's captures beyond the change is its own measure of noise: a lens that does not fit moves a
+// sensor with the place in the picture, a bump with time.
+[[nodiscard]] std::vector<Move> ScanForMoves(const Refined& refined);
+
+// The smallest move of this sensor that the scan would have told (odds below kMovedOdds after correction for its looks,
+// and IsMove) with a probability of 95 %: noncentral F with the sensor's own scatter, along the direction in which
+// translation (rotation) is known worst, half-way through the groups that it is seen in. `kAnyMove` where a direction
+// is not seen or where there are fewer groups than the scan needs.
+[[nodiscard]] SmallestMove SmallestMoveTold(const SessionProblem& problem, const Refined& refined, int sensor);
+
+}  // namespace rigcal::calib::joint

@@ -1,0 +1,25 @@
+// Which captures belong together. A burst is captures in a row from one place: their pictures are wrong alike (light, blur, places
+// on the pixels). Groups are what the covariance takes as independent of each other.
+#pragma once
+
+#include "server/calib/joint/problem/session_problem.h"
+
+namespace rigcal::calib::joint {
+
+struct CaptureGroups {
+  std::vector<int> burst_of_place;  // ascending from 0
+  std::vector<int> group_of_place;  // whole bursts, contiguous in time; ascending from 0
+
+  friend bool operator==(const CaptureGroups&, const CaptureGroups&) = default;
+  // How many groups; 0 without places.
+  [[nodiscard]] int groups() const { return group_of_place.empty() ? 0 : group_of_place.back() + 1; }
+};
+
+// At most `groups_max` groups of nearly as many bursts each.
+[[nodiscard]] CaptureGroups GroupsOf(const SessionProblem& problem, const SessionState& state, int groups_max = 40);
+
+// Looks of corners by one sensor at one board in one burst, as indices of problem.corners; only of bursts with several.
+[[nodiscard]] std::vector<std::vector<std::size_t>> BurstsOfCorners(const SessionProblem& problem,
+                                                                    const CaptureGroups& groups);
+
+}  // namespace rigcal::calib::joint

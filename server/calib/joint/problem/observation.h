@@ -1,0 +1,58 @@
+// One sensor's look at one board (or at its tracker) as normal equations: over a few unknowns of its own, and by the chain
+// rule over those of the session.
+#pragma once
+
+#include <optional>
+
+#include "server/calib/joint/problem/session_problem.h"
+
+namespace rigcal::calib::joint {
+
+// Columns of the session's vector that depend on the own unknowns: own = by * change.
+struct Column {
+  int at = kNone;
+  Eigen::MatrixXd by;
+};
+
+// Normal matrix A = J^T W J and gradient b = J^T W r over the own unknowns, r = predicted - seen, weights included.
+struct Observation {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd b;
+  double cost = 0.0;        // robust: what is minimised, times two
+  double squares = 0.0;     // of residuals in sigmas, each by its robust weight
+  double numbers = 0.0;     // residuals, likewise weighted
+  std::vector<Column> columns;
+  Eigen::MatrixXd by_place;  // own unknowns by the right tangent of the place
+  std::vector<double> norms;  // of corners: length of each residual in sigmas; of a pose: squares of both its parts
+};
+
+// Nothing where a corner cannot be seen by the camera at this state. `weight` is that of the whole look.
+[[nodiscard]] std::optional<Observation> Observe(const SessionProblem& problem, const Layout& layout,
+                                                 const SessionState& state, const CornersSeen& seen,
+                                                 const SensorNoise& noise, double weight);
+[[nodiscard]] Observation Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                                  const PlateSeen& seen, const SensorNoise& noise, double weight);
+[[nodiscard]] Observation Observe(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                                  const PoseTold& told, const SensorNoise& noise, double weight);
+// The same look with the coefficients of its camera's field as unknowns too: B, each pixel by them, is known from the pixel.
+struct FieldLook {
+  Observation plain;
+  Eigen::MatrixXd own_field;  // J^T W B: own unknowns by coefficients
+  Eigen::MatrixXd by_points;  // of B^T W B the half of u, which is that of v; nothing is between them
+  Eigen::VectorXd b;          // B^T W r
+};
+// Of a camera whose picture's size is known, over the control points `seen_points`, ascending.
+[[nodiscard]] std::optional<FieldLook> ObserveWithField(const SessionProblem& problem, const Layout& layout,
+                                                        const SessionState& state, const CornersSeen& seen,
+                                                        const SensorNoise& noise, double weight,
+                                                        const std::vector<int>& seen_points);
+// Predicted less seen, px, of each corner, which all can be seen by the camera.
+[[nodiscard]] std::vector<Eigen::Vector2d> CornerResiduals(const SessionProblem& problem, const SessionState& state,
+                                                           const CornersSeen& seen);
+// Without a place.
+[[nodiscard]] Observation Observe(const Layout& layout, const SessionState& state, const RelativeKnown& known);
+
+// Pose of the board in the sensor.
+[[nodiscard]] Se3 T_sensor_board(const SessionState& state, const Where& where);
+
+}  // namespace rigcal::calib::joint

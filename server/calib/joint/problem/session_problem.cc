@@ -1,0 +1,62 @@
+#include "server/calib/joint/problem/session_problem.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+int Take(int count, Layout& layout) {
+  layout.size += count;
+  return layout.size - count;
+}
+
+Se3 MovedPose(const Se3& T, int at, const Eigen::VectorXd& step) {
+  return at == kNone || at >= step.size() ? T : (T * Se3::Exp(step.segment<6>(at))).Normalized();
+}
+
+}  // namespace
+
+const CaptureId& CaptureAt(const SessionProblem& problem, int place) {
+  return problem.captures[static_cast<std::size_t>(problem.capture_of_place[static_cast<std::size_t>(place)])];
+}
+
+Layout LayoutOf(const SessionProblem& problem) {
+  Layout layout;
+  for (int s = 0; s < static_cast<int>(problem.sensors.size()); ++s)
+    layout.pose.push_back(s == problem.reference ? kNone : Take(6, layout));
+  for (const Lens& camera : problem.cameras)
+    layout.lens.push_back(camera.refined.empty() ? kNone : Take(static_cast<int>(camera.refined.size()), layout));
+  for (int b = 0; b < static_cast<int>(problem.boards.size()); ++b)
+    layout.board.push_back(b == problem.held_board ? kNone : Take(6, layout));
+  for (const Target& target : problem.targets)
+    layout.scale.push_back(target.square_sigma_m > 0 ? Take(1, layout) : kNone);
+  for (const double sigma_m : problem.range_bias_sigma_m) layout.bias.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
+  for (const double sigma_m : problem.slant_bias_sigma_m) layout.slant.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
+  for (const double sigma_m : problem.bend_sigma_m) layout.bend.push_back(sigma_m > 0 ? Take(3, layout) : kNone);
+  layout.pose[static_cast<std::size_t>(problem.reference)] = layout.size;
+  return layout;
+}
+
+SessionState Moved(const SessionProblem& problem, const Layout& layout, const SessionState& state,
+                   const Eigen::VectorXd& step, const std::vector<Vector6d>& place_steps) {
+  SessionState moved = state;
+  for (std::size_t s = 0; s < layout.pose.size(); ++s)
+    moved.T_ref_sensor[s] = MovedPose(state.T_ref_sensor[s], layout.pose[s], step);
+  for (std::size_t c = 0; c < layout.lens.size(); ++c)
+    for (std::size_t i = 0; i < problem.cameras[c].refined.size(); ++i)
+      moved.intrinsics[c][problem.cameras[c].refined[i]] += step[layout.lens[c] + static_cast<int>(i)];
+  for (std::size_t b = 0; b < layout.board.size(); ++b)
+    moved.T_world_board[b] = MovedPose(state.T_world_board[b], layout.board[b], step);
+  const auto move = [&](const std::vector<int>& at, std::vector<double>& numbers) {
+    for (std::size_t i = 0; i < at.size(); ++i)
+      if (at[i] != kNone) numbers[i] += step[at[i]];
+  };
+  move(layout.scale, moved.board_scale_ratio);
+  move(layout.bias, moved.range_bias_m);
+  move(layout.slant, moved.slant_bias_m);
+  for (std::size_t t = 0; t < layout.bend.size(); ++t)
+    if (layout.bend[t] != kNone) moved.board_bend_m[t] += step.segment<3>(layout.bend[t]);
+  for (std::size_t p = 0; p < place_steps.size(); ++p)
+    moved.T_world_ref[p] = (state.T_world_ref[p] * Se3::Exp(place_steps[p])).Normalized();
+  return moved;
+}
+
+}  // namespace rigcal::calib::joint

@@ -1,0 +1,381 @@
+#include "server/calib/joint/problem/session_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "server/calib/joint/problem/board_candidates.h"
+#include "server/calib/core/capture_blocks.h"
+#include "server/calib/joint/problem/board_bend.h"
+#include "server/calib/joint/problem/observation.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+constexpr double kPatchAway_m = 0.3, kPatchTurned_rad = 0.2;
+constexpr double kTrackerStart_m = 0.001, kTrackerStart_rad = 0.001;
+
+// A camera's look at its board in one capture.
+struct View {
+  int sensor = kNone, camera = kNone, target = kNone, capture = kNone;
+  const BoardView* seen = nullptr;
+  std::vector<Candidate> candidates;
+};
+
+class Starter {
+ public:
+  Starter(const SessionViews& views, const std::set<SensorId>& left_out) : views_(views), left_out_(left_out) {}
+
+  Result<SessionStart> Run() {
+    ListSensors();
+    if (problem().reference == kNone || problem().sensors.size() < 2)
+      return Fail(ErrorCode::kInvalidInput, "the session's pairs do not tell two sensors, the reference among them",
+                  "Capture the boards with the reference sensor and another one at once.");
+    ListTargets();
+    ListCaptures();
+    ListViews();
+    views_.boards_stand_still ? LocateInOneWorld() : LocateByBoards();
+    AddCorners();
+    AddPlates();
+    AddPoses();
+    AddRelatives();
+    if (start_.problem.corners.empty())
+      return Fail(ErrorCode::kInvalidInput, "the session has no picture of a board whose place is known",
+                  "Capture the boards with two sensors at once.");
+    return std::move(start_);
+  }
+
+ private:
+  SessionProblem& problem() { return start_.problem; }
+  SessionState& state() { return start_.state; }
+
+  [[nodiscard]] int SensorIndex(const SensorId& id) const {
+    const auto& ids = start_.problem.sensors;
+    const auto at = std::find(ids.begin(), ids.end(), id);
+    return at == ids.end() ? kNone : static_cast<int>(at - ids.begin());
+  }
+  [[nodiscard]] int TargetIndex(const TargetId& id) const {
+    const auto& targets = start_.problem.targets;
+    const auto at = std::find_if(targets.begin(), targets.end(), [&](const Target& t) { return t.id == id; });
+    return at == targets.end() ? kNone : static_cast<int>(at - targets.begin());
+  }
+  [[nodiscard]] int CaptureIndex(const CaptureId& id) const {
+    const auto& captures = start_.problem.captures;
+    const auto at = std::lower_bound(captures.begin(), captures.end(), id, TakenBefore{});
+    return at != captures.end() && *at == id ? static_cast<int>(at - captures.begin()) : kNone;
+  }
+  [[nodiscard]] const Se3& T_ref(int sensor) const {
+    return start_.state.T_ref_sensor[static_cast<std::size_t>(sensor)];
+  }
+
+  void AddSensor(const Sensor& sensor, SensorNoise noise) {
+    const auto pose = views_.T_ref_sensor.find(sensor.id);
+    if (pose == views_.T_ref_sensor.end() || left_out_.contains(sensor.id)) return;
+    if (sensor.id == views_.reference) problem().reference = static_cast<int>(problem().sensors.size());
+    problem().sensors.push_back(sensor.id);
+    problem().range_bias_sigma_m.push_back(sensor.kind == SensorKind::kLidar ? sensor.range_bias_sigma_m.value_or(0.0)
+                                                                             : 0.0);
+    state().T_ref_sensor.push_back(pose->second);
+    state().range_bias_m.push_back(0.0);
+    problem().slant_bias_sigma_m.push_back(0.0);
+    state().slant_bias_m.push_back(0.0);
+    start_.noise.push_back(noise);
+  }
+
+  void ListSensors() {
+    problem().reference = kNone;
+    for (const CameraViews& camera : views_.cameras) {
+      const std::size_t before = problem().sensors.size();
+      AddSensor(camera.camera, {std::sqrt(std::max(1e-4, camera.estimate.variance_px2)), 0.0});
+      if (problem().sensors.size() > before) AddLens(camera);
+    }
+    for (const LidarViews& lidar : views_.lidars) AddSensor(lidar.lidar, {1.0, 0.0});
+    for (const TrackerPoses& tracker : views_.trackers)
+      AddSensor(tracker.tracker, {kTrackerStart_m, kTrackerStart_rad});
+  }
+
+  void AddLens(const CameraViews& camera) {
+    Lens lens;
+    lens.model = camera.camera.camera_model;
+    for (const auto& [capture, view] : camera.views)
+      lens.picture = {std::max(lens.picture.width_px, view.image_width_px),
+                      std::max(lens.picture.height_px, view.image_height_px)};
+    if (!camera.camera.intrinsics) {
+      lens.refined.resize(static_cast<std::size_t>(IntrinsicsCount(lens.model)));
+      std::iota(lens.refined.begin(), lens.refined.end(), 0);
+    } else if (!HoldsIntrinsics(camera.camera)) {
+      lens.refined = RefinedOf(camera.camera);
+      lens.given = camera.estimate.pull.given;
+      if (camera.estimate.pull.Pulls()) lens.sigma = camera.estimate.pull.sigma;
+    }
+    problem().cameras.push_back(lens);
+    state().intrinsics.push_back(VectorOf(camera.estimate.intrinsics));
+    lens_of_camera_[camera.camera.id] = static_cast<int>(problem().cameras.size()) - 1;
+  }
+
+  void ListTargets() {
+    problem().targets = views_.targets;
+    for (const Target& target : views_.targets) {
+      problem().target_points.push_back(TargetPoints(target));
+      problem().target_bend_shapes.push_back(BendShapes(target));
+      problem().bend_sigma_m.push_back(0.0);
+      state().board_scale_ratio.push_back(0.0);
+      state().board_bend_m.emplace_back(Eigen::Vector3d::Zero());
+    }
+  }
+
+  void ListCaptures() {
+    std::set<CaptureId, TakenBefore> captures;
+    for (const CameraViews& camera : views_.cameras)
+      for (const auto& [capture, pose] : camera.estimate.T_cam_board) captures.insert(capture);
+    for (const TrackerPoses& tracker : views_.trackers)
+      for (const TimedPose& row : tracker.poses) captures.insert(row.capture);
+    problem().captures.assign(captures.begin(), captures.end());
+  }
+
+  void ListViews() {
+    for (const CameraViews& camera : views_.cameras) {
+      const int sensor = SensorIndex(camera.camera.id);
+      if (sensor == kNone) continue;
+      for (const auto& [capture, seen] : camera.views) {
+        if (!camera.estimate.T_cam_board.contains(capture)) continue;
+        looks_.push_back({sensor, lens_of_camera_.at(camera.camera.id), TargetIndex(camera.board.id),
+                          CaptureIndex(capture), &seen, CandidatesOf(camera.estimate, camera.board, capture)});
+      }
+    }
+  }
+
+  // Standing boards ---------------------------------------------------------------------------------------------------
+
+  void LocateInOneWorld() {
+    place_of_capture_.assign(problem().captures.size(), std::nullopt);
+    board_pose_.assign(problem().targets.size(), std::nullopt);
+    const bool tracked = LocateByTracker();
+    if (!tracked) HoldMostSeenBoard();
+    while (LocateBoards() || LocateCaptures()) {
+    }
+    for (std::size_t t = 0; t < board_pose_.size(); ++t) {
+      if (!board_pose_[t]) continue;
+      if (static_cast<int>(t) == held_target_) problem().held_board = static_cast<int>(problem().boards.size());
+      board_of_target_[static_cast<int>(t)] = static_cast<int>(problem().boards.size());
+      problem().boards.push_back(problem().targets[t].id);
+      state().T_world_board.push_back(*board_pose_[t]);
+    }
+    for (std::size_t k = 0; k < place_of_capture_.size(); ++k)
+      if (place_of_capture_[k]) AddPlace(static_cast<int>(k), kNone, *place_of_capture_[k]);
+  }
+
+  bool LocateByTracker() {
+    for (const TrackerPoses& tracker : views_.trackers) {
+      const int sensor = SensorIndex(tracker.tracker.id);
+      if (sensor == kNone || tracker.poses.empty()) continue;
+      for (const TimedPose& row : tracker.poses)
+        place_of_capture_[static_cast<std::size_t>(CaptureIndex(row.capture))] =
+            row.T_world_body * T_ref(sensor).Inverse();
+      world_tracker_ = sensor;
+      return true;
+    }
+    return false;
+  }
+
+  void HoldMostSeenBoard() {
+    std::vector<int> seen(problem().targets.size(), 0);
+    for (const View& look : looks_) ++seen[static_cast<std::size_t>(look.target)];
+    if (seen.empty()) return;
+    held_target_ = static_cast<int>(std::max_element(seen.begin(), seen.end()) - seen.begin());
+    board_pose_[static_cast<std::size_t>(held_target_)] = Se3{};
+  }
+
+  // The pose that most looks agree on: of each that is `wanted` those by its candidates.
+  template <typename Wanted, typename PoseBy>
+  [[nodiscard]] std::optional<Se3> AgreedBy(const Wanted& wanted, const PoseBy& pose_by) const {
+    std::vector<std::vector<Se3>> lists;
+    for (const View& look : looks_) {
+      if (!wanted(look)) continue;
+      lists.emplace_back();
+      for (const Candidate& candidate : look.candidates) lists.back().push_back(pose_by(look, candidate.T_cam_board));
+    }
+    return Agreed(lists);
+  }
+  [[nodiscard]] const std::optional<Se3>& PlaceOf(const View& look) const {
+    return place_of_capture_[static_cast<std::size_t>(look.capture)];
+  }
+  [[nodiscard]] const std::optional<Se3>& BoardOf(const View& look) const {
+    return board_pose_[static_cast<std::size_t>(look.target)];
+  }
+
+  bool LocateBoards() {
+    bool found = false;
+    for (std::size_t t = 0; t < board_pose_.size(); ++t) {
+      if (board_pose_[t]) continue;
+      board_pose_[t] = AgreedBy(
+          [&](const View& look) { return look.target == static_cast<int>(t) && PlaceOf(look); },
+          [&](const View& look, const Se3& T_cam_board) { return *PlaceOf(look) * T_ref(look.sensor) * T_cam_board; });
+      found |= board_pose_[t].has_value();
+    }
+    return found;
+  }
+
+  bool LocateCaptures() {
+    bool found = false;
+    for (std::size_t k = 0; k < place_of_capture_.size(); ++k) {
+      if (place_of_capture_[k]) continue;
+      place_of_capture_[k] =
+          AgreedBy([&](const View& look) { return look.capture == static_cast<int>(k) && BoardOf(look); },
+                   [&](const View& look, const Se3& T_cam_board) {
+                     return *BoardOf(look) * (T_ref(look.sensor) * T_cam_board).Inverse();
+                   });
+      found |= place_of_capture_[k].has_value();
+    }
+    return found;
+  }
+
+  // Boards that are carried about -------------------------------------------------------------------------------------
+
+  void LocateByBoards() {
+    for (int k = 0; k < static_cast<int>(problem().captures.size()); ++k)
+      for (int t = 0; t < static_cast<int>(problem().targets.size()); ++t) {
+        const auto place = AgreedBy(
+            [&](const View& look) { return look.capture == k && look.target == t; },
+            [&](const View& look, const Se3& T_cam_board) { return (T_ref(look.sensor) * T_cam_board).Inverse(); });
+        if (place) AddPlace(k, t, *place);
+      }
+  }
+
+  // Observations ------------------------------------------------------------------------------------------------------
+
+  void AddPlace(int capture, int target, const Se3& T_world_ref) {
+    place_of_[{capture, target}] = static_cast<int>(problem().capture_of_place.size());
+    problem().capture_of_place.push_back(capture);
+    state().T_world_ref.push_back(T_world_ref);
+  }
+
+  [[nodiscard]] std::optional<Where> WhereOf(int sensor, int capture, int target) const {
+    Where where{sensor, kNone, kNone, target};
+    const auto place = place_of_.find({capture, views_.boards_stand_still ? kNone : target});
+    if (place == place_of_.end()) return std::nullopt;
+    where.place = place->second;
+    if (!views_.boards_stand_still) return where;
+    const auto board = board_of_target_.find(target);
+    if (board == board_of_target_.end()) return std::nullopt;
+    where.board = board->second;
+    return where;
+  }
+
+  void Unused(int sensor, int capture, const std::string& why) {
+    start_.unused.push_back({problem().sensors[static_cast<std::size_t>(sensor)],
+                             problem().captures[static_cast<std::size_t>(capture)], why});
+  }
+
+  [[nodiscard]] bool IsSeen(const CornersSeen& look) const {
+    const Se3 T_cam_board = T_sensor_board(start_.state, look);
+    const auto camera = static_cast<std::size_t>(look.camera), target = static_cast<std::size_t>(look.target);
+    return std::all_of(look.corners.idx.begin(), look.corners.idx.end(), [&](int i) {
+      const Eigen::Vector3d& p = start_.problem.target_points[target][static_cast<std::size_t>(i)];
+      return Project(start_.problem.cameras[camera].model, start_.state.intrinsics[camera], T_cam_board * p, false)
+          .in_front;
+    });
+  }
+
+  void AddCorners() {
+    for (const View& look : looks_) {
+      const auto where = WhereOf(look.sensor, look.capture, look.target);
+      if (!where) {
+        Unused(look.sensor, look.capture, "where the robot was is not known");
+        continue;
+      }
+      const Se3 expected = T_sensor_board(start_.state, *where);
+      const auto off = [&](const Candidate& candidate) {
+        return (expected.p_m - candidate.T_cam_board.p_m).norm() / kAgree_m +
+               expected.q.angularDistance(candidate.T_cam_board.q) / kAgree_rad;
+      };
+      const auto best = std::min_element(look.candidates.begin(), look.candidates.end(),
+                                         [&](const auto& x, const auto& y) { return off(x) < off(y); });
+      CornersSeen seen{*where, look.camera,
+                       SeenIn(*look.seen, problem().targets[static_cast<std::size_t>(look.target)], best->turn)};
+      if (IsSeen(seen))
+        problem().corners.push_back(std::move(seen));
+      else
+        Unused(look.sensor, look.capture, "the board is elsewhere than all other pictures say");
+    }
+  }
+
+  void AddPlates() {
+    for (const LidarViews& lidar : views_.lidars) {
+      const int sensor = SensorIndex(lidar.lidar.id);
+      if (sensor == kNone) continue;
+      std::vector<std::pair<Where, const PlanePatch*>> chosen;
+      for (const auto& [capture, clouds] : lidar.clouds) {
+        const int k = CaptureIndex(capture);
+        for (const CloudView& cloud : clouds) ChoosePatch(sensor, k, cloud, chosen);
+      }
+      std::vector<const PlanePatch*> patches;
+      for (const auto& [where, patch] : chosen) patches.push_back(patch);
+      const double range_sigma_m = RangeSigma_m(patches);
+      for (const auto& [where, patch] : chosen) problem().plates.push_back({where, MomentsOf(*patch, range_sigma_m)});
+    }
+  }
+
+  void ChoosePatch(int sensor, int capture, const CloudView& cloud,
+                   std::vector<std::pair<Where, const PlanePatch*>>& chosen) {
+    const int target = TargetIndex(cloud.target);
+    if (capture == kNone || target == kNone || !cloud.found) return;
+    const auto where = WhereOf(sensor, capture, target);
+    if (!where) return;
+    const Se3 expected = T_sensor_board(start_.state, *where);
+    const Eigen::Vector3d centre = expected * CentreOf(problem().targets[static_cast<std::size_t>(target)]);
+    const PlanePatch* best = nullptr;
+    double nearest_m = kPatchAway_m;
+    for (const PlanePatch& patch : cloud.candidates) {
+      const double turned_rad = std::acos(std::clamp(-expected.R().col(2).dot(patch.normal), -1.0, 1.0));
+      const double away_m = (patch.centre_m - centre).norm();
+      if (turned_rad < kPatchTurned_rad && away_m < nearest_m) best = &patch, nearest_m = away_m;
+    }
+    if (best != nullptr)
+      chosen.emplace_back(*where, best);
+    else
+      Unused(sensor, capture, "no patch of the cloud is where the pictures say that board " +
+                                  cloud.target.str() + " is");
+  }
+
+  void AddPoses() {
+    for (const TrackerPoses& tracker : views_.trackers) {
+      const int sensor = SensorIndex(tracker.tracker.id);
+      if (sensor == kNone || sensor != world_tracker_) continue;
+      for (const TimedPose& row : tracker.poses) {
+        const auto place = place_of_.find({CaptureIndex(row.capture), kNone});
+        if (place == place_of_.end()) continue;
+        PoseTold told;
+        told.sensor = sensor;
+        told.place = place->second;
+        told.T_world_body = row.T_world_body;
+        problem().poses.push_back(told);
+      }
+    }
+  }
+
+  void AddRelatives() {
+    for (const SessionViews::Relative& relative : views_.relatives) {
+      const int a = SensorIndex(relative.a), b = SensorIndex(relative.b);
+      if (a != kNone && b != kNone) problem().relatives.push_back({a, b, relative.T_a_b, relative.Omega});
+    }
+  }
+
+  const SessionViews& views_;
+  const std::set<SensorId>& left_out_;
+  SessionStart start_;
+  std::vector<View> looks_;
+  std::map<SensorId, int> lens_of_camera_;
+  std::vector<std::optional<Se3>> place_of_capture_, board_pose_;
+  std::map<std::pair<int, int>, int> place_of_;  // by capture and target (kNone: the one world)
+  std::map<int, int> board_of_target_;
+  int held_target_ = kNone, world_tracker_ = kNone;
+};
+
+}  // namespace
+
+Result<SessionStart> StartOf(const SessionViews& views, const std::set<SensorId>& left_out) {
+  return Starter(views, left_out).Run();
+}
+
+}  // namespace rigcal::calib::joint

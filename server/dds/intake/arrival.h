@@ -1,0 +1,63 @@
+// What arrived over DDS, checked, on its way from threads D and Q to thread W.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+
+#include "idl/convert.h"
+#include "server/base/ids.h"
+#include "server/model/robots/robot_runs.h"
+
+namespace rigcal::dds {
+
+struct OpenSession {
+  RobotId robot;
+  SessionId session;
+  std::uint32_t protocol = 0;
+};
+
+struct ManifestText {
+  RobotId robot;
+  SessionId session;
+  std::string bytes;
+};
+
+struct ChunkBytes {
+  RobotId robot;
+  SessionId session;
+  std::uint32_t payload_idx = 0;
+  std::uint64_t offset_bytes = 0;
+  std::string bytes;
+};
+
+// A chunk that was thrown away because the intake is full: the client is told to send it again.
+struct DiscardedChunk {
+  RobotId robot;
+  SessionId session;
+  std::uint32_t payload_idx = 0;
+  std::uint64_t offset_bytes = 0;
+};
+
+// A sample that is refused. Answered in the partition of its writer, which need not be that of the robot it names.
+struct Refusal {
+  RobotId partition;
+  RobotId robot;
+  std::string subject_id;
+  Error error;
+};
+
+// What a person asks to be changed. `answer` takes the document once the change is on disk, or the error.
+struct Order {
+  std::string verb, json;
+  std::function<void(Result<std::string>)> answer;
+};
+
+using Arrival =
+    std::variant<OpenSession, ManifestText, ChunkBytes, DiscardedChunk, wire::BatchItem, Refusal, Order, RunsReport>;
+
+// Memory it holds while it waits.
+[[nodiscard]] std::int64_t BytesOf(const Arrival& arrival);
+
+}  // namespace rigcal::dds

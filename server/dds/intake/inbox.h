@@ -1,0 +1,50 @@
+// The queue between threads D and Q, which never wait, and thread W. Bounded in bytes: per session and in all.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "server/dds/intake/arrival.h"
+
+namespace rigcal::dds {
+
+class Inbox {
+ public:
+  struct Limits {
+    std::int64_t session_bytes, all_bytes;
+    std::size_t items;
+  };
+  // `session_bytes`: of what waits of one session; `all_bytes` and `items`: of all that waits.
+  explicit Inbox(const Limits& limits) : limits_(limits) {}
+
+  // Never waits. A chunk beyond the limits becomes a DiscardedChunk; anything else beyond them is dropped, as clients
+  // repeat what is not answered. False if the arrival was discarded or dropped.
+  bool Offer(Arrival arrival);
+  // About `bytes_max` bytes of arrivals in order, orders first, or fewer; waits for the first or for Wake. What it gave
+  // counts against the limits until Release.
+  [[nodiscard]] std::vector<Arrival> Take(std::int64_t bytes_max, std::chrono::milliseconds timeout);
+  void Release();
+  [[nodiscard]] bool Empty() const;
+  void Wake();  // ends a Take
+  void Stop();
+  [[nodiscard]] bool Stopped() const;
+
+ private:
+  [[nodiscard]] bool Fits(const Arrival& arrival, std::int64_t bytes);
+
+  const Limits limits_;
+  mutable std::mutex mutex_;
+  std::condition_variable filled_;
+  std::deque<Arrival> queue_;
+  std::unordered_map<SessionId, std::int64_t> session_bytes_;
+  std::unordered_map<SessionId, std::int64_t> taken_session_bytes_;
+  std::int64_t all_bytes_ = 0, taken_bytes_ = 0;
+  bool woken_ = false, stopped_ = false;
+};
+
+}  // namespace rigcal::dds

@@ -1,0 +1,125 @@
+#include "server/dds/record/batch_recorder.h"
+
+#include <algorithm>
+
+#include "server/base/limits_in_force.h"
+#include "server/base/log.h"
+#include "server/dds/record/server_side.h"
+#include "server/model/edges/admission.h"
+#include "storage/edges/edges.h"
+#include "storage/sessions/sessions.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr std::size_t kOpenBatchesMax = 256;
+constexpr std::size_t kOpenItemsMax = 16'000'000;  // bits of all open batches: bounds memory
+
+}  // namespace
+
+// Forgetting a batch costs nothing but loading its bits again.
+void BatchRecorder::MakeRoom(std::size_t items) {
+  while (!batches_.empty() && (batches_.size() >= kOpenBatchesMax || open_items_ + items > kOpenItemsMax)) {
+    if (HasPending()) Commit();
+    const auto later = [](const auto& a, const auto& b) { return a.second.last_used < b.second.last_used; };
+    const auto oldest = std::min_element(batches_.begin(), batches_.end(), later);
+    if (oldest == batches_.end()) return;
+    open_items_ -= oldest->second.held.size();
+    batches_.erase(oldest);
+  }
+}
+
+Result<BatchRecorder::Batch*> BatchRecorder::Open(const wire::BatchItem& item) {
+  auto found = batches_.find(item.batch);
+  if (found == batches_.end()) {
+    MakeRoom(item.count);
+    RIGCAL_ASSIGN(auto held, storage::LoadBatchHeld(store_, item.batch));
+    Batch batch{item.edge.robot, held ? std::move(*held) : std::vector<bool>(item.count, false), 0, 0, 0};
+    batch.held_count = static_cast<std::size_t>(std::count(batch.held.begin(), batch.held.end(), true));
+    open_items_ += batch.held.size();
+    found = batches_.emplace(item.batch, std::move(batch)).first;
+  }
+  Batch& batch = found->second;
+  batch.last_used = ++uses_;
+  if (batch.robot == item.edge.robot && batch.held.size() == item.count) return &batch;
+  return Fail(ErrorCode::kConflict, "batch " + item.batch.str() + " is known with another robot or number of edges",
+              "Push the edges again with `rigcal push-edges`");
+}
+
+void BatchRecorder::Take(wire::BatchItem item) {
+  if (const Status past = CheckMeasuredAt(item.edge, clock_.Now()); !past)
+    return SendRefusal(item.edge.robot, item.batch, past.error());
+  const auto batch = Open(item);
+  if (!batch) return SendRefusal(item.edge.robot, item.batch, batch.error());
+  ++(*batch)->written_bytes;
+  dirty_.insert(item.batch);
+  if (!(*batch)->held[item.idx]) pending_[item.batch].push_back(std::move(item));
+}
+
+Status BatchRecorder::Record(const std::vector<BatchId>& ids) {
+  const Stamp now = clock_.Now();
+  return store_.Write([&]() -> Status {
+    for (const BatchId& id : ids) {
+      const auto& items = pending_.at(id);
+      const RobotId& robot = items.front().edge.robot;
+      RIGCAL_TRY(storage::AppendRobot(store_, robot, now));
+      RIGCAL_TRY(storage::AppendBatch(store_, robot, id, items.front().count, now));
+      for (const wire::BatchItem& item : items)
+        RIGCAL_TRY(storage::AppendBatchItem(store_, id, item.idx, item.edge, now));
+    }
+    return {};
+  });
+}
+
+void BatchRecorder::Announce(const BatchId& id) {
+  Batch& batch = batches_.at(id);
+  for (const wire::BatchItem& item : pending_[id]) {
+    if (batch.held[item.idx]) continue;
+    batch.held[item.idx] = true;
+    ++batch.held_count;
+  }
+  if (!pending_[id].empty() && batch.held_count == batch.held.size()) callbacks_.work_arrived(batch.robot);
+  SendReceipt(id, batch);
+}
+
+// One transaction for all; if that fails, each batch by itself, so that a bad one harms no other.
+void BatchRecorder::Commit() {
+  std::vector<BatchId> ids;
+  for (const auto& [id, items] : pending_) ids.push_back(id);
+  const bool all_done = ids.empty() || Record(ids).has_value();
+  for (const BatchId& id : ids) {
+    const Status done = all_done ? Status() : Record({id});
+    if (done) continue;
+    SendRefusal(batches_.at(id).robot, id, done.error());
+    dirty_.erase(id);
+  }
+  for (const BatchId& id : dirty_) Announce(id);
+  pending_.clear();
+  dirty_.clear();
+}
+
+void BatchRecorder::SendReceipt(const BatchId& id, const Batch& batch) {
+  wire::Receipt receipt;
+  receipt.robot = batch.robot;
+  receipt.subject_id = id.str();
+  const bool all_held = batch.held_count == batch.held.size();
+  receipt.state = all_held ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving;
+  receipt.incarnation = incarnation_;
+  receipt.window_bytes = static_cast<std::uint64_t>(limits::InForce().window_bytes);
+  receipt.written_bytes = batch.written_bytes;
+  receipt.held = batch.held;
+  outbox_.Send(batch.robot, std::move(receipt));
+}
+
+void BatchRecorder::SendRefusal(const RobotId& robot, const BatchId& id, const Error& error) {
+  LogWarn("robot " + robot.str() + ", batch " + id.str() + " refused: " + Sentence(error));
+  wire::Receipt receipt;
+  receipt.robot = robot;
+  receipt.subject_id = id.str();
+  receipt.state = wire::ReceiptState::kRefused;
+  receipt.incarnation = incarnation_;
+  receipt.error = ToldToClient(error);
+  outbox_.Send(robot, std::move(receipt));
+}
+
+}  // namespace rigcal::dds

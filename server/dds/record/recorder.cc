@@ -1,0 +1,120 @@
+#include "server/dds/record/recorder.h"
+
+#include <thread>
+
+#include "server/base/limits.h"
+#include "server/base/log.h"
+#include "server/base/process/thread_rank.h"
+#include "server/dds/record/server_side.h"
+#include "storage/fleet/robot_runs.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr std::int64_t kRoundBytes = 8LL << 20;  // small enough that clients hear of progress often
+constexpr std::int64_t kRoundWhileAskedBytes = 1LL << 20;
+constexpr std::int64_t kCommitBytes = 64LL << 20;      // complete payloads that may wait for a commit
+constexpr std::chrono::milliseconds kCommitAfter{50};  // edges may wait so long for more of them
+constexpr std::chrono::milliseconds kRecorderIdle{1000};
+constexpr std::chrono::milliseconds kAskedLately{200};
+
+std::chrono::nanoseconds DurationOfPayloads(const std::vector<Arrival>& arrivals, std::int64_t bytes_per_s) {
+  std::int64_t bytes = 0;
+  for (const Arrival& arrival : arrivals)
+    if (std::holds_alternative<ChunkBytes>(arrival)) bytes += BytesOf(arrival);
+  return std::chrono::nanoseconds(bytes * 1'000'000'000 / bytes_per_s);
+}
+
+}  // namespace
+
+Recorder::Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
+                   const LastQuestion& asked, std::uint64_t incarnation, Part& part)
+    : stores_(std::move(stores)),
+      inbox_(inbox),
+      outbox_(outbox),
+      callbacks_(callbacks),
+      clock_(clock),
+      asked_(asked),
+      incarnation_(incarnation),
+      sessions_(stores_.takes, stores_.commits, outbox, callbacks, clock, incarnation, [this] { inbox_.Wake(); }),
+      batches_(stores_.takes, outbox, callbacks, clock, incarnation),
+      last_commit_(std::chrono::steady_clock::now()),
+      part_(part) {}
+
+void Recorder::Answer(const Refusal& refusal) {
+  LogWarn("robot " + refusal.partition.str() + ": refused: " + Sentence(refusal.error));
+  wire::Receipt receipt;
+  receipt.robot = refusal.robot;
+  receipt.subject_id = refusal.subject_id;
+  receipt.state = wire::ReceiptState::kRefused;
+  receipt.incarnation = incarnation_;
+  receipt.error = refusal.error;
+  outbox_.Send(refusal.partition, std::move(receipt));
+}
+
+// The answer is given when the change is durable, and work is announced before: who has the answer may count on it.
+void Recorder::CarryOut(const Order& order) {
+  auto done = callbacks_.carry_out(stores_.takes, order.verb, order.json);
+  if (!done) {
+    LogWarn("order '" + order.verb + "' refused: " + Sentence(done.error()));
+    return order.answer(Fail(ToldToClient(done.error())));
+  }
+  callbacks_.work_arrived(done->robot);
+  order.answer(std::move(done->document));
+}
+
+// What cannot be kept is told again when the robot's program, or this server, starts anew.
+void Recorder::Keep(const RunsReport& report) {
+  const auto kept = storage::AppendRuns(stores_.takes, report, clock_.Now());
+  if (!kept) return LogWarn("what robot " + report.robot.str() + " runs was not kept: " + Sentence(kept.error()));
+  if (*kept) callbacks_.work_arrived(report.robot);  // its summary is to be made anew
+}
+
+void Recorder::Take(Arrival arrival) {
+  if (auto* chunk = std::get_if<ChunkBytes>(&arrival)) return sessions_.Take(std::move(*chunk));
+  if (auto* item = std::get_if<wire::BatchItem>(&arrival)) return batches_.Take(std::move(*item));
+  if (const auto* open = std::get_if<OpenSession>(&arrival)) return sessions_.Take(*open);
+  if (const auto* text = std::get_if<ManifestText>(&arrival)) return sessions_.Take(*text);
+  if (const auto* discarded = std::get_if<DiscardedChunk>(&arrival)) return sessions_.Take(*discarded);
+  if (const auto* refusal = std::get_if<Refusal>(&arrival)) return Answer(*refusal);
+  if (const auto* order = std::get_if<Order>(&arrival)) return CarryOut(*order);
+  if (const auto* report = std::get_if<RunsReport>(&arrival)) return Keep(*report);
+}
+
+// While somebody asks, one robot's flood leaves processors and disk to the answers: the next round begins no earlier
+// than at the time that this gives.
+Recorder::Time Recorder::TakeRound() {
+  const Time start = std::chrono::steady_clock::now();
+  const bool yields = asked_.IsWithin(kAskedLately);
+  auto arrivals = inbox_.Take(yields ? kRoundWhileAskedBytes : kRoundBytes, kRecorderIdle);
+  const auto least = DurationOfPayloads(arrivals, limits::kIntakeWhileAskedBytesPerS);
+  for (Arrival& arrival : arrivals) Take(std::move(arrival));
+  sessions_.Write();
+  inbox_.Release();  // before clients are told that they may send more
+  sessions_.Report();
+  return yields ? start + least : start;
+}
+
+// While a commit runs the next payloads come in, and are committed together when it is done.
+void Recorder::CommitDue() {
+  const bool is_full = sessions_.PendingBytes() >= kCommitBytes;
+  sessions_.FinishCommit(is_full ? SessionRecorder::Patience::kAll : SessionRecorder::Patience::kNone);
+  sessions_.StartCommit();
+  const auto now = std::chrono::steady_clock::now();
+  if (!batches_.HasPending() || (!inbox_.Empty() && now - last_commit_ < kCommitAfter)) return;
+  batches_.Commit();
+  last_commit_ = now;
+}
+
+void Recorder::Run() {
+  SetThreadRank(ThreadRank::kWorks);
+  while (!inbox_.Stopped()) {
+    const Time next = TakeRound();
+    CommitDue();
+    part_.Turn();
+    std::this_thread::sleep_until(next);
+  }
+  sessions_.Settle();
+}
+
+}  // namespace rigcal::dds

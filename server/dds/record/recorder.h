@@ -1,0 +1,47 @@
+// Thread W: takes from the inbox, makes it durable in batches, sends the receipts. A receipt means: on disk.
+#pragma once
+
+#include <chrono>
+
+#include "server/base/process/vitals.h"
+#include "server/dds/intake/inbox.h"
+#include "server/dds/intake/last_question.h"
+#include "server/dds/record/batch_recorder.h"
+#include "server/dds/record/session_recorder.h"
+
+namespace rigcal::dds {
+
+class Recorder {
+ public:
+  // Its own connections to the store, for this thread and for commits.
+  struct Stores {
+    storage::Store takes, commits;
+  };
+  // All outlive it. `incarnation` differs for every start of a server.
+  Recorder(Stores stores, Inbox& inbox, Outbox& outbox, const Callbacks& callbacks, const Clock& clock,
+           const LastQuestion& asked, std::uint64_t incarnation, Part& part);
+  void Run();  // until the inbox is stopped
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  void Take(Arrival arrival);
+  void Answer(const Refusal& refusal);
+  void CarryOut(const Order& order);
+  void Keep(const RunsReport& report);
+  [[nodiscard]] Time TakeRound();
+  void CommitDue();
+
+  Stores stores_;
+  Inbox& inbox_;
+  Outbox& outbox_;
+  const Callbacks& callbacks_;
+  const Clock& clock_;
+  const LastQuestion& asked_;
+  std::uint64_t incarnation_;
+  SessionRecorder sessions_;
+  BatchRecorder batches_;
+  Time last_commit_;
+  Part& part_;
+};
+
+}  // namespace rigcal::dds

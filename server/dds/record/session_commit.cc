@@ -1,0 +1,116 @@
+// The second half of SessionRecorder: commits and receipts.
+#include <algorithm>
+
+#include "server/base/limits_in_force.h"
+#include "server/base/log.h"
+#include "server/dds/record/server_side.h"
+#include "server/dds/record/session_recorder.h"
+#include "storage/sessions/sessions.h"
+
+namespace rigcal::dds {
+
+std::int64_t SessionRecorder::PendingBytes() const {
+  std::int64_t bytes = 0;
+  for (const Finished& one : finished_) bytes += one.size_bytes;
+  return bytes;
+}
+
+// The files go on a thread of their own: meanwhile this one takes and writes the next.
+void SessionRecorder::StartCommit() {
+  if (commit_.valid() || finished_.empty()) return;
+  running_ = {};
+  for (const Finished& one : finished_) {
+    running_.files.push_back({one.path, one.digest});
+    for (const std::uint32_t idx : intakes_.at(one.session)->WithSameContent(one.payload_idx))
+      running_.held[one.session].insert(idx);
+  }
+  for (const auto& [session, idx] : running_.held)
+    if (intakes_.at(session)->Completes(idx)) running_.closing.insert(session);
+  finished_.clear();
+  commit_is_done_ = false;
+  // Where no thread can be made it is deferred: done when it is asked for.
+  commit_ = std::async(std::launch::async | std::launch::deferred, [this] {
+    Status done = Persist(commit_store_, running_, cached_, clock_.Now());
+    commit_is_done_ = true;
+    commit_done_();
+    return done;
+  });
+}
+
+void SessionRecorder::FinishCommit(Patience patience) {
+  if (!commit_.valid()) return;
+  const bool is_running = !commit_is_done_ && commit_.wait_for(std::chrono::seconds(0)) == std::future_status::timeout;
+  if (is_running && patience == Patience::kNone) return;
+  if (const Status done = commit_.get(); done) {
+    Announce(running_);
+  } else {
+    GiveUp(running_, done.error());
+  }
+}
+
+void SessionRecorder::Settle() {
+  FinishCommit(Patience::kAll);
+  StartCommit();
+  FinishCommit(Patience::kAll);
+}
+
+// Work is announced before the receipt: who has the receipt may count on it.
+void SessionRecorder::Announce(const DurableBatch& batch) {
+  for (const auto& [session, idx] : batch.held) {
+    SessionIntake& intake = *intakes_.at(session);
+    intake.MarkHeld({idx.begin(), idx.end()});
+    const bool is_closed = intake.AllHeld();
+    if (is_closed) callbacks_.work_arrived(intake.robot());
+    const RobotId robot = intake.robot();
+    wire::Receipt receipt =
+        intake.ReceiptOf(is_closed ? wire::ReceiptState::kClosed : wire::ReceiptState::kReceiving, WindowBytes());
+    if (is_closed) Remove(session);
+    outbox_.Send(robot, std::move(receipt));
+  }
+}
+
+// Nothing of it was receipted: the client is told and starts from what is held.
+void SessionRecorder::GiveUp(const DurableBatch& batch, const Error& error) {
+  LogError(error);
+  for (const auto& [session, idx] : batch.held) {
+    const RobotId robot = intakes_.at(session)->robot();
+    Remove(session);
+    SendRefusal(robot, session, error);
+  }
+}
+
+// Many sessions at once share what the intake can hold.
+std::int64_t SessionRecorder::WindowBytes() const {
+  const auto sessions = static_cast<std::int64_t>(std::max<std::size_t>(intakes_.size(), 1));
+  const auto chunk_bytes = static_cast<std::int64_t>(limits::kChunkBytesMax);
+  const limits::Limits& limits = limits::InForce();
+  return std::clamp(limits.intake_bytes / sessions, 2 * chunk_bytes, limits.window_bytes);
+}
+
+void SessionRecorder::SendState(const RobotId& robot, const SessionId& session, wire::ReceiptState state) {
+  wire::Receipt receipt;
+  receipt.robot = robot;
+  receipt.subject_id = session.str();
+  receipt.state = state;
+  receipt.incarnation = incarnation_;
+  receipt.window_bytes = static_cast<std::uint64_t>(WindowBytes());
+  if (state == wire::ReceiptState::kClosed) {
+    auto held = storage::LoadHeld(store_, session);
+    if (!held) return SendRefusal(robot, session, held.error());
+    receipt.held = std::move(*held);
+  }
+  outbox_.Send(robot, std::move(receipt));
+}
+
+void SessionRecorder::SendRefusal(const RobotId& robot, const SessionId& session, const Error& error) {
+  LogWarn("robot " + robot.str() + ", session " + session.str() + " refused: " + Sentence(error));
+  wire::Receipt receipt;
+  receipt.robot = robot;
+  receipt.subject_id = session.str();
+  receipt.state = wire::ReceiptState::kRefused;
+  receipt.incarnation = incarnation_;
+  receipt.error = ToldToClient(error);
+  outbox_.Send(robot, std::move(receipt));
+}
+
+}  // namespace rigcal::dds

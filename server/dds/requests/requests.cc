@@ -1,0 +1,228 @@
+#include "server/dds/requests/requests.h"
+
+#include <algorithm>
+#include <future>
+
+#include "server/base/limits.h"
+#include "server/base/log.h"
+#include "server/base/process/thread_rank.h"
+#include "server/dds/intake/from_idl.h"
+#include "server/formats/answers/answers.h"
+
+namespace rigcal::dds {
+namespace {
+
+constexpr int kTakenAtOnce = 16;  // the others stay with DDS, which bounds them
+constexpr std::size_t kPendingMax = 256;
+constexpr std::chrono::seconds kPendingFor{5};   // once it is known
+constexpr std::chrono::seconds kAnswerFor{60};  // a slow question; an order, while the disk is busy
+constexpr std::chrono::milliseconds kBusyAgain{20};
+constexpr std::chrono::milliseconds kRequestIdle{1000};
+
+std::vector<std::string> Split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < text.size() || parts.empty(); at += limits::kReplyPartBytes)
+    parts.push_back(text.substr(at, limits::kReplyPartBytes));
+  return parts;
+}
+
+// DDS makes threads of its own, of the rank of the thread that opens.
+Result<wire::Participant> OpenApart(wire::ParticipantOptions options) {
+  options.apart = true;
+  const auto open = [&] {
+    SetThreadRank(ThreadRank::kAnswers);
+    return wire::Participant::Open(options);
+  };
+  return std::async(std::launch::async, open).get();
+}
+
+std::string DocumentOfAnswer(Result<std::string> answer) {
+  return answer ? std::move(*answer) : formats::WriteError(answer.error());
+}
+
+std::shared_future<std::string> Said(const Error& error) {
+  std::promise<std::string> said;
+  said.set_value(formats::WriteError(error));
+  return said.get_future().share();
+}
+
+// The first partition of a writer in which questions may be asked; nothing if there is none.
+std::optional<std::string> AskedIn(const wire::SampleOrigin& origin) {
+  for (const std::string& partition : origin.partitions)
+    if (partition == wire::kOperatorPartition || RobotOfPartition(partition)) return partition;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Requests::Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
+                   const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part)
+    : participant_(std::move(participant)),
+      reader_(std::move(reader)),
+      waitset_(std::move(waitset)),
+      callbacks_(callbacks),
+      inbox_(inbox),
+      asked_(asked),
+      part_(part) {}
+
+Result<std::unique_ptr<Requests>> Requests::Open(const wire::ParticipantOptions& options, const Callbacks& callbacks,
+                                                 Inbox& inbox, LastQuestion& asked, Part& part,
+                                                 std::vector<Answerers::Place> places) {
+  RIGCAL_ASSIGN(auto participant, OpenApart(options));
+  RIGCAL_ASSIGN(auto reader, wire::Reader<rigcal_wire_Request>::Open(
+                                 participant, {wire::kOperatorPartition, wire::kAllRobotsPartition}));
+  RIGCAL_ASSIGN(auto waitset, wire::WaitSet::Open(participant));
+  RIGCAL_TRY(waitset.Attach(reader.get()));
+  std::unique_ptr<Requests> made(
+      new Requests(std::move(participant), std::move(reader), std::move(waitset), callbacks, inbox, asked, part));
+  RIGCAL_TRY(made->writers_.Add(wire::kOperatorPartition));
+  const auto work = [&callbacks](storage::Store& store, const std::string& verb, const std::string& json) -> std::string {
+    try {
+      return DocumentOfAnswer(callbacks.answer(store, verb, json));
+    } catch (const std::exception& thrown) {  // no memory, say
+      return formats::WriteError({ErrorCode::kInternal, "the answer to '" + verb + "' broke off: " + thrown.what(),
+                                  "Ask again; if that does not help, report it with the log of the server."});
+    }
+  };
+  made->answerers_ = std::make_unique<Answerers>(std::move(places), work, [raw = made.get()] { raw->waitset_.Wake(); });
+  return made;
+}
+
+void Requests::Stop() {
+  retry_.Stop();
+  waitset_.Wake();
+}
+
+std::optional<Error> Requests::Refused(const Question& question) const {
+  if (question.json.size() > limits::kRequestBytesMax)
+    return Error{ErrorCode::kInvalidInput, "a request of " + std::to_string(question.json.size()) + " bytes",
+                 "Ask with at most " + std::to_string(limits::kRequestBytesMax) + " bytes"};
+  if (callbacks_.is_order(question.verb) && question.partition != wire::kOperatorPartition)
+    return Error{ErrorCode::kInvalidInput, "'" + question.verb + "' was asked by a robot",
+                 "Ask in the partition of people: '" + std::string(wire::kOperatorPartition) + "'."};
+  return std::nullopt;
+}
+
+// Thread W answers from its own thread; this one is woken to send it.
+std::shared_future<std::string> Requests::GiveOrder(const Question& question) {
+  auto document = std::make_shared<std::promise<std::string>>();
+  std::shared_future<std::string> future = document->get_future().share();
+  const auto answer = [this, document](Result<std::string> done) {
+    answerers_->Changed();  // before anybody knows
+    document->set_value(DocumentOfAnswer(std::move(done)));
+    waitset_.Wake();
+  };
+  if (!inbox_.Offer(Order{question.verb, question.json, answer}))
+    document->set_value(formats::WriteError(
+        {ErrorCode::kBusy, "the server has more to take in than it can hold", "Try again in a moment."}));
+  return future;
+}
+
+bool Requests::Send(Pending& pending) {
+  pending.busy = false;
+  if (pending.parts.empty()) {
+    if (pending.answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    pending.parts = Split(pending.answer.get());
+    pending.expires = std::chrono::steady_clock::now() + kPendingFor;
+    asked_.Note();  // an answer may take longer than what is kept clear after a question
+  }
+  while (pending.next_idx < pending.parts.size()) {
+    rigcal_wire_Reply part{};
+    if (!wire::CopyText(pending.question.id, part.id, sizeof part.id, "request id")) return true;
+    part.part_idx = static_cast<std::uint32_t>(pending.next_idx);
+    part.part_count = static_cast<std::uint32_t>(pending.parts.size());
+    part.json = pending.parts[pending.next_idx].data();
+    const Status sent = writers_.Send(pending.question.partition, pending.question.participant, part);
+    if (sent) {
+      ++pending.next_idx;
+      continue;
+    }
+    pending.busy = sent.error().code == ErrorCode::kBusy;
+    if (!pending.busy && sent.error().code != ErrorCode::kUnreachable) LogError(sent.error());
+    return !pending.busy && sent.error().code != ErrorCode::kUnreachable;
+  }
+  return true;
+}
+
+std::shared_future<std::string> Requests::AnswerTo(const Question& question) {
+  if (const auto refused = Refused(question)) return Said(*refused);
+  if (callbacks_.is_order(question.verb)) return GiveOrder(question);
+  if (auto answer = answerers_->Ask(question.participant, question.verb, question.json)) return *answer;
+  return Said({ErrorCode::kBusy, "more questions wait for an answer than the server takes", "Ask again in a moment."});
+}
+
+// A client that asks again takes the answer to any copy: the older one, of which nothing was sent yet, goes. Beyond so many the
+// oldest of the same client goes, and orders never.
+void Requests::MakeRoomFor(const Pending& added) {
+  const auto same_client = [&](const Pending& one) { return !one.is_order && one.question.participant == added.question.participant; };
+  pending_.remove_if([&](const Pending& one) {
+    return same_client(one) && one.next_idx == 0 && one.question.partition == added.question.partition &&
+           one.question.verb == added.question.verb && one.question.json == added.question.json;
+  });
+  if (pending_.size() < kPendingMax) return;
+  auto oldest = std::find_if(pending_.begin(), pending_.end(), same_client);
+  if (oldest == pending_.end()) oldest = std::find_if(pending_.begin(), pending_.end(), [](const Pending& one) { return !one.is_order; });
+  if (oldest != pending_.end()) pending_.erase(oldest);
+}
+
+void Requests::Add(Question question) {
+  Pending pending;
+  pending.answer = AnswerTo(question);
+  pending.question = std::move(question);
+  pending.expires = std::chrono::steady_clock::now() + kAnswerFor;
+  pending.is_order = callbacks_.is_order(pending.question.verb);
+  if (Send(pending)) return;
+  MakeRoomFor(pending);
+  pending_.push_back(std::move(pending));
+}
+
+void Requests::SendPending() {
+  const Time now = std::chrono::steady_clock::now();
+  pending_.remove_if([&](Pending& pending) { return Send(pending) || pending.expires <= now; });
+}
+
+Result<std::vector<Question>> Requests::TakeQuestions() {
+  std::vector<Question> questions;
+  RIGCAL_TRY(reader_.Take(kTakenAtOnce, [&](const auto& sample, const wire::SampleOrigin& origin) {
+    const auto partition = AskedIn(origin);
+    if (!partition) return;
+    const char* json = sample.json == nullptr ? "" : sample.json;
+    questions.push_back({*partition, origin.participant, sample.id, sample.verb, json});
+  }));
+  return questions;
+}
+
+std::chrono::milliseconds Requests::Patience() const {
+  const bool any_busy = std::any_of(pending_.begin(), pending_.end(), [](const Pending& one) { return one.busy; });
+  return any_busy ? kBusyAgain : kRequestIdle;
+}
+
+// What was asked is answered also where waiting for it failed.
+Status Requests::Round() {
+  const auto woken = waitset_.Wait(Patience());
+  RIGCAL_ASSIGN(auto questions, TakeQuestions());
+  for (Question& question : questions) {
+    if (retry_.Stopped()) return {};
+    asked_.Note();
+    Add(std::move(question));
+    if (!pending_.empty()) SendPending();
+  }
+  if (!pending_.empty()) SendPending();
+  writers_.CloseQuiet();
+  return woken ? Status() : Fail(woken.error());
+}
+
+void Requests::Run() {
+  SetThreadRank(ThreadRank::kAnswers);
+  while (!retry_.Stopped()) {
+    const Status done = Round();
+    if (done) {
+      part_.Turn();
+      continue;
+    }
+    part_.Fail(done.error());
+    retry_.Pause();
+  }
+}
+
+}  // namespace rigcal::dds

@@ -1,0 +1,82 @@
+// Thread Q: takes requests, hands each to a thread that answers or, an order, to thread W, and passes answers on. It has a participant
+// of its own: its sockets and the threads of DDS behind them are not those that sessions come in by. A request may come
+// before the server's reply writer has met the reader of the client that asked; a volatile reply would be lost, so it
+// waits here until they have met, bounded in number and time.
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/base/process/vitals.h"
+#include "server/dds/intake/inbox.h"
+#include "server/dds/intake/last_question.h"
+#include "server/dds/intake/retry.h"
+#include "server/dds/requests/answerers.h"
+#include "server/dds/requests/reply_writers.h"
+#include "server/dds/service.h"
+
+namespace rigcal::dds {
+
+struct Question {
+  std::string partition;  // where it was asked and is answered
+  dds_instance_handle_t participant = 0;
+  std::string id, verb, json;
+};
+
+class Requests {
+ public:
+  // Callbacks, inbox (of thread W, for orders), `asked`, in which every question is noted, and `part`, which is told of
+  // every failure, outlive it.
+  [[nodiscard]] static Result<std::unique_ptr<Requests>> Open(const wire::ParticipantOptions& options,
+                                                              const Callbacks& callbacks, Inbox& inbox,
+                                                              LastQuestion& asked, Part& part,
+                                                              std::vector<Answerers::Place> places);
+  void Run();   // until Stop
+  void Stop();  // any thread
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Pending {
+    Question question;
+    std::shared_future<std::string> answer;  // of an order once it is carried out
+    std::vector<std::string> parts;
+    std::size_t next_idx = 0;
+    Time expires;
+    bool busy = false;  // a reader is slow: tried again soon, not only when readers change
+    bool is_order = false;
+  };
+
+  Requests(wire::Participant participant, wire::Reader<rigcal_wire_Request> reader, wire::WaitSet waitset,
+           const Callbacks& callbacks, Inbox& inbox, LastQuestion& asked, Part& part);
+
+  [[nodiscard]] std::optional<Error> Refused(const Question& question) const;
+  [[nodiscard]] std::shared_future<std::string> GiveOrder(const Question& question);
+  [[nodiscard]] std::shared_future<std::string> AnswerTo(const Question& question);
+  void Add(Question question);
+  void MakeRoomFor(const Pending& added);
+  // True if there is nothing left to do for it.
+  [[nodiscard]] bool Send(Pending& pending);
+  void SendPending();
+  [[nodiscard]] Status Round();  // waits, takes, answers
+  [[nodiscard]] Result<std::vector<Question>> TakeQuestions();
+  [[nodiscard]] std::chrono::milliseconds Patience() const;
+
+  wire::Participant participant_;
+  wire::Reader<rigcal_wire_Request> reader_;
+  wire::WaitSet waitset_;
+  ReplyWriters writers_{participant_, waitset_};
+  const Callbacks& callbacks_;
+  Inbox& inbox_;
+  LastQuestion& asked_;
+  std::list<Pending> pending_;
+  Part& part_;
+  Retry retry_;
+  std::unique_ptr<Answerers> answerers_;  // ends before what it wakes
+};
+
+}  // namespace rigcal::dds

@@ -1,0 +1,11 @@
+// Saddle points that are in a grid by mistake.
+#pragma once
+
+#include "server/detect/checkerboard/saddle_grid.h"
+
+namespace rigcal::detect {
+
+// Takes out the node that is the furthest from where the others say, again and again, until all are near enough.
+void DropStrays(SaddleGrid& grid);
+
+}  // namespace rigcal::detect

@@ -1,0 +1,204 @@
+#include "server/fleet/as_found/as_found.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "server/fleet/as_found/change_seen.h"
+#include "server/math/statistics.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::size_t kMoversMax = 8;
+constexpr double kDofAsKnown = 1e4;
+
+// Sigmas from which on an axis has changed.
+double LimitInSigmas(double alpha_of_axis, double dof) {
+  const bool known = dof <= 0 || dof > kDofAsKnown;
+  return std::sqrt(known ? ChiSquareQuantile(1 - alpha_of_axis, 1) : FisherQuantile(alpha_of_axis, 1, dof));
+}
+
+// Sigmas of a change that is beyond the limit with kAsFoundPower: of t, by the noncentral F(1, dof) of t^2.
+double SmallestInSigmas(double limit, double dof) {
+  if (dof > 0 && dof <= kDofAsKnown) return std::sqrt(FisherNoncentrality(limit * limit, 1, dof, kAsFoundPower));
+  return limit + std::sqrt(ChiSquareQuantile(2 * kAsFoundPower - 1, 1));
+}
+
+bool IsAxisBeyond(const ChangeSeen& seen, Index row, double alpha_of_axis) {
+  return seen.IsMeasured(row) &&
+         std::abs(seen.change(row)) >
+             LimitInSigmas(alpha_of_axis, seen.dof[static_cast<std::size_t>(row)]) * seen.Sigma(row);
+}
+
+int MeasuredAxes(const ChangeSeen& seen) {
+  int measured = 0;
+  for (Index row = 0; row < seen.change.size(); ++row) measured += seen.IsMeasured(row) ? 1 : 0;
+  return measured;
+}
+
+bool AnyBeyond(const ChangeSeen& seen, double alpha_of_axis) {
+  for (Index row = 0; row < seen.change.size(); ++row)
+    if (IsAxisBeyond(seen, row, alpha_of_axis)) return true;
+  return false;
+}
+
+std::vector<SensorId> AllBut(std::vector<SensorId> sensors, const SensorId& one) {
+  std::erase(sensors, one);
+  return sensors;
+}
+
+// In use and in the session, and not moved by anybody who said so. Sorted.
+std::vector<SensorId> ToTest(const AsFoundInput& input) {
+  std::vector<SensorId> sensors;
+  for (const KnownPose& pose : input.session.poses)
+    if (input.in_use.Find(pose.sensor) != nullptr && !input.moved_on_purpose.contains(pose.sensor))
+      sensors.push_back(pose.sensor);
+  std::sort(sensors.begin(), sensors.end());
+  return sensors;
+}
+
+SensorId FirstFrame(const AsFoundInput& input, const std::vector<SensorId>& sensors) {
+  for (const SensorId& reference : {input.in_use.reference, input.session.reference})
+    if (std::find(sensors.begin(), sensors.end(), reference) != sensors.end()) return reference;
+  return sensors.front();
+}
+
+// The sensor whose shifts against the frame are known best.
+SensorId BestKnown(const ChangeSeen& seen) {
+  const auto variance_m2 = [&](std::size_t s) {
+    return seen.covariance.diagonal().segment<3>(static_cast<Index>(6 * s)).sum();
+  };
+  std::size_t best = 0;
+  for (std::size_t s = 1; s < seen.sensors.size(); ++s)
+    if (variance_m2(s) < variance_m2(best)) best = s;
+  return seen.sensors[best];
+}
+
+struct Search {
+  SensorId frame;             // did not move
+  std::vector<Mover> movers;  // the likeliest first
+  int tests = 0;
+  double alpha_of_axis = 0.0;
+};
+
+// As long as something has changed beyond the limit, the sensor that explains it best is taken out of what stands
+// still.
+Search FindMovers(const AsFoundInput& input, std::vector<SensorId> still) {
+  Search search{FirstFrame(input, still), {}, 0, 0.0};
+  while (still.size() > 1 && search.movers.size() < kMoversMax) {
+    const ChangeSeen seen = ChangeBetween(search.frame, AllBut(still, search.frame), input.in_use, input.session);
+    if (search.movers.empty()) search.tests = MeasuredAxes(seen);
+    search.alpha_of_axis = input.alpha / std::max(1, search.tests);
+    if (!AnyBeyond(seen, search.alpha_of_axis)) break;
+    const Mover mover = LikeliestMover(seen);
+    if (mover.sensor == search.frame) search.frame = BestKnown(seen);
+    still = AllBut(still, mover.sensor);
+    search.movers.push_back(mover);
+  }
+  return search;
+}
+
+void FillAxes(const ChangeSeen& seen, std::size_t s, double alpha_of_axis, SensorFound& found) {
+  for (int axis = 0; axis < 6; ++axis) {
+    const auto row = static_cast<Index>(6 * s) + axis;
+    if (!seen.IsMeasured(row)) continue;
+    const double dof = seen.dof[static_cast<std::size_t>(row)], limit = LimitInSigmas(alpha_of_axis, dof);
+    found.change(axis) = seen.change(row);
+    found.sigma(axis) = seen.Sigma(row);
+    found.smallest(axis) = SmallestInSigmas(limit, dof) * found.sigma(axis);
+    const bool beyond = IsAxisBeyond(seen, row, alpha_of_axis);
+    found.axes[static_cast<std::size_t>(axis)] = beyond ? FoundState::kDrifted : FoundState::kUnchanged;
+    if (found.state != FoundState::kDrifted) found.state = found.axes[static_cast<std::size_t>(axis)];
+  }
+}
+
+std::optional<Vector6d> LeftOf(const SensorId& sensor, const SensorId& frame, const AsFoundInput& input) {
+  const auto left = PlaceIn(frame, sensor, input.left), is = PlaceIn(frame, sensor, input.session);
+  if (!left || !is) return std::nullopt;
+  return (left->Inverse() * *is).Log();
+}
+
+std::vector<SensorFound> Tested(const AsFoundInput& input, const std::vector<SensorId>& sensors, const Search& search) {
+  const ChangeSeen seen = ChangeBetween(search.frame, AllBut(sensors, search.frame), input.in_use, input.session);
+  std::vector<SensorFound> tested;
+  for (std::size_t s = 0; s < seen.sensors.size(); ++s) {
+    SensorFound found;
+    found.sensor = seen.sensors[s];
+    FillAxes(seen, s, search.alpha_of_axis, found);
+    for (const Mover& mover : search.movers)
+      if (mover.sensor == found.sensor) found.state = FoundState::kDrifted, found.or_else = mover.or_else;
+    found.left = LeftOf(found.sensor, search.frame, input);
+    tested.push_back(std::move(found));
+  }
+  return tested;
+}
+
+// Of sensors that are not tested.
+std::vector<SensorFound> Untested(const AsFoundInput& input, const std::vector<SensorId>& tested) {
+  std::set<SensorId> sensors;
+  for (const KnownPoses* poses : {&input.in_use, &input.session})
+    for (const KnownPose& pose : poses->poses) sensors.insert(pose.sensor);
+  for (const SensorId& sensor : tested) sensors.erase(sensor);
+  std::vector<SensorFound> untested;
+  for (const SensorId& sensor : sensors) {
+    SensorFound found;
+    found.sensor = sensor;
+    if (input.moved_on_purpose.contains(sensor))
+      found.state = FoundState::kMovedOnPurpose;
+    else if (input.in_use.Find(sensor) == nullptr)
+      found.state = FoundState::kNew;
+    untested.push_back(std::move(found));
+  }
+  return untested;
+}
+
+int FewestVisits(const AsFoundInput& input, const std::vector<SensorId>& sensors) {
+  std::optional<int> fewest;
+  for (const SensorId& sensor : AllBut(sensors, input.in_use.reference))
+    fewest = std::min(fewest.value_or(input.in_use.Find(sensor)->visits), input.in_use.Find(sensor)->visits);
+  return fewest.value_or(0);
+}
+
+// Sensors whose visits tell no scatter get the assumed one: that of the visit in use, and that of the session.
+KnownPoses WithAssumedScatter(KnownPoses in_use, const PoseLimit& scatter) {
+  Vector6d variance;
+  variance << Eigen::Vector3d::Constant(2 * scatter.m * scatter.m),
+      Eigen::Vector3d::Constant(2 * scatter.rad * scatter.rad);
+  Index row = 0;
+  for (const KnownPose& pose : in_use.poses) {
+    if (pose.sensor == in_use.reference) continue;
+    if (pose.visits < 2) in_use.covariance.diagonal().segment<6>(row) += variance;
+    row += 6;
+  }
+  return in_use;
+}
+
+}  // namespace
+
+AsFound TestAsFound(const AsFoundInput& told) {
+  AsFoundInput input = told;
+  input.in_use = WithAssumedScatter(std::move(input.in_use), input.assumed_scatter);
+  AsFound found;
+  found.alpha = input.alpha;
+  const std::vector<SensorId> sensors = ToTest(input);
+  found.sensors = Untested(input, sensors);
+  if (sensors.size() < 2) {
+    found.why_not = "The session tells no two sensors against each other that were in use and stayed where they were.";
+    return found;
+  }
+  const Search search = FindMovers(input, sensors);
+  std::vector<SensorFound> tested = Tested(input, sensors, search);
+  std::move(tested.begin(), tested.end(), std::back_inserter(found.sensors));
+  std::sort(found.sensors.begin(), found.sensors.end(),
+            [](const auto& x, const auto& y) { return x.sensor < y.sensor; });
+  found.tests = search.tests;
+  found.visits = FewestVisits(input, sensors);
+  found.relative_to = search.frame;
+  if (found.tests == 0) found.why_not = "The session measured no axis of the sensors that were in use.";
+  return found;
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,190 @@
+// A board whose squares are measured wrong in session.yaml: lidars see how large it is, and how far a camera moved
+// before it is known by a tracker.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <tuple>
+
+#include "server/fleet/causes/root_causes.h"
+#include "server/fleet/wording.h"
+#include "server/model/edges/method.h"
+#include "server/model/edges/past.h"
+
+namespace rigcal::fleet {
+namespace {
+
+// One pair's view of how large a board is.
+struct Scale {
+  const Edge* edge = nullptr;
+  double ratio = 0.0, sigma_ratio = 0.0, square_m = 0.0;
+};
+
+std::optional<Scale> ScaleOf(const Edge& edge) {
+  const auto figure = [&](const char* name) {
+    const auto found = edge.figures.find(name);
+    return found == edge.figures.end() ? 0.0 : found->second;
+  };
+  const Scale scale{&edge, figure("board_scale_ratio"), figure("board_scale_sigma_ratio"), figure("board_square_m")};
+  return scale.sigma_ratio > 0 && scale.square_m > 0 ? std::optional(scale) : std::nullopt;
+}
+
+// Boards of one session and one given size that pairs cannot be told apart by.
+using BoardKey = std::tuple<SessionId, std::vector<TargetId>, double>;
+
+// Boards that its camera may have looked at.
+std::vector<const Target*> BoardsBefore(const CauseSearch& search, const Edge& edge) {
+  const std::array<EdgeEnd, 2> ends = EndsOf(edge);
+  const bool is_b = KindOf(search.headers, edge, ends[1].sensor) == SensorKind::kCamera;
+  return BoardsOf(search.headers, ends[is_b ? 1 : 0]);
+}
+
+std::vector<const Target*> CandidatesOf(const CauseSearch& search, const Scale& scale) {
+  std::vector<const Target*> boards = BoardsBefore(search, *scale.edge);
+  std::erase_if(boards, [&](const Target* board) { return std::abs(board->square_m - scale.square_m) > 1e-9; });
+  return boards;
+}
+
+std::map<BoardKey, std::vector<Scale>> ScalesOf(const CauseSearch& search) {
+  std::map<BoardKey, std::vector<Scale>> scales;
+  for (const Edge& edge : search.edges) {
+    const auto scale = IsPast(edge) ? std::nullopt : ScaleOf(edge);
+    if (!scale) continue;
+    std::vector<TargetId> boards;
+    for (const Target* board : CandidatesOf(search, *scale)) boards.push_back(board->id);
+    scales[{edge.session, boards, scale->square_m}].push_back(*scale);
+  }
+  return scales;
+}
+
+// The size that all pairs agree on; nothing where they do not: then it is a lens or a lidar, and not the board.
+std::optional<double> AgreedRatio(const std::vector<Scale>& scales) {
+  constexpr double kSigmas = 4.0, kPart = 1.0 / 3;
+  double sum = 0.0, weights = 0.0;
+  for (const Scale& scale : scales) {
+    const double weight = 1 / (scale.sigma_ratio * scale.sigma_ratio);
+    sum += weight * scale.ratio;
+    weights += weight;
+  }
+  const double mean = sum / weights;
+  const bool agree = std::all_of(scales.begin(), scales.end(), [&](const Scale& scale) {
+    return std::abs(scale.ratio - mean) <= std::max(kSigmas * scale.sigma_ratio, kPart * std::abs(mean));
+  });
+  return agree ? std::optional(mean) : std::nullopt;
+}
+
+bool IsBy(const Edge& edge, Method method) { return edge.method == rigcal::NameOf(method); }
+
+// By the pairs of one method alone.
+struct Witness {
+  std::vector<Scale> scales;
+  std::optional<double> ratio;
+};
+
+Witness WitnessOf(const std::vector<Scale>& scales, Method method) {
+  Witness witness;
+  for (const Scale& scale : scales)
+    if (IsBy(*scale.edge, method)) witness.scales.push_back(scale);
+  if (!witness.scales.empty()) witness.ratio = AgreedRatio(witness.scales);
+  return witness;
+}
+
+bool IsSuspected(const Edge& edge) { return FailedFor(edge, {"board_size_suspected"}); }
+
+// Failures that a wrong size makes of pairs that could not work it out themselves.
+bool MayFollow(const CauseSearch& search, const Edge& edge, const BoardKey& key) {
+  if (edge.session != std::get<0>(key) || !(IsBy(edge, Method::kLidarCamera) || IsBy(edge, Method::kTrackerCamera)))
+    return false;
+  if (!FailedFor(edge, {"high_residual", "range_bias_suspected", "contradicting_motion"})) return false;
+  const std::vector<TargetId>& boards = std::get<1>(key);
+  const std::vector<const Target*> candidates = BoardsBefore(search, edge);
+  return !candidates.empty() && std::all_of(candidates.begin(), candidates.end(), [&](const Target* board) {
+    return std::find(boards.begin(), boards.end(), board->id) != boards.end();
+  });
+}
+
+std::string SquareText(double square_m) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f mm", 1e3 * square_m);
+  return text.data();
+}
+
+bool HaveTags(const std::vector<const Target*>& boards) { return !boards.empty() && IsTagGrid(boards.front()->kind); }
+
+std::string SquaresOf(const std::vector<const Target*>& boards) {
+  std::string names;
+  for (const Target* board : boards) names += (names.empty() ? "" : " or ") + BoardName(*board);
+  return std::string("the ") + (HaveTags(boards) ? "tags" : "squares") + " of " + (names.empty() ? "the board" : names);
+}
+
+// As session.yaml has it.
+std::string SizeEntry(const std::vector<const Target*>& boards, double square_m) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), square_m < 0.05 ? "%.5f" : "%.4f", square_m);
+  return std::string("`") + (HaveTags(boards) ? "tag_size_m: " : "square_size_m: ") + text.data() + "`";
+}
+
+std::string PairsText(std::size_t pairs) { return std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs"); }
+
+Finding WrongSize(const std::vector<const Target*>& boards, double square_m, double ratio, std::size_t pairs) {
+  const std::string seen = PairsText(pairs) + (pairs == 1 ? " sees it " : " see it ") +
+                           TwoDigits(100 * std::abs(ratio), "%") + (ratio > 0 ? " larger" : " smaller");
+  return {
+      SquaresOf(boards) + " are probably " + SquareText(square_m * (1 + ratio)) + ", not " + SquareText(square_m) +
+          " (" + seen + ")",
+      "Measure one with a caliper and correct session.yaml, probably to " + SizeEntry(boards, square_m * (1 + ratio))};
+}
+
+Finding DisputedSize(const std::vector<const Target*>& boards, double square_m, const Witness& lidars,
+                     const Witness& trackers) {
+  const auto said = [&](const Witness& witness) {
+    return SquareText(square_m * (1 + *witness.ratio)) + " (" + PairsText(witness.scales.size()) + ")";
+  };
+  return {SquaresOf(boards) + " are " + said(lidars) + " by lidars and " + said(trackers) +
+              " by trackers, which do not agree; they are given as " + SquareText(square_m),
+          "Measure one with a caliper and correct session.yaml, or the scale of what differs from it"};
+}
+
+std::vector<const Edge*> TakeSuspected(CauseSearch& search, const std::vector<Scale>& scales) {
+  return search.Take([&](const Edge& edge) {
+    return IsSuspected(edge) &&
+           std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) { return scale.edge == &edge; });
+  });
+}
+
+// Lidars that agree with each other, and trackers likewise, but not both together.
+void AddDisputed(CauseSearch& search, const BoardKey& key, const std::vector<Scale>& scales) {
+  const Witness lidars = WitnessOf(scales, Method::kLidarCamera), trackers = WitnessOf(scales, Method::kTrackerCamera);
+  if (!lidars.ratio || !trackers.ratio) return;
+  const std::vector<const Edge*> edges = TakeSuspected(search, scales);
+  if (edges.empty()) return;
+  RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
+  cause.trait = "disputed";
+  cause.said = DisputedSize(CandidatesOf(search, scales.front()), std::get<2>(key), lidars, trackers);
+  search.causes.push_back(std::move(cause));
+}
+
+}  // namespace
+
+void FindBoardSizes(CauseSearch& search) {
+  for (const auto& [key, scales] : ScalesOf(search)) {
+    const auto ratio = AgreedRatio(scales);
+    if (!ratio) {
+      AddDisputed(search, key, scales);
+      continue;
+    }
+    std::vector<const Edge*> edges = TakeSuspected(search, scales);
+    if (edges.empty()) continue;
+    const auto& board_key = key;
+    if (edges.size() > 1)
+      for (const Edge* edge : search.Take([&](const Edge& one) { return MayFollow(search, one, board_key); }))
+        edges.push_back(edge);
+    RootCause cause{CauseKind::kBoardSize, {}, std::get<1>(key), {}, IdsOf(edges), {}, kPushAgain};
+    cause.trait = *ratio > 0 ? "larger" : "smaller";
+    cause.said = WrongSize(CandidatesOf(search, scales.front()), std::get<2>(key), *ratio, scales.size());
+    search.causes.push_back(std::move(cause));
+  }
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,263 @@
+#include "server/fleet/findings/findings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "server/fleet/findings/bridges.h"
+#include "server/fleet/findings/effect.h"
+#include "server/fleet/wording.h"
+#include "server/math/statistics.h"
+#include "server/math/tangent.h"
+#include "server/model/edges/merged_edge.h"
+#include "server/model/edges/past.h"
+#include "server/model/graph/unchecked.h"
+
+namespace rigcal::fleet {
+namespace {
+
+constexpr int kCapturesUsual = 20;
+
+std::pair<SensorId, SensorId> PairOf(const Edge& edge) { return std::minmax(edge.frame_a, edge.frame_b); }
+
+// How far beyond its limit an edge is. One that cannot be tested is held against the policy's plain limit.
+double RatioOf(const EdgeResidual& residual, const EdgeTest& test, const Policy& policy) {
+  if (!residual.in_solution) return 0.0;
+  if (test.limit > 0.0) return test.statistic / test.limit;
+  return TimesLimit(residual.e, ResidualMaxOf(policy));
+}
+
+// Independent edges of known information.
+bool CostIsChiSquare(const std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  return std::all_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    if (edge.state != EdgeState::kGood) return true;
+    return edge.uncertainty.dof == 0 && (edge.session.empty() || sessions.insert(edge.session).second);
+  });
+}
+
+// Moved between two visits, a sensor is contradicted by its own past, which no repetition takes away.
+std::string CureOfLoop(const CycleResidual& loop, const std::vector<Edge>& edges) {
+  std::set<SessionId> sessions;
+  for (const Edge& edge : edges)
+    if (std::find(loop.edges.begin(), loop.edges.end(), edge.id) != loop.edges.end()) {
+      sessions.insert(edge.session);
+      if (IsMergedOfSessions(edge)) sessions.insert(kMergedHistory);  // many
+    }
+  const std::string sensors = List(loop.sensors);
+  if (sessions.size() < 2) return "Capture " + sensors + " again";
+  return "Was one of them moved between the sessions? Yes: `rigcal push FOLDER --remounted SENSOR` of the later one. "
+         "No: "
+         "capture " +
+         sensors + " again";
+}
+
+// That an edge was measured from. One that was pushed tells by what its covariance was estimated from. Nothing: it does
+// not tell, as its covariance is known exactly, its poses make no captures, or it stands for many edges.
+std::optional<std::int64_t> CapturesOf(const Edge& edge) {
+  if (!edge.captures.empty())
+    return std::count_if(edge.captures.begin(), edge.captures.end(), [](const auto& one) { return one.used; });
+  const Uncertainty& known = edge.uncertainty;
+  if (!edge.session.empty() || IsMerged(edge) || (known.dof == 0 && known.blocks.empty())) return std::nullopt;
+  return std::max<std::int64_t>(known.dof > 0 ? known.dof + 1 : 0, static_cast<std::int64_t>(known.blocks.size()));
+}
+
+std::optional<Finding> FindWorstLoop(const Cycles& cycles, const std::vector<Edge>& edges) {
+  if (cycles.failing < 1 || cycles.worst.empty() || !cycles.worst.front().fails()) return std::nullopt;
+  const CycleResidual& worst = cycles.worst.front();
+  std::string why = "the loop of " + List(worst.sensors) + " does not close: " + OffList(worst.e) + " off, " +
+                    Number(worst.t_squared / worst.limit, "times") + " what chance allows";
+  if (cycles.failing > 1) why += " (" + std::to_string(cycles.failing) + " loops do not)";
+  return Finding{why, CureOfLoop(worst, edges)};
+}
+
+}  // namespace
+
+std::optional<Contradiction> MostContradicting(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                               const Policy& policy) {
+  std::map<EdgeId, const Edge*> by_id;
+  for (const Edge& edge : edges) by_id.emplace(edge.id, &edge);
+  const auto edge_count = static_cast<std::size_t>(std::count_if(solution.residuals.begin(), solution.residuals.end(),
+                                                                 [](const EdgeResidual& r) { return r.in_solution; }));
+  std::optional<Contradiction> worst;
+  double worst_ratio = 1.0;
+  for (const EdgeResidual& residual : solution.residuals) {
+    const auto found = by_id.find(residual.edge);
+    if (found == by_id.end()) continue;
+    const double ratio = RatioOf(residual, TestResidual(*found->second, residual, edge_count, policy), policy);
+    if (ratio > worst_ratio && !IsSmall(*found->second, solution, policy))
+      worst = Contradiction{found->second, residual.e}, worst_ratio = ratio;
+  }
+  return worst;
+}
+
+Finding DoNotFit(const SensorId& a, const SensorId& b, const Vector6d& e) {
+  const std::string first = a.str(), second = b.str();
+  return {
+      first + " and " + second + " do not fit the other measurements: " + OffList(e) + " off; one was probably moved",
+      "Was " + first + " or " + second + " moved? Yes: `rigcal push FOLDER --remounted " + first + "`, or " + second +
+          ". No: check their names, capture them again"};
+}
+
+std::optional<Finding> FindNoEdges(const std::vector<Edge>& edges) {
+  const bool any = std::any_of(edges.begin(), edges.end(), [](const Edge& e) { return e.state == EdgeState::kGood; });
+  if (any) return std::nullopt;
+  if (edges.empty()) return Finding{"nothing has been calibrated yet", "Push a capture session"};
+  if (std::all_of(edges.begin(), edges.end(), IsPast))
+    return Finding{
+        "all that was calibrated is past: it was retired, sensors were remounted since, or sessions corrected",
+        "Push a session that calibrates them anew"};
+  return Finding{"every calibration failed", "Open the failed edges, do what each of them says, and push again"};
+}
+
+std::optional<Finding> FindUnsettled(const GraphSolution& solution) {
+  if (solution.converged) return std::nullopt;
+  return Finding{"the graph did not settle",
+                 "Look for an edge with a large residual and push its session again, corrected"};
+}
+
+std::optional<Finding> FindPastPairs(const std::vector<Edge>& edges) {
+  std::set<std::pair<SensorId, SensorId>> measured;
+  for (const Edge& edge : edges)
+    if (!IsPast(edge)) measured.insert(PairOf(edge));
+  std::vector<std::string> past;
+  bool all_remounted = true;
+  for (const Edge& edge : edges) {
+    if (!IsOfEarlierEpoch(edge) || !measured.insert(PairOf(edge)).second) continue;
+    past.push_back(NameOfEdge(edge));
+    all_remounted = all_remounted && edge.diagnoses.front().code == kRemountedCode;
+  }
+  if (past.empty()) return std::nullopt;
+  return Finding{List(past) + (past.size() == 1 ? " was" : " were") + " not measured since " +
+                     (all_remounted ? "a sensor was remounted" : "an epoch of a sensor began"),
+                 "Push a session that calibrates " + List(past) + " anew"};
+}
+
+std::optional<Finding> FindFailedEdges(const std::vector<const Edge*>& failures) {
+  if (failures.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  std::set<std::string> cures;
+  for (const Edge* edge : failures) {
+    names.push_back(NameOfEdge(*edge));
+    cures.insert(edge->diagnoses.empty() ? "" : edge->diagnoses.front().cure);
+  }
+  std::string cure = cures.size() == 1 ? *cures.begin() : "";
+  if (!cure.empty() && cure.back() == '.') cure.pop_back();
+  if (cure.empty()) cure = "Open each failed edge: its page says why and what to do";
+  return Finding{"the calibration of " + List(names) + " failed", cure};
+}
+
+std::optional<Finding> FindFewCaptures(const std::vector<Edge>& edges, const Policy& policy) {
+  if (!policy.captures_min) return std::nullopt;
+  std::map<std::pair<SensorId, SensorId>, std::int64_t> most;
+  for (const Edge& edge : edges) {
+    if (edge.state != EdgeState::kGood) continue;
+    std::int64_t& known = most[PairOf(edge)];
+    known = std::max(known, CapturesOf(edge).value_or(*policy.captures_min));
+  }
+  std::vector<std::string> names;
+  for (const auto& [pair, used] : most)
+    if (used < *policy.captures_min) names.push_back(pair.first.str() + " - " + pair.second.str());
+  if (names.empty()) return std::nullopt;
+  const std::string wanted = std::to_string(*policy.captures_min);
+  return Finding{
+      List(names) + (names.size() == 1 ? " was" : " were") + " measured from fewer than " + wanted + " captures",
+      "Take " + wanted + " captures or more of each pair"};
+}
+
+std::optional<Finding> FindUncertainSensors(const GraphSolution& solution, const Policy& policy) {
+  std::vector<std::pair<double, const SensorPose*>> uncertain;
+  for (const SensorPose& pose : solution.poses) {
+    if (!pose.known) continue;
+    const Vector6d sigma = pose.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const PoseLimit wanted = LimitsOf(policy, pose.sensor).tolerance;
+    const double ratio = std::max(sigma.head<3>().maxCoeff() / wanted.m, sigma.tail<3>().maxCoeff() / wanted.rad);
+    if (ratio > 1.0) uncertain.emplace_back(ratio, &pose);
+  }
+  if (uncertain.empty()) return std::nullopt;
+  std::stable_sort(uncertain.begin(), uncertain.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<SensorId> sensors;
+  for (const auto& [ratio, pose] : uncertain) sensors.push_back(pose->sensor);
+  const Vector6d sigma = uncertain.front().second->covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const std::string names = List(sensors);
+  const std::string known = sensors.size() == 1 ? "the pose of " + names + " is known to "
+                                                : "the poses of " + names + " are known, at worst, to ";
+  return Finding{known + SigmaText(sigma.head<3>().maxCoeff(), sigma.tail<3>().maxCoeff()) + " only (" +
+                     LimitText(LimitsOf(policy, sensors.front()).tolerance) + " wanted)",
+                 "Capture " + names + " at more distances and tilts"};
+}
+
+std::optional<Finding> FindUncheckedSensors(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (solution.dof <= 0)
+    return Finding{"no loop of edges checks the result",
+                   "Calibrate one more pair of sensors, or repeat a pair, so that the edges check each other"};
+  std::vector<std::string> names;
+  for (const SensorId& sensor : FindBridges(edges, solution).sensors) names.push_back(sensor.str());
+  if (names.empty()) return std::nullopt;
+  return Finding{"nothing checks the pose of " + List(names) + ": a single edge is the only tie to the reference",
+                 "Calibrate " + List(names) + " against one more sensor, or repeat the pair"};
+}
+
+std::optional<Finding> FindUncheckedEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (solution.dof <= 0) return std::nullopt;
+  const std::set<EdgeId> unchecked = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
+  std::vector<std::string> names;
+  for (const Edge& edge : edges)
+    if (unchecked.contains(edge.id) && !bridges.contains(edge.id) &&
+        std::find(names.begin(), names.end(), NameOfEdge(edge)) == names.end())
+      names.push_back(NameOfEdge(edge));
+  if (names.empty()) return std::nullopt;
+  const bool one = names.size() == 1;
+  return Finding{"nothing checks " + List(names) + ": the other edges of " + (one ? "its" : "their") +
+                     " loops fit whatever " + (one ? "it says" : "they say"),
+                 "Repeat " + List(names) + " in a session of " + (one ? "its" : "their") +
+                     " own, with motion or boards in every direction"};
+}
+
+std::optional<Finding> FindUntestable(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                      const Policy& policy) {
+  if (solution.dof <= 0) return std::nullopt;
+  const std::set<EdgeId> unchecked = UncheckedEdges(solution), bridges = FindBridges(edges, solution).edges;
+  std::map<EdgeId, const Edge*> by_id;
+  for (const Edge& edge : edges)
+    if (edge.uncertainty.dof > 0 && !unchecked.contains(edge.id) && !bridges.contains(edge.id))
+      by_id.emplace(edge.id, &edge);
+  std::vector<std::string> names;
+  for (const EdgeResidual& residual : solution.residuals) {
+    const auto edge = by_id.find(residual.edge);
+    if (edge == by_id.end() || !residual.in_solution) continue;
+    const EdgeTest test = TestResidual(*edge->second, residual, solution.residuals.size(), policy);
+    const std::string name = NameOfEdge(*edge->second);
+    if (test.limit <= 0.0 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  if (names.empty()) return std::nullopt;
+  return Finding{"too few captures stand behind " + List(names) + " to test whether the edges agree",
+                 "Take " + std::to_string(std::max(kCapturesUsual, CapturesToTest(solution.residuals.size(), policy))) +
+                     " captures or more of each pair"};
+}
+
+bool IsCostBeyondChance(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy) {
+  return solution.dof > 0 && CostIsChiSquare(edges) &&
+         solution.cost > ChiSquareQuantile(policy.residual_probability, solution.dof);
+}
+
+std::optional<Finding> FindOpenLoops(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                     const Policy& policy) {
+  if (solution.dof <= 0) return std::nullopt;
+  if (!CostIsChiSquare(edges)) return FindWorstLoop(solution.cycles, edges);
+  if (!IsCostBeyondChance(edges, solution, policy) || AllIsSmall(edges, solution, policy)) return std::nullopt;
+  const double limit = ChiSquareQuantile(policy.residual_probability, solution.dof);
+  return Finding{"the loops of edges do not close within their sigmas (weighted cost " + PlainNumber(solution.cost) +
+                     " for " + std::to_string(solution.dof) + " degrees of freedom, limit " + PlainNumber(limit) + ")",
+                 "Capture the pair again that is off by most sigmas"};
+}
+
+std::string UntestedLoops(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  if (CostIsChiSquare(edges)) return "";
+  const Cycles& cycles = solution.cycles;
+  if (!cycles.judged) return cycles.why_not.empty() ? "" : "loops as a whole were not worked out";
+  return cycles.tested == 0 ? "no loop could be tested as a whole" : "";
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "server/fleet/findings/findings.h"
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+
+namespace {
+
+// Of sensors that had two poses, or sat elsewhere.
+template <typename Move>
+bool IsSmallMove(const Move& move, const Policy& policy) {
+  return !IsBeyond(move.step, LimitsOf(policy, move.sensor).moved_min);
+}
+
+template <typename Move>
+std::vector<Move> LargeOnes(const std::vector<Move>& moves, const Policy& policy) {
+  std::vector<Move> large = moves;
+  std::erase_if(large, [&](const Move& move) { return IsSmallMove(move, policy); });
+  return large;
+}
+
+std::string MoveText(const SensorMovedWithin& move, const SessionId& session, const SessionTimes& captured_at) {
+  return move.sensor.str() + " was moved during the session of " + NameOfSession(session, captured_at) +
+         ", between captures " + move.last_before.str() + " and " + move.first_after.str() + ", by " +
+         OffText(move.step);
+}
+
+std::string MoveText(const SensorMovedBetween& move, const SessionTimes& captured_at) {
+  return move.sensor.str() + " was moved between the sessions of " + NameOfSession(move.last_before, captured_at) +
+         " and " + NameOfSession(move.first_after, captured_at) + ", by " + OffText(move.step);
+}
+
+std::string Within(const std::string& move, const SensorId& sensor, const Policy& policy) {
+  return move + ", within " + LimitText(LimitsOf(policy, sensor).moved_min);
+}
+
+}  // namespace
+
+std::string SmallMoves(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution,
+                       const Policy& policy, const SessionTimes& captured_at) {
+  for (const SessionEstimate& estimate : estimates)
+    for (const SensorMovedWithin& move : estimate.moved)
+      if (IsSmallMove(move, policy)) return Within(MoveText(move, estimate.session, captured_at), move.sensor, policy);
+  for (const SensorMovedBetween& move : solution.fused.moved)
+    if (IsSmallMove(move, policy)) return Within(MoveText(move, captured_at), move.sensor, policy);
+  return "";
+}
+
+std::optional<Finding> FindMovedWithin(const std::vector<SessionEstimate>& estimates, const Policy& policy,
+                                       const SessionTimes& captured_at) {
+  const auto moved = std::find_if(estimates.begin(), estimates.end(),
+                                  [&](const auto& one) { return !LargeOnes(one.moved, policy).empty(); });
+  if (moved == estimates.end()) return std::nullopt;
+  Finding finding;
+  std::vector<std::string> names;
+  for (const SensorMovedWithin& one : LargeOnes(moved->moved, policy)) {
+    finding.why += (names.empty() ? "" : "; ") + MoveText(one, moved->session, captured_at);
+    if (std::find(names.begin(), names.end(), one.sensor.str()) == names.end()) names.push_back(one.sensor.str());
+  }
+  std::string flags;
+  for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
+  finding.what_to_do =
+      "Tighten the mount of " + List(names) + ", capture again, then `rigcal push FOLDER --remounted " + flags + "`";
+  return finding;
+}
+
+std::optional<Finding> FindMovedBoards(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
+  const auto newest = std::find_if(estimates.begin(), estimates.end(), [](const auto& one) { return one.why_not.empty(); });
+  if (newest == estimates.end() || newest->boards_moved.empty()) return std::nullopt;
+  Finding finding;
+  for (const BoardMovedWithin& one : newest->boards_moved)
+    finding.why += (finding.why.empty() ? "board " : "; board ") + one.board.str() + " was moved during the session of " +
+                   NameOfSession(newest->session, captured_at) + ", between captures " + one.last_before.str() + " and " +
+                   one.first_after.str() + ", by " + OffText(one.step);
+  finding.what_to_do = "Fasten the board before the next session; poses of this one tell its two places apart, as far as "
+                       "each was seen";
+  return finding;
+}
+
+std::optional<Finding> FindMovedBetween(const GraphSolution& solution, const Policy& policy,
+                                        const SessionTimes& captured_at) {
+  const std::vector<SensorMovedBetween> moved = LargeOnes(solution.fused.moved, policy);
+  if (moved.empty()) return std::nullopt;
+  Finding finding;
+  std::vector<std::string> names;
+  for (const SensorMovedBetween& one : moved) {
+    finding.why += (names.empty() ? "" : "; ") + MoveText(one, captured_at);
+    if (std::find(names.begin(), names.end(), one.sensor.str()) == names.end()) names.push_back(one.sensor.str());
+  }
+  std::string flags;
+  for (const std::string& name : names) flags += (flags.empty() ? "" : ",") + name;
+  const SensorMovedBetween& first = moved.front();
+  finding.what_to_do = "Was " + List(names) + " moved after " + NameOfSession(first.last_before, captured_at) +
+                       "? Yes: `rigcal push FOLDER --remounted " + flags + "` of the session of " +
+                       NameOfSession(first.first_after, captured_at) + ". No: tighten the mount, capture again";
+  return finding;
+}
+
+std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers) {
+  const FusedSessions& fused = solution.fused;
+  const auto newest = fused.sessions.empty() ? headers.end() : headers.find(fused.sessions.front());
+  if (newest == headers.end()) return std::nullopt;
+  std::map<std::pair<SensorId, SensorId>, std::set<std::string>> captures;
+  std::set<SensorId> sensors;
+  for (const FusedSessions::HeldBack& look : fused.held_back) {
+    const Sensor* sensor = rigcal::SensorOf(newest->second, look.sensor);
+    if (look.session != newest->first || sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
+    captures[{look.sensor, look.against}].insert(look.capture.str());
+    sensors.insert(look.sensor);
+  }
+  if (captures.empty()) return std::nullopt;
+  Finding finding;
+  for (const auto& [who, names] : captures) {
+    const std::vector<std::string> saw(names.begin(), names.end());
+    const std::string against = who.second.empty() ? "the rest" : who.second.str();
+    finding.why += (finding.why.empty() ? "" : "; ") + std::string("what ") + who.first.str() + " saw in capture " +
+                   List(saw) + " contradicts " + against + " and was left out";
+  }
+  const std::vector<SensorId> all(sensors.begin(), sensors.end());
+  finding.what_to_do = "Check that " + List(all) + " and the others take their pictures at the same moment";
+  return finding;
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,70 @@
+// Which disagreements of pairs count no more where their whole sessions were refined.
+#include <algorithm>
+#include <set>
+
+#include "server/fleet/findings/findings.h"
+#include "server/model/edges/merged_edge.h"
+#include "server/model/edges/method.h"
+
+namespace rigcal::fleet {
+namespace {
+
+std::set<EdgeId> EdgesOf(const std::vector<SessionId>& sessions, const std::vector<Edge>& edges) {
+  const std::set<SessionId> refined(sessions.begin(), sessions.end());
+  std::set<EdgeId> ids;
+  for (const Edge& edge : edges)
+    if (refined.contains(edge.session)) ids.insert(edge.id);
+  return ids;
+}
+
+// Edges of sessions in which a board moved, by methods that take boards to stand still.
+std::set<EdgeId> BeforeMovedBoards(const std::vector<SessionEstimate>& estimates, const std::vector<Edge>& edges) {
+  std::vector<SessionId> sessions;
+  for (const SessionEstimate& estimate : estimates)
+    if (!estimate.boards_moved.empty()) sessions.push_back(estimate.session);
+  std::set<EdgeId> ids = EdgesOf(sessions, edges);
+  for (const Edge& edge : edges)
+    if (const auto method = MethodNamed(edge.method); !method || !RowOf(*method).board_stands_still) ids.erase(edge.id);
+  return ids;
+}
+
+}  // namespace
+
+GraphSolution WithoutRefinedPairs(const std::vector<Edge>& edges, const GraphSolution& solution, const Policy& policy,
+                                  const std::vector<SessionEstimate>& estimates) {
+  std::set<EdgeId> refined = EdgesOf(solution.fused.sessions, edges);
+  const auto is_fused = [&](const SensorId& sensor) {  // or the reference, which is known exactly
+    return std::any_of(solution.poses.begin(), solution.poses.end(), [&](const SensorPose& pose) {
+      return pose.sensor == sensor && pose.known && (pose.fused || pose.covariance.isZero(0.0));
+    });
+  };
+  for (const Edge& edge : edges)
+    if (IsMergedOfSessions(edge) && !solution.fused.sessions.empty() && is_fused(edge.frame_a) && is_fused(edge.frame_b))
+      refined.insert(edge.id);
+  if (refined.empty()) return solution;
+  const std::set<EdgeId> before_moved_boards = BeforeMovedBoards(estimates, edges);
+  const auto excused = [&](const Vector6d& e, std::initializer_list<std::vector<EdgeId>> groups) {
+    bool small = !IsBeyond(e, ResidualMaxOf(policy));
+    for (const std::vector<EdgeId>& ids : groups)
+      for (const EdgeId& id : ids) {
+        if (!refined.contains(id)) return false;
+        small = small || before_moved_boards.contains(id);
+      }
+    return small;
+  };
+  GraphSolution judged = solution;
+  std::erase_if(judged.suspects.two_poses,
+                [&](const TwoPoses& two) { return excused(two.difference, {two.group_a, two.group_b}); });
+  std::erase_if(judged.suspects.edges, [&](const SuspectEdge& suspect) {
+    return excused(suspect.e, {{suspect.edge}, suspect.alternatives});
+  });
+  std::erase_if(judged.residuals, [&](const EdgeResidual& residual) { return excused(residual.e, {{residual.edge}}); });
+  std::erase_if(judged.cycles.worst, [&](const CycleResidual& cycle) {
+    const bool gone = excused(cycle.e, {cycle.edges});
+    judged.cycles.failing -= gone && cycle.fails() ? 1 : 0;
+    return gone;
+  });
+  return judged;
+}
+
+}  // namespace rigcal::fleet

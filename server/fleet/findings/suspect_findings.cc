@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "server/fleet/findings/findings.h"
+#include "server/fleet/wording.h"
+#include "server/model/edges/merged_edge.h"
+
+namespace rigcal::fleet {
+namespace {
+
+std::map<EdgeId, const Edge*> ById(const std::vector<Edge>& edges) {
+  std::map<EdgeId, const Edge*> by_id;
+  for (const Edge& edge : edges) by_id.emplace(edge.id, &edge);
+  return by_id;
+}
+
+std::vector<std::string> NamesOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
+  std::vector<std::string> names;
+  for (const EdgeId& id : ids) {
+    const auto edge = by_id.find(id);
+    names.push_back(edge == by_id.end() ? id.str().substr(0, 12) : NameOfEdge(*edge->second));
+  }
+  return names;
+}
+
+const SuspectEdge& WorstOf(const std::vector<SuspectEdge>& suspects) {
+  const SuspectEdge* worst = &suspects.front();
+  for (const SuspectEdge& suspect : suspects)
+    if (suspect.statistic * worst->limit > worst->statistic * suspect.limit) worst = &suspect;
+  return *worst;
+}
+
+std::string NameOf(const SuspectEdge& suspect) { return suspect.frame_a.str() + " - " + suspect.frame_b.str(); }
+
+// A loop does not say which of its edges is wrong.
+Finding OpenLoop(const SuspectEdge& suspect, const std::vector<Edge>& edges) {
+  std::vector<std::string> names = NamesOf(suspect.alternatives, ById(edges));
+  names.insert(names.begin(), NameOf(suspect));
+  return {
+      "the loop of edges " + List(names) + " does not close: " + OffList(suspect.e) + " off, and one of them is wrong",
+      "Capture these pairs again, or one more pair of their sensors to see which"};
+}
+
+// Sensors that all of them have: one, or both of a single pair.
+std::vector<SensorId> SharedBy(const std::vector<SuspectEdge>& suspects) {
+  std::vector<SensorId> shared = {suspects.front().frame_a, suspects.front().frame_b};
+  for (const SuspectEdge& suspect : suspects)
+    std::erase_if(shared,
+                  [&](const SensorId& sensor) { return suspect.frame_a != sensor && suspect.frame_b != sensor; });
+  return shared;
+}
+
+Finding SensorDoesNotFit(const SensorId& sensor, const std::vector<SuspectEdge>& suspects, const SuspectEdge& worst) {
+  std::vector<SensorId> others;
+  for (const SuspectEdge& suspect : suspects)
+    others.push_back(suspect.frame_a == sensor ? suspect.frame_b : suspect.frame_a);
+  const std::string name = sensor.str();
+  return {name + " does not fit the other measurements: " + OffList(worst.e) + " off at worst, against " +
+              List(others) + "; it was probably moved",
+          "Was " + name + " moved? Yes: `rigcal push FOLDER --remounted " + name +
+              "`. No: check its name and its mount, capture again"};
+}
+
+std::set<SessionId> SessionsOf(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id) {
+  std::set<SessionId> sessions;
+  for (const EdgeId& id : ids)
+    if (const auto edge = by_id.find(id); edge != by_id.end())
+      sessions.insert(IsMergedOfSessions(*edge->second) ? kMergedHistory : edge->second->session);
+  return sessions;
+}
+
+// The newest of a group; nothing where one of its sessions has no date.
+std::optional<SessionId> NewestIn(const std::set<SessionId>& sessions, const SessionTimes& captured_at) {
+  std::optional<SessionId> newest;
+  for (const SessionId& session : sessions) {
+    if (!captured_at.contains(session)) return std::nullopt;
+    if (!newest || captured_at.at(*newest) < captured_at.at(session)) newest = session;
+  }
+  return newest;
+}
+
+// "after 2026-01-31": from the newest session of the older group on.
+std::string WhenMoved(const std::set<SessionId>& a, const std::set<SessionId>& b, const SessionTimes& captured_at) {
+  const auto of_a = NewestIn(a, captured_at), of_b = NewestIn(b, captured_at);
+  if (!of_a || !of_b || *of_a == *of_b) return "between these sessions";
+  return "after " + NameOfSession(captured_at.at(*of_a) < captured_at.at(*of_b) ? *of_a : *of_b, captured_at);
+}
+
+// Only sessions have a date, and only what two of them say can be told apart by it. Edges too weak to tell go with the
+// larger group, so one session may be in both.
+std::string CureOf(const TwoPoses& two, const std::map<EdgeId, const Edge*>& by_id, const SessionTimes& captured_at) {
+  const std::string name = two.sensor.str(), was = "Was " + name + " moved ";
+  const std::set<SessionId> a = SessionsOf(two.group_a, by_id), b = SessionsOf(two.group_b, by_id);
+  if (a.contains(SessionId()) || b.contains(SessionId()))
+    return was +
+           "between these measurements? Yes: push what was measured since under a new robot name, for edges without "
+           "a session have no date. No: repeat the wrong one";
+  if (a == b) return was + "during the session? Tighten its mount, capture again";
+  return was + WhenMoved(a, b, captured_at) + "? Yes: `rigcal push FOLDER --remounted " + name +
+         "` of the later session. No: tighten its mount, capture again";
+}
+
+// Of a group whose edges all come from sessions these are named, as what can be looked at and repeated; the oldest
+// first.
+std::string GroupText(const std::vector<EdgeId>& ids, const std::map<EdgeId, const Edge*>& by_id,
+                      const SessionTimes& captured_at) {
+  const std::set<SessionId> sessions = SessionsOf(ids, by_id);
+  if (sessions.empty() || sessions.contains(SessionId())) return "edges " + List(NamesOf(ids, by_id));
+  std::vector<std::string> names;
+  for (const SessionId& session : sessions)
+    if (session != kMergedHistory) names.push_back(NameOfSession(session, captured_at));
+  std::sort(names.begin(), names.end());
+  const std::string edges = std::to_string(ids.size()) + (ids.size() == 1 ? " edge of " : " edges of ");
+  const std::string earlier = sessions.contains(kMergedHistory) ? "the sessions before the newest ones" : "";
+  if (names.empty()) return edges + earlier;
+  return edges + (earlier.empty() ? "" : earlier + " and of ") + (names.size() == 1 ? "session " : "sessions ") + List(names);
+}
+
+}  // namespace
+
+std::optional<Finding> FindTwoPoses(const std::vector<Edge>& edges, const GraphSolution& solution,
+                                    const SessionTimes& captured_at) {
+  if (solution.suspects.two_poses.empty()) return std::nullopt;
+  const TwoPoses& two = solution.suspects.two_poses.front();
+  const auto by_id = ById(edges);
+  std::string why = two.sensor.str() + " has two poses, " + OffText(two.difference) +
+                    " apart: " + GroupText(two.group_a, by_id, captured_at) + " agree on one, " +
+                    GroupText(two.group_b, by_id, captured_at) + " on the other";
+  const std::size_t more = solution.suspects.two_poses.size() - 1;
+  if (more > 0) why += " (and " + std::to_string(more) + (more == 1 ? " more sensor" : " more sensors") + " likewise)";
+  return Finding{why, CureOf(two, by_id, captured_at)};
+}
+
+std::optional<Finding> FindSuspectEdges(const std::vector<Edge>& edges, const GraphSolution& solution) {
+  const std::vector<SuspectEdge>& suspects = solution.suspects.edges;
+  if (suspects.empty()) return std::nullopt;
+  const SuspectEdge& worst = WorstOf(suspects);
+  if (suspects.size() == 1 && !worst.alternatives.empty()) return OpenLoop(worst, edges);
+  const std::vector<SensorId> shared = SharedBy(suspects);
+  if (shared.size() == 2) return DoNotFit(worst.frame_a, worst.frame_b, worst.e);
+  if (shared.size() == 1) return SensorDoesNotFit(shared.front(), suspects, worst);
+  std::vector<std::string> names = {NameOf(worst)};
+  for (const SuspectEdge& suspect : suspects)
+    if (&suspect != &worst) names.push_back(NameOf(suspect));
+  return Finding{
+      List(names) + " do not fit the other measurements: " + OffList(worst.e) +
+          " off at worst; sensors were probably moved",
+      "Was " + worst.frame_a.str() + " or " + worst.frame_b.str() +
+          " moved? Yes: `rigcal push FOLDER --remounted` with its name. No: check the names of all, capture them "
+          "again"};
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,121 @@
+// What a session could not have seen: sensors that could have been bumped during it without a word.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/fleet/findings/findings.h"
+#include "server/fleet/wording.h"
+
+namespace rigcal::fleet {
+namespace {
+
+struct Unseen {
+  SensorId sensor;
+  SessionId session;
+  SmallestMove move;
+};
+
+// Of each sensor the newest session that tells of it.
+std::vector<Unseen> NewestMovesOf(const std::vector<SessionEstimate>& estimates) {
+  std::vector<Unseen> newest;
+  std::set<SensorId> judged;
+  for (const SessionEstimate& estimate : estimates)
+    for (const RefinedPose& pose : estimate.poses)
+      if (pose.smallest_move && judged.insert(pose.sensor).second)
+        newest.push_back({pose.sensor, estimate.session, *pose.smallest_move});
+  return newest;
+}
+
+// Known sensors of which no session tells.
+std::vector<std::string> WithoutSession(const std::vector<Unseen>& told, const GraphSolution& solution) {
+  std::vector<std::string> untold;
+  for (const SensorPose& pose : solution.poses) {
+    const auto tells = [&](const Unseen& one) { return one.sensor == pose.sensor; };
+    if (pose.known && std::none_of(told.begin(), told.end(), tells)) untold.push_back(pose.sensor.str());
+  }
+  return untold;
+}
+
+// Times what the policy allows, whichever of the two is exceeded more.
+double TimesAllowed(const Unseen& one, const Policy& policy) {
+  const PoseLimit allowed = LimitsOf(policy, one.sensor).unseen_move;
+  return std::max(one.move.m / allowed.m, one.move.rad / allowed.rad);
+}
+
+bool IsAnyMove(const SmallestMove& move) { return move.m >= kAnyMove_m || move.rad >= kAnyMove_rad; }
+
+std::string SizeText(const SmallestMove& move) {
+  return Number(1e3 * move.m, "mm") + " or " + Number(kDegreesPerRadian * move.rad, "deg");
+}
+
+// How many times as many captures would bring `told` down to `tolerance`: sigmas fall with their root, the size below
+// which nothing is told as a move does not.
+double TimesTheCaptures(double told, double tolerance, double least) {
+  return std::max(std::pow(told / tolerance, 2), std::pow((told - least) / (tolerance - least), 2));
+}
+
+// Nobody takes so many: the boards must tell more.
+constexpr long kPlacesMax = 400;
+
+std::string MorePlaces(const Unseen& worst, const Policy& policy) {
+  const std::string seen = std::to_string(worst.move.captures), places = " places that " + worst.sensor.str() + " sees";
+  if (IsAnyMove(worst.move)) return "Capture more than " + seen + places;
+  const PoseLimit allowed = LimitsOf(policy, worst.sensor).unseen_move;
+  if (allowed.m <= kMovedMin_m || allowed.rad <= kMovedMin_rad)
+    return "Allow a larger unseen bump: one below 1 mm and 1 mrad is not told";
+  const double times = std::max(TimesTheCaptures(std::max(worst.move.m, allowed.m), allowed.m, kMovedMin_m),
+                                TimesTheCaptures(std::max(worst.move.rad, allowed.rad), allowed.rad, kMovedMin_rad));
+  const long needed = static_cast<long>(std::ceil(std::min(worst.move.captures * times, 1e9)));
+  if (needed > kPlacesMax)
+    return "Capture again, with boards nearer to " + worst.sensor.str() + " and more tilted; with more places alone it would take " +
+           std::to_string(needed) + " (this session had " + seen + ")";
+  return "Capture at least " + std::to_string(needed) + places + "; this session had " + seen;
+}
+
+}  // namespace
+
+std::optional<Finding> FindUnseenMoves(const std::vector<SessionEstimate>& estimates, const Policy& policy,
+                                       const SessionTimes& captured_at) {
+  std::vector<Unseen> unseen = NewestMovesOf(estimates);
+  std::erase_if(unseen, [&](const Unseen& one) { return TimesAllowed(one, policy) <= 1; });
+  if (unseen.empty()) return std::nullopt;
+  std::stable_sort(unseen.begin(), unseen.end(),
+                   [&](const Unseen& x, const Unseen& y) { return TimesAllowed(x, policy) > TimesAllowed(y, policy); });
+  const Unseen worst = unseen.front();
+  std::vector<std::string> names;
+  for (const Unseen& one : unseen)
+    if (one.session == worst.session) names.push_back(one.sensor.str());
+  Finding finding;
+  const bool one = names.size() == 1;
+  const std::string size = IsAnyMove(worst.move) ? "" : "by up to " + SizeText(worst.move);
+  finding.why = "a bump of " + List(names) + (one && !size.empty() ? " " + size : "") +
+                " half-way through the session of " + NameOfSession(worst.session, captured_at) + " would go unseen" +
+                (one || size.empty() ? "" : ", of " + worst.sensor.str() + " " + size);
+  finding.what_to_do = MorePlaces(worst, policy);
+  return finding;
+}
+
+std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates, const SessionTimes& captured_at) {
+  if (estimates.empty() || estimates.front().why_not.empty()) return std::nullopt;
+  const Diagnosis& why = estimates.front().why_not.front();
+  if (why.code != kRefinementFailed) return std::nullopt;
+  return Finding{"the session of " + NameOfSession(estimates.front().session, captured_at) +
+                     " could not be refined as a whole (" + why.what + "): a bump during it would go unseen",
+                 "Capture another session, from other places"};
+}
+
+std::string SmallestMoveNoticed(const std::vector<SessionEstimate>& estimates, const GraphSolution& solution) {
+  SmallestMove largest{0.0, 0.0, 0};
+  const std::vector<Unseen> told = NewestMovesOf(estimates);
+  for (const Unseen& one : told) {
+    largest.m = std::max(largest.m, one.move.m);
+    largest.rad = std::max(largest.rad, one.move.rad);
+  }
+  if (told.empty() || IsAnyMove(largest)) return "";
+  const std::vector<std::string> untold = WithoutSession(told, solution);
+  return "A bump of any sensor " + (untold.empty() ? "" : "but " + List(untold) + " ") + "by " + SizeText(largest) +
+         " half-way through a session would have been noticed" +
+         (untold.empty() ? "." : "; of " + List(untold) + " it is not known.");
+}
+
+}  // namespace rigcal::fleet

@@ -1,0 +1,201 @@
+#include "server/formats/revision/session_estimate.h"
+
+#include "server/formats/json/json_values.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr std::size_t kSensorsMax = 10'000, kLooksMax = 10'000'000, kBytesMax = 256u << 20;
+
+void WriteSmallestMove(JsonWriter& out, const SmallestMove& move) {
+  out.Object("smallest_move", [&] {
+    out.Integer("captures", move.captures);
+    out.Number("m", move.m);
+    out.Number("rad", move.rad);
+  });
+}
+
+void WritePoses(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("poses", [&] {
+    for (const RefinedPose& pose : estimate.poses)
+      out.Object([&] {
+        WritePose(out, "T_ref_sensor", pose.T_ref_sensor);
+        out.Number("dof", pose.dof);
+        out.Text("sensor", pose.sensor.str());
+        if (pose.smallest_move) WriteSmallestMove(out, *pose.smallest_move);
+      });
+  });
+}
+
+void WriteMoved(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("moved", [&] {
+    for (const SensorMovedWithin& moved : estimate.moved)
+      out.Object([&] {
+        out.Text("first_after", moved.first_after.str());
+        out.Text("last_before", moved.last_before.str());
+        out.Number("odds", moved.odds);
+        out.Text("sensor", moved.sensor.str());
+        WriteVector(out, "step", moved.step);
+      });
+  });
+}
+
+void WriteBoardsMoved(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("boards_moved", [&] {
+    for (const BoardMovedWithin& moved : estimate.boards_moved)
+      out.Object([&] {
+        out.Text("board", moved.board.str());
+        out.Text("first_after", moved.first_after.str());
+        out.Text("last_before", moved.last_before.str());
+        out.Number("odds", moved.odds);
+        WriteVector(out, "step", moved.step);
+      });
+  });
+}
+
+void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("held_back", [&] {
+    for (const HeldBackLook& look : estimate.held_back)
+      out.Object([&] {
+        if (!look.against.empty()) out.Text("against", look.against.str());
+        out.Text("capture", look.capture.str());
+        out.Text("sensor", look.sensor.str());
+      });
+  });
+}
+
+void WriteMisfits(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("misfits", [&] {
+    for (const LensMisfit& misfit : estimate.misfits)
+      out.Object([&] {
+        out.Text("camera", misfit.camera.str());
+        out.Number("evidence", misfit.evidence);
+        out.Text("model", NameOf(misfit.model));
+        out.Number("pose_sigma_m", misfit.pose_sigma_m);
+        out.Number("pose_sigma_rad", misfit.pose_sigma_rad);
+        out.Number("rms_px", misfit.rms_px);
+        out.Number("sigma_ratio", misfit.sigma_ratio);
+      });
+  });
+}
+
+LensMisfit ReadMisfit(const JsonField& field) {
+  LensMisfit misfit;
+  misfit.camera = ReadId<SensorId>(field.At("camera"));
+  const JsonField model = field.At("model");
+  if (const auto known = CameraModelOf(model.Text()); known)
+    misfit.model = *known;
+  else
+    model.Refuse(known.error().what);
+  misfit.rms_px = field.At("rms_px").Number();
+  misfit.evidence = field.At("evidence").Number();
+  misfit.pose_sigma_m = field.At("pose_sigma_m").Number();
+  misfit.pose_sigma_rad = field.At("pose_sigma_rad").Number();
+  misfit.sigma_ratio = field.At("sigma_ratio").Number();
+  return misfit;
+}
+
+void WriteSlants(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("slants", [&] {
+    for (const SlantBias& slant : estimate.slants)
+      out.Object([&] {
+        out.Text("lidar", slant.lidar.str());
+        out.Number("sigma_m", slant.sigma_m);
+        out.Number("too_long_m", slant.too_long_m);
+      });
+  });
+}
+
+SlantBias ReadSlant(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("lidar")), field.At("too_long_m").Number(), field.At("sigma_m").Number()};
+}
+
+void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
+  out.List("bends", [&] {
+    for (const BoardBend& bend : estimate.bends)
+      out.Object([&] {
+        out.Text("board", bend.board.str());
+        out.Number("height_m", bend.height_m);
+        out.Number("sigma_m", bend.sigma_m);
+      });
+  });
+}
+
+BoardBend ReadBend(const JsonField& field) {
+  return {ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
+}
+
+RefinedPose ReadRefinedPose(const JsonField& field) {
+  RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
+                   field.At("dof").Number(), std::nullopt};
+  if (const auto move = field.Find("smallest_move"))
+    pose.smallest_move = {move->At("m").Number(), move->At("rad").Number(),
+                          static_cast<int>(move->At("captures").Integer(0, kLooksMax))};
+  return pose;
+}
+
+SensorMovedWithin ReadMoved(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("sensor")), ReadId<CaptureId>(field.At("last_before")),
+          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+}
+
+BoardMovedWithin ReadBoardMoved(const JsonField& field) {
+  return {ReadId<TargetId>(field.At("board")), ReadId<CaptureId>(field.At("last_before")),
+          ReadId<CaptureId>(field.At("first_after")), ReadVector(field.At("step")), field.At("odds").Number()};
+}
+
+void CheckRows(const JsonField& root, const SessionEstimate& estimate) {
+  Eigen::Index rows = 0;
+  for (const RefinedPose& pose : estimate.poses) rows += pose.sensor == estimate.reference ? 0 : 6;
+  if (estimate.covariance.rows() != rows) root.At("covariance").Refuse("needs six rows per pose, none of the reference");
+  if (estimate.common.rows() != 0 && estimate.common.rows() != rows) root.At("common").Refuse("needs the covariance's rows");
+}
+
+}  // namespace
+
+std::string WriteSessionEstimate(const SessionEstimate& estimate) {
+  return WriteObject([&](JsonWriter& out) {
+    WriteBends(out, estimate);
+    WriteBoardsMoved(out, estimate);
+    WriteLowerTriangle(out, "common", estimate.common);
+    WriteLowerTriangle(out, "covariance", estimate.covariance);
+    WriteHeldBack(out, estimate);
+    WriteMisfits(out, estimate);
+    WriteMoved(out, estimate);
+    WritePoses(out, estimate);
+    out.Text("reference", estimate.reference.str());
+    out.Text("session", estimate.session.str());
+    WriteSlants(out, estimate);
+    WriteDiagnoses(out, "why_not", estimate.why_not);
+  });
+}
+
+Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
+  RIGCAL_ASSIGN(JsonDocument document,
+                JsonDocument::Parse(text, {"session estimate", "Run `rigcal doctor`: the store is damaged.", kBytesMax}));
+  const JsonField root = document.Root();
+  SessionEstimate estimate;
+  estimate.session = ReadId<SessionId>(root.At("session"));
+  estimate.reference = ReadId<SensorId>(root.At("reference"));
+  estimate.why_not = ReadDiagnoses(root.At("why_not"));
+  for (const JsonField& item : root.At("poses").Items(kSensorsMax)) estimate.poses.push_back(ReadRefinedPose(item));
+  estimate.covariance = ReadLowerTriangle(root.At("covariance"));
+  estimate.common = ReadLowerTriangle(root.At("common"));
+  CheckRows(root, estimate);
+  for (const JsonField& item : root.At("moved").Items(kSensorsMax)) estimate.moved.push_back(ReadMoved(item));
+  for (const JsonField& item : root.At("held_back").Items(kLooksMax))
+    estimate.held_back.push_back({ReadId<SensorId>(item.At("sensor")), ReadId<CaptureId>(item.At("capture")),
+                                  ReadOptionalId<SensorId>(item, "against")});
+  if (const auto boards = root.Find("boards_moved"))  // documents of before have none
+    for (const JsonField& item : boards->Items(kSensorsMax)) estimate.boards_moved.push_back(ReadBoardMoved(item));
+  if (const auto slants = root.Find("slants"))  // nor these
+    for (const JsonField& item : slants->Items(kSensorsMax)) estimate.slants.push_back(ReadSlant(item));
+  if (const auto bends = root.Find("bends"))  // nor these
+    for (const JsonField& item : bends->Items(kSensorsMax)) estimate.bends.push_back(ReadBend(item));
+  if (const auto misfits = root.Find("misfits"))  // nor these
+    for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
+  RIGCAL_TRY(document.status());
+  return estimate;
+}
+
+}  // namespace rigcal::formats

@@ -1,0 +1,87 @@
+#include "server/formats/revision/suspects_fields.h"
+
+#include "server/base/limits.h"
+#include "server/formats/json/json_values.h"
+
+namespace rigcal::formats {
+namespace {
+
+void WriteIds(JsonWriter& out, std::string_view key, const std::vector<EdgeId>& ids) {
+  out.List(key, [&] {
+    for (const EdgeId& id : ids) out.Text(id.str());
+  });
+}
+
+std::vector<EdgeId> ReadIds(const JsonField& field) {
+  std::vector<EdgeId> ids;
+  for (const JsonField& id : field.Items(limits::kEdgesPerBatchMax)) ids.push_back(ReadId<EdgeId>(id));
+  return ids;
+}
+
+void WriteSuspectEdge(JsonWriter& out, const SuspectEdge& suspect) {
+  out.Object([&] {
+    out.Text("edge", suspect.edge.str());
+    out.Text("frame_a", suspect.frame_a.str());
+    out.Text("frame_b", suspect.frame_b.str());
+    WriteVector(out, "e", suspect.e);
+    out.Number("statistic", suspect.statistic);
+    out.Number("limit", suspect.limit);
+    WriteIds(out, "alternatives", suspect.alternatives);
+  });
+}
+
+void WriteTwoPoses(JsonWriter& out, const TwoPoses& two) {
+  out.Object([&] {
+    out.Text("sensor", two.sensor.str());
+    WriteIds(out, "group_a", two.group_a);
+    WriteIds(out, "group_b", two.group_b);
+    WriteVector(out, "difference", two.difference);
+  });
+}
+
+SuspectEdge ReadSuspectEdge(const JsonField& field) {
+  SuspectEdge suspect;
+  suspect.edge = ReadId<EdgeId>(field.At("edge"));
+  suspect.frame_a = ReadId<SensorId>(field.At("frame_a"));
+  suspect.frame_b = ReadId<SensorId>(field.At("frame_b"));
+  suspect.e = ReadVector(field.At("e"));
+  suspect.statistic = field.At("statistic").Number();
+  suspect.limit = field.At("limit").Number();
+  suspect.alternatives = ReadIds(field.At("alternatives"));
+  return suspect;
+}
+
+TwoPoses ReadTwoPoses(const JsonField& field) {
+  TwoPoses two;
+  two.sensor = ReadId<SensorId>(field.At("sensor"));
+  two.group_a = ReadIds(field.At("group_a"));
+  two.group_b = ReadIds(field.At("group_b"));
+  two.difference = ReadVector(field.At("difference"));
+  return two;
+}
+
+}  // namespace
+
+void WriteSuspects(JsonWriter& out, std::string_view key, const Suspects& suspects) {
+  out.Object(key, [&] {
+    out.Flag("judged", suspects.judged);
+    out.List("edges", [&] {
+      for (const SuspectEdge& suspect : suspects.edges) WriteSuspectEdge(out, suspect);
+    });
+    out.List("two_poses", [&] {
+      for (const TwoPoses& two : suspects.two_poses) WriteTwoPoses(out, two);
+    });
+  });
+}
+
+Suspects ReadSuspects(const JsonField& field) {
+  Suspects suspects;
+  suspects.judged = field.At("judged").Flag();
+  for (const JsonField& suspect : field.At("edges").Items(limits::kEdgesPerBatchMax))
+    suspects.edges.push_back(ReadSuspectEdge(suspect));
+  for (const JsonField& two : field.At("two_poses").Items(limits::kSensorsPerRobotMax))
+    suspects.two_poses.push_back(ReadTwoPoses(two));
+  return suspects;
+}
+
+}  // namespace rigcal::formats

@@ -1,0 +1,276 @@
+#include <cmath>
+
+#include "server/base/limits.h"
+#include "server/base/text.h"
+#include "server/formats/sessions/session_folder.h"
+#include "server/formats/yaml/yaml_field.h"
+#include "server/model/edges/past.h"
+#include "server/model/edges/unit_doubt.h"
+
+namespace rigcal::formats {
+namespace {
+
+constexpr const char* kYamlCure = "Mend the file; docs/session-format.md has a complete example.";
+constexpr double kHandWrittenTolerance = 1e-3;  // of a quaternion with few digits: it is normalised
+
+// A key is printable, but may be a whole file long.
+std::string Title(const std::string& kind, const std::string& key) {
+  return kind + " " + (key.size() <= limits::kNameMax ? "'" + key + "'" : Quoted(key));
+}
+
+template <typename IdType>
+IdType ReadId(const YamlField& field) {
+  const std::string text = field.Text();
+  auto id = IdType::Parse(text);
+  if (id) return *std::move(id);
+  field.Refuse(id.error().what, id.error().cure);
+  return IdType();
+}
+
+std::string TextOr(const YamlField& map, std::string_view key, const std::string& otherwise) {
+  const auto field = map.Find(key);
+  return field ? field->Text() : otherwise;
+}
+
+Stamp ReadCapturedAt(const YamlField& field) {
+  const Result<Stamp> stamp = ParseIso(field.Text());
+  if (stamp) return *stamp;
+  field.Refuse(stamp.error().what, "Write the time of the capture as 2026-01-31T12:00:00Z.");
+  return {};
+}
+
+Se3 ReadPose(const YamlField& field) {
+  field.AllowOnly({"p_m", "q_xyzw"});
+  Se3 T;
+  double q[4] = {0, 0, 0, 1};
+  field.At("p_m").Numbers(T.p_m.data(), 3);
+  const YamlField quaternion = field.At("q_xyzw");
+  quaternion.Numbers(q, 4);
+  T.q = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
+  if (!(std::abs(T.q.norm() - 1.0) <= kHandWrittenTolerance))
+    quaternion.Refuse("must have unit length (it is " + std::to_string(T.q.norm()) + ")");
+  return T.Normalized();
+}
+
+CameraModel ReadModel(const YamlField& field) {
+  const Result<CameraModel> model = CameraModelOf(field.Text());
+  if (model) return *model;
+  field.Refuse("is not known here", "This version knows pinhole_radtan, pinhole_rational and fisheye_kb4.");
+  return CameraModel::kPinholeRadtan;
+}
+
+void ReadIntrinsics(const YamlField& field, Sensor& sensor) {
+  field.AllowOnly({"model", "fx_px", "fy_px", "cx_px", "cy_px", "distortion", "sigma"});
+  if (const auto model = field.Find("model")) sensor.camera_model = ReadModel(*model);
+  CameraIntrinsics camera;
+  camera.model = sensor.camera_model;
+  camera.distortion.assign(DistortionCount(camera.model), 0.0);
+  camera.fx_px = field.At("fx_px").Number();
+  camera.fy_px = field.At("fy_px").Number();
+  camera.cx_px = field.At("cx_px").Number();
+  camera.cy_px = field.At("cy_px").Number();
+  if (const auto k = field.Find("distortion")) k->Numbers(camera.distortion.data(), camera.distortion.size());
+  sensor.intrinsics = camera;
+  if (const auto sigma = field.Find("sigma")) {
+    sensor.intrinsics_sigma.emplace(4 + camera.distortion.size());
+    sigma->Numbers(sensor.intrinsics_sigma->data(), sensor.intrinsics_sigma->size());
+  }
+}
+
+CloudLayout ReadLayout(const YamlField& fields, const std::optional<YamlField>& type) {
+  CloudLayout layout;
+  for (const YamlField& name : fields.Items()) layout.fields.push_back(name.Text());
+  if (!type) return layout;
+  if (const Result<PointType> known = PointTypeOf(type->Text()))
+    layout.type = *known;
+  else
+    type->Refuse(known.error().what, known.error().cure);
+  return layout;
+}
+
+Sensor ReadSensor(const YamlField& field) {
+  field.AllowOnly(
+      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "fields", "point_type", "serial", "firmware",
+       "T_ref_nominal"});
+  Sensor sensor;
+  sensor.id = SensorId(field.Key());
+  const YamlField type = field.At("type");
+  if (const Result<SensorKind> kind = SensorKindOf(type.Text()))
+    sensor.kind = *kind;
+  else
+    type.Refuse(kind.error().what, kind.error().cure);
+  if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
+  const auto model = field.Find("model");
+  if (model && sensor.kind == SensorKind::kCamera) sensor.camera_model = ReadModel(*model);
+  if (model && sensor.kind != SensorKind::kCamera) model->Refuse("is for cameras only", "Leave it away.");
+  if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
+  if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
+  if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.Find("point_type"));
+  if (const auto point_type = field.Find("point_type"); point_type && !sensor.layout)
+    point_type->Refuse("is given without fields", "Name what a point holds, such as fields: [x, y, z, intensity].");
+  sensor.serial = TextOr(field, "serial", "");
+  sensor.firmware = TextOr(field, "firmware", "");
+  if (const auto T = field.Find("T_ref_nominal")) sensor.T_ref_nominal = ReadPose(*T);
+  if (const Status valid = Validate(sensor); !valid) field.Refuse(valid.error());
+  return sensor;
+}
+
+void ReadCounts(const YamlField& target, const char* key, int less, Target& board) {
+  const YamlField field = target.At(key);
+  const std::vector<YamlField> counts = field.Items();
+  if (counts.size() != 2) return field.Refuse("must be two numbers, [columns, rows]");
+  board.cols = static_cast<int>(counts[0].Integer(1, 1000)) - less;
+  board.rows = static_cast<int>(counts[1].Integer(1, 1000)) - less;
+}
+
+void ReadSize(const YamlField& target, const char* key, const char* sigma_key, Target& board) {
+  board.square_m = target.At(key).Number();
+  if (const auto sigma = target.Find(sigma_key)) board.square_sigma_m = sigma->Number();
+}
+
+void ReadCheckerboard(const YamlField& field, Target& board) {
+  field.AllowOnly({"type", "inner_corners", "square_size_m", "square_size_sigma_m", "serial", "plate_size_m"});
+  ReadCounts(field, "inner_corners", 0, board);
+  ReadSize(field, "square_size_m", "square_size_sigma_m", board);
+}
+
+// People count the squares of a ChArUco board; its points are the inner corners.
+void ReadCharuco(const YamlField& field, Target& board) {
+  field.AllowOnly({"type", "squares", "square_size_m", "square_size_sigma_m", "marker_size_m", "dictionary",
+                   "legacy_layout", "serial", "plate_size_m"});
+  ReadCounts(field, "squares", 1, board);
+  ReadSize(field, "square_size_m", "square_size_sigma_m", board);
+  board.marker_m = field.At("marker_size_m").Number();
+  board.dictionary = field.At("dictionary").Text();
+  if (const auto legacy = field.Find("legacy_layout")) {
+    board.legacy_layout = legacy->Text() == "true";
+    if (!board.legacy_layout && legacy->Text() != "false") legacy->Refuse("must be true or false");
+  }
+}
+
+void ReadTagGrid(const YamlField& field, Target& board) {
+  field.AllowOnly(
+      {"type", "tags", "tag_size_m", "tag_size_sigma_m", "spacing_ratio", "dictionary", "serial", "plate_size_m"});
+  ReadCounts(field, "tags", 0, board);
+  ReadSize(field, "tag_size_m", "tag_size_sigma_m", board);
+  board.spacing_ratio = field.At("spacing_ratio").Number();
+  board.dictionary = board.kind == TargetKind::kAprilGrid ? TextOr(field, "dictionary", "DICT_APRILTAG_36h11")
+                                                          : field.At("dictionary").Text();
+}
+
+Target ReadTarget(const YamlField& field) {
+  Target board;
+  board.id = TargetId(field.Key());
+  const YamlField type = field.At("type");
+  if (const Result<TargetKind> kind = TargetKindOf(type.Text()))
+    board.kind = *kind;
+  else
+    type.Refuse("is not known here", "This version knows checkerboard, charuco, aruco_grid and april_grid.");
+  if (board.kind == TargetKind::kCheckerboard) ReadCheckerboard(field, board);
+  if (board.kind == TargetKind::kCharuco) ReadCharuco(field, board);
+  if (IsTagGrid(board.kind)) ReadTagGrid(field, board);
+  board.serial = TextOr(field, "serial", "");
+  if (const auto plate = field.Find("plate_size_m")) plate->Numbers(board.plate_m.emplace().data(), 2);
+  if (const Status valid = Validate(board); !valid) field.Refuse(valid.error());
+  return board;
+}
+
+SensorPair ReadSkipPair(const YamlField& field) {
+  const std::vector<YamlField> names = field.Items();
+  if (names.size() == 2) return {ReadId<SensorId>(names[0]), ReadId<SensorId>(names[1])};
+  field.Refuse("must be two names of sensors, [a, b]");
+  return {};
+}
+
+LidarPolish ReadLidarPolish(const YamlField& field) {
+  const Result<LidarPolish> polish = LidarPolishOf(field.Text());
+  if (polish) return *polish;
+  field.Refuse(polish.error().what, polish.error().cure);
+  return LidarPolish::kNone;
+}
+
+SessionHeader ReadHeader(const YamlField& root) {
+  root.AllowOnly({"format", "robot", "rig_model", "captured_at", "operator", "reference", "targets", "sensors",
+                  "skip_pairs", "remounted", "lidar_polish", "conditions"});
+  SessionHeader header;
+  header.format = static_cast<int>(root.At("format").Integer(1, 1));
+  header.robot = ReadId<RobotId>(root.At("robot"));
+  header.rig_model = TextOr(root, "rig_model", "");
+  header.captured_at = ReadCapturedAt(root.At("captured_at"));
+  header.operator_name = TextOr(root, "operator", "");
+  if (const auto targets = root.Find("targets"))
+    for (const YamlField& target : targets->Members())
+      header.targets.push_back(ReadTarget(target.Called(Title("target", target.Key()))));
+  for (const YamlField& sensor : root.At("sensors").Members())
+    header.sensors.push_back(ReadSensor(sensor.Called(Title("sensor", sensor.Key()))));
+  for (const Sensor& sensor : header.sensors)
+    if (sensor.kind == SensorKind::kCamera) static_cast<void>(root.At("targets"));  // pictures are of something
+  if (const auto reference = root.Find("reference"))
+    header.reference = ReadId<SensorId>(*reference);
+  else if (!header.sensors.empty())
+    header.reference = header.sensors.front().id;
+  if (const auto pairs = root.Find("skip_pairs"))
+    for (const YamlField& pair : pairs->Items()) header.skip_pairs.push_back(ReadSkipPair(pair));
+  if (const auto remounted = root.Find("remounted"))
+    for (const YamlField& sensor : remounted->Items()) AddRemounted(ReadId<SensorId>(sensor), header);
+  if (const auto polish = root.Find("lidar_polish")) header.lidar_polish = ReadLidarPolish(*polish);
+  if (const auto conditions = root.Find("conditions"))
+    for (const YamlField& condition : conditions->Members())
+      header.conditions.emplace(condition.Key(), condition.Text());
+  return header;
+}
+
+// Which line a rule that spans the file is about.
+YamlField PlaceOf(const YamlField& root, const SessionHeader& header) {
+  const auto is_sensor = [&](const std::string& id) { return root.At("sensors").Find(id).has_value(); };
+  const auto targets = root.Find("targets");
+  for (const YamlField& sensor : root.At("sensors").Members()) {
+    const auto sees = sensor.Find("sees");
+    if (sees && !(targets && targets->Find(sees->Text()))) return *sees;
+  }
+  if (const auto pairs = root.Find("skip_pairs"))
+    for (const YamlField& pair : pairs->Items()) {
+      const std::string a = pair.Items()[0].Text(), b = pair.Items()[1].Text();
+      if (a == b || !is_sensor(a) || !is_sensor(b)) return pair;
+    }
+  if (const auto remounted = root.Find("remounted"))
+    for (const YamlField& sensor : remounted->Items())
+      if (!is_sensor(sensor.Text())) return sensor;
+  const auto reference = root.Find("reference");
+  if (reference && !is_sensor(header.reference.str())) return *reference;
+  const auto polish = root.Find("lidar_polish");
+  return polish && header.lidar_polish != LidarPolish::kNone && !HasLidarPair(header) ? *polish : root;
+}
+
+// Of the drawn poses that which is farthest from the reference; of none the file.
+YamlField FarthestNominal(const YamlField& root, const SessionHeader& header) {
+  double farthest_m = -1.0;
+  YamlField place = root;
+  for (const Sensor& sensor : header.sensors) {
+    if (!sensor.T_ref_nominal || sensor.T_ref_nominal->p_m.norm() <= farthest_m) continue;
+    farthest_m = sensor.T_ref_nominal->p_m.norm();
+    place = *root.At("sensors").At(sensor.id.str()).Find("T_ref_nominal");
+  }
+  return place;
+}
+
+}  // namespace
+
+Result<SessionHeader> ReadSessionYaml(std::string_view text, const std::string& name) {
+  RIGCAL_ASSIGN(const std::unique_ptr<YamlTree> tree, ParseYaml(text, name, kYamlCure, limits::kSessionYamlBytesMax));
+  const YamlField root(*tree);
+  SessionHeader header = ReadHeader(root);
+  if (tree->error) return Fail(*tree->error);
+  if (const Status valid = Validate(header); !valid) {
+    PlaceOf(root, header).Refuse(valid.error());
+    return Fail(*tree->error);
+  }
+  // Of the file alone: a session that a server has may have been taken before this was asked.
+  if (const Status near = CheckSensorsApart(header); !near) {
+    FarthestNominal(root, header).Refuse(near.error());
+    return Fail(*tree->error);
+  }
+  return header;
+}
+
+}  // namespace rigcal::formats

@@ -1,0 +1,157 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "server/graph/fusion/session_fusion.h"
+#include "server/math/covariance.h"
+#include "server/math/pooled_dof.h"
+
+namespace rigcal::graph {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kScatterRoundsMax = 30;
+constexpr double kScatterSettled = 0.01;
+// A variance alike along three axes, from 3 (visits - 1) numbers, twice: as sure as a 6 x 6 covariance of so many degrees
+// of freedom per visit beyond the first (the same expected error in PooledDof's measure: 42 / 4).
+constexpr double kScatterDofPerVisit = 10.0;
+
+std::vector<VisitVariance> ScatterOf(const SessionFusion& fusion) {
+  std::vector<VisitVariance> scatter;
+  for (const auto& visits : ResidualsOfVisits(fusion)) scatter.push_back(BetweenVisits(visits));
+  return scatter;
+}
+
+bool Same(const std::vector<VisitVariance>& x, const std::vector<VisitVariance>& y) {
+  const auto close = [](double a, double b) { return std::abs(a - b) <= kScatterSettled * std::max(a, b); };
+  return std::equal(x.begin(), x.end(), y.begin(), [&](const VisitVariance& a, const VisitVariance& b) {
+    return close(a.translation_m2, b.translation_m2) && close(a.rotation_rad2, b.rotation_rad2);
+  });
+}
+
+// Weights and scatter in turn: how visits are weighed depends on how they scatter.
+std::optional<MatrixXd> SettleWithScatter(SessionFusion& fusion) {
+  auto inverse = Settle(fusion);
+  for (int round = 0; inverse && round < kScatterRoundsMax; ++round) {
+    const std::vector<VisitVariance> scatter = ScatterOf(fusion);
+    if (Same(scatter, fusion.scatter)) break;
+    fusion.scatter = scatter;
+    inverse = Settle(fusion);
+  }
+  return inverse;
+}
+
+// Symmetric root of a covariance of mixed units: with alike sources and alike geometry it is alike on every visit.
+MatrixXd RootOf(const MatrixXd& C) {
+  const VectorXd scale = C.diagonal().unaryExpr([](double c) { return c > 0 ? std::sqrt(c) : 1.0; });
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(scale.cwiseInverse().asDiagonal() * C *
+                                                     scale.cwiseInverse().asDiagonal());
+  return scale.asDiagonal() * axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         axes.eigenvectors().transpose();
+}
+
+struct Told {
+  MatrixXd covariance;      // of a visit's poses, rows of the sensors
+  std::vector<double> dof;  // per sensor
+};
+
+// What a session's own errors move the sensors by: covariance of that alone.
+MatrixXd MovedBy(const MatrixXd& inverse, const LinearFactor& linear) { return inverse * linear.J.transpose() * linear.W; }
+
+MatrixXd CommonPart(const SessionFusion& fusion, const MatrixXd& inverse) {
+  const Eigen::Index size = fusion.Size();
+  MatrixXd moved = MatrixXd::Zero(size, size + 6);  // by what is common, a source per row of a sensor; the last: the reference
+  MatrixXd counted = MatrixXd::Zero(size, size);    // of it in `inverse` already, as if visits erred apart
+  for (const SessionFactor& factor : fusion.factors) {
+    if (factor.common.rows() == 0) continue;
+    const MatrixXd G = MovedBy(inverse, Linearized(fusion, factor)), by = G * RootOf(factor.common);
+    counted += G * factor.common * G.transpose();
+    for (std::size_t i = 0; i < factor.variable.size(); ++i)
+      moved.middleCols<6>(factor.variable[i] == kFixed ? size : 6 * factor.variable[i]) +=
+          by.middleCols<6>(6 * static_cast<Eigen::Index>(i));
+  }
+  return moved * moved.transpose() - counted;
+}
+
+double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear, const Matrix6d& all,
+             std::size_t sensor) {
+  const auto row = 6 * static_cast<Eigen::Index>(sensor);
+  PooledDof pooled(all);
+  int visits = 0;
+  for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
+    const SessionFactor& factor = fusion.factors[k];
+    const MatrixXd G = MovedBy(inverse, linear[k]).middleRows<6>(row);
+    double dof = *std::min_element(factor.dof.begin(), factor.dof.end());
+    for (std::size_t i = 0; i < factor.variable.size(); ++i)
+      if (factor.variable[i] == static_cast<int>(sensor)) dof = factor.dof[i], ++visits;
+    pooled.Add(G * factor.C * G.transpose(), static_cast<int>(std::lround(dof)));
+  }
+  if (visits > 1) pooled.Add(fusion.scatter[sensor].Matrix(), static_cast<int>(kScatterDofPerVisit * (visits - 1)));
+  return pooled.Of(all);
+}
+
+Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse) {
+  const auto rows = 6 * static_cast<Eigen::Index>(fusion.sensors.size());
+  Told told{(inverse + CommonPart(fusion, inverse)).topLeftCorner(rows, rows), {}};
+  std::vector<LinearFactor> linear;
+  for (const SessionFactor& factor : fusion.factors) linear.push_back(Linearized(fusion, factor));
+  for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
+    const auto row = 6 * static_cast<Eigen::Index>(s);
+    told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix();
+    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), s));
+  }
+  return told;
+}
+
+int SessionsOf(const SessionFusion& fusion, int variable) {
+  return static_cast<int>(std::count_if(fusion.factors.begin(), fusion.factors.end(), [&](const SessionFactor& factor) {
+    return std::find(factor.variable.begin(), factor.variable.end(), variable) != factor.variable.end();
+  }));
+}
+
+void TakePoses(const SessionFusion& fusion, const Told& told, GraphSolution& solution) {
+  for (SensorPose& pose : solution.poses) {
+    const auto found = std::find(fusion.sensors.begin(), fusion.sensors.end(), pose.sensor);
+    if (found == fusion.sensors.end()) continue;
+    const auto s = static_cast<std::size_t>(found - fusion.sensors.begin());
+    const VisitVariance& scatter = fusion.scatter[s];
+    pose.fused = FusedPose{pose.T_ref_sensor, pose.covariance, SessionsOf(fusion, static_cast<int>(s)),
+                           std::sqrt(scatter.translation_m2), std::sqrt(scatter.rotation_rad2)};
+    const auto row = 6 * static_cast<Eigen::Index>(s);
+    pose.T_ref_sensor = fusion.T_ref[s];
+    pose.covariance = Symmetrized(told.covariance.block<6, 6>(row, row));
+    pose.dof = told.dof[s];
+  }
+}
+
+std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimate>& estimates,
+                                                const std::vector<SessionId>& sessions) {
+  std::vector<FusedSessions::HeldBack> held_back;
+  for (const SessionEstimate& estimate : estimates)
+    if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
+      for (const HeldBackLook& look : estimate.held_back)
+        held_back.push_back({estimate.session, look.sensor, look.capture, look.against});
+  return held_back;
+}
+
+}  // namespace
+
+void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution) {
+  SessionFusion fusion = FusionOf({edges, within, reference, solution}, estimates, true);
+  if (fusion.factors.empty() || fusion.sensors.size() > kFusedSensorsMax) return;
+  const auto inverse = SettleWithScatter(fusion);
+  if (!inverse) return;
+  solution.fused.moved = FindMovesBetween({edges, within, reference, solution}, estimates);
+  const Told told = ToldOf(fusion, *inverse);
+  TakePoses(fusion, told, solution);
+  solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
+  solution.fused.sessions = fusion.sessions;
+  solution.fused.sensors = fusion.sensors;
+  solution.fused.covariance = told.covariance;
+}
+
+}  // namespace rigcal::graph

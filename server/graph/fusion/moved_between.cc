@@ -1,0 +1,178 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "server/graph/fusion/session_fusion.h"
+#include "server/math/covariance.h"
+#include "server/math/statistics.h"
+
+namespace rigcal::graph {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kMovesMax = 4, kScatterRounds = 10;
+constexpr std::size_t kVisitsCompared = 8;
+
+// Sessions on one side of a change, fused.
+struct Side {
+  SessionFusion fusion;
+  MatrixXd covariance;  // of its poses
+};
+struct Sides {
+  Side before, after;
+  int visits = 0;
+};
+
+// Both sides settled, with one scatter per sensor from the residuals within the sides.
+bool SettleSides(Sides& sides) {
+  for (int round = 0; round < kScatterRounds; ++round) {
+    auto before = Settle(sides.before.fusion), after = Settle(sides.after.fusion);
+    if (!before || !after) return false;
+    sides.before.covariance = std::move(*before);
+    sides.after.covariance = std::move(*after);
+    if (sides.visits <= 2) return true;
+    std::map<SensorId, std::vector<VisitResidual>> visits;
+    for (const SessionFusion* side : {&sides.before.fusion, &sides.after.fusion}) {
+      const auto residuals = ResidualsOfVisits(*side);
+      for (std::size_t s = 0; s < residuals.size(); ++s)
+        visits[side->sensors[s]].insert(visits[side->sensors[s]].end(), residuals[s].begin(), residuals[s].end());
+    }
+    bool changed = false;
+    for (SessionFusion* side : {&sides.before.fusion, &sides.after.fusion})
+      for (std::size_t s = 0; s < side->sensors.size(); ++s)
+        if (const VisitVariance scatter = BetweenVisits(visits[side->sensors[s]], 2); scatter != side->scatter[s])
+          side->scatter[s] = scatter, changed = true;
+    if (!changed) return true;
+  }
+  return true;
+}
+
+// What both sides say of the sensors that both tell.
+struct Difference {
+  std::vector<SensorId> sensors;
+  std::vector<Se3> T_before;
+  VectorXd d;
+  MatrixXd S;
+};
+Difference DifferenceOf(const Sides& sides) {
+  Difference difference;
+  std::vector<int> before, after;
+  for (std::size_t s = 0; s < sides.before.fusion.sensors.size(); ++s) {
+    const auto& sensors = sides.after.fusion.sensors;
+    const auto found = std::find(sensors.begin(), sensors.end(), sides.before.fusion.sensors[s]);
+    if (found == sensors.end()) continue;
+    difference.sensors.push_back(*found);
+    difference.T_before.push_back(sides.before.fusion.T_ref[s]);
+    for (int i = 0; i < 6; ++i) {
+      before.push_back(static_cast<int>(6 * s) + i);
+      after.push_back(static_cast<int>(6 * (found - sensors.begin())) + i);
+    }
+  }
+  difference.d.resize(static_cast<Eigen::Index>(before.size()));
+  for (std::size_t s = 0; s < difference.sensors.size(); ++s)
+    difference.d.segment<6>(static_cast<Eigen::Index>(6 * s)) =
+        (difference.T_before[s].Inverse() * sides.after.fusion.T_ref[static_cast<std::size_t>(after[6 * s] / 6)]).Log();
+  difference.S = sides.before.covariance(before, before) + sides.after.covariance(after, after);
+  return difference;
+}
+
+struct Change {
+  SensorId sensor;
+  Vector6d step = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
+  double gain = 0.0;
+};
+
+// A step of one sensor, E its columns: d = E step.
+Change ChangeBy(const SensorId& sensor, const MatrixXd& E, const VectorXd& d, const MatrixXd& W) {
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> half = E.transpose() * W;
+  const Matrix6d information = half * E;
+  const Eigen::LDLT<Matrix6d> ldlt(information);
+  Change change{sensor, ldlt.solve(half * d), ldlt.solve(Matrix6d::Identity()), 0.0};
+  change.gain = (half * d).dot(change.step);
+  return change;
+}
+
+Change LikeliestChange(const Difference& difference, const SensorId& reference) {
+  const Eigen::Index rows = difference.d.size();
+  const VectorXd scale = difference.S.diagonal().cwiseSqrt().cwiseInverse();
+  const MatrixXd inverse =
+      (scale.asDiagonal() * difference.S * scale.asDiagonal()).llt().solve(MatrixXd::Identity(rows, rows));
+  const MatrixXd W = scale.asDiagonal() * inverse * scale.asDiagonal();
+  MatrixXd by_reference(rows, 6);  // T_before = X T_after
+  Change best;
+  for (std::size_t s = 0; s < difference.sensors.size(); ++s) {
+    MatrixXd E = MatrixXd::Zero(rows, 6);
+    E.middleRows<6>(static_cast<Eigen::Index>(6 * s)).setIdentity();
+    by_reference.middleRows<6>(static_cast<Eigen::Index>(6 * s)) = -Adjoint(difference.T_before[s].Inverse());
+    const Change change = ChangeBy(difference.sensors[s], E, difference.d, W);
+    if (change.gain > best.gain) best = change;
+  }
+  // Of two sensors nobody can tell which one was moved: the one that is not the reference is named.
+  if (difference.sensors.size() < 2) return best;
+  const Change change = ChangeBy(reference, by_reference, difference.d, W);
+  return change.gain > best.gain ? change : best;
+}
+
+struct Found {
+  SensorMovedBetween moved;
+  Matrix6d covariance = Matrix6d::Zero();
+  double gain = 0.0;
+  std::size_t first_after = 0;
+};
+
+// `oldest_first`; the change is before its element `first_after`.
+std::optional<Found> ChangeBefore(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
+                                  std::size_t first_after, const SensorsOfSessions& left_out) {
+  const auto middle = oldest_first.begin() + static_cast<std::ptrdiff_t>(first_after);
+  Sides sides{{FusionOf(input, {oldest_first.begin(), middle}, false, left_out), {}},
+              {FusionOf(input, {middle, oldest_first.end()}, false, left_out), {}},
+              static_cast<int>(oldest_first.size())};
+  if (sides.before.fusion.factors.empty() || sides.after.fusion.factors.empty() || !SettleSides(sides))
+    return std::nullopt;
+  const Difference difference = DifferenceOf(sides);
+  if (difference.sensors.empty()) return std::nullopt;
+  const Change change = LikeliestChange(difference, input.reference);
+  Found found{{change.sensor, oldest_first[first_after - 1].session, oldest_first[first_after].session, change.step, 1.0},
+              change.covariance, change.gain, first_after};
+  const bool scattered = std::any_of(sides.before.fusion.scatter.begin(), sides.before.fusion.scatter.end(),
+                                     [](const VisitVariance& one) { return one.translation_m2 > 0 || one.rotation_rad2 > 0; });
+  const double looks = static_cast<double>((difference.sensors.size() + 1) * (oldest_first.size() - 1));
+  const double tail = scattered ? FisherTail(change.gain / 6, 6, 3.0 * (sides.visits - 2)) : ChiSquareTail(change.gain, 6);
+  found.moved.odds = std::min(1.0, looks * tail);
+  return found;
+}
+
+std::optional<Found> LikeliestOf(const FusionInput& input, const std::vector<SessionEstimate>& oldest_first,
+                                 const SensorsOfSessions& left_out) {
+  std::optional<Found> best;
+  for (std::size_t k = 1; k < oldest_first.size(); ++k) {
+    auto found = ChangeBefore(input, oldest_first, k, left_out);
+    if (found && IsMove(found->moved.step, Observable(found->covariance).covariance, found->moved.odds) &&
+        (!best || found->moved.odds < best->moved.odds || (found->moved.odds == best->moved.odds && found->gain > best->gain)))
+      best = std::move(found);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
+                                                 const std::vector<SessionEstimate>& estimates) {
+  std::vector<SessionEstimate> oldest_first;
+  for (const SessionEstimate& estimate : estimates)
+    if (oldest_first.size() < kVisitsCompared && IsFused(estimate, input)) oldest_first.push_back(estimate);
+  std::reverse(oldest_first.begin(), oldest_first.end());
+  std::vector<SensorMovedBetween> moves;
+  SensorsOfSessions left_out;
+  while (static_cast<int>(moves.size()) < kMovesMax) {
+    const auto found = LikeliestOf(input, oldest_first, left_out);
+    if (!found) break;
+    moves.push_back(found->moved);
+    for (std::size_t k = 0; k < found->first_after; ++k) left_out.insert({oldest_first[k].session, found->moved.sensor});
+  }
+  return moves;
+}
+
+}  // namespace rigcal::graph

@@ -1,0 +1,258 @@
+#include "server/graph/fusion/session_fusion.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "server/math/covariance.h"
+#include "server/model/edges/merged_edge.h"
+#include "server/model/edges/past.h"
+
+namespace rigcal::graph {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kIterationsMax = 30;
+constexpr double kSettled = 1e-12;  // squared step in sigmas
+
+std::set<SensorId> SensorsThatCount(const SessionId& session, const FusionInput& input) {
+  std::set<SensorId> counting;
+  for (const std::vector<Edge>* edges : {&input.edges, &input.within})
+    for (const Edge& edge : *edges)
+      if (edge.session == session && edge.state == EdgeState::kGood) counting.insert({edge.frame_a, edge.frame_b});
+  return counting;
+}
+
+bool IsOfSession(const Edge& edge) { return !edge.session.empty() || IsMergedOfSessions(edge); }
+
+bool HasRetired(const SessionId& session, const std::vector<Edge>& edges) {
+  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return edge.session == session && IsPast(edge) && edge.diagnoses.front().code == kRetiredCode;
+  });
+}
+
+MatrixXd Selected(const MatrixXd& C, const std::vector<int>& first_rows) {
+  std::vector<int> rows;
+  for (const int first : first_rows)
+    for (int i = 0; i < 6; ++i) rows.push_back(first + i);
+  return C(rows, rows);
+}
+
+class Builder {
+ public:
+  Builder(const FusionInput& input, const SensorsOfSessions& left_out) : input_(input), left_out_(left_out) {
+    for (const SensorPose& pose : input.start.poses)
+      if (pose.known) start_.emplace(pose.sensor, pose.T_ref_sensor);
+  }
+
+  SessionFusion Build(const std::vector<SessionEstimate>& estimates, bool with_edges) {
+    std::vector<std::pair<const SessionEstimate*, std::set<SensorId>>> taken;
+    for (const SessionEstimate& estimate : estimates) {
+      if (!IsFused(estimate, input_)) continue;
+      const std::set<SensorId> counting = CountingIn(estimate);
+      if (counting.size() < 2) continue;  // tells no pose against another
+      refined_.insert(counting.begin(), counting.end());
+      taken.emplace_back(&estimate, counting);
+    }
+    const std::vector<const Edge*> edges = with_edges ? EdgesBeside() : std::vector<const Edge*>{};
+    for (const Edge* edge : edges) refined_.insert({edge->frame_a, edge->frame_b});
+    AddVariables();
+    for (const auto& [estimate, counting] : taken) AddFactor(*estimate, counting);
+    for (const Edge* edge : edges)
+      fusion_.edges.push_back(
+          {VariableOf(edge->frame_a), VariableOf(edge->frame_b), edge->T_a_b, edge->uncertainty.Omega});
+    return std::move(fusion_);
+  }
+
+ private:
+  [[nodiscard]] std::set<SensorId> CountingIn(const SessionEstimate& estimate) const {
+    std::set<SensorId> counting = SensorsThatCount(estimate.session, input_), refined;
+    for (const RefinedPose& pose : estimate.poses)
+      if (counting.contains(pose.sensor) && start_.contains(pose.sensor) &&
+          !left_out_.contains({estimate.session, pose.sensor}))
+        refined.insert(pose.sensor);
+    return refined;
+  }
+
+  [[nodiscard]] std::vector<const Edge*> EdgesBeside() const {
+    std::vector<const Edge*> beside;
+    for (const Edge& edge : input_.edges) {
+      if (edge.state != EdgeState::kGood || !start_.contains(edge.frame_a) || !start_.contains(edge.frame_b)) continue;
+      if (!IsOfSession(edge) || !refined_.contains(edge.frame_a) || !refined_.contains(edge.frame_b))
+        beside.push_back(&edge);
+    }
+    return beside;
+  }
+
+  void AddVariables() {
+    for (const SensorPose& pose : input_.start.poses) {
+      if (pose.sensor == input_.reference || !refined_.contains(pose.sensor)) continue;
+      fusion_.sensors.push_back(pose.sensor);
+      fusion_.T_ref.push_back(pose.T_ref_sensor);
+    }
+    fusion_.scatter.resize(fusion_.sensors.size());
+  }
+
+  void AddFactor(const SessionEstimate& estimate, const std::set<SensorId>& counting) {
+    SessionFactor factor;
+    std::vector<int> rows;
+    for (std::size_t i = 0; i < estimate.poses.size(); ++i) {
+      const RefinedPose& pose = estimate.poses[i];
+      const int row = RowOf(estimate, i);
+      if (row < 0 || !counting.contains(pose.sensor)) continue;
+      rows.push_back(row);
+      factor.variable.push_back(VariableOf(pose.sensor));
+      factor.T_frame_sensor.push_back(pose.T_ref_sensor);
+      factor.dof.push_back(pose.dof);
+    }
+    factor.frame = counting.contains(estimate.reference) ? VariableOf(estimate.reference) : FreeFrame(factor);
+    factor.C = Selected(estimate.covariance, rows);
+    if (estimate.common.rows() > 0) factor.common = Selected(estimate.common, rows);
+    fusion_.sessions.push_back(estimate.session);
+    fusion_.factors.push_back(std::move(factor));
+  }
+
+  [[nodiscard]] int VariableOf(const SensorId& sensor) const {
+    if (sensor == input_.reference) return kFixed;
+    return static_cast<int>(std::find(fusion_.sensors.begin(), fusion_.sensors.end(), sensor) - fusion_.sensors.begin());
+  }
+  int FreeFrame(const SessionFactor& factor) {
+    fusion_.T_ref.push_back(fusion_.Pose(factor.variable.front()) * factor.T_frame_sensor.front().Inverse());
+    return static_cast<int>(fusion_.T_ref.size()) - 1;
+  }
+
+  const FusionInput& input_;
+  const SensorsOfSessions& left_out_;
+  std::map<SensorId, Se3> start_;
+  std::set<SensorId> refined_;
+  SessionFusion fusion_;
+};
+
+// Residual and Jacobian of T_a_b = T_a^-1 T_b with right tangents at both.
+void AddRelative(const SessionFusion& fusion, int a, int b, const Se3& T_a_b, Eigen::Index row, LinearFactor& linear) {
+  const Se3 predicted = fusion.Pose(a).Inverse() * fusion.Pose(b);
+  const Vector6d e = (T_a_b.Inverse() * predicted).Log();
+  const Matrix6d by_b = RightJacobianInverse(e);
+  linear.e.segment<6>(row) = e;
+  if (b != kFixed) linear.J.block<6, 6>(row, 6 * b) += by_b;
+  if (a != kFixed) linear.J.block<6, 6>(row, 6 * a) -= by_b * Adjoint(predicted.Inverse());
+}
+
+struct Normal {
+  MatrixXd H;
+  VectorXd b;
+};
+Normal NormalOf(const SessionFusion& fusion) {
+  Normal normal{MatrixXd::Zero(fusion.Size(), fusion.Size()), VectorXd::Zero(fusion.Size())};
+  const auto add = [&](const LinearFactor& linear) {
+    const MatrixXd half = linear.J.transpose() * linear.W;
+    normal.H.noalias() += half * linear.J;
+    normal.b.noalias() += half * linear.e;
+  };
+  for (const SessionFactor& factor : fusion.factors) add(Linearized(fusion, factor));
+  for (const EdgeFactor& edge : fusion.edges) {
+    LinearFactor linear{VectorXd::Zero(6), MatrixXd::Zero(6, fusion.Size()), edge.Omega};
+    AddRelative(fusion, edge.a, edge.b, edge.T_a_b, 0, linear);
+    add(linear);
+  }
+  return normal;
+}
+
+constexpr int kHalvings = 60;
+
+// e^T (C + v I)^-1 e is the sum of square / (variance + v), along the axes of C.
+struct AlongAxis {
+  double square = 0.0, variance = 0.0;
+};
+
+std::vector<AlongAxis> AlongAxes(const std::vector<VisitResidual>& visits, int part) {
+  std::vector<AlongAxis> axes;
+  for (const VisitResidual& visit : visits) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(visit.own.block<3, 3>(part, part));
+    const Eigen::Vector3d e = eigen.eigenvectors().transpose() * visit.e.segment<3>(part);
+    for (int i = 0; i < 3; ++i) axes.push_back({e(i) * e(i), std::max(0.0, eigen.eigenvalues()(i))});
+  }
+  return axes;
+}
+
+double SquaresAt(const std::vector<AlongAxis>& axes, double variance) {
+  double squares = 0.0;
+  for (const AlongAxis& axis : axes)
+    if (axis.square > 0.0) squares += axis.square / (axis.variance + variance);
+  return squares;
+}
+
+double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means) {
+  const double expected = 3.0 * (static_cast<double>(visits.size()) - means);
+  if (expected <= 0) return 0.0;
+  const std::vector<AlongAxis> axes = AlongAxes(visits, part);
+  if (SquaresAt(axes, 0.0) <= expected) return 0.0;
+  double low = 0.0, high = 0.0;
+  for (const AlongAxis& axis : axes) high += axis.square;  // sum e^2 / high <= 1
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (SquaresAt(axes, middle) > expected ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace
+
+bool IsFused(const SessionEstimate& estimate, const FusionInput& input) {
+  return estimate.why_not.empty() && !HasRetired(estimate.session, input.edges) && !HasRetired(estimate.session, input.within);
+}
+
+SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates, bool with_edges,
+                       const SensorsOfSessions& left_out) {
+  return Builder(input, left_out).Build(estimates, with_edges);
+}
+
+LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor) {
+  const auto rows = 6 * static_cast<Eigen::Index>(factor.variable.size());
+  LinearFactor linear{VectorXd::Zero(rows), MatrixXd::Zero(rows, fusion.Size()), {}};
+  MatrixXd C = factor.C;
+  for (std::size_t i = 0; i < factor.variable.size(); ++i) {
+    const auto row = 6 * static_cast<Eigen::Index>(i);
+    AddRelative(fusion, factor.frame, factor.variable[i], factor.T_frame_sensor[i], row, linear);
+    if (factor.variable[i] != kFixed)
+      C.block<6, 6>(row, row) += fusion.scatter[static_cast<std::size_t>(factor.variable[i])].Matrix();
+  }
+  linear.W = InverseOfDefinite(C).value_or(MatrixXd::Zero(rows, rows));  // no covariance: says nothing
+  return linear;
+}
+
+std::optional<MatrixXd> Settle(SessionFusion& fusion) {
+  for (int iteration = 0; iteration < kIterationsMax; ++iteration) {
+    const Normal normal = NormalOf(fusion);
+    auto inverse = InverseOfDefinite(normal.H);
+    if (!inverse) return std::nullopt;
+    const VectorXd step = -*inverse * normal.b;
+    for (std::size_t v = 0; v < fusion.T_ref.size(); ++v)
+      fusion.T_ref[v] = (fusion.T_ref[v] * Se3::Exp(step.segment<6>(6 * static_cast<Eigen::Index>(v)))).Normalized();
+    if (-normal.b.dot(step) < kSettled) return inverse;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion) {
+  std::vector<std::vector<VisitResidual>> visits(fusion.sensors.size());
+  for (const SessionFactor& factor : fusion.factors) {
+    const LinearFactor linear = Linearized(fusion, factor);
+    for (std::size_t i = 0; i < factor.variable.size(); ++i) {
+      const auto row = 6 * static_cast<Eigen::Index>(i);
+      if (factor.variable[i] != kFixed)
+        visits[static_cast<std::size_t>(factor.variable[i])].push_back(
+            {linear.e.segment<6>(row), factor.C.block<6, 6>(row, row)});
+    }
+  }
+  return visits;
+}
+
+Matrix6d VisitVariance::Matrix() const { return EachAxis(translation_m2, rotation_rad2).asDiagonal(); }
+
+VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
+  return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};
+}
+
+}  // namespace rigcal::graph

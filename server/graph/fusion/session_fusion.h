@@ -1,0 +1,121 @@
+// The poses of a numbered revision: what the joint refinements of the robot's sessions say, fused with edges that no raw
+// data stand behind. The graph of pairs stays beside it, as the paper has it: start, check and fallback.
+//
+// A session is one factor over the sensors that it still says something of: their poses T_k,s in the frame X_k of its
+// reference, e_s = Log(T_k,s^-1 X_k^-1 T_ref,s) for all of them together with their joint covariance. Where its own
+// reference does not count any more (it was remounted since), X_k is free, and what is left are the poses among the rest.
+// Pushed edges are factors by their Omega. An edge of a session counts where one of its sensors is in no refinement.
+//
+// From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
+// (BetweenVisits). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between
+// visits. What errs alike on every visit (SessionEstimate::common) does not fall with their number.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "server/model/graph/graph.h"
+#include "server/model/sessions/session_estimate.h"
+
+namespace rigcal::graph {
+
+// Puts fused poses, covariances and degrees of freedom into the known poses of `solution`, those of the graph beside them
+// (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them. Without a
+// session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known sensors.
+void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution);
+constexpr std::size_t kFusedSensorsMax = 200;
+
+// The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
+// optimum.
+// How much a sensor's place scatters from visit to visit beyond what the visits themselves are uncertain by.
+// Per axis, squared; alike along all three.
+struct VisitVariance {
+  double translation_m2 = 0.0, rotation_rad2 = 0.0;
+  // As a covariance of a pose: diagonal, translation first.
+  [[nodiscard]] Matrix6d Matrix() const;
+  bool operator==(const VisitVariance&) const = default;
+};
+
+// What a visit said of the sensor, less where the sensor is on the whole.
+struct VisitResidual {
+  Vector6d e;    // right tangent at the sensor
+  Matrix6d own;  // covariance of the visit by itself
+};
+
+// The variance at which sum e^T (own + v I)^-1 e over the visits is as expected, 3 (visits - means), for translation and for
+// rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
+// within their own sigmas, and where there are not more of them than means.
+[[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
+
+constexpr int kFixed = -1;  // the robot's reference
+
+// What counts of one session's refinement: poses in the frame of its reference.
+struct SessionFactor {
+  int frame = kFixed;         // variable: the reference's pose, or a free one
+  std::vector<int> variable;  // of each pose
+  std::vector<Se3> T_frame_sensor;
+  std::vector<double> dof;
+  Eigen::MatrixXd C, common;  // joint covariance; the part of it that is alike on every visit (may be empty)
+};
+struct EdgeFactor {
+  int a = kFixed, b = kFixed;
+  Se3 T_a_b;
+  Matrix6d Omega = Matrix6d::Zero();
+};
+
+struct SessionFusion {
+  std::vector<SensorId> sensors;       // of the first variables; behind them are free frames of sessions
+  std::vector<Se3> T_ref;              // per variable
+  std::vector<SessionFactor> factors;
+  std::vector<SessionId> sessions;     // of the factors
+  std::vector<EdgeFactor> edges;
+  std::vector<VisitVariance> scatter;  // per sensor
+
+  // Scalars that are sought: six for each variable.
+  [[nodiscard]] Eigen::Index Size() const { return 6 * static_cast<Eigen::Index>(T_ref.size()); }
+  // In the reference; kFixed is the reference itself.
+  [[nodiscard]] Se3 Pose(int variable) const {
+    return variable == kFixed ? Se3{} : T_ref[static_cast<std::size_t>(variable)];
+  }
+};
+
+struct FusionInput {
+  const std::vector<Edge>& edges;   // as they stand: they say what of a session counts
+  const std::vector<Edge>& within;  // likewise, of sessions that are in merged edges: ends, state and diagnoses
+  const SensorId& reference;
+  const GraphSolution& start;       // its known poses
+};
+using SensorsOfSessions = std::set<std::pair<SessionId, SensorId>>;
+// A session with an estimate none of whose edges was retired: that is in the estimate all the same.
+[[nodiscard]] bool IsFused(const SessionEstimate& estimate, const FusionInput& input);
+// Of the sessions of `estimates` that are fused, without `left_out`; `with_edges`: pushed edges, and those of sessions one
+// of whose sensors is in no estimate.
+[[nodiscard]] SessionFusion FusionOf(const FusionInput& input, const std::vector<SessionEstimate>& estimates,
+                                     bool with_edges, const SensorsOfSessions& left_out = {});
+
+struct LinearFactor {
+  Eigen::VectorXd e;
+  Eigen::MatrixXd J, W;  // by all variables; information, scatter between visits included
+};
+// At the poses at hand: six rows for each sensor of the factor. W is zero where the covariance cannot be inverted.
+[[nodiscard]] LinearFactor Linearized(const SessionFusion& fusion, const SessionFactor& factor);
+
+// Moves the poses to the optimum with the scatter held; H^-1. Nothing where something is left open.
+[[nodiscard]] std::optional<Eigen::MatrixXd> Settle(SessionFusion& fusion);
+// Per sensor, what each visit says of it beside the whole.
+[[nodiscard]] std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& fusion);
+
+// Was a sensor moved between two visits? For each sensor s, the reference too, and each session k after the oldest: what the
+// sessions from k on say against those before, d_s = Log(T_before,s^-1 T_after,s) of all sensors that both tell, with the
+// covariance S of both sides and the scatter that visits have within the sides. The step that explains it best, its gain
+// d^T S^-1 E m over six numbers, is an F where the scatter was estimated; odds are corrected for all looks. What was found
+// is taken out of the sessions before, and the next is looked for.
+// `estimates` newest first. Only sessions that are fused take part, at most the newest kVisitsCompared.
+[[nodiscard]] std::vector<SensorMovedBetween> FindMovesBetween(const FusionInput& input,
+                                                               const std::vector<SessionEstimate>& estimates);
+
+}  // namespace rigcal::graph

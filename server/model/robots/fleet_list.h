@@ -1,0 +1,60 @@
+// The list of all robots: what is asked of it, and a page of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "server/model/robots/drive_rule.h"
+#include "server/model/robots/robot_summary.h"
+
+namespace rigcal {
+
+inline constexpr std::size_t kFleetRowsMax = 100;                            // of one page
+inline constexpr std::int64_t kQuiet_ns = 30LL * 24 * 3600 * 1'000'000'000;  // "quiet" for longer
+
+// Each part comes from the address of a page and may be anything.
+struct FleetQuery {
+  std::string search;   // words that a robot's row must hold: what the list shows of it, dates as "31 Jan 2026" or 2026-01-31
+  // "pass", "warn", "fail", "unknown"; a kind of drive rule (drive_rule.h); "overdue", "off" (an edge beyond 3 sigma), "quiet" (no session for 30 days), or by
+  // when it is due: "this_week", "next_week", "later"; empty: all
+  std::string verdict;
+  // "robot", "status", "calibrated", "session", "worst", "revision", "sessions", "edges"; else by urgency
+  std::string sort;
+  bool descending = false;
+  std::size_t page = 1;
+  std::string cause = {};   // a key of cause.h; empty: all
+  std::string status = {};  // of robot_status.h: "ok", "due", ...; empty: all
+  std::string site = {};    // as a robot's newest session names it; empty: all
+};
+
+struct FleetPage {
+  std::vector<RobotSummary> rows;
+  std::size_t matches = 0, pages = 1, page = 1;  // `page` asked for beyond the last is the last
+};
+
+// Robots that have one cause of failed pairs in common.
+struct CauseCount {
+  std::string key;  // of cause.h
+  std::int64_t robots = 0;
+};
+inline constexpr std::size_t kCausesListedMax = 12;
+
+// Of all robots.
+struct FleetCounts {
+  std::int64_t robots = 0, overdue = 0, sessions = 0, edges = 0, jobs_waiting = 0;
+  std::map<VerdictLevel, std::int64_t> verdicts;
+  std::map<DriveKind, std::int64_t> kinds = {};  // by what their drive rules say: each robot once
+  std::map<StatusWord, std::int64_t> statuses = {};  // of each word, also where it is none
+  // That are not overdue, by when they will be.
+  std::int64_t due_this_week = 0, due_next_week = 0, due_later = 0;
+  std::vector<CauseCount> causes = {};  // that most robots have: the most first, up to one more than are listed
+};
+
+// Weeks of work begin on Monday, 00:00 UTC. This is the next one.
+[[nodiscard]] Stamp NextMonday(Stamp now);
+inline constexpr std::int64_t kWeek_ns = 7LL * 24 * 3600 * 1'000'000'000;
+
+}  // namespace rigcal

@@ -1,0 +1,107 @@
+#include "server/model/robots/robot_status.h"
+
+#include <algorithm>
+
+#include "server/model/robots/robot_summary.h"
+
+namespace rigcal {
+namespace {
+
+constexpr std::array<const char*, 7> kStatusNames = {"ok",     "due",    "overdue", "drifted", "out-of-tolerance",
+                                                     "failed", "unknown"};
+
+std::string DriftWords(const DriftDue& due) {
+  return DayText(due.at) + " by drift of " + due.sensor.str();
+}
+
+CalibrationStatus OverdueStatus(const Validity& validity) {
+  const std::optional<Stamp> until = ValidUntil(validity);
+  return {StatusWord::kOverdue,
+          until ? "It was to be calibrated again by " + DayText(*until) + "." : "Nothing of it is calibrated.",
+          "Capture a session and push it."};
+}
+
+// Not of a date that is further away.
+std::optional<CalibrationStatus> DueStatus(const Validity& validity, const std::optional<DriftDue>& drift_due,
+                                           Stamp now) {
+  const std::optional<Stamp> due = DueAt(validity, drift_due);
+  if (!due || due->ns - now.ns > kDueSoon_ns) return std::nullopt;
+  return CalibrationStatus{StatusWord::kDue, "It is " + DueText(validity, drift_due) + ".",
+                           "Capture a session and push it before it is relied on after " + DayText(*due) + "."};
+}
+
+CalibrationStatus OkStatus(const Validity& validity, const std::optional<DriftDue>& drift_due) {
+  const std::string due = DueText(validity, drift_due);
+  return {StatusWord::kOk, due.empty() ? "It is within its tolerances." : "It is within its tolerances; " + due + ".",
+          "Nothing is to be done."};
+}
+
+}  // namespace
+
+std::string NameOf(StatusWord word) { return kStatusNames[static_cast<std::size_t>(word)]; }
+
+StatusWord StatusWordOf(const std::string& name) {
+  const auto* const found = std::find(kStatusNames.begin(), kStatusNames.end(), name);
+  return found == kStatusNames.end() ? StatusWord::kUnknown : kStatusWords[static_cast<std::size_t>(found - kStatusNames.begin())];
+}
+
+std::string NameOf(DriftLaw law) { return law == DriftLaw::kLinear ? "linear" : "random_walk"; }
+
+DriftLaw DriftLawOf(const std::string& name) {
+  return name == "linear" ? DriftLaw::kLinear : DriftLaw::kRandomWalk;
+}
+
+CalibrationStatus FoundOf(const StatusFacts& facts) {
+  const CalibrationStatus* worst = nullptr;
+  for (const SensorStatus& sensor : facts.sensors) {
+    const StatusWord word = sensor.status.word;
+    if (word != StatusWord::kDrifted && word != StatusWord::kOutOfTolerance) continue;
+    if (worst == nullptr || worst->word < word) worst = &sensor.status;
+  }
+  return worst == nullptr ? CalibrationStatus{} : *worst;
+}
+
+std::optional<DriftDue> DriftDueOf(const StatusFacts& facts) {
+  std::optional<DriftDue> first;
+  for (const SensorStatus& sensor : facts.sensors)
+    if (sensor.due && (!first || sensor.due->at < first->at)) first = sensor.due;
+  return first;
+}
+
+CalibrationStatus StatusAt(const StatusBasis& basis, Stamp now) {
+  const Verdict& verdict = basis.verdict;
+  const CalibrationStatus unknown = {StatusWord::kUnknown, verdict.why, verdict.what_to_do};
+  if (basis.revision == 0) return unknown;
+  if (verdict.level == VerdictLevel::kFail) return {StatusWord::kFailed, verdict.why, verdict.what_to_do};
+  if (basis.found.word == StatusWord::kOutOfTolerance) return basis.found;
+  if (verdict.level == VerdictLevel::kUnknown) return unknown;
+  if (IsOverdue(basis.validity.calibrated_at, basis.validity.max_age_ns, now)) return OverdueStatus(basis.validity);
+  if (basis.found.word == StatusWord::kDrifted) return basis.found;
+  return DueStatus(basis.validity, basis.drift_due, now).value_or(OkStatus(basis.validity, basis.drift_due));
+}
+
+CalibrationStatus StatusAt(const RobotSummary& robot, Stamp now) {
+  return StatusAt({robot.revision, robot.verdict, robot.validity, robot.found, robot.drift_due}, now);
+}
+
+CalibrationStatus StatusAt(const SensorStatus& sensor, const Validity& validity, Stamp now) {
+  const StatusWord word = sensor.status.word;
+  if (word != StatusWord::kOk && word != StatusWord::kDrifted) return sensor.status;
+  if (IsOverdue(validity.calibrated_at, validity.max_age_ns, now)) return OverdueStatus(validity);
+  if (word == StatusWord::kDrifted) return sensor.status;
+  return DueStatus(validity, sensor.due, now).value_or(OkStatus(validity, sensor.due));
+}
+
+std::optional<Stamp> DueAt(const Validity& validity, const std::optional<DriftDue>& drift_due) {
+  const std::optional<Stamp> by_age = ValidUntil(validity);
+  return by_age && drift_due ? std::min(*by_age, drift_due->at) : by_age;
+}
+
+std::string DueText(const Validity& validity, const std::optional<DriftDue>& drift_due) {
+  const std::optional<Stamp> by_age = ValidUntil(validity);
+  if (!by_age) return "";
+  const std::string by_age_text = "due " + DayText(*by_age) + " by age";
+  return drift_due && drift_due->at < *by_age ? by_age_text + "; " + DriftWords(*drift_due) : by_age_text;
+}
+
+}  // namespace rigcal

@@ -1,0 +1,178 @@
+#include "server/model/sensors/target.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "server/base/text.h"
+
+namespace rigcal {
+namespace {
+
+constexpr int kCornersMin = 3, kCharucoCornersMin = 1, kTagsMin = 1, kCountMax = 100;
+constexpr double kSquareMin_m = 0.001, kSquareMax_m = 1.0;
+constexpr double kPlateMax_m = 10.0;
+constexpr std::array<std::string_view, 21> kDictionaries = {
+    "DICT_4X4_50",        "DICT_4X4_100",        "DICT_4X4_250",       "DICT_4X4_1000",      "DICT_5X5_50",
+    "DICT_5X5_100",       "DICT_5X5_250",        "DICT_5X5_1000",      "DICT_6X6_50",        "DICT_6X6_100",
+    "DICT_6X6_250",       "DICT_6X6_1000",       "DICT_7X7_50",        "DICT_7X7_100",       "DICT_7X7_250",
+    "DICT_7X7_1000",      "DICT_ARUCO_ORIGINAL", "DICT_APRILTAG_16h5", "DICT_APRILTAG_25h9", "DICT_APRILTAG_36h10",
+    "DICT_APRILTAG_36h11"};
+
+Status Refuse(const Target& target, const std::string& what, const std::string& cure) {
+  return Fail(ErrorCode::kInvalidInput, "target " + target.id.str() + ": " + what, cure);
+}
+
+std::string SizeText(const Target& target) {
+  return std::to_string(target.cols) + "x" + std::to_string(target.rows) +
+         (IsTagGrid(target.kind) ? " tags" : " inner corners");
+}
+
+// A pose needs six corners, or two tags.
+Status CheckEnough(const Target& target) {
+  const int count = target.cols * target.rows, needed = IsTagGrid(target.kind) ? 2 : 6;
+  if (count >= needed) return {};
+  return Refuse(target, SizeText(target) + " are too few for a pose",
+                "Use a board with " + std::to_string(needed) + " or more.");
+}
+
+Status CheckCounts(const Target& target) {
+  const int count_min = IsTagGrid(target.kind)                ? kTagsMin
+                        : target.kind == TargetKind::kCharuco ? kCharucoCornersMin
+                                                              : kCornersMin;
+  for (int count : {target.cols, target.rows})
+    if (count < count_min || count > kCountMax)
+      return Refuse(target, SizeText(target) + " is out of range",
+                    IsTagGrid(target.kind) ? "Count the tags, 1 to 100 each way."
+                                           : "Count the corners where four squares meet, " + std::to_string(count_min) +
+                                                 " to " + std::to_string(kCountMax) + " each way.");
+  return CheckEnough(target);
+}
+
+Status CheckSquare(const Target& target) {
+  const std::string name = IsTagGrid(target.kind) ? "tag_size_m " : "square_size_m ";
+  if (!(target.square_m >= kSquareMin_m && target.square_m <= kSquareMax_m))
+    return Refuse(target, name + std::to_string(target.square_m) + " is out of range",
+                  "Give the measured side in metres, 0.001 to 1.");
+  if (!(target.square_sigma_m >= 0.0 && target.square_sigma_m < target.square_m / 2))
+    return Refuse(target,
+                  "the standard deviation of " + name + "is out of range: " + std::to_string(target.square_sigma_m),
+                  "Give it in metres, or 0 if the size is exact.");
+  return {};
+}
+
+Status CheckMarkers(const Target& target) {
+  const bool known = std::find(kDictionaries.begin(), kDictionaries.end(), target.dictionary) != kDictionaries.end();
+  if (target.kind == TargetKind::kCheckerboard) {
+    if (target.dictionary.empty()) return {};
+    return Refuse(target, "a checkerboard has no dictionary", "Use type charuco, or leave 'dictionary' away.");
+  }
+  if (!known || target.dictionary.empty())
+    return Refuse(target, "dictionary " + Quoted(target.dictionary) + " is not known",
+                  "Name the markers' dictionary as OpenCV does, such as DICT_4X4_50 or DICT_APRILTAG_36h11.");
+  if (target.kind == TargetKind::kCharuco && !(target.marker_m > 0 && target.marker_m < target.square_m))
+    return Refuse(target, "marker_size_m " + std::to_string(target.marker_m) + " is out of range",
+                  "Give the side of a marker in metres; it is smaller than a square.");
+  if (IsTagGrid(target.kind) && !(target.spacing_ratio > 0 && target.spacing_ratio <= 10))
+    return Refuse(target, "spacing_ratio " + std::to_string(target.spacing_ratio) + " is out of range",
+                  "Give the gap between two tags divided by the side of a tag, above 0.");
+  return {};
+}
+
+Status CheckPlate(const Target& target) {
+  if (!target.plate_m) return {};
+  const Eigen::Vector2d pattern_m = PatternSize_m(target);
+  for (int axis : {0, 1})
+    if (!((*target.plate_m)[axis] >= 0.99 * pattern_m[axis] && (*target.plate_m)[axis] <= kPlateMax_m))
+      return Refuse(target,
+                    "plate_size_m " + std::to_string((*target.plate_m)[axis]) + " does not fit its pattern, which is " +
+                        std::to_string(pattern_m[axis]) + " m there",
+                    "Give [width, height] of the plate in metres, width along the columns of the pattern.");
+  return {};
+}
+
+}  // namespace
+
+std::string NameOf(TargetKind kind) {
+  switch (kind) {
+    case TargetKind::kCheckerboard:
+      return "checkerboard";
+    case TargetKind::kCharuco:
+      return "charuco";
+    case TargetKind::kArucoGrid:
+      return "aruco_grid";
+    case TargetKind::kAprilGrid:
+      return "april_grid";
+  }
+  return "checkerboard";
+}
+
+Result<TargetKind> TargetKindOf(const std::string& name) {
+  for (TargetKind kind :
+       {TargetKind::kCheckerboard, TargetKind::kCharuco, TargetKind::kArucoGrid, TargetKind::kAprilGrid})
+    if (NameOf(kind) == name) return kind;
+  return Fail(ErrorCode::kInvalidInput, "target type " + Quoted(name) + " is not known",
+              "Use checkerboard, charuco, aruco_grid or april_grid.");
+}
+
+std::vector<Eigen::Vector3d> TargetPoints(const Target& target) {
+  std::vector<Eigen::Vector3d> points;
+  const double side_m = target.square_m;
+  if (!IsTagGrid(target.kind)) {
+    for (int r = 0; r < target.rows; ++r)
+      for (int c = 0; c < target.cols; ++c) points.emplace_back(c * side_m, r * side_m, 0.0);
+    return points;
+  }
+  const double pitch_m = side_m * (1 + target.spacing_ratio);
+  for (int t = 0; t < target.cols * target.rows; ++t) {
+    const int row = target.kind == TargetKind::kAprilGrid ? target.rows - 1 - t / target.cols : t / target.cols;
+    const Eigen::Vector3d corner(t % target.cols * pitch_m, row * pitch_m, 0.0);
+    points.push_back(corner);
+    points.push_back(corner + Eigen::Vector3d(side_m, 0, 0));
+    points.push_back(corner + Eigen::Vector3d(side_m, side_m, 0));
+    points.push_back(corner + Eigen::Vector3d(0, side_m, 0));
+  }
+  return points;
+}
+
+Eigen::Vector2d PatternSize_m(const Target& target) {
+  const Eigen::Vector2d counts(target.cols, target.rows);
+  if (!IsTagGrid(target.kind)) return (counts.array() + 1) * target.square_m;
+  return (counts.array() * (1 + target.spacing_ratio) - target.spacing_ratio) * target.square_m;
+}
+
+Eigen::Vector3d CentreOf(const Target& target) {
+  const Eigen::Vector2d pattern_m = PatternSize_m(target);
+  const double margin_m = IsTagGrid(target.kind) ? 0.0 : target.square_m;
+  return {pattern_m.x() / 2 - margin_m, pattern_m.y() / 2 - margin_m, 0.0};
+}
+
+int SymmetryOf(const Target& target) {
+  if (target.kind != TargetKind::kCheckerboard || target.cols % 2 != target.rows % 2) return 1;
+  return target.cols == target.rows && target.cols % 2 == 0 ? 4 : 2;
+}
+
+int TurnedIndex(const Target& target, int idx, int turn) {
+  const int symmetry = SymmetryOf(target);
+  int col = idx % target.cols, row = idx / target.cols;
+  for (int step = 0; step < turn && symmetry > 1; ++step) {
+    const int before = col;
+    col = symmetry == 4 ? row : target.cols - 1 - col;
+    row = symmetry == 4 ? target.cols - 1 - before : target.rows - 1 - row;
+  }
+  return row * target.cols + col;
+}
+
+Status Validate(const Target& target) {
+  RIGCAL_TRY(CheckName(TargetTag::kKind, target.id.str()));
+  RIGCAL_TRY(CheckCounts(target));
+  RIGCAL_TRY(CheckSquare(target));
+  RIGCAL_TRY(CheckMarkers(target));
+  RIGCAL_TRY(CheckPlate(target));
+  if (target.serial.size() > 256 || !IsPrintableUtf8(target.serial))
+    return Refuse(target, "serial " + Quoted(target.serial) + " is not one line of readable text",
+                  "Use at most 256 bytes of UTF-8 without control characters.");
+  return {};
+}
+
+}  // namespace rigcal

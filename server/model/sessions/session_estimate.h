@@ -1,0 +1,118 @@
+// What one joint refinement of a session's raw observations says of the robot during that visit.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/math/ball_distance.h"
+#include "server/math/se3.h"
+#include "server/model/diagnosis.h"
+#include "server/model/sensors/camera.h"
+
+namespace rigcal {
+
+// Changes less likely than this by chance are told: of 1,000 sessions in which nothing moved, less than one is accused.
+constexpr double kMovedOdds = 5e-4;
+// A step that may as well be smaller than both (SquaredDistanceFromBalls within 3 sigmas) is not told: no lens and no
+// mount is known that well.
+constexpr double kMovedMin_m = 0.001, kMovedMin_rad = 0.001, kMovedMinSigmas = 3.0;
+// Both: `step` (right tangent, m and rad) with its information, and its odds by chance.
+[[nodiscard]] inline bool IsMove(const Vector6d& step, const Matrix6d& information, double odds) {
+  return odds < kMovedOdds && SquaredDistanceFromBalls(step, information, kMovedMin_m, kMovedMin_rad) >=
+                                  kMovedMinSigmas * kMovedMinSigmas;
+}
+
+// A sensor that had two poses during the session.
+struct SensorMovedWithin {
+  SensorId sensor;
+  CaptureId last_before, first_after;
+  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the sensor, m and rad
+  double odds = 1.0;                 // of so large a change anywhere in the session by chance, at most
+};
+
+// A board that was taken to stand still and did not: its two places are told apart, unless one was seen too little.
+struct BoardMovedWithin {
+  TargetId board;
+  CaptureId last_before, first_after;
+  Vector6d step = Vector6d::Zero();  // T_after = T_before Exp(step), right tangent at the board, m and rad
+  double odds = 1.0;                 // as of a sensor
+};
+
+// One sensor's look in one capture that contradicts all others and was held back.
+struct HeldBackLook {
+  SensorId sensor;
+  CaptureId capture;
+  SensorId against = {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
+};
+
+// A camera whose pictures are bent in a way that its model cannot describe: a smooth field of shifts, the same in every
+// capture, beyond what chance makes.
+struct LensMisfit {
+  SensorId camera;
+  CameraModel model = CameraModel::kPinholeRadtan;
+  double rms_px = 0.0;          // of the field where the camera saw corners, of u and of v
+  double evidence = 0.0;        // twice the log of the likelihood's ratio with and without it
+  double pose_sigma_m = 0.0;    // the most that it adds to the sigma of an axis of any pose, the square root of the
+  double pose_sigma_rad = 0.0;  // variance
+  double sigma_ratio = 1.0;  // of that pose and axis that it makes less certain most: with it over without any misfit
+};
+
+// A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
+// incidence, surely; taken out of the poses.
+struct SlantBias {
+  SensorId lidar;
+  double too_long_m = 0.0, sigma_m = 0.0;
+};
+
+// A board that is surely bent, by this from the lowest to the highest point of its plate; taken out of the poses.
+struct BoardBend {
+  TargetId board;
+  double height_m = 0.0, sigma_m = 0.0;
+};
+
+// The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
+// direction that is seen worst.
+constexpr double kAnyMove_m = 1e3, kAnyMove_rad = 3.14159265358979;  // nothing would be told
+struct SmallestMove {
+  double m = kAnyMove_m, rad = kAnyMove_rad;
+  int captures = 0;  // in which the sensor saw something
+};
+
+struct RefinedPose {
+  SensorId sensor;
+  Se3 T_ref_sensor;
+  double dof = 0.0;                                // behind its covariance; 0: known
+  std::optional<SmallestMove> smallest_move = {};  // estimates of before have none
+};
+
+// Code of `why_not` where a session says enough to be refined as a whole, and that failed.
+constexpr const char* kRefinementFailed = "refinement_failed";
+
+struct SessionEstimate {
+  SessionId session;
+  SensorId reference;
+  std::vector<Diagnosis> why_not;  // not empty: there is no estimate, and nothing below has a meaning
+  std::vector<RefinedPose> poses;  // sorted by sensor; the sensors that took part; one that moved: its last pose
+  // Of the poses in their order, the reference left out: six rows each, right tangents at the sensors. `common` is the
+  // part of it that errs alike on every visit (given constants, lenses); without rows: none.
+  Eigen::MatrixXd covariance, common;
+  std::vector<SensorMovedWithin> moved;  // the most certain first
+  std::vector<BoardMovedWithin> boards_moved;
+  std::vector<HeldBackLook> held_back;    // by sensor, then capture
+  std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
+  std::vector<SlantBias> slants;          // by lidar
+  std::vector<BoardBend> bends;           // by board
+};
+
+// First of the six rows of a pose; -1: the reference, which has none.
+[[nodiscard]] inline int RowOf(const SessionEstimate& estimate, std::size_t pose) {
+  if (estimate.poses[pose].sensor == estimate.reference) return -1;
+  int row = 0;
+  for (std::size_t i = 0; i < pose; ++i) row += estimate.poses[i].sensor == estimate.reference ? 0 : 6;
+  return row;
+}
+
+}  // namespace rigcal

@@ -1,0 +1,50 @@
+// The query side: (verb, parameters) -> the /api/v1 document (docs/api.md), and the pages that are made when asked for.
+// Reads only, but for a report that is to be drawn again, and summaries that a list brings up to date; one Store per calling
+// thread.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "server/base/stamp.h"
+#include "server/formats/answers/answers.h"
+#include "server/pipeline/answers/health.h"
+#include "server/pipeline/reports/missing_report.h"
+#include "server/pipeline/revisions/revision_cache.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+struct AnswerContext {
+  storage::Store& store;
+  const Clock& clock;
+  RevisionCache& revisions;
+  Stamp started_at;
+  std::string http_address;                 // "http://127.0.0.1:8080", empty without HTTP
+  ServerHealth* health = nullptr;           // none: disk and database are looked at, there are no threads
+  const UndrawnReports* undrawn = nullptr;  // none: every report can be drawn
+  std::function<void()> work_arrived = {};  // a report is to be drawn
+};
+
+// `json`: an object with the verb's parameters. Unknown verb, missing or bad parameter: kInvalidInput; unknown robot,
+// sensor, session, edge: kNotFound.
+[[nodiscard]] Result<std::string> Answer(const AnswerContext& context, const std::string& verb,
+                                         const std::string& json);
+
+// What the verb health tells; without `context.health` it looks for itself.
+[[nodiscard]] formats::HealthAnswer LookAtHealth(const AnswerContext& context);
+// As in missing_report.h.
+[[nodiscard]] Error WhyMissing(const AnswerContext& context, const RobotId& robot, int number, const std::string& file);
+
+struct PageText {
+  std::string body, content_type;
+  bool immutable = false;  // named by its content
+  int status = 200;        // of HTTP; 503: the server is not well
+};
+// "/", "/boards/", "/robots/<id>/..." (robot_pages.h), "/experiments/..." (experiments.h), "/style.css", "/assets/<script>",
+// "/healthz", "/metrics", "/api/v1/<verb>" with the query string as parameters. For a file of a numbered report, which
+// is asked for only where it is missing: the error that says why (missing_report.h).
+[[nodiscard]] Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path,
+                                          const std::string& query);
+
+}  // namespace rigcal::pipeline

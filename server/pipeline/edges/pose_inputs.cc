@@ -1,0 +1,34 @@
+#include "server/pipeline/edges/pose_inputs.h"
+
+#include <algorithm>
+#include <set>
+
+#include "server/base/limits.h"
+#include "server/formats/sessions/poses.h"
+#include "server/pipeline/edges/lost_payloads.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+std::set<CaptureId> OtherCaptures(const Manifest& manifest, const SensorId& tracker) {
+  std::set<CaptureId> captures;
+  for (const Payload& payload : manifest.payloads)
+    if (payload.sensor != tracker) captures.insert(payload.capture);
+  return captures;
+}
+
+}  // namespace
+
+Result<PoseTable> LoadPoses(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
+  const auto payload = std::find_if(manifest.payloads.begin(), manifest.payloads.end(),
+                                    [&](const Payload& p) { return p.sensor == sensor.id; });
+  if (payload == manifest.payloads.end())
+    return Fail(ErrorCode::kNotFound, "sensor " + sensor.id.str() + " has no poses.csv",
+                "Put its poses into " + sensor.id.str() + "/poses.csv and push the session again.");
+  RIGCAL_ASSIGN(const std::string text, LoadPayload(store.BlobFolder(), *payload, limits::kPoseTableBytesMax));
+  if (sensor.kind == SensorKind::kTracker)
+    return formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), text, payload->path);
+  return formats::ReadPoses(text, sensor.kind, payload->path);
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,13 @@
+// READ: the poses that a tracker or a pose stream reports.
+#pragma once
+
+#include "server/model/sensors/pose_table.h"
+#include "server/model/sessions/session.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// An error where there is no table, or none that can be read; kStorage only if the store failed.
+[[nodiscard]] Result<PoseTable> LoadPoses(storage::Store& store, const Manifest& manifest, const Sensor& sensor);
+
+}  // namespace rigcal::pipeline

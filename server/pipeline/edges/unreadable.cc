@@ -1,0 +1,48 @@
+#include "server/pipeline/edges/unreadable.h"
+
+#include <algorithm>
+#include <set>
+#include <span>
+
+#include "server/detect/pictures/image_header.h"
+#include "server/pipeline/edges/decoding.h"
+#include "server/pipeline/edges/sightings.h"
+#include "storage/files/blobs.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr std::size_t kLookedAtMax = 48;
+constexpr std::size_t kLookedAtBytesMax = 64u << 20;
+
+std::string WhyNot(storage::Store& store, const Manifest& manifest, const Payload& payload) {
+  for (const Target& target : manifest.header.targets)
+    if (const auto large = TooLarge(ToSearchPicture(store.BlobFolder(), payload, target))) return large->what;
+  const auto bytes = storage::LoadBlob(store.BlobFolder(), payload.digest, kLookedAtBytesMax);
+  if (!bytes && bytes.error().code == ErrorCode::kInvalidInput) return bytes.error().what;
+  if (!bytes) return "the server's disk has not kept it: push the session again";
+  const auto encoded = std::as_bytes(std::span(*bytes));
+  if (const auto size = detect::ReadImageSize(encoded); !size) return size.error().what;
+  return detect::IsCutOff(encoded) ? "the picture is cut off" : "";
+}
+
+}  // namespace
+
+Unreadable FindUnreadable(storage::Store& store, const Manifest& manifest, const std::vector<Edge>& edges) {
+  std::set<std::pair<CaptureId, SensorId>> shown;
+  for (const Edge& edge : edges)
+    for (const Evidence& evidence : edge.evidence) shown.emplace(evidence.capture, evidence.sensor);
+  Unreadable unreadable;
+  std::size_t looked_at = 0;
+  for (const Payload& payload : manifest.payloads) {
+    const Sensor* sensor = SensorOf(manifest.header, payload.sensor);
+    const std::pair place{payload.capture, payload.sensor};
+    if (!sensor || sensor->kind != SensorKind::kCamera || shown.contains(place)) continue;
+    unreadable.all_looked_at = looked_at++ < kLookedAtMax;
+    if (!unreadable.all_looked_at) break;
+    if (std::string why = WhyNot(store, manifest, payload); !why.empty()) unreadable.why[place] = std::move(why);
+  }
+  return unreadable;
+}
+
+}  // namespace rigcal::pipeline

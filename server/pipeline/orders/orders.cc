@@ -1,0 +1,109 @@
+#include "server/pipeline/orders/orders.h"
+
+#include "server/formats/answers/answers.h"
+#include "server/pipeline/boards/registry.h"
+#include "server/pipeline/orders/next_reference.h"
+#include "server/pipeline/revisions/revise.h"
+#include "server/pipeline/rig_models/begin_epoch.h"
+#include "server/pipeline/rig_models/rig_models.h"
+#include "server/pipeline/robots/decide.h"
+#include "server/pipeline/robots/policies.h"
+#include "server/pipeline/robots/robot_rows.h"
+#include "server/pipeline/robots/subject.h"
+#include "server/pipeline/sessions/current_edges.h"
+#include "storage/edges/edges.h"
+#include "storage/sessions/retired.h"
+#include "storage/sessions/standing.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using formats::Parameters;
+
+// What a person says of something.
+struct Saying {
+  bool retires = false;  // else restores
+  Word word;
+};
+
+Result<Saying> SayingOf(const Clock& clock, const std::string& verb, const Parameters& parameters) {
+  RIGCAL_ASSIGN(std::string who, RequiredWho(parameters, "Say who asks for it."));
+  const bool retires = verb == "retire";
+  if (retires) RIGCAL_TRY(RequiredText(parameters, "reason", "Say why it is to take no part."));
+  return Saying{retires, {clock.Now(), std::move(who), parameters.Text("reason").value_or("")}};
+}
+
+// As it is shown from now on.
+Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const EdgeId& id) {
+  RIGCAL_ASSIGN(const auto edge, storage::LoadEdge(store, id));
+  if (!edge)
+    return Fail(ErrorCode::kNotFound, "edge " + id.str() + " is of a batch that is not whole: it does not count",
+                "There is nothing to retire; push the batch again, then retire the edge.");
+  RIGCAL_TRY(saying.retires ? storage::RetireEdge(store, id, saying.word) : storage::RestoreEdge(store, id, saying.word));
+  RIGCAL_ASSIGN(const auto counts, storage::LoadWhatCounts(store, edge->robot));
+  RIGCAL_ASSIGN(const auto standing, storage::LoadStanding(store, id));
+  std::vector<Edge> shown = {*edge};
+  RIGCAL_TRY(MarkPast(store, counts, shown));
+  return OrderDone{edge->robot, formats::WriteStandingOfEdge(shown.front(), standing)};
+}
+
+Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const SessionId& id) {
+  if (saying.retires) {
+    RIGCAL_TRY(storage::RetireSession(store, id, saying.word));
+  } else {
+    RIGCAL_TRY(storage::MakeCurrent(store, id, storage::MadeCurrent::kRestored, saying.word));
+  }
+  RIGCAL_ASSIGN(const auto row, LoadSessionRow(store, id));
+  RIGCAL_ASSIGN(const std::int64_t newest_edge, storage::LoadEdgeWatermark(store, row.robot));
+  return OrderDone{row.robot, formats::WriteStandingOfSession(row, newest_edge > 0)};
+}
+
+// The transaction is given up where the robot cannot do without it.
+Status RetireGone(storage::Store& store, const SensorOfRobot& of, const Word& word) {
+  RIGCAL_ASSIGN(const RobotGraph before, LoadRobotGraph(store, of.robot));
+  RIGCAL_TRY(storage::RetireSensor(store, of.robot, of.sensor, word));
+  if (before.graph.reference != of.sensor) return {};
+  RIGCAL_ASSIGN(const RobotGraph after, LoadRobotGraph(store, of.robot));
+  return CheckNextReference(before.graph, after.graph);
+}
+
+Result<OrderDone> SayOf(storage::Store& store, const Saying& saying, const SensorOfRobot& of) {
+  RIGCAL_TRY(saying.retires ? RetireGone(store, of, saying.word)
+                            : storage::RestoreSensor(store, of.robot, of.sensor, saying.word));
+  RIGCAL_ASSIGN(const auto standing, storage::LoadStanding(store, of.robot, of.sensor));
+  RIGCAL_ASSIGN(const std::int64_t newest_edge, storage::LoadEdgeWatermark(store, of.robot));
+  return OrderDone{of.robot, formats::WriteStandingOfSensor(of.robot, of.sensor, standing, newest_edge > 0)};
+}
+
+}  // namespace
+
+namespace {
+
+bool IsDecision(const std::string& verb) { return verb == "approve" || verb == "reject" || verb == "rollback"; }
+
+}  // namespace
+
+bool IsOrder(const std::string& verb) {
+  return verb == "restore" || verb == "retire" || verb == "set_policy" || verb == "set_rig_model" ||
+         verb == "epoch" || verb == "measure_board" || IsDecision(verb);
+}
+
+Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
+                           const std::string& json) {
+  RIGCAL_ASSIGN(const Parameters parameters, Parameters::Read(json));
+  if (verb == "set_policy") return SetPolicy(store, clock, parameters);
+  if (verb == "set_rig_model") return SetRigModel(store, clock, parameters);
+  if (verb == "epoch") return BeginEpochBy(store, clock, parameters);
+  if (verb == "measure_board") return MeasureBoard(store, clock, parameters);
+  if (IsDecision(verb)) return Decide(store, clock, verb, parameters);
+  RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
+  OrderDone done;
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    RIGCAL_ASSIGN(const Subject subject, FindSubject(store, parameters));
+    RIGCAL_ASSIGN(done, std::visit([&](const auto& of) { return SayOf(store, saying, of); }, subject));
+    return saying.retires ? FallBackByPolicy(store, done.robot, saying.word.at) : Status();
+  }));
+  return done;
+}
+
+}  // namespace rigcal::pipeline

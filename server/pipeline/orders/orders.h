@@ -1,0 +1,26 @@
+// WRITE: what people ask to be changed: (verb, parameters) -> one transaction, then the document of docs/api.md.
+#pragma once
+
+#include <string>
+
+#include "server/base/stamp.h"
+#include "server/model/approval/order.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Whether the verb changes what is stored: restore, retire, set_policy, set_rig_model, epoch, measure_board, and decisions.
+[[nodiscard]] bool IsOrder(const std::string& verb);
+
+// What it returns is durable. Carried out twice it is as if it was once, and answered alike. The thing is named as in
+// subject.h, besides `who` and `reason`.
+// retire: the edge, the edges of the session, or those of the sensor take no part from now on, and of a sensor nothing that
+// sessions say of it. kConflict for the reference, where no other sensor can take its place. Without `reason` kInvalidInput.
+// restore: what was retired takes part again; a session is current, and those that it repeats or is repeated by are superseded
+// by it.
+// set_policy: policies.h. set_rig_model, epoch: rig_models/. measure_board: boards/registry.h. approve, reject, rollback:
+// decide.h.
+[[nodiscard]] Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
+                                         const std::string& json);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,144 @@
+#include <algorithm>
+
+#include "server/formats/answers/answers.h"
+#include "server/formats/answers/parameters.h"
+#include "server/pipeline/answers/answer.h"
+#include "server/pipeline/answers/due_list.h"
+#include "server/pipeline/answers/webhooks.h"
+#include "server/pipeline/boards/registry.h"
+#include "server/pipeline/pages/experiments.h"
+#include "server/pipeline/pages/model_pages.h"
+#include "server/pipeline/pages/robot_pages.h"
+#include "server/pipeline/robots/summaries.h"
+#include "server/report/boards/boards_page.h"
+#include "server/report/frame/assets.h"
+#include "server/report/pages/fleet_csv.h"
+#include "server/report/render.h"
+#include "storage/boards/measures.h"
+#include "storage/fleet/fleet_list.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr const char* kScript = "text/javascript; charset=utf-8";
+constexpr const char* kJson = "application/json; charset=utf-8";
+constexpr const char* kCsv = "text/csv; charset=utf-8";
+constexpr const char* kCalendar = "text/calendar; charset=utf-8";
+
+Result<FleetQuery> FleetQueryOf(const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  FleetQuery asked;
+  asked.search = parameters.Text("q").value_or("");
+  asked.verdict = parameters.Text("verdict").value_or("");
+  asked.sort = parameters.Text("sort").value_or("");
+  asked.descending = parameters.Text("order") == "down";
+  asked.cause = parameters.Text("cause").value_or("");
+  asked.status = parameters.Text("status").value_or("");
+  asked.site = parameters.Text("site").value_or("");
+  RIGCAL_ASSIGN(const std::int64_t page, parameters.IntegerOr("page", 1));
+  asked.page = static_cast<std::size_t>(std::max<std::int64_t>(page, 1));
+  return asked;
+}
+
+Result<PageText> Fleet(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const FleetQuery asked, FleetQueryOf(query));
+  const Stamp now = context.clock.Now();
+  static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
+  FleetCounts fleet;
+  FleetPage list;
+  std::int64_t boards = 0;
+  RIGCAL_TRY(context.store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(fleet, storage::CountFleet(context.store, now));
+    RIGCAL_ASSIGN(list, storage::LoadFleetPage(context.store, asked, now));
+    RIGCAL_ASSIGN(boards, storage::CountBoards(context.store));
+    return {};
+  }));
+  const std::size_t experiments = ListExperiments(context.store.folder()).size();
+  RIGCAL_ASSIGN(std::string body, report::RenderFleet(fleet, list, now, asked, experiments,
+                                                         static_cast<std::size_t>(boards)));
+  return PageText{std::move(body), kHtml};
+}
+
+// The whole of what a list shows a page of.
+Result<PageText> FleetAsCsv(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const FleetQuery asked, FleetQueryOf(query));
+  static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
+  std::string text = report::FleetCsvHeading();
+  const Stamp now = context.clock.Now();
+  const auto add = [&](const RobotSummary& robot) { text += report::FleetCsvRow(robot, now); };
+  RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, now, add); }));
+  return PageText{std::move(text), kCsv};
+}
+
+Result<PageText> Boards(const AnswerContext& context) {
+  RIGCAL_ASSIGN(const auto answer, LoadBoardsAnswer(context.store, context.clock.Now(), {}));
+  RIGCAL_ASSIGN(std::string body, report::RenderBoards(answer));
+  return PageText{std::move(body), kHtml};
+}
+
+Result<PageText> DueAsCalendar(const AnswerContext& context, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(const auto parameters, formats::Parameters::Read(json));
+  RIGCAL_ASSIGN(DueCalendar calendar, MakeDueCalendar(context, parameters));
+  return PageText{std::move(calendar.text), kCalendar};
+}
+
+Result<PageText> Script(const std::string& name) {
+  for (const report::Asset& asset : report::Assets())
+    if (asset.name == name) return PageText{std::string(asset.bytes), kScript, true};
+  return Fail(ErrorCode::kNotFound, "there is no script " + name, "Reload the page: a newer version has other names.");
+}
+
+Result<PageText> Api(const AnswerContext& context, const std::string& verb, const std::string& query) {
+  RIGCAL_ASSIGN(const std::string json, formats::ParametersOfQuery(query));
+  RIGCAL_ASSIGN(std::string body, Answer(context, verb, json));
+  return PageText{std::move(body), kJson};
+}
+
+// Prometheus text: one gauge per line.
+Result<PageText> Metrics(const AnswerContext& context) {
+  const Stamp now = context.clock.Now();
+  static_cast<void>(FreshenSummaries(context.store, context.clock));  // what could not be kept is there soon
+  RIGCAL_ASSIGN(FleetCounts fleet, storage::CountFleet(context.store, now));
+  std::string text = "rigcal_uptime_seconds " + std::to_string((now.ns - context.started_at.ns) / 1'000'000'000) + "\n";
+  text += "rigcal_jobs_waiting " + std::to_string(fleet.jobs_waiting) + "\nrigcal_edges " + std::to_string(fleet.edges) +
+          "\nrigcal_sessions " + std::to_string(fleet.sessions) + "\n";
+  for (const PartState& part : LookAtHealth(context).parts)
+    text += "rigcal_part_failing{part=\"" + part.name + "\"} " + (part.problem ? "1" : "0") +
+            "\nrigcal_part_failures_total{part=\"" + part.name + "\"} " + std::to_string(part.failures) + "\n";
+  for (const std::string verdict : {"fail", "pass", "unknown", "warn"})
+    text += "rigcal_robots{verdict=\"" + verdict + "\"} " + std::to_string(fleet.verdicts[VerdictLevelOf(verdict)]) + "\n";
+  for (const DriveKind kind : kDriveKinds)
+    text += "rigcal_robots_by_drive_rule{rule=\"" + NameOf(kind) + "\"} " + std::to_string(fleet.kinds[kind]) + "\n";
+  RIGCAL_ASSIGN(const std::string alerts, AlertMetrics(context.store, fleet));
+  return PageText{text + alerts, "text/plain; version=0.0.4; charset=utf-8"};
+}
+
+PageText Healthz(const AnswerContext& context) {
+  const formats::HealthAnswer health = LookAtHealth(context);
+  return {formats::WriteHealth(health, context.clock.Now()), kJson, false, health.problem() ? 503 : 200};
+}
+
+}  // namespace
+
+Result<PageText> AnswerPage(const AnswerContext& context, const std::string& path, const std::string& query) {
+  const std::string api = "/api/v1/", robots = "/robots/", assets = "/assets/", experiments = "/experiments/",
+                    models = "/models/";
+  if (path == "/") return Fleet(context, query);
+  if (path == "/fleet.csv") return FleetAsCsv(context, query);
+  if (path == "/boards/") return Boards(context);
+  if (path == "/due.ics") return DueAsCalendar(context, query);
+  if (path == "/style.css") return PageText{report::StyleSheet(), "text/css; charset=utf-8"};
+  if (path.rfind(assets, 0) == 0) return Script(path.substr(assets.size()));
+  if (path == "/healthz") return Healthz(context);
+  if (path == "/metrics") return Metrics(context);
+  if (path.rfind(api, 0) == 0) return Api(context, path.substr(api.size()), query);
+  if (path.rfind(robots, 0) == 0) return AnswerRobotPage(context, path.substr(robots.size()), query);
+  if (path.rfind(models, 0) == 0) return AnswerModelPage(context, path.substr(models.size()));
+  if (path.rfind(experiments, 0) == 0) return AnswerExperiments(context, path.substr(experiments.size()));
+  return Fail(ErrorCode::kNotFound, "there is no page " + path, "Start at the list of robots.");
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,32 @@
+// Once per burst: the canonical solve of all good edges of a robot -> the numbered revision.
+#pragma once
+
+#include "server/base/stamp.h"
+#include "server/model/graph/graph.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// The graph of a robot: good edges, plus the sensors that appear only in failed ones or only in a session's list, without those
+// that were retired.
+// What was retired, superseded or remounted since is failed there with that reason (current_edges.h) and takes no part.
+// The reference is the one that the earliest captured session names (ties: smaller session id), of those that name none
+// which was retired; without such a session, GraphOf's own rule.
+// Edges that were merged take part as the edges that stand for them.
+struct RobotGraph {
+  std::vector<Edge> edges;  // good and failed, sorted by id
+  Graph graph;
+  std::int64_t watermark = 0, standing_watermark = 0;
+};
+// As the live state needs it: `edges` are storage::EdgeParts::kRow.
+[[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot);
+
+// Merges the older edges of pairs that were pushed often (graph/fusion/merged_edge.h), solves, judges and commits. The same edges that
+// count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
+// kEdgesKeptOfPair: the newest stay as they are.
+// With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by nobody.
+[[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock,
+                                      std::int64_t pairs_waiting = 0);
+[[nodiscard]] bool IsJudged(const Revision& revision);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,44 @@
+// What a request asks for: the ids that its parameters name, and which page of a list.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/formats/answers/parameters.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// kInvalidInput where the parameter is missing or no id.
+template <typename IdType>
+[[nodiscard]] Result<IdType> RequiredId(const formats::Parameters& parameters, const std::string& name) {
+  const auto text = parameters.Text(name);
+  if (!text)
+    return Fail(ErrorCode::kInvalidInput, "the parameter '" + name + "' is missing", "See docs/api.md for the verb's parameters.");
+  return IdType::Parse(*text);
+}
+// Empty where the parameter is not there.
+template <typename IdType>
+[[nodiscard]] Result<IdType> OptionalId(const formats::Parameters& parameters, const std::string& name) {
+  return parameters.Text(name) ? RequiredId<IdType>(parameters, name) : IdType();
+}
+// For a robot that the store does not know: UnknownRobot.
+[[nodiscard]] Result<RobotId> KnownRobot(storage::Store& store, const formats::Parameters& parameters);
+
+// Rows of a page, `limit`; with `before` alone as many as there may be. 0: the whole list is asked for.
+[[nodiscard]] Result<std::int64_t> PageRows(const formats::Parameters& parameters);
+
+// `before` as the number of a revision; 0 where it is not there.
+[[nodiscard]] Result<int> RevisionBefore(const formats::Parameters& parameters);
+
+// Of rows of which one more than the page holds was loaded, that one goes: whether another page follows.
+template <typename Row>
+[[nodiscard]] bool CutToPage(std::int64_t page_rows, std::vector<Row>& rows) {
+  if (page_rows == 0 || static_cast<std::int64_t>(rows.size()) <= page_rows) return false;
+  rows.erase(rows.begin() + page_rows, rows.end());
+  return true;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,129 @@
+#include "server/pipeline/robots/robot_status.h"
+
+#include <set>
+
+#include "server/base/log.h"
+#include "server/fleet/status/sensor_status.h"
+#include "server/model/edges/past.h"
+#include "storage/alerts/outbox.h"
+#include "storage/alerts/revision_status.h"
+#include "storage/revisions/as_found.h"
+#include "storage/revisions/revisions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+// More tell hardly more of a rate, and are to be read for each revision.
+constexpr int kModelVisitsMax = 192, kOwnVisitsMax = 48;
+constexpr double kNanosecondsOfDay = 86'400e9;
+constexpr std::size_t kSiteBytesMax = 200;
+
+using VisitSet = std::set<std::pair<RobotId, int>>;
+
+// Since the calibration that was in use was measured; nothing where that is not known.
+Result<std::optional<double>> DaysSinceInUse(storage::Store& store, const RobotId& robot, const AsFound& found) {
+  if (found.in_use < 1) return std::nullopt;
+  RIGCAL_ASSIGN(const auto in_use, storage::LoadRevisionSummary(store, robot, found.in_use));
+  if (!in_use || !in_use->calibrated_at) return std::nullopt;
+  return static_cast<double>(found.captured_at.ns - in_use->calibrated_at->ns) / kNanosecondsOfDay;
+}
+
+Status TakeSteps(storage::Store& store, const RobotId& robot, const AsFound& found, fleet::DriftSteps& steps) {
+  RIGCAL_ASSIGN(const auto days, DaysSinceInUse(store, robot, found));
+  if (days) fleet::AddSteps(robot, found, *days, steps);
+  return {};
+}
+
+Status TakeVisit(storage::Store& store, const storage::RevisionKey& key, fleet::DriftSteps& steps) {
+  RIGCAL_ASSIGN(const auto found, storage::LoadAsFound(store, key));
+  return found ? TakeSteps(store, key.robot, *found, steps) : Status{};
+}
+
+Result<VisitSet> LoadVisits(storage::Store& store, const RobotId& robot, const std::string& rig_model) {
+  VisitSet visits;
+  RIGCAL_ASSIGN(const auto own, storage::LoadModelVisits(store, "", robot, kOwnVisitsMax));
+  for (const storage::RevisionKey& key : own) visits.emplace(key.robot, key.number);
+  if (rig_model.empty()) return visits;
+  RIGCAL_ASSIGN(const auto others, storage::LoadModelVisits(store, rig_model, RobotId(), kModelVisitsMax));
+  for (const storage::RevisionKey& key : others) visits.emplace(key.robot, key.number);
+  return visits;
+}
+
+// Of each session the first revision with it: one that is made once more of the same session tells nothing new.
+Result<fleet::DriftSteps> LoadSteps(storage::Store& store, const StatusOfRevision& revision) {
+  const RobotId& robot = revision.made.robot;
+  fleet::DriftSteps steps;
+  bool is_among = false;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(const VisitSet visits, LoadVisits(store, robot, revision.policy.rig_model));
+    for (const auto& [whose, number] : visits) {
+      const Status taken = TakeVisit(store, {whose, number}, steps);
+      if (!taken) LogError(taken.error());
+    }
+    if (!revision.found) return {};
+    RIGCAL_ASSIGN(is_among, storage::HasModelVisit(store, robot, revision.found->session));
+    return is_among ? Status{} : TakeSteps(store, robot, *revision.found, steps);
+  }));
+  return steps;
+}
+
+std::string ConditionOf(const SessionHeader& header, const char* name) {
+  const auto found = header.conditions.find(name);
+  return found == header.conditions.end() ? "" : found->second.substr(0, kSiteBytesMax);
+}
+
+// That was captured last, of those of which it is known.
+SessionId NewestSession(const fleet::SessionTimes& captured_at) {
+  const std::pair<const SessionId, Stamp>* newest = nullptr;
+  for (const auto& one : captured_at)
+    if (newest == nullptr || newest->second <= one.second) newest = &one;
+  return newest == nullptr ? SessionId() : newest->first;
+}
+
+// It has pairs, and none of them is good.
+bool HasFailedAsAWhole(const std::vector<Edge>& edges, const SessionId& session) {
+  bool any = false;
+  for (const Edge& edge : edges) {
+    if (edge.session != session || IsPast(edge)) continue;
+    if (edge.state == EdgeState::kGood) return false;
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
+Result<StatusFacts> FindStatus(storage::Store& store, const StatusOfRevision& revision) {
+  RIGCAL_ASSIGN(const fleet::DriftSteps steps, LoadSteps(store, revision));
+  const formats::RevisionInput& made = revision.made;
+  StatusFacts facts = fleet::JudgeStatus({made.robot, made.solution, made.reference, revision.policy.policy, revision.found,
+                                          steps, revision.calibrated_at, revision.max_age_ns});
+  facts.site = SiteOf(revision.headers);
+  return facts;
+}
+
+std::string SiteOf(const fleet::SessionHeaders& headers) {
+  const SessionHeader* newest = nullptr;
+  std::string site;
+  for (const auto& [session, header] : headers) {
+    if (newest != nullptr && header.captured_at < newest->captured_at) continue;
+    std::string named = ConditionOf(header, "site");
+    if (named.empty()) named = ConditionOf(header, "location");
+    if (named.empty()) continue;
+    newest = &header;
+    site = std::move(named);
+  }
+  return site;
+}
+
+Result<std::optional<formats::AlertDraft>> FindFailedSession(storage::Store& store, const formats::RevisionInput& made,
+                                                             const fleet::SessionTimes& captured_at, int revision,
+                                                             Stamp now) {
+  const SessionId newest = NewestSession(captured_at);
+  if (newest.empty() || !HasFailedAsAWhole(made.edges, newest)) return std::nullopt;
+  RIGCAL_ASSIGN(const bool is_told, storage::HasAlert(store, made.robot, "session_failed", newest.str()));
+  if (is_told) return std::nullopt;
+  return formats::SessionFailedAlert(made.robot, newest, captured_at.at(newest), revision, made.verdict, now);
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,177 @@
+#include "server/pipeline/sessions/as_found.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "server/fleet/as_found/as_found.h"
+#include "server/graph/fusion/session_fusion.h"
+#include "storage/revisions/revision_poses.h"
+#include "storage/revisions/revisions.h"
+#include "storage/revisions/usable_revision.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using SessionSet = std::set<SessionId>;
+
+struct InUse {
+  Revision revision;  // without its document
+  formats::RevisionInput told;
+};
+
+// The session and those of the same pictures.
+SessionSet OfSamePictures(const SessionId& session, const CurrentEdges& current) {
+  SessionSet same = {session};
+  for (const auto& [superseded, superseding] : current.counts.superseded)
+    if (superseding.by == session) same.insert(superseded);
+  return same;
+}
+
+bool HasAnyOf(const formats::RevisionInput& told, const SessionSet& sessions) {
+  const auto is_one = [&](const SessionId& session) { return sessions.contains(session); };
+  return std::any_of(told.solution.fused.sessions.begin(), told.solution.fused.sessions.end(), is_one) ||
+         std::any_of(told.edges.begin(), told.edges.end(), [&](const Edge& edge) { return is_one(edge.session); });
+}
+
+// The newest revision that was made before any edge of them was there.
+Result<int> LoadLastBefore(storage::Store& store, const RevisionInTheMaking& revision, const SessionSet& sessions) {
+  RIGCAL_ASSIGN(const auto first, storage::LoadFirstRevisions(store, revision.made.robot, revision.watermark,
+                                                              {sessions.begin(), sessions.end()}));
+  const auto earliest =
+      std::min_element(first.begin(), first.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+  return earliest == first.end() ? 0 : earliest->second - 1;
+}
+
+// When the revision was made; the end of time for one in the making.
+Result<Stamp> LoadMadeAt(storage::Store& store, const RobotId& robot, int number) {
+  RIGCAL_ASSIGN(const auto known, storage::LoadRevisionSummary(store, robot, number));
+  return known ? known->created_at : Stamp{std::numeric_limits<std::int64_t>::max()};
+}
+
+Result<std::optional<InUse>> LoadInUse(storage::Store& store, const RevisionInTheMaking& revision,
+                                       const SessionSet& sessions) {
+  const RobotId& robot = revision.made.robot;
+  RIGCAL_ASSIGN(int last, LoadLastBefore(store, revision, sessions));
+  RIGCAL_ASSIGN(const Stamp came_at, LoadMadeAt(store, robot, last + 1));
+  while (last > 0) {
+    RIGCAL_ASSIGN(const auto usable, storage::LoadStillUsable(store, robot, last, came_at));
+    if (!usable) break;
+    RIGCAL_ASSIGN(auto loaded, storage::LoadRevision(store, robot, usable->number));
+    if (!loaded) break;
+    RIGCAL_ASSIGN(formats::RevisionInput told, formats::ReadRevisionDocument(loaded->document));
+    loaded->document.clear();
+    if (!HasAnyOf(told, sessions)) return InUse{std::move(*loaded), std::move(told)};
+    last = usable->number - 1;
+  }
+  return std::nullopt;
+}
+
+// Without sensors that are gone from the robot: nobody asks for these.
+Result<fleet::KnownPoses> LoadPosesOf(storage::Store& store, const InUse& in_use, const CurrentEdges& current) {
+  RIGCAL_ASSIGN(const auto joint, storage::LoadRevisionPoses(store, {in_use.told.robot, in_use.revision.number}));
+  const fleet::KnownPoses all = fleet::PosesOf(in_use.told.solution, in_use.told.reference,
+                                               joint ? joint->covariances : std::vector<JointCovariance>());
+  return fleet::Some(all, [&](const SensorId& sensor) { return !current.counts.retired_sensors.contains(sensor); });
+}
+
+// As of when the calibration in use has the pose of the sensor: the newest of the edges that it counts of it. Where none
+// of these has a date of its own, as of when it has all of them.
+std::optional<Stamp> PoseMeasuredAt(const SensorId& sensor, const InUse& in_use, const fleet::SessionTimes& captured_at) {
+  std::optional<Stamp> newest;
+  for (const Edge& edge : in_use.told.edges) {
+    if (edge.state != EdgeState::kGood || (edge.frame_a != sensor && edge.frame_b != sensor)) continue;
+    const auto session = captured_at.find(edge.session);
+    const std::optional<Stamp> at = session == captured_at.end() ? edge.measured_at : std::optional(session->second);
+    if (at && (!newest || *newest < *at)) newest = at;
+  }
+  return newest ? newest : in_use.revision.calibrated_at;
+}
+
+// Since the calibration in use has its pose, says the session or one between both, refined or not.
+std::set<SensorId> MovedOnPurpose(const RevisionInTheMaking& revision, const SessionSet& sessions, const InUse& in_use) {
+  const std::vector<SessionId>& known = in_use.told.solution.fused.sessions;
+  std::set<SensorId> moved;
+  for (const Epoch& epoch : revision.current.counts.epochs) {
+    const bool is_known = std::find(known.begin(), known.end(), epoch.session) != known.end();
+    const auto measured_at = PoseMeasuredAt(epoch.sensor, in_use, revision.captured_at);
+    const bool by_hand = epoch.session.empty();  // what was measured at that very time is of before
+    const bool is_later = measured_at && (by_hand ? *measured_at <= epoch.begins_at : *measured_at < epoch.begins_at);
+    if (sessions.contains(epoch.session) || (is_later && !is_known)) moved.insert(epoch.sensor);
+  }
+  return moved;
+}
+
+// What still counts of sessions that are in the poses.
+class Counted {
+ public:
+  explicit Counted(const RevisionInTheMaking& revision)
+      : revision_(revision), counting_(SensorsThatCount(revision.current, revision.refined.within)) {}
+
+  [[nodiscard]] bool Has(const SessionEstimate& estimate) const {
+    const formats::RevisionInput& made = revision_.made;
+    return graph::IsFused(estimate, {made.edges, revision_.refined.within, made.reference, made.solution});
+  }
+  [[nodiscard]] fleet::KnownPoses PosesOf(const SessionEstimate& estimate) const {
+    return fleet::Some(fleet::PosesOf(estimate), [&](const SensorId& sensor) {
+      return counting_.contains({estimate.session, sensor});
+    });
+  }
+  [[nodiscard]] std::vector<fleet::VisitPoses> Visits() const {
+    std::vector<fleet::VisitPoses> visits;
+    for (const SessionEstimate& estimate : revision_.refined.estimates)
+      if (const auto at = revision_.captured_at.find(estimate.session);
+          at != revision_.captured_at.end() && Has(estimate))
+        visits.push_back({at->second, PosesOf(estimate)});
+    return visits;
+  }
+
+ private:
+  const RevisionInTheMaking& revision_;
+  SessionSensors counting_;
+};
+
+std::string WhyNoEstimate(const SessionEstimate& newest) {
+  if (newest.why_not.empty()) return "An edge of it was retired, so that nothing of it counts.";
+  return "It could not be refined as a whole: " + newest.why_not.front().what + ".";
+}
+
+Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revision, const SessionEstimate& newest,
+                          const SessionSet& sessions) {
+  AsFound found;
+  RIGCAL_ASSIGN(const auto in_use, LoadInUse(store, revision, sessions));
+  const Counted counted(revision);
+  if (!in_use) {
+    found.why_not = "No calibration was in use before it.";
+  } else if (!counted.Has(newest)) {
+    found.why_not = WhyNoEstimate(newest);
+  } else {
+    const fleet::KnownPoses left = fleet::PosesOf(revision.made.solution, revision.made.reference);
+    RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
+    found = fleet::TestAsFound(
+        {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(revision, sessions, *in_use),
+         revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha), LimitsOf(revision.policy, SensorId()).moved_min});
+    fleet::AddDriftRates(counted.Visits(), left, found);
+  }
+  if (in_use) found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;
+  return found;
+}
+
+}  // namespace
+
+Result<std::optional<AsFound>> FindAsFound(storage::Store& store, const RevisionInTheMaking& revision) {
+  if (revision.refined.estimates.empty()) return std::nullopt;
+  const SessionEstimate& newest = revision.refined.estimates.front();
+  AsFound found;
+  RIGCAL_TRY(store.Read([&]() -> Status {
+    RIGCAL_ASSIGN(found, TestInUse(store, revision, newest, OfSamePictures(newest.session, revision.current)));
+    return {};
+  }));
+  found.session = newest.session;
+  if (const auto at = revision.captured_at.find(newest.session); at != revision.captured_at.end())
+    found.captured_at = at->second;
+  found.text = fleet::AsFoundText(found, revision.captured_at);
+  return found;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,219 @@
+#include "server/pipeline/sessions/session_refinement.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "server/base/log.h"
+#include "server/calib/joint/estimate_session.h"
+#include "server/graph/solve/solve.h"
+#include "server/model/edges/method.h"
+#include "server/model/edges/past.h"
+#include "server/pipeline/edges/pose_inputs.h"
+#include "server/pipeline/sessions/epochs.h"
+#include "server/pipeline/edges/sightings.h"
+#include "storage/edges/edges.h"
+#include "storage/work/jobs.h"
+#include "storage/sessions/session_estimates.h"
+#include "storage/sessions/sessions.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using calib::joint::SessionViews;
+
+std::size_t FoundIn(const Sightings<storage::StoredView>& views) {
+  return static_cast<std::size_t>(
+      std::count_if(views.begin(), views.end(), [](const auto& item) { return item.second.view.found; }));
+}
+
+// The pairs of the session that gave an edge: what was searched for them is in the store.
+struct Pairs {
+  const std::vector<Edge>& edges;
+
+  [[nodiscard]] std::set<SensorId> PartnersOf(const SensorId& sensor) const {
+    std::set<SensorId> partners;
+    for (const Edge& edge : edges) {
+      if (edge.frame_a == sensor) partners.insert(edge.frame_b);
+      if (edge.frame_b == sensor) partners.insert(edge.frame_a);
+    }
+    return partners;
+  }
+  [[nodiscard]] bool HaveBoardsThatStandStill() const {
+    return std::any_of(edges.begin(), edges.end(), [](const Edge& edge) {
+      const std::optional<Method> method = MethodNamed(edge.method);
+      return edge.state == EdgeState::kGood && method && RowOf(*method).board_stands_still;
+    });
+  }
+};
+
+Status AddCamera(storage::Store& store, const Manifest& manifest, const Sensor& camera, calib::CameraMemory& cameras,
+                 SessionViews& views) {
+  const Target* board = nullptr;
+  Sightings<storage::StoredView> best;
+  for (const Target* target : CommonTargets(manifest.header, camera, camera)) {
+    RIGCAL_ASSIGN(Sightings<storage::StoredView> seen, SeePictures(store, manifest, camera.id, *target));
+    if (board != nullptr && FoundIn(seen) <= FoundIn(best)) continue;
+    board = target;
+    best = std::move(seen);
+  }
+  if (board == nullptr) return {};
+  calib::joint::CameraViews of_camera{camera, *board, {}, {}};
+  for (auto& [capture, seen] : best) of_camera.views.emplace_back(capture, std::move(seen.view));
+  auto estimate = cameras.Estimate({camera, *board, of_camera.views});
+  if (!estimate) return {};  // its edges failed and say why
+  of_camera.estimate = std::move(*estimate);
+  views.cameras.push_back(std::move(of_camera));
+  return {};
+}
+
+// Boards of cameras that the lidar is calibrated with were searched in its clouds.
+Status AddLidar(storage::Store& store, const Manifest& manifest, const Sensor& lidar, const Pairs& pairs,
+                SessionViews& views) {
+  calib::joint::LidarViews of_lidar{lidar, {}};
+  std::set<TargetId> looked_for;
+  for (const SensorId& partner : pairs.PartnersOf(lidar.id)) {
+    const Sensor* sensor = SensorOf(manifest.header, partner);
+    if (sensor == nullptr || sensor->kind != SensorKind::kCamera) continue;
+    for (const Target* target : CommonTargets(manifest.header, lidar, *sensor)) {
+      if (!looked_for.insert(target->id).second) continue;
+      RIGCAL_ASSIGN(auto clouds, SeeClouds(store, manifest, lidar.id, *target));
+      for (auto& [capture, seen] : clouds) {
+        seen.view.target = target->id;
+        of_lidar.clouds[capture].push_back(std::move(seen.view));
+      }
+    }
+  }
+  views.lidars.push_back(std::move(of_lidar));
+  return {};
+}
+
+Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& sensor, const Pairs& pairs,
+                 calib::CameraMemory& cameras, SessionViews& views) {
+  if (sensor.kind == SensorKind::kCamera) return AddCamera(store, manifest, sensor, cameras, views);
+  if (sensor.kind == SensorKind::kLidar) return AddLidar(store, manifest, sensor, pairs, views);
+  if (sensor.kind != SensorKind::kTracker) return {};
+  auto poses = LoadPoses(store, manifest, sensor);
+  if (!poses && poses.error().code == ErrorCode::kStorage) return Fail(poses.error());
+  if (poses) views.trackers.push_back({sensor, std::move(*poses)});
+  return {};
+}
+
+void AddLidarPairs(const std::vector<Edge>& edges, SessionViews& views) {
+  for (const Edge& edge : edges)
+    if (edge.state == EdgeState::kGood && edge.method == NameOf(Method::kLidarLidar))
+      views.relatives.push_back({edge.frame_a, edge.frame_b, edge.T_a_b, edge.uncertainty.Omega});
+}
+
+// Sensors whose pose the session's own pairs tell whole.
+void AddStart(const std::vector<Edge>& edges, const SensorId& reference, SessionViews& views) {
+  for (const SensorPose& pose : graph::Solve(graph::GraphOf(edges, reference)).poses)
+    if (pose.known) views.T_ref_sensor[pose.sensor] = pose.T_ref_sensor;
+}
+
+Result<SessionViews> LoadViews(storage::Store& store, const Manifest& manifest, const std::vector<Edge>& edges,
+                               calib::CameraMemory& cameras) {
+  SessionViews views;
+  views.reference = manifest.header.reference;
+  views.targets = manifest.header.targets;
+  views.boards_stand_still = Pairs{edges}.HaveBoardsThatStandStill();
+  AddStart(edges, views.reference, views);
+  for (const Sensor& sensor : manifest.header.sensors)
+    if (views.T_ref_sensor.contains(sensor.id))
+      RIGCAL_TRY(AddSensor(store, manifest, sensor, Pairs{edges}, cameras, views));
+  AddLidarPairs(edges, views);
+  return views;
+}
+
+// An edge could not be made from what the disk has kept, and was not made again yet.
+bool WaitsForFiles(const std::vector<Edge>& edges) {
+  std::set<EdgeId> ids;
+  for (const Edge& edge : edges) ids.insert(edge.id);
+  return std::any_of(edges.begin(), edges.end(), [&](const Edge& edge) {
+    return FailedForLostFile(edge) && !ids.contains(RepeatedEdgeId(edge.id));
+  });
+}
+
+void LogTime(const SessionId& session, std::chrono::steady_clock::time_point began) {
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  LogInfo("session " + session.str() + ": refined in " + std::to_string(took.count()) + " s");
+}
+
+Status RefineSession(storage::Store& store, const SessionId& session, calib::CameraMemory& cameras,
+                     const Clock& clock) {
+  const auto began = std::chrono::steady_clock::now();
+  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(store, session));
+  if (jobs.waiting > 0) return {};  // some of its pairs are not there yet
+  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
+  RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
+  if (!manifest || edges.empty() || WaitsForFiles(edges)) return {};
+  RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
+  SessionEstimate estimate = calib::joint::EstimateSession(views);
+  estimate.session = session;
+  if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal)) {
+    LogError({ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
+              estimate.why_not.front().cure});
+    return {};
+  }
+  RIGCAL_TRY(storage::AppendSessionEstimate(store, estimate, kSessionEstimator, clock.Now()));
+  LogTime(session, began);
+  return {};
+}
+
+bool Counts(const SessionId& session, const storage::WhatCounts& counts) {
+  return !counts.superseded.contains(session) && !counts.retired_sessions.contains(session);
+}
+
+// What it says to people of sensors that were retired since. Their poses take no part where no edge of them counts.
+void LeaveOutGone(const std::map<SensorId, Standing>& gone, SessionEstimate& estimate) {
+  for (RefinedPose& pose : estimate.poses)
+    if (gone.contains(pose.sensor)) pose.smallest_move.reset();
+  std::erase_if(estimate.held_back,
+                [&](const HeldBackLook& look) { return gone.contains(look.sensor) || gone.contains(look.against); });
+}
+
+std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates) {
+  std::vector<SessionId> sessions;
+  for (const SessionEstimate& estimate : estimates) sessions.push_back(estimate.session);
+  return sessions;
+}
+
+}  // namespace
+
+Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
+  RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
+  for (const storage::SessionEstimateRow& row : rows)
+    if (!row.estimate)
+      if (const Status refined = RefineSession(store, row.session, cameras, clock); !refined) LogError(refined.error());
+  return {};
+}
+
+Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current) {
+  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused));
+  CurrentEstimates result;
+  for (storage::SessionEstimateRow& row : rows)
+    if (row.estimate && Counts(row.session, current.counts)) result.estimates.push_back(std::move(*row.estimate));
+  RIGCAL_ASSIGN(result.within, LoadEdgesWithin(store, current, SessionsOf(result.estimates)));
+  RIGCAL_ASSIGN(const Epochs epochs, Epochs::Load(store, SessionsOf(result.estimates), current.counts.epochs));
+  const SessionSensors counting = SensorsThatCount(current, result.within);
+  for (SessionEstimate& estimate : result.estimates) {
+    const SessionId& session = estimate.session;
+    std::erase_if(estimate.moved, [&](const SensorMovedWithin& moved) {
+      return epochs.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
+    });
+    std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
+    LeaveOutGone(current.counts.retired_sensors, estimate);
+  }
+  return result;
+}
+
+SessionSensors SensorsThatCount(const CurrentEdges& current, const std::vector<Edge>& within) {
+  SessionSensors counting;
+  for (const std::vector<Edge>* edges : {&current.edges, &within})
+    for (const Edge& edge : *edges)
+      if (edge.state == EdgeState::kGood)
+        for (const SensorId& sensor : {edge.frame_a, edge.frame_b}) counting.emplace(edge.session, sensor);
+  return counting;
+}
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,44 @@
+// READ, joint refinement, WRITE: one estimate per session from the raw observations that its pairs were made from.
+#pragma once
+
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "server/base/stamp.h"
+#include "server/calib/camera/camera_memory.h"
+#include "server/model/edges/edge.h"
+#include "server/model/sessions/session_estimate.h"
+#include "server/pipeline/sessions/current_edges.h"
+#include "storage/store.h"
+
+namespace rigcal::pipeline {
+
+// Sessions captured before the newest so many are not refined any more.
+constexpr int kSessionsRefined = 8;
+// Of those that are, so many are fused: what is older than a robot's newest 32 visits says little of where sensors are
+// now.
+constexpr int kSessionsFused = 32;
+// Of stored estimates; raised when the same observations give another estimate.
+inline constexpr const char* kSessionEstimator = "joint/7";
+
+// Makes and commits what is missing of the newest sessions whose jobs are done. A session that cannot be refined gets
+// an estimate that says why; one that failed for a reason of ours (no memory) gets none and is tried at the next
+// revision.
+[[nodiscard]] Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras,
+                                    const Clock& clock);
+
+struct CurrentEstimates {
+  std::vector<SessionEstimate> estimates;
+  std::vector<Edge> within;  // what of their edges is in merged ones (current_edges.h)
+};
+// Of sessions that count (not superseded, not retired), the newest captured first. Moves of sensors that were remounted
+// since, or of which no edge of the session counts any more, are left out, and so is what could have moved unseen of
+// retired ones. Call within one Read, with `current`.
+[[nodiscard]] Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current);
+
+// Sensors of which a good edge of the session still says something.
+using SessionSensors = std::set<std::pair<SessionId, SensorId>>;
+[[nodiscard]] SessionSensors SensorsThatCount(const CurrentEdges& current, const std::vector<Edge>& within);
+
+}  // namespace rigcal::pipeline

@@ -1,0 +1,30 @@
+// Work that computes and decodes, in a process of its own: what ends that process costs this work, and nobody else's.
+//
+// Over its standard input and output, a line each, fields by tabs. It is told one order at a time:
+//   job NUMBER ROBOT SESSION SENSOR_A SENSOR_B ATTEMPTS | refine ROBOT | publish ROBOT REVISION WHY_NO_CLOUDS
+// and says `begun`, then `done TEXT` or `failed CODE WHAT CURE`. In between it asks for memory to decode in: `take ID BYTES`,
+// answered by `granted ID` when there is as much, and ended by `give ID`. It ends when its input does.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "server/base/stamp.h"
+#include "storage/revisions/revisions.h"
+#include "storage/work/jobs.h"
+
+namespace rigcal::pipeline {
+
+// Lines as Work() takes them.
+[[nodiscard]] std::string JobOrder(const storage::JobRow& job);
+[[nodiscard]] std::string RefineOrder(const RobotId& robot);
+[[nodiscard]] std::string PublishOrder(const storage::RevisionKey& key, const std::string& why_no_clouds);
+
+// Of a line.
+[[nodiscard]] std::vector<std::string> WorkerFields(const std::string& line);
+
+// The process's whole life: carries out orders on the store in `folder`. The exit code.
+[[nodiscard]] int Work(const std::filesystem::path& folder, const Clock& clock);
+
+}  // namespace rigcal::pipeline

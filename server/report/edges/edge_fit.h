@@ -1,0 +1,34 @@
+// How an edge fits, as the drawing and the table show it: a class for its colour, a width for its information.
+#pragma once
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "server/report/edges/edge_order.h"
+
+namespace rigcal::report {
+
+// SigmasClass() of its residual; "unchecked" if no other edge checks it; "failed".
+[[nodiscard]] const char* FitClass(const ShownEdge& shown, bool checked);
+
+// Edges that the others speak against, and those that may be wrong instead.
+struct Contradictions {
+  std::set<EdgeId> suspects, alternatives;
+};
+// An edge that is suspected is no alternative as well.
+[[nodiscard]] Contradictions ContradictionsOf(const Suspects& suspects);
+
+// Stroke widths between the least and the most certain edge, by the logarithm of the largest sigma of the position.
+class InformationScale {
+ public:
+  // The scale of these edges; those without information take no part.
+  explicit InformationScale(const std::vector<ShownEdge>& edges);
+  // The thinnest for an edge without information; all alike where the edges are about equally certain.
+  [[nodiscard]] double Width_px(const Edge& edge) const;
+
+ private:
+  double least_ = 0.0, most_ = 0.0;
+};
+
+}  // namespace rigcal::report

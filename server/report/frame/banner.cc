@@ -1,0 +1,74 @@
+#include "server/report/frame/banner.h"
+
+#include "server/model/robots/drive_rule.h"
+#include "server/report/text/text.h"
+
+namespace rigcal::report {
+namespace {
+
+// Shapes differ as well as colours: a tick, a triangle, a cross, a question mark.
+const char* IconOf(VerdictLevel level) {
+  switch (level) {
+    case VerdictLevel::kPass:
+      return "M4 12.5l5.5 5.5L20 6.5";
+    case VerdictLevel::kWarn:
+      return "M12 3.5L22 20.5H2ZM12 10v4.5M12 17.4v.1";
+    case VerdictLevel::kFail:
+      return "M5.5 5.5l13 13M18.5 5.5l-13 13";
+    case VerdictLevel::kUnknown:
+      break;
+  }
+  return "M8 8.5a4 4 0 1 1 6 3.5c-1.4.8-2 1.6-2 3M12 18.9v.1";
+}
+
+}  // namespace
+
+void FillBadge(Dictionary& row, VerdictLevel level) {
+  row.SetValue("LEVEL", NameOf(level));
+  row.SetValue("WORD", VerdictWord(level));
+}
+
+namespace {
+
+// What is said of it once it is overdue: what else it is changes no rule.
+std::string LateText(const Verdict& verdict, Validity validity, const std::optional<Runs>& runs) {
+  if (!IsUsable(verdict)) return OverdueText(ValidUntil(validity));
+  validity.overdue = true;
+  return DriveRuleOf(verdict, validity, runs).rule + ".";
+}
+
+}  // namespace
+
+void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity,
+                 const std::optional<Runs>& runs) {
+  const auto valid_until = ValidUntil(validity);
+  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", LateText(verdict, validity, runs));
+  if (!valid_until) return;
+  Dictionary* later = row.AddSectionDictionary("LATER");
+  later->SetValue("UNTIL", ToIso(*valid_until));
+  later->SetValue("TEXT", LateText(verdict, validity, runs));
+}
+
+void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity, const std::optional<Runs>& runs) {
+  if (validity.overdue && IsUsable(verdict)) return;
+  const DriveRule drive = DriveRuleOf(verdict, validity, runs);
+  Dictionary* section = row.AddSectionDictionary("DRIVE");
+  section->SetValue("TEXT", drive.rule + ".");
+  if (drive.until) section->ShowSection("ENDS");
+}
+
+void FillBanner(Dictionary& page, const Verdict& verdict, const Validity& validity, bool has_revision,
+                const std::optional<Runs>& runs) {
+  Dictionary* banner = page.AddIncludeDictionary("BANNER");
+  banner->SetFilename("banner.tpl");
+  FillBadge(*banner, verdict.level);
+  banner->SetValue("ICON", IconOf(verdict.level));
+  banner->SetValue("WHY", verdict.why.empty() ? "There is no verdict yet." : verdict.why);
+  if (!verdict.what_to_do.empty()) ShowValue(*banner, "DO", "WHAT_TO_DO", verdict.what_to_do);
+  FillDrive(*banner, verdict, validity, runs);
+  if (!has_revision) return;
+  FillOverdue(*banner, verdict, validity, runs);
+  if (!IsUsable(verdict)) ShowValue(*banner, "KEEP", "TEXT", KeepText(verdict.level, validity.usable));
+}
+
+}  // namespace rigcal::report

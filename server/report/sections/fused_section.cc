@@ -1,0 +1,98 @@
+#include "server/report/sections/fused_section.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "server/report/text/changes.h"
+#include "server/report/text/sigmas.h"
+#include "server/report/text/text.h"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kFusedRowsMax = 200, kFusedNamesMax = 10;
+
+struct Moved {
+  const SensorPose* pose;
+  SensorMove by;  // from the pairs' pose, in their sigmas
+};
+
+std::vector<Moved> MostMovedFirst(const formats::RevisionInput& revision) {
+  std::vector<Moved> moved;
+  for (const SensorPose& pose : revision.solution.poses) {
+    if (!pose.fused) continue;
+    SensorPose before = pose, now = pose;
+    before.T_ref_sensor = pose.fused->T_ref_sensor_by_pairs;
+    before.covariance = pose.fused->covariance_by_pairs;
+    now.covariance.setZero();
+    moved.push_back({&pose, MoveOf(before, now)});
+  }
+  std::stable_sort(moved.begin(), moved.end(),
+                   [](const Moved& x, const Moved& y) { return x.by.in_sigmas > y.by.in_sigmas; });
+  if (moved.size() > kFusedRowsMax) moved.resize(kFusedRowsMax);
+  return moved;
+}
+
+double LargestSigma_m(const Matrix6d& covariance) {
+  return std::sqrt(covariance.diagonal().head<3>().maxCoeff());
+}
+
+std::string VisitsText(const FusedPose& fused) {
+  if (fused.sessions < 2) return "one visit";
+  if (fused.visit_sigma_m <= 0 && fused.visit_sigma_rad <= 0) return "within \xCF\x83";
+  return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad);
+}
+
+void FillRow(Dictionary& row, const Moved& moved, bool visits) {
+  const FusedPose& fused = *moved.pose->fused;
+  row.SetValue("NAME", moved.pose->sensor.str());
+  row.SetValue("MM", Mm(moved.by.distance_m));
+  row.SetValue("DEG", Deg(moved.by.angle_rad));
+  row.SetValue("SIGMAS", SigmasText(moved.by.in_sigmas));
+  row.SetValue("CLASS", SigmasClass(moved.by.in_sigmas));
+  row.SetValue("BEFORE", SigmaMm(LargestSigma_m(fused.covariance_by_pairs)));
+  row.SetValue("NOW", SigmaMm(LargestSigma_m(moved.pose->covariance)));
+  if (visits) ShowValue(row, "VISITS", "TEXT", VisitsText(fused));
+}
+
+std::string CapturesText(const std::vector<std::string>& names) {
+  std::string text = names.size() == 1 ? "capture " : "captures ";
+  for (std::size_t i = 0; i < std::min(names.size(), kFusedNamesMax); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return text + (names.size() > kFusedNamesMax ? " and " + std::to_string(names.size() - kFusedNamesMax) + " more" : "");
+}
+
+// "front_right in capture 007 contradicts all that was seen besides: ..."; where only two sensors saw the place, either
+// may be wrong.
+void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
+  std::map<std::pair<SensorId, SensorId>, std::vector<std::string>> captures;
+  for (const FusedSessions::HeldBack& look : fused.held_back)
+    captures[{look.sensor, look.against}].push_back(look.capture.str());
+  for (const auto& [who, names] : captures) {
+    const auto& [sensor, against] = who;
+    const std::string contradicts = names.size() == 1 ? " contradicts " : " contradict ";
+    ShowValue(section, "HELD_BACK", "TEXT",
+              sensor.str() + " in " + CapturesText(names) + contradicts +
+                  (against.empty() ? "all that was seen besides, as a picture of another instant does; it"
+                                   : against.str() + ", and either may be of another instant; what " + sensor.str() + " saw") +
+                  " counts for next to nothing.");
+  }
+}
+
+}  // namespace
+
+void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
+  const std::vector<Moved> rows = MostMovedFirst(revision);
+  if (rows.empty()) return;
+  Dictionary* section = page.AddSectionDictionary("FUSED_SECTION")->AddIncludeDictionary("FUSED");
+  section->SetFilename("fused.tpl");
+  const std::size_t sessions = revision.solution.fused.sessions.size();
+  section->SetValue("SUMMARY", "All that the sensors saw in " + Count(sessions, "session", "sessions") +
+                                   ", as one estimate" + (sessions > 1 ? " per session." : "."));
+  if (sessions > 1) section->ShowSection("VISITS_HEAD");
+  if (sessions > 1) section->ShowSection("VISITS_NOTE");
+  FillHeldBack(*section, revision.solution.fused);
+  for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
+}
+
+}  // namespace rigcal::report

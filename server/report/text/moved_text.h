@@ -1,0 +1,19 @@
+// What moved between two solved states, in one sentence.
+#pragma once
+
+#include <string>
+
+#include "server/report/text/changes.h"
+#include "server/report/text/edge_moves.h"
+
+namespace rigcal::report {
+
+struct MovedText {
+  std::string sentence;
+  bool moved = false;  // something is off by kOff_sigmas or more
+};
+// What the measurements say by themselves, where the solution is a mean of old and new ones; "" if none is off.
+[[nodiscard]] std::string WhatMeasured(const std::vector<EdgeMove>& moves);
+[[nodiscard]] MovedText WhatMoved(const Changes& changes, const SensorId& reference);
+
+}  // namespace rigcal::report

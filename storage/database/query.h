@@ -1,0 +1,135 @@
+// One run of a prepared statement, for storage/*.cc only: bound by position in one go, reset at the end of its scope
+// and kept by the connection for the next run. Throws SQLite::Exception; Connection::Append and Load catch it.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/base/ids.h"
+#include "server/base/stamp.h"
+#include "server/math/tangent.h"
+#include "storage/database/connection.h"
+#include "storage/store.h"
+
+namespace rigcal::storage {
+
+static_assert(std::endian::native == std::endian::little, "BLOBs hold little-endian doubles");
+
+struct Blob {
+  std::string bytes;
+};
+// The doubles as they lie in memory; a matrix row by row.
+[[nodiscard]] Blob BlobOf(const double* values, std::size_t count);
+[[nodiscard]] Blob BlobOf(const Matrix6d& matrix);
+
+class Query {
+ public:
+  // Takes the statement of `sql` that the connection keeps, or prepares it. Throws SQLite::Exception, as all that
+  // follows.
+  Query(Store& store, const std::string& sql);
+  ~Query();
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
+
+  // The next parameters, from the first: what is absent becomes NULL, an id its text, a stamp its nanoseconds.
+  template <typename... Values>
+  Query& Bind(const Values&... values) {
+    (BindOne(values), ...);
+    return *this;
+  }
+  // Large text: must outlive the query.
+  Query& BindNoCopy(const std::string& text);
+
+  // To the next row; false after the last one.
+  [[nodiscard]] bool Step() { return statement_->executeStep(); }
+  // Runs it to the end; the number of rows changed.
+  int Run() { return statement_->exec(); }
+
+  // Of the row that Step() came to; columns count from 0. NULL reads as 0 or empty text.
+  [[nodiscard]] bool IsNull(int column) const { return statement_->isColumnNull(column); }
+  [[nodiscard]] std::int64_t Int(int column) const { return statement_->getColumn(column).getInt64(); }
+  [[nodiscard]] double Real(int column) const { return statement_->getColumn(column).getDouble(); }
+  [[nodiscard]] std::string Text(int column) const { return statement_->getColumn(column).getString(); }
+  [[nodiscard]] Stamp Time(int column) const { return {Int(column)}; }
+  template <typename AnId>
+  [[nodiscard]] AnId IdAt(int column) const {
+    return AnId(Text(column));
+  }
+  // Throws if the blob's size is no whole number of doubles.
+  [[nodiscard]] std::vector<double> Doubles(int column) const;
+  // Throws if it is not a 6x6.
+  [[nodiscard]] Matrix6d MatrixAt(int column) const;
+
+ private:
+  void BindOne(std::int64_t value) { statement_->bind(++bound_, value); }
+  void BindOne(int value) { statement_->bind(++bound_, value); }
+  void BindOne(std::uint32_t value) { statement_->bind(++bound_, value); }
+  void BindOne(std::size_t value) { BindOne(static_cast<std::int64_t>(value)); }
+  void BindOne(const char*) = delete;  // would be taken for a bool
+  void BindOne(bool value) { statement_->bind(++bound_, value ? 1 : 0); }
+  void BindOne(double value) { statement_->bind(++bound_, value); }
+  void BindOne(const std::string& value) { statement_->bind(++bound_, value); }
+  void BindOne(const Blob& value) {
+    statement_->bind(++bound_, value.bytes.data(), static_cast<int>(value.bytes.size()));
+  }
+  void BindOne(Stamp value) { BindOne(value.ns); }
+  void BindOne(std::nullopt_t) { statement_->bind(++bound_); }
+  template <typename Tag>
+  void BindOne(const Id<Tag>& value) {
+    BindOne(value.str());
+  }
+  template <typename T>
+  void BindOne(const std::optional<T>& value) {
+    value ? BindOne(*value) : BindOne(std::nullopt);
+  }
+
+  std::unique_ptr<SQLite::Statement>& idle_;  // its place in the connection
+  std::unique_ptr<SQLite::Statement> statement_;
+  int bound_ = 0;
+};
+
+// As json_each takes it; ids hold no character that JSON escapes.
+template <typename Tag>
+[[nodiscard]] std::string ListOf(const std::vector<Id<Tag>>& ids) {
+  std::string list = "[";
+  for (const Id<Tag>& id : ids) list += (list.size() == 1 ? "\"" : ",\"") + id.str() + "\"";
+  return list + "]";
+}
+
+// Of numbers, likewise.
+[[nodiscard]] std::string ListOf(const std::vector<int>& numbers);
+
+// NULL for an empty id.
+template <typename Tag>
+[[nodiscard]] std::optional<Id<Tag>> NullIfEmpty(const Id<Tag>& id) {
+  return id.empty() ? std::nullopt : std::optional(id);
+}
+
+// Load with a value: `body` returns Result<T>.
+template <typename T, typename Body>
+[[nodiscard]] Result<T> Load(Store& store, const std::string& subject, const Body& body) {
+  Result<T> answer = Fail(ErrorCode::kInternal, subject, "This is a fault of rigcald: please report it.");
+  RIGCAL_TRY(store.connection().Load(subject, [&]() -> Status {
+    answer = body();
+    return {};
+  }));
+  return answer;
+}
+
+// Append with a value.
+template <typename T, typename Body>
+[[nodiscard]] Result<T> Append(Store& store, const std::string& subject, const Body& body) {
+  T answer{};
+  RIGCAL_TRY(store.connection().Append(subject, [&]() -> Status {
+    RIGCAL_ASSIGN(answer, body());
+    return {};
+  }));
+  return answer;
+}
+
+}  // namespace rigcal::storage

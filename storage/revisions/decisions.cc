@@ -1,0 +1,158 @@
+#include "storage/revisions/decisions.h"
+
+#include "server/model/approval/validity.h"
+#include "storage/audit.h"
+#include "storage/database/query.h"
+#include "storage/edges/edges.h"
+#include "storage/revisions/decision_row.h"
+#include "storage/revisions/revision_row.h"
+#include "storage/revisions/revisions.h"
+#include "storage/sessions/standing.h"
+#include "storage/sessions/standing_row.h"
+
+namespace rigcal::storage {
+namespace {
+
+// "revision 4 of robot mapper-01"
+std::string NamedRevision(const RobotId& robot, int number) {
+  return "revision " + std::to_string(number) + " of robot " + robot.str();
+}
+
+const std::string kDecisionColumns = "d.number, d.revision_number, d.how, d.at_ns, d.who, d.reason";
+
+Decision DecisionOf(const Query& query) {
+  return {query.Int(0), static_cast<int>(query.Int(1)), query.Text(2), {query.Time(3), query.Text(4), query.Text(5)}};
+}
+
+std::optional<Decision> InUse(Store& store, const RobotId& robot) {
+  Query query(store, "SELECT " + kDecisionColumns + " FROM decision d WHERE d.robot_id = ? AND " + kHolds +
+                         " ORDER BY d.number DESC LIMIT 1");
+  return query.Bind(robot).Step() ? std::optional(DecisionOf(query)) : std::nullopt;
+}
+
+std::optional<Decision> NewestAbout(Store& store, const RobotId& robot, int revision) {
+  Query query(store,
+              "SELECT " + kDecisionColumns +
+                  " FROM decision d WHERE d.robot_id = ? AND d.revision_number = ? ORDER BY d.number DESC LIMIT 1");
+  return query.Bind(robot, revision).Step() ? std::optional(DecisionOf(query)) : std::nullopt;
+}
+
+bool WasEverApproved(Store& store, const RobotId& robot, int revision) {
+  return Query(store, "SELECT 1 FROM decision WHERE robot_id = ? AND revision_number = ? AND how <> 'rejected' LIMIT 1")
+      .Bind(robot, revision)
+      .Step();
+}
+
+bool WasRolledBack(Store& store, const Decision& decision) {
+  return !Query(store, "SELECT 1 FROM decision d WHERE d.number = ? AND " + kNotRolledBack)
+              .Bind(decision.number)
+              .Step();
+}
+
+// The name of a decision in the table.
+std::string HowOf(Deciding deciding) {
+  if (deciding == Deciding::kApprove) return "approved";
+  return deciding == Deciding::kReject ? "rejected" : "rolled_back";
+}
+
+std::string AuditTextOf(const RobotId& robot, int revision, Deciding deciding, const Word& word) {
+  if (deciding == Deciding::kRollBack)
+    return "rolled robot " + robot.str() + " back to revision " + std::to_string(revision) + Because(word);
+  return HowOf(deciding) + " " + NamedRevision(robot, revision) + Because(word);
+}
+
+// What somebody said no to last, or never said yes to, is nothing to go back to.
+Status CheckGoingBack(Store& store, const RobotId& robot, int revision) {
+  const auto newest = NewestAbout(store, robot, revision);
+  const bool was_rejected = newest && newest->how == "rejected";
+  if (!was_rejected && WasEverApproved(store, robot, revision)) return {};
+  return Fail(ErrorCode::kConflict,
+              NamedRevision(robot, revision) +
+                  (was_rejected ? " was rejected by " + newest->word.who + ", " + DayText(newest->word.at) +
+                                      ": nobody goes back to it before somebody approves it"
+                                : " was never approved: there is nothing to go back to"),
+              "`rigcal approve " + robot.str() + " " + std::to_string(revision) + " --reason TEXT` approves it.");
+}
+
+Status CheckDecision(Store& store, const RobotId& robot, int revision, Deciding deciding) {
+  RIGCAL_ASSIGN(const auto known, LoadRevisionSummary(store, robot, revision));
+  if (!known || revision < 1)
+    return Fail(ErrorCode::kNotFound, "robot '" + robot.str() + "' has no revision " + std::to_string(revision),
+                "`rigcal history " + robot.str() + "` lists those that there are.");
+  if (deciding == Deciding::kReject) return {};
+  if (!IsUsable(known->verdict))
+    return Fail(
+        ErrorCode::kConflict,
+        NamedRevision(robot, revision) + " has the verdict " + NameOf(known->verdict.level) +
+            ": only pass and warn are used",
+        "`rigcal show " + robot.str() + " --revision " + std::to_string(revision) + "` says why, and what to do.");
+  return deciding == Deciding::kApprove ? Status() : CheckGoingBack(store, robot, revision);
+}
+
+bool IsSoAlready(Store& store, const RobotId& robot, int revision, Deciding deciding) {
+  if (deciding == Deciding::kReject) {
+    const auto newest = NewestAbout(store, robot, revision);
+    return newest && newest->how == "rejected";
+  }
+  const auto in_use = InUse(store, robot);
+  return in_use && in_use->revision == revision;
+}
+
+}  // namespace
+
+Result<bool> AppendDecision(Store& store, const RobotId& robot, int revision, Deciding deciding, const Word& word) {
+  RIGCAL_TRY(CheckWord(word));
+  return Append<bool>(store, DecisionsSubject(robot), [&]() -> Result<bool> {
+    RIGCAL_TRY(CheckDecision(store, robot, revision, deciding));
+    if (IsSoAlready(store, robot, revision, deciding)) return false;
+    RIGCAL_ASSIGN(const std::int64_t edges, LoadEdgeWatermark(store, robot));
+    Query(store,
+          "INSERT INTO decision (robot_id, revision_number, how, at_ns, who, reason, edge_watermark) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?)")
+        .Bind(robot, revision, HowOf(deciding), word.at, word.who, word.reason, edges)
+        .Run();
+    const AuditedRow row{AuditedKind::kDecision, store.database().getLastInsertRowid()};
+    RIGCAL_TRY(AppendAudit(store, word.at, word.who, AuditTextOf(robot, revision, deciding, word), robot, row));
+    return true;
+  });
+}
+
+Result<std::optional<Decision>> LoadInUse(Store& store, const RobotId& robot) {
+  using Found = std::optional<Decision>;
+  return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> { return InUse(store, robot); });
+}
+
+Result<int> LoadNewestApproved(Store& store, const RobotId& robot) {
+  return Load<int>(store, DecisionsSubject(robot), [&]() -> Result<int> {
+    Query query(store,
+                "SELECT revision_number FROM decision WHERE robot_id = ? AND how <> 'rejected' ORDER BY "
+                "revision_number DESC LIMIT 1");
+    return query.Bind(robot).Step() ? static_cast<int>(query.Int(0)) : 0;
+  });
+}
+
+Result<bool> WasApproved(Store& store, const RobotId& robot, int revision) {
+  return Load<bool>(store, DecisionsSubject(robot),
+                    [&]() -> Result<bool> { return WasEverApproved(store, robot, revision); });
+}
+
+Result<std::optional<Decision>> LoadDecision(Store& store, const RobotId& robot, int revision) {
+  using Found = std::optional<Decision>;
+  return Load<Found>(store, DecisionsSubject(robot),
+                     [&]() -> Result<Found> { return NewestAbout(store, robot, revision); });
+}
+
+Result<RevisionState> LoadRevisionState(Store& store, const Revision& revision,
+                                        const std::optional<UsableRevision>& usable) {
+  return Load<RevisionState>(store, DecisionsSubject(revision.robot), [&]() -> Result<RevisionState> {
+    const auto newest = NewestAbout(store, revision.robot, revision.number);
+    if (!newest) return IsUsable(revision.verdict) ? RevisionState::kCandidate : RevisionState::kUnusable;
+    if (newest->how == "rejected") return RevisionState::kRejected;
+    if (usable && usable->number == revision.number) return RevisionState::kApproved;
+    const auto in_use = InUse(store, revision.robot);
+    if (in_use && in_use->revision == revision.number) return RevisionState::kTakenBack;
+    return WasRolledBack(store, *newest) ? RevisionState::kRolledBack : RevisionState::kSuperseded;
+  });
+}
+
+}  // namespace rigcal::storage

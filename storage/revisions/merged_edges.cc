@@ -1,0 +1,256 @@
+#include "storage/revisions/merged_edges.h"
+
+#include <map>
+#include <tuple>
+
+#include "server/base/digests/sha256.h"
+#include "storage/database/query.h"
+#include "storage/sessions/epochs.h"
+#include "storage/sessions/retired.h"
+#include "storage/sessions/standing.h"
+
+namespace rigcal::storage {
+namespace {
+
+std::string Subject(const RobotId& robot) { return "merged edges of robot " + robot.str(); }
+
+Blob BlobOfVectors(const std::vector<Vector6d>& vectors) {
+  std::vector<double> values;
+  for (const Vector6d& one : vectors) values.insert(values.end(), one.data(), one.data() + 6);
+  return BlobOf(values.data(), values.size());
+}
+
+void Insert(Store& store, const RevisionKey& key, const MergedEdge& merged) {
+  Query insert(store, "INSERT INTO merged_edge VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions);
+  insert.Bind(merged.count, merged.newest, merged.T_a_b.p_m.x(), merged.T_a_b.p_m.y(), merged.T_a_b.p_m.z());
+  insert.Bind(merged.T_a_b.q.x(), merged.T_a_b.q.y(), merged.T_a_b.q.z(), merged.T_a_b.q.w());
+  insert.Bind(NameOf(merged.source), merged.dof, merged.by_blocks);
+  insert.Bind(BlobOf(merged.Omega), BlobOf(merged.scatter), BlobOf(merged.given)).Run();
+  for (const auto& [name, scores] : merged.constants)
+    Query(store, "INSERT INTO merged_edge_constant VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+        .Bind(key.robot, key.number, merged.frame_a, merged.frame_b, merged.method, merged.of_sessions, name, BlobOfVectors(scores))
+        .Run();
+}
+
+void ReplaceScores(Store& store, const RobotId& robot, const std::vector<MergedEdge>& merged) {
+  Query(store, "DELETE FROM merge_state_scores WHERE robot_id = ?").Bind(robot).Run();
+  for (const MergedEdge& one : merged)
+    if (one.of_sessions)
+      Query(store, "INSERT INTO merge_state_scores VALUES (?, ?, ?, ?, ?)")
+          .Bind(robot, one.frame_a, one.frame_b, one.method, BlobOf(one.scores.data(), static_cast<std::size_t>(one.scores.size())))
+          .Run();
+}
+
+void ReplaceIds(Store& store, const RobotId& robot, const std::vector<EdgeId>& ids) {
+  Query(store, "DELETE FROM merge_state_edge WHERE robot_id = ?").Bind(robot).Run();
+  Query(store, "INSERT OR IGNORE INTO merge_state_edge SELECT value, ? FROM json_each(?)").Bind(robot, ListOf(ids)).Run();
+}
+
+Result<MergedEdge> MergedAt(const Query& row) {
+  MergedEdge merged;
+  merged.frame_a = row.IdAt<SensorId>(0), merged.frame_b = row.IdAt<SensorId>(1);
+  merged.method = row.Text(2);
+  merged.count = static_cast<int>(row.Int(3));
+  merged.newest = row.Time(4);
+  merged.T_a_b.p_m = {row.Real(5), row.Real(6), row.Real(7)};
+  merged.T_a_b.q.coeffs() << row.Real(8), row.Real(9), row.Real(10), row.Real(11);
+  RIGCAL_ASSIGN(merged.source, UncertaintySourceOf(row.Text(12)));
+  merged.dof = static_cast<int>(row.Int(13));
+  merged.by_blocks = row.Int(14) != 0;
+  merged.of_sessions = row.Int(18) != 0;
+  merged.Omega = row.MatrixAt(15), merged.scatter = row.MatrixAt(16), merged.given = row.MatrixAt(17);
+  return merged;
+}
+
+const std::string kOfRevision =
+    " WHERE robot_id = ?1 AND revision_number = CASE ?2 WHEN 0 THEN (SELECT max(number) FROM revision WHERE robot_id = ?1) ELSE ?2 END";
+
+using Merged = std::map<std::tuple<SensorId, SensorId, std::string, bool>, MergedEdge>;
+
+void LoadConstants(Store& store, const RobotId& robot, int number, Merged& merged) {
+  Query constants(store, "SELECT frame_a, frame_b, method, of_sessions, name, scores FROM merged_edge_constant" + kOfRevision);
+  constants.Bind(robot, number);
+  while (constants.Step()) {
+    auto& scores = merged[{constants.IdAt<SensorId>(0), constants.IdAt<SensorId>(1), constants.Text(2), constants.Int(3) != 0}]
+                       .constants[constants.Text(4)];
+    const std::vector<double> values = constants.Doubles(5);
+    for (std::size_t i = 0; i + 6 <= values.size(); i += 6) scores.emplace_back(values.data() + i);
+  }
+}
+
+bool IsNewest(Store& store, const RobotId& robot, int number) {
+  Query query(store, "SELECT max(number) FROM revision WHERE robot_id = ?");
+  return number == 0 || (query.Bind(robot).Step() && query.Int(0) == number);
+}
+
+void LoadScores(Store& store, const RobotId& robot, Merged& merged) {
+  Query rows(store, "SELECT frame_a, frame_b, method, scores FROM merge_state_scores WHERE robot_id = ?");
+  rows.Bind(robot);
+  while (rows.Step()) {
+    const auto found = merged.find({rows.IdAt<SensorId>(0), rows.IdAt<SensorId>(1), rows.Text(2), true});
+    if (found == merged.end()) continue;
+    const std::vector<double> values = rows.Doubles(3);
+    found->second.scores =
+        Eigen::Map<const Eigen::Matrix<double, 6, Eigen::Dynamic>>(values.data(), 6, static_cast<Eigen::Index>(values.size() / 6));
+  }
+}
+
+// Of `ids`, those that an edge has which is in no window; `column` is the edge's.
+std::string OutsideOf(Store& store, const RobotId& robot, const std::string& column, const std::string& ids) {
+  Query query(store,
+              "SELECT value FROM json_each(?) WHERE EXISTS (SELECT 1 FROM edge e JOIN counted_edge c ON c.edge_number = e.number "
+              "WHERE e." + column + " = value AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ? "
+              "AND w.edge_number = e.number)) ORDER BY value");
+  query.Bind(ids, robot);
+  std::string outside;
+  while (query.Step()) outside += query.Text(0) + "\n";
+  return outside;
+}
+
+template <typename Map>
+std::string KeysOf(const Map& map) {
+  std::vector<typename Map::key_type> keys;
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return ListOf(keys);
+}
+
+// Of edges that have a date, those of sessions and some pushed ones, whether any is in no window.
+bool AnyDatedOutside(Store& store, const RobotId& robot) {
+  return Query(store,
+               "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
+               "coalesce(e.session_id, e.measured_ns) IS NOT NULL AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+               "w.edge_number = c.edge_number) LIMIT 1")
+      .Bind(robot)
+      .Step();
+}
+
+// Of retired sensors, those of which an edge is in no window.
+std::string SensorsOutside(Store& store, const RobotId& robot, const WhatCounts& counts) {
+  std::string outside;
+  for (const auto& [sensor, standing] : counts.retired_sensors)
+    if (Query(store,
+              "SELECT 1 FROM counted_edge c JOIN edge e ON e.number = c.edge_number WHERE c.robot_id = ?1 AND "
+              "?2 IN (e.frame_a, e.frame_b) AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE w.robot_id = ?1 AND "
+              "w.edge_number = c.edge_number) LIMIT 1")
+            .Bind(robot, sensor)
+            .Step())
+      outside += "sensor " + sensor.str() + "\n";
+  return outside;
+}
+
+std::string RetiredSessionsOutside(Store& store, const RobotId& robot, const WhatCounts& counts) {
+  const std::string outside = OutsideOf(store, robot, "session_id", KeysOf(counts.retired_sessions));
+  return outside.empty() ? "" : "retired\n" + outside;
+}
+
+bool AnyOutside(Store& store, const RobotId& robot) {
+  return Query(store,
+               "SELECT 1 FROM counted_edge c WHERE c.robot_id = ?1 AND NOT EXISTS (SELECT 1 FROM waiting_merge w WHERE "
+               "w.robot_id = ?1 AND w.edge_number = c.edge_number) LIMIT 1")
+      .Bind(robot)
+      .Step();
+}
+
+// What a session says concerns edges that have a date; what a person says also those that were stored before.
+std::string EpochsOutside(Store& store, const RobotId& robot, const std::vector<Epoch>& epochs) {
+  if (epochs.empty() || !AnyOutside(store, robot)) return "";
+  const bool any_dated = AnyDatedOutside(store, robot);
+  std::string outside;
+  for (const Epoch& epoch : epochs) {
+    const bool by_person = epoch.cause == EpochCause::kPerson;
+    const std::string since = by_person ? "since " + std::to_string(epoch.begins_at.ns) : epoch.session.str();
+    if (by_person || any_dated) outside += since + " " + epoch.sensor.str() + "\n";
+  }
+  return outside;
+}
+
+// Of what people said, what concerns edges that are in no window. Empty where nothing does.
+std::string BasisOf(Store& store, const RobotId& robot, const WhatCounts& counts) {
+  std::string basis = OutsideOf(store, robot, "session_id", KeysOf(counts.superseded)) +
+                      OutsideOf(store, robot, "edge_id", KeysOf(counts.retired)) +
+                      RetiredSessionsOutside(store, robot, counts) + SensorsOutside(store, robot, counts);
+  basis += EpochsOutside(store, robot, counts.epochs);
+  return basis.empty() ? "" : Sha256Of(basis).str();
+}
+
+std::string StoredBasis(Store& store, const RobotId& robot) {
+  Query query(store, "SELECT digest FROM merge_basis WHERE robot_id = ? ORDER BY revision_number DESC LIMIT 1");
+  return query.Bind(robot).Step() ? query.Text(0) : std::string();
+}
+
+void PutBack(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
+  Query(store, "INSERT OR IGNORE INTO waiting_merge SELECT ?, number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?))")
+      .Bind(robot, ListOf(edges))
+      .Run();
+}
+
+void TakeOut(Store& store, const RobotId& robot, const std::vector<EdgeId>& edges) {
+  Query(store,
+        "DELETE FROM waiting_merge WHERE robot_id = ? AND edge_number IN "
+        "(SELECT number FROM edge WHERE edge_id IN (SELECT value FROM json_each(?)))")
+      .Bind(robot, ListOf(edges))
+      .Run();
+}
+
+}  // namespace
+
+Result<std::vector<MergedEdge>> LoadMergedEdges(Store& store, const RobotId& robot, int number) {
+  using Edges = std::vector<MergedEdge>;
+  return Load<Edges>(store, Subject(robot), [&]() -> Result<Edges> {
+    Merged merged;
+    Query rows(store,
+               "SELECT frame_a, frame_b, method, edges, newest_ns, T_a_b_x_m, T_a_b_y_m, T_a_b_z_m, T_a_b_qx, T_a_b_qy, T_a_b_qz, "
+               "T_a_b_qw, source, dof, by_blocks, information, scatter, given, of_sessions FROM merged_edge" + kOfRevision);
+    rows.Bind(robot, number);
+    while (rows.Step()) {
+      RIGCAL_ASSIGN(MergedEdge one, MergedAt(rows));
+      merged[{one.frame_a, one.frame_b, one.method, one.of_sessions}] = std::move(one);
+    }
+    LoadConstants(store, robot, number, merged);
+    if (IsNewest(store, robot, number)) LoadScores(store, robot, merged);
+    Edges all;
+    for (auto& [key, one] : merged) all.push_back(std::move(one));
+    return all;
+  });
+}
+
+Result<std::optional<RobotId>> FindRobotOfMerged(Store& store, const EdgeId& id) {
+  using Found = std::optional<RobotId>;
+  return Load<Found>(store, "merged edge " + id.str(), [&]() -> Result<Found> {
+    Query query(store, "SELECT robot_id FROM merge_state_edge WHERE edge_id = ?");
+    return query.Bind(id).Step() ? Found(query.IdAt<RobotId>(0)) : std::nullopt;
+  });
+}
+
+Result<WhatCounts> LoadWhatCounts(Store& store, const RobotId& robot) {
+  WhatCounts counts;
+  RIGCAL_ASSIGN(counts.superseded, LoadSuperseded(store, robot));
+  RIGCAL_ASSIGN(counts.retired, LoadRetired(store, robot));
+  RIGCAL_ASSIGN(counts.epochs, LoadEpochs(store, robot));
+  RIGCAL_ASSIGN(counts.retired_sessions, LoadRetiredSessions(store, robot));
+  RIGCAL_ASSIGN(counts.retired_sensors, LoadRetiredSensors(store, robot));
+  return counts;
+}
+
+Result<bool> IsMergeOutdated(Store& store, const RobotId& robot, const WhatCounts& counts) {
+  return Load<bool>(store, Subject(robot), [&]() -> Result<bool> {
+    return BasisOf(store, robot, counts) != StoredBasis(store, robot);
+  });
+}
+
+Status AppendMergedEdges(Store& store, const RevisionKey& key, const MergeStep& step, const WhatCounts& counts) {
+  return store.connection().Append(Subject(key.robot), [&]() -> Status {
+    for (const MergedEdge& one : step.merged) Insert(store, key, one);
+    ReplaceScores(store, key.robot, step.merged);
+    ReplaceIds(store, key.robot, step.ids);
+    if (!step.back.empty()) PutBack(store, key.robot, step.back);
+    if (!step.taken.empty()) TakeOut(store, key.robot, step.taken);
+    const std::string basis = BasisOf(store, key.robot, counts);
+    if (basis != StoredBasis(store, key.robot))
+      Query(store, "INSERT INTO merge_basis VALUES (?, ?, ?)").Bind(key.robot, key.number, basis).Run();
+    return {};
+  });
+}
+
+}  // namespace rigcal::storage

@@ -1,0 +1,127 @@
+#include "tests/bench/trust/trust_scenarios.h"
+
+#include <array>
+#include <cmath>
+
+namespace rigcal {
+namespace {
+
+constexpr double kRadPerDeg = M_PI / 180;
+constexpr std::array kSensors = {"front_left",  "front_right",    "left_front",       "left_back",
+                                 "right_front", "right_back",     "up_left",          "up_right",
+                                 "back",        "lidar_vertical", "lidar_horizontal", "body"};
+constexpr std::array kRatios = {0.25, 0.5, 0.75};
+constexpr int kShiftedOf = 30;  // captures
+constexpr int kVisits = 10, kNextVisits = 20;
+
+HostileVisit Plain(int idx) {
+  HostileVisit visit;
+  visit.options.seed = static_cast<std::uint64_t>(idx);
+  return visit;
+}
+
+// Every sensor with every ratio in 36; the first few are of every kind.
+HostileVisit Bumped(int idx, double m, double deg) {
+  HostileVisit visit = Plain(idx);
+  const int at = idx - 1;
+  visit.options.bump = SensorId(kSensors[static_cast<std::size_t>(5 * at % 12)]);
+  visit.options.bump_m = m;
+  visit.options.bump_rad = deg * kRadPerDeg;
+  visit.options.bump_at_ratio = kRatios[static_cast<std::size_t>((at + at / 12) % 3)];
+  return visit;
+}
+
+HostileVisit Bent(int idx, double px, sim::IntrinsicsKind intrinsics) {
+  HostileVisit visit = Plain(idx);
+  visit.options.disturb.lens_misfit_px = px;
+  visit.options.intrinsics = intrinsics;
+  return visit;
+}
+
+HostileVisit Shifted(int idx, double px, bool two_cameras) {
+  HostileVisit visit = Plain(idx);
+  visit.options.captures = kShiftedOf;
+  visit.two_cameras = two_cameras;
+  if (px > 0) visit.options.disturb.capture_shift = sim::CaptureShift{px, {}};
+  return visit;
+}
+
+// Robots do not share visits.
+HostileVisit Scattered(int idx, bool two_cameras) {
+  HostileVisit visit = Plain(1 + (idx - 1) * (kVisits + kNextVisits));
+  visit.options.disturb.visit_scatter = {3e-4, 0.01 * kRadPerDeg};
+  visit.two_cameras = two_cameras;
+  visit.visits = kVisits;
+  visit.next_visits = kNextVisits;
+  return visit;
+}
+
+HostileVisit Bursts(int idx, int captures, int burst) {
+  HostileVisit visit = Plain(idx);
+  visit.options.captures = captures;
+  visit.options.disturb.burst = burst;
+  return visit;
+}
+
+HostileVisit WithBound(int idx) {
+  HostileVisit visit = Plain(idx);
+  visit.bound = true;
+  return visit;
+}
+
+HostileVisit WithFoundPlates(int idx) {
+  HostileVisit visit = Plain(idx);
+  visit.found_plates = true;
+  return visit;
+}
+
+template <typename Change>
+TrustScenario Changed(const std::string& name, const Change& change) {
+  return {name, [change](int idx) {
+            HostileVisit visit = Plain(idx);
+            change(visit);
+            return visit;
+          }};
+}
+
+std::vector<TrustScenario> MakeScenarios() {
+  std::vector<TrustScenario> all = {{"clean", WithBound},
+                                    {"coverage", WithFoundPlates},
+                                    {"visits", [](int idx) { return Scattered(idx, false); }},
+                                    {"pair_visits", [](int idx) { return Scattered(idx, true); }}};
+  const std::pair<const char*, std::pair<double, double>> bumps[] = {
+      {"bump_20_mm", {0.02, 2}}, {"bump_5_mm", {0.005, 0.5}}, {"bump_2_mm", {0.002, 0.2}}};
+  for (const auto& [name, by] : bumps)
+    all.push_back({name, [by](int idx) { return Bumped(idx, by.first, by.second); }});
+  for (const double px : {0.05, 0.1})
+    for (const auto kind : {sim::IntrinsicsKind::kCalibrated, sim::IntrinsicsKind::kAbsent})
+      all.push_back({std::string("misfit_") + (px < 0.07 ? "0.05" : "0.1") +
+                         (kind == sim::IntrinsicsKind::kAbsent ? "_px_estimated" : "_px_given"),
+                     [px, kind](int idx) { return Bent(idx, px, kind); }});
+  for (const int px : {0, 3, 8, 20})
+    for (const bool two : {false, true})
+      all.push_back({(two ? "pair_" : "rig_") + std::string("shift_") + std::to_string(px) + "_px",
+                     [px, two](int idx) { return Shifted(idx, px, two); }});
+  all.push_back({"bursts", [](int idx) { return Bursts(idx, 40, 4); }});
+  all.push_back({"thousand", [](int idx) { return Bursts(idx, 1000, 20); }});
+  all.push_back(Changed("board_moved", [](HostileVisit& v) {
+    v.options.disturb.board_move = sim::BoardMove{{0.005, 0.5 * kRadPerDeg}, 0.5, {}};
+  }));
+  all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
+  all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
+  all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));
+  all.push_back(Changed("mixed_pixels", [](HostileVisit& v) {
+    v.options.disturb.mixed_pixels_ratio = 0.5;
+    v.found_plates = true;
+  }));
+  return all;
+}
+
+}  // namespace
+
+const std::vector<TrustScenario>& TrustScenarios() {
+  static const std::vector<TrustScenario> kScenarios = MakeScenarios();
+  return kScenarios;
+}
+
+}  // namespace rigcal

@@ -1,0 +1,93 @@
+#include "tests/bench/trust/trust_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "client/sim/bound.h"
+#include "client/sim/rig/rig_yaml.h"
+#include "server/math/statistics.h"
+#include "tests/bench/trust/found_plates.h"
+
+namespace rigcal {
+namespace {
+
+// Walls relate the two lidars; whole clouds take the time, and no row needs them.
+constexpr std::size_t kLidarPairCaptures = 0;
+
+template <typename Value>
+Value OrExit(Result<Value> value) {
+  if (value) return std::move(*value);
+  std::fprintf(stderr, "%s\n", Sentence(value.error()).c_str());
+  std::exit(2);
+}
+
+sim::Rig FrontCamerasOnly(sim::Rig rig) {
+  const auto is_front = [](const sim::RigSensor& sensor) {
+    return sensor.kind == SensorKind::kCamera && sensor.sees == TargetId("front");
+  };
+  std::erase_if(rig.sensors, [&](const sim::RigSensor& sensor) { return !is_front(sensor); });
+  std::erase_if(rig.boards, [](const sim::RigBoard& board) { return board.target.id != TargetId("front"); });
+  rig.skip_pairs.clear();
+  return rig;
+}
+
+FeatureSession Recorded(const HostileVisit& visit, std::uint64_t seed) {
+  FeatureSession session = RecordFeatures(ExperimentOf(visit, seed), kLidarPairCaptures);
+  if (visit.found_plates) FindPlates(session);
+  return session;
+}
+
+// Few degrees of freedom: nothing lies outside.
+double RegionLimit(double dof) {
+  return dof > 0 ? HotellingLimit(static_cast<int>(dof + 1e-6) + 1) : ChiSquareQuantile(0.95, 6);
+}
+
+std::vector<sim::Experiment> TruthsOf(const HostileVisit& visit, const sim::Experiment& own) {
+  if (visit.next_visits == 0) return {own};
+  std::vector<sim::Experiment> truths;
+  for (int i = 0; i < visit.next_visits; ++i)
+    truths.push_back(ExperimentOf(visit, visit.options.seed + static_cast<std::uint64_t>(visit.visits + i)));
+  return truths;
+}
+
+PoseFigures FiguresOf(const SensorPose& pose, const std::vector<sim::Experiment>& truths) {
+  PoseFigures figures;
+  figures.known = pose.known;
+  if (!pose.known) return figures;
+  for (const sim::Experiment& truth : truths)
+    figures.errors.push_back((pose.T_ref_sensor.Inverse() * truth.T_ref_sensor(pose.sensor)).Log());
+  figures.covariance = pose.covariance;
+  figures.limit = RegionLimit(pose.dof);
+  return figures;
+}
+
+}  // namespace
+
+sim::Experiment ExperimentOf(const HostileVisit& visit, std::uint64_t seed) {
+  sim::Options options = visit.options;
+  options.seed = seed;
+  sim::Rig rig = OrExit(sim::LoadRig("mars-mapper"));
+  if (visit.two_cameras) rig = FrontCamerasOnly(std::move(rig));
+  return OrExit(sim::Prepare(std::move(rig), options));
+}
+
+JudgedVisit JudgeVisit(const HostileVisit& visit) {
+  std::vector<FeatureSession> sessions;
+  for (int i = 0; i < visit.visits; ++i)
+    sessions.push_back(Recorded(visit, visit.options.seed + static_cast<std::uint64_t>(i)));
+  JudgedVisit judged{visit, sessions.front().experiment, {}, {}, 0};
+  const auto start = std::chrono::steady_clock::now();
+  judged.told = Judge(sessions);
+  judged.judge_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::vector<sim::Experiment> truths = TruthsOf(visit, judged.experiment);
+  for (const SensorPose& pose : judged.told.poses)
+    if (pose.sensor != judged.told.reference) judged.poses[pose.sensor] = FiguresOf(pose, truths);
+  if (visit.bound)
+    for (const auto& [id, bound] : sim::CramerRaoBound(judged.experiment))
+      if (const auto figures = judged.poses.find(id); figures != judged.poses.end()) figures->second.bound = bound;
+  return judged;
+}
+
+}  // namespace rigcal

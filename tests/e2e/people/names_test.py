@@ -1,0 +1,65 @@
+"""A misspelt name: what is asked about is told with what it may mean, and nothing is pushed under it unawares."""
+import json
+import pathlib
+import sys
+import urllib.error
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from edge_case import edge  # noqa: E402
+from flow import Flow, check  # noqa: E402
+from measures.sessions import noise_session  # noqa: E402
+
+NEW = "rigcal: robot 'maper-01' is new, and mapper-01 is known: push with --new-robot if it is another robot."
+UNKNOWN = "robot 'maper-01' is not known: did you mean mapper-01?"
+
+
+def edges(folder):
+    path = folder / "edges.json"
+    path.write_text(json.dumps({"format": 1, "edges": [edge("front_left", "front_right", 1.0), edge("front_left", "top", 2.0)]}))
+    return path
+
+
+def robots(flow):
+    return [row["robot"] for row in json.loads(flow.rigcal("robots", "--json").stdout)["robots"]]
+
+
+def says_what_may_be_meant(flow):
+    told = flow.rigcal("show", "maper-01", exit_code=4).stderr
+    check(told.startswith("rigcal: " + UNKNOWN), "an unknown robot: " + told)
+    told = flow.rigcal("lookup", "mapper-01", "front_lef", "top", exit_code=4).stderr
+    check("robot 'mapper-01' has no sensor 'front_lef': did you mean front_left?" in told, "an unknown sensor: " + told)
+    told = flow.rigcal("pusch", "visit/", exit_code=2).stderr
+    check("there is no verb 'pusch': did you mean push?" in told, "an unknown verb: " + told)
+    for path in ("/api/v1/show?robot=maper-01", "/robots/maper-01/"):
+        try:
+            flow.get(path)
+            check(False, path + " is found")
+        except urllib.error.HTTPError as refused:
+            body = refused.read().decode().replace("&#39;", "'")
+            check(refused.code == 404 and UNKNOWN[1:] in body, path + ": " + body)
+
+
+def pushes_nothing_unawares(flow, path):
+    session = noise_session(flow.folder / "noise", "maper-01", 1000, 4, seed=6)
+    for command in (("push", session), ("push-edges", path, "--robot", "maper-01"), ("push", session, "--no-wait")):
+        told = flow.rigcal(*command, exit_code=4).stderr
+        check(told.startswith(NEW), "%s: %s" % (command[0], told))
+        check(robots(flow) == ["mapper-01"], "nothing was stored")
+    refused = json.loads(flow.rigcal("push", session, "--json", exit_code=4).stdout)
+    check(refused["error"]["code"] == "conflict", "as JSON: %r" % refused)
+    flow.rigcal("push-edges", path, "--robot", "mapper-02")  # another of the series
+    flow.rigcal("push", session, "--new-robot")
+    flow.rigcal("push", session)  # by now it is known
+    check(robots(flow) == ["maper-01", "mapper-01", "mapper-02"], "three robots: %r" % robots(flow))
+
+
+def main():
+    with Flow() as flow:
+        path = edges(flow.folder)
+        flow.rigcal("push-edges", path, "--robot", "mapper-01")
+        says_what_may_be_meant(flow)
+        pushes_nothing_unawares(flow, path)
+    print("names: good")
+
+
+main()

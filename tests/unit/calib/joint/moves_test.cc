@@ -1,0 +1,158 @@
+// What is told of sensors and boards that were moved during a session.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/calib/joint/misfit/moved_pose.h"
+#include "tests/unit/calib/joint/visit.h"
+
+namespace rigcal::calib::joint {
+namespace {
+
+class JointBumpedSensor : public testing::TestWithParam<std::tuple<const char*, double, double>> {};
+
+TEST_P(JointBumpedSensor, IsNamedWithItsCapture) {
+  const auto [name, move_m, turn_rad] = GetParam();
+  sim::Options options = WithSeed(8);
+  options.bump = SensorId(name);
+  options.bump_m = move_m;
+  options.bump_rad = turn_rad;
+  const SessionStart start = StartFrom(Visit(options));
+  const Refined refined = RefinedFrom(start);
+  const std::vector<Move> moves = ScanForMoves(refined);
+  ASSERT_FALSE(moves.empty());
+  ASSERT_NE(moves[0].sensor, kNone) << "a board: " << start.problem.boards[static_cast<std::size_t>(moves[0].board)].str();
+  EXPECT_EQ(start.problem.sensors[static_cast<std::size_t>(moves[0].sensor)].str(), name);
+  EXPECT_NEAR(moves[0].group, kCaptures / 2, 1);
+  EXPECT_LT(moves[0].odds, 1e-6);
+  EXPECT_NEAR(moves[0].step.head<3>().norm(), move_m, 0.5 * move_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, JointBumpedSensor,
+                         testing::Values(std::tuple("front_right", 0.02, 0.035), std::tuple("back", 0.005, 0.0087),
+                                         std::tuple("front_left", 0.005, 0.0087),  // the reference
+                                         std::tuple("lidar_vertical", 0.02, 0.035)));
+
+TEST(JointMoves, NoSensorIsAccusedWhereNoneMoved) {
+  for (const std::uint64_t seed : {11, 12, 13}) {
+    const SessionStart start = StartFrom(Visit(WithSeed(seed)));
+    const std::vector<Move> moves = ScanForMoves(RefinedFrom(start));
+    ASSERT_FALSE(moves.empty());
+    EXPECT_GT(moves[0].odds, 1e-6) << "seed " << seed;
+  }
+}
+
+SmallestMove SmallestMoveOf(const SessionEstimate& estimate, const std::string& sensor) {
+  for (const RefinedPose& pose : estimate.poses)
+    if (pose.sensor.str() == sensor && pose.smallest_move) return *pose.smallest_move;
+  ADD_FAILURE() << sensor << " has no smallest move";
+  return {};
+}
+
+// Told moved in a session in which it was shifted and turned so.
+void ExpectToldMoved(sim::Options options, const char* sensor, double shift_m, double turn_rad) {
+  options.bump = SensorId(sensor);
+  options.bump_m = shift_m;
+  options.bump_rad = turn_rad;
+  const SessionEstimate bumped = EstimateFrom(Visit(options));
+  ASSERT_EQ(bumped.moved.size(), 1u) << sensor << ", seed " << options.seed << ": " << shift_m << " m, " << turn_rad << " rad";
+  EXPECT_EQ(bumped.moved[0].sensor.str(), sensor);
+}
+
+TEST(JointMoves, AMoveAsSmallAsASessionSaysItWouldTellIsTold) {
+  for (const char* sensor : {"front_right", "lidar_vertical"})
+    for (const std::uint64_t seed : {21, 22, 23}) {
+      const sim::Options options = WithSeed(seed);
+      const SmallestMove smallest = SmallestMoveOf(EstimateFrom(Visit(options)), sensor);
+      EXPECT_EQ(smallest.captures, kCaptures);
+      EXPECT_LT(smallest.m, 0.05);
+      ExpectToldMoved(options, sensor, smallest.m, 0.0);
+      ExpectToldMoved(options, sensor, 0.0, smallest.rad);
+    }
+}
+
+TEST(JointMoves, TooFewCapturesTellNoMove) {
+  sim::Options options = WithSeed(21);
+  options.captures = 5;
+  auto experiment = sim::Prepare(*sim::LoadRig("mars-mapper"), options);
+  for (const RefinedPose& pose : EstimateFrom(RecordFeatures(*experiment, 0)).poses) {
+    ASSERT_TRUE(pose.smallest_move);
+    EXPECT_EQ(pose.smallest_move->m, kAnyMove_m) << pose.sensor.str();
+    EXPECT_EQ(pose.smallest_move->rad, kAnyMove_rad);
+    EXPECT_LE(pose.smallest_move->captures, 5);
+  }
+}
+
+FeatureSession BumpedVisit(const char* sensor, double shift_m, double at_ratio) {
+  sim::Options options = WithSeed(20);
+  options.bump = SensorId(sensor);
+  options.bump_m = shift_m;
+  options.bump_rad = 0.0;
+  options.bump_at_ratio = at_ratio;
+  return Visit(options);
+}
+
+Se3 PoseIn(const SessionEstimate& estimate, const char* sensor) {
+  const auto found = std::find_if(estimate.poses.begin(), estimate.poses.end(),
+                                  [&](const RefinedPose& pose) { return pose.sensor.str() == sensor; });
+  EXPECT_NE(found, estimate.poses.end());
+  return found->T_ref_sensor;
+}
+
+double ShiftBetween_m(const Se3& T_a, const Se3& T_b) { return (T_a.Inverse() * T_b).Log().head<3>().norm(); }
+
+TEST(JointMoves, AMoveTooSmallToTellDividesNoSession) {
+  for (const char* sensor : {"right_back", "front_left"}) {  // the reference, too
+    const SessionEstimate estimate = EstimateFrom(BumpedVisit(sensor, 0.0006, 0.5));
+    EXPECT_TRUE(estimate.moved.empty()) << sensor;
+    EXPECT_EQ(SmallestMoveOf(estimate, sensor).captures, SmallestMoveOf(EstimateFrom(Visit(WithSeed(20))), sensor).captures);
+  }
+}
+
+// After the bump the lidar sees two plates: where it is along the line in which they meet is open.
+TEST(JointMoves, AMoveWhoseOtherSideTellsNoWholePoseIsToldAllTheSame) {
+  sim::Options options = WithSeed(25);
+  options.bump = SensorId("lidar_vertical");
+  options.bump_m = 0.05;
+  options.bump_rad = 0.05;
+  FeatureSession session = Visit(options);
+  int plates = 0;
+  for (auto& [capture, clouds] : session.seen.clouds.at(SensorId("lidar_vertical"))) {
+    if (capture < session.experiment.captures[kCaptures / 2]) continue;
+    while (!clouds.empty() && (plates >= 2 || clouds.size() > 1)) clouds.erase(std::prev(clouds.end()));
+    plates += static_cast<int>(clouds.size());
+  }
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.moved.size(), 1u);
+  EXPECT_EQ(estimate.moved[0].sensor.str(), "lidar_vertical");
+}
+
+TEST(JointMoves, ASensorThatMovedTwiceHasItsLastPose) {
+  FeatureSession session = BumpedVisit("back", 0.01, 1.0 / 3);
+  const FeatureSession later = BumpedVisit("back", 0.03, 2.0 / 3);
+  for (auto& [capture, view] : session.seen.views.at(SensorId("back")))
+    if (capture >= session.experiment.captures[2 * kCaptures / 3]) view = later.seen.views.at(SensorId("back")).at(capture);
+  const SessionEstimate estimate = EstimateFrom(session);
+  ASSERT_EQ(estimate.moved.size(), 2u);
+  const Se3 first = PoseIn(EstimateFrom(Visit(WithSeed(20))), "back");
+  EXPECT_NEAR(ShiftBetween_m(first, PoseIn(estimate, "back")), 0.03, 0.002);
+}
+
+TEST(JointMoves, ABoardThatMovedIsNamedAndCostsNoPose) {
+  for (const std::uint64_t seed : {17, 18, 19}) {
+    sim::Options options = WithSeed(seed);
+    options.disturb.board_move = sim::BoardMove{{0.005, 0.0087}, 0.5, {}};
+    const FeatureSession session = Visit(options);
+    const SessionEstimate estimate = EstimateFrom(session);
+    EXPECT_TRUE(estimate.moved.empty()) << estimate.moved[0].sensor.str() << ", seed " << seed;
+    ASSERT_EQ(estimate.boards_moved.size(), 1u) << "seed " << seed;
+    EXPECT_EQ(estimate.boards_moved[0].board, session.experiment.moved_board->board);
+    EXPECT_GE(estimate.boards_moved[0].first_after, session.experiment.captures[kCaptures / 2]);
+    EXPECT_LT(estimate.boards_moved[0].last_before, session.experiment.captures[kCaptures / 2]);
+    EXPECT_LT(WorstT2(session, estimate), 25.0) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::calib::joint

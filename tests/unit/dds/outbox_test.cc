@@ -1,0 +1,144 @@
+// For whom a robot has writers, and for how long.
+#include "server/dds/tell/outbox.h"
+
+#include <gmock/gmock.h>
+
+#include <climits>
+
+#include "idl/discovery.h"
+#include "tests/unit/dds/fixture.h"
+
+namespace rigcal::dds {
+namespace {
+
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+const RobotId kA("a"), kB("b"), kC("c");
+
+class OutboxTest : public testing::Test {
+ protected:
+  static wire::ParticipantOptions Options() {
+    wire::ParticipantOptions options;
+    options.tag = RandomTag();
+    return options;
+  }
+  template <typename T>
+  wire::Reader<T> Reader(const std::string& partition) {
+    return Must(wire::Reader<T>::Open(others_, {partition}));
+  }
+  // As thread D does.
+  void LookWhoIsThere() {
+    static_cast<void>(Must(readers_.TakePartitions(Outbox::Topics())));
+    outbox_.NoteReadersOfMany(readers_.OfMany());
+  }
+  void Announce(const RobotId& robot) { outbox_.Send(Announcement{robot, "edge", "none", Stamp{1}, "{}"}); }
+  void SendReceipt(const RobotId& robot) {
+    wire::Receipt receipt;
+    receipt.robot = robot;
+    receipt.subject_id = Sha256Of("session").str();
+    receipt.state = wire::ReceiptState::kReceiving;
+    outbox_.Send(robot, receipt);
+  }
+  void After(seconds time) {
+    now_ += time;
+    outbox_.CloseQuiet();
+  }
+  // Of which robots something came.
+  template <typename T>
+  static std::vector<std::string> Take(wire::Reader<T>& reader) {
+    std::vector<std::string> robots;
+    Must(reader.Take(INT_MAX,
+                     [&](const T& sample, const wire::SampleOrigin&) { robots.emplace_back(sample.robot_id); }));
+    return robots;
+  }
+
+  const wire::ParticipantOptions options_ = Options();
+  wire::Participant server_ = Must(wire::Participant::Open(options_)),
+                    others_ = Must(wire::Participant::Open(options_));
+  wire::NewReaders readers_ = Must(wire::NewReaders::Open(server_));
+  Outbox::Time now_ = Outbox::Time(std::chrono::hours(1));
+  std::vector<RobotId> met_;
+  // Two robots that are listened to, one that has news.
+  Outbox outbox_{server_, [this](const RobotId& robot) { met_.push_back(robot); }, {2, 1}, [this] { return now_; }};
+};
+
+TEST_F(OutboxTest, NewsTakeNoPlaceThatReceiptsNeed) {
+  auto watch = Reader<rigcal_wire_Event>("robot/*");
+  LookWhoIsThere();
+  for (const char* robot : {"x", "y", "z"}) Announce(RobotId(robot));
+  EXPECT_THAT(Take(watch), ElementsAre("x"));
+  for (const RobotId& robot : {kA, kB}) {
+    auto receipts = Reader<rigcal_wire_Receipt>(wire::RobotPartition(robot));
+    SendReceipt(robot);
+    EXPECT_THAT(Take(receipts), ElementsAre(robot.str()));
+  }
+}
+
+TEST_F(OutboxTest, AFewSecondsAfterNewsAnotherRobotHasRoomForIts) {
+  auto watch = Reader<rigcal_wire_Event>("robot/*");
+  LookWhoIsThere();
+  Announce(kA);
+  After(seconds(4));
+  Announce(kB);
+  EXPECT_THAT(Take(watch), ElementsAre("a"));
+  After(seconds(2));
+  Announce(kB);
+  EXPECT_THAT(Take(watch), ElementsAre("b"));
+}
+
+TEST_F(OutboxTest, WhoReadsOfManyRobotsKeepsNoWriters) {
+  auto watch = Reader<rigcal_wire_Event>("robot/?");
+  LookWhoIsThere();
+  outbox_.Meet(kA);
+  outbox_.Meet(kB);
+  outbox_.Meet(kC);
+  EXPECT_THAT(met_, ElementsAre(kA, kB)) << "there are two places";
+  auto own = Reader<rigcal_wire_RobotStatus>("robot/a");
+  After(seconds(6));
+  outbox_.Meet(kA);
+  outbox_.Meet(kC);
+  EXPECT_THAT(met_, ElementsAre(kA, kB, kC)) << "nobody but the watch read of b";
+}
+
+TEST_F(OutboxTest, OfARobotThatHadNewsWhoBeginsToReadIsMet) {
+  auto watch = Reader<rigcal_wire_Event>("robot/*");
+  LookWhoIsThere();
+  Announce(kA);
+  EXPECT_THAT(met_, IsEmpty());
+  outbox_.Meet(kA);
+  EXPECT_THAT(met_, ElementsAre(kA));
+  Announce(kA);
+  Announce(kB);
+  EXPECT_THAT(Take(watch), ElementsAre("a", "a", "b"));
+}
+
+// DDS tells of a reader first, and matches it then.
+TEST_F(OutboxTest, WritersWaitForAReaderThatIsToBeMatched) {
+  SendReceipt(kA);
+  now_ += seconds(6);
+  outbox_.Meet(kA);
+  After(seconds(0));
+  auto receipts = Reader<rigcal_wire_Receipt>("robot/a");
+  EXPECT_THAT(Take(receipts), ElementsAre("a"));
+}
+
+TEST_F(OutboxTest, NobodyHearsOfRobotsOnceWhoReadOfManyIsGone) {
+  EXPECT_FALSE(outbox_.IsHeardOf(kA));
+  {
+    auto watch = Reader<rigcal_wire_Event>("robot/not-a-*");
+    auto requests = Reader<rigcal_wire_Request>("robot/*");  // of another kind
+    LookWhoIsThere();
+    EXPECT_EQ(readers_.OfMany().size(), 1u);
+    EXPECT_TRUE(outbox_.IsHeardOf(kA));
+  }
+  LookWhoIsThere();
+  EXPECT_FALSE(outbox_.IsHeardOf(kA));
+  outbox_.Meet(kA);
+  EXPECT_TRUE(outbox_.IsHeardOf(kA));
+  EXPECT_FALSE(outbox_.IsHeardOf(kB));
+}
+
+}  // namespace
+}  // namespace rigcal::dds

@@ -1,0 +1,242 @@
+// The calibration in use against sessions that are drawn: false alarms, what is seen, who is named.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/fleet/as_found_rig.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using ::testing::ElementsAre;
+
+Vector6d Along(int axis, double step) {
+  Vector6d along = Vector6d::Zero();
+  along(axis) = step;
+  return along;
+}
+
+std::vector<SensorId> Drifted(const AsFound& found) {
+  std::vector<SensorId> drifted;
+  for (const SensorFound& sensor : found.sensors)
+    if (sensor.state == FoundState::kDrifted) drifted.push_back(sensor.sensor);
+  return drifted;
+}
+
+// How many of 2000 sessions in which nothing moved accuse a sensor, at odds of 1 % for the whole session.
+int FalseAlarms(const Errors& errors, unsigned seed) {
+  Draws draws(seed);
+  int alarms = 0;
+  for (int i = 0; i < 2000; ++i) {
+    AsFoundInput input = Visit(DrawnRig(), DrawnRig(), errors, draws);
+    input.alpha = 0.01;
+    alarms += StateOf(TestAsFound(input)) == FoundState::kDrifted ? 1 : 0;
+  }
+  return alarms;
+}
+
+TEST(AsFound, FalseAlarmsAreNoMoreThanAlpha) {
+  const int alarms = FalseAlarms(SomeErrors(), 1);
+  EXPECT_LE(alarms, 45) << alarms;  // more has odds of 1e-6 at 20 on average
+  EXPECT_GE(alarms, 3);             // nor is it blind
+}
+
+TEST(AsFound, FalseAlarmsAreNoMoreThanAlphaWhereSigmasAreEstimatesThemselves) {
+  Errors errors = SomeErrors();
+  errors.in_use *= 1e-4;
+  errors.visit_sigma_m = errors.visit_sigma_rad = 0;
+  errors.dof = 10;
+  const int alarms = FalseAlarms(errors, 2);
+  EXPECT_LE(alarms, 45);
+  EXPECT_GE(alarms, 3);
+}
+
+// Robots whose sensors sit elsewhere on each visit, by more than a session errs, and few visits to tell so.
+TEST(AsFound, FalseAlarmsAreNoMoreThanAlphaHoweverFewVisitsAreInUse) {
+  Errors errors = SomeErrors();
+  errors.visit_sigma_m = 5e-4, errors.visit_sigma_rad = 3.5e-4;
+  for (const int visits : {1, 2, 3, 5, 8}) {
+    errors.visits = visits;
+    EXPECT_LE(FalseAlarms(errors, 30 + static_cast<unsigned>(visits)), 45) << visits << " visits";
+  }
+}
+
+TEST(AsFound, ABumpBeyondWhatVisitsMayScatterByIsSeenOnTheSecondVisit) {
+  Errors errors = SomeErrors();
+  errors.visits = 1;
+  Draws draws(40);
+  const AsFound found = TestAsFound(Visit(DrawnRig(), Bumped(DrawnRig(), kRight, Along(1, 0.02)), errors, draws));
+  EXPECT_THAT(Drifted(found), ElementsAre(kRight));
+  EXPECT_GT(SmallestSeen_m(found), 0.005);
+}
+
+// Of 2000 sessions in which the right camera moved by so many times the smallest change: in how many it is seen, as a
+// share.
+double Seen(const Errors& errors, int axis, double times, unsigned seed) {
+  Draws draws(seed);
+  Errors exact = errors;
+  exact.dof = 0;
+  AsFoundInput first = Visit(DrawnRig(), DrawnRig(), exact, draws);
+  for (KnownPose& pose : first.session.poses) pose.dof = errors.dof;
+  const double smallest = Of(kRight, TestAsFound(first)).smallest(axis);
+  int seen = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const KnownPoses bumped = Bumped(DrawnRig(), kRight, Along(axis, times * smallest));
+    const AsFound found = TestAsFound(Visit(DrawnRig(), bumped, errors, draws));
+    const bool is_right =
+        found.relative_to == kLeft && Of(kRight, found).axes[static_cast<std::size_t>(axis)] == FoundState::kDrifted;
+    seen += is_right ? 1 : 0;
+  }
+  return seen / 2000.0;
+}
+
+TEST(AsFound, TheSmallestChangeIsSeenInNineteenOfTwenty) {
+  EXPECT_NEAR(Seen(SomeErrors(), 0, 1.0, 3), 0.95, 0.02);
+  EXPECT_NEAR(Seen(SomeErrors(), 5, 1.0, 4), 0.95, 0.02);
+  EXPECT_GE(Seen(SomeErrors(), 2, 1.2, 5), 0.99);
+  EXPECT_LT(Seen(SomeErrors(), 2, 0.6, 6), 0.5);
+}
+
+TEST(AsFound, TheSmallestChangeIsSeenInNineteenOfTwentyWhereSigmasAreEstimates) {
+  Errors errors = SomeErrors();
+  errors.in_use *= 1e-4;
+  errors.visit_sigma_m = errors.visit_sigma_rad = 0;
+  errors.dof = 20;
+  EXPECT_NEAR(Seen(errors, 1, 1.0, 7), 0.95, 0.02);
+}
+
+TEST(AsFound, TheSensorThatMovedIsNamedWithItsStep) {
+  Vector6d step;
+  step << 0.004, -0.003, 0.002, 0.003, -0.002, 0.001;
+  for (const SensorId& sensor : {kRight, kRear, kTop}) {
+    Draws draws(8);
+    const AsFound found = TestAsFound(Visit(DrawnRig(), Bumped(DrawnRig(), sensor, step), SomeErrors(), draws));
+    EXPECT_THAT(Drifted(found), ElementsAre(sensor));
+    const SensorFound& named = Of(sensor, found);
+    EXPECT_TRUE(named.or_else.empty());
+    EXPECT_EQ(found.relative_to, kLeft);
+    EXPECT_EQ(found.tests, 18);
+    EXPECT_EQ(found.visits, SomeErrors().visits);
+    for (int axis = 0; axis < 6; ++axis) EXPECT_NEAR(named.change(axis), step(axis), 5 * named.sigma(axis)) << axis;
+    EXPECT_GT(InSigmas(named), 5);
+    EXPECT_LT(named.left->norm(), 1e-9) << "updated by the session alone";
+  }
+}
+
+TEST(AsFound, AReferenceThatMovedIsNamedNotAllOthers) {
+  Vector6d step;
+  step << -0.004, 0.003, 0.002, 0.001, 0.004, -0.003;
+  Draws draws(9);
+  const AsFound found = TestAsFound(Visit(DrawnRig(), Bumped(DrawnRig(), kLeft, step), SomeErrors(), draws));
+  EXPECT_THAT(Drifted(found), ElementsAre(kLeft));
+  EXPECT_NE(found.relative_to, kLeft);
+  const SensorFound& left = Of(kLeft, found);
+  for (int axis = 0; axis < 6; ++axis) EXPECT_NEAR(left.change(axis), step(axis), 5 * left.sigma(axis)) << axis;
+}
+
+TEST(AsFound, TwoThatMovedAreBothNamed) {
+  Draws draws(10);
+  KnownPoses is = Bumped(DrawnRig(), kRear, Along(1, 0.006));
+  is = Bumped(is, kLeft, Along(4, 0.008));
+  const AsFound found = TestAsFound(Visit(DrawnRig(), is, SomeErrors(), draws));
+  EXPECT_THAT(Drifted(found), ElementsAre(kLeft, kRear));
+}
+
+TEST(AsFound, OfTwoSensorsEitherMayHaveMoved) {
+  KnownPoses two = DrawnRig();
+  two.poses.resize(2);
+  Errors errors{Correlated(1.5e-4, 1e-4, 1), Correlated(3e-4, 2e-4, 1), 0, 0, 0};
+  Draws draws(11);
+  const AsFound found = TestAsFound(Visit(two, Bumped(two, kRear, Along(0, 0.005)), errors, draws));
+  EXPECT_THAT(Drifted(found), ElementsAre(kRear));
+  EXPECT_EQ(Of(kRear, found).or_else, kLeft);
+}
+
+TEST(AsFound, AnAxisThatWasNotMeasuredHasNoNumber) {
+  for (const double variance : {0.0, 25.0, std::numeric_limits<double>::infinity()}) {
+    Draws draws(12);
+    AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kTop, Along(0, 0.005)), SomeErrors(), draws);
+    const Eigen::Index open = 6 + tangent::kZ;  // of the right camera
+    input.session.covariance.row(open).setZero();
+    input.session.covariance.col(open).setZero();
+    input.session.covariance(open, open) = variance;
+    const AsFound found = TestAsFound(input);
+    const SensorFound& right = Of(kRight, found);
+    EXPECT_EQ(right.axes[tangent::kZ], FoundState::kNotMeasured) << variance;
+    EXPECT_EQ(right.change(tangent::kZ), 0.0);
+    EXPECT_EQ(right.axes[tangent::kX], FoundState::kUnchanged);
+    EXPECT_EQ(right.state, FoundState::kUnchanged);
+    EXPECT_EQ(found.tests, 17);
+    EXPECT_THAT(Drifted(found), ElementsAre(kTop));
+  }
+}
+
+TEST(AsFound, WhatWasMovedOnPurposeOrIsNewIsNoDrift) {
+  Draws draws(13);
+  AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kTop, Along(0, 0.05)), SomeErrors(), draws);
+  input.moved_on_purpose = {kTop};
+  EXPECT_EQ(Of(kTop, TestAsFound(input)).state, FoundState::kMovedOnPurpose);
+  EXPECT_EQ(StateOf(TestAsFound(input)), FoundState::kUnchanged);
+  input.moved_on_purpose.clear();
+  input.in_use.poses.pop_back();
+  input.in_use.covariance = Eigen::MatrixXd(input.in_use.covariance.topLeftCorner(12, 12));
+  EXPECT_EQ(Of(kTop, TestAsFound(input)).state, FoundState::kNew);
+  std::swap(input.in_use, input.session);
+  EXPECT_EQ(Of(kTop, TestAsFound(input)).state, FoundState::kNotMeasured);
+  EXPECT_EQ(TestAsFound(input).tests, 12);
+}
+
+TEST(AsFound, WhereNothingIsToBeComparedItSaysWhy) {
+  Draws draws(14);
+  AsFoundInput input = Visit(DrawnRig(), DrawnRig(), SomeErrors(), draws);
+  input.moved_on_purpose = {kTop, kRight, kRear};
+  const AsFound found = TestAsFound(input);
+  EXPECT_THAT(found.why_not, ::testing::HasSubstr("no two sensors"));
+  EXPECT_EQ(StateOf(found), FoundState::kNotMeasured);
+}
+
+// Other axes, other numbers: of the right camera's frame in place of the left's, by differences.
+KnownPoses ToldBy(const SensorId& reference, const KnownPoses& poses) {
+  const auto seen_from = [&](const Eigen::VectorXd& errors) {
+    KnownPoses moved = WithErrors(poses, errors);
+    const Se3 T_ref_new = moved.Find(reference)->T_ref_sensor;
+    for (KnownPose& pose : moved.poses) pose.T_ref_sensor = T_ref_new.Inverse() * pose.T_ref_sensor;
+    moved.reference = reference;
+    return moved;
+  };
+  const Eigen::Index rows = poses.covariance.rows();
+  KnownPoses told = seen_from(Eigen::VectorXd::Zero(rows));
+  Eigen::MatrixXd J(rows, rows);
+  constexpr double kStep = 1e-6;
+  for (Eigen::Index column = 0; column < rows; ++column) {
+    const KnownPoses moved = seen_from(kStep * Eigen::VectorXd::Unit(rows, column));
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < told.poses.size(); ++i) {
+      if (told.poses[i].sensor == reference) continue;
+      J.col(column).segment<6>(row) =
+          (told.poses[i].T_ref_sensor.Inverse() * moved.poses[i].T_ref_sensor).Log() / kStep;
+      row += 6;
+    }
+  }
+  told.covariance = J * poses.covariance * J.transpose();
+  return told;
+}
+
+TEST(AsFound, AnotherReferenceOfTheSessionChangesNothing) {
+  Draws draws(15);
+  AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kTop, Along(3, 0.004)), SomeErrors(), draws);
+  const AsFound found = TestAsFound(input);
+  input.session = ToldBy(kRight, input.session);
+  const AsFound other = TestAsFound(input);
+  ASSERT_EQ(other.sensors.size(), found.sensors.size());
+  EXPECT_EQ(other.relative_to, kLeft);
+  for (std::size_t s = 0; s < found.sensors.size(); ++s) {
+    EXPECT_EQ(other.sensors[s].axes, found.sensors[s].axes);
+    EXPECT_LT((other.sensors[s].change - found.sensors[s].change).norm(), 1e-9);
+    EXPECT_LT((other.sensors[s].sigma - found.sensors[s].sigma).norm(), 1e-7);
+  }
+}
+
+}  // namespace
+}  // namespace rigcal::fleet

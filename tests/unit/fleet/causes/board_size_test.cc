@@ -1,0 +1,110 @@
+// The size of a board as a tracker's metres tell it, alone and beside lidars.
+#include <gmock/gmock.h>
+
+#include "tests/unit/calib/virtual_motion.h"
+#include "tests/unit/fleet/causes/visit.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+constexpr double kSaid_m = 0.085;
+
+using Figures = std::map<std::string, double>;
+
+Figures Larger(double ratio, double sigma_ratio = 0.001) {
+  return {{"board_scale_ratio", ratio}, {"board_scale_sigma_ratio", sigma_ratio}, {"board_square_m", kSaid_m}};
+}
+
+// Cameras before board "calib", a tracked body and a lidar.
+Visit VisitBefore(std::initializer_list<const char*> cameras) {
+  Target board = StereoBoard();
+  board.square_m = kSaid_m;
+  Visit visit(board);
+  visit.AddSensor("body", SensorKind::kTracker);
+  visit.AddSensor("top", SensorKind::kLidar);
+  for (const char* camera : cameras) visit.AddSensor(camera, SensorKind::kCamera);
+  return visit;
+}
+
+void AddSuspected(Visit& visit, const char* camera, const char* other, double ratio) {
+  const bool by_lidar = std::string(other) == "top";
+  visit.AddFailed(camera, other, by_lidar ? "lidar_camera" : "tracker_camera", "board_size_suspected", Larger(ratio));
+}
+
+TEST(BoardSizeByTracker, PairsThatAgreeAreOneLineWithTheSizeToWrite) {
+  Visit visit = VisitBefore({"front", "left", "rear"});
+  AddSuspected(visit, "front", "body", 0.0588);
+  visit.AddFailed("body", "left", "tracker_camera", "board_size_suspected", Larger(0.0589));  // either way round
+  visit.AddFailed("rear", "body", "tracker_camera", "high_residual");
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_THAT(cause.edges, SizeIs(3));
+  EXPECT_THAT(cause.boards, ElementsAre(TargetId("calib")));
+  EXPECT_EQ(cause.said.why,
+            "the squares of board calib are probably 90.00 mm, not 85.00 mm (2 pairs see it 5.9 % larger)");
+  EXPECT_EQ(FindingOf(cause).what_to_do,
+            "Measure one with a caliper and correct session.yaml, probably to `square_size_m: 0.0900`, then `rigcal "
+            "push FOLDER`");
+}
+
+TEST(BoardSizeByTracker, OfTheEstimatorsOwnPair) {
+  calib::VirtualView view;
+  view.board = StereoBoard();
+  view.board.square_m = 0.09;
+  calib::HandEyeProblem problem =
+      calib::TrackerAndCamera(calib::Looking(view, 25, 0.25, 0.12, 3), view, {0.0005, 0.0009}, 0, 3);
+  problem.b.board->square_m = kSaid_m;
+  Visit visit = VisitBefore({"camera"});
+  visit.Add(calib::EstimateHandEyeEdge(problem));
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_THAT(cause.said.why, testing::MatchesRegex("the squares of board calib are probably (89|90)\\.[0-9]+ mm, not "
+                                                    "85\\.00 mm \\(1 pair sees it [56]\\.?[0-9]* % larger\\)"));
+}
+
+TEST(BoardSizeByTracker, LidarsAndTrackersThatAgreeAreOneLine) {
+  Visit visit = VisitBefore({"front", "left"});
+  AddSuspected(visit, "front", "body", 0.0588);
+  AddSuspected(visit, "left", "top", 0.0587);
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_THAT(cause.edges, SizeIs(2));
+  EXPECT_THAT(cause.said.why, HasSubstr("(2 pairs see it 5.9 % larger)"));
+}
+
+TEST(BoardSizeByTracker, LidarsAndTrackersThatDoNotAgreeAreBothTold) {
+  Visit visit = VisitBefore({"front", "left"});
+  AddSuspected(visit, "front", "body", 0.0588);
+  AddSuspected(visit, "left", "body", 0.059);
+  AddSuspected(visit, "left", "top", -0.03);
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_THAT(cause.edges, SizeIs(3));
+  EXPECT_EQ(cause.said.why,
+            "the squares of board calib are 82.45 mm (1 pair) by lidars and 90.01 mm (2 pairs) by trackers, which do "
+            "not agree; they are given as 85.00 mm");
+  EXPECT_EQ(cause.said.what_to_do,
+            "Measure one with a caliper and correct session.yaml, or the scale of what differs from it");
+}
+
+// Of a pair that is good a tracker says that the size is right.
+TEST(BoardSizeByTracker, AGoodPairSpeaksAgainstALidar) {
+  Visit visit = VisitBefore({"front", "left"});
+  AddSuspected(visit, "left", "top", 0.03);
+  visit.AddGood("body", "front");
+  visit.edges.back().method = "tracker_camera";
+  visit.edges.back().figures = Larger(0.0001);
+  const RootCause cause = OneCause(visit, CauseKind::kBoardSize);
+  EXPECT_THAT(cause.edges, SizeIs(1));
+  EXPECT_THAT(cause.said.why, HasSubstr("87.55 mm (1 pair) by lidars and 85.01 mm (1 pair) by trackers"));
+}
+
+TEST(BoardSizeByTracker, TrackersThatDisagreeAccuseNoBoard) {
+  Visit visit = VisitBefore({"front", "left"});
+  AddSuspected(visit, "front", "body", 0.06);
+  AddSuspected(visit, "left", "body", -0.04);
+  EXPECT_THAT(visit.Causes(), SizeIs(0));
+}
+
+}  // namespace
+}  // namespace rigcal::fleet

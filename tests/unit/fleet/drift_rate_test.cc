@@ -1,0 +1,152 @@
+// How fast sensors go on moving, over visits that are drawn; and the sentence that tells what was found.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/fleet/as_found_rig.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+
+AsFound FoundBeside(const SensorId& frame) {
+  AsFound found;
+  found.relative_to = frame;
+  for (const SensorId& sensor : {kRear, kRight, kTop}) {
+    found.sensors.emplace_back();
+    found.sensors.back().sensor = sensor;
+    found.sensors.back().state = FoundState::kUnchanged;
+  }
+  return found;
+}
+
+// The right camera creeps along its y by so much in 30 days, and about its z.
+std::vector<VisitPoses> Creeping(const std::vector<int>& days, double m_per_30_days, double rad_per_30_days,
+                                 Draws& draws) {
+  std::vector<VisitPoses> visits;
+  for (const int day : days) {
+    Vector6d step = Vector6d::Zero();
+    step(tangent::kY) = m_per_30_days * day / 30;
+    step(tangent::kRz) = rad_per_30_days * day / 30;
+    const AsFoundInput visit = Visit(DrawnRig(), Bumped(DrawnRig(), kRight, step), SomeErrors(), draws);
+    visits.push_back({{1'700'000'000'000'000'000 + day * kDay_ns}, visit.session});
+  }
+  return visits;
+}
+
+KnownPoses NowWithScatter() {
+  KnownPoses now = DrawnRig();
+  for (KnownPose& pose : now.poses) pose.visit_sigma_m = pose.visit_sigma_rad = 1e-4;
+  return now;
+}
+
+TEST(DriftRate, IsThatOfTheCreepWithinItsSigma) {
+  Draws draws(1);
+  double sum = 0.0, squares = 0.0;
+  constexpr int kTimes = 400;
+  for (int i = 0; i < kTimes; ++i) {
+    AsFound found = FoundBeside(kLeft);
+    AddDriftRates(Creeping({0, 9, 31, 44, 60}, 3e-4, -2e-4, draws), NowWithScatter(), found);
+    const DriftRate& rate = *Of(kRight, found).rate;
+    const double z = (rate.per_30_days(tangent::kY) - 3e-4) / rate.sigma_per_30_days(tangent::kY);
+    sum += z, squares += z * z;
+    EXPECT_LT(std::abs(rate.per_30_days(tangent::kRz) + 2e-4), 6 * rate.sigma_per_30_days(tangent::kRz));
+    EXPECT_EQ(rate.visits, 5);
+    EXPECT_EQ(rate.last.ns - rate.first.ns, 60 * kDay_ns);
+  }
+  EXPECT_NEAR(sum / kTimes, 0.0, 0.25);
+  EXPECT_NEAR(squares / kTimes, 1.0, 0.36);
+}
+
+TEST(DriftRate, OfEqualVisitsItIsTheLineThroughThem) {
+  std::vector<VisitPoses> visits;
+  for (const int day : {0, 30, 60}) {
+    Vector6d step = Vector6d::Zero();
+    step(tangent::kX) = 1e-3 * day / 30;
+    VisitPoses visit{{day * kDay_ns}, Bumped(DrawnRig(), kTop, step)};
+    visit.poses.covariance = 1e-8 * Eigen::MatrixXd::Identity(18, 18);
+    visits.push_back(visit);
+  }
+  AsFound found = FoundBeside(kLeft);
+  AddDriftRates(visits, DrawnRig(), found);
+  const DriftRate& rate = *Of(kTop, found).rate;
+  EXPECT_NEAR(rate.per_30_days(tangent::kX), 1e-3, 1e-9);
+  EXPECT_NEAR(rate.sigma_per_30_days(tangent::kX), 1e-4 / std::sqrt(2.0), 1e-9);  // spread of -1, 0, 1
+  EXPECT_NEAR(Of(kRear, found).rate->per_30_days.norm(), 0.0, 1e-12);
+}
+
+TEST(DriftRate, NeedsThreeVisitsOfSeveralTimes) {
+  Draws draws(2);
+  AsFound found = FoundBeside(kLeft);
+  AddDriftRates(Creeping({0, 30}, 0, 0, draws), NowWithScatter(), found);
+  EXPECT_FALSE(Of(kRight, found).rate);
+  AddDriftRates(Creeping({7, 7, 7}, 0, 0, draws), NowWithScatter(), found);
+  EXPECT_FALSE(Of(kRight, found).rate);
+  std::vector<VisitPoses> visits = Creeping({0, 10, 20}, 0, 0, draws);
+  visits[1].poses.poses.pop_back();  // the lidar on top was not there
+  visits[1].poses.covariance = Eigen::MatrixXd(visits[1].poses.covariance.topLeftCorner(12, 12));
+  AddDriftRates(visits, NowWithScatter(), found);
+  EXPECT_TRUE(Of(kRight, found).rate);
+  EXPECT_FALSE(Of(kTop, found).rate);
+}
+
+AsFound OneMoved() {
+  AsFound found = FoundBeside(kLeft);
+  found.session = SessionId(std::string(64, 'a'));
+  found.in_use = 2;
+  found.visits = 4;
+  for (SensorFound& sensor : found.sensors) {
+    sensor.axes.fill(FoundState::kUnchanged);
+    sensor.sigma << 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4;
+    sensor.smallest << 6e-4, 5e-4, 5e-4, 3e-4, 3e-4, 3.5e-4;
+  }
+  SensorFound& right = found.sensors[1];
+  right.state = right.axes[0] = FoundState::kDrifted;
+  right.change(0) = 1.2e-3;
+  right.change(5) = 7e-4;
+  return found;
+}
+
+std::string TextOf(const AsFound& found) {
+  return AsFoundText(found, {{found.session, ParseIso("2026-11-03T00:00:00Z").value()}});
+}
+
+TEST(AsFoundText, TellsWhoMovedByHowMuchAndWhatCouldHaveBeenSeen) {
+  EXPECT_EQ(TextOf(OneMoved()),
+            "As found (session of 2026-11-03, against revision 2): rear and top unchanged; right moved 1.2 mm, 0.0401 "
+            "deg (12 "
+            "sigma); smallest change this session could have seen: 0.6 mm, 0.02 deg.");
+}
+
+TEST(AsFoundText, OfTwoNamesBothAndSaysWhatIsNotKnown) {
+  AsFound found = OneMoved();
+  found.sensors[1].or_else = kLeft;
+  found.sensors[0].state = FoundState::kMovedOnPurpose;
+  found.sensors[2].state = FoundState::kNew;
+  found.visits = 1;
+  const std::string text = TextOf(found);
+  EXPECT_THAT(text, HasSubstr("right moved against left 1.2 mm, 0.0401 deg (12 sigma), either of the two may have; "));
+  EXPECT_THAT(text, HasSubstr("rear moved on purpose; top new; "));
+  EXPECT_THAT(text, HasSubstr("; with 1 visit in use the scatter from visit to visit is not known yet: the policy's moved_min is taken for it."));
+  EXPECT_THAT(text, Not(HasSubstr("unchanged")));
+  found.visits = 2;
+  EXPECT_THAT(TextOf(found), HasSubstr("with 2 visits in use the scatter from visit to visit is hardly known yet."));
+}
+
+TEST(AsFoundText, SaysWhyNothingWasTested) {
+  AsFound found = OneMoved();
+  found.in_use = 0;
+  found.why_not = "No calibration was in use before it.";
+  EXPECT_EQ(TextOf(found), "As found (session of 2026-11-03): not tested. No calibration was in use before it.");
+  found = OneMoved();
+  found.sensors[0].smallest(2) = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(TextOf(found), HasSubstr("too few captures to tell the smallest change it could have seen"));
+}
+
+}  // namespace
+}  // namespace rigcal::fleet

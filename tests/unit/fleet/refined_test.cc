@@ -1,0 +1,261 @@
+// Verdicts on what the refinement of whole sessions says.
+#include <gmock/gmock.h>
+
+#include "server/model/edges/method.h"
+#include "tests/unit/fleet/rig.h"
+
+namespace rigcal::fleet {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+LensMisfit MisfitOf(const std::string& camera, CameraModel model, double sigma_ratio) {
+  LensMisfit misfit;
+  misfit.camera = SensorId(camera);
+  misfit.model = model;
+  misfit.rms_px = 0.0512, misfit.evidence = 300, misfit.sigma_ratio = sigma_ratio;
+  misfit.pose_sigma_m = 2e-4, misfit.pose_sigma_rad = 1e-4;
+  return misfit;
+}
+
+SessionEstimate BentSession(char letter, std::vector<LensMisfit> misfits) {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, letter));
+  for (const char* sensor : {"left", "right", "top"}) estimate.poses.push_back({SensorId(sensor), {}});
+  estimate.misfits = std::move(misfits);
+  return estimate;
+}
+
+TEST(AssessLens, OneThatMattersWarnsByNameWithItsModel) {
+  const Rig rig;
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
+                                 {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 2.0),
+                                                    MisfitOf("top", CameraModel::kPinholeRadtan, 1.4)})});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "The lens of right bends in a way that pinhole_radtan cannot: 0.051 px, which makes poses uncertain by 0.2 mm "
+            "and 0.0057 deg.");
+  EXPECT_EQ(verdict.what_to_do, "Try `model: pinhole_rational` for right.");
+}
+
+TEST(AssessLens, OneThatAddsLittleIsLeftToTheSigmas) {
+  const Rig rig;
+  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.4)});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {bent}).level, VerdictLevel::kPass);
+  LensMisfit tiny = MisfitOf("right", CameraModel::kPinholeRadtan, 5.0);
+  tiny.pose_sigma_m = tiny.pose_sigma_rad = 2e-5;
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {tiny})}).level, VerdictLevel::kPass);
+}
+
+// A loop that fails by more than any lens is excused for still says which lens may be behind it.
+TEST(AssessLens, BesideAnOpenLoopItIsNamedToo) {
+  Rig rig;
+  CycleResidual loop;
+  for (const char* name : {"left", "right", "top"}) loop.sensors.emplace_back(name);
+  for (Edge& edge : rig.edges) {
+    edge.uncertainty.dof = 39;  // estimated: the loops judge them, not the cost
+    loop.edges.push_back(edge.id);
+  }
+  loop.e << 0.06, 0.08, 0.0, 0.0, 0.0, 0.0;
+  loop.tested = true;
+  loop.t_squared = 80.0, loop.limit = 40.0;
+  rig.solution.cycles.judged = true;
+  rig.solution.cycles.worst = {loop};
+  rig.solution.cycles.failing = 1;
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {})}).why, Not(HasSubstr("lens")));
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)})});
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("does not close"));
+  EXPECT_THAT(verdict.why, HasSubstr("it may be that the lens of right bends in a way that pinhole_radtan cannot"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("pinhole_rational"));
+  // A lens that has no part in the loop is not behind it.
+  EXPECT_THAT(Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', {MisfitOf("back", CameraModel::kPinholeRadtan, 1.1)})}).why,
+              Not(HasSubstr("lens")));
+}
+
+TEST(AssessLens, TheNewestSessionOfACameraCounts) {
+  const Rig rig;
+  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), bent}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
+  const Rig rig;
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {},
+                                 {BentSession('1', {MisfitOf("left", CameraModel::kFisheyeKb4, 2.0),
+                                                    MisfitOf("right", CameraModel::kPinholeRadtan, 3.0)})});
+  EXPECT_THAT(verdict.why, HasSubstr("The lenses of right and left bend in ways that pinhole_radtan and fisheye_kb4 cannot: "
+                                     "0.051 px of right, which makes"));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
+}
+
+SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, '1'));
+  for (const auto& [sensor, move] : moves) estimate.poses.push_back({SensorId(sensor), {}, 0.0, move});
+  return estimate;
+}
+
+Verdict VerdictOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
+  const Rig rig;
+  return Assess(rig.edges, rig.solution, {},
+                {{SessionId(std::string(64, '1')), ParseIso("2026-01-31T12:00:00Z").value()}},
+                {SessionOfMoves(std::move(moves))});
+}
+
+TEST(AssessUnseen, APassSaysWhatWouldHaveBeenNoticed) {
+  const Verdict verdict = VerdictOfMoves(
+      {{"left", {0.002, 0.001, 40}}, {"right", {0.0015, 0.002, 40}}, {"top", {0.001, 0.001, 40}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_THAT(
+      verdict.why,
+      HasSubstr(" A bump of any sensor by 2 mm or 0.115 deg half-way through a session would have been noticed."));
+}
+
+TEST(AssessUnseen, AMoveBeyondTheToleranceThatNothingWouldShowWarnsWithTheNumberOfPlaces) {
+  const Verdict verdict =
+      VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.008, 0.002, 20}}, {"top", {0.006, 0.001, 20}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "A bump of right and top half-way through the session of 2026-01-31 12:00 UTC would go unseen, of right by up "
+            "to 8 mm or 0.115 deg.");
+  EXPECT_EQ(verdict.what_to_do, "Capture at least 62 places that right sees; this session had 20.");
+}
+
+TEST(AssessUnseen, NobodyIsAskedForThousandsOfPlaces) {
+  const Verdict verdict =
+      VerdictOfMoves({{"left", {0.002, 0.001, 40}}, {"right", {0.038, 0.002, 24}}, {"top", {0.002, 0.001, 20}}});
+  EXPECT_THAT(verdict.what_to_do, HasSubstr("Capture again, with boards nearer to right and more tilted; with more places alone it would take "));
+  EXPECT_THAT(verdict.what_to_do, HasSubstr(" (this session had 24)."));
+}
+
+TEST(AssessUnseen, ASensorThatNoSessionTellsOfIsNamed) {
+  EXPECT_THAT(VerdictOfMoves({{"left", {0.002, 0.002, 40}}, {"top", {0.001, 0.001, 40}}}).why,
+              HasSubstr(" A bump of any sensor but right by 2 mm or 0.115 deg half-way through a session would have been "
+                        "noticed; of right it is not known."));
+}
+
+TEST(AssessUnseen, OnlySensorsOfTheWorstSessionAreGivenToIt) {
+  const Rig rig;
+  SessionEstimate other = SessionOfMoves({{"left", {0.006, 0.002, 20}}});
+  other.session = SessionId(std::string(64, '2'));
+  const Verdict verdict =
+      Assess(rig.edges, rig.solution, {}, {}, {SessionOfMoves({{"right", {0.008, 0.002, 20}}}), other});
+  EXPECT_THAT(verdict.why, HasSubstr("A bump of right by up to 8 mm"));
+  EXPECT_THAT(verdict.why, testing::Not(HasSubstr("left")));
+}
+
+TEST(AssessMovedBoard, OneOfTheNewestSessionWarnsByNameAndCapture) {
+  const Rig rig;
+  SessionEstimate moved = SessionOfMoves({{"left", {0.001, 0.001, 40}}});
+  moved.boards_moved.push_back({TargetId("wall"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.005, 1e-9});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {moved});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("oard wall was moved during the session of"));
+  EXPECT_THAT(verdict.why, HasSubstr("between captures 019 and 020, by 5 mm and 0 deg"));
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {BentSession('2', {}), moved}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessUnseen, ASessionWhoseRefinementFailedIsNoPass) {
+  const Rig rig;
+  SessionEstimate failed;
+  failed.session = SessionId(std::string(64, '2'));
+  failed.why_not.push_back({kRefinementFailed, "the joint refinement reached no minimum", "More captures."});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {failed});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("could not be refined as a whole (the joint refinement reached no minimum): a bump "
+                                     "during it would go unseen"));
+  const SmallestMove small{0.001, 0.001, 40};
+  const auto whole = SessionOfMoves({{"left", small}, {"right", small}, {"top", small}});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {failed, whole}).level, VerdictLevel::kWarn);
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {whole, failed}).level, VerdictLevel::kPass);
+  failed.why_not.front().code = "invalid_input";
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {failed}).level, VerdictLevel::kPass);
+}
+
+TEST(AssessUnseen, OneSensorIsToldWithItsSize) {
+  EXPECT_EQ(VerdictOfMoves({{"right", {0.008, 0.002, 20}}}).why,
+            "A bump of right by up to 8 mm or 0.115 deg half-way through the session of 2026-01-31 12:00 UTC would go "
+            "unseen.");
+}
+
+TEST(AssessUnseen, WhereNoMoveWouldShowNoSizeIsTold) {
+  const Verdict verdict = VerdictOfMoves({{"right", {kAnyMove_m, kAnyMove_rad, 5}}});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_EQ(verdict.why,
+            "A bump of right half-way through the session of 2026-01-31 12:00 UTC would go unseen.");
+  EXPECT_EQ(verdict.what_to_do, "Capture more than 5 places that right sees.");
+}
+
+TEST(AssessUnseen, TheNewestSessionOfASensorCounts) {
+  const Rig rig;
+  const auto blind = SessionOfMoves({{"right", {0.5, 0.5, 6}}}),
+             sharp = SessionOfMoves({{"right", {0.001, 0.001, 60}}});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {sharp, blind}).level, VerdictLevel::kPass);
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {blind, sharp}).level, VerdictLevel::kWarn);
+}
+
+// A rig of one session, one of whose edges contradicts the others by so much.
+Rig Contradicted(double off_m) {
+  Rig rig;
+  for (Edge& edge : rig.edges) edge.session = SessionId(std::string(64, '1'));
+  rig.solution.residuals[0] = ResidualOf(rig.edges[0], off_m);
+  return rig;
+}
+
+TEST(AssessRefined, PairsOfARefinedSessionAccuseNoSensor) {
+  Rig rig = Contradicted(0.02);
+  ASSERT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kPass);
+  const auto bent = BentSession('1', {MisfitOf("right", CameraModel::kPinholeRadtan, 1.1)});
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {bent});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("Pairs of sensors disagree because the lens of right bends"));
+}
+
+TEST(AssessRefined, WhatIsGrosslyOffFailsAllTheSame) {
+  Rig rig = Contradicted(0.06);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+}
+
+TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
+  Rig rig = Contradicted(0.06);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  SessionEstimate moved = BentSession('1', {});
+  rig.edges[0].method = NameOf(Method::kStereo);  // takes no board to stand still
+  moved.boards_moved.push_back({TargetId("wall"), CaptureId("019"), CaptureId("020"), Vector6d::Unit(0) * 0.005, 1e-9});
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {moved}).level, VerdictLevel::kFail);
+  rig.edges[0].method = NameOf(Method::kTrackerCamera);
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, {}, {moved});
+  EXPECT_EQ(verdict.level, VerdictLevel::kWarn);
+  EXPECT_THAT(verdict.why, HasSubstr("oard wall was moved"));
+  moved.session = SessionId(std::string(64, '2'));
+  EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {moved}).level, VerdictLevel::kFail);
+}
+
+TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {
+  Rig rig = Contradicted(0.02);
+  rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};
+  rig.edges[0].session = SessionId();
+  EXPECT_EQ(Assess(rig.edges, rig.solution).level, VerdictLevel::kFail);
+}
+
+TEST(AssessRefined, ASensorThatMovedBetweenSessionsFails) {
+  Rig rig;
+  SensorMovedBetween moved{SensorId("right"), SessionId(std::string(64, '1')), SessionId(std::string(64, '2')), {}, 1e-9};
+  moved.step[0] = 0.0097;
+  rig.solution.fused.moved = {moved};
+  const SessionTimes times = {{moved.last_before, Stamp{0}}, {moved.first_after, Stamp{86'400'000'000'000}}};
+  const Verdict verdict = Assess(rig.edges, rig.solution, {}, times);
+  EXPECT_EQ(verdict.level, VerdictLevel::kFail);
+  EXPECT_THAT(verdict.why, HasSubstr("right was moved between the sessions of 1970-01-01 and 1970-01-02, by 9.7 mm"));
+  EXPECT_EQ(verdict.what_to_do,
+            "Was right moved after 1970-01-01? Yes: `rigcal push FOLDER --remounted right` of the session of 1970-01-02. "
+            "No: tighten the mount, capture again.");
+}
+
+}  // namespace
+}  // namespace rigcal::fleet

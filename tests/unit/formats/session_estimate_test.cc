@@ -1,0 +1,108 @@
+#include "server/formats/revision/session_estimate.h"
+
+#include <gtest/gtest.h>
+
+namespace rigcal::formats {
+namespace {
+
+SessionEstimate MakeEstimate() {
+  SessionEstimate estimate;
+  estimate.session = SessionId(std::string(64, 'a'));
+  estimate.reference = SensorId("left");
+  RefinedPose pose;
+  pose.sensor = SensorId("right");
+  pose.T_ref_sensor = Se3::Exp((Vector6d() << 0.1, 0.2, 0.3, 0.01, 0.02, 0.03).finished());
+  pose.dof = 25.5;
+  pose.smallest_move = {0.002, 0.003, 19};
+  estimate.poses = {{SensorId("left"), {}, 0.0}, pose};
+  estimate.covariance = 1e-8 * Matrix6d::Identity();
+  estimate.covariance(tangent::kX, tangent::kRz) = estimate.covariance(tangent::kRz, tangent::kX) = 2e-9;
+  estimate.common = 0.25 * estimate.covariance;
+  SensorMovedWithin moved;
+  moved.sensor = SensorId("right");
+  moved.last_before = CaptureId("019"), moved.first_after = CaptureId("020");
+  moved.step[tangent::kY] = 0.02;
+  moved.odds = 1e-30;
+  estimate.moved = {moved};
+  estimate.boards_moved = {{TargetId("wall"), CaptureId("011"), CaptureId("012"), moved.step, 1e-9}};
+  estimate.held_back = {{SensorId("left"), CaptureId("007"), SensorId("right")}, {SensorId("left"), CaptureId("008")}};
+  LensMisfit misfit;
+  misfit.camera = SensorId("right");
+  misfit.model = CameraModel::kPinholeRational;
+  misfit.rms_px = 0.05, misfit.evidence = 300, misfit.sigma_ratio = 2.5;
+  misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
+  estimate.misfits = {misfit};
+  estimate.slants = {{SensorId("top"), 0.01, 0.002}};
+  estimate.bends = {{TargetId("board"), 0.0005, 0.00001}};
+  return estimate;
+}
+
+TEST(SessionEstimateDocument, ComesBackAsItWas) {
+  const std::string text = WriteSessionEstimate(MakeEstimate());
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(WriteSessionEstimate(*read), text);
+  ASSERT_EQ(read->poses.size(), 2u);
+  EXPECT_EQ(read->covariance, MakeEstimate().covariance);
+  EXPECT_EQ(read->common, MakeEstimate().common);
+  EXPECT_EQ(RowOf(*read, 0), -1);
+  EXPECT_EQ(RowOf(*read, 1), 0);
+  EXPECT_EQ(read->poses[1].dof, 25.5);
+  EXPECT_FALSE(read->poses[0].smallest_move);  // as in documents of before
+  ASSERT_TRUE(read->poses[1].smallest_move);
+  EXPECT_EQ(read->poses[1].smallest_move->m, 0.002);
+  EXPECT_EQ(read->poses[1].smallest_move->rad, 0.003);
+  EXPECT_EQ(read->poses[1].smallest_move->captures, 19);
+  ASSERT_EQ(read->moved.size(), 1u);
+  EXPECT_EQ(read->moved[0].step[tangent::kY], 0.02);
+  EXPECT_EQ(read->moved[0].first_after, CaptureId("020"));
+  EXPECT_EQ(read->held_back[0].capture, CaptureId("007"));
+  EXPECT_EQ(read->held_back[0].against, SensorId("right"));
+  EXPECT_TRUE(read->held_back[1].against.empty());
+  ASSERT_EQ(read->boards_moved.size(), 1u);
+  EXPECT_EQ(read->boards_moved[0].board, TargetId("wall"));
+  EXPECT_EQ(read->boards_moved[0].first_after, CaptureId("012"));
+  EXPECT_EQ(read->boards_moved[0].step[tangent::kY], 0.02);
+  ASSERT_EQ(read->bends.size(), 1u);
+  EXPECT_EQ(read->bends[0].board, TargetId("board"));
+  EXPECT_EQ(read->bends[0].height_m, 0.0005);
+  EXPECT_EQ(read->bends[0].sigma_m, 0.00001);
+  ASSERT_EQ(read->slants.size(), 1u);
+  EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
+  EXPECT_EQ(read->slants[0].too_long_m, 0.01);
+  EXPECT_EQ(read->slants[0].sigma_m, 0.002);
+  ASSERT_EQ(read->misfits.size(), 1u);
+  EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
+  EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);
+  EXPECT_EQ(read->misfits[0].sigma_ratio, 2.5);
+  EXPECT_EQ(read->misfits[0].pose_sigma_rad, 2e-4);
+}
+
+TEST(SessionEstimateDocument, OneOfBeforeMisfitsWereLookedForHasNone) {
+  std::string text = WriteSessionEstimate(MakeEstimate());
+  const auto from = text.find("\"misfits\""), to = text.find("\"moved\"");
+  ASSERT_LT(from, to);
+  text.erase(from, to - from);
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_TRUE(read->misfits.empty());
+}
+
+TEST(SessionEstimateDocument, RefusesALensThatIsNone) {
+  std::string text = WriteSessionEstimate(MakeEstimate());
+  text.replace(text.find("pinhole_rational"), 16, "pinhole_fanciful");
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().what.find("misfits[0].model"), std::string::npos) << read.error().what;
+}
+
+TEST(SessionEstimateDocument, RefusesWhatIsNone) {
+  EXPECT_FALSE(ReadSessionEstimate("{}"));
+  EXPECT_FALSE(ReadSessionEstimate("no document"));
+  SessionEstimate estimate = MakeEstimate();
+  estimate.covariance = Eigen::MatrixXd::Identity(12, 12);
+  EXPECT_FALSE(ReadSessionEstimate(WriteSessionEstimate(estimate)));
+}
+
+}  // namespace
+}  // namespace rigcal::formats

@@ -1,0 +1,283 @@
+// Session estimates are drawn here from their own covariances: what is fused must be as sure as it says.
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <random>
+
+#include "server/graph/fusion/session_fusion.h"
+#include "server/graph/solve/solve.h"
+#include "server/math/covariance.h"
+#include "server/math/statistics.h"
+#include "server/model/edges/past.h"
+
+namespace rigcal::graph {
+namespace {
+
+const SensorId kBase("base"), kLeft("left"), kRight("right");
+const std::vector<SensorId> kSensors = {kBase, kLeft, kRight};
+
+SessionId SessionNamed(int k) { return SessionId(std::string(62, 'a') + (k < 10 ? "0" : "") + std::to_string(k)); }
+Se3 Pose(double x_m, double rz_rad) { return Se3::Exp((Vector6d() << x_m, 0.2, 0.1, 0.05, -0.1, rz_rad).finished()); }
+std::vector<Se3> Truth() { return {Se3{}, Pose(0.5, 0.3), Pose(-0.4, 1.2)}; }
+Eigen::MatrixXd CovarianceOf(double sigma_m, double sigma_rad) {
+  Eigen::VectorXd variance(12);
+  for (int i = 0; i < 12; ++i) variance[i] = std::pow(i % 6 < 3 ? sigma_m : sigma_rad, 2);
+  Eigen::MatrixXd C = variance.asDiagonal();
+  C.topRightCorner(6, 6) = C.bottomLeftCorner(6, 6) = 0.4 * Eigen::MatrixXd(C.topLeftCorner(6, 6));
+  return C;
+}
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  Eigen::VectorXd Normal(Eigen::Index size) {
+    return Eigen::VectorXd::NullaryExpr(size, [&] { return normal_(engine_); });
+  }
+  Eigen::VectorXd Of(const Eigen::MatrixXd& C) { return C.llt().matrixL() * Normal(C.rows()); }
+
+ private:
+  std::mt19937 engine_;
+  std::normal_distribution<double> normal_;
+};
+
+std::vector<Se3> Scattered(const std::vector<Se3>& truth, double sigma_m, double sigma_rad, Random& random) {
+  std::vector<Se3> visit = truth;
+  for (std::size_t s = 1; s < visit.size(); ++s) {
+    Vector6d b = random.Normal(6);
+    b.head<3>() *= sigma_m;
+    b.tail<3>() *= sigma_rad;
+    visit[s] = visit[s] * Se3::Exp(b);
+  }
+  return visit;
+}
+
+// Drawn around `truth` by C, in the frame of the base.
+SessionEstimate Drawn(int k, const std::vector<Se3>& truth, const Eigen::MatrixXd& C, Random& random) {
+  SessionEstimate estimate;
+  estimate.session = SessionNamed(k);
+  estimate.reference = kBase;
+  const Eigen::VectorXd e = random.Of(C);
+  estimate.poses = {{kBase, {}, 0.0},
+                    {kLeft, truth[1] * Se3::Exp(e.head<6>()), 200.0},
+                    {kRight, truth[2] * Se3::Exp(e.tail<6>()), 200.0}};
+  estimate.covariance = C;
+  return estimate;
+}
+
+Edge GoodEdge(const SessionId& session, std::size_t a, std::size_t b, const Se3& T_a_b, double sigma_m, double sigma_rad) {
+  Edge edge;
+  edge.robot = RobotId("robot");
+  edge.frame_a = kSensors[a], edge.frame_b = kSensors[b];
+  edge.method = session.empty() ? "given" : "stereo";
+  edge.id = EstimatedEdgeId(edge.robot, session.empty() ? SessionNamed(99) : session, edge.method, edge.frame_a, edge.frame_b);
+  edge.session = session;
+  edge.T_a_b = T_a_b;
+  edge.state = EdgeState::kGood;
+  Vector6d information;
+  information << Eigen::Vector3d::Constant(1 / (sigma_m * sigma_m)), Eigen::Vector3d::Constant(1 / (sigma_rad * sigma_rad));
+  edge.uncertainty = FromInformation(information.asDiagonal(), UncertaintySource::kModel, 0);
+  return edge;
+}
+
+// The pairs of a session say less exactly what its refinement says.
+std::vector<Edge> PairsOf(const SessionEstimate& estimate) {
+  std::vector<Edge> edges;
+  for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}})
+    edges.push_back(GoodEdge(estimate.session, a, b,
+                             estimate.poses[a].T_ref_sensor.Inverse() * estimate.poses[b].T_ref_sensor *
+                                 Se3::Exp(1e-4 * Vector6d::Ones()),
+                             0.01, 0.01));
+  return edges;
+}
+
+struct Robot {
+  std::vector<Edge> edges;
+  std::vector<SessionEstimate> estimates;
+  void Add(const SessionEstimate& estimate) {
+    for (Edge& edge : PairsOf(estimate)) edges.push_back(std::move(edge));
+    estimates.push_back(estimate);
+  }
+  [[nodiscard]] GraphSolution Fused() const {
+    GraphSolution solution = Solve(GraphOf(edges, kBase));
+    FuseSessions(edges, {}, kBase, estimates, solution);
+    return solution;
+  }
+};
+
+Robot Visits(int count, const std::vector<Se3>& truth, double sigma_m, double sigma_rad, const Eigen::MatrixXd& C,
+             Random& random) {
+  Robot robot;
+  for (int k = 0; k < count; ++k) robot.Add(Drawn(k, Scattered(truth, sigma_m, sigma_rad, random), C, random));
+  return robot;
+}
+
+TEST(FuseSessions, OneSessionIsTakenAsItIs) {
+  Random random(1);
+  const Robot robot = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  const GraphSolution solution = robot.Fused();
+  ASSERT_EQ(solution.fused.sessions, std::vector<SessionId>{SessionNamed(0)});
+  for (std::size_t s = 1; s < 3; ++s) {
+    const SensorPose& pose = solution.poses[s];
+    ASSERT_TRUE(pose.fused);
+    EXPECT_LT((pose.T_ref_sensor.Inverse() * robot.estimates[0].poses[s].T_ref_sensor).Log().norm(), 1e-9);
+    EXPECT_GT((pose.fused->T_ref_sensor_by_pairs.Inverse() * pose.T_ref_sensor).Log().norm(), 1e-5);
+    EXPECT_NEAR(pose.dof, 200.0, 1.0);
+  }
+  EXPECT_LT((solution.fused.covariance - robot.estimates[0].covariance).norm(), 1e-6 * robot.estimates[0].covariance.norm());
+}
+
+TEST(FuseSessions, PushedEdgeCountsByItsInformationAndAnEdgeOfTheSessionDoesNotCountTwice) {
+  Random random(2);
+  Robot robot = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  robot.edges.push_back(GoodEdge({}, 0, 1, robot.estimates[0].poses[1].T_ref_sensor, 3e-4, 2e-4));
+  const GraphSolution solution = robot.Fused();
+  EXPECT_NEAR(solution.fused.covariance(0, 0), 0.5 * 9e-8, 1e-10);
+  EXPECT_NEAR(solution.fused.covariance(3, 3), 0.5 * 4e-8, 1e-10);
+}
+
+TEST(FuseSessions, AgreeingVisitsNarrowThePose) {
+  Random random(3);
+  const GraphSolution solution = Visits(4, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random).Fused();
+  const FusedPose& fused = *solution.poses[1].fused;
+  EXPECT_EQ(fused.sessions, 4);
+  EXPECT_LT(fused.visit_sigma_m, 3e-4);
+  EXPECT_NEAR(solution.poses[1].covariance(0, 0), std::pow(3e-4, 2) / 4 + std::pow(fused.visit_sigma_m, 2), 3e-8);
+}
+
+TEST(FuseSessions, WhatErrsAlikeOnEveryVisitDoesNotFallWithTheirNumber) {
+  Random random(4);
+  Robot robot;
+  const Eigen::MatrixXd own = CovarianceOf(1e-5, 1e-5), common = CovarianceOf(3e-4, 2e-4);
+  const Eigen::VectorXd shared = random.Of(common);
+  for (int k = 0; k < 4; ++k) {
+    std::vector<Se3> seen = Truth();
+    seen[1] = seen[1] * Se3::Exp(shared.head<6>());
+    seen[2] = seen[2] * Se3::Exp(shared.tail<6>());
+    SessionEstimate estimate = Drawn(k, seen, own, random);
+    estimate.covariance += common;
+    estimate.common = common;
+    robot.Add(estimate);
+  }
+  const GraphSolution solution = robot.Fused();
+  EXPECT_NEAR(std::sqrt(solution.poses[1].covariance(0, 0)), 3e-4, 2e-5);
+  EXPECT_NEAR(std::sqrt(solution.poses[2].covariance(4, 4)), 2e-4, 2e-5);
+}
+
+// A sensor that sits a little elsewhere on each visit: where it sits on the next lies in the region told.
+TEST(FuseSessions, NextVisitLiesInTheRegionTold) {
+  constexpr double kScatter_m = 3e-4, kScatter_rad = 1.7e-4;
+  Random random(5);
+  int inside = 0, asked = 0;
+  for (int robot = 0; robot < 150; ++robot) {
+    const GraphSolution solution =
+        Visits(10, Truth(), kScatter_m, kScatter_rad, CovarianceOf(1e-4, 1e-4), random).Fused();
+    const std::vector<Se3> next = Scattered(Truth(), kScatter_m, kScatter_rad, random);
+    for (std::size_t s = 1; s < 3; ++s, ++asked) {
+      const SensorPose& pose = solution.poses[s];
+      const Vector6d e = (pose.T_ref_sensor.Inverse() * next[s]).Log();
+      const double limit = HotellingLimit(static_cast<int>(pose.dof) + 1);
+      inside += e.dot(pose.covariance.ldlt().solve(e)) <= limit ? 1 : 0;
+    }
+  }
+  EXPECT_GE(inside, asked * 91 / 100);
+  EXPECT_LE(inside, asked * 98 / 100);
+}
+
+TEST(FuseSessions, TwoVisitsThatDisagreeAreNotAveragedIntoCertainty) {
+  Random random(6);
+  Robot robot;
+  robot.Add(Drawn(0, Truth(), CovarianceOf(1e-4, 1e-4), random));
+  std::vector<Se3> elsewhere = Truth();
+  elsewhere[1] = elsewhere[1] * Se3::Exp((Vector6d() << 0.01, 0, 0, 0, 0, 0).finished());
+  robot.Add(Drawn(1, elsewhere, CovarianceOf(1e-4, 1e-4), random));
+  const GraphSolution solution = robot.Fused();
+  EXPECT_GT(solution.poses[1].fused->visit_sigma_m, 2e-3);
+  EXPECT_GT(std::sqrt(solution.poses[1].covariance(0, 0)), 2e-3);
+  EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 2e-4);
+}
+
+struct MoveBetween {
+  const char* name;
+  std::size_t sensor;
+  int visits, first_after;
+  double scatter_m;
+};
+class MovedBetweenVisits : public testing::TestWithParam<MoveBetween> {};
+
+TEST_P(MovedBetweenVisits, IsNamedWithTheSessions) {
+  const MoveBetween& given = GetParam();
+  Random random(9);
+  std::vector<Se3> after = Truth();
+  const Se3 step = Se3::Exp((Vector6d() << 0.004, 0.003, 0, 0, 0.005, 0).finished());
+  if (given.sensor == 0)
+    for (std::size_t s = 1; s < 3; ++s) after[s] = step.Inverse() * after[s];
+  else
+    after[given.sensor] = after[given.sensor] * step;
+  Robot robot;
+  for (int k = 0; k < given.visits; ++k)
+    robot.Add(Drawn(k, Scattered(k < given.first_after ? Truth() : after, given.scatter_m, given.scatter_m / 2, random),
+                    CovarianceOf(1e-4, 1e-4), random));
+  std::reverse(robot.estimates.begin(), robot.estimates.end());  // the newest first
+  const GraphSolution solution = robot.Fused();
+  ASSERT_FALSE(solution.fused.moved.empty());
+  const SensorMovedBetween& moved = solution.fused.moved.front();
+  EXPECT_EQ(moved.sensor, kSensors[given.sensor]);
+  EXPECT_EQ(moved.last_before, SessionNamed(given.first_after - 1));
+  EXPECT_EQ(moved.first_after, SessionNamed(given.first_after));
+  EXPECT_NEAR(moved.step.head<3>().norm(), 0.005, 0.001);
+}
+
+INSTANTIATE_TEST_SUITE_P(Moves, MovedBetweenVisits,
+                         testing::Values(MoveBetween{"second_of_two", 1, 2, 1, 0.0}, MoveBetween{"reference", 0, 2, 1, 0.0},
+                                         MoveBetween{"newest_of_six", 2, 6, 5, 2e-4},
+                                         MoveBetween{"middle_of_six", 1, 6, 3, 2e-4}),
+                         [](const auto& one) { return one.param.name; });
+
+TEST(FuseSessions, ScatterOfVisitsAccusesNobody) {
+  Random random(10);
+  int accused = 0;
+  for (int robot = 0; robot < 100; ++robot)
+    accused += Visits(2 + robot % 7, Truth(), 3e-4, 1.7e-4, CovarianceOf(1e-4, 1e-4), random).Fused().fused.moved.empty() ? 0 : 1;
+  EXPECT_LE(accused, 1);
+}
+
+// What is left of a session whose reference was remounted are the poses among its other sensors.
+TEST(FuseSessions, SessionOfARemountedReferenceStillTellsTheRest) {
+  Random random(7);
+  Robot robot;
+  const Eigen::MatrixXd C = CovarianceOf(3e-4, 2e-4);
+  std::vector<Se3> before = Truth();
+  const Se3 moved = Pose(0.03, 0.1);
+  for (std::size_t s = 1; s < 3; ++s) before[s] = moved * before[s];
+  robot.Add(Drawn(0, before, C, random));
+  for (Edge& edge : robot.edges)
+    if (edge.frame_a == kBase) edge.state = EdgeState::kFailed, edge.diagnoses = {{std::string(kRemountedCode), "", ""}};
+  robot.Add(Drawn(1, Truth(), C, random));
+  const GraphSolution both = robot.Fused();
+  Robot newer;
+  newer.Add(robot.estimates[1]);
+  const GraphSolution alone = newer.Fused();
+  ASSERT_EQ(both.fused.sessions.size(), 2u);
+  const auto between = [&](const GraphSolution& solution) {
+    const auto& J = solution.fused.covariance;
+    const Se3 T = solution.poses[1].T_ref_sensor.Inverse() * solution.poses[2].T_ref_sensor;
+    return RelativeCovariance(T, J.block<6, 6>(0, 0), J.block<6, 6>(6, 6), J.block<6, 6>(0, 6));
+  };
+  EXPECT_LT(between(both).trace(), 0.8 * between(alone).trace());
+  for (std::size_t s = 1; s < 3; ++s)
+    EXPECT_LT((both.poses[s].T_ref_sensor.Inverse() * Truth()[s]).Log().norm(), 0.003);
+}
+
+TEST(FuseSessions, SessionWithARetiredEdgeIsNotFused) {
+  Random random(8);
+  Robot robot = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  robot.edges[2].state = EdgeState::kFailed;
+  robot.edges[2].diagnoses = {{std::string(kRetiredCode), "", ""}};
+  const GraphSolution solution = robot.Fused();
+  EXPECT_TRUE(solution.fused.sessions.empty());
+  EXPECT_FALSE(solution.poses[1].fused);
+}
+
+}  // namespace
+}  // namespace rigcal::graph

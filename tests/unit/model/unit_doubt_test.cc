@@ -1,0 +1,84 @@
+#include "server/model/edges/unit_doubt.h"
+
+#include <gtest/gtest.h>
+
+namespace rigcal {
+namespace {
+
+using Eigen::Vector3d;
+
+Sensor At(const std::string& name, const Vector3d& p_m) {
+  Sensor sensor;
+  sensor.id = SensorId(name);
+  sensor.T_ref_nominal = Se3{p_m, Eigen::Quaterniond::Identity()};
+  return sensor;
+}
+
+// The reference is not drawn.
+SessionHeader RigOf(const std::vector<Sensor>& drawn) {
+  SessionHeader header;
+  header.reference = SensorId("front_left");
+  header.sensors.emplace_back().id = header.reference;
+  header.sensors.insert(header.sensors.end(), drawn.begin(), drawn.end());
+  return header;
+}
+
+Edge EdgeAlong(const std::string& a, const std::string& b, double x_m) {
+  Edge edge;
+  edge.frame_a = SensorId(a);
+  edge.frame_b = SensorId(b);
+  edge.T_a_b.p_m.x() = x_m;
+  edge.state = EdgeState::kGood;
+  return edge;
+}
+
+TimedPose Row(const std::string& capture, double x_m) {
+  TimedPose row;
+  row.capture = CaptureId(capture);
+  row.T_world_body.p_m.x() = x_m;
+  return row;
+}
+
+TEST(UnitDoubt, NamesTheTwoSensorsThatAreFarthestApart) {
+  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 0, 210}), At("back", {0, -80, 0})})),
+            "225 m between back and top: are these millimetres?");
+  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 60, 0})})), "60 m between front_left and top: are these millimetres?");
+  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 30, 40}), At("back", {1, 0, 0})})).substr(0, 5), "50 m ");
+  EXPECT_EQ(UnitDoubt(RigOf({At("top", {0, 30, 40})})), "");
+  EXPECT_EQ(UnitDoubt(RigOf({})), "");
+}
+
+TEST(UnitDoubt, IsARefusalBeyondAnyRobot) {
+  EXPECT_TRUE(CheckSensorsApart(RigOf({At("top", {0, 60, 80})})));
+  EXPECT_TRUE(CheckSensorsApart(RigOf({})));
+  const Status refused = CheckSensorsApart(RigOf({At("top", {0, 60, 0}), At("back", {0, -60, 0})}));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(Sentence(refused.error()),
+            "T_ref_nominal: 120 m between back and top: are these millimetres? Give p_m in metres.");
+}
+
+TEST(UnitDoubt, OfEdgesEachByItself) {
+  EXPECT_EQ(UnitDoubt(std::vector<Edge>{EdgeAlong("a", "b", 40.0), EdgeAlong("b", "c", 40.0)}), "");
+  EXPECT_EQ(UnitDoubt(std::vector<Edge>{EdgeAlong("a", "b", 83.2), EdgeAlong("front", "top", -210.4)}),
+            "210 m between front and top: are these millimetres?");
+  Edge failed = EdgeAlong("a", "b", 1e9);
+  failed.state = EdgeState::kFailed;
+  EXPECT_EQ(UnitDoubt(std::vector<Edge>{failed}), "");
+}
+
+TEST(UnitDoubt, OfATrackerByItsSteps) {
+  EXPECT_EQ(UnitDoubt(PoseTable{Row("01", 5e5), Row("02", 5e5 + 99.0)}), "") << "far away is no doubt";
+  EXPECT_EQ(UnitDoubt(PoseTable{Row("01", 0.0), Row("02", 150.0), Row("03", -160.0)}),
+            "310 m between captures 02 and 03: are these millimetres?");
+  EXPECT_EQ(UnitDoubt(PoseTable{Row("01", 0.0)}), "");
+  EXPECT_EQ(UnitDoubt(PoseTable{}), "");
+}
+
+TEST(UnitDoubt, OfAnyNumberIsShort) {
+  EXPECT_EQ(UnitDoubt(std::map<std::string, Vector3d>{{"a", Vector3d::Zero()}, {"b", {2e6, 0, 0}}}),
+            "2e+06 m between a and b: are these millimetres?");
+}
+
+}  // namespace
+}  // namespace rigcal

@@ -1,0 +1,65 @@
+// What /healthz says.
+#include "server/pipeline/answers/health.h"
+
+#include <gmock/gmock.h>
+
+#include "server/pipeline/answers/answer.h"
+#include "tests/unit/pipeline/fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+using testing::HasSubstr;
+
+class HealthTest : public PipelineTest {
+ protected:
+  PageText Healthz() { return *AnswerPage({*store_, clock_, cache_, clock_.now, "", &*health_}, "/healthz", ""); }
+  // As after more than a second.
+  void LookAnew() { health_.emplace(folder_, clock_); }
+  RevisionCache cache_;
+  std::optional<ServerHealth> health_;
+};
+
+TEST_F(HealthTest, WellUntilAPartFailsAndWellAgain) {
+  LookAnew();
+  Part& intake = health_->vitals().Expect("intake", std::chrono::seconds(30));
+  EXPECT_EQ(Healthz().status, 200);
+  intake.Fail({ErrorCode::kInternal, "waiting failed", "Restart it."});
+  const PageText failing = Healthz();
+  EXPECT_EQ(failing.status, 503);
+  EXPECT_THAT(failing.body, HasSubstr(R"("state":"failing")"));
+  EXPECT_THAT(failing.body, HasSubstr(R"({"failures":1,"name":"intake","problem":{"code":"internal","cure":"Restart )"
+                                      R"(it.","what":"waiting failed"},"since":"2027-)"));
+  intake.Turn();
+  EXPECT_EQ(Healthz().status, 200);
+}
+
+TEST_F(HealthTest, DiskThatTakesNothingIsToldByName) {
+  const auto intake = store_->IntakeFolder(), away = folder_ / "away";
+  std::filesystem::rename(intake, away);
+  std::ofstream(intake) << "in the way";
+  LookAnew();
+  const PageText failing = Healthz();
+  EXPECT_EQ(failing.status, 503);
+  EXPECT_THAT(failing.body, HasSubstr("the disk of the data folder " + folder_.string() + " cannot store anything: "));
+  std::filesystem::remove(intake);
+  std::filesystem::rename(away, intake);
+  EXPECT_EQ(Healthz().status, 503) << "looked again within a second";
+  LookAnew();
+  EXPECT_EQ(Healthz().status, 200);
+  EXPECT_TRUE(std::filesystem::is_empty(intake));
+}
+
+TEST_F(HealthTest, StatusAndMetricsSayTheSame) {
+  LookAnew();
+  health_->vitals().Expect("intake", std::chrono::seconds(30)).Fail({ErrorCode::kInternal, "waiting failed", "Do."});
+  const AnswerContext context{*store_, clock_, cache_, clock_.now, "", &*health_};
+  EXPECT_THAT(*Answer(context, "status", "{}"), HasSubstr(R"("what":"waiting failed")"));
+  const std::string metrics = AnswerPage(context, "/metrics", "")->body;
+  EXPECT_THAT(metrics, HasSubstr("rigcal_part_failing{part=\"intake\"} 1\n"));
+  EXPECT_THAT(metrics, HasSubstr("rigcal_part_failing{part=\"disk\"} 0\n"));
+  EXPECT_THAT(metrics, HasSubstr("rigcal_part_failures_total{part=\"intake\"} 1\n"));
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline

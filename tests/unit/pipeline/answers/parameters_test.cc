@@ -1,0 +1,37 @@
+#include "server/formats/answers/parameters.h"
+
+#include <gtest/gtest.h>
+
+namespace rigcal::formats {
+namespace {
+
+TEST(Parameters, FlatObjectsOnly) {
+  const auto good = Parameters::Read(R"({"robot":"r","revision":3,"flag":true})");
+  ASSERT_TRUE(good);
+  EXPECT_EQ(good->Text("robot"), "r");
+  EXPECT_EQ(good->IntegerOr("revision", 0), 3);
+  EXPECT_EQ(good->IntegerOr("absent", 7), 7);
+  EXPECT_FALSE(good->IntegerOr("robot", 0));
+  EXPECT_TRUE(Parameters::Read(""));
+  for (const char* bad : {"[]", "1", "{", R"({"a":{"b":1}})", R"({"a":[1]})", R"({"a":1.5})", R"({"a":null})"})
+    EXPECT_FALSE(Parameters::Read(bad)) << bad;
+  EXPECT_FALSE(Parameters::Read(std::string(100'000, '[')));
+  EXPECT_NE(Parameters::Read(R"({"\u001b[2J":null})").error().what.find(R"("\x1b[2J")"), std::string::npos);
+}
+
+TEST(Parameters, FlagsAreBooleansOrTheirWords) {
+  const auto given = Parameters::Read(R"({"a":true,"b":false,"c":"1","d":"0","e":"yes"})").value();
+  for (const char* name : {"a", "c"}) EXPECT_EQ(given.Flag(name), true) << name;
+  for (const char* name : {"b", "d", "absent"}) EXPECT_EQ(given.Flag(name), false) << name;
+  EXPECT_EQ(given.Flag("e").error().what, "the parameter \"e\" is neither true nor false");
+}
+
+TEST(Parameters, QueryStringsAreDecoded) {
+  EXPECT_EQ(ParametersOfQuery("robot=a%2Db&x=1+2&&flag").value(), R"({"flag":"","robot":"a-b","x":"1 2"})");
+  EXPECT_EQ(ParametersOfQuery("").value(), "{}");
+  EXPECT_FALSE(ParametersOfQuery("a=%2"));
+  EXPECT_FALSE(ParametersOfQuery("a=%zz"));
+}
+
+}  // namespace
+}  // namespace rigcal::formats

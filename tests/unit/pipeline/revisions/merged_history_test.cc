@@ -1,0 +1,137 @@
+// A robot whose pairs were pushed week after week: its revisions hold the newest edges and what the older ones say together.
+#include "server/graph/solve/solve.h"
+#include "server/pipeline/revisions/live_graphs.h"
+#include "server/pipeline/revisions/revise.h"
+#include "storage/revisions/merged_edges.h"
+#include "storage/revisions/revisions.h"
+#include "storage/sessions/retired.h"
+#include "tests/unit/pipeline/fixture.h"
+
+namespace rigcal::pipeline {
+namespace {
+
+const RobotId kOld("r");
+const std::vector<std::pair<const char*, const char*>> kMeasured = {{"a", "b"}, {"b", "c"}, {"a", "c"}};
+
+class MergedHistoryTest : public PipelineTest {
+ protected:
+  // One edge of each pair, 0.1 mm off in turn, and a revision.
+  void Week(int week) {
+    clock_.now.ns += 7LL * 86'400 * 1'000'000'000;
+    std::vector<Edge> edges;
+    for (const auto& [a, b] : kMeasured)
+      edges.push_back(GivenEdge("r", a, b, (b[0] - a[0]) + 1e-4 * ((week % 3) - 1) + 1e-7 * week));
+    AssignPushedIds(edges);
+    StoreEdges(edges);
+    ids_.push_back(edges.front().id);
+    auto revised = Revise(*store_, kOld, clock_);
+    ASSERT_TRUE(revised) << Sentence(revised.error());
+    newest_ = *formats::ReadRevisionDocument(revised->document);
+    EXPECT_EQ(revised->calibrated_at->ns, clock_.now.ns);
+  }
+  // Of all edges ever, but for one.
+  GraphSolution Whole(const EdgeId& without = {}) {
+    auto edges = storage::LoadEdges(*store_, kOld, true).value();
+    std::erase_if(edges, [&](const Edge& edge) { return edge.id == without; });
+    return graph::Solve(graph::GraphOf(edges, SensorId("a")));
+  }
+  static void ExpectSamePoses(const GraphSolution& x, const GraphSolution& y) {
+    ASSERT_EQ(x.poses.size(), y.poses.size());
+    for (std::size_t s = 0; s < x.poses.size(); ++s) {
+      EXPECT_LT((x.poses[s].T_ref_sensor.p_m - y.poses[s].T_ref_sensor.p_m).norm(), 1e-9);
+      EXPECT_LT((x.poses[s].covariance - y.poses[s].covariance).norm(), 1e-6 * (1e-30 + x.poses[s].covariance.norm()));
+    }
+  }
+
+  std::vector<EdgeId> ids_;
+  formats::RevisionInput newest_;
+};
+
+TEST_F(MergedHistoryTest, ARevisionHoldsAsManyEdgesHoweverManyCameBefore) {
+  for (int week = 0; week < 30; ++week) Week(week);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size());
+  int merged = 0;
+  for (const Edge& edge : newest_.edges)
+    if (IsMerged(edge)) merged += static_cast<int>(edge.figures.at(kMergedEdges));
+  EXPECT_EQ(merged, 22 * static_cast<int>(kMeasured.size()));
+  ExpectSamePoses(Whole(), newest_.solution);
+}
+
+TEST_F(MergedHistoryTest, ARetiredEdgeOfLongAgoTakesNoPartAnyMore) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  ASSERT_TRUE(storage::RetireEdge(*store_, ids_[2], {{4}, "Ada", "typed wrong"}));
+  const auto loaded = LoadRobotGraph(*store_, kOld);
+  ASSERT_TRUE(loaded);
+  ExpectSamePoses(Whole(ids_[2]), graph::Solve(loaded->graph));
+  Week(20);
+  ExpectSamePoses(Whole(ids_[2]), newest_.solution);
+  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld, *storage::LoadWhatCounts(*store_, kOld)));
+  for (int week = 21; week < 24; ++week) Week(week);
+  ExpectSamePoses(Whole(ids_[2]), newest_.solution);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size() + 1);  // it stays on the page, with its reason
+}
+
+TEST_F(MergedHistoryTest, EdgesOfASensorThatIsGoneLeaveTheWindowAndComeBackWithIt) {
+  for (int week = 0; week < 20; ++week) Week(week);
+  ASSERT_TRUE(storage::RetireSensor(*store_, kOld, SensorId("c"), {clock_.now, "Ada", "taken off"}));
+  Week(20);
+  EXPECT_EQ(newest_.solution.poses.size(), 2u);
+  EXPECT_EQ(newest_.edges.size(), 9 + 2 * 8u);  // of each pair of it the newest stay, as past
+  Week(21);
+  EXPECT_EQ(newest_.edges.size(), 9 + 2 * 8u);
+  EXPECT_FALSE(*storage::IsMergeOutdated(*store_, kOld, *storage::LoadWhatCounts(*store_, kOld)));
+  ASSERT_TRUE(storage::RestoreSensor(*store_, kOld, SensorId("c"), {clock_.now, "Ada", "back"}));
+  Week(22);
+  ExpectSamePoses(Whole(), newest_.solution);
+  EXPECT_EQ(newest_.edges.size(), 9 * kMeasured.size());
+}
+
+// Which are the newest is told by when they were measured, not by when they came.
+TEST_F(MergedHistoryTest, DatedEdgesHaveTheirPlaceInTime) {
+  const auto push = [&](const std::vector<int>& weeks) {
+    for (const int week : weeks) {
+      std::vector<Edge> edges;
+      for (const auto& [a, b] : kMeasured) edges.push_back(GivenEdge("r", a, b, (b[0] - a[0]) + 1e-7 * week));
+      for (Edge& edge : edges) edge.measured_at = Stamp{1'600'000'000'000'000'000 + week * 7LL * 86'400 * 1'000'000'000};
+      AssignPushedIds(edges);
+      StoreEdges(edges);
+    }
+    const auto revised = Revise(*store_, kOld, clock_);
+    EXPECT_EQ(revised->calibrated_at->ns, 1'600'000'000'000'000'000 + 14 * 7LL * 86'400 * 1'000'000'000);
+    return formats::ReadRevisionDocument(revised->document)->edges;
+  };
+  (void)push({14, 13, 12, 11, 10});
+  const std::vector<Edge> edges = push({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(edges.size(), 9 * kMeasured.size());
+  for (const Edge& edge : edges)
+    if (!IsMerged(edge)) {
+      EXPECT_GE(edge.T_a_b.p_m.x() - std::round(edge.T_a_b.p_m.x()), 6.5e-7);
+    }
+}
+
+TEST_F(MergedHistoryTest, TheLiveStateFollows) {
+  LiveGraph live;
+  for (int week = 0; week < 14; ++week) {
+    Week(week);
+    const auto loaded = LoadRobotGraph(*store_, kOld);
+    ASSERT_TRUE(loaded);
+    TakeNewEdges(*loaded, live);
+    EXPECT_EQ(live.solver->graph().edges.size(), loaded->graph.edges.size());
+    ExpectSamePoses(newest_.solution, graph::Solve(live.solver->graph()));
+  }
+}
+
+TEST_F(MergedHistoryTest, OneThatContradictsTheOthersIsToldForGood) {
+  for (int week = 0; week < 6; ++week) Week(week);
+  Edge wrong = GivenEdge("r", "a", "b", 1.05);
+  std::vector<Edge> edges{wrong};
+  AssignPushedIds(edges);
+  StoreEdges(edges);
+  for (int week = 6; week < 24; ++week) Week(week);
+  EXPECT_EQ(newest_.verdict.level, VerdictLevel::kFail);
+  EXPECT_TRUE(std::any_of(newest_.edges.begin(), newest_.edges.end(),
+                          [&](const Edge& edge) { return edge.id == edges.front().id; }));
+}
+
+}  // namespace
+}  // namespace rigcal::pipeline

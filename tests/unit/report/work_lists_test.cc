@@ -1,0 +1,133 @@
+// What the fleet's page says is to be worked on, its rows in one line, and the list for spreadsheets.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/report/pages/fleet_csv.h"
+#include "server/report/render.h"
+#include "server/report/text/cause_words.h"
+
+namespace rigcal::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+RobotSummary Late(const std::string& name) {
+  RobotSummary robot;
+  robot.robot = RobotId(name);
+  robot.revision = 3;
+  robot.verdict = {VerdictLevel::kWarn, "Pairs failed, \"many\".", "=Measure, then push."};
+  robot.validity.calibrated_at = ParseIso("2026-01-31T12:00:00Z").value();
+  robot.validity.overdue = true;
+  robot.causes = {"board_size panel larger", "failed_pair cam_left lidar_top"};
+  robot.sessions = 2, robot.edges = 7, robot.jobs_waiting = 1;
+  return robot;
+}
+
+FleetCounts Counts() {
+  FleetCounts fleet;
+  fleet.robots = 20;
+  fleet.overdue = 4;
+  fleet.due_next_week = 1;
+  fleet.causes = {{"failed_pair cam_left lidar_top", 12}, {"board_size panel larger", 3}, {"short_session", 1},
+                  {"not_measured a b c d +2", 1}};
+  return fleet;
+}
+
+const Stamp kNow = ParseIso("2026-05-20T12:00:00Z").value();
+
+std::string PageOf(const FleetCounts& fleet, const FleetQuery& query = {}) {
+  return RenderFleet(fleet, {{Late("late")}, 1, 1, 1}, kNow, query).value();
+}
+
+TEST(CauseWords, SayWhatIsTheMatter) {
+  EXPECT_EQ(CauseText("failed_pair cam_left lidar_top"), "cam_left - lidar_top failed");
+  EXPECT_EQ(CauseText("board_size panel larger"), "board panel larger than given");
+  EXPECT_EQ(CauseText("board_size a b smaller"), "board a, b smaller than given");
+  EXPECT_EQ(CauseText("board_size larger"), "board larger than given") << "no board is known by name";
+  EXPECT_EQ(CauseText("board_size panel disputed"), "size of board panel disputed");
+  EXPECT_EQ(CauseText("board_counts panel"), "corners of board panel counted wrong");
+  EXPECT_EQ(CauseText("lens_model left fisheye_kb4"), "lens of left is fisheye_kb4");
+  EXPECT_EQ(CauseText("exchanged left right"), "left, right exchanged");
+  EXPECT_EQ(CauseText("not_measured a b c d +2"), "a, b, c, d and 2 more not measured");
+  EXPECT_EQ(CauseText("short_session"), "session of a few captures");
+  EXPECT_EQ(CauseText("more_causes"), "more causes than are listed");
+}
+
+TEST(CauseWords, OfALaterVersionAreItsOwn) {
+  EXPECT_EQ(CauseText("clock_offset imu"), "clock offset imu");
+  EXPECT_EQ(CauseText(""), "");
+  EXPECT_EQ(CauseText("lens_model"), "lens of is ") << "nothing breaks";
+}
+
+TEST(WorkLists, CountRobotsByCauseAndOpenTheirLists) {
+  const std::string page = PageOf(Counts());
+  EXPECT_THAT(page, HasSubstr("?cause=failed_pair+cam_left+lidar_top\">cam_left - lidar_top failed</a>: 12 robots"));
+  EXPECT_THAT(page, HasSubstr("?cause=board_size+panel+larger\">board panel larger than given</a>: 3 robots"));
+  EXPECT_THAT(page, HasSubstr("session of a few captures</a>: 1 robot<"));
+  EXPECT_THAT(page, HasSubstr("?cause=not_measured+a+b+c+d+%2B2\">")) << "a sign is no blank";
+  EXPECT_LT(page.find("By cause"), page.find("<table")) << "above the list";
+  EXPECT_THAT(page, Not(HasSubstr("others on fewer robots")));
+}
+
+TEST(WorkLists, CountRobotsByTheWeekTheyAreDueIn) {
+  const std::string page = PageOf(Counts());
+  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=overdue\">overdue</a>: 4 robots"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"?verdict=next_week\">due next week</a>: 1 robot<"));
+  EXPECT_THAT(page, Not(HasSubstr("<a href=\"?verdict=this_week\">")));
+  EXPECT_THAT(page, HasSubstr("<option value=\"this_week\">due this week</option>"));
+}
+
+TEST(WorkLists, WhereThereIsNothingToDoThereAreNone) {
+  FleetCounts fleet;
+  fleet.robots = 20;
+  EXPECT_THAT(PageOf(fleet), Not(HasSubstr("class=\"card work\"")));
+}
+
+TEST(WorkLists, RareCausesAreInTheDownload) {
+  FleetCounts fleet = Counts();
+  while (fleet.causes.size() <= kCausesListedMax)
+    fleet.causes.push_back({"board_unseen camera_" + std::to_string(fleet.causes.size()), 1});
+  const std::string page = PageOf(fleet);
+  EXPECT_THAT(page, HasSubstr("others on fewer robots"));
+  EXPECT_THAT(page, HasSubstr("camera_11 sees no board"));
+  EXPECT_THAT(page, Not(HasSubstr("camera_12 sees no board")));
+}
+
+TEST(WorkLists, AListOfOneCauseSaysSoAndStaysWithIt) {
+  const std::string page = PageOf(Counts(), {"r", "warn", "edges", true, 1, "board_size panel larger"});
+  EXPECT_THAT(page, HasSubstr("<p class=\"only\">board panel larger than given <a href=\"?q=r&amp;verdict=warn&amp;sort=edges"
+                              "&amp;order=down\">all causes</a>"));
+  EXPECT_THAT(page, HasSubstr("<input type=\"hidden\" name=\"cause\" value=\"board_size panel larger\">"));
+  EXPECT_THAT(page, HasSubstr("&amp;sort=robot&amp;order=&amp;cause=board_size+panel+larger\">Robot"));
+  EXPECT_THAT(page, HasSubstr("href=\"fleet.csv?q=r&amp;verdict=warn&amp;sort=edges&amp;order=down"
+                              "&amp;cause=board_size+panel+larger\" download>"));
+  const std::string all = PageOf(Counts());
+  EXPECT_THAT(all, Not(HasSubstr("class=\"only\"")));
+  EXPECT_THAT(all, Not(HasSubstr("name=\"cause\"")));
+}
+
+TEST(FleetRows, SayUntilWhenARobotIsCalibrated) {
+  EXPECT_THAT(PageOf(Counts()), HasSubstr("<span class=\"soft due\">due 1 May 2026</span>"));
+}
+
+TEST(FleetCsv, HasARowForARobot) {
+  const std::string heading = FleetCsvHeading();
+  EXPECT_EQ(FleetCsvRow(Late("late"), kNow),
+            "late,warn,yes,2026-05-01T12:00:00Z,2026-01-31T12:00:00Z,,3,2,7,1,,,,"
+            "board panel larger than given; cam_left - lidar_top failed,\"Pairs failed, \"\"many\"\".\","
+            "\"'=Measure, then push.\",unusable,,,,overdue,It was to be calibrated again by 1 May 2026.,Capture a session and push it.,"
+            "2026-05-01T12:00:00Z,,,\r\n");
+  RobotSummary fresh;
+  fresh.robot = RobotId("fresh");
+  fresh.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
+  EXPECT_EQ(FleetCsvRow(fresh, kNow), "fresh,unknown,no,,,,,0,0,0,left,mast,4.250,,,,,,,,unknown,,,,,,\r\n");
+  fresh.validity.usable = UsableRevision{5, {}};
+  fresh.runs = Runs{3, "It runs revision 3; revision 5 is in use: not applied yet."};
+  EXPECT_THAT(FleetCsvRow(fresh, kNow), HasSubstr(",5,3,It runs revision 3; revision 5 is in use: not applied yet.,unknown,"));
+  const auto commas = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
+  EXPECT_EQ(commas(FleetCsvRow(fresh, kNow)), commas(heading));
+}
+
+}  // namespace
+}  // namespace rigcal::report

@@ -1,0 +1,195 @@
+// What the fleet is to be worked on by: causes that robots have in common, when they are due, and the whole of a list.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "server/base/files/durable_file.h"
+#include "storage/fleet/fleet_facts.h"
+#include "storage/fleet/fleet_list.h"
+#include "storage/fleet/robot_summary.h"
+#include "tests/unit/storage/fixture.h"
+
+namespace rigcal::storage {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr std::int64_t kDay_ns = 86'400LL * 1'000'000'000;
+const Stamp kWednesday = ParseIso("2026-02-04T12:00:00Z").value();
+
+RobotSummary Robot(const std::string& name, const std::vector<std::string>& causes = {}) {
+  RobotSummary summary;
+  summary.robot = RobotId(name);
+  summary.revision = 4;
+  summary.verdict = {VerdictLevel::kWarn, "Two pairs failed.", "Show the board."};
+  summary.validity.calibrated_at = Stamp{kWednesday.ns - kDay_ns};
+  summary.causes = causes;
+  return summary;
+}
+
+RobotSummary DueIn(const std::string& name, std::int64_t after_ns) {
+  RobotSummary summary = Robot(name);
+  summary.validity.calibrated_at = Stamp{kWednesday.ns + after_ns - kDefaultMaxAge_ns};
+  return summary;
+}
+
+class WorkListsTest : public StoreTest {
+ protected:
+  // What was stored of the same robots before is older.
+  void Store(const std::vector<RobotSummary>& robots) {
+    ++changes_;
+    const Status stored = store_.Write([&]() -> Status {
+      for (const RobotSummary& summary : robots) {
+        RIGCAL_TRY(AppendRobot(store_, summary.robot, {1}));
+        RIGCAL_TRY(ReplaceSummary(store_, summary, changes_));
+      }
+      return {};
+    });
+    ASSERT_TRUE(stored) << WordsOf(stored.error());
+  }
+  std::vector<std::string> Counts(std::size_t max = 20) {
+    std::vector<std::string> texts;
+    const auto counts = LoadCauseCounts(store_, max);
+    EXPECT_TRUE(counts) << WordsOf(counts);
+    for (const CauseCount& one : *counts) texts.push_back(one.key + ": " + std::to_string(one.robots));
+    return texts;
+  }
+  std::vector<std::string> Names(const FleetQuery& asked) {
+    std::vector<std::string> names;
+    const auto page = LoadFleetPage(store_, asked, kWednesday);
+    EXPECT_TRUE(page) << WordsOf(page);
+    for (const RobotSummary& row : page->rows) names.push_back(row.robot.str());
+    EXPECT_EQ(page->matches, names.size());
+    return names;
+  }
+  std::vector<std::string> Searched(const std::string& words) { return Names({words, "", "robot", false, 1}); }
+
+  std::int64_t changes_ = 0;
+};
+
+TEST_F(WorkListsTest, RobotsAreCountedByTheirCausesTheMostFirst) {
+  EXPECT_THAT(Counts(), IsEmpty());
+  Store({Robot("a", {"board_size panel larger", "short_session"}), Robot("b", {"short_session"}), Robot("c"),
+         Robot("d", {"failed_pair left top"})});
+  EXPECT_THAT(Counts(), ElementsAre("short_session: 2", "board_size panel larger: 1", "failed_pair left top: 1"));
+  EXPECT_THAT(Counts(1), ElementsAre("short_session: 2"));
+}
+
+TEST_F(WorkListsTest, WhatARobotHasNoMoreIsCountedNoMore) {
+  Store({Robot("a", {"board_size panel larger", "short_session"}), Robot("b", {"short_session"})});
+  Store({Robot("a", {"short_session"})});
+  EXPECT_THAT(Counts(), ElementsAre("short_session: 2"));
+  Store({Robot("a"), Robot("b")});
+  EXPECT_THAT(Counts(), IsEmpty());
+  EXPECT_EQ(store_.database().execAndGet("SELECT count(*) FROM summary_cause").getInt(), 0);
+  EXPECT_EQ(store_.database().execAndGet("SELECT count(*) FROM summary_cause_count").getInt(), 0);
+}
+
+TEST_F(WorkListsTest, AnOlderSummaryChangesNoCount) {
+  Store({Robot("a", {"short_session"})});
+  ASSERT_TRUE(ReplaceSummary(store_, Robot("a", {"board_unseen rear"}), changes_ - 1));
+  ASSERT_TRUE(ReplaceSummary(store_, Robot("a", {"board_unseen rear"}), changes_));
+  EXPECT_THAT(Counts(), ElementsAre("short_session: 1"));
+}
+
+TEST_F(WorkListsTest, ACountOpensTheListOfItsRobots) {
+  Store({Robot("alpha", {"board_size panel larger", "short_session"}), Robot("omega", {"short_session"}), Robot("sigma")});
+  EXPECT_THAT(Names({"", "", "robot", false, 1, "short_session"}), ElementsAre("alpha", "omega"));
+  EXPECT_THAT(Names({"", "", "robot", false, 1, "board_size panel larger"}), ElementsAre("alpha"));
+  EXPECT_THAT(Names({"", "", "robot", false, 1, "short"}), IsEmpty());
+  EXPECT_THAT(Names({"omega", "warn", "robot", false, 1, "short_session"}), ElementsAre("omega"));
+  EXPECT_THAT(Names({"omega", "pass", "robot", false, 1, "short_session"}), IsEmpty());
+}
+
+TEST_F(WorkListsTest, RobotsAreDueThisWeekTheNextOrLater) {
+  const std::int64_t monday_ns = NextMonday(kWednesday).ns - kWednesday.ns;
+  RobotSummary never = Robot("never"), fresh = Robot("fresh");
+  never.validity.calibrated_at.reset();
+  fresh.revision = 0, fresh.validity.calibrated_at.reset();
+  Store({DueIn("overdue", -1), DueIn("now", 0), DueIn("sunday", monday_ns - 1), DueIn("monday", monday_ns),
+         DueIn("next-sunday", monday_ns + kWeek_ns - 1), DueIn("later", monday_ns + kWeek_ns), never, fresh});
+  EXPECT_THAT(Names({"", "overdue", "robot"}), ElementsAre("never", "overdue"));
+  EXPECT_THAT(Names({"", "this_week", "robot"}), ElementsAre("now", "sunday"));
+  EXPECT_THAT(Names({"", "next_week", "robot"}), ElementsAre("monday", "next-sunday"));
+  EXPECT_THAT(Names({"", "later", "robot"}), ElementsAre("later"));
+  const FleetCounts fleet = CountFleet(store_, kWednesday).value();
+  EXPECT_EQ(fleet.overdue, 2);
+  EXPECT_EQ(fleet.due_this_week, 2);
+  EXPECT_EQ(fleet.due_next_week, 2);
+  EXPECT_EQ(fleet.due_later, 1);
+}
+
+TEST_F(WorkListsTest, WhateverARowShowsIsSearched) {
+  RobotSummary one = Robot("one", {"board_size panel larger"}), late = DueIn("late", -1);
+  one.validity.calibrated_at = ParseIso("2026-01-31T12:00:00Z").value();
+  one.last_session_at = ParseIso("2026-02-03T09:00:00Z").value();
+  one.worst = WorstEdge{SensorId("left"), SensorId("mast"), 4.25};
+  one.sessions = 12, one.edges = 59;
+  late.verdict = {VerdictLevel::kPass, "All is well.", "Nothing."};
+  Store({one, late});
+  for (const char* words : {"ONE", "warning", "warn", "pairs failed", "show the board", "left mast", "panel larger",
+                            "31 Jan 2026", "2026-01-31", "1 May 2026", "2026-05-01", "3 feb", "12 sessions", "59 edges"})
+    EXPECT_THAT(Searched(words), ElementsAre("one")) << words;
+  EXPECT_THAT(Searched("revision 4"), ElementsAre("late", "one"));
+  EXPECT_THAT(Searched("overdue"), ElementsAre("late"));
+  EXPECT_THAT(Searched("pass overdue"), ElementsAre("late"));
+  EXPECT_THAT(Searched("overdue warning"), IsEmpty());
+  EXPECT_THAT(Searched("pass revision overdue late"), ElementsAre("late"));
+}
+
+TEST_F(WorkListsTest, AWholeListComesInItsOrder) {
+  std::vector<RobotSummary> robots;
+  for (int i = 0; i < 250; ++i) robots.push_back(Robot("r" + std::to_string(i), {"short_session"}));
+  robots.push_back(Robot("other"));
+  Store(robots);
+  std::vector<std::string> names;
+  const auto take = [&](const RobotSummary& row) { names.push_back(row.robot.str()); };
+  ASSERT_TRUE(ForEachRobot(store_, {"", "", "robot", true, 2, "short_session"}, kWednesday, take));
+  ASSERT_EQ(names.size(), 250u) << "whatever the page";
+  EXPECT_EQ(names.front(), "r249");
+  EXPECT_EQ(names.back(), "r0");
+}
+
+// As a revision keeps them for its robot's summary.
+TEST_F(WorkListsTest, KeysOfARevisionComeBack) {
+  ASSERT_TRUE(AppendRevision(store_, MakeRevision(1)));
+  EXPECT_THAT(LoadCauseKeys(store_, {kRobot, 1}).value(), IsEmpty());
+  ASSERT_TRUE(AppendCauseKeys(store_, {kRobot, 1}, {"short_session", "board_unseen rear"}));
+  EXPECT_THAT(LoadCauseKeys(store_, {kRobot, 1}).value(), ElementsAre("board_unseen rear", "short_session"));
+  EXPECT_THAT(LoadCauseKeys(store_, {kRobot, 2}).value(), IsEmpty());
+}
+
+// Of the version before causes were kept, with a robot whose summary was made.
+std::string StoreWithoutCauses() {
+  std::string sql;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(RIGCAL_SOURCE_DIR "/storage/schema")) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  int version = 0;
+  for (; files[static_cast<std::size_t>(version)].filename() != "0018_causes.sql"; ++version)
+    sql += ReadFile(files[static_cast<std::size_t>(version)], 1 << 20).value();
+  return sql + "PRAGMA application_id = 1382499180; PRAGMA user_version = " + std::to_string(version) +
+         "; INSERT INTO robot VALUES ('r', 1); DELETE FROM waiting_summary;"
+         "INSERT INTO summary_robot (robot_id, changes, name_key, revision_number, verdict, sessions, edges, jobs_waiting, "
+         "search, calculating, worst_frame_a, worst_frame_b, verdict_why, verdict_what_to_do, given_up) "
+         "VALUES ('r', 1, 'r', 1, 'pass', 1, 1, 0, 'r pass', 0, '', '', 'All is well.', '', '');";
+}
+
+TEST(WorkListsMigration, RobotsOfBeforeWaitAndHaveNoCause) {
+  const TempFolder folder;
+  { SQLite::Database((folder.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(StoreWithoutCauses()); }
+  Result<Store> store = Store::Open(folder.path());
+  ASSERT_TRUE(store) << WordsOf(store);
+  const auto listed = LoadSummaries(*store, RobotId(), std::nullopt, kWednesday);
+  ASSERT_TRUE(listed && listed->size() == 1) << WordsOf(listed);
+  EXPECT_THAT(listed->front().causes, IsEmpty());
+  const auto waiting = LoadWaitingSummaries(*store, 9);
+  ASSERT_TRUE(waiting && waiting->size() == 1) << WordsOf(waiting);
+  ASSERT_TRUE(ReplaceSummary(*store, Robot("r", {"short_session"}), waiting->front().changes));
+  EXPECT_EQ(LoadCauseCounts(*store, 9)->size(), 1u);
+}
+
+}  // namespace
+}  // namespace rigcal::storage
