@@ -24,7 +24,7 @@ std::string NumberOfUse(const Document& document) { return CountOf(document["in_
 void PrintApproval(const Document& document, std::ostream& out) {
   if (!document.Has("state")) return;
   const Approval approval{RevisionStateOf(document["state"].Text()), DecisionIn(document["decision"]),
-                          DecisionIn(document["in_use"])};
+                          DecisionIn(document["in_use"]), document["cause"].Text()};
   const std::string text = ApprovalText(RobotId(document["robot"].Text("?")),
                                         static_cast<int>(document["revision"].Integer().value_or(0)), approval);
   if (!text.empty()) out << "         " << Plain(text) << '\n';

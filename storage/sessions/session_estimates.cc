@@ -18,20 +18,60 @@ Status AppendSessionEstimate(Store& store, const SessionEstimate& estimate, cons
   });
 }
 
+std::string EstimatorNamed(const std::string& estimator, const std::string& sizes) {
+  return sizes.empty() ? estimator : estimator + " " + sizes;
+}
+
+Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const std::string& estimator) {
+  return Load<bool>(store, "estimate of session " + session.str(), [&]() -> Result<bool> {
+    return Query(store,
+                 "SELECT 1 FROM session JOIN session_estimate e ON e.session_number = session.number WHERE session.session_id = ? "
+                 "AND e.estimator = ?")
+        .Bind(session, estimator)
+        .Step();
+  });
+}
+
+namespace {
+
+// Of a closed session, joined: `i` and `f` are what the newest re-computation in effect, or of run ?1, said of it, if any did.
+const std::string kClosedWithBasis =
+    "FROM session JOIN session_closed ON session_closed.session_number = session.number "
+    "LEFT JOIN recomputation_session i ON i.number = (SELECT j.number FROM recomputation_session j "
+    "JOIN recomputed_session g ON g.item_number = j.number JOIN recomputation_robot r ON r.number = j.robot_number "
+    "LEFT JOIN recomputed_robot d ON d.robot_number = r.number WHERE j.session_number = session.number AND g.how <> 'failed' "
+    "AND (r.run_number = ?1 OR d.how = 'unchanged' OR (SELECT t.how FROM decision t WHERE t.robot_id = d.robot_id "
+    "AND t.revision_number = d.revision_number ORDER BY t.number DESC LIMIT 1) IN ('approved', 'rolled_back')) "
+    "ORDER BY j.number DESC LIMIT 1) "
+    "LEFT JOIN recomputed_session f ON f.item_number = i.number ";
+
+const std::string kNewestOfRobot = "WHERE session.robot_id = ?2 ORDER BY session.captured_ns DESC, session.number DESC LIMIT ?3";
+
+}  // namespace
+
+Result<std::vector<SessionBasis>> LoadSessionBases(Store& store, const RobotId& robot, int sessions_max) {
+  using Bases = std::vector<SessionBasis>;
+  return Load<Bases>(store, "sessions of robot " + robot.str(), [&]() -> Result<Bases> {
+    Query query(store, "SELECT session.session_id, coalesce(i.sizes, '') " + kClosedWithBasis + kNewestOfRobot);
+    query.Bind(0, robot, sessions_max);
+    Bases bases;
+    while (query.Step()) bases.push_back({query.IdAt<SessionId>(0), query.Text(1)});
+    return bases;
+  });
+}
+
 Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const RobotId& robot,
-                                                             const std::string& estimator, int sessions_max) {
+                                                             const std::string& estimator, int sessions_max, std::int64_t run) {
   using Rows = std::vector<SessionEstimateRow>;
   return Load<Rows>(store, "session estimates of robot " + robot.str(), [&]() -> Result<Rows> {
-    Query query(store,
-                "SELECT session.session_id, session_estimate.document FROM session "
-                "JOIN session_closed ON session_closed.session_number = session.number "
-                "LEFT JOIN session_estimate ON session_estimate.session_number = session.number "
-                "AND session_estimate.estimator = ? WHERE session.robot_id = ? "
-                "ORDER BY session.captured_ns DESC, session.number DESC LIMIT ?");
-    query.Bind(estimator, robot, sessions_max);
+    Query query(store, "SELECT session.session_id, e.document, coalesce(i.sizes, '') " + kClosedWithBasis +
+                           "LEFT JOIN session_estimate e ON e.session_number = session.number AND e.estimator = coalesce(f.kept_estimator, "
+                           "?4 || CASE WHEN coalesce(i.sizes, '') = '' THEN '' ELSE ' ' || i.sizes END) " +
+                           kNewestOfRobot);
+    query.Bind(run, robot, sessions_max, estimator);
     Rows rows;
     while (query.Step()) {
-      rows.push_back({query.IdAt<SessionId>(0), std::nullopt});
+      rows.push_back({query.IdAt<SessionId>(0), std::nullopt, query.Text(2)});
       if (query.IsNull(1)) continue;
       RIGCAL_ASSIGN(rows.back().estimate, formats::ReadSessionEstimate(query.Text(1)));
     }

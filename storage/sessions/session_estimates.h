@@ -1,4 +1,4 @@
-// What the joint refinement of each session gave, once per session and version of the estimator.
+// What the joint refinement of each session gave, once per session, version of the estimator and sizes of boards.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,28 @@ namespace rigcal::storage {
 // `estimator` names what made it ("joint/2"); the same session by the same estimator again changes nothing.
 [[nodiscard]] Status AppendSessionEstimate(Store& store, const SessionEstimate& estimate, const std::string& estimator,
                                            Stamp now);
+// The name of what an estimate was made by: `sizes`, measured square sizes (recomputations.h), are part of it.
+[[nodiscard]] std::string EstimatorNamed(const std::string& estimator, const std::string& sizes);
+// `estimator` as EstimatorNamed gives it. False of a session that is not known.
+[[nodiscard]] Result<bool> HasSessionEstimate(Store& store, const SessionId& session, const std::string& estimator);
+
+// By what a session is estimated: as the newest re-computation said that is in effect, else by its own sizes. In effect is one
+// whose candidate somebody approved and nobody rejected since, or that changed nothing; and `run`, of which a candidate is made.
+struct SessionBasis {
+  SessionId session;
+  std::string sizes;  // measured ones; empty: as the session states them
+};
+// Of the robot's closed sessions, the newest captured first; at most `sessions_max` sessions are looked at.
+[[nodiscard]] Result<std::vector<SessionBasis>> LoadSessionBases(Store& store, const RobotId& robot, int sessions_max);
+
 struct SessionEstimateRow {
   SessionId session;
   std::optional<SessionEstimate> estimate;  // absent: not made yet by this estimator
+  std::string sizes = {};                   // as of SessionBasis
 };
-// Of the robot's closed sessions, the newest captured first; at most `sessions_max` sessions are looked at.
+// Likewise. Of a session that a re-computation kept as it is: by the estimator of then.
 [[nodiscard]] Result<std::vector<SessionEstimateRow>> LoadSessionEstimates(Store& store, const RobotId& robot,
                                                                            const std::string& estimator,
-                                                                           int sessions_max);
+                                                                           int sessions_max, std::int64_t run = 0);
 
 }  // namespace rigcal::storage

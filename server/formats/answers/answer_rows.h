@@ -16,7 +16,7 @@ void WriteRetiredSensors(JsonWriter& out, const std::vector<RetiredSensor>& reti
 void WriteEdgeRowMembers(JsonWriter& out, const Edge& edge, const EdgeResidual* residual);
 // `usable`
 void WriteUsable(JsonWriter& out, const std::optional<UsableRevision>& usable);
-// "state", "decision", "in_use".
+// "state", "decision", "in_use"; "cause" of one that was re-computed.
 void WriteApproval(JsonWriter& out, const Approval& approval);
 // "runs"
 void WriteRuns(JsonWriter& out, const std::optional<Runs>& runs);

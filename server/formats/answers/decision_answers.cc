@@ -21,6 +21,7 @@ void WriteApproval(JsonWriter& out, const Approval& approval) {
   out.Text("state", NameOf(approval.state));
   WriteDecision(out, "decision", approval.decision);
   WriteDecision(out, "in_use", approval.in_use);
+  if (!approval.cause.empty()) out.Text("cause", approval.cause);
 }
 
 void WriteRuns(JsonWriter& out, const std::optional<Runs>& runs) {

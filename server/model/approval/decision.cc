@@ -35,7 +35,7 @@ std::string StateText(const RobotId& robot, int revision, const Approval& approv
       approval.decision && !approval.decision->word.reason.empty() ? ": " + approval.decision->word.reason : "";
   switch (approval.state) {
     case RevisionState::kCandidate:
-      return "this one is a candidate: " + ApproveCommand(robot, revision);
+      return "this one is a candidate" + (approval.cause.empty() ? "" : ", " + approval.cause) + ": " + ApproveCommand(robot, revision);
     case RevisionState::kSuperseded:
       return "this one was superseded";
     case RevisionState::kRolledBack:

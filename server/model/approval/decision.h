@@ -46,6 +46,7 @@ struct Approval {
   RevisionState state = RevisionState::kUnusable;
   std::optional<Decision> decision = {};  // the newest about it
   std::optional<Decision> in_use = {};    // by which a revision is announced now; absent: none is
+  std::string cause = {};  // "re-computed with rigcal 0.2.0, estimator joint/7"; empty: something was measured, said or set
 };
 
 // Whether the policy approves a revision of this verdict by itself. `found_drift`: its newest session found a sensor

@@ -16,11 +16,13 @@
 #include "server/graph/solve/solve.h"
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/graph/uncertainty/joint_poses.h"
+#include "server/graph/uncertainty/pose_changes.h"
 #include "server/model/edges/past.h"
 #include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/policies.h"
 #include "server/pipeline/robots/robot_status.h"
+#include "server/pipeline/robots/validity.h"
 #include "server/pipeline/sessions/as_found.h"
 #include "server/pipeline/sessions/current_edges.h"
 #include "server/pipeline/sessions/session_refinement.h"
@@ -35,6 +37,8 @@
 #include "storage/revisions/revisions.h"
 #include "storage/sessions/sessions.h"
 #include "storage/sessions/standing.h"
+#include "storage/work/attempts.h"
+#include "storage/work/recomputations.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -167,12 +171,12 @@ Status LoadHeaders(storage::Store& store, const std::vector<Edge>& edges, fleet:
   return {};
 }
 
-Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) {
+Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot, std::int64_t run) {
   RobotEdges loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
     RIGCAL_TRY(LoadForGraph(store, robot, storage::EdgeParts::kAll, loaded));
     RIGCAL_ASSIGN(loaded.measured_at, storage::LoadMeasuredAt(store, loaded.current.edges));
-    RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current));
+    RIGCAL_ASSIGN(loaded.refined, LoadCurrentEstimates(store, robot, loaded.current, run));
     RIGCAL_ASSIGN(loaded.captured_at, storage::LoadCapturedAt(store, robot));
     RIGCAL_TRY(LoadHeaders(store, loaded.current.edges, loaded.headers));
     RIGCAL_ASSIGN(const auto open, storage::LoadOpenSessions(store, robot));
@@ -334,21 +338,36 @@ Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot) {
 
 bool IsJudged(const Revision& revision) { return revision.verdict.what_to_do != kWaitForPairs; }
 
-Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting) {
+namespace {
+
+// A revision that is in no store yet, with all that is stored beside it.
+struct Solved {
   Revision revision;
+  RobotEdges loaded;
+  storage::MergeStep merge;
+  JointPoses poses;
+  formats::RevisionInput input;
+  JudgedBeside beside;
+  std::optional<WorstEdge> worst;
+};
+
+// `run`: with what that re-computation says of sessions; 0: with what is in effect.
+Result<Solved> SolveRobot(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting,
+                          std::int64_t run) {
+  Solved solved;
+  Revision& revision = solved.revision;
   revision.robot = robot;
   revision.created_at = clock.Now();  // what is stored after it may be missing from the revision
-  RIGCAL_ASSIGN(RobotEdges loaded, LoadForRevision(store, robot));
-  const storage::MergeStep merge = MergeOlder(robot, loaded);
-  JointPoses poses;
-  formats::RevisionInput input = SolveAndJudge(robot, loaded, pairs_waiting, poses);
-  revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, merge.merged), SensorsOf(input.solution));
+  RIGCAL_ASSIGN(solved.loaded, LoadForRevision(store, robot, run));
+  RobotEdges& loaded = solved.loaded;
+  solved.merge = MergeOlder(robot, loaded);
+  solved.input = SolveAndJudge(robot, loaded, pairs_waiting, solved.poses);
+  revision.calibrated_at = MeasuredThroughout(TiesOf(loaded, solved.merge.merged), SensorsOf(solved.input.solution));
   revision.max_age_ns = loaded.policy.policy.max_age_ns.value_or(kDefaultMaxAge_ns);
-  JudgedBeside beside;
-  if (pairs_waiting == 0) beside = TakeBeside(store, loaded, revision, input);
-  const auto worst = WorstEdgeOf(input);
-  revision.verdict = input.verdict;
-  revision.document = formats::WriteRevisionDocument(input);
+  if (pairs_waiting == 0) solved.beside = TakeBeside(store, loaded, revision, solved.input);
+  solved.worst = WorstEdgeOf(solved.input);
+  revision.verdict = solved.input.verdict;
+  revision.document = formats::WriteRevisionDocument(solved.input);
   revision.digest = Sha256Of(revision.document);
   revision.edge_watermark = loaded.watermark;
   revision.standing_watermark = loaded.standing_watermark;
@@ -356,19 +375,67 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     revision.policy_watermark = loaded.policy.watermark;
     revision.rig_model_watermark = loaded.expected.watermark;
   }
+  return solved;
+}
+
+// Inside the Write that appended the revision, which has its number.
+Status AppendRest(storage::Store& store, const Solved& solved) {
+  const storage::RevisionKey key{solved.revision.robot, solved.revision.number};
+  RIGCAL_TRY(storage::AppendRevisionPoses(store, key, solved.poses));
+  RIGCAL_TRY(storage::AppendMergedEdges(store, key, solved.merge, solved.loaded.current.counts));
+  RIGCAL_TRY(AppendBeside(store, key, solved.loaded.policy.rig_model, solved.beside));
+  return solved.worst ? storage::AppendWorstEdge(store, key, *solved.worst) : Status();
+}
+
+// What the candidate is compared with; 0: nothing.
+Result<int> LoadAgainst(storage::Store& store, const RobotId& robot, const std::optional<Revision>& newest) {
+  RIGCAL_ASSIGN(const auto usable, LoadUsable(store, robot));
+  if (usable) return usable->number;
+  return newest ? newest->number : 0;
+}
+
+Result<std::vector<PoseChange>> LoadChanges(storage::Store& store, const RobotId& robot, int against, const JointPoses& after) {
+  if (against == 0) return std::vector<PoseChange>();
+  RIGCAL_ASSIGN(const auto before, storage::LoadRevisionPoses(store, {robot, against}));
+  return before ? graph::PoseChangesBetween(*before, after) : std::vector<PoseChange>();
+}
+
+}  // namespace
+
+Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock, std::int64_t pairs_waiting) {
+  RIGCAL_ASSIGN(Solved solved, SolveRobot(store, robot, clock, pairs_waiting, 0));
+  Revision& revision = solved.revision;
   RIGCAL_TRY(store.Write([&]() -> Status {
     RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
-    const bool found_drift = beside.as_found && StateOf(*beside.as_found) == FoundState::kDrifted;
+    const bool found_drift = solved.beside.as_found && StateOf(*solved.beside.as_found) == FoundState::kDrifted;
     RIGCAL_TRY(ApproveByPolicy(store, revision, found_drift, clock.Now()));
-    const storage::RevisionKey key{robot, revision.number};
-    RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
-    RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
-    RIGCAL_TRY(AppendBeside(store, key, loaded.policy.rig_model, beside));
-    if (pairs_waiting == 0) RIGCAL_TRY(TellFailedSession(store, loaded, input, revision));
-    if (worst) return storage::AppendWorstEdge(store, key, *worst);
-    return {};
+    RIGCAL_TRY(AppendRest(store, solved));
+    return pairs_waiting == 0 ? TellFailedSession(store, solved.loaded, solved.input, revision) : Status();
   }));
-  return revision;
+  return std::move(revision);
+}
+
+Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::RecomputationItem& item, const Clock& clock) {
+  RIGCAL_ASSIGN(Solved solved, SolveRobot(store, item.robot, clock, 0, item.run));
+  Revision& revision = solved.revision;
+  RIGCAL_ASSIGN(const auto newest, storage::LoadRevisionSummary(store, item.robot, 0));
+  RecomputedRobot done{item.robot, RobotAnew::kUnchanged, 0, 0, "", {}};
+  RIGCAL_ASSIGN(done.against, LoadAgainst(store, item.robot, newest));
+  const bool is_same = newest && newest->digest == revision.digest;
+  if (!is_same) {
+    done.how = RobotAnew::kChanged;
+    RIGCAL_ASSIGN(done.changes, LoadChanges(store, item.robot, done.against, solved.poses));
+  }
+  RIGCAL_TRY(store.Write([&]() -> Status {
+    if (!is_same) {
+      RIGCAL_ASSIGN(revision.number, storage::AppendRevision(store, revision));
+      RIGCAL_TRY(AppendRest(store, solved));
+      done.revision = revision.number;
+    }
+    RIGCAL_TRY(storage::EndAttempt(store, storage::WorkOfRecomputation(item), storage::AttemptEnd::kDone, "", clock.Now()));
+    return storage::FinishRecomputedRobot(store, item, done, revision.edge_watermark, clock.Now());
+  }));
+  return done;
 }
 
 }  // namespace rigcal::pipeline

@@ -3,7 +3,9 @@
 
 #include "server/base/stamp.h"
 #include "server/model/graph/graph.h"
+#include "server/model/sessions/recomputation.h"
 #include "storage/store.h"
+#include "storage/work/recomputations.h"
 
 namespace rigcal::pipeline {
 
@@ -27,6 +29,10 @@ struct RobotGraph {
 // With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by nobody.
 [[nodiscard]] Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock& clock,
                                       std::int64_t pairs_waiting = 0);
+// The robot of `item` once more, with what that run computed of its sessions. Where the document is that of its newest revision,
+// byte for byte, there is no new one; else a candidate that the policy has no say about, and what it would change against the
+// calibration in use (none is: against the newest). That the robot is done is noted in the same transaction.
+[[nodiscard]] Result<RecomputedRobot> ReviseAnew(storage::Store& store, const storage::RecomputationItem& item, const Clock& clock);
 [[nodiscard]] bool IsJudged(const Revision& revision);
 
 }  // namespace rigcal::pipeline

@@ -17,6 +17,7 @@
 #include "storage/revisions/revisions.h"
 #include "storage/fleet/robot_runs.h"
 #include "storage/revisions/usable_revision.h"
+#include "storage/work/recomputation_result.h"
 
 namespace rigcal::pipeline {
 namespace {
@@ -89,6 +90,8 @@ Result<bool> IsForThePolicy(storage::Store& store, const Revision& revision, boo
   RIGCAL_ASSIGN(const bool is_held_back,
                 storage::IsHeldBack(store, revision.robot, revision.digest, edge_watermark));
   if (is_held_back) return false;
+  RIGCAL_ASSIGN(const bool awaits, storage::AwaitsPerson(store, revision.robot, revision.number, edge_watermark));
+  if (awaits) return false;
   const Status audit = storage::CheckAuditGoesOn(store);
   if (!audit) LogError(audit.error());
   return audit.has_value();
@@ -156,7 +159,8 @@ Result<std::vector<Approval>> LoadApprovals(storage::Store& store, const RobotId
     for (const Revision& revision : revisions) {
       RIGCAL_ASSIGN(const RevisionState state, storage::LoadRevisionState(store, revision, usable));
       RIGCAL_ASSIGN(const auto decision, storage::LoadDecision(store, robot, revision.number));
-      approvals.push_back({state, decision, in_use});
+      RIGCAL_ASSIGN(const auto run, storage::LoadCauseOf(store, {robot, revision.number}));
+      approvals.push_back({state, decision, in_use, run ? CauseText(*run) : ""});
     }
     return {};
   }));

@@ -6,6 +6,7 @@
 
 #include "server/base/log.h"
 #include "server/calib/joint/estimate_session.h"
+#include "server/formats/boards/square_sizes.h"
 #include "server/graph/solve/solve.h"
 #include "server/model/edges/method.h"
 #include "server/model/edges/past.h"
@@ -139,25 +140,12 @@ void LogTime(const SessionId& session, std::chrono::steady_clock::time_point beg
   LogInfo("session " + session.str() + ": refined in " + std::to_string(took.count()) + " s");
 }
 
-Status RefineSession(storage::Store& store, const SessionId& session, calib::CameraMemory& cameras,
+Status RefineSession(storage::Store& store, const storage::SessionEstimateRow& row, calib::CameraMemory& cameras,
                      const Clock& clock) {
-  const auto began = std::chrono::steady_clock::now();
-  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(store, session));
-  if (jobs.waiting > 0) return {};  // some of its pairs are not there yet
-  RIGCAL_ASSIGN(const auto manifest, storage::LoadManifest(store, session));
-  RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
-  if (!manifest || edges.empty() || WaitsForFiles(edges)) return {};
-  RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
-  SessionEstimate estimate = calib::joint::EstimateSession(views);
-  estimate.session = session;
-  if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal)) {
-    LogError({ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
-              estimate.why_not.front().cure});
-    return {};
-  }
-  RIGCAL_TRY(storage::AppendSessionEstimate(store, estimate, kSessionEstimator, clock.Now()));
-  LogTime(session, began);
-  return {};
+  RIGCAL_ASSIGN(const SquareSizes sizes, formats::ReadSquareSizes(row.sizes));
+  RIGCAL_ASSIGN(const auto estimate, EstimateStored(store, row.session, sizes, cameras));
+  if (!estimate) return {};
+  return storage::AppendSessionEstimate(store, *estimate, storage::EstimatorNamed(kSessionEstimator, row.sizes), clock.Now());
 }
 
 bool Counts(const SessionId& session, const storage::WhatCounts& counts) {
@@ -180,16 +168,37 @@ std::vector<SessionId> SessionsOf(const std::vector<SessionEstimate>& estimates)
 
 }  // namespace
 
+Result<std::optional<SessionEstimate>> EstimateStored(storage::Store& store, const SessionId& session, const SquareSizes& sizes,
+                                                      calib::CameraMemory& cameras) {
+  using Made = std::optional<SessionEstimate>;
+  const auto began = std::chrono::steady_clock::now();
+  RIGCAL_ASSIGN(const storage::JobCount jobs, storage::CountJobs(store, session));
+  if (jobs.waiting > 0) return Made();  // some of its pairs are not there yet
+  RIGCAL_ASSIGN(auto manifest, storage::LoadManifest(store, session));
+  RIGCAL_ASSIGN(const std::vector<Edge> edges, storage::LoadEdges(store, session));
+  if (!manifest || edges.empty() || WaitsForFiles(edges)) return Made();
+  TakeSizes(sizes, manifest->header.targets);
+  RIGCAL_ASSIGN(const SessionViews views, LoadViews(store, *manifest, edges, cameras));
+  SessionEstimate estimate = calib::joint::EstimateSession(views);
+  estimate.session = session;
+  if (!estimate.why_not.empty() && estimate.why_not.front().code == NameOf(ErrorCode::kInternal))
+    return Fail(ErrorCode::kInternal, "session " + session.str() + ": " + estimate.why_not.front().what,
+                estimate.why_not.front().cure);
+  LogTime(session, began);
+  return Made(std::move(estimate));
+}
+
 Status RefineSessions(storage::Store& store, const RobotId& robot, calib::CameraMemory& cameras, const Clock& clock) {
   RIGCAL_ASSIGN(const auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsRefined));
   for (const storage::SessionEstimateRow& row : rows)
     if (!row.estimate)
-      if (const Status refined = RefineSession(store, row.session, cameras, clock); !refined) LogError(refined.error());
+      if (const Status refined = RefineSession(store, row, cameras, clock); !refined) LogError(refined.error());
   return {};
 }
 
-Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current) {
-  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused));
+Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const RobotId& robot, const CurrentEdges& current,
+                                              std::int64_t run) {
+  RIGCAL_ASSIGN(auto rows, storage::LoadSessionEstimates(store, robot, kSessionEstimator, kSessionsFused, run));
   CurrentEstimates result;
   for (storage::SessionEstimateRow& row : rows)
     if (row.estimate && Counts(row.session, current.counts)) result.estimates.push_back(std::move(*row.estimate));
