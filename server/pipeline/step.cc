@@ -7,6 +7,7 @@
 #include "server/formats/answers/answers.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/run_edge_job.h"
+#include "server/pipeline/recomputation/drain.h"
 #include "server/pipeline/reports/publish.h"
 #include "server/pipeline/reports/retention.h"
 #include "server/pipeline/revisions/revise.h"
@@ -22,22 +23,6 @@
 
 namespace rigcal::pipeline {
 namespace {
-
-class Claim {
- public:
-  Claim(Claims& claims, const RobotId& robot) : claims_(claims), robot_(robot), taken_(claims.Take(robot)) {}
-  ~Claim() {
-    if (taken_) claims_.GiveBack(robot_);
-  }
-  Claim(const Claim&) = delete;
-  Claim& operator=(const Claim&) = delete;
-  [[nodiscard]] bool taken() const { return taken_; }
-
- private:
-  Claims& claims_;
-  RobotId robot_;
-  bool taken_;
-};
 
 // No robot's name: of work that was begun before and not finished one piece is done at a time, so that what kills the
 // process is not held against its neighbours for ever.
@@ -214,15 +199,6 @@ Result<bool> WorkOn(const StepContext& context, const RobotId& robot) {
   return SolveCounted(context, robot, due, jobs);
 }
 
-// A robot whose work failed rests, so that it holds up no other; then it is tried again.
-Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error) {
-  constexpr std::int64_t kRest_ns = 10'000'000'000;
-  LogError({error.code, "robot " + robot.str() + ": " + error.what, error.cure});
-  const Stamp until{context.clock.Now().ns + kRest_ns};
-  context.claims.Rest(robot, until);
-  return until;
-}
-
 void WakeBy(std::optional<Stamp> stamp, StepResult& result) {
   if (stamp && (!result.wake_at || *stamp < *result.wake_at)) result.wake_at = stamp;
 }
@@ -307,6 +283,14 @@ Result<StepResult> RunNextJob(const StepContext& context) {
 
 }  // namespace
 
+Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error) {
+  constexpr std::int64_t kRest_ns = 10'000'000'000;
+  LogError({error.code, "robot " + robot.str() + ": " + error.what, error.cure});
+  const Stamp until{context.clock.Now().ns + kRest_ns};
+  context.claims.Rest(robot, until);
+  return until;
+}
+
 bool Claims::Take(const RobotId& robot) {
   const std::lock_guard lock(mutex_);
   return !resting_.contains(robot) && taken_.insert(robot).second;
@@ -379,6 +363,8 @@ Result<StepResult> DoNext(const StepContext& context) {
   if (again) return StepResult{true, std::nullopt};
   RIGCAL_ASSIGN(const StepResult judged, JudgeNext(context));
   if (judged.worked) return judged;
+  RIGCAL_ASSIGN(const StepResult anew, RecomputeNext(context));
+  if (anew.worked) return anew;
   if (!published) return Fail(published.error());
   WakeBy(context.claims.NextRestEnd(), revised);
   return revised;

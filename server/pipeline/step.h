@@ -40,6 +40,24 @@ class Claims {
   std::map<RobotId, Stamp> resting_;
 };
 
+// A robot that is taken for as long as this lives.
+class Claim {
+ public:
+  // Takes it, if nobody else has it.
+  Claim(Claims& claims, const RobotId& robot) : claims_(claims), robot_(robot), taken_(claims.Take(robot)) {}
+  ~Claim() {
+    if (taken_) claims_.GiveBack(robot_);
+  }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+  [[nodiscard]] bool taken() const { return taken_; }  // false: somebody else has it, or it rests
+
+ private:
+  Claims& claims_;
+  RobotId robot_;
+  bool taken_;
+};
+
 // What is told to the world. Called from the thread that steps; must not block.
 struct Announcer {
   std::function<void(const RobotId&, const std::string& kind, const std::string& subject, const std::string& json)>
@@ -69,8 +87,12 @@ struct StepResult {
 // for its revision); run one edge job, of the robots that have any in turn; judge a robot anew for which a policy of
 // its fleet or rig model was set, one of its own being told to the second. What was begun before and not finished, by
 // death of the process or a fault of ours, comes after its like, is begun kAttemptsMax times, and then passed over: a
-// job as a failed edge, a report without its clouds. After each, some summaries that wait are worked out; as long as
+// job as a failed edge, a report without its clouds. Last of all sessions are computed again that somebody asked for
+// (recomputation/drain.h). After each, some summaries that wait are worked out; as long as
 // there are more of them it has worked.
 [[nodiscard]] Result<StepResult> Step(const StepContext& context);
+
+// A robot whose work failed rests until the time that this gives, so that it holds up no other; the error is logged.
+[[nodiscard]] Stamp LetRest(const StepContext& context, const RobotId& robot, const Error& error);
 
 }  // namespace rigcal::pipeline

@@ -19,6 +19,7 @@
 #include "server/pipeline/answers/webhooks.h"
 #include "server/pipeline/boards/registry.h"
 #include "server/pipeline/boards/remarks.h"
+#include "server/pipeline/recomputation/tell.h"
 #include "server/pipeline/reports/report_files.h"
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/rig_models/population.h"
@@ -352,6 +353,7 @@ const std::map<std::string, Verb>& Verbs() {
       {"boards", ListBoards},
       {"board", [](const AnswerContext& of, const Parameters& asked) { return TellBoard(of.store, of.clock.Now(), asked); }},
       {"board_trace", OfStore(TraceBoard)},
+      {"recomputation", OfStore(TellRecomputation)},
       {"due", Due},
       {"due_ics", TellDueCalendar},
       {"webhooks", ListWebhooks},

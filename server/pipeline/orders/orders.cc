@@ -3,6 +3,7 @@
 #include "server/formats/answers/answers.h"
 #include "server/pipeline/boards/registry.h"
 #include "server/pipeline/orders/next_reference.h"
+#include "server/pipeline/recomputation/ask.h"
 #include "server/pipeline/revisions/revise.h"
 #include "server/pipeline/rig_models/begin_epoch.h"
 #include "server/pipeline/rig_models/rig_models.h"
@@ -85,7 +86,7 @@ bool IsDecision(const std::string& verb) { return verb == "approve" || verb == "
 
 bool IsOrder(const std::string& verb) {
   return verb == "restore" || verb == "retire" || verb == "set_policy" || verb == "set_rig_model" ||
-         verb == "epoch" || verb == "measure_board" || IsDecision(verb);
+         verb == "epoch" || verb == "measure_board" || verb == "resolve" || IsDecision(verb);
 }
 
 Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
@@ -95,6 +96,7 @@ Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std:
   if (verb == "set_rig_model") return SetRigModel(store, clock, parameters);
   if (verb == "epoch") return BeginEpochBy(store, clock, parameters);
   if (verb == "measure_board") return MeasureBoard(store, clock, parameters);
+  if (verb == "resolve") return AskToRecompute(store, clock, parameters);
   if (IsDecision(verb)) return Decide(store, clock, verb, parameters);
   RIGCAL_ASSIGN(const Saying saying, SayingOf(clock, verb, parameters));
   OrderDone done;

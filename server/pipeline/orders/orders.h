@@ -9,7 +9,7 @@
 
 namespace rigcal::pipeline {
 
-// Whether the verb changes what is stored: restore, retire, set_policy, set_rig_model, epoch, measure_board, and decisions.
+// Whether the verb changes what is stored: restore, retire, set_policy, set_rig_model, epoch, measure_board, resolve, and decisions.
 [[nodiscard]] bool IsOrder(const std::string& verb);
 
 // What it returns is durable. Carried out twice it is as if it was once, and answered alike. The thing is named as in
@@ -19,7 +19,7 @@ namespace rigcal::pipeline {
 // restore: what was retired takes part again; a session is current, and those that it repeats or is repeated by are superseded
 // by it.
 // set_policy: policies.h. set_rig_model, epoch: rig_models/. measure_board: boards/registry.h. approve, reject, rollback:
-// decide.h.
+// decide.h. resolve: recomputation/ask.h.
 [[nodiscard]] Result<OrderDone> CarryOut(storage::Store& store, const Clock& clock, const std::string& verb,
                                          const std::string& json);
 

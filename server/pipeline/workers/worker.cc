@@ -19,6 +19,7 @@
 #include "server/base/text.h"
 #include "server/pipeline/attempt.h"
 #include "server/pipeline/edges/run_edge_job.h"
+#include "server/pipeline/recomputation/recompute_session.h"
 #include "server/pipeline/reports/publish.h"
 #include "server/pipeline/sessions/session_refinement.h"
 
@@ -133,6 +134,11 @@ Result<std::string> CarryOutOrder(const WorkPlace& place, const Fields& order) {
     RIGCAL_TRY(RefineSessions(place.store, RobotId(order[1]), place.cameras, place.clock));
     return std::string();
   }
+  if (order[0] == "recompute" && order.size() == 2) {
+    RIGCAL_ASSIGN(const auto item, storage::LoadRecomputedItem(place.store, NumberOf(order[1])));
+    if (item) RIGCAL_TRY(RecomputeSession(place.store, *item, place.clock, place.cameras));
+    return std::string();
+  }
   if (order[0] == "publish" && order.size() == 4) {
     const storage::RevisionKey key{RobotId(order[1]), static_cast<int>(NumberOf(order[2]))};
     RIGCAL_ASSIGN(const std::filesystem::path folder, Publish(place.store, key, place.clock, order[3]));
@@ -179,6 +185,7 @@ std::string JobOrder(const storage::JobRow& job) {
                  std::to_string(job.attempts)});
 }
 std::string RefineOrder(const RobotId& robot) { return LineOf({"refine", robot.str()}); }
+std::string RecomputeOrder(std::int64_t item_number) { return LineOf({"recompute", std::to_string(item_number)}); }
 std::string PublishOrder(const storage::RevisionKey& key, const std::string& why_no_clouds) {
   return LineOf({"publish", key.robot.str(), std::to_string(key.number), why_no_clouds});
 }

@@ -1,7 +1,7 @@
 // Work that computes and decodes, in a process of its own: what ends that process costs this work, and nobody else's.
 //
 // Over its standard input and output, a line each, fields by tabs. It is told one order at a time:
-//   job NUMBER ROBOT SESSION SENSOR_A SENSOR_B ATTEMPTS | refine ROBOT | publish ROBOT REVISION WHY_NO_CLOUDS
+//   job NUMBER ROBOT SESSION SENSOR_A SENSOR_B ATTEMPTS | refine ROBOT | recompute NUMBER | publish ROBOT REVISION WHY_NO_CLOUDS
 // and says `begun`, then `done TEXT` or `failed CODE WHAT CURE`. In between it asks for memory to decode in: `take ID BYTES`,
 // answered by `granted ID` when there is as much, and ended by `give ID`. It ends when its input does.
 #pragma once
@@ -19,6 +19,7 @@ namespace rigcal::pipeline {
 // Lines as Work() takes them.
 [[nodiscard]] std::string JobOrder(const storage::JobRow& job);
 [[nodiscard]] std::string RefineOrder(const RobotId& robot);
+[[nodiscard]] std::string RecomputeOrder(std::int64_t item_number);  // of a session in its run
 [[nodiscard]] std::string PublishOrder(const storage::RevisionKey& key, const std::string& why_no_clouds);
 
 // Of a line.
