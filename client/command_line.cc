@@ -56,7 +56,7 @@ constexpr AddVerb kVerbs[] = {
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
     AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddCompletion,
     AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddAudit,
-    AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks};
+    AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {
   try {

@@ -33,6 +33,7 @@ inline constexpr std::array<const char*, 4> kModelActions = {"show", "list", "ch
 void AddApprove(CLI::App& app, Context& context);
 void AddReject(CLI::App& app, Context& context);
 void AddRollback(CLI::App& app, Context& context);
+void AddResolve(CLI::App& app, Context& context);  // computes stored sessions again
 void AddAgent(CLI::App& app, Context& context);
 void AddAudit(CLI::App& app, Context& context);
 void AddWebhooks(CLI::App& app, Context& context);

@@ -37,6 +37,8 @@ std::string Progress::Amount(double amount) const {
       return Fixed(amount, 0) + " files";
     case Unit::kPairs:
       return Fixed(amount, 0) + " pairs";
+    case Unit::kSessions:
+      return Fixed(amount, 0) + " sessions";
   }
   return ByteText(amount);
 }
@@ -44,7 +46,7 @@ std::string Progress::Amount(double amount) const {
 std::string Progress::StandOf(double done, double total) const {
   const double ratio = total > 0 ? done / total : 0.0;
   const std::string bar = is_terminal_ ? Bar(ratio) : "";
-  if (unit_ == Unit::kPairs) return Fixed(done, 0) + " of " + Amount(total) + (bar.empty() ? "" : " " + bar);
+  if (comes_slowly()) return Fixed(done, 0) + " of " + Amount(total) + (bar.empty() ? "" : " " + bar);
   return bar + (bar.empty() ? "" : " ") + Fixed(100.0 * ratio, 0) + " %  " + Amount(done) + " of " + Amount(total);
 }
 
@@ -53,9 +55,9 @@ std::string Progress::LineOf(const ProgressState& state, std::int64_t now_ns) co
   const double elapsed_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
   const double rate = elapsed_s > kRateAfter_s ? (done - static_cast<double>(skipped_)) / elapsed_s : 0.0;
   std::string line = label_ + " " + StandOf(done, total);
-  if (!state.detail.empty()) line += "  " + state.detail;
+  if (!state.detail.empty()) line += (unit_ == Unit::kSessions ? ", " : "  ") + state.detail;
   if (rate <= 0.0) return line;
-  if (unit_ != Unit::kPairs) line += "  " + Amount(rate) + "/s";
+  if (!comes_slowly()) line += "  " + Amount(rate) + "/s";
   if (done < total) line += "  " + DurationText((total - done) / rate) + " left";
   return line;
 }

@@ -15,8 +15,8 @@ struct ProgressState {
 
 class Progress {
  public:
-  // Pairs come slowly: "Calibrating 6 of 59 pairs", without a rate.
-  enum class Unit { kBytes, kEdges, kFiles, kPairs };
+  // Pairs and sessions come slowly: "Calibrating 6 of 59 pairs", without a rate.
+  enum class Unit { kBytes, kEdges, kFiles, kPairs, kSessions };
   // Times are nanoseconds of a steady clock.
   Progress(std::ostream& err, bool is_terminal, std::string label, std::int64_t now_ns, Unit unit = Unit::kBytes);
   [[nodiscard]] bool IsDue(std::int64_t now_ns) const;
@@ -30,6 +30,7 @@ class Progress {
   void Clear();
 
  private:
+  [[nodiscard]] bool comes_slowly() const { return unit_ == Unit::kPairs || unit_ == Unit::kSessions; }
   [[nodiscard]] std::string Amount(double amount) const;
   [[nodiscard]] std::string StandOf(double done, double total) const;
   [[nodiscard]] std::string LineOf(const ProgressState& state, std::int64_t now_ns) const;

@@ -2,7 +2,7 @@ rigcal_program(graph_bench SOURCES bench/graph/graph_bench.cc bench/graph/graph_
   DEPS rigcal_graph rigcal_formats Ceres::ceres)
 
 rigcal_test(graph_test COMPUTES
-  SOURCES unit/graph/solve_test.cc unit/graph/uncertainty/uncertainty_test.cc unit/graph/observability_test.cc
+  SOURCES unit/graph/solve_test.cc unit/graph/uncertainty/uncertainty_test.cc unit/graph/uncertainty/pose_changes_test.cc unit/graph/observability_test.cc
           unit/graph/of_test.cc unit/graph/g2o_test.cc unit/graph/data_test.cc unit/graph/live_test.cc
   DEPS rigcal_graph rigcal_formats)
 

@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
+
+#include "server/model/boards/square_size.h"
 
 namespace rigcal {
 namespace {
@@ -83,6 +86,24 @@ TEST(BoardMeasure, PeopleCountSquaresOfACharuco) {
   EXPECT_EQ(MeasureCommand("B 7's", &charuco),
             "rigcal board measure 'B 7'\\''s' --type charuco --cols 11 --rows 8 --square-mm 30 --ruler-x-mm A --ruler-y-mm B");
   EXPECT_EQ(MeasureCommand("B-7"), "rigcal board measure B-7 --ruler-x-mm A --ruler-y-mm B");
+}
+
+TEST(SquareSize, IsTheMeanAndTheDifferenceIsInItsSigma) {
+  BoardMeasure measure = Sample();
+  measure.pattern.square_m = 0.03;
+  measure.length_x_m = measure.length_y_m = 0.3, measure.measured_x_m = 0.299, measure.measured_y_m = 0.297, measure.sigma_m = 0.0003;
+  const SquareSize size = SquareSizeOf(measure);
+  EXPECT_NEAR(size.square_m, 0.0298, 1e-12);
+  EXPECT_NEAR(size.square_sigma_m, std::hypot(0.00003 / std::sqrt(2.0), 0.0001), 1e-8);
+  std::vector<Target> targets(2);
+  targets[0].id = TargetId("board"), targets[0].square_m = 0.03, targets[0].marker_m = 0.0225, targets[0].cols = 9;
+  targets[1].id = TargetId("wall"), targets[1].square_m = 0.1;
+  TakeSizes({{TargetId("board"), size}}, targets);
+  EXPECT_EQ(targets[0].square_m, size.square_m);
+  EXPECT_EQ(targets[0].square_sigma_m, size.square_sigma_m);
+  EXPECT_NEAR(targets[0].marker_m, 0.02235, 1e-12) << "printed with the squares";
+  EXPECT_EQ(targets[0].cols, 9);
+  EXPECT_EQ(targets[1].square_m, 0.1);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "storage/settings/policies.h"
 #include "storage/settings/rig_models.h"
 #include "storage/work/attempts.h"
+#include "storage/work/recomputations.h"
 #include "tests/unit/storage/fixture.h"
 
 namespace rigcal::storage {
@@ -103,6 +104,11 @@ class AppendOnlyTest : public StoreTest {
       summary.robot = kRobot;
       RIGCAL_TRY(ReplaceSummary(store_, summary, 1'000'000));
       RIGCAL_TRY(NoteStatus(store_, kRobot, {9}));
+      RIGCAL_TRY(AppendRecomputation(store_, {0, "all", "", "Ada", {9}, "0.2.0", "joint/7"}, {{kRobot, {{session, ""}}}}));
+      RIGCAL_ASSIGN(const auto item, LoadNextRecomputation(store_, {}));
+      RIGCAL_TRY(FinishRecomputedSession(store_, *item, SessionAnew::kKept, "lost", {9}));
+      const PoseChange change{SensorId("right"), "moved", 0.001, 0.002, 1.5};
+      RIGCAL_TRY(FinishRecomputedRobot(store_, *item, {kRobot, RobotAnew::kChanged, number, 0, "", {change}}, 1, {9}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
   }
