@@ -25,6 +25,12 @@ std::string FoundText(const Document& as_found) {
   return names.empty() ? state : names + " " + state;
 }
 
+// Of the verdict; after it by what the revision was made, where nothing was measured for it.
+std::string WhyText(const Document& revision) {
+  const std::string why = revision["verdict"]["why"].Text(), cause = revision["cause"].Text();
+  return cause.empty() ? why : why + " (" + cause + ")";
+}
+
 // When what was measured of a sensor became past, and why; the newest first.
 void PrintEpochs(const Document& document, std::ostream& out) {
   const std::vector<Document> epochs = document["epochs"].Items();
@@ -50,7 +56,7 @@ void PrintHistory(const Document& document, const HistoryOptions& options, std::
   for (const Document& revision : revisions) {
     std::vector<std::string> cells = {CountOf(revision["revision"]), revision["created_at"].Text("-"),
                                       revision["verdict"]["level"].Text("unknown"),
-                                      WordFor(RevisionStateOf(revision["state"].Text())), revision["verdict"]["why"].Text()};
+                                      WordFor(RevisionStateOf(revision["state"].Text())), WhyText(revision)};
     if (found) cells.insert(cells.end() - 1, FoundText(revision["as_found"]));
     table.Add(cells);
   }

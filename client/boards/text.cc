@@ -125,7 +125,8 @@ void PrintBoardMeasured(const Document& document, std::ostream& out) {
   if (changed) out << "Before, they measured " << BoardSizeText(before) << " mm.\n";
   if (depends["sessions"].Integer().value_or(0) == 0) return;
   out << DependsText(depends) << " depend on it" << (changed ? ", and stay as they are" : "")
-      << ": `rigcal board trace " << TypedSerial(serial) << "` lists them.\n";
+      << ": `rigcal board trace " << TypedSerial(serial) << "` lists them"
+      << (changed ? ", `rigcal resolve --board " + TypedSerial(serial) + "` computes them again.\n" : ".\n");
 }
 
 void PrintBoardRemarks(const Document& remarks, std::ostream& out) {

@@ -17,7 +17,7 @@ namespace {
 using std::chrono::milliseconds;
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr milliseconds kAskAgainAfter(500);
+constexpr milliseconds kLookAgainAfter(500);
 
 struct ResolveOptions {
   std::string robot, model, board, who;
@@ -63,7 +63,7 @@ class RunFollower {
       if (document["done"].Flag()) break;
       const Document sessions = document["sessions"];
       progress.Show({sessions["done"].Integer().value_or(0), sessions["total"].Integer().value_or(0), ChangedText(document)}, ResolveNow_ns());
-      std::this_thread::sleep_for(kAskAgainAfter);
+      std::this_thread::sleep_for(kLookAgainAfter);
     }
     progress.Clear();
     return Ask(run, limits::kPageRowsMax);

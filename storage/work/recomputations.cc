@@ -36,7 +36,7 @@ std::optional<std::int64_t> SameRun(Store& store, const Digest& digest) {
 
 std::int64_t LastNumber(Store& store) { return store.database().getLastInsertRowid(); }
 
-Status InsertSession(Store& store, std::int64_t robot_number, const SessionAsked& session) {
+Status InsertSessionAsked(Store& store, std::int64_t robot_number, const SessionAsked& session) {
   const int inserted = Query(store,
                              "INSERT INTO recomputation_session (robot_number, session_number, sizes) "
                              "SELECT ?, number, ? FROM session WHERE session_id = ?")
@@ -52,7 +52,7 @@ Status InsertRobot(Store& store, std::int64_t run, const RobotAsked& robot) {
   Query(store, "INSERT INTO recomputation_robot (run_number, robot_id) VALUES (?, ?)").Bind(run, robot.robot).Run();
   const std::int64_t number = LastNumber(store);
   Query(store, "INSERT INTO waiting_recomputed_robot VALUES (?)").Bind(number).Run();
-  for (const SessionAsked& session : robot.sessions) RIGCAL_TRY(InsertSession(store, number, session));
+  for (const SessionAsked& session : robot.sessions) RIGCAL_TRY(InsertSessionAsked(store, number, session));
   return {};
 }
 

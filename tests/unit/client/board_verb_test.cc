@@ -27,7 +27,7 @@ TEST(BoardVerb, MeasureAsksInMetresAndSaysWhatDependsOnIt) {
   EXPECT_EQ(ran.out,
             "Board B-7, a charuco of 11 x 8 squares, 30 mm: its squares measure 29.850 x 30.000 mm (sigma 0.030 assumed), by Ada.\n"
             "Next check: 2027-05-31.\nBefore, they measured 30.000 x 30.000 mm.\n"
-            "3 sessions, 2 revisions and 1 robot depend on it, and stay as they are: `rigcal board trace B-7` lists them.\n");
+            "3 sessions, 2 revisions and 1 robot depend on it, and stay as they are: `rigcal board trace B-7` lists them, `rigcal resolve --board B-7` computes them again.\n");
   Rigcal({"board", "measure", "B-7", "--ruler-x-mm", "300", "--ruler-y-mm", "299", "--nominal-mm", "300", "--by", "Ada"});
   EXPECT_EQ(asked,
             R"(measure_board {"serial":"B-7","who":"Ada","measured_x_m":"0.3","measured_y_m":"0.299","length_x_m":"0.3","length_y_m":"0.3"})");
