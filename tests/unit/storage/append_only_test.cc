@@ -46,6 +46,14 @@ class AppendOnlyTest : public StoreTest {
     ASSERT_TRUE(AppendHeld(store_, id, {0, 1, 2}, {11}));
     ASSERT_TRUE(CloseSession(store_, id, {}, {12}));
   }
+  // A session and its robot that were computed again.
+  void AppendRecomputed(const SessionId& session) {
+    ASSERT_TRUE(AppendRecomputation(store_, {0, "all", "", "Ada", {9}, "0.2.0", "joint/7"}, {{kRobot, {{session, ""}}}}));
+    const auto item = LoadNextRecomputation(store_, {}).value().value();
+    ASSERT_TRUE(FinishRecomputedSession(store_, item, SessionAnew::kKept, "lost", {9}));
+    const PoseChange change{SensorId("right"), "moved", 0.001, 0.002, 1.5};
+    ASSERT_TRUE(FinishRecomputedRobot(store_, item, {kRobot, RobotAnew::kChanged, 1, 0, "", {change}}, 1, {9}));
+  }
   // At least one row in each table.
   void SetUp() override {
     const SensorPair pair{SensorId("left"), SensorId("right")};
@@ -81,8 +89,7 @@ class AppendOnlyTest : public StoreTest {
       merged.constants["board"] = {Vector6d::Ones()};
       RIGCAL_TRY(AppendMergedEdges(store_, {kRobot, number}, {{merged}, {edge.id}, {}}, *LoadWhatCounts(store_, kRobot)));
       SessionEstimate estimate;
-      estimate.session = session;
-      estimate.reference = SensorId("left");
+      estimate.session = session, estimate.reference = SensorId("left");
       RIGCAL_TRY(AppendSessionEstimate(store_, estimate, "joint/1", {6}));
       RIGCAL_TRY(AppendLost(store_, DigestOf("image"), BlobState::kDamaged, job.number, {6}));
       BoardMeasure measure;
@@ -104,13 +111,9 @@ class AppendOnlyTest : public StoreTest {
       summary.robot = kRobot;
       RIGCAL_TRY(ReplaceSummary(store_, summary, 1'000'000));
       RIGCAL_TRY(NoteStatus(store_, kRobot, {9}));
-      RIGCAL_TRY(AppendRecomputation(store_, {0, "all", "", "Ada", {9}, "0.2.0", "joint/7"}, {{kRobot, {{session, ""}}}}));
-      RIGCAL_ASSIGN(const auto item, LoadNextRecomputation(store_, {}));
-      RIGCAL_TRY(FinishRecomputedSession(store_, *item, SessionAnew::kKept, "lost", {9}));
-      const PoseChange change{SensorId("right"), "moved", 0.001, 0.002, 1.5};
-      RIGCAL_TRY(FinishRecomputedRobot(store_, *item, {kRobot, RobotAnew::kChanged, number, 0, "", {change}}, 1, {9}));
       return AppendPublication(store_, {kRobot, number}, {6});
     }));
+    AppendRecomputed(session);
   }
 };
 
