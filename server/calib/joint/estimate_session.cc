@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "server/calib/joint/misfit/instrument_effects.h"
+#include "server/calib/joint/pose_clock.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -86,6 +87,7 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
   estimate.slants = SlantsTold(problem, explained.refined);
   estimate.bends = BendsTold(problem, explained.refined);
+  estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
@@ -123,7 +125,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   }
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(WithInstrumentEffects(std::move(*first)), estimate);
+  const Explained last = ExplainAll(WithInstrumentEffects(WithClocksSettled(std::move(*first))), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
   return estimate;

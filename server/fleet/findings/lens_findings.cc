@@ -97,6 +97,10 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
     if (bend.height_m >= kBendToldMin_m)
       remarks.push_back("board " + bend.board.str() + " is bent by " + TwoDigits(1e3 * bend.height_m, "mm") +
                         ", which was taken out: a stiffer plate is better");
+  for (const TrackerClock& clock : newest->clocks)
+    if (clock.IsOff())
+      remarks.push_back("the clock of " + clock.tracker.str() + " is " + Number(1e3 * std::abs(clock.late_s), "ms") +
+                        (clock.late_s > 0 ? " late" : " early") + ", which was taken out");
   std::string remark;
   for (const std::string& one : remarks) remark += (remark.empty() ? "" : "; ") + one;
   return remark;

@@ -49,9 +49,34 @@ std::optional<FusedPose> ReadFused(const JsonField& pose) {
                    field->At("visit_sigma_rad").Number()};
 }
 
+// Only where there are any: revisions of robots whose trackers tell no path keep their bytes.
+void WriteClocks(JsonWriter& out, const FusedSessions& fused) {
+  if (fused.clocks.empty()) return;
+  out.List("clocks", [&] {
+    for (const FusedSessions::ClockOfSession& told : fused.clocks)
+      out.Object([&] {
+        const TrackerClock& clock = told.clock;
+        out.Integer("captures", clock.captures);
+        out.Number("given_sigma_s", clock.given_sigma_s);
+        out.Flag("known", clock.IsKnown());
+        out.Number("late_s", clock.late_s);
+        out.Text("session", told.session.str());
+        out.Number("sigma_s", clock.sigma_s);
+        out.Text("tracker", clock.tracker.str());
+      });
+  });
+}
+
+FusedSessions::ClockOfSession ReadClock(const JsonField& field) {
+  return {ReadId<SessionId>(field.At("session")),
+          {ReadId<SensorId>(field.At("tracker")), field.At("late_s").Number(), field.At("sigma_s").Number(),
+           field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, INT_MAX))}};
+}
+
 void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
   if (fused.sessions.empty()) return;
   out.Object("fused", [&] {
+    WriteClocks(out, fused);
     WriteLowerTriangle(out, "covariance", fused.covariance);
     out.List("held_back", [&] {
       for (const FusedSessions::HeldBack& look : fused.held_back)
@@ -83,6 +108,8 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax))
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
+  if (const auto clocks = field->Find("clocks"))
+    for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax)) fused.clocks.push_back(ReadClock(clock));
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");
   return fused;

@@ -125,6 +125,27 @@ BoardBend ReadBend(const JsonField& field) {
   return {ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
 }
 
+// Only where there are any: what was made before trackers told their paths keeps its bytes.
+void WriteClocks(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.clocks.empty()) return;
+  out.List("clocks", [&] {
+    for (const TrackerClock& clock : estimate.clocks)
+      out.Object([&] {
+        out.Integer("captures", clock.captures);
+        out.Number("given_sigma_s", clock.given_sigma_s);
+        out.Flag("known", clock.IsKnown());
+        out.Number("late_s", clock.late_s);
+        out.Number("sigma_s", clock.sigma_s);
+        out.Text("tracker", clock.tracker.str());
+      });
+  });
+}
+
+TrackerClock ReadClock(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("tracker")), field.At("late_s").Number(), field.At("sigma_s").Number(),
+          field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, kLooksMax))};
+}
+
 RefinedPose ReadRefinedPose(const JsonField& field) {
   RefinedPose pose{ReadId<SensorId>(field.At("sensor")), ReadPose(field.At("T_ref_sensor"), kUnitTolerance),
                    field.At("dof").Number(), std::nullopt};
@@ -157,6 +178,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
   return WriteObject([&](JsonWriter& out) {
     WriteBends(out, estimate);
     WriteBoardsMoved(out, estimate);
+    WriteClocks(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
@@ -192,6 +214,8 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
     for (const JsonField& item : slants->Items(kSensorsMax)) estimate.slants.push_back(ReadSlant(item));
   if (const auto bends = root.Find("bends"))  // nor these
     for (const JsonField& item : bends->Items(kSensorsMax)) estimate.bends.push_back(ReadBend(item));
+  if (const auto clocks = root.Find("clocks"))  // nor these
+    for (const JsonField& item : clocks->Items(kSensorsMax)) estimate.clocks.push_back(ReadClock(item));
   if (const auto misfits = root.Find("misfits"))  // nor these
     for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
   RIGCAL_TRY(document.status());

@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "server/graph/fusion/session_fusion.h"
@@ -137,6 +138,18 @@ std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimat
   return held_back;
 }
 
+// `estimates`: the newest first.
+std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEstimate>& estimates,
+                                                    const std::vector<SessionId>& sessions) {
+  std::map<SensorId, FusedSessions::ClockOfSession> newest;
+  for (const SessionEstimate& estimate : estimates)
+    if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
+      for (const TrackerClock& clock : estimate.clocks) newest.try_emplace(clock.tracker, FusedSessions::ClockOfSession{estimate.session, clock});
+  std::vector<FusedSessions::ClockOfSession> clocks;
+  for (const auto& [tracker, clock] : newest) clocks.push_back(clock);
+  return clocks;
+}
+
 }  // namespace
 
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
@@ -149,6 +162,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   const Told told = ToldOf(fusion, *inverse);
   TakePoses(fusion, told, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
+  solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
   solution.fused.sensors = fusion.sensors;
   solution.fused.covariance = told.covariance;

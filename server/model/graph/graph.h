@@ -15,6 +15,7 @@
 #include "server/model/graph/insight.h"
 #include "server/model/graph/measured_part.h"
 #include "server/model/graph/suspects.h"
+#include "server/model/tracker_clock.h"
 
 namespace rigcal {
 
@@ -94,6 +95,12 @@ struct FusedSessions {
     SensorId against = {};  // the only other sensor that saw that place: either may be wrong; empty: several did
   };
   std::vector<HeldBack> held_back;
+  // Of each tracker whose clock a session was asked about, by the newest of them; by tracker.
+  struct ClockOfSession {
+    SessionId session;
+    TrackerClock clock;
+  };
+  std::vector<ClockOfSession> clocks;
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 

@@ -11,6 +11,7 @@
 #include "server/math/se3.h"
 #include "server/model/diagnosis.h"
 #include "server/model/sensors/camera.h"
+#include "server/model/tracker_clock.h"
 
 namespace rigcal {
 
@@ -105,6 +106,7 @@ struct SessionEstimate {
   std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
   std::vector<SlantBias> slants;          // by lidar
   std::vector<BoardBend> bends;           // by board
+  std::vector<TrackerClock> clocks;       // by tracker; those that told their path
 };
 
 // First of the six rows of a pose; -1: the reference, which has none.

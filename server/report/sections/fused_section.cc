@@ -79,6 +79,18 @@ void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
   }
 }
 
+std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }
+
+// "The clock of body is 12.3 ms late (sigma 0.4 ms), which was taken out ..."; where the body did not move nothing is known.
+std::string ClockText(const TrackerClock& clock) {
+  if (!clock.IsKnown())
+    return "Of the clock of " + clock.tracker.str() + " the session says nothing: its body " +
+           (clock.captures == 0 ? "stood still at all captures." : "moved too little at captures.");
+  return "The clock of " + clock.tracker.str() + " is " + Ms(std::abs(clock.late_s)) + (clock.late_s < 0 ? " early" : " late") + " (\xCF\x83 " +
+         Ms(clock.sigma_s) + "), by " + Count(static_cast<std::size_t>(clock.captures), "capture", "captures") +
+         " at which its body moved; that was taken out of the poses.";
+}
+
 }  // namespace
 
 void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
@@ -92,6 +104,8 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
   if (sessions > 1) section->ShowSection("VISITS_HEAD");
   if (sessions > 1) section->ShowSection("VISITS_NOTE");
   FillHeldBack(*section, revision.solution.fused);
+  for (const auto& [session, clock] : revision.solution.fused.clocks)
+    ShowValue(*section, "CLOCK", "TEXT", ClockText(clock));
   for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
 }
 

@@ -90,6 +90,25 @@ TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
   EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
 }
 
+Verdict VerdictOfClock(double late_s, double sigma_s) {
+  const Rig rig;
+  SessionEstimate session = BentSession('1', {});
+  session.clocks = {{SensorId("top"), late_s, sigma_s, 0.05, 40}};
+  return Assess(rig.edges, rig.solution, {}, {}, {session});
+}
+
+TEST(AssessClock, OneThatIsSurelyOffIsNewsAndNoWarning) {
+  const Verdict verdict = VerdictOfClock(0.0123, 0.0004);
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_THAT(verdict.why, HasSubstr("lock of top is 12.3 ms late, which was taken out"));
+  EXPECT_THAT(VerdictOfClock(-0.0123, 0.0004).why, HasSubstr("12.3 ms early"));
+}
+
+TEST(AssessClock, OneThatMayBeRightOrIsOffByLittleIsNotTold) {
+  EXPECT_THAT(VerdictOfClock(0.0123, 0.005).why, Not(HasSubstr("lock of")));
+  EXPECT_THAT(VerdictOfClock(0.0009, 0.0001).why, Not(HasSubstr("lock of")));
+}
+
 SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
   SessionEstimate estimate;
   estimate.session = SessionId(std::string(64, '1'));

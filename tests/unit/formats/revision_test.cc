@@ -81,6 +81,26 @@ TEST(RevisionDocument, RefersToItsEdges) {
   }
 }
 
+TEST(RevisionDocument, TellsOfClocksWhereASessionWasAskedAboutOne) {
+  RevisionInput input = SampleRevision();
+  const SessionId session(std::string(64, 'a'));
+  input.solution.fused.sessions = {session};
+  const auto fused = [&] { return json::parse(WriteRevisionDocument(input))["fused"]; };
+  EXPECT_FALSE(fused().contains("clocks"));
+  input.solution.fused.clocks = {{session, {SensorId("body"), 0.0123, 0.0004, 0.05, 30}},
+                                 {session, {SensorId("still"), 0.0, 0.05, 0.05, 0}}};
+  EXPECT_EQ(fused()["clocks"][0]["known"], true);
+  EXPECT_EQ(fused()["clocks"][1]["known"], false);
+  const Result<RevisionInput> read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->solution.fused.clocks.size(), 2u);
+  EXPECT_EQ(read->solution.fused.clocks[0].session, session);
+  EXPECT_EQ(read->solution.fused.clocks[0].clock.tracker, SensorId("body"));
+  EXPECT_EQ(read->solution.fused.clocks[0].clock.late_s, 0.0123);
+  EXPECT_EQ(read->solution.fused.clocks[0].clock.sigma_s, 0.0004);
+  EXPECT_EQ(read->solution.fused.clocks[1].clock.captures, 0);
+}
+
 // What tables and pages tell of an edge.
 TEST(RevisionDocument, TellsOfAnEdgeWhatItWas) {
   RevisionInput input = SampleRevision();

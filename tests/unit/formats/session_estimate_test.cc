@@ -34,6 +34,7 @@ SessionEstimate MakeEstimate() {
   estimate.misfits = {misfit};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001}};
+  estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
   return estimate;
 }
 
@@ -71,6 +72,13 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
   EXPECT_EQ(read->slants[0].too_long_m, 0.01);
   EXPECT_EQ(read->slants[0].sigma_m, 0.002);
+  ASSERT_EQ(read->clocks.size(), 1u);
+  EXPECT_EQ(read->clocks[0].tracker, SensorId("body"));
+  EXPECT_EQ(read->clocks[0].late_s, 0.0123);
+  EXPECT_EQ(read->clocks[0].sigma_s, 0.0004);
+  EXPECT_EQ(read->clocks[0].given_sigma_s, 0.05);
+  EXPECT_EQ(read->clocks[0].captures, 30);
+  EXPECT_NE(text.find("\"known\":true"), std::string::npos);
   ASSERT_EQ(read->misfits.size(), 1u);
   EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
   EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);
@@ -86,6 +94,20 @@ TEST(SessionEstimateDocument, OneOfBeforeMisfitsWereLookedForHasNone) {
   const auto read = ReadSessionEstimate(text);
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_TRUE(read->misfits.empty());
+}
+
+TEST(SessionEstimateDocument, OneWithoutATrackersPathSaysNothingOfClocks) {
+  SessionEstimate estimate = MakeEstimate();
+  estimate.clocks.clear();
+  const std::string text = WriteSessionEstimate(estimate);
+  EXPECT_EQ(text.find("clocks"), std::string::npos);
+  EXPECT_TRUE(ReadSessionEstimate(text)->clocks.empty());
+}
+
+TEST(SessionEstimateDocument, AClockOfABodyThatStoodStillIsNotKnown) {
+  SessionEstimate estimate = MakeEstimate();
+  estimate.clocks = {{SensorId("body"), 0.0, 0.05, 0.05, 0}};
+  EXPECT_NE(WriteSessionEstimate(estimate).find("\"known\":false"), std::string::npos);
 }
 
 TEST(SessionEstimateDocument, RefusesALensThatIsNone) {

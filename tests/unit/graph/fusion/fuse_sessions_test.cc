@@ -127,6 +127,21 @@ TEST(FuseSessions, OneSessionIsTakenAsItIs) {
   EXPECT_LT((solution.fused.covariance - robot.estimates[0].covariance).norm(), 1e-6 * robot.estimates[0].covariance.norm());
 }
 
+// Estimates go from the newest on.
+TEST(FuseSessions, OfATrackersClockTheNewestSessionTells) {
+  Random random(11);
+  Robot robot = Visits(2, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  robot.estimates[0].clocks = {{SensorId("body"), 0.01, 0.001, 0.05, 20}};
+  robot.estimates[1].clocks = {{SensorId("body"), 0.02, 0.001, 0.05, 20}, {SensorId("arm"), 0.0, 0.05, 0.05, 0}};
+  const auto clocks = robot.Fused().fused.clocks;
+  ASSERT_EQ(clocks.size(), 2u);
+  EXPECT_EQ(clocks[0].clock.tracker, SensorId("arm"));
+  EXPECT_EQ(clocks[0].session, robot.estimates[1].session);
+  EXPECT_EQ(clocks[1].clock.tracker, SensorId("body"));
+  EXPECT_EQ(clocks[1].clock.late_s, 0.01);
+  EXPECT_EQ(clocks[1].session, robot.estimates[0].session);
+}
+
 TEST(FuseSessions, PushedEdgeCountsByItsInformationAndAnEdgeOfTheSessionDoesNotCountTwice) {
   Random random(2);
   Robot robot = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
