@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "server/calib/joint/misfit/board_or_lens.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/pose_clock.h"
 
@@ -70,7 +71,8 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
 
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
-  Eigen::MatrixXd beside = CovarianceByFields(explained.misfits);
+  const Eigen::MatrixXd by_fields = CovarianceByFields(explained.misfits);
+  Eigen::MatrixXd beside = by_fields;
   if (const Eigen::MatrixXd by_instruments = CovarianceByInstruments(explained); by_instruments.size() > 0)
     beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_instruments) : by_instruments;
   const PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
@@ -85,8 +87,9 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
-  estimate.slants = SlantsTold(problem, explained.refined);
-  estimate.bends = BendsTold(problem, explained.refined);
+  estimate.slants = SlantsTold(problem, explained.refined, by_fields);
+  estimate.bends = BendsTold(problem, explained.refined, by_fields);
+  AttributeBends(explained, estimate.bends);
   estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio);
 }
 

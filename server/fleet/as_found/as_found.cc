@@ -162,7 +162,8 @@ int FewestVisits(const AsFoundInput& input, const std::vector<SensorId>& sensors
   return fewest.value_or(0);
 }
 
-// Sensors whose visits tell no scatter get the assumed one: that of the visit in use, and that of the session.
+// Sensors whose visits tell no scatter get the assumed one: that of the visit in use, and that of the session. An axis of which
+// nothing is known is left so: it is no better known for a scatter.
 KnownPoses WithAssumedScatter(KnownPoses in_use, const PoseLimit& scatter) {
   Vector6d variance;
   variance << Eigen::Vector3d::Constant(2 * scatter.m * scatter.m),
@@ -170,7 +171,8 @@ KnownPoses WithAssumedScatter(KnownPoses in_use, const PoseLimit& scatter) {
   Index row = 0;
   for (const KnownPose& pose : in_use.poses) {
     if (pose.sensor == in_use.reference) continue;
-    if (pose.visits < 2) in_use.covariance.diagonal().segment<6>(row) += variance;
+    for (Index axis = 0; axis < 6 && pose.visits < 2; ++axis)
+      if (double& known = in_use.covariance(row + axis, row + axis); known > 0) known += variance(axis);
     row += 6;
   }
   return in_use;

@@ -73,6 +73,17 @@ Finding FindingOf(std::vector<LensMisfit> misfits) {
   return {WhyOf(misfits, misfits.front()), CureOf(misfits)};
 }
 
+// What the session tells: that the board is bent, or that something is.
+std::string BendText(const BoardBend& bend) {
+  const std::string by = TwoDigits(1e3 * bend.height_m, "mm");
+  if (bend.is_the_board) return "board " + bend.board.str() + " is bent by " + by + ", which was taken out: a stiffer plate is better";
+  const std::string lens = bend.seen_by.empty()       ? "a lens makes"
+                           : bend.seen_by.size() == 1 ? "the lens of " + bend.seen_by.front().str() + " makes"
+                                                      : "the lenses of " + List(bend.seen_by) + " make";
+  return "board " + bend.board.str() + " is bent by " + by + ", or " + lens +
+         " it look so; it was taken out: lay a straight edge across the board";
+}
+
 }  // namespace
 
 std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
@@ -94,9 +105,7 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
                       (slant.too_long_m > 0 ? " too long" : " too short") +
                       " where its beam meets a surface at 60 deg, which was taken out");
   for (const BoardBend& bend : newest->bends)
-    if (bend.height_m >= kBendToldMin_m)
-      remarks.push_back("board " + bend.board.str() + " is bent by " + TwoDigits(1e3 * bend.height_m, "mm") +
-                        ", which was taken out: a stiffer plate is better");
+    if (bend.height_m >= kBendToldMin_m) remarks.push_back(BendText(bend));
   for (const TrackerClock& clock : newest->clocks)
     if (clock.IsOff())
       remarks.push_back("the clock of " + clock.tracker.str() + " is " + Number(1e3 * std::abs(clock.late_s), "ms") +

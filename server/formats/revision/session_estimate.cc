@@ -116,13 +116,21 @@ void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
       out.Object([&] {
         out.Text("board", bend.board.str());
         out.Number("height_m", bend.height_m);
+        out.Flag("is_the_board", bend.is_the_board);
+        out.List("seen_by", [&] {
+          for (const SensorId& camera : bend.seen_by) out.Text(camera.str());
+        });
         out.Number("sigma_m", bend.sigma_m);
       });
   });
 }
 
 BoardBend ReadBend(const JsonField& field) {
-  return {ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
+  BoardBend bend{ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
+  if (const auto is_the_board = field.Find("is_the_board")) bend.is_the_board = is_the_board->Flag();  // documents of before have
+  if (const auto seen_by = field.Find("seen_by"))                                                      // neither
+    for (const JsonField& camera : seen_by->Items(kSensorsMax)) bend.seen_by.push_back(ReadId<SensorId>(camera));
+  return bend;
 }
 
 // Only where there are any: what was made before trackers told their paths keeps its bytes.

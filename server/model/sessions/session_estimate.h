@@ -68,10 +68,12 @@ struct SlantBias {
   double too_long_m = 0.0, sigma_m = 0.0;
 };
 
-// A board that is surely bent, by this from the lowest to the highest point of its plate; taken out of the poses.
+// A board that surely looks bent, by this from the lowest to the highest point of its plate; taken out of the poses.
 struct BoardBend {
   TargetId board;
   double height_m = 0.0, sigma_m = 0.0;
+  bool is_the_board = false;           // false: a lens may make it look so, nothing in the session tells which
+  std::vector<SensorId> seen_by = {};  // cameras, sorted; estimates of before name none
 };
 
 // The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the

@@ -172,6 +172,23 @@ TEST(AsFound, AnAxisThatWasNotMeasuredHasNoNumber) {
   }
 }
 
+// With one visit in use a scatter is assumed: it makes nothing known of an axis of which nothing was.
+TEST(AsFound, AnAxisThatOneVisitDidNotMeasureHasNoNumberEither) {
+  for (const int visits : {1, 1'000'000}) {
+    Draws draws(16);
+    Errors errors = SomeErrors();
+    errors.visits = visits;
+    AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kRight, Along(tangent::kZ, 0.05)), errors, draws);
+    const Eigen::Index open = 6 + tangent::kZ;  // of the right camera
+    input.in_use.covariance.row(open).setZero();
+    input.in_use.covariance.col(open).setZero();
+    const AsFound found = TestAsFound(input);
+    EXPECT_EQ(Of(kRight, found).axes[tangent::kZ], FoundState::kNotMeasured) << visits;
+    EXPECT_EQ(found.tests, 17) << visits;
+    EXPECT_THAT(Drifted(found), ::testing::IsEmpty()) << visits;
+  }
+}
+
 TEST(AsFound, WhatWasMovedOnPurposeOrIsNewIsNoDrift) {
   Draws draws(13);
   AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kTop, Along(0, 0.05)), SomeErrors(), draws);

@@ -255,6 +255,23 @@ TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {moved}).level, VerdictLevel::kFail);
 }
 
+std::string RemarkOnBend(bool is_the_board, std::vector<SensorId> seen_by) {
+  const Rig rig;
+  SessionEstimate estimate = BentSession('1', {});
+  estimate.bends = {{TargetId("wall"), 5.2e-4, 1e-5, is_the_board, std::move(seen_by)}};
+  return Assess(rig.edges, rig.solution, {}, {}, {estimate}).why;
+}
+
+TEST(AssessRefined, ABentBoardIsAFactOnlyWhereItCannotBeALens) {
+  const SensorId left("left"), right("right");
+  EXPECT_THAT(RemarkOnBend(true, {left, right}), HasSubstr("oard wall is bent by 0.52 mm, which was taken out: a stiffer plate is better"));
+  EXPECT_THAT(RemarkOnBend(false, {left, right}),
+              HasSubstr("oard wall is bent by 0.52 mm, or the lenses of left and right make it look so; it was taken out: "
+                        "lay a straight edge across the board"));
+  EXPECT_THAT(RemarkOnBend(false, {right}), HasSubstr("or the lens of right makes it look so"));
+  EXPECT_THAT(RemarkOnBend(false, {}), HasSubstr("or a lens makes it look so")) << "as estimates of before have it";
+}
+
 TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {
   Rig rig = Contradicted(0.02);
   rig.solution.fused.sessions = {SessionId(std::string(64, '1'))};

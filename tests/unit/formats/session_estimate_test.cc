@@ -33,7 +33,7 @@ SessionEstimate MakeEstimate() {
   misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
   estimate.misfits = {misfit};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
-  estimate.bends = {{TargetId("board"), 0.0005, 0.00001}};
+  estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
   estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
   return estimate;
 }
@@ -68,6 +68,9 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->bends[0].board, TargetId("board"));
   EXPECT_EQ(read->bends[0].height_m, 0.0005);
   EXPECT_EQ(read->bends[0].sigma_m, 0.00001);
+  EXPECT_TRUE(read->bends[0].is_the_board);
+  ASSERT_EQ(read->bends[0].seen_by.size(), 2u);
+  EXPECT_EQ(read->bends[0].seen_by[1], SensorId("right"));
   ASSERT_EQ(read->slants.size(), 1u);
   EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
   EXPECT_EQ(read->slants[0].too_long_m, 0.01);
