@@ -15,6 +15,7 @@
 #include "server/model/graph/insight.h"
 #include "server/model/graph/measured_part.h"
 #include "server/model/graph/suspects.h"
+#include "server/model/lens_misfit.h"
 
 namespace rigcal {
 
@@ -94,6 +95,7 @@ struct FusedSessions {
     SensorId against = {};  // the only other sensor that saw that place: either may be wrong; empty: several did
   };
   std::vector<HeldBack> held_back;
+  std::vector<LensMisfit> lenses;           // of each camera what its newest session says, if it bends; by camera
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "server/report/bent_lenses.h"
 #include "server/report/text/changes.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
@@ -92,6 +93,7 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
   if (sessions > 1) section->ShowSection("VISITS_HEAD");
   if (sessions > 1) section->ShowSection("VISITS_NOTE");
   FillHeldBack(*section, revision.solution.fused);
+  FillBentLenses(*section, revision.solution.fused.lenses);
   for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
 }
 
