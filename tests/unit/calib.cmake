@@ -9,7 +9,7 @@ rigcal_test(calib_models_test COMPUTES
   SOURCES unit/calib/capture_blocks_test.cc unit/calib/stereo/pair_captures_test.cc unit/calib/stereo/models_test.cc unit/calib/stereo/symmetry_test.cc unit/calib/camera/camera_test.cc unit/calib/virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_lens_choice_test COMPUTES
-  SOURCES unit/calib/camera/lens_choice_test.cc unit/calib/virtual_pair.cc
+  SOURCES unit/calib/camera/lens_choice_test.cc unit/calib_lens_trial_test.cc unit/calib/virtual_pair.cc
   DEPS rigcal_calib)
 rigcal_test(calib_given_intrinsics_test COMPUTES
   SOURCES unit/calib/camera/given_intrinsics_test.cc unit/calib/virtual_pair.cc unit/calib/virtual_motion.cc

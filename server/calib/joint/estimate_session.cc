@@ -7,6 +7,8 @@
 #include <tuple>
 
 #include "server/calib/joint/misfit/board_or_lens.h"
+#include "server/base/process/parallel_for.h"
+#include "server/calib/camera/lens_trial.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
 #include "server/calib/joint/pose_clock.h"
 
@@ -105,6 +107,31 @@ void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
   });
 }
 
+// Captures whose look by the camera contradicts all others have none.
+std::map<CaptureId, int> GroupsOfLooks(const Explained& explained, const SensorId& camera,
+                                       const std::vector<HeldBackLook>& held_back) {
+  std::map<CaptureId, int> groups;
+  const std::vector<int>& group_of_place = explained.refined.groups.group_of_place;
+  for (std::size_t place = 0; place < group_of_place.size(); ++place)
+    groups.emplace(CaptureAt(explained.start.problem, static_cast<int>(place)), group_of_place[place]);
+  for (const HeldBackLook& look : held_back)
+    if (look.sensor == camera) groups.erase(look.capture);
+  return groups;
+}
+
+// Needs what was held back.
+void AddTrials(const SessionViews& views, const Explained& explained, SessionEstimate& estimate) {
+  ParallelFor(estimate.misfits.size(), [&](std::size_t i) {
+    LensMisfit& misfit = estimate.misfits[i];
+    const auto seen = std::find_if(views.cameras.begin(), views.cameras.end(), [&](const CameraViews& one) {
+      return one.camera.id == misfit.camera;
+    });
+    if (seen == views.cameras.end()) return;
+    misfit.trial = TryLenses({seen->camera, seen->board, seen->views}, seen->estimate,
+                             GroupsOfLooks(explained, misfit.camera, estimate.held_back));
+  });
+}
+
 // Without the sensors of which the session says too little: their pairs stand as they are.
 Result<SessionStart> StartOfWhatIsTold(const SessionViews& views) {
   std::set<SensorId> left_out;
@@ -131,6 +158,7 @@ SessionEstimate Estimate(const SessionViews& views) {
   const Explained last = ExplainAll(WithInstrumentEffects(WithClocksSettled(std::move(*first))), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
+  AddTrials(views, last, estimate);
   return estimate;
 }
 

@@ -7,6 +7,7 @@
 #include "server/formats/edges/edge_fields.h"
 #include "server/formats/edges/edge_reference.h"
 #include "server/formats/json/json_values.h"
+#include "server/formats/lens_misfit_fields.h"
 #include "server/formats/revision/cause_fields.h"
 #include "server/formats/revision/insight_fields.h"
 #include "server/formats/revision/measured_part_fields.h"
@@ -87,6 +88,7 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
           out.Text("session", look.session.str());
         });
     });
+    if (!fused.lenses.empty()) WriteMisfits(out, "lenses", fused.lenses);
     out.List("sensors", [&] {
       for (const SensorId& sensor : fused.sensors) out.Text(sensor.str());
     });
@@ -110,6 +112,7 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
   if (const auto clocks = field->Find("clocks"))
     for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax)) fused.clocks.push_back(ReadClock(clock));
+  if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");
   return fused;

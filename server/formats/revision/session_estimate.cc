@@ -1,6 +1,7 @@
 #include "server/formats/revision/session_estimate.h"
 
 #include "server/formats/json/json_values.h"
+#include "server/formats/lens_misfit_fields.h"
 
 namespace rigcal::formats {
 namespace {
@@ -62,37 +63,6 @@ void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
         out.Text("sensor", look.sensor.str());
       });
   });
-}
-
-void WriteMisfits(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("misfits", [&] {
-    for (const LensMisfit& misfit : estimate.misfits)
-      out.Object([&] {
-        out.Text("camera", misfit.camera.str());
-        out.Number("evidence", misfit.evidence);
-        out.Text("model", NameOf(misfit.model));
-        out.Number("pose_sigma_m", misfit.pose_sigma_m);
-        out.Number("pose_sigma_rad", misfit.pose_sigma_rad);
-        out.Number("rms_px", misfit.rms_px);
-        out.Number("sigma_ratio", misfit.sigma_ratio);
-      });
-  });
-}
-
-LensMisfit ReadMisfit(const JsonField& field) {
-  LensMisfit misfit;
-  misfit.camera = ReadId<SensorId>(field.At("camera"));
-  const JsonField model = field.At("model");
-  if (const auto known = CameraModelOf(model.Text()); known)
-    misfit.model = *known;
-  else
-    model.Refuse(known.error().what);
-  misfit.rms_px = field.At("rms_px").Number();
-  misfit.evidence = field.At("evidence").Number();
-  misfit.pose_sigma_m = field.At("pose_sigma_m").Number();
-  misfit.pose_sigma_rad = field.At("pose_sigma_rad").Number();
-  misfit.sigma_ratio = field.At("sigma_ratio").Number();
-  return misfit;
 }
 
 void WriteSlants(JsonWriter& out, const SessionEstimate& estimate) {
@@ -190,7 +160,7 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
     WriteLowerTriangle(out, "common", estimate.common);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
-    WriteMisfits(out, estimate);
+    WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
     WritePoses(out, estimate);
     out.Text("reference", estimate.reference.str());
@@ -224,8 +194,7 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
     for (const JsonField& item : bends->Items(kSensorsMax)) estimate.bends.push_back(ReadBend(item));
   if (const auto clocks = root.Find("clocks"))  // nor these
     for (const JsonField& item : clocks->Items(kSensorsMax)) estimate.clocks.push_back(ReadClock(item));
-  if (const auto misfits = root.Find("misfits"))  // nor these
-    for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
+  if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);  // nor these
   RIGCAL_TRY(document.status());
   return estimate;
 }

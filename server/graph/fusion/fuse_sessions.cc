@@ -150,6 +150,15 @@ std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEst
   return clocks;
 }
 
+std::vector<LensMisfit> LensesIn(std::vector<SessionEstimate> estimates, const std::vector<SessionId>& sessions) {
+  std::erase_if(estimates, [&](const SessionEstimate& estimate) {
+    return std::find(sessions.begin(), sessions.end(), estimate.session) == sessions.end();
+  });
+  std::vector<LensMisfit> lenses = NewestMisfits(estimates);
+  std::sort(lenses.begin(), lenses.end(), [](const LensMisfit& x, const LensMisfit& y) { return x.camera < y.camera; });
+  return lenses;
+}
+
 }  // namespace
 
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
@@ -163,6 +172,7 @@ void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& withi
   TakePoses(fusion, told, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
   solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
+  solution.fused.lenses = LensesIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
   solution.fused.sensors = fusion.sensors;
   solution.fused.covariance = told.covariance;

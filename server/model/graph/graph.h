@@ -15,6 +15,7 @@
 #include "server/model/graph/insight.h"
 #include "server/model/graph/measured_part.h"
 #include "server/model/graph/suspects.h"
+#include "server/model/lens_misfit.h"
 #include "server/model/tracker_clock.h"
 
 namespace rigcal {
@@ -101,6 +102,7 @@ struct FusedSessions {
     TrackerClock clock;
   };
   std::vector<ClockOfSession> clocks;
+  std::vector<LensMisfit> lenses;           // of each camera what its newest session says, if it bends; by camera
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 

@@ -10,7 +10,7 @@
 #include "server/math/ball_distance.h"
 #include "server/math/se3.h"
 #include "server/model/diagnosis.h"
-#include "server/model/sensors/camera.h"
+#include "server/model/lens_misfit.h"
 #include "server/model/tracker_clock.h"
 
 namespace rigcal {
@@ -47,18 +47,6 @@ struct HeldBackLook {
   SensorId sensor;
   CaptureId capture;
   SensorId against = {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
-};
-
-// A camera whose pictures are bent in a way that its model cannot describe: a smooth field of shifts, the same in every
-// capture, beyond what chance makes.
-struct LensMisfit {
-  SensorId camera;
-  CameraModel model = CameraModel::kPinholeRadtan;
-  double rms_px = 0.0;          // of the field where the camera saw corners, of u and of v
-  double evidence = 0.0;        // twice the log of the likelihood's ratio with and without it
-  double pose_sigma_m = 0.0;    // the most that it adds to the sigma of an axis of any pose, the square root of the
-  double pose_sigma_rad = 0.0;  // variance
-  double sigma_ratio = 1.0;  // of that pose and axis that it makes less certain most: with it over without any misfit
 };
 
 // A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
@@ -110,6 +98,10 @@ struct SessionEstimate {
   std::vector<BoardBend> bends;           // by board
   std::vector<TrackerClock> clocks;       // by tracker; those that told their path
 };
+
+// Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part, if it
+// bends; those without an estimate say nothing.
+[[nodiscard]] std::vector<LensMisfit> NewestMisfits(const std::vector<SessionEstimate>& estimates);
 
 // First of the six rows of a pose; -1: the reference, which has none.
 [[nodiscard]] inline int RowOf(const SessionEstimate& estimate, std::size_t pose) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "server/report/bent_lenses.h"
 #include "server/report/text/changes.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
@@ -106,6 +107,7 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
   FillHeldBack(*section, revision.solution.fused);
   for (const auto& [session, clock] : revision.solution.fused.clocks)
     ShowValue(*section, "CLOCK", "TEXT", ClockText(clock));
+  FillBentLenses(*section, revision.solution.fused.lenses);
   for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
 }
 

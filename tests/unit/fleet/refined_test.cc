@@ -109,6 +109,53 @@ TEST(AssessClock, OneThatMayBeRightOrIsOffByLittleIsNotTold) {
   EXPECT_THAT(VerdictOfClock(0.0009, 0.0001).why, Not(HasSubstr("lock of")));
 }
 
+LensMisfit TriedOn(const std::string& camera, bool given, std::optional<CameraModel> proposed) {
+  LensMisfit misfit = MisfitOf(camera, CameraModel::kPinholeRadtan, 2.0);
+  misfit.trial = {0.43, given, 24,
+                  {{CameraModel::kPinholeRadtan, given ? 0.25 : 0.43},
+                   {CameraModel::kPinholeRational, 0.21},
+                   {CameraModel::kFisheyeKb4, std::nullopt}},
+                  proposed};
+  return misfit;
+}
+
+Verdict VerdictOfLenses(std::vector<LensMisfit> misfits) {
+  const Rig rig;
+  return Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', std::move(misfits))});
+}
+
+TEST(AssessLens, AModelThatForetellsBetterIsProposedWithWhatItGains) {
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, CameraModel::kPinholeRational)}).what_to_do,
+            "Set `model: pinhole_rational` for right (pinhole_rational fits pictures of right that were left out to 0.21 px, "
+            "pinhole_radtan to 0.43 px).");
+}
+
+TEST(AssessLens, OfGivenIntrinsicsACalibrationAnewIsProposed) {
+  const Verdict other = VerdictOfLenses({TriedOn("right", true, CameraModel::kPinholeRational)});
+  EXPECT_THAT(other.why, HasSubstr("in a way that pinhole_radtan cannot"));
+  EXPECT_EQ(other.what_to_do,
+            "Calibrate right anew: leave its intrinsics out of session.yaml and set `model: pinhole_rational` "
+            "(pinhole_rational fits pictures of right that were left out to 0.21 px, the given intrinsics to 0.43 px).");
+  const Verdict numbers = VerdictOfLenses({TriedOn("right", true, CameraModel::kPinholeRadtan)});
+  EXPECT_THAT(numbers.why, HasSubstr("in a way that the given pinhole_radtan cannot"));
+  EXPECT_THAT(numbers.what_to_do, HasSubstr("set `model: pinhole_radtan` (pinhole_radtan fits pictures of right that were left "
+                                            "out to 0.25 px, the given intrinsics to 0.43 px)"));
+}
+
+TEST(AssessLens, WhereNoModelIsBetterThatIsSaidWithWhatHelps) {
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt)}).what_to_do,
+            "None of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that were left out better: "
+            "capture boards all over the pictures of right, as the bend is taken out where corners were seen.");
+  EXPECT_THAT(VerdictOfLenses({TriedOn("right", true, std::nullopt)}).what_to_do,
+              HasSubstr("all over the pictures of right, and leave out or give a sigma with their intrinsics"));
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt), TriedOn("top", false, CameraModel::kPinholeRational)})
+                .what_to_do,
+            "Set `model: pinhole_rational` for top (pinhole_rational fits pictures of top that were left out to 0.21 px, "
+            "pinhole_radtan to 0.43 px); none of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right "
+            "that were left out better: capture boards all over the pictures of right, as the bend is taken out where corners "
+            "were seen.");
+}
+
 SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
   SessionEstimate estimate;
   estimate.session = SessionId(std::string(64, '1'));

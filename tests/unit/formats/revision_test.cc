@@ -133,6 +133,26 @@ TEST(RevisionDocument, TellsOfAnEdgeWhatItWas) {
   EXPECT_EQ(read->edges[1].figures, (std::map<std::string, double>{{"polished_ratio", 1.0}, {"merged_sessions", 22.0}}));
 }
 
+TEST(RevisionDocument, NamesLensesThatBendWithWhatWasTriedOnThem) {
+  RevisionInput input = SampleRevision();
+  input.solution.fused.sessions = {SessionId(std::string(64, 'a'))};
+  EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["fused"].contains("lenses"));
+  LensMisfit lens;
+  lens.camera = SensorId("left");
+  lens.rms_px = 0.05;
+  lens.trial = {0.43, false, 24, {{CameraModel::kPinholeRational, 0.21}}, CameraModel::kPinholeRational};
+  input.solution.fused.lenses = {lens};
+  const json document = json::parse(WriteRevisionDocument(input));
+  const json& written = document["fused"]["lenses"][0];
+  EXPECT_EQ(written["model"], "pinhole_radtan");
+  EXPECT_EQ(written["trial"]["proposed"], "pinhole_rational");
+  EXPECT_EQ(written["trial"]["candidates"][0]["left_out_rms_px"], 0.21);
+  const Result<RevisionInput> read = ReadRevisionDocument(document.dump());
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->solution.fused.lenses.size(), 1U);
+  EXPECT_EQ(read->solution.fused.lenses[0].trial.own_left_out_rms_px, 0.43);
+}
+
 TEST(RevisionDocument, OfAnUnknownFormatIsRefused) {
   json document = json::parse(WriteRevisionDocument(SampleRevision()));
   document["format"] = 3;

@@ -31,6 +31,8 @@ SessionEstimate MakeEstimate() {
   misfit.model = CameraModel::kPinholeRational;
   misfit.rms_px = 0.05, misfit.evidence = 300, misfit.sigma_ratio = 2.5;
   misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
+  misfit.trial = {0.43, true, 24, {{CameraModel::kPinholeRadtan, std::nullopt, true}, {CameraModel::kPinholeRational, 0.21}},
+                  CameraModel::kPinholeRational};
   estimate.misfits = {misfit};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
   estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
@@ -87,6 +89,27 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);
   EXPECT_EQ(read->misfits[0].sigma_ratio, 2.5);
   EXPECT_EQ(read->misfits[0].pose_sigma_rad, 2e-4);
+  const LensTrial& trial = read->misfits[0].trial;
+  EXPECT_EQ(trial.own_left_out_rms_px, 0.43);
+  EXPECT_TRUE(trial.given);
+  EXPECT_EQ(trial.captures, 24);
+  EXPECT_EQ(trial.proposed, CameraModel::kPinholeRational);
+  ASSERT_EQ(trial.candidates.size(), 2u);
+  EXPECT_FALSE(trial.candidates[0].left_out_rms_px);
+  EXPECT_TRUE(trial.candidates[0].absurd);
+  EXPECT_EQ(trial.candidates[1].left_out_rms_px, 0.21);
+  EXPECT_EQ(trial.candidates[1].model, CameraModel::kPinholeRational);
+}
+
+TEST(SessionEstimateDocument, AMisfitForWhichNothingWasTriedHasNoTrial) {
+  SessionEstimate estimate = MakeEstimate();
+  estimate.misfits[0].trial = {};
+  const std::string text = WriteSessionEstimate(estimate);
+  EXPECT_EQ(text.find("trial"), std::string::npos) << "as documents of before have it";
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_TRUE(read->misfits[0].trial.candidates.empty());
+  EXPECT_FALSE(read->misfits[0].trial.proposed);
 }
 
 TEST(SessionEstimateDocument, OneOfBeforeMisfitsWereLookedForHasNone) {

@@ -284,6 +284,25 @@ TEST(FuseSessions, SessionOfARemountedReferenceStillTellsTheRest) {
     EXPECT_LT((both.poses[s].T_ref_sensor.Inverse() * Truth()[s]).Log().norm(), 0.003);
 }
 
+LensMisfit BentBy(const SensorId& camera, double rms_px) {
+  LensMisfit misfit;
+  misfit.camera = camera;
+  misfit.rms_px = rms_px;
+  return misfit;
+}
+
+// The first estimate is the newest.
+TEST(FuseSessions, LensesThatBendAreThoseOfTheNewestSession) {
+  Random random(9);
+  Robot robot = Visits(2, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  robot.estimates[0].misfits = {BentBy(kRight, 0.1)};
+  robot.estimates[1].misfits = {BentBy(kLeft, 0.2), BentBy(kRight, 0.3)};
+  const std::vector<LensMisfit> lenses = robot.Fused().fused.lenses;
+  ASSERT_EQ(lenses.size(), 1u) << "left took part in the newest and does not bend there";
+  EXPECT_EQ(lenses[0].camera, kRight);
+  EXPECT_EQ(lenses[0].rms_px, 0.1);
+}
+
 TEST(FuseSessions, SessionWithARetiredEdgeIsNotFused) {
   Random random(8);
   Robot robot = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
