@@ -17,7 +17,7 @@ namespace rigcal::storage {
 // among them.
 [[nodiscard]] Result<std::vector<RobotId>> LoadChangedStatuses(Store& store, Stamp now, int max);
 
-// The status of a row of summary_robot as SQL; `?1` is now. As model/robots/robot_status.h has it: a test holds one against the other.
+// The status of a row of summary_robot as SQL; `?1` is now. As robots/robot_status.h has it: a test holds one against the other.
 [[nodiscard]] std::string StatusSql();
 
 }  // namespace rigcal::storage
