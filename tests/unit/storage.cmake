@@ -1,5 +1,5 @@
 rigcal_test(storage_test
   SOURCES unit/storage/store_test.cc unit/storage/robot_names_test.cc unit/storage/append_only_test.cc unit/storage/sessions_test.cc unit/storage/standing_test.cc unit/storage/retired_test.cc unit/storage/revisions/revision_poses_test.cc unit/storage/revisions/merged_edges_test.cc unit/storage/query_plan_test.cc unit/storage/revisions/revision_document_test.cc unit/storage/pages_test.cc unit/storage/fleet/robot_summary_test.cc unit/storage/fleet/fleet_list_test.cc unit/storage/fleet/work_lists_test.cc unit/storage/policies_test.cc unit/storage/audit_test.cc unit/storage/revisions/decisions_test.cc unit/storage/fleet/robot_runs_test.cc unit/storage/revisions/as_found_test.cc
-          unit/storage/edges_test.cc unit/storage/work_test.cc unit/storage/attempts_test.cc unit/storage/blobs_test.cc unit/storage/lost_blobs_test.cc unit/storage/speed_test.cc unit/storage/epochs_test.cc unit/storage/boards_test.cc
+          unit/storage/edges_test.cc unit/storage/work_test.cc unit/storage/attempts_test.cc unit/storage/blobs_test.cc unit/storage/lost_blobs_test.cc unit/storage/speed_test.cc unit/storage/epochs_test.cc unit/storage/boards_test.cc unit/storage/visit_scatter_test.cc
   DEPS rigcal_storage)
 rigcal_test(storage_alerts_test SOURCES unit/storage/outbox_test.cc DEPS rigcal_storage)

@@ -17,6 +17,7 @@
 #include "server/model/graph/suspects.h"
 #include "server/model/lens_misfit.h"
 #include "server/model/tracker_clock.h"
+#include "server/model/visit_scatter.h"
 
 namespace rigcal {
 
@@ -44,6 +45,11 @@ struct FusedPose {
   int sessions = 0;                                 // whose refinement tells this sensor
   // How the sensor's place scatters from visit to visit, 1 sigma per axis; it is in the pose's covariance. 0: it does not.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
+  // What its own visits alone tell of that, whatever was pooled; what other robots of the rig model told, where they did; and
+  // what stands behind what was taken. Documents have the first two where there is the second.
+  VisitScatter scatter = {};
+  std::optional<VisitScatter> pooled_scatter = {};
+  ScatterDof scatter_dof = {};
 };
 
 struct SensorPose {

@@ -17,6 +17,7 @@
 #include "server/graph/uncertainty/graph_jackknife.h"
 #include "server/graph/uncertainty/joint_poses.h"
 #include "server/model/edges/past.h"
+#include "server/pipeline/rig_models/pooled_scatter.h"
 #include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robots/decide.h"
 #include "server/pipeline/robots/policies.h"
@@ -124,6 +125,7 @@ struct RobotEdges {
   std::int64_t watermark = 0, standing_watermark = 0;
   PolicyInForce policy;
   ExpectedRig expected;  // of its rig model
+  PooledScatter pooled_scatter;  // of the other robots of its rig model
 };
 
 // What ties sensors: edges that count, and sessions that were refined as a whole.
@@ -180,6 +182,7 @@ Result<RobotEdges> LoadForRevision(storage::Store& store, const RobotId& robot) 
     RIGCAL_ASSIGN(loaded.policy, LoadPolicyInForce(store, {PolicyScope::kRobot, robot.str()}));
     RIGCAL_ASSIGN(loaded.expected, LoadExpectedRig(store, loaded.policy.rig_model));
     loaded.policy.rig_model_version = loaded.expected.version;
+    RIGCAL_ASSIGN(loaded.pooled_scatter, LoadPooledScatter(store, robot, loaded.policy.rig_model, loaded.reference));
     return {};
   }));
   TakeFocals(store, loaded.current.edges, loaded.headers, loaded.captured_at, loaded.policy.policy);
@@ -257,7 +260,8 @@ formats::RevisionInput SolveAndJudge(const RobotId& robot, const RobotEdges& edg
   HonestSolution honest = SolveHonestly(loaded);
   input.solution = std::move(honest.solution);
   input.solution.R_ref_robot = fleet::RobotAxes(input.reference, edges.headers);
-  graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution);
+  graph::FuseSessions(loaded.edges, edges.refined.within, input.reference, edges.refined.estimates, input.solution,
+                      edges.pooled_scatter);
   poses = graph::JointPosesOf(loaded.graph, input.solution, honest.jackknife);
   const PairCovariances pairs = graph::CovariancesOfPairs(PairsNamedBy(edges.policy.policy), poses, loaded.graph,
                                                           input.solution, honest.jackknife);
@@ -364,7 +368,10 @@ Result<Revision> Revise(storage::Store& store, const RobotId& robot, const Clock
     RIGCAL_TRY(storage::AppendRevisionPoses(store, key, poses));
     RIGCAL_TRY(storage::AppendMergedEdges(store, key, merge, loaded.current.counts));
     RIGCAL_TRY(AppendBeside(store, key, loaded.policy.rig_model, beside));
-    if (pairs_waiting == 0) RIGCAL_TRY(TellFailedSession(store, loaded, input, revision));
+    if (pairs_waiting == 0) {
+      RIGCAL_TRY(KeepVisitScatter(store, robot, loaded.policy.rig_model, input.reference, input.solution));
+      RIGCAL_TRY(TellFailedSession(store, loaded, input, revision));
+    }
     if (worst) return storage::AppendWorstEdge(store, key, *worst);
     return {};
   }));

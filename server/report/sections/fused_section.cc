@@ -40,9 +40,18 @@ double LargestSigma_m(const Matrix6d& covariance) {
 }
 
 std::string VisitsText(const FusedPose& fused) {
-  if (fused.sessions < 2) return "one visit";
+  if (fused.sessions < 2 && !fused.pooled_scatter) return "one visit";
   if (fused.visit_sigma_m <= 0 && fused.visit_sigma_rad <= 0) return "within \xCF\x83";
-  return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad);
+  return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad) +
+         (fused.pooled_scatter ? ", with " + Count(static_cast<std::size_t>(fused.pooled_scatter->robots), "robot", "robots") : "");
+}
+
+// Of one visit nothing is to be told of visits, unless other robots tell it.
+bool TellsVisits(const formats::RevisionInput& revision) {
+  const auto& poses = revision.solution.poses;
+  return revision.solution.fused.sessions.size() > 1 || std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) {
+           return pose.fused && pose.fused->pooled_scatter;
+         });
 }
 
 void FillRow(Dictionary& row, const Moved& moved, bool visits) {
@@ -102,13 +111,14 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
   const std::size_t sessions = revision.solution.fused.sessions.size();
   section->SetValue("SUMMARY", "All that the sensors saw in " + Count(sessions, "session", "sessions") +
                                    ", as one estimate" + (sessions > 1 ? " per session." : "."));
-  if (sessions > 1) section->ShowSection("VISITS_HEAD");
-  if (sessions > 1) section->ShowSection("VISITS_NOTE");
+  const bool visits = TellsVisits(revision);
+  if (visits) section->ShowSection("VISITS_HEAD");
+  if (visits) section->ShowSection("VISITS_NOTE");
   FillHeldBack(*section, revision.solution.fused);
   for (const auto& [session, clock] : revision.solution.fused.clocks)
     ShowValue(*section, "CLOCK", "TEXT", ClockText(clock));
   FillBentLenses(*section, revision.solution.fused.lenses);
-  for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
+  for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, visits);
 }
 
 }  // namespace rigcal::report

@@ -27,5 +27,5 @@
 </div>
 <p class="hint">Each model is fitted with a fifth of the captures left out, five times; the rms is that of the corners in the captures left out, so a model with more numbers gains nothing by itself.</p>
 {{/BENT}}
-<p class="hint">Each pair of sensors is calibrated by itself first; edges, residuals and loops on this page are about these pairs. Then everything that all sensors saw in a session, each corner, each plate and each pose of a tracker, is put into one estimate. The poses above, <code>rigcal lookup</code> and what robots receive are the refined ones.{{#VISITS_NOTE}} A sensor does not sit in the very same place on every visit: how far it was off from one to the next is counted in its &sigma;.{{/VISITS_NOTE}}</p>
+<p class="hint">Each pair of sensors is calibrated by itself first; edges, residuals and loops on this page are about these pairs. Then everything that all sensors saw in a session, each corner, each plate and each pose of a tracker, is put into one estimate. The poses above, <code>rigcal lookup</code> and what robots receive are the refined ones.{{#VISITS_NOTE}} A sensor does not sit in the very same place on every visit: how far it was off from one to the next is counted in its &sigma;. Few visits hardly tell that; where robots of its rig model are named, theirs count with it.{{/VISITS_NOTE}}</p>
 </section>

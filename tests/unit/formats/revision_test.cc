@@ -56,6 +56,26 @@ TEST_P(RevisionDocumentOfFormat, ComesBack) {
   EXPECT_EQ(WriteRevisionDocument(*read), WriteRevisionDocument(input));
 }
 
+// By what it was fused, so that the same can be made of it once more; of before there was any, by the number of visits.
+TEST_P(RevisionDocumentOfFormat, KeepsByWhichScatterItWasFused) {
+  RevisionInput input = SampleRevision();
+  SensorPose& pose = input.solution.poses[1];
+  pose.fused = FusedPose{{}, samples::SampleCovariance(), 3, 0.0004, 0.0003};
+  pose.fused->scatter_dof = {6.0, 6.0};
+  EXPECT_EQ(Written(input).find("scatter"), std::string::npos);
+  EXPECT_EQ(ReadRevisionDocument(Written(input))->solution.poses[1].fused->scatter_dof, (ScatterDof{6.0, 6.0}));
+  pose.fused->scatter = {{-1e-8, 2e-8, 6.0}, {3e-8, 4e-8, 6.0}};
+  pose.fused->pooled_scatter = VisitScatter{{5e-8, 6e-8, 20.0}, {7e-8, 8e-8, 21.0}, 19};
+  pose.fused->scatter_dof = {26.0, 27.0};
+  const Result<RevisionInput> read = ReadRevisionDocument(Written(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  const FusedPose& fused = *read->solution.poses[1].fused;
+  EXPECT_EQ(fused.scatter, pose.fused->scatter);
+  EXPECT_EQ(fused.pooled_scatter, pose.fused->pooled_scatter);
+  EXPECT_EQ(fused.scatter_dof, pose.fused->scatter_dof);
+  EXPECT_EQ(Written(*read), Written(input));
+}
+
 TEST(RevisionDocument, OfFormat1HasItsEdgesWhole) {
   const RevisionInput input = SampleRevision();
   const Result<RevisionInput> read = ReadRevisionDocument(WriteWholeRevisionDocument(input));
