@@ -2,7 +2,7 @@
 //
 // Per sensor and axis, t = change / sigma with C_session + C_in_use + tau^2 for its covariance, a Student's t of
 // Welch's degrees of freedom, at most those of tau^2. tau^2, what sensors scatter by from visit to visit, is in what a
-// revision tells (graph/fusion/session_fusion.h) and not added once more; where one visit tells nothing of it, it is assumed. The odds alpha of a false alarm are those of the whole session:
+// revision tells (session_fusion.h) and not added once more; where one visit tells nothing of it, it is assumed. The odds alpha of a false alarm are those of the whole session:
 // each of m axes is tested at alpha / m (Bonferroni; Dunn 1961), which holds however the axes hang together. README.md
 // has the method.
 #pragma once

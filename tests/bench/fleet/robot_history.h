@@ -1,4 +1,4 @@
-// One robot's visits through the server's own steps, as its pipeline takes them (server/pipeline/revisions/revise.cc, as_found.cc):
+// One robot's visits through the server's own steps, as its pipeline takes them (revisions/revise.cc, as_found.cc):
 // the calibration in use is tested, then a revision is made of the newest visits' estimates.
 #pragma once
 
