@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "client/sim/rig/random.h"
-#include "client/sim/sway.h"
+#include "client/sim/visit/sway.h"
 #include "client/sim/visit/yaml_text.h"
 
 namespace rigcal::sim {

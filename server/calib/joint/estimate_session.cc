@@ -10,7 +10,7 @@
 #include "server/base/process/parallel_for.h"
 #include "server/calib/camera/lens_trial.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
-#include "server/calib/joint/pose_clock.h"
+#include "server/calib/joint/misfit/pose_clock.h"
 
 namespace rigcal::calib::joint {
 namespace {

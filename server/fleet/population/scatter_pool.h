@@ -1,6 +1,6 @@
 // What the robots of a rig model scatter by from visit to visit, as a prior for one more of them.
 //
-// Each robot's visits show a variance s^2 (model/visit_scatter.h) of nu degrees of freedom about that robot's own, and the
+// Each robot's visits show a variance s^2 (visit_scatter.h) of nu degrees of freedom about that robot's own, and the
 // robots' own are taken as a scaled inverse chi-square of nu_0 about v_0, both by moments of log s^2 (Smyth, Stat. Appl. Genet.
 // Mol. Biol. 3(1), 2004): with z = log s^2 - LogVarianceBias(nu),
 //   trigamma(nu_0 / 2) = Var z - mean trigamma(nu / 2)  and  log v_0 = mean z + LogVarianceBias(nu_0).
@@ -13,7 +13,7 @@
 
 #include <vector>
 
-#include "server/model/visit_scatter.h"
+#include "server/model/graph/visit_scatter.h"
 
 namespace rigcal::fleet {
 

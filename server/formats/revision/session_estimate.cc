@@ -1,7 +1,7 @@
 #include "server/formats/revision/session_estimate.h"
 
 #include "server/formats/json/json_values.h"
-#include "server/formats/lens_misfit_fields.h"
+#include "server/formats/revision/lens_misfit_fields.h"
 
 namespace rigcal::formats {
 namespace {

@@ -15,9 +15,9 @@
 #include "server/model/graph/insight.h"
 #include "server/model/graph/measured_part.h"
 #include "server/model/graph/suspects.h"
-#include "server/model/lens_misfit.h"
-#include "server/model/tracker_clock.h"
-#include "server/model/visit_scatter.h"
+#include "server/model/graph/visit_scatter.h"
+#include "server/model/sensors/lens_misfit.h"
+#include "server/model/sensors/tracker_clock.h"
 
 namespace rigcal {
 

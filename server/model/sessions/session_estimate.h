@@ -10,8 +10,8 @@
 #include "server/math/ball_distance.h"
 #include "server/math/se3.h"
 #include "server/model/diagnosis.h"
-#include "server/model/lens_misfit.h"
-#include "server/model/tracker_clock.h"
+#include "server/model/sensors/lens_misfit.h"
+#include "server/model/sensors/tracker_clock.h"
 
 namespace rigcal {
 

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "server/fleet/population/scatter_pool.h"
-#include "storage/visit_scatter.h"
+#include "storage/fleet/visit_scatter.h"
 
 namespace rigcal::pipeline {
 namespace {

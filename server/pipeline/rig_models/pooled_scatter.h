@@ -1,5 +1,5 @@
 // READ and WRITE: how the sensors of a rig model's robots scatter from visit to visit, from one row per robot and sensor
-// (storage/visit_scatter.h) to what one more of them is held against (fleet/population/scatter_pool.h).
+// (storage/fleet/visit_scatter.h) to what one more of them is held against (fleet/population/scatter_pool.h).
 #pragma once
 
 #include <string>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "server/report/bent_lenses.h"
+#include "server/report/cameras/bent_lenses.h"
 #include "server/report/text/changes.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"

@@ -1,4 +1,4 @@
-#include "server/model/visit_scatter.h"
+#include "server/model/graph/visit_scatter.h"
 
 #include <gtest/gtest.h>
 

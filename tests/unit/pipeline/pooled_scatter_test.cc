@@ -4,10 +4,10 @@
 #include "server/pipeline/revisions/revise.h"
 #include "server/pipeline/rig_models/pooled_scatter.h"
 #include "server/pipeline/sessions/session_refinement.h"
+#include "storage/fleet/visit_scatter.h"
 #include "storage/revisions/as_found.h"
 #include "storage/sessions/retired.h"
 #include "storage/sessions/session_estimates.h"
-#include "storage/visit_scatter.h"
 #include "tests/unit/pipeline/fixture.h"
 
 namespace rigcal::pipeline {

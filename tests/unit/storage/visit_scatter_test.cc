@@ -1,5 +1,5 @@
 // What robots of a rig model scatter by: one row per robot and sensor, replaced with each revision.
-#include "storage/visit_scatter.h"
+#include "storage/fleet/visit_scatter.h"
 
 #include <gmock/gmock.h>
 

@@ -8,7 +8,7 @@
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/joint/problem/board_bend.h"
 #include "server/calib/joint/problem/observation.h"
-#include "server/calib/joint/pose_clock.h"
+#include "server/calib/joint/misfit/pose_clock.h"
 
 namespace rigcal::calib::joint {
 namespace {

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "client/sim/rig/lens.h"
-#include "client/sim/sway.h"
 #include "client/sim/visit/observe.h"
+#include "client/sim/visit/sway.h"
 #include "server/formats/sessions/poses.h"
 #include "tests/unit/client/sim/sample.h"
 

@@ -1,10 +1,10 @@
 // How a body moved about one instant, against differences of the path itself.
+#include "server/calib/motion/local_path.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
-
-#include "server/calib/motion/local_path.h"
 
 namespace rigcal::calib {
 namespace {

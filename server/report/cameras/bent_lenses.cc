@@ -1,4 +1,4 @@
-#include "server/report/bent_lenses.h"
+#include "server/report/cameras/bent_lenses.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "server/calib/joint/pose_clock.h"
+#include "server/calib/joint/misfit/pose_clock.h"
 
 #include <algorithm>
 #include <cmath>

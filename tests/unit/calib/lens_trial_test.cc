@@ -1,11 +1,12 @@
 // Lens models judged on pictures that they were not fitted to, and distortion that no lens has. Pictures are drawn by
 // OpenCV's projection.
+#include "server/calib/camera/lens_trial.h"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "server/calib/camera/lens_bounds.h"
-#include "server/calib/camera/lens_trial.h"
 #include "server/calib/core/selection.h"
 #include "tests/unit/calib/virtual_pair.h"
 

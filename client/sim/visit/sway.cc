@@ -1,4 +1,4 @@
-#include "client/sim/sway.h"
+#include "client/sim/visit/sway.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "server/formats/lens_misfit_fields.h"
+#include "server/formats/revision/lens_misfit_fields.h"
 
 #include <climits>
 

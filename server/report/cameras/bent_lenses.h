@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "server/model/lens_misfit.h"
+#include "server/model/sensors/lens_misfit.h"
 #include "server/report/frame/page.h"
 
 namespace rigcal::report {

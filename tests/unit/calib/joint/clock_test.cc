@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "client/sim/rig/random.h"
-#include "server/calib/joint/pose_clock.h"
+#include "server/calib/joint/misfit/pose_clock.h"
 #include "tests/unit/calib/joint/visit.h"
 
 namespace rigcal::calib::joint {

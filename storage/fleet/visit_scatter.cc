@@ -1,4 +1,4 @@
-#include "storage/visit_scatter.h"
+#include "storage/fleet/visit_scatter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "server/formats/json/json_field.h"
 #include "server/formats/json/json_writer.h"
-#include "server/model/lens_misfit.h"
+#include "server/model/sensors/lens_misfit.h"
 
 namespace rigcal::formats {
 

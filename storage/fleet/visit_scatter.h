@@ -1,4 +1,4 @@
-// How the sensors of each robot scatter from visit to visit by its own visits (server/model/visit_scatter.h): one row per robot and
+// How the sensors of each robot scatter from visit to visit by its own visits (graph/visit_scatter.h): one row per robot and
 // sensor, replaced when the robot is revised, so that what a rig model's robots have in common needs no look at their histories.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/model/visit_scatter.h"
+#include "server/model/graph/visit_scatter.h"
 #include "storage/store.h"
 
 namespace rigcal::storage {
