@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "server/calib/camera/lens_bounds.h"
+#include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/robust.h"
 #include "server/calib/core/selection.h"
 #include "server/calib/planes/planar_pose.h"

@@ -118,7 +118,7 @@ void WriteClocks(JsonWriter& out, const FusedSessions& fused) {
   });
 }
 
-FusedSessions::ClockOfSession ReadClock(const JsonField& field) {
+FusedSessions::ClockOfSession ReadClockOfSession(const JsonField& field) {
   return {ReadId<SessionId>(field.At("session")),
           {ReadId<SensorId>(field.At("tracker")), field.At("late_s").Number(), field.At("sigma_s").Number(),
            field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, INT_MAX))}};
@@ -161,7 +161,7 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
   if (const auto clocks = field->Find("clocks"))
-    for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax)) fused.clocks.push_back(ReadClock(clock));
+    for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax)) fused.clocks.push_back(ReadClockOfSession(clock));
   if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");

@@ -24,6 +24,14 @@ CameraProblem Pictures(const VirtualPair& pair, const std::vector<Se3>& boards, 
   return problem;
 }
 
+// A rational lens that radtan follows to a quarter of a pixel, as far out as SpreadBoards reach.
+VirtualPair NearlyRadtan() {
+  VirtualPair pair = PairOf(CameraModel::kPinholeRational);
+  pair.a.fx_px = pair.a.fy_px = 330;
+  pair.a.distortion = {0.5, 0.05, 0.001, -0.0007, 0.0, 0.8, 0.15, 0.01};
+  return pair;
+}
+
 // Every capture by itself.
 std::map<CaptureId, int> SingleGroups(const CameraProblem& problem) {
   std::map<CaptureId, int> groups;
@@ -56,12 +64,12 @@ void Bend(double amplitude_px, CameraProblem& problem) {
 TEST(LensTrial, ARationalLensTakenAsRadtanIsProposedWithWhatItGains) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const LensTrial trial =
-        Tried(Pictures(PairOf(CameraModel::kPinholeRational), SpreadBoards(30), CameraModel::kPinholeRadtan, seed));
+        Tried(Pictures(NearlyRadtan(), SpreadBoards(30), CameraModel::kPinholeRadtan, seed));
     EXPECT_EQ(trial.proposed, CameraModel::kPinholeRational) << seed;
     EXPECT_FALSE(trial.given);
     EXPECT_EQ(trial.captures, 30);
     EXPECT_EQ(*trial.own_left_out_rms_px, LeftOut_px(trial, CameraModel::kPinholeRadtan));
-    EXPECT_NEAR(LeftOut_px(trial, CameraModel::kPinholeRational), kNoise_px, 0.1 * kNoise_px);
+    EXPECT_NEAR(LeftOut_px(trial, CameraModel::kPinholeRational), kNoise_px, 0.2 * kNoise_px);
     EXPECT_GT(*trial.own_left_out_rms_px, 1.2 * LeftOut_px(trial, CameraModel::kPinholeRational));
   }
 }
@@ -83,7 +91,7 @@ TEST(LensTrial, ALensOfItsOwnModelStaysIt) {
     const auto boards = model == CameraModel::kPinholeRadtan ? TiltedBoards(24) : SpreadBoards(24);
     const LensTrial trial = Tried(Pictures(PairOf(model), boards, model, 7));
     EXPECT_FALSE(trial.proposed) << NameOf(model);
-    EXPECT_NEAR(*trial.own_left_out_rms_px, kNoise_px, 0.1 * kNoise_px) << NameOf(model);
+    EXPECT_NEAR(*trial.own_left_out_rms_px, kNoise_px, 0.2 * kNoise_px) << NameOf(model);
   }
 }
 
@@ -116,15 +124,16 @@ TEST(LensTrial, NumbersThatWereGivenWrongNeedNoOtherModel) {
 
 TEST(LensTrial, OnePictureThatIsWrongDoesNotDecide) {
   CameraProblem problem =
-      Pictures(PairOf(CameraModel::kPinholeRational), SpreadBoards(30), CameraModel::kPinholeRadtan, 1);
+      Pictures(NearlyRadtan(), SpreadBoards(30), CameraModel::kPinholeRadtan, 1);
   for (Eigen::Vector2d& uv_px : problem.views[4].second.corners_px) uv_px.x() += 3 * std::sin(0.05 * uv_px.y());
   EXPECT_EQ(Tried(problem).proposed, CameraModel::kPinholeRational);
 }
 
 TEST(LensTrial, IsTheSameEveryTime) {
   const CameraProblem problem =
-      Pictures(PairOf(CameraModel::kPinholeRational), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
+      Pictures(NearlyRadtan(), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
   const LensTrial first = Tried(problem), again = Tried(problem);
+  ASSERT_EQ(first.candidates.size(), 3U);
   EXPECT_EQ(first.own_left_out_rms_px, again.own_left_out_rms_px);
   EXPECT_EQ(first.proposed, again.proposed);
   for (const LensCandidate& one : first.candidates)
@@ -133,7 +142,7 @@ TEST(LensTrial, IsTheSameEveryTime) {
 
 TEST(LensTrial, CapturesOfOneBurstAreNoEvidence) {
   const CameraProblem problem =
-      Pictures(PairOf(CameraModel::kPinholeRational), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
+      Pictures(NearlyRadtan(), SpreadBoards(20), CameraModel::kPinholeRadtan, 1);
   std::map<CaptureId, int> groups = SingleGroups(problem);
   for (auto& [capture, group] : groups) group /= 5;
   const auto estimate = EstimateCamera(problem);

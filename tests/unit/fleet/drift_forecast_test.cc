@@ -142,7 +142,7 @@ TEST(DriftForecast, WithFewVisitsItIsEarlierAndStillHolds) {
 }
 
 // One visit each after 20 to 40 days tells a walk hardly from a rate that stays, and the tolerance is used up before that: by the
-// wrong law three times as many would be beyond.
+// wrong law alone 14 % would be beyond.
 TEST(DriftForecast, WhereNothingTellsTheLawItHoldsByBoth) {
   Draw draw(8);
   int beyond = 0;

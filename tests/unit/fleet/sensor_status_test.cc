@@ -105,7 +105,7 @@ TEST(SensorStatus, WhatWasNotTestedMovedNobody) {
   EXPECT_TRUE(steps.empty());
 }
 
-// Twelve robots that walk by 4 mm in a month: taken out of it as noise, an assumed scatter of 1.4 mm hides most of that.
+// Taken out of changes as their noise, an assumed scatter of 1.4 mm hides a drift of as much in a month.
 TEST(SensorStatus, WhatOneVisitIsTestedAgainstIsNoStep) {
   Rig rig;
   rig.Move(kRight, 8e-3);
