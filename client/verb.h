@@ -80,7 +80,7 @@ void PrintVerdict(const Document& verdict, const Document& validity, std::ostrea
 inline constexpr const char* kCompleteBatch = "Push the same edges again: that completes it, nothing is stored twice";
 // "<address>/robots/<robot>/revisions/<n>/", or empty where the server has no HTTP. `status`: its document.
 [[nodiscard]] std::string ReportAddress(const Document& status, const std::string& robot, std::int64_t revision);
-// That a file's positions may be in another unit (server/model/edges/unit_doubt.h): told, not refused. Nothing of no doubt.
+// That a file's positions may be in another unit (edges/unit_doubt.h): told, not refused. Nothing of no doubt.
 void SayUnitDoubt(const std::string& file, const std::string& doubt, std::ostream& err);
 // The row of a robot in a document with "robots".
 [[nodiscard]] Document RobotRow(const Document& document, const std::string& robot);

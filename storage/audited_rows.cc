@@ -12,6 +12,7 @@ namespace {
 struct HeldKind {
   const char *kind, *plural;
   const char* columns;    // as one text, NULL as nothing
+  const char* beside;     // likewise what other tables say of it: of a row that is held by itself
   const char* what;       // the row in a few words
   const char* unaudited;  // of a row `t`: that it needs no audit row
 };
@@ -21,11 +22,14 @@ constexpr std::array<HeldKind, 3> kHeldKinds = {{
     {"decision", "decisions",
      "number || char(10) || robot_id || char(10) || revision_number || char(10) || how || char(10) || at_ns || char(10) "
      "|| who || char(10) || reason || char(10) || edge_watermark",
+     "''",
      "replace(how, '_', ' ') || ' revision ' || revision_number || ' of robot ' || robot_id || ', by ' || who", "0"},
     {"standing", "standings",
      "number || char(10) || robot_id || char(10) || at_ns || char(10) || how || char(10) || coalesce(session_number, '') "
      "|| char(10) || coalesce(edge_number, '') || char(10) || coalesce(sensor_id, '') || char(10) || who || char(10) || "
      "reason",
+     "CASE how WHEN 'epoch' THEN char(10) || coalesce((SELECT begins_ns FROM epoch WHERE standing_number = number), '') "
+     "ELSE '' END",
      "how || coalesce(' session number ' || session_number, '') || coalesce(' edge number ' || edge_number, '') || "
      "coalesce(' sensor ' || sensor_id, '') || ' of robot ' || robot_id || ', by ' || who",
      "t.how = 'pushed' AND t.who = 'robot ' || t.robot_id AND t.reason = '' AND NOT EXISTS (SELECT 1 FROM standing e "
@@ -33,6 +37,7 @@ constexpr std::array<HeldKind, 3> kHeldKinds = {{
     {"policy", "policies",
      "number || char(10) || scope || char(10) || subject || char(10) || version || char(10) || at_ns || char(10) || who "
      "|| char(10) || reason || char(10) || text",
+     "''",
      "'version ' || version || ' of the ' || scope || coalesce(nullif(' ' || subject, ' '), '') || ', by ' || who", "0"},
 }};
 
@@ -148,7 +153,8 @@ void FindUnheldRows(SQLite::Database& database, const HeldKind& kind, AuditCheck
 std::optional<Digest> HashOfHeldRow(SQLite::Database& database, const std::string& kind, std::int64_t number) {
   const HeldKind* held = HeldKindOf(kind);
   if (held == nullptr) return std::nullopt;
-  SQLite::Statement row(database, std::string("SELECT ") + held->columns + " FROM " + held->kind + " WHERE number = ?");
+  SQLite::Statement row(database, std::string("SELECT ") + held->columns + " || " + held->beside + " FROM " +
+                                     held->kind + " WHERE number = ?");
   row.bind(1, number);
   return row.executeStep() ? std::optional(HashOfHeldText(*held, row.getColumn(0).getString())) : std::nullopt;
 }

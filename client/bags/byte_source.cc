@@ -58,11 +58,13 @@ class MemorySource : public ByteSource {
 
 }  // namespace
 
-Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path) {
+Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path) { return OpenSource(path, path.string()); }
+
+Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path, std::string name) {
   RIGCAL_ASSIGN(FileDescriptor file, OpenToRead(path));
   struct stat info = {};
   if (::fstat(file.get(), &info) != 0) return FileFailure(path, "read", errno);
-  return std::make_unique<FileSource>(std::move(file), static_cast<std::uint64_t>(info.st_size), path.string());
+  return std::make_unique<FileSource>(std::move(file), static_cast<std::uint64_t>(info.st_size), std::move(name));
 }
 
 std::unique_ptr<ByteSource> SourceOf(std::span<const std::byte> bytes, std::string name) {

@@ -22,6 +22,8 @@ class ByteSource {
 
 // A regular file; kNotFound or kInvalidInput where there is none.
 [[nodiscard]] Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path);
+// The same, of what goes by another name.
+[[nodiscard]] Result<std::unique_ptr<ByteSource>> OpenSource(const std::filesystem::path& path, std::string name);
 // Memory that outlives it.
 [[nodiscard]] std::unique_ptr<ByteSource> SourceOf(std::span<const std::byte> bytes, std::string name);
 

@@ -21,39 +21,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct OpenPart {
-  std::unique_ptr<TemporaryFile> unpacked;  // of a compressed file; outlives the bag
-  std::unique_ptr<Bag> bag;
-};
-
 Result<std::unique_ptr<Bag>> OpenPlain(const fs::path& file, const fs::path& named) {
-  RIGCAL_ASSIGN(std::unique_ptr<ByteSource> source, OpenSource(file));
+  RIGCAL_ASSIGN(std::unique_ptr<ByteSource> source, OpenSource(file, named.string()));
   std::array<std::byte, 16> begins{};
   RIGCAL_ASSIGN(const std::size_t got, source->ReadAt(0, begins));
   const std::string_view text = TextOf(std::span(begins).first(got));
   if (text.rfind("\x89MCAP", 0) == 0) return OpenMcap(std::move(source));
   if (text.rfind("#ROSBAG V", 0) == 0) return OpenRos1Bag(std::move(source));
-  if (text.rfind("SQLite format 3", 0) == 0) return OpenSqliteBag(file);
+  if (text.rfind("SQLite format 3", 0) == 0) return OpenSqliteBag(file, named.string());
   if (got == 0) return Fail(ErrorCode::kInvalidInput, named.string() + " is empty", "Record the bag again.");
   return Fail(ErrorCode::kInvalidInput,
               named.string() + " is no bag: it is neither MCAP nor a database of rosbag2 nor a bag of ROS 1",
               "Give the path of a bag.");
 }
 
-Result<OpenPart> Open(const fs::path& file, Damage& damage) {
+// What a compressed file is unpacked into has its name no longer than until it is open: whatever ends this program, no
+// gigabytes stay behind.
+Result<std::unique_ptr<Bag>> Open(const fs::path& file, Damage& damage) {
   std::array<std::byte, 4> begins{};
   {
     RIGCAL_ASSIGN(const std::unique_ptr<ByteSource> source, OpenSource(file));
     RIGCAL_TRY(source->ReadAt(0, begins));
   }
-  OpenPart part;
-  if (IsZstd(begins)) {
-    RIGCAL_ASSIGN(part.unpacked,
-                  TemporaryFile::Make(file.extension() == ".zstd" ? file.stem().extension().string() : ""));
-    RIGCAL_TRY(UnpackZstdFile(file, part.unpacked->path(), [&](Error error) { damage.Add(std::move(error)); }));
-  }
-  RIGCAL_ASSIGN(part.bag, OpenPlain(part.unpacked ? part.unpacked->path() : file, file));
-  return part;
+  if (!IsZstd(begins)) return OpenPlain(file, file);
+  RIGCAL_ASSIGN(const std::unique_ptr<TemporaryFile> unpacked,
+                TemporaryFile::Make(file.extension() == ".zstd" ? file.stem().extension().string() : ""));
+  RIGCAL_TRY(UnpackZstdFile(file, unpacked->path(), [&](Error error) { damage.Add(std::move(error)); }));
+  return OpenPlain(unpacked->path(), file);
 }
 
 class PartsBag : public Bag {
@@ -65,38 +59,38 @@ class PartsBag : public Bag {
   // The first part that is a bag; the error of the first one where none is.
   Status Begin() {
     std::optional<Error> first;
-    while (next_ < parts_.files.size() && !part_.bag) {
+    while (next_ < parts_.files.size() && !part_) {
       const Status opened = OpenNext();
       if (!opened && !first) first = opened.error();
     }
-    if (!part_.bag)
+    if (!part_)
       return Fail(first.value_or(Error{ErrorCode::kInvalidInput, "the bag has no files", "Give the path of a bag."}));
     return {};
   }
 
   bool Next(Message& message) override {
-    while (part_.bag) {
-      if (part_.bag->Next(message)) {
+    while (part_) {
+      if (part_->Next(message)) {
         message.topic = OneOf(message.topic);
         if (Unpack(message)) return true;
         continue;
       }
       Close();
-      while (next_ < parts_.files.size() && !part_.bag) (void)OpenNext();
+      while (next_ < parts_.files.size() && !part_) (void)OpenNext();
     }
     TellStrays();
     return false;
   }
   [[nodiscard]] std::vector<std::shared_ptr<const Topic>> Topics() const override {
     std::vector<std::shared_ptr<const Topic>> topics = known_;
-    if (!part_.bag) return topics;
-    for (const auto& topic : part_.bag->Topics())
+    if (!part_) return topics;
+    for (const auto& topic : part_->Topics())
       if (!Find(*topic)) topics.push_back(topic);
     return topics;
   }
   [[nodiscard]] Damage Unread() const override {
     Damage all = damage_;
-    if (part_.bag) all.Add(part_.bag->Unread());
+    if (part_) all.Add(part_->Unread());
     if (!otherwise_.empty())
       all.Add({ErrorCode::kInvalidInput,
                "metadata.yaml has other encodings than the files: " +
@@ -105,7 +99,7 @@ class PartsBag : public Bag {
     return all;
   }
   [[nodiscard]] std::int64_t bytes_done() const override {
-    return bytes_done_ + (part_.bag ? part_.bag->bytes_done() : 0);
+    return bytes_done_ + (part_ ? part_->bytes_done() : 0);
   }
   [[nodiscard]] std::int64_t bytes_total() const override { return bytes_total_; }
 
@@ -118,10 +112,10 @@ class PartsBag : public Bag {
     return {};
   }
   void Close() {
-    bytes_done_ += part_.bag->bytes_total();
-    for (const auto& topic : part_.bag->Topics()) (void)OneOf(topic);
-    damage_.Add(part_.bag->Unread());
-    part_ = {};
+    bytes_done_ += part_->bytes_total();
+    for (const auto& topic : part_->Topics()) (void)OneOf(topic);
+    damage_.Add(part_->Unread());
+    part_.reset();
     same_.clear();
   }
 
@@ -163,7 +157,7 @@ class PartsBag : public Bag {
   }
 
   Parts parts_;
-  OpenPart part_;
+  std::unique_ptr<Bag> part_;
   std::size_t next_ = 0;
   std::int64_t bytes_total_, bytes_done_ = 0, packed_strays_ = 0;
   std::vector<std::shared_ptr<const Topic>> known_;

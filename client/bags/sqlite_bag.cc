@@ -36,8 +36,8 @@ std::string UriOf(const fs::path& file) {
 
 class SqliteBag : public Bag {
  public:
-  SqliteBag(const fs::path& file, std::int64_t bytes)
-      : name_(file.string()),
+  SqliteBag(const fs::path& file, std::string name, std::int64_t bytes)
+      : name_(std::move(name)),
         bytes_(bytes),
         database_(UriOf(file), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kBusyTimeout_ms) {}
 
@@ -153,17 +153,18 @@ class SqliteBag : public Bag {
 
 }  // namespace
 
-Result<std::unique_ptr<Bag>> OpenSqliteBag(const fs::path& file) {
+Result<std::unique_ptr<Bag>> OpenSqliteBag(const fs::path& file, const std::string& name) {
+  const std::string named = name.empty() ? file.string() : name;
   std::error_code failed;
   const auto bytes = fs::file_size(file, failed);
   if (failed)
-    return Fail(ErrorCode::kNotFound, file.string() + ": cannot be read (" + failed.message() + ")", "Check the path.");
+    return Fail(ErrorCode::kNotFound, named + ": cannot be read (" + failed.message() + ")", "Check the path.");
   try {
-    auto bag = std::make_unique<SqliteBag>(file, static_cast<std::int64_t>(bytes));
+    auto bag = std::make_unique<SqliteBag>(file, named, static_cast<std::int64_t>(bytes));
     bag->Begin();
     return bag;
   } catch (const std::exception& failure) {
-    return Fail(ErrorCode::kInvalidInput, file.string() + " is no bag in a database: " + Quoted(failure.what()),
+    return Fail(ErrorCode::kInvalidInput, named + " is no bag in a database: " + Quoted(failure.what()),
                 "Give the path of a bag, or mend it with sqlite3's `.recover`.");
   }
 }

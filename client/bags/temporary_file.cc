@@ -82,11 +82,10 @@ TemporaryFile::~TemporaryFile() {
   std::filesystem::remove(path_, ignored);
 }
 
-Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::path& to,
-                      const std::function<void(Error)>& told) {
+namespace {
+
+Status UnpackInto(const FileDescriptor& unpacked, const std::filesystem::path& from, const std::function<void(Error)>& told) {
   RIGCAL_ASSIGN(const FileDescriptor packed, OpenToRead(from));
-  FileDescriptor unpacked(::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
-  if (unpacked.get() < 0) return FileFailure(to, "write", errno);
   Unpacking unpacking(unpacked, from);
   std::vector<char> piece(kPieceBytes);
   for (;;) {
@@ -100,6 +99,28 @@ Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::
   }
   if (!unpacking.whole()) told({ErrorCode::kInvalidInput, from.string() + ": its zstd data ends early", kCure});
   return {};
+}
+
+// Of a file without a name; it takes the place of an empty one.
+Status GiveName(const FileDescriptor& file, const std::filesystem::path& name) {
+  const std::string nameless = "/proc/self/fd/" + std::to_string(file.get());
+  if (::unlink(name.c_str()) == 0 && ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+    return {};
+  return FileFailure(name, "make", errno);
+}
+
+}  // namespace
+
+Status UnpackZstdFile(const std::filesystem::path& from, const std::filesystem::path& to,
+                      const std::function<void(Error)>& told) {
+  const FileDescriptor nameless(::open(to.parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
+  if (nameless.get() >= 0) {
+    RIGCAL_TRY(UnpackInto(nameless, from, told));
+    return GiveName(nameless, to);
+  }
+  const FileDescriptor named(::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  if (named.get() < 0) return FileFailure(to, "write", errno);
+  return UnpackInto(named, from, told);
 }
 
 }  // namespace rigcal::bags

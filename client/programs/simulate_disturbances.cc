@@ -96,6 +96,17 @@ Status ReadBump(const DisturbanceWords& words, sim::Options& simulation) {
   return {};
 }
 
+// A clock matters only where something moves: a body that is not said to stand still sways then.
+constexpr const char* kUsualSway = "0.2,10";
+
+Status ReadSway(const DisturbanceWords& words, sim::Disturbances& disturb) {
+  disturb.pose_clock_late_s = words.pose_clock_offset_ms.value_or(0.0) * 1e-3;
+  const std::string sway = words.sway.empty() && words.pose_clock_offset_ms ? kUsualSway : words.sway;
+  if (sway.empty()) return {};
+  RIGCAL_ASSIGN(disturb.sway_per_s, ReadDisplacement({"--sway", "M,DEG: 0.2,10"}, sway, 1.0));
+  return {};
+}
+
 }  // namespace
 
 Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation) {
@@ -110,6 +121,7 @@ Status ReadDisturbances(const DisturbanceWords& words, sim::Options& simulation)
   if (!words.wrong_instant.empty()) {
     RIGCAL_ASSIGN(disturb.wrong_instant, ReadWrongInstant(words.wrong_instant));
   }
+  RIGCAL_TRY(ReadSway(words, disturb));
   if (!words.visit_scatter.empty()) {
     RIGCAL_ASSIGN(disturb.visit_scatter,
                   ReadDisplacement({"--visit-scatter", "MM,DEG: 0.3,0.01"}, words.visit_scatter, 1e-3));
@@ -156,6 +168,13 @@ void AddDisturbances(CLI::App& verb, DisturbanceWords& words, sim::Options& simu
   verb.add_option("--incidence-bias", disturb.incidence_bias_m,
                   "Lidars measure too long by this at 60 degrees of incidence")
       ->type_name("M")
+      ->group(group);
+  verb.add_option("--sway", words.sway, "The robot does not stop for captures: its speed per second, rms")
+      ->type_name("M,DEG")
+      ->group(group);
+  verb.add_option("--pose-clock-offset", words.pose_clock_offset_ms,
+                  "A tracker's clock is late by this (negative: early), and the robot sways (0.2,10 unless --sway)")
+      ->type_name("MS")
       ->group(group);
   verb.add_option("--bursts", disturb.burst, "Captures in a row from nearly one place (default 1)")
       ->type_name("N")

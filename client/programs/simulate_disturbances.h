@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "client/sim/visit/experiment.h"
@@ -10,7 +11,8 @@ namespace rigcal::client {
 
 // As written on the command line; empty: not asked for.
 struct DisturbanceWords {
-  std::string bump, bump_by, board_moved, wrong_instant, shift_capture, visit_scatter;
+  std::string bump, bump_by, board_moved, wrong_instant, shift_capture, visit_scatter, sway;
+  std::optional<double> pose_clock_offset_ms;
 };
 
 // Adds the options to `verb`; both outlive its parsing.

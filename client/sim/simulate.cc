@@ -76,7 +76,8 @@ class Recorder {
     for (const RigSensor& sensor : experiment_.rig.sensors)
       if (sensor.kind == SensorKind::kTracker)
         RIGCAL_TRY(
-            Write(folder_ / sensor.id.str() / "poses.csv", PosesCsv(experiment_, TrackerRows(experiment_, sensor))));
+            Write(folder_ / sensor.id.str() / "poses.csv",
+                  PosesCsv(experiment_, sensor, TrackerRows(experiment_, sensor))));
     return summary_;
   }
 

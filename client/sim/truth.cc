@@ -117,6 +117,10 @@ std::map<std::string, std::string> DisturbancesOf(const Experiment& experiment) 
   if (disturb.mixed_pixels_ratio > 0) words["mixed_pixels"] = Text(disturb.mixed_pixels_ratio) + " of edge beams";
   if (disturb.incidence_bias_m > 0)
     words["incidence_bias"] = Text(1e3 * disturb.incidence_bias_m) + " mm at 60 deg of incidence";
+  if (disturb.sway_per_s.m > 0 || disturb.sway_per_s.rad > 0)
+    words["sway"] = By(disturb.sway_per_s) + " per second at captures, rms";
+  if (disturb.pose_clock_late_s != 0)
+    words["pose_clock_offset"] = Text(1e3 * disturb.pose_clock_late_s) + " ms late, every tracker";
   if (disturb.burst > 1) words["bursts"] = std::to_string(disturb.burst) + " captures from nearly one place";
   DescribeCaptures(experiment, words);
   return words;

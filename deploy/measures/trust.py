@@ -11,9 +11,10 @@ CAPTURES_OFF = 2  # a named capture may be this far from the first after a bump
 
 class Counts:
     """Sessions per scenario, from seed 1 on; with --full those that the limits are meant for."""
-    QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1}
+    QUICK = {"clean": 4, "coverage": 1, "pair_visits": 2, "bump": 2, "misfit": 1, "rig_shift": 1, "pair_shift": 4, "bursts": 1,
+             "pose_clock": 2}
     FULL = {"clean": 1000, "coverage": 200, "pair_visits": 100, "visits": 20, "bump": 36, "misfit": 100, "rig_shift": 30, "pair_shift": 100,
-            "bursts": 200, "other": 20}
+            "bursts": 200, "pose_clock": 20, "other": 20}
 
     def __init__(self, context):
         self.of = self.FULL if context.full else self.QUICK
@@ -155,6 +156,29 @@ def bursts(context, counts):
     yield at_least("thousand_captures_covered", covered_of_all([thousand]), 80, "%")
 
 
+def clock_error_sigmas(judged):
+    """How many told sigmas the told offset is from the true one; of a clock of which nothing is told it is without limit."""
+    if len(judged["clocks"]) != 1:
+        return math.inf
+    [clock] = judged["clocks"]
+    return abs(clock["late_s"] - judged["clock_late_s"]) / clock["sigma_s"]
+
+
+def pose_clock(context, counts):
+    """A tracker whose clock is off, on a robot that does not stop for its captures; beside the same visits with a clock that is right."""
+    count = counts.of["pose_clock"]
+    right, off = (sessions(context, "pose_clock_" + name, count) for name in ("right", "offset"))
+    title = "pose_clock_offset_of_%d" % count
+    pairs = [(name == "body", (pose, without["sensors"][name])) for one, without in zip(off, right) for name, pose in one["sensors"].items()
+             if pose["known"] and without["sensors"][name]["known"]]
+    for of_body, who in ((True, "body"), (False, "others")):
+        of_these = [pair for is_body, pair in pairs if is_body == of_body]
+        yield at_most("%s_error_over_clean_%s" % (title, who), max(ratio_of(of_these, "e", part) for part in (slice(0, 3), slice(3, 6))), 1.1)
+    yield at_most(title + "_off_by_sigmas", max(clock_error_sigmas(one) for one in off), 3.0)
+    yield info(title + "_error_rms", 1e3 * math.sqrt(sum((clock["late_s"] - one["clock_late_s"]) ** 2 for one in off for clock in one["clocks"]) / count), "ms")
+    yield info(title + "_pass", percent(one["verdict"] == "pass" for one in off), "%")
+
+
 def others(context, counts):
     """What else may go wrong; of these it matters that nobody is sure and wrong."""
     if not context.full:
@@ -169,6 +193,6 @@ def others(context, counts):
 
 def run(context):
     counts = Counts(context)
-    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, others):
+    for part in (bumps, clean, misfits, shifts, visits, coverage, bursts, pose_clock, others):
         yield from part(context, counts)
     yield from trust_real.run(context)

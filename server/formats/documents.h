@@ -39,7 +39,7 @@ struct RevisionInput {
   Verdict verdict;
   std::optional<PolicyInForce> policy = {};  // that judged it; absent: it is from before there were any
   std::vector<RetiredSensor> retired = {};  // sorted by sensor; in the document only where there is any
-  bool whole = true;  // false: of edges what a document of format 2 has, and no more (pipeline/revisions/whole_revision.h)
+  bool whole = true;  // false: of edges what a document of format 2 has, and no more (revisions/whole_revision.h)
   std::vector<Cause> causes = {};  // those that fail most pairs first
 };
 // In format 2, for which `input` need not be whole.

@@ -71,9 +71,18 @@ void SetUp(CURL* curl, const Receiver& receiver, const Alert& alert, const Heade
   curl_easy_setopt(curl, CURLOPT_NOPROGRESS, 0L);
 }
 
-bool HasUser(const std::string& url) {
-  const std::size_t host = url.find("//") + 2;
-  return url.find('@', host) < url.find_first_of("/?", host);
+// As libcurl will read it when something is to be sent.
+struct AddressRead {
+  bool is_whole = false;  // it has a host, and a port that there can be
+  bool has_user = false;
+};
+AddressRead ReadAddress(const std::string& url) {
+  const std::unique_ptr<CURLU, decltype(&curl_url_cleanup)> parsed(curl_url(), &curl_url_cleanup);
+  if (!parsed || curl_url_set(parsed.get(), CURLUPART_URL, url.c_str(), 0) != CURLUE_OK) return {};
+  char* user = nullptr;
+  const bool has_user = curl_url_get(parsed.get(), CURLUPART_USER, &user, 0) == CURLUE_OK;
+  curl_free(user);
+  return {true, has_user};
 }
 
 }  // namespace
@@ -82,10 +91,11 @@ Status CheckReceiver(const Receiver& receiver) {
   const std::string& url = receiver.url;
   const bool is_http = url.rfind("http://", 0) == 0 || url.rfind("https://", 0) == 0;
   const bool has_space = url.find_first_of(" \t\r\n") != std::string::npos;
-  if (!is_http || has_space || url.size() > kUrlBytesMax || !IsPrintableUtf8(url))
+  const AddressRead read = ReadAddress(url);
+  if (!is_http || has_space || url.size() > kUrlBytesMax || !IsPrintableUtf8(url) || !read.is_whole)
     return Fail(ErrorCode::kInvalidInput, "--webhook " + Quoted(url) + " is no address of HTTP",
                 "Write, for instance, https://alerts.example.org/rigcal.");
-  if (HasUser(url))
+  if (read.has_user)
     return Fail(ErrorCode::kInvalidInput, "a --webhook address names a user",
                 "Leave the user out: the receiver knows the sender by the signature.");
   if (receiver.secret.size() < kSecretBytesMin)

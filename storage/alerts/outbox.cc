@@ -15,6 +15,9 @@ const std::string kIsHead =
     "NOT EXISTS (SELECT 1 FROM waiting_alert e WHERE e.url = w.url AND e.robot_id = w.robot_id AND e.alert_number < "
     "w.alert_number)";
 
+// Nothing waits longer than this between two tries: what would was noted before the clock was set back.
+constexpr std::int64_t kPauseMax_ns = 86'400'000'000'000;
+
 std::int64_t NextAlertNumber(Store& store) {
   Query query(store, "SELECT coalesce(max(number), 0) + 1 FROM alert");
   return query.Step() ? query.Int(0) : 1;
@@ -46,8 +49,9 @@ ReceiverState StateOfReceiver(Store& store, const std::string& url, bool is_told
   state.url = ShownUrl(url);
   state.is_told = is_told;
   Query waiting(store,
-                "SELECT count(*), min(a.at_ns), max(w.attempts), min(w.next_try_ns) FILTER (WHERE w.next_try_ns > 0) FROM "
-                "waiting_alert w JOIN alert a ON a.number = w.alert_number WHERE w.url = ?");
+                "SELECT count(*), (SELECT a.at_ns FROM waiting_alert o CROSS JOIN alert a ON a.number = o.alert_number WHERE "
+                "o.url = ?1 ORDER BY o.alert_number LIMIT 1), max(w.attempts), min(w.next_try_ns) FILTER (WHERE "
+                "w.next_try_ns > 0) FROM waiting_alert w WHERE w.url = ?1");
   if (waiting.Bind(url).Step() && waiting.Int(0) > 0) {
     state.waiting = waiting.Int(0);
     state.oldest_at = waiting.Time(1);
@@ -57,7 +61,7 @@ ReceiverState StateOfReceiver(Store& store, const std::string& url, bool is_told
   Query error(store,
               "SELECT last_error FROM waiting_alert WHERE url = ? AND last_error <> '' ORDER BY next_try_ns DESC LIMIT 1");
   if (error.Bind(url).Step()) state.last_error = error.Text(0);
-  Query delivered(store, "SELECT count(*) FROM alert_delivered WHERE url = ?");
+  Query delivered(store, "SELECT delivered FROM summary_delivered WHERE url = ?");
   if (delivered.Bind(url).Step()) state.delivered = delivered.Int(0);
   return state;
 }
@@ -99,8 +103,8 @@ Result<std::optional<WaitingAlert>> LoadNextAlert(Store& store, const std::strin
   return Load<Next>(store, kOutboxSubject, [&]() -> Result<Next> {
     Query query(store,
                 "SELECT number, id, a.robot_id, kind, subject, at_ns, body, attempts FROM waiting_alert w "
-                "CROSS JOIN alert a ON a.number = w.alert_number WHERE w.url = ? AND w.next_try_ns <= ? AND " +
-                    kIsHead + " ORDER BY w.alert_number LIMIT 1");
+                "CROSS JOIN alert a ON a.number = w.alert_number WHERE w.url = ?1 AND (w.next_try_ns <= ?2 OR "
+                "w.next_try_ns > ?2 + " + std::to_string(kPauseMax_ns) + ") AND " + kIsHead + " ORDER BY w.alert_number LIMIT 1");
     if (!query.Bind(url, now).Step()) return std::nullopt;
     return WaitingAlert{AlertAt(query), static_cast<int>(query.Int(7))};
   });

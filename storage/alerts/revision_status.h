@@ -1,4 +1,4 @@
-// What each revision says of the status of its robot, sensor by sensor (server/model/robots/robot_status.h), and which visits of
+// What each revision says of the status of its robot, sensor by sensor (robots/robot_status.h), and which visits of
 // which rig model found something of the calibration in use.
 #pragma once
 

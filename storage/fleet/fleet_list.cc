@@ -49,14 +49,6 @@ void BindDue(Query& query, Stamp now) {
   query.Bind(now.ns, this_week_ns, this_week_ns + kWeek_ns);
 }
 
-// ", count of one, count of the next, ..." in the order of kStatusWords.
-std::string StatusCounts() {
-  std::string counts;
-  for (const StatusWord word : kStatusWords)
-    counts += ", count(*) FILTER (WHERE " + StatusSql() + " = '" + NameOf(word) + "')";
-  return counts;
-}
-
 // What is worst comes first.
 std::string StatusRankSql() {
   return "instr(' failed out-of-tolerance unknown overdue drifted due ok', ' ' || " + StatusSql() + ")";
@@ -142,6 +134,16 @@ std::map<DriveKind, std::int64_t> CountKinds(Store& store, Stamp now) {
   return kinds;
 }
 
+// Each row's status is worked out once.
+std::map<StatusWord, std::int64_t> CountStatuses(Store& store, Stamp now) {
+  Query query(store, "SELECT " + StatusSql() + " AS word, count(*) FROM summary_robot GROUP BY word");
+  query.Bind(now);
+  std::map<StatusWord, std::int64_t> statuses;
+  for (const StatusWord word : kStatusWords) statuses[word] = 0;
+  while (query.Step()) statuses[StatusWordOf(query.Text(0))] = query.Int(1);
+  return statuses;
+}
+
 }  // namespace
 
 Result<FleetCounts> CountFleet(Store& store, Stamp now) {
@@ -152,7 +154,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
                            "count(*) FILTER (WHERE verdict = 'warn'), count(*) FILTER (WHERE verdict = 'pass'), "
                            "count(*) FILTER (WHERE " +
                            kIsDueThisWeek + "), count(*) FILTER (WHERE " + kIsDueNextWeek +
-                           "), count(*) FILTER (WHERE " + kIsDueLater + ")" + StatusCounts() + " FROM summary_robot");
+                           "), count(*) FILTER (WHERE " + kIsDueLater + ") FROM summary_robot");
     FleetCounts counts;
     BindDue(query, now);
     if (!query.Step()) return counts;
@@ -169,8 +171,7 @@ Result<FleetCounts> CountFleet(Store& store, Stamp now) {
     counts.due_next_week = query.Int(10);
     counts.due_later = query.Int(11);
     counts.kinds = CountKinds(store, now);
-    int column = 12;
-    for (const StatusWord word : kStatusWords) counts.statuses[word] = query.Int(column++);
+    counts.statuses = CountStatuses(store, now);
     RIGCAL_ASSIGN(counts.causes, LoadCauseCounts(store, kCausesListedMax + 1));
     return counts;
   });

@@ -54,7 +54,7 @@ Result<std::vector<RobotId>> LoadChangedStatuses(Store& store, Stamp now, int ma
   return Load<Robots>(store, "the status of robots", [&]() -> Result<Robots> {
     Query query(store, "SELECT robot_id FROM summary_robot s WHERE calculating = 0 AND " + StatusSql() +
                            " <> coalesce((SELECT status FROM robot_status r WHERE r.robot_id = s.robot_id ORDER BY "
-                           "number DESC LIMIT 1), '') ORDER BY robot_id LIMIT ?2");
+                           "number DESC LIMIT 1), '') ORDER BY name_key LIMIT ?2");
     query.Bind(now, max);
     Robots robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));

@@ -1,4 +1,4 @@
-// What the newest session of each revision found of the calibration in use before it (server/model/sessions/as_found.h).
+// What the newest session of each revision found of the calibration in use before it (sessions/as_found.h).
 #pragma once
 
 #include <map>

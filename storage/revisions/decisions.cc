@@ -25,7 +25,7 @@ Decision DecisionOf(const Query& query) {
 }
 
 std::optional<Decision> InUse(Store& store, const RobotId& robot) {
-  Query query(store, "SELECT " + kDecisionColumns + " FROM decision d WHERE d.robot_id = ? AND " + kHolds +
+  Query query(store, "SELECT " + kDecisionColumns + " FROM decision d WHERE d.robot_id = ? AND " + DecisionHolds() +
                          " ORDER BY d.number DESC LIMIT 1");
   return query.Bind(robot).Step() ? std::optional(DecisionOf(query)) : std::nullopt;
 }
@@ -44,7 +44,7 @@ bool WasEverApproved(Store& store, const RobotId& robot, int revision) {
 }
 
 bool WasRolledBack(Store& store, const Decision& decision) {
-  return !Query(store, "SELECT 1 FROM decision d WHERE d.number = ? AND " + kNotRolledBack)
+  return !Query(store, "SELECT 1 FROM decision d WHERE d.number = ? AND " + NotRolledBack())
               .Bind(decision.number)
               .Step();
 }

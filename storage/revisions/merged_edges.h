@@ -1,4 +1,4 @@
-// Which edges of a robot its revisions take as they are, and the merged edges that stand for the others (model/edges/merged_edge.h).
+// Which edges of a robot its revisions take as they are, and the merged edges that stand for the others (merged_edge.h).
 #pragma once
 
 #include <map>

@@ -26,11 +26,11 @@ Result<std::optional<Revision>> LoadStillUsable(Store& store, const RobotId& rob
   return Load<Found>(store, DecisionsSubject(robot), [&]() -> Result<Found> {
     Query query(
         store,
-        std::string("WITH decision AS (SELECT * FROM main.decision WHERE robot_id = ?1 AND at_ns <= ?3) SELECT ") +
-            kRevisionColumns +
+        std::string("SELECT ") + kRevisionColumns +
             " FROM decision d CROSS JOIN revision ON revision.robot_id = d.robot_id AND "
             "revision.number = d.revision_number " +
-            kRevisionJudged + " WHERE d.robot_id = ?1 AND +d.revision_number <= ?2 AND verdict IN ('pass', 'warn') AND " + kHolds + " AND " +
+            kRevisionJudged + " WHERE d.robot_id = ?1 AND d.at_ns <= ?3 AND +d.revision_number <= ?2 AND verdict IN ('pass', 'warn') AND " +
+            DecisionHolds("?3") + " AND " +
             CountsNothingRetired("counted_edge c ON c.edge_number = t.edge_number", "edge_number") + " AND " +
             CountsNothingRetired("session s ON s.number = t.session_number JOIN edge e ON e.session_id = s.session_id "
                                  "JOIN counted_edge c ON c.edge_number = e.number",

@@ -34,12 +34,20 @@ struct PartRow {
   std::string serial, firmware;  // empty: not told
 };
 
-// By sensor, then the earliest captured first.
+// Of a sensor of `l`, that sessions told more than one `column` of it: two look-ups, however many sessions there are.
+std::string TellsSeveral(const std::string& column) {
+  const std::string of_sensor = "(" + column + ") FROM sensor_part WHERE robot_id = l.robot_id AND sensor_id = l.sensor_id)";
+  return "(SELECT min" + of_sensor + " <> (SELECT max" + of_sensor;
+}
+
+// Of sensors that were ever another part. By sensor, then the earliest captured first.
 std::vector<PartRow> LoadPartsOfSessions(Store& store, const RobotId& robot) {
   Query query(store,
-              "SELECT p.sensor_id, s.session_id, s.captured_ns, p.serial, p.firmware FROM sensor_part p "
-              "CROSS JOIN session s ON s.number = p.session_number WHERE p.robot_id = ? "
-              "ORDER BY p.sensor_id, s.captured_ns, s.session_id");
+              "SELECT p.sensor_id, s.session_id, s.captured_ns, p.serial, p.firmware FROM listed_sensor l "
+              "CROSS JOIN sensor_part p ON p.robot_id = l.robot_id AND p.sensor_id = l.sensor_id "
+              "CROSS JOIN session s ON s.number = p.session_number WHERE l.robot_id = ? AND (" +
+                  TellsSeveral("serial") + " OR " + TellsSeveral("firmware") +
+                  ") ORDER BY p.sensor_id, s.captured_ns, s.session_id");
   query.Bind(robot);
   std::vector<PartRow> rows;
   while (query.Step())
@@ -103,19 +111,17 @@ const Epoch* NewestSaidOf(const std::vector<Epoch>& said, const SensorId& sensor
   return found == said.rend() ? nullptr : &*found;
 }
 
-// `begins_at` absent: it takes back.
-void InsertEpochWord(Store& store, const RobotId& robot, const SensorId& sensor, std::optional<Stamp> begins_at,
-                const Word& word) {
+// `begins_at` absent: it takes back. An audit row holds one row: each sensor has its own.
+Status AppendEpochWord(Store& store, const RobotId& robot, const SensorId& sensor, std::optional<Stamp> begins_at,
+                       const Word& word) {
   Query(store, "INSERT INTO standing (robot_id, at_ns, how, sensor_id, who, reason) VALUES (?, ?, 'epoch', ?, ?, ?)")
       .Bind(robot, word.at, sensor, word.who, word.reason)
       .Run();
-  Query(store, "INSERT INTO epoch VALUES (?, ?)").Bind(store.database().getLastInsertRowid(), begins_at).Run();
-}
-
-std::string SensorNamesOf(const std::vector<SensorId>& sensors) {
-  std::string names;
-  for (const SensorId& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.str();
-  return names;
+  const AuditedRow row{AuditedKind::kStanding, store.database().getLastInsertRowid()};
+  Query(store, "INSERT INTO epoch VALUES (?, ?)").Bind(row.number, begins_at).Run();
+  const std::string what = (begins_at ? "began an epoch of " : "took back the epoch of ") + sensor.str() + " of robot " +
+                           robot.str() + (begins_at ? " at " + ToIso(*begins_at) : "") + Because(word);
+  return AppendAudit(store, word.at, word.who, what, robot, row);
 }
 
 bool IsSaidAlready(const Epoch* said, Stamp begins_at, const Word& word) {
@@ -145,17 +151,11 @@ Status BeginEpoch(Store& store, const RobotId& robot, const std::vector<SensorId
                 "Say when the sensor was worked on, or leave the time away: then it begins now.");
   return store.connection().Append(EpochsSubject(robot), [&]() -> Status {
     const std::vector<Epoch> said = SaidByPeople(store, robot);
-    std::vector<SensorId> begun;
     for (const SensorId& sensor : sensors) {
       if (IsSaidAlready(NewestSaidOf(said, sensor), begins_at, word)) continue;
-      InsertEpochWord(store, robot, sensor, begins_at, word);
-      begun.push_back(sensor);
+      RIGCAL_TRY(AppendEpochWord(store, robot, sensor, begins_at, word));
     }
-    if (begun.empty()) return {};
-    return AppendAudit(store, word.at, word.who,
-                       "began an epoch of " + SensorNamesOf(begun) + " of robot " + robot.str() + " at " + ToIso(begins_at) +
-                           Because(word),
-                       robot);
+    return {};
   });
 }
 
@@ -166,17 +166,12 @@ Result<std::vector<Epoch>> TakeBackEpoch(Store& store, const RobotId& robot, con
   return Append<Epochs>(store, EpochsSubject(robot), [&]() -> Result<Epochs> {
     const Epochs said = SaidByPeople(store, robot);
     Epochs taken;
-    std::vector<SensorId> names;
     for (const SensorId& sensor : sensors) {
       const Epoch* newest = NewestSaidOf(said, sensor);
       if (newest == nullptr) continue;
-      InsertEpochWord(store, robot, sensor, std::nullopt, word);
+      RIGCAL_TRY(AppendEpochWord(store, robot, sensor, std::nullopt, word));
       taken.push_back(*newest);
-      names.push_back(sensor);
     }
-    if (taken.empty()) return taken;
-    RIGCAL_TRY(AppendAudit(store, word.at, word.who,
-                           "took back the epoch of " + SensorNamesOf(names) + " of robot " + robot.str() + Because(word), robot));
     return taken;
   });
 }

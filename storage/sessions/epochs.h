@@ -1,4 +1,4 @@
-// When epochs of sensors began (server/model/approval/epoch.h): by what sessions say, by the parts that they name, by what people
+// When epochs of sensors began (approval/epoch.h): by what sessions say, by the parts that they name, by what people
 // say. Append-only; what was measured stays as it is.
 #pragma once
 

@@ -79,14 +79,17 @@ Result<std::int64_t> CountRobotsOfModelToJudge(Store& store, std::int64_t rig_mo
   });
 }
 
-// Of each robot that ever was of it what its newest session says: an index look-up each.
+// Of each robot that ever was of it what its newest session says: from each robot to the next, two look-ups each, as
+// a robot may have very many sessions.
 Result<std::vector<RobotId>> LoadRobotsOfModel(Store& store, const std::string& name, int max) {
   using Robots = std::vector<RobotId>;
   return Load<Robots>(store, RigModelSubject(name), [&]() -> Result<Robots> {
     Query query(store,
-                "SELECT robot_id FROM (SELECT DISTINCT robot_id FROM session_model WHERE rig_model = ?1) r "
-                "WHERE ?1 = (SELECT rig_model FROM session_model newest WHERE newest.robot_id = r.robot_id "
-                "ORDER BY captured_ns DESC, session_number DESC LIMIT 1) ORDER BY robot_id LIMIT ?2");
+                "WITH RECURSIVE r(robot_id) AS (SELECT min(robot_id) FROM session_model WHERE rig_model = ?1 UNION ALL "
+                "SELECT (SELECT min(m.robot_id) FROM session_model m WHERE m.rig_model = ?1 AND m.robot_id > r.robot_id) "
+                "FROM r WHERE r.robot_id IS NOT NULL) SELECT robot_id FROM r WHERE robot_id IS NOT NULL "
+                "AND ?1 = (SELECT rig_model FROM session_model newest WHERE newest.robot_id = r.robot_id "
+                "ORDER BY captured_ns DESC, session_number DESC LIMIT 1) LIMIT ?2");
     query.Bind(name, max);
     Robots robots;
     while (query.Step()) robots.push_back(query.IdAt<RobotId>(0));

@@ -1,4 +1,4 @@
-// Rig models that people set (server/model/robots/rig_model.h). Append-only: of each name the newest version holds. Setting one lets
+// Rig models that people set (robots/rig_model.h). Append-only: of each name the newest version holds. Setting one lets
 // the robots of that model wait to be judged anew.
 #pragma once
 

@@ -1,6 +1,6 @@
+# Real processes, real DDS on loopback, a real database: client and server as a technician runs them.
 # Flows by theme: sensors/ a session to poses, people/ what is decided and told, tools/ what goes in and out beside sessions,
 # faults/ disks and processes that fail, hostile/ input that nobody should send. What flows share stands beside this file.
-# Real processes, real DDS on loopback, a real database: client and server as a technician runs them.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 foreach(flow edges people/names people/models tools/public_url tools/completion sensors/moved_within faults/full_disk faults/full_disk_batch faults/two_servers people/validity sensors/insight sensors/session sensors/hand_eye sensors/tracker_lidar sensors/lidar_pair sensors/bin_layout faults/lost_file people/remount sensors/weekly people/standing people/approval people/boards people/resolve people/alerts tools/export hostile/refusals hostile/bad_inputs faults/report_again hostile/poison tools/install tools/check tools/import)
   get_filename_component(name ${flow} NAME)
@@ -10,5 +10,5 @@ foreach(flow edges people/names people/models tools/public_url tools/completion 
 endforeach()
 set_tests_properties(e2e.bad_inputs PROPERTIES COST 80)  # the longest begins first, also where none was ever run
 
-# What a hostile program in the network may send: see bad_inputs.py.
+# What a hostile program in the network may send: see hostile/bad_inputs.py.
 rigcal_program(hostile_client SOURCES e2e/hostile/hostile_client.cc DEPS rigcal_client rigcal_dds GTest::gtest)

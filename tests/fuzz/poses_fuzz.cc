@@ -29,6 +29,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto table = formats::ReadPoses(text, kind, "tracker/poses.csv");
     if (fuzz::RequireGoodError(table)) Check(*table, kind);
   }
+  if (const auto path = formats::ReadTrackerPath(text, "tracker/poses.csv"); fuzz::RequireGoodError(path))
+    for (std::size_t i = 0; i < path->size(); ++i) {
+      fuzz::Require((*path)[i].capture.empty(), "a row of a path has no capture");
+      if (i > 0) fuzz::Require((*path)[i - 1].stamp < (*path)[i].stamp, "a path is sorted");
+    }
   const auto known = formats::ReadPosesOf({CaptureId("000"), CaptureId("001")}, text, "tracker/poses.csv");
   if (fuzz::RequireGoodError(known)) fuzz::Require(known->size() <= 2, "only known captures have rows");
   return 0;

@@ -198,9 +198,9 @@ void McapWalk::Lose(std::uint64_t offset, const std::string& what) {
 
 // Whether there is one behind `after` to go on at.
 bool McapWalk::SkipToIndexedChunk(std::uint64_t after) {
-  const std::vector<std::uint64_t> chunks = IndexedChunks(*source_);
-  const auto next = std::upper_bound(chunks.begin(), chunks.end(), after);
-  if (next == chunks.end()) return false;
+  if (!indexed_) indexed_ = IndexedChunks(*source_);
+  const auto next = std::upper_bound(indexed_->begin(), indexed_->end(), after);
+  if (next == indexed_->end()) return false;
   if (chunk_) LeaveChunk();
   at_ = *next;
   return true;

@@ -61,6 +61,7 @@ class McapWalk {
   std::uint64_t at_ = 0;
   std::vector<std::byte> buffer_;
   std::optional<OpenChunk> chunk_;
+  std::optional<std::vector<std::uint64_t>> indexed_;  // chunks, once they were asked for
   bool closed_ = false, over_ = false;
   Damage damage_;
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <optional>
 
 #include "client/bags/limits.h"
@@ -11,6 +13,12 @@ namespace rigcal::bags {
 namespace {
 
 constexpr std::size_t kFieldCountMax = 512;
+
+// A bag's own definition may make signed or longer numbers of what are 32 bits; of these no sum overflows.
+bool Are32Bits(std::initializer_list<std::int64_t> sizes) {
+  return std::all_of(sizes.begin(), sizes.end(),
+                     [](std::int64_t size) { return size >= 0 && size <= std::numeric_limits<std::uint32_t>::max(); });
+}
 
 std::optional<Primitive> PrimitiveOf(std::int64_t datatype) {
   constexpr Primitive kTypes[] = {Primitive::kInt8,  Primitive::kUint8,  Primitive::kInt16,   Primitive::kUint16,
@@ -26,6 +34,8 @@ Status ReadFields(const Value& list, PointCloud& cloud) {
     const auto type = PrimitiveOf(item["datatype"].Integer());
     PointField field;
     field.name = item["name"].Text();
+    if (!Are32Bits({item["offset"].Integer(), item["count"].Integer()}))
+      return RefuseMessage("its field " + Quoted(field.name) + " has an offset or a count beyond 32 bits");
     field.offset_bytes = static_cast<std::size_t>(item["offset"].Integer());
     // Drivers of the first years left it 0 and meant 1.
     field.count = static_cast<std::size_t>(std::max<std::int64_t>(1, item["count"].Integer()));
@@ -59,6 +69,8 @@ Result<PointCloud> ReadPointCloud(const Value& message) {
   if (width < 1 || height < 1 || width > limits::kCloudPointsMax / height)
     return RefuseMessage("the cloud has " + std::to_string(width) + " x " + std::to_string(height) +
                          " points, not 1 to " + std::to_string(limits::kCloudPointsMax));
+  if (!Are32Bits({message["point_step"].Integer(), message["row_step"].Integer()}))
+    return RefuseMessage("the cloud has points or rows of a size beyond 32 bits");
   cloud.width = static_cast<std::size_t>(width);
   cloud.height = static_cast<std::size_t>(height);
   cloud.point_bytes = static_cast<std::size_t>(message["point_step"].Integer());

@@ -1,5 +1,6 @@
 #include "client/bags/messages/header.h"
 
+#include <limits>
 #include <map>
 
 namespace rigcal::bags {
@@ -7,9 +8,11 @@ namespace rigcal::bags {
 std::optional<Header> HeaderOf(const Value& header) {
   const Value& stamp = header["stamp"];
   if (stamp["sec"].IsAbsent() || stamp["nanosec"].IsAbsent()) return std::nullopt;
-  // Both have 32 bits: no sum of theirs is beyond int64.
-  return Header{stamp["sec"].Integer() * 1'000'000'000 + stamp["nanosec"].Integer(),
-                std::string(header["frame_id"].Text())};
+  // Both have 32 bits, unless a bag's own definition says otherwise: no sum of such is beyond int64.
+  constexpr std::int64_t kWordMax = std::numeric_limits<std::uint32_t>::max();
+  const std::int64_t sec = stamp["sec"].Integer(), nanosec = stamp["nanosec"].Integer();
+  if (sec < -kWordMax || sec > kWordMax || nanosec < 0 || nanosec > kWordMax) return std::nullopt;
+  return Header{sec * 1'000'000'000 + nanosec, std::string(header["frame_id"].Text())};
 }
 
 Result<std::optional<Header>> ReadHeader(const Topic& topic, const Definition& definition, Bytes bytes) {

@@ -1,7 +1,9 @@
 #include "client/import/files/session_folder.h"
 
+#include <span>
 #include <vector>
 
+#include "client/bags/byte_source.h"
 #include "client/bags/parts.h"
 #include "server/base/digests/sha256.h"
 #include "server/base/files/durable_file.h"
@@ -16,12 +18,26 @@ constexpr const char* kRecord = ".rigcal-import.json";  // session folders do no
 constexpr const char* kSession = "session.yaml";
 constexpr std::size_t kRecordBytesMax = 16 << 20;
 
+// Its name is on the disk, too, before anybody is told that what is in it is; where the folder above may be opened.
 Status MakeFolder(const fs::path& folder) {
   std::error_code failed;
-  fs::create_directories(folder, failed);
+  const bool is_new = fs::create_directories(folder, failed);
+  if (is_new) static_cast<void>(SyncFolder(fs::absolute(folder / "..").lexically_normal()));
   if (!failed) return {};
   return Fail(ErrorCode::kStorage, folder.string() + ": cannot be made (" + failed.message() + ")",
               "Check the path and its permissions.");
+}
+
+// Of its first and last 64 KiB: two bags may share a name and a size. Nothing of one that cannot be read.
+std::string EndsOf(const fs::path& file) {
+  constexpr std::uint64_t kEndBytes = 64 << 10;
+  const auto source = bags::OpenSource(file);
+  if (!source) return "";
+  std::vector<std::byte> bytes(2 * kEndBytes);
+  const std::uint64_t size = (*source)->size(), last = size > kEndBytes ? size - kEndBytes : 0;
+  const auto front = (*source)->ReadAt(0, std::span(bytes).first(kEndBytes));
+  const auto back = (*source)->ReadAt(last, std::span(bytes).last(kEndBytes));
+  return front && back ? Sha256Of(std::span<const std::byte>(bytes)).str() : "";
 }
 
 // What a run that was ended amid a file left beside it.
@@ -86,6 +102,7 @@ Result<std::string> IdentityOf(const fs::path& bag, std::string_view rig_yaml, s
         out.Object([&] {
           out.Text("file", file.filename().string());
           out.Integer("size_bytes", missing ? -1 : static_cast<std::int64_t>(size));
+          out.Text("ends_sha256", EndsOf(file));
         });
       }
     });

@@ -139,10 +139,14 @@ Status CheckDisturbances(const Rig& rig, const Options& options) {
                                    LimitedSize{"visit-scatter", disturb.visit_scatter.rad, 1},
                                    LimitedSize{"board-bend", disturb.board_bend_m, 0.1},
                                    LimitedSize{"mixed-pixels", disturb.mixed_pixels_ratio, 1},
-                                   LimitedSize{"incidence-bias", disturb.incidence_bias_m, 1}})
+                                   LimitedSize{"incidence-bias", disturb.incidence_bias_m, 1},
+                                   LimitedSize{"sway", disturb.sway_per_s.m, 10},
+                                   LimitedSize{"sway", disturb.sway_per_s.rad, 10}})
     if (!(range.value >= 0 && range.value <= range.max))
       return RefuseDisturbance(std::string(range.name) + " is out of range",
                                "Give 0 to " + std::to_string(range.max).substr(0, 5) + ".");
+  if (!(std::abs(disturb.pose_clock_late_s) <= 1))
+    return RefuseDisturbance("pose-clock-offset is out of range", "Give -1000 to 1000 ms.");
   if (disturb.burst < 1 || disturb.burst > 10'000)
     return RefuseDisturbance("bursts is out of range", "Give 1 to 10000.");
   if (disturb.board_move) RIGCAL_TRY(CheckBoardMove(rig, *disturb.board_move));

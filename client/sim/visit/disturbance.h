@@ -42,6 +42,8 @@ struct Disturbances {
   double board_bend_m = 0.0;      // of every board: height of its corner over its middle
   double mixed_pixels_ratio = 0;  // of a lidar's beams that meet an edge: their range lies between both surfaces
   double incidence_bias_m = 0.0;  // that a lidar measures too long at 60 degrees of incidence; none head-on
+  Displacement sway_per_s;        // speed of the body at captures, rms; a tracker then tells its path as well
+  double pose_clock_late_s = 0;   // what a tracker tells for a moment is where its body was by this before
   int burst = 1;                  // captures in a row from nearly one place, with corner errors in common
 };
 

@@ -1,8 +1,10 @@
 #include "client/sim/visit/session_text.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "client/sim/rig/random.h"
+#include "client/sim/visit/sway.h"
 #include "client/sim/visit/yaml_text.h"
 
 namespace rigcal::sim {
@@ -37,6 +39,32 @@ bool HasFile(const Experiment& experiment, std::size_t capture_idx) {
   });
 }
 
+Se3 WithNoise(const Se3& T, const RigSensor& tracker, Random& random) {
+  Vector6d xi;
+  xi << tracker.tracker.sigma_m * random.Normals<3>(), tracker.tracker.sigma_rad * random.Normals<3>();
+  return (T * Se3::Exp(xi)).Normalized();
+}
+
+std::string PoseLine(const std::string& capture, std::int64_t stamp_ns, const Se3& T) {
+  std::string line = capture + "," + std::to_string(stamp_ns);
+  for (int i = 0; i < 3; ++i) line += "," + Text(T.p_m[i]);
+  for (int i = 0; i < 4; ++i) line += "," + Text(T.q.coeffs()[i]);
+  return line + "\n";
+}
+
+std::string PathLines(const Experiment& experiment, const RigSensor& tracker, std::size_t capture_idx) {
+  Random random(KeyOf(experiment.options.seed, "tracker path", tracker.id.str(), capture_idx));
+  std::string lines;
+  const int rows = static_cast<int>(std::lround(2 * kPathHalf_s / kPathStep_s));
+  for (int i = 0; i < rows; ++i) {
+    // None of them at the capture itself: clocks of trackers know nothing of shutters.
+    const double since_s = (i + 0.3) * kPathStep_s - kPathHalf_s;
+    lines += PoseLine("", experiment.stamps_ns[capture_idx] + std::llround(since_s * 1e9),
+                      WithNoise(ToldByTracker(experiment, tracker, capture_idx, since_s), tracker, random));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string SessionYaml(const Experiment& experiment) {
@@ -59,20 +87,16 @@ std::vector<TrackerRow> TrackerRows(const Experiment& experiment, const RigSenso
   for (std::size_t k = 0; k < experiment.captures.size(); ++k) {
     if (!experiment.IsRecorded(tracker.id, k) || !HasFile(experiment, k)) continue;
     Random random(KeyOf(experiment.options.seed, "tracker", tracker.id.str(), k));
-    Vector6d xi;
-    xi << tracker.tracker.sigma_m * random.Normals<3>(), tracker.tracker.sigma_rad * random.Normals<3>();
-    rows.push_back({k, (experiment.T_world_sensor(tracker.id, k) * Se3::Exp(xi)).Normalized()});
+    rows.push_back({k, WithNoise(ToldByTracker(experiment, tracker, k, 0.0), tracker, random)});
   }
   return rows;
 }
 
-std::string PosesCsv(const Experiment& experiment, const std::vector<TrackerRow>& rows) {
+std::string PosesCsv(const Experiment& experiment, const RigSensor& tracker, const std::vector<TrackerRow>& rows) {
   std::string text = "capture,stamp_ns,x_m,y_m,z_m,qx,qy,qz,qw\n";
   for (const TrackerRow& row : rows) {
-    text += experiment.captures[row.capture_idx].str() + "," + std::to_string(experiment.stamps_ns[row.capture_idx]);
-    for (int i = 0; i < 3; ++i) text += "," + Text(row.T_world_body.p_m[i]);
-    for (int i = 0; i < 4; ++i) text += "," + Text(row.T_world_body.q.coeffs()[i]);
-    text += "\n";
+    text += PoseLine(experiment.captures[row.capture_idx].str(), experiment.stamps_ns[row.capture_idx], row.T_world_body);
+    if (IsSwaying(experiment)) text += PathLines(experiment, tracker, row.capture_idx);
   }
   return text;
 }

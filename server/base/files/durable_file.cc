@@ -60,6 +60,20 @@ Status Sync(const std::filesystem::path& path, int flags) {
   return {};
 }
 
+// What a write to `path` replaces: where it is a link what that leads to, so that the link stays. A device or a pipe is
+// no file to replace: rename would put a file into the place of /dev/null. Of a folder rename says so.
+Result<std::filesystem::path> ReplacedBy(const std::filesystem::path& path) {
+  constexpr int kLinksMax = 40;
+  std::error_code failed;
+  const std::filesystem::file_status status = std::filesystem::status(path, failed);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status))
+    return Fail(ErrorCode::kInvalidInput, path.string() + " is not a regular file", "Give the path of a file.");
+  std::filesystem::path target = path;
+  for (int link = 0; link < kLinksMax && std::filesystem::is_symlink(std::filesystem::symlink_status(target, failed)); ++link)
+    target = target.parent_path() / std::filesystem::read_symlink(target, failed);
+  return target;
+}
+
 tl::unexpected<Error> TooLarge(const std::filesystem::path& path, std::size_t bytes_max) {
   return Fail(ErrorCode::kInvalidInput, path.string() + " is larger than " + std::to_string(bytes_max) + " bytes",
               "Check that it is the file that was meant, or make it smaller.");
@@ -71,15 +85,16 @@ Status SyncFile(const std::filesystem::path& path) { return Sync(path, O_RDONLY)
 Status SyncFolder(const std::filesystem::path& folder) { return Sync(folder, O_RDONLY | O_DIRECTORY); }
 
 Status WriteDurably(const std::filesystem::path& path, std::string_view bytes) {
+  RIGCAL_ASSIGN(const std::filesystem::path replaced, ReplacedBy(path));
   std::filesystem::path temporary;
-  FileDescriptor file = CreateBeside(path, temporary);
+  FileDescriptor file = CreateBeside(replaced, temporary);
   if (file.get() < 0) return FileFailure(path, "create", errno);
   TemporaryFile guard(temporary);
   if (!WriteAll(file, bytes)) return FileFailure(path, "write", errno);
   if (::fsync(file.get()) != 0 || !file.Close()) return FileFailure(path, "write", errno);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) return FileFailure(path, "replace", errno);
+  if (::rename(temporary.c_str(), replaced.c_str()) != 0) return FileFailure(path, "replace", errno);
   guard.Keep();
-  return SyncFolder(FolderOf(path));
+  return SyncFolder(FolderOf(replaced));
 }
 
 Result<std::string> ReadFile(const std::filesystem::path& path, std::size_t bytes_max) {

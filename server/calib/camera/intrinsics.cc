@@ -7,6 +7,7 @@
 #include "server/base/process/out_of_memory.h"
 #include "server/calib/camera/camera_diagnoses.h"
 #include "server/calib/camera/camera_start.h"
+#include "server/calib/camera/lens_bounds.h"
 #include "server/calib/camera/lens_choice.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/diagnoses.h"
@@ -69,7 +70,11 @@ OrDiagnosis<void> CheckSizes(const CameraProblem& problem) {
 
 OrDiagnosis<IntrinsicsVector> StartOf(const CameraProblem& problem, const CameraViews& views) {
   const SensorId& camera = problem.camera.id;
-  if (problem.camera.intrinsics) return VectorOf(*problem.camera.intrinsics);
+  if (problem.camera.intrinsics) {
+    const IntrinsicsVector given = VectorOf(*problem.camera.intrinsics);
+    if (auto absurd = WhyAbsurd(problem.camera, given, views)) return tl::unexpected(std::move(*absurd));
+    return given;
+  }
   if (auto no_tilt = WhyNoTilt(camera, views)) return tl::unexpected(std::move(*no_tilt));
   const auto start = StartIntrinsics(views);
   if (!start) return tl::unexpected(AsDiagnosis(camera.str(), "no_intrinsics", start.error()));
@@ -236,7 +241,11 @@ CameraProblem WithModel(CameraProblem problem, CameraModel model) {
 OrDiagnosis<CameraEstimate> Estimated(const CameraProblem& problem, const CameraEstimate* start) {
   try {
     RIGCAL_ASSIGN(const auto work, start != nullptr ? FromStart(problem, *start) : FromScratch(problem));
-    return Finished(problem, work);
+    auto estimate = Finished(problem, work);
+    if (estimate && start == nullptr && !HoldsIntrinsics(problem.camera))
+      if (auto absurd = WhyAbsurd(problem.camera, work.state.intrinsics_a, work.views))
+        return tl::unexpected(std::move(*absurd));
+    return estimate;
   } catch (const std::exception& exception) {
     if (IsOutOfMemory(exception)) throw;  // not the data's fault: the caller tries again
     const Error error{ErrorCode::kInternal, exception.what(), "Report this with the session's id."};

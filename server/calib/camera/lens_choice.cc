@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "server/calib/camera/lens_bounds.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/robust.h"
@@ -19,7 +20,8 @@ constexpr double kClearlyBetterRatio = 0.5, kAlikeRatio = 1.1;
 constexpr std::array kLenses = {CameraModel::kPinholeRadtan, CameraModel::kFisheyeKb4, CameraModel::kPinholeRational};
 constexpr std::array kLensCodes = {"high_residual",  "ill_conditioned",           "no_convergence",
                                    "no_intrinsics",  "distortion_not_observable", "too_few_captures",
-                                   "no_common_view", "inconsistent_captures",     "ambiguous_pose"};
+                                   "no_common_view", "inconsistent_captures",     "ambiguous_pose",
+                                   kAbsurdDistortionCode};
 constexpr const char *kNoTiltCode = "no_tilt", *kNoStartCode = "no_intrinsics",
                      *kSuspectedCode = "lens_model_suspected";
 

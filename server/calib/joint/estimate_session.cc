@@ -6,7 +6,11 @@
 #include <set>
 #include <tuple>
 
+#include "server/calib/joint/misfit/board_or_lens.h"
+#include "server/base/process/parallel_for.h"
+#include "server/calib/camera/lens_trial.h"
 #include "server/calib/joint/misfit/instrument_effects.h"
+#include "server/calib/joint/misfit/pose_clock.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -69,7 +73,8 @@ std::map<SensorId, int> LastOfEach(const SessionProblem& problem) {
 
 void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   const SessionProblem& problem = explained.start.problem;
-  Eigen::MatrixXd beside = CovarianceByFields(explained.misfits);
+  const Eigen::MatrixXd by_fields = CovarianceByFields(explained.misfits);
+  Eigen::MatrixXd beside = by_fields;
   if (const Eigen::MatrixXd by_instruments = CovarianceByInstruments(explained); by_instruments.size() > 0)
     beside = beside.size() > 0 ? Eigen::MatrixXd(beside + by_instruments) : by_instruments;
   const PoseCovariance covariance = CovarianceOfPoses(explained.refined, beside);
@@ -84,8 +89,10 @@ void AddPoses(const Explained& explained, SessionEstimate& estimate) {
   if (!covariance.common.isZero(0)) estimate.common = InOrder(covariance.common, covariance.row_of_sensor, sensors);
   if (explained.misfits.any())
     estimate.misfits = MisfitsTold(problem, explained.refined, explained.misfits, covariance);
-  estimate.slants = SlantsTold(problem, explained.refined);
-  estimate.bends = BendsTold(problem, explained.refined);
+  estimate.slants = SlantsTold(problem, explained.refined, by_fields);
+  estimate.bends = BendsTold(problem, explained.refined, by_fields);
+  AttributeBends(explained, estimate.bends);
+  estimate.clocks = ClocksTold(problem, explained.refined, covariance.spread_ratio);
 }
 
 void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
@@ -97,6 +104,31 @@ void AddHeldBack(const Explained& explained, SessionEstimate& estimate) {
   AddHeldBack(problem, saw, problem.poses, weights.poses, estimate.held_back);
   std::sort(estimate.held_back.begin(), estimate.held_back.end(), [](const HeldBackLook& x, const HeldBackLook& y) {
     return std::tie(x.sensor, x.capture) < std::tie(y.sensor, y.capture);
+  });
+}
+
+// Captures whose look by the camera contradicts all others have none.
+std::map<CaptureId, int> GroupsOfLooks(const Explained& explained, const SensorId& camera,
+                                       const std::vector<HeldBackLook>& held_back) {
+  std::map<CaptureId, int> groups;
+  const std::vector<int>& group_of_place = explained.refined.groups.group_of_place;
+  for (std::size_t place = 0; place < group_of_place.size(); ++place)
+    groups.emplace(CaptureAt(explained.start.problem, static_cast<int>(place)), group_of_place[place]);
+  for (const HeldBackLook& look : held_back)
+    if (look.sensor == camera) groups.erase(look.capture);
+  return groups;
+}
+
+// Needs what was held back.
+void AddTrials(const SessionViews& views, const Explained& explained, SessionEstimate& estimate) {
+  ParallelFor(estimate.misfits.size(), [&](std::size_t i) {
+    LensMisfit& misfit = estimate.misfits[i];
+    const auto seen = std::find_if(views.cameras.begin(), views.cameras.end(), [&](const CameraViews& one) {
+      return one.camera.id == misfit.camera;
+    });
+    if (seen == views.cameras.end()) return;
+    misfit.trial = TryLenses({seen->camera, seen->board, seen->views}, seen->estimate,
+                             GroupsOfLooks(explained, misfit.camera, estimate.held_back));
   });
 }
 
@@ -123,9 +155,10 @@ SessionEstimate Estimate(const SessionViews& views) {
   }
   SessionEstimate estimate;
   estimate.reference = views.reference;
-  const Explained last = ExplainAll(WithInstrumentEffects(std::move(*first)), estimate);
+  const Explained last = ExplainAll(WithInstrumentEffects(WithClocksSettled(std::move(*first))), estimate);
   AddPoses(last, estimate);
   AddHeldBack(last, estimate);
+  AddTrials(views, last, estimate);
   return estimate;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/camera/lens_bounds.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/joint_covariance.h"
 #include "server/calib/core/selection.h"
@@ -153,6 +154,16 @@ std::optional<Diagnosis> WhyDistortionOpen(const StereoProblem& problem, const S
   return why;
 }
 
+// Of a camera whose intrinsics are not held.
+std::optional<Diagnosis> WhyAbsurd(const StereoProblem& problem, const StereoWork& work) {
+  std::optional<Diagnosis> why;
+  if (!HoldsIntrinsics(problem.camera_a))
+    why = WhyAbsurd(problem.camera_a, work.state.intrinsics_a, ViewsOf(problem, work.used, &StereoCapture::a));
+  if (!why && !HoldsIntrinsics(problem.camera_b))
+    why = WhyAbsurd(problem.camera_b, work.state.intrinsics_b, ViewsOf(problem, work.used, &StereoCapture::b));
+  return why;
+}
+
 OrDiagnosis<StereoEstimate> Finished(const StereoProblem& problem, const StereoWork& work) {
   StereoEstimate estimate;
   const auto covariance = ModelCovariance(work.joint, work.state);
@@ -182,7 +193,10 @@ OrDiagnosis<StereoEstimate> EstimateOrDiagnose(const StereoProblem& problem, con
   std::vector<Diagnosis> ignored;
   std::vector<Diagnosis>& kept = notes != nullptr ? *notes : ignored;
   RIGCAL_ASSIGN(const auto work, start != nullptr ? SolvedFrom(problem, *start) : SolvedFromScratch(problem, kept));
-  return Finished(problem, work);
+  auto estimate = Finished(problem, work);
+  if (estimate && start == nullptr)
+    if (auto absurd = WhyAbsurd(problem, work)) return tl::unexpected(std::move(*absurd));
+  return estimate;
 }
 
 Result<StereoEstimate> Estimate(const StereoProblem& problem, const StereoEstimate* start) {

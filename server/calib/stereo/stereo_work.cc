@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/calib/camera/lens_bounds.h"
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/core/diagnoses.h"
 #include "server/calib/core/robust.h"
@@ -14,7 +15,11 @@ namespace rigcal::calib {
 namespace {
 
 OrDiagnosis<IntrinsicsVector> StartOf(const StereoProblem& problem, const Sensor& camera, const CameraViews& views) {
-  if (camera.intrinsics) return VectorOf(*camera.intrinsics);
+  if (camera.intrinsics) {
+    const IntrinsicsVector given = VectorOf(*camera.intrinsics);
+    if (auto absurd = WhyAbsurd(camera, given, views)) return tl::unexpected(std::move(*absurd));
+    return given;
+  }
   auto start = StartIntrinsics(views);
   if (start) return *start;
   Error error = start.error();

@@ -162,15 +162,40 @@ int FewestVisits(const AsFoundInput& input, const std::vector<SensorId>& sensors
   return fewest.value_or(0);
 }
 
-// Sensors whose visits tell no scatter get the assumed one: that of the visit in use, and that of the session.
-KnownPoses WithAssumedScatter(KnownPoses in_use, const PoseLimit& scatter) {
-  Vector6d variance;
-  variance << Eigen::Vector3d::Constant(2 * scatter.m * scatter.m),
-      Eigen::Vector3d::Constant(2 * scatter.rad * scatter.rad);
+int FewestRobots(const AsFoundInput& input, const std::vector<SensorId>& sensors) {
+  std::optional<int> fewest;
+  for (const SensorId& sensor : AllBut(sensors, input.in_use.reference)) {
+    const int robots = input.in_use.Find(sensor)->scatter_robots;
+    fewest = std::min(fewest.value_or(robots), robots);
+  }
+  return fewest.value_or(0);
+}
+
+// That of other robots where they tell it, else the assumed one. `variance`: by which the one visit errs.
+void TakeScatterOfOthers(const AsFoundInput& input, const Vector6d& variance, KnownPose& pose) {
+  const auto pooled = input.pooled_scatter.find(pose.sensor);
+  pose.visit_sigma_m = input.assumed_scatter.m, pose.visit_sigma_rad = input.assumed_scatter.rad;
+  if (pooled == input.pooled_scatter.end()) return;
+  const ScatterTaken translation = TakenScatter({0, variance.head<3>().mean(), 0}, pooled->second.translation),
+                     rotation = TakenScatter({0, variance.tail<3>().mean(), 0}, pooled->second.rotation);
+  if (!translation.by_pool || !rotation.by_pool) return;
+  pose.visit_sigma_m = std::sqrt(translation.variance), pose.visit_sigma_rad = std::sqrt(rotation.variance);
+  pose.scatter_dof = {translation.dof, rotation.dof};
+  pose.scatter_robots = pooled->second.robots;
+}
+
+// Sensors whose visits tell no scatter get one: that of the visit in use, and that of the session. An axis of which nothing
+// is known is left so: it is no better known for a scatter.
+KnownPoses WithScatter(KnownPoses in_use, const AsFoundInput& input) {
   Index row = 0;
-  for (const KnownPose& pose : in_use.poses) {
+  for (KnownPose& pose : in_use.poses) {
     if (pose.sensor == in_use.reference) continue;
-    if (pose.visits < 2) in_use.covariance.diagonal().segment<6>(row) += variance;
+    auto variance = in_use.covariance.diagonal().segment<6>(row);
+    if (pose.visits < 2 && pose.scatter_robots == 0) {
+      TakeScatterOfOthers(input, variance, pose);
+      const Vector6d of_both = 2 * EachAxis(pose.visit_sigma_m, pose.visit_sigma_rad).cwiseAbs2();
+      variance += (variance.array() > 0).select(of_both, Vector6d::Zero()).eval();
+    }
     row += 6;
   }
   return in_use;
@@ -180,7 +205,7 @@ KnownPoses WithAssumedScatter(KnownPoses in_use, const PoseLimit& scatter) {
 
 AsFound TestAsFound(const AsFoundInput& told) {
   AsFoundInput input = told;
-  input.in_use = WithAssumedScatter(std::move(input.in_use), input.assumed_scatter);
+  input.in_use = WithScatter(std::move(input.in_use), told);
   AsFound found;
   found.alpha = input.alpha;
   const std::vector<SensorId> sensors = ToTest(input);
@@ -196,6 +221,7 @@ AsFound TestAsFound(const AsFoundInput& told) {
             [](const auto& x, const auto& y) { return x.sensor < y.sensor; });
   found.tests = search.tests;
   found.visits = FewestVisits(input, sensors);
+  found.scatter_robots = FewestRobots(input, sensors);
   found.relative_to = search.frame;
   if (found.tests == 0) found.why_not = "The session measured no axis of the sensors that were in use.";
   return found;

@@ -2,7 +2,8 @@
 //
 // Per sensor and axis, t = change / sigma with C_session + C_in_use + tau^2 for its covariance, a Student's t of
 // Welch's degrees of freedom, at most those of tau^2. tau^2, what sensors scatter by from visit to visit, is in what a
-// revision tells (graph/fusion/session_fusion.h) and not added once more; where one visit tells nothing of it, it is assumed. The odds alpha of a false alarm are those of the whole session:
+// revision tells (session_fusion.h) and not added once more; where one visit tells nothing of it, it is that of the other
+// robots of the rig model, or else assumed. The odds alpha of a false alarm are those of the whole session:
 // each of m axes is tested at alpha / m (Bonferroni; Dunn 1961), which holds however the axes hang together. README.md
 // has the method.
 #pragma once
@@ -22,8 +23,10 @@ struct AsFoundInput {
   KnownPoses left;                      // of the revision that is made with the session; its covariance does not matter
   std::set<SensorId> moved_on_purpose;  // since `in_use`
   double alpha = kAsFoundAlpha;
-  // What sensors are taken to scatter by from visit to visit (1 sigma per axis) where fewer than two visits are in use.
+  // What sensors are taken to scatter by from visit to visit (1 sigma per axis) where fewer than two visits are in use and
+  // neither the calibration in use nor `pooled_scatter` has it from other robots.
   PoseLimit assumed_scatter = kDefaultMovedMin;
+  PooledScatter pooled_scatter = {};  // of robots with the reference that is in use
 };
 // From `why_not` on, without rates and text. References may be different ones. Told in the frame of the reference in
 // use, unless that is what moved: then in that of the sensor that is best known against it.

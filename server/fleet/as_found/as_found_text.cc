@@ -45,8 +45,11 @@ std::string SmallestText(const AsFound& found) {
          TwoDigits(kDegreesPerRadian * rad, "deg");
 }
 
-std::string ScatterText(int visits) {
+std::string ScatterText(const AsFound& found) {
+  const int visits = found.visits, robots = found.scatter_robots;
   if (visits >= kVisitsForScatter) return "";
+  if (robots > 0)
+    return "what visits scatter by is held against that of " + std::to_string(robots) + " other robots of its rig model";
   const std::string in_use = std::to_string(visits) + (visits == 1 ? " visit" : " visits") + " in use";
   if (visits < 2) return "with " + in_use + " the scatter from visit to visit is not known yet: the policy's moved_min is taken for it";
   return "with " + in_use + " the scatter from visit to visit is hardly known yet";
@@ -68,7 +71,7 @@ std::string AsFoundText(const AsFound& found, const SessionTimes& captured_at) {
   add_state(FoundState::kNew, " new");
   add_state(FoundState::kNotMeasured, " not measured");
   parts.push_back(SmallestText(found));
-  if (const std::string scatter = ScatterText(found.visits); !scatter.empty()) parts.push_back(scatter);
+  if (const std::string scatter = ScatterText(found); !scatter.empty()) parts.push_back(scatter);
   std::string text = head;
   for (std::size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : "; ") + parts[i];
   return text + ".";

@@ -22,10 +22,9 @@ double WelchDof(double a, double dof_a, double b, double dof_b) {
 }
 
 // Of a scatter that is an estimate, too large or too small by chance, zero included: as sure as the whole then is.
-double NotMoreThanOfVisits(double dof, int visits) {
-  const double of_visits = 3.0 * (visits - 1);
-  if (visits < 2) return dof;
-  return dof > 0 ? std::min(dof, of_visits) : of_visits;
+double NotMoreThanOfScatter(double dof, double of_scatter) {
+  if (of_scatter <= 0) return dof;
+  return dof > 0 ? std::min(dof, of_scatter) : of_scatter;
 }
 
 // What was measured of the change: rows, and their information.
@@ -98,8 +97,9 @@ ChangeSeen ChangeBetween(const SensorId& frame, const std::vector<SensorId>& sen
     const auto first = static_cast<Index>(6 * s);
     seen.change.segment<6>(first) = (was.T_frame_sensor[s].Inverse() * is.T_frame_sensor[s]).Log();
     for (Index row = first; row < first + 6; ++row)
-      seen.dof.push_back(NotMoreThanOfVisits(
-          WelchDof(was.covariance(row, row), was.dof[s], is.covariance(row, row), is.dof[s]), was.visits[s]));
+      seen.dof.push_back(NotMoreThanOfScatter(
+          WelchDof(was.covariance(row, row), was.dof[s], is.covariance(row, row), is.dof[s]),
+          row < first + 3 ? was.scatter_dof[s].translation : was.scatter_dof[s].rotation));
   }
   return seen;
 }

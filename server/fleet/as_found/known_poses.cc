@@ -61,6 +61,25 @@ Matrix6d ScatterOf(const KnownPose& pose) {
   return variance.asDiagonal();
 }
 
+ScatterDof DofOfScatter(const KnownPose& pose) {
+  const double own = 3.0 * std::max(0, pose.visits - 1);
+  return pose.scatter_dof.value_or(ScatterDof{own, own});
+}
+
+// Of what both scatter by: a turn of the frame shifts what is seen from it.
+ScatterDof DofOfBoth(const ScatterDof& a, const ScatterDof& b) {
+  const double least = SmallerDof(SmallerDof(a.translation, a.rotation), SmallerDof(b.translation, b.rotation));
+  return {least, least};
+}
+
+// How many stand behind it where the pool was taken, not the robot's own visits alone.
+void TakePooled(const FusedPose& fused, KnownPose& pose) {
+  pose.scatter_dof = fused.scatter_dof;
+  const bool taken = fused.scatter_dof.translation > fused.scatter.translation.dof &&
+                     fused.scatter_dof.rotation > fused.scatter.rotation.dof;
+  pose.scatter_robots = taken ? fused.pooled_scatter->robots : 0;
+}
+
 }  // namespace
 
 const KnownPose* KnownPoses::Find(const SensorId& sensor) const {
@@ -84,6 +103,7 @@ KnownPoses PosesOf(const GraphSolution& solution, const SensorId& reference,
     const FusedPose fused = pose.fused.value_or(FusedPose());
     poses.poses.push_back(
         {pose.sensor, pose.T_ref_sensor, pose.dof, fused.sessions, fused.visit_sigma_m, fused.visit_sigma_rad});
+    if (fused.pooled_scatter) TakePooled(fused, poses.poses.back());
     if (pose.sensor != reference) own.push_back(pose.covariance);
   }
   poses.covariance = MatrixXd::Zero(static_cast<Index>(6 * own.size()), static_cast<Index>(6 * own.size()));
@@ -127,9 +147,9 @@ PosesSeen SeenFrom(const SensorId& frame, const std::vector<SensorId>& sensors, 
     if (const Index own = FirstRow(poses, sensor); own >= 0) J.block<6, 6>(row, own).setIdentity();
     if (frame_row >= 0) J.block<6, 6>(row, frame_row) = by_frame;
     seen.scatter.segment<6>(row) = ScatterSeenFrom(frame, sensor, poses);
-    seen.visits.push_back(sensor == poses.reference ? of_frame.visits
-                          : frame == poses.reference ? pose.visits
-                                                     : std::min(of_frame.visits, pose.visits));
+    seen.scatter_dof.push_back(sensor == poses.reference  ? DofOfBoth(DofOfScatter(of_frame), {})
+                               : frame == poses.reference ? DofOfScatter(pose)
+                                                          : DofOfBoth(DofOfScatter(of_frame), DofOfScatter(pose)));
   }
   seen.covariance = J * covariance * J.transpose();
   return seen;

@@ -19,6 +19,8 @@ struct KnownPose {
   int visits = 0;    // whose refinement tells it
   // How its place scatters from visit to visit, 1 sigma per axis. Of a revision it is in the covariance.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
+  std::optional<ScatterDof> scatter_dof = {};  // behind that; nothing: of its own visits alone, 3 for each beyond the first
+  int scatter_robots = 0;                      // other robots that stand behind it besides
 };
 
 struct KnownPoses {
@@ -43,7 +45,7 @@ struct KnownPoses {
 struct PosesSeen {
   std::vector<Se3> T_frame_sensor;
   std::vector<double> dof;     // the smaller of both sensors'; 0: known
-  std::vector<int> visits;     // likewise
+  std::vector<ScatterDof> scatter_dof;  // likewise, behind `scatter`; 0: known, or nothing tells it
   Eigen::MatrixXd covariance;  // six rows per sensor
   Eigen::VectorXd scatter;     // variance per row: what both sensors scatter by from visit to visit
 };

@@ -57,8 +57,8 @@ struct Contradiction {
 // instant does: it counts for next to nothing, so no pose suffers. Of a lidar a board among other surfaces is left out in sound
 // sessions, too: no news.
 [[nodiscard]] std::optional<Finding> FindHeldBack(const GraphSolution& solution, const SessionHeaders& headers);
-// Lidars that the newest session finds to measure too long or too short at a slant, and boards that are bent: taken out,
-// so no more than news.
+// Lidars that the newest session finds to measure too long or too short at a slant, boards that are bent or that lenses make
+// look so, and clocks of trackers that are off: taken out, so no more than news.
 [[nodiscard]] std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates);
 // The newest session, where it says enough to be refined as a whole and could not be.
 [[nodiscard]] std::optional<Finding> FindUnrefined(const std::vector<SessionEstimate>& estimates,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -19,30 +20,22 @@ bool Matters(const LensMisfit& misfit) {
          (misfit.pose_sigma_m >= kMattersMin_m || misfit.pose_sigma_rad >= kMattersMin_rad);
 }
 
-// Of each camera what the newest session says in which it took part.
-std::vector<LensMisfit> NewestOf(const std::vector<SessionEstimate>& estimates) {
-  std::vector<LensMisfit> newest;
-  std::set<SensorId> judged;
-  for (const SessionEstimate& estimate : estimates) {
-    if (!estimate.why_not.empty()) continue;
-    for (const LensMisfit& misfit : estimate.misfits)
-      if (!judged.contains(misfit.camera)) newest.push_back(misfit);
-    for (const RefinedPose& pose : estimate.poses) judged.insert(pose.sensor);
-  }
-  return newest;
-}
-
 std::vector<std::string> NamesOf(const std::vector<LensMisfit>& misfits) {
   std::vector<std::string> names;
   for (const LensMisfit& misfit : misfits) names.push_back(misfit.camera.str());
   return names;
 }
 
+// What its lens cannot be described by: a model, or only the numbers that were given for it.
+std::string BentModelOf(const LensMisfit& misfit) {
+  const bool only_numbers = misfit.trial.given && misfit.trial.proposed == misfit.model;
+  return (only_numbers ? "the given " : "") + NameOf(misfit.model);
+}
+
 std::string ModelsOf(const std::vector<LensMisfit>& misfits) {
   std::vector<std::string> models;
   for (const LensMisfit& misfit : misfits)
-    if (std::find(models.begin(), models.end(), NameOf(misfit.model)) == models.end())
-      models.push_back(NameOf(misfit.model));
+    if (std::find(models.begin(), models.end(), BentModelOf(misfit)) == models.end()) models.push_back(BentModelOf(misfit));
   return List(models);
 }
 
@@ -54,16 +47,67 @@ std::string WhyOf(const std::vector<LensMisfit>& misfits, const LensMisfit& wors
          ", which makes poses uncertain by " + SigmaText(worst.pose_sigma_m, worst.pose_sigma_rad);
 }
 
-// A richer model where there is one; else only seeing more of the picture tells more of the lens.
+std::string LeftOutText(const LensMisfit& misfit) {
+  const LensTrial& trial = misfit.trial;
+  const auto best = std::find_if(trial.candidates.begin(), trial.candidates.end(),
+                                 [&](const LensCandidate& one) { return one.model == trial.proposed; });
+  if (best == trial.candidates.end() || !best->left_out_rms_px || !trial.own_left_out_rms_px) return {};
+  const std::string own = trial.given ? "the given intrinsics" : NameOf(misfit.model);
+  return NameOf(best->model) + " fits pictures of " + misfit.camera.str() + " that were left out to " +
+         TwoDigits(*best->left_out_rms_px, "px") + ", " + own + " to " + TwoDigits(*trial.own_left_out_rms_px, "px");
+}
+
+// What was found better on pictures that were left out.
+std::string ProposalOf(const LensMisfit& misfit) {
+  const std::string model = "`model: " + NameOf(*misfit.trial.proposed) + "`";
+  const std::string camera = misfit.camera.str(), why = LeftOutText(misfit);
+  return (misfit.trial.given ? "calibrate " + camera + " anew: leave its intrinsics out of session.yaml and set " + model
+                             : "set " + model + " for " + camera) +
+         (why.empty() ? "" : " (" + why + ")");
+}
+
+std::string OfThese(const std::vector<LensMisfit>& misfits) {
+  const bool one = misfits.size() == 1;
+  return std::string(one ? "the pictures of " : "the pictures of any of ") + List(NamesOf(misfits));
+}
+
+std::string TriedModels(const LensMisfit& misfit) {
+  std::vector<std::string> models;
+  for (const LensCandidate& one : misfit.trial.candidates) models.push_back(NameOf(one.model));
+  return List(models);
+}
+
+// Only seeing more of the picture tells more of a lens that no model describes better.
+std::string MoreOfThePicture(const std::vector<LensMisfit>& misfits) {
+  const bool all_estimated = std::all_of(misfits.begin(), misfits.end(), [](const LensMisfit& one) {
+    return !one.trial.candidates.empty() && !one.trial.given;
+  });
+  return "capture boards all over the pictures of " + List(NamesOf(misfits)) +
+         (all_estimated ? ", as the bend is taken out where corners were seen"
+                        : ", and leave out or give a sigma with their intrinsics");
+}
+
+// By what was tried: a better model; none is better; nothing was tried (then a richer model where there is one).
 std::string CureOf(const std::vector<LensMisfit>& misfits) {
-  std::vector<std::string> radtan, others;
-  for (const LensMisfit& misfit : misfits)
-    (misfit.model == CameraModel::kPinholeRadtan ? radtan : others).push_back(misfit.camera.str());
+  std::vector<std::string> cures;
+  std::vector<LensMisfit> untried, unmatched, others;
+  for (const LensMisfit& misfit : misfits) {
+    if (misfit.trial.proposed)
+      cures.push_back(ProposalOf(misfit));
+    else if (!misfit.trial.candidates.empty())
+      unmatched.push_back(misfit);
+    else
+      (misfit.model == CameraModel::kPinholeRadtan ? untried : others).push_back(misfit);
+  }
+  if (!untried.empty()) cures.push_back("try `model: pinhole_rational` for " + List(NamesOf(untried)));
+  if (!others.empty()) cures.push_back(MoreOfThePicture(others));
+  if (!unmatched.empty())
+    cures.push_back("none of " + TriedModels(unmatched.front()) + " fits " + OfThese(unmatched) +
+                    " that were left out better: " + MoreOfThePicture(unmatched));
   std::string cure;
-  if (!radtan.empty()) cure = "Try `model: pinhole_rational` for " + List(radtan);
-  if (others.empty()) return cure;
-  return cure + (cure.empty() ? "Capture" : "; capture") + " boards all over the pictures of " + List(others) +
-         ", and leave out or give a sigma with their intrinsics";
+  for (const std::string& one : cures) cure += (cure.empty() ? "" : "; ") + one;
+  cure.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(cure.front())));
+  return cure;
 }
 
 // The one that adds most first; at least one.
@@ -73,10 +117,21 @@ Finding FindingOf(std::vector<LensMisfit> misfits) {
   return {WhyOf(misfits, misfits.front()), CureOf(misfits)};
 }
 
+// What the session tells: that the board is bent, or that something is.
+std::string BendText(const BoardBend& bend) {
+  const std::string by = TwoDigits(1e3 * bend.height_m, "mm");
+  if (bend.is_the_board) return "board " + bend.board.str() + " is bent by " + by + ", which was taken out: a stiffer plate is better";
+  const std::string lens = bend.seen_by.empty()       ? "a lens makes"
+                           : bend.seen_by.size() == 1 ? "the lens of " + bend.seen_by.front().str() + " makes"
+                                                      : "the lenses of " + List(bend.seen_by) + " make";
+  return "board " + bend.board.str() + " is bent by " + by + ", or " + lens +
+         " it look so; it was taken out: lay a straight edge across the board";
+}
+
 }  // namespace
 
 std::optional<Finding> FindLensMisfits(const std::vector<SessionEstimate>& estimates, bool edges_disagree) {
-  std::vector<LensMisfit> misfits = NewestOf(estimates);
+  std::vector<LensMisfit> misfits = NewestMisfits(estimates);
   if (!edges_disagree) std::erase_if(misfits, [](const LensMisfit& one) { return !Matters(one); });
   if (misfits.empty()) return std::nullopt;
   Finding finding = FindingOf(std::move(misfits));
@@ -94,16 +149,18 @@ std::string TakenOutRemark(const std::vector<SessionEstimate>& estimates) {
                       (slant.too_long_m > 0 ? " too long" : " too short") +
                       " where its beam meets a surface at 60 deg, which was taken out");
   for (const BoardBend& bend : newest->bends)
-    if (bend.height_m >= kBendToldMin_m)
-      remarks.push_back("board " + bend.board.str() + " is bent by " + TwoDigits(1e3 * bend.height_m, "mm") +
-                        ", which was taken out: a stiffer plate is better");
+    if (bend.height_m >= kBendToldMin_m) remarks.push_back(BendText(bend));
+  for (const TrackerClock& clock : newest->clocks)
+    if (clock.IsOff())
+      remarks.push_back("the clock of " + clock.tracker.str() + " is " + Number(1e3 * std::abs(clock.late_s), "ms") +
+                        (clock.late_s > 0 ? " late" : " early") + ", which was taken out");
   std::string remark;
   for (const std::string& one : remarks) remark += (remark.empty() ? "" : "; ") + one;
   return remark;
 }
 
 std::optional<Finding> FindLensBehind(const std::vector<SessionEstimate>& estimates, const std::set<SensorId>& accused) {
-  std::vector<LensMisfit> misfits = NewestOf(estimates);
+  std::vector<LensMisfit> misfits = NewestMisfits(estimates);
   std::erase_if(misfits, [&](const LensMisfit& one) { return !accused.contains(one.camera); });
   if (misfits.empty()) return std::nullopt;
   Finding finding = FindingOf(std::move(misfits));

@@ -36,9 +36,17 @@ void FillSpreads(SensorPopulation& sensor) {
   }
 }
 
-// `limit`: of the odds of one robot and one sensor.
-void FillOutliers(const std::vector<Matrix6d>& covariances, double limit, SensorPopulation& sensor) {
-  const std::vector<Distance> distances = DistancesFromOthers(sensor.offsets, covariances);
+std::vector<Vector6d> OffsetsFrom(const Se3& center, const std::vector<Se3>& poses) {
+  std::vector<Vector6d> offsets;
+  for (const Se3& pose : poses) offsets.push_back((center.Inverse() * pose).Log());
+  return offsets;
+}
+
+// `limit`: of the odds of one robot and one sensor. Held against each other about their own median: from a drawing that has
+// the sensor upside down all offsets are half turns, of either sign.
+void FillOutliers(const Sample& sample, double limit, SensorPopulation& sensor) {
+  const std::vector<Distance> distances =
+      DistancesFromOthers(OffsetsFrom(MedianPose(sample.poses), sample.poses), sample.covariances);
   for (std::size_t i = 0; i < distances.size(); ++i)
     if (distances[i].odds < limit)
       sensor.outliers.push_back({sensor.robots[i], sensor.offsets[i], distances[i].worst_axis, distances[i].odds});
@@ -54,7 +62,7 @@ SensorPopulation Describe(const SensorId& name, const Sample& sample, const RigM
   sensor.T_ref_nominal = NominalPose(model, reference, name);
   if (sensor.T_ref_nominal) sensor.tolerance = SensorOf(model, name)->tolerance;
   sensor.T_ref_center = sensor.T_ref_nominal ? *sensor.T_ref_nominal : MedianPose(sample.poses);
-  for (const Se3& pose : sample.poses) sensor.offsets.push_back((sensor.T_ref_center.Inverse() * pose).Log());
+  sensor.offsets = OffsetsFrom(sensor.T_ref_center, sample.poses);
   FillSpreads(sensor);
   return sensor;
 }
@@ -90,7 +98,7 @@ Population DescribePopulation(const RigModel& model, const SensorId& reference, 
       continue;
     }
     population.sensors.push_back(Describe(name, sample, model, reference));
-    FillOutliers(sample.covariances, limit, population.sensors.back());
+    FillOutliers(sample, limit, population.sensors.back());
   }
   return population;
 }

@@ -142,35 +142,57 @@ Outlook LinearOutlook(const PerScale& log_likelihood, const ForecastHalf& half, 
   return outlook;
 }
 
-// Both halves by the law that is likelier for both together.
-std::vector<Outlook> OutlooksOf(const std::vector<DriftStep>& steps, const RobotId& robot, const PoseLimit& tolerance) {
-  const std::array<ForecastHalf, 2> halves = {{{0, tolerance.m}, {3, tolerance.rad}}};
+// Of the steps, the scale integrated out; but for what is the same of both laws.
+double LogEvidence(const PerScale& log_likelihood) {
+  const double best = Best(log_likelihood);
+  double sum = 0.0;
+  for (int j = 0; j < kScales; ++j)
+    sum += std::exp(log_likelihood[static_cast<std::size_t>(j)] - best) * DriftScale(j, 1.0);
+  return best + std::log(sum);
+}
+
+// Both halves by either law, and the odds of the second: visits that are all as far apart tell the laws hardly apart, and by
+// these a sensor will have moved differently far sooner, or later, than that.
+struct Outlooks {
   std::vector<Outlook> walking, linear;
+  double linear_odds = 0.5;
+
+  [[nodiscard]] DriftLaw likelier() const { return linear_odds > 0.5 ? DriftLaw::kLinear : DriftLaw::kRandomWalk; }
+};
+Outlooks OutlooksOf(const std::vector<DriftStep>& steps, const RobotId& robot, const PoseLimit& tolerance) {
+  const std::array<ForecastHalf, 2> halves = {{{0, tolerance.m}, {3, tolerance.rad}}};
+  Outlooks outlooks;
   double walk = 0.0, line = 0.0;
   for (const ForecastHalf& half : halves) {
     const RatesByRobot rates = RatesOf(steps, half);
     const PerScale by_walk = RandomWalkLikelihood(steps, half), by_line = LinearLikelihood(steps, half, rates);
     const auto own = rates.find(robot);
-    walk += Best(by_walk);
-    line += Best(by_line);
-    walking.push_back(RandomWalkOutlook(by_walk, half));
-    linear.push_back(LinearOutlook(by_line, half, own == rates.end() ? RobotRates{} : own->second));
+    walk += LogEvidence(by_walk);
+    line += LogEvidence(by_line);
+    outlooks.walking.push_back(RandomWalkOutlook(by_walk, half));
+    outlooks.linear.push_back(LinearOutlook(by_line, half, own == rates.end() ? RobotRates{} : own->second));
   }
-  return line > walk ? linear : walking;
+  outlooks.linear_odds = 1 / (1 + std::exp(walk - line));
+  return outlooks;
 }
 
-double OddsOfEither(const std::vector<Outlook>& outlooks, double days) {
+double OddsOfEitherHalf(const std::vector<Outlook>& halves, double days) {
   double within = 1.0;
-  for (const Outlook& one : outlooks) within *= 1 - one.OddsBeyond(days / kDaysOfMonth);
+  for (const Outlook& one : halves) within *= 1 - one.OddsBeyond(days / kDaysOfMonth);
   return 1 - within;
 }
 
+double OddsBeyondAt(const Outlooks& outlooks, double days) {
+  return (1 - outlooks.linear_odds) * OddsOfEitherHalf(outlooks.walking, days) +
+         outlooks.linear_odds * OddsOfEitherHalf(outlooks.linear, days);
+}
+
 // The odds grow with the time.
-double DaysUntilOdds(const std::vector<Outlook>& outlooks, double days_max) {
+double DaysUntilOdds(const Outlooks& outlooks, double days_max) {
   double early = 0.0, late = days_max;
   for (int i = 0; i < 48; ++i) {
     const double middle = 0.5 * (early + late);
-    (OddsOfEither(outlooks, middle) < kForecastOdds ? early : late) = middle;
+    (OddsBeyondAt(outlooks, middle) < kForecastOdds ? early : late) = middle;
   }
   return early;
 }
@@ -194,11 +216,11 @@ std::optional<DriftForecast> ForecastDrift(const std::vector<DriftStep>& steps, 
   std::erase_if(usable, [](const DriftStep& step) { return !IsUsableStep(step); });
   if (static_cast<int>(usable.size()) < kForecastVisitsMin) return std::nullopt;
   if (!(tolerance.m > 0) || !(tolerance.rad > 0) || !(days_max > 0)) return std::nullopt;
-  const std::vector<Outlook> outlooks = OutlooksOf(usable, robot, tolerance);
-  if (!(OddsOfEither(outlooks, days_max) > kForecastOdds)) return std::nullopt;
+  const Outlooks outlooks = OutlooksOf(usable, robot, tolerance);
+  if (!(OddsBeyondAt(outlooks, days_max) > kForecastOdds)) return std::nullopt;
   std::set<RobotId> robots;
   for (const DriftStep& step : usable) robots.insert(step.robot);
-  return DriftForecast{outlooks.front().law, DaysUntilOdds(outlooks, days_max), static_cast<int>(usable.size()),
+  return DriftForecast{outlooks.likelier(), DaysUntilOdds(outlooks, days_max), static_cast<int>(usable.size()),
                        static_cast<int>(robots.size())};
 }
 

@@ -15,7 +15,8 @@ namespace rigcal::fleet {
 
 using DriftSteps = std::map<SensorId, std::vector<DriftStep>>;
 
-// The steps that an as-found test tells, of each sensor that it measured: `days` since the calibration in use was measured.
+// The steps that an as-found test tells, of each sensor that it measured: `days` since the calibration in use was measured. None
+// of a test against a single visit, whose sigma is partly the policy's.
 void AddSteps(const RobotId& robot, const AsFound& found, double days, DriftSteps& steps);
 
 struct StatusInput {

@@ -9,6 +9,7 @@
 #include "server/formats/json/json_values.h"
 #include "server/formats/revision/cause_fields.h"
 #include "server/formats/revision/insight_fields.h"
+#include "server/formats/revision/lens_misfit_fields.h"
 #include "server/formats/revision/measured_part_fields.h"
 #include "server/formats/revision/policy_fields.h"
 #include "server/formats/revision/suspects_fields.h"
@@ -27,6 +28,53 @@ void WriteAnalytic(JsonWriter& out, const SensorPose& pose) {
   });
 }
 
+void WriteScatterOfAxes(JsonWriter& out, std::string_view key, const ScatterOfAxes& scatter, bool turns) {
+  out.Object(key, [&] {
+    out.Number(turns ? "between_rad2" : "between_m2", scatter.between);
+    out.Number("dof", scatter.dof);
+    out.Number(turns ? "own_rad2" : "own_m2", scatter.own);
+  });
+}
+
+ScatterOfAxes ReadScatterOfAxes(const JsonField& field, bool turns) {
+  return {field.At(turns ? "between_rad2" : "between_m2").Number(), field.At(turns ? "own_rad2" : "own_m2").Number(),
+          field.At("dof").Number()};
+}
+
+void WriteVisitScatter(JsonWriter& out, std::string_view key, const VisitScatter& scatter) {
+  out.Object(key, [&] {
+    out.Integer("robots", scatter.robots);
+    WriteScatterOfAxes(out, "rotation", scatter.rotation, true);
+    WriteScatterOfAxes(out, "translation", scatter.translation, false);
+  });
+}
+
+VisitScatter ReadVisitScatter(const JsonField& field) {
+  return {ReadScatterOfAxes(field.At("translation"), false), ReadScatterOfAxes(field.At("rotation"), true),
+          static_cast<int>(field.At("robots").Integer(1, INT_MAX))};
+}
+
+// Where other robots told what theirs scatter by: by what the pose was fused, so that the same can be made of it once more.
+void WriteScatter(JsonWriter& out, const FusedPose& fused) {
+  if (!fused.pooled_scatter) return;
+  out.Object("scatter", [&] {
+    out.Number("dof_rotation", fused.scatter_dof.rotation);
+    out.Number("dof_translation", fused.scatter_dof.translation);
+    WriteVisitScatter(out, "own", fused.scatter);
+    WriteVisitScatter(out, "pooled", *fused.pooled_scatter);
+  });
+}
+
+void ReadScatter(const JsonField& field, FusedPose& fused) {
+  const double own = 3.0 * std::max(0, fused.sessions - 1);
+  fused.scatter_dof = {own, own};
+  const auto scatter = field.Find("scatter");
+  if (!scatter) return;
+  fused.scatter_dof = {scatter->At("dof_translation").Number(), scatter->At("dof_rotation").Number()};
+  fused.scatter = ReadVisitScatter(scatter->At("own"));
+  fused.pooled_scatter = ReadVisitScatter(scatter->At("pooled"));
+}
+
 void WriteFused(JsonWriter& out, const SensorPose& pose) {
   if (!pose.fused) return;
   out.Object("fused", [&] {
@@ -34,6 +82,7 @@ void WriteFused(JsonWriter& out, const SensorPose& pose) {
       WritePose(out, "T_ref_sensor", pose.fused->T_ref_sensor_by_pairs);
       WriteMatrix(out, "covariance", pose.fused->covariance_by_pairs);
     });
+    WriteScatter(out, *pose.fused);
     out.Integer("sessions", pose.fused->sessions);
     out.Number("visit_sigma_m", pose.fused->visit_sigma_m);
     out.Number("visit_sigma_rad", pose.fused->visit_sigma_rad);
@@ -44,14 +93,41 @@ std::optional<FusedPose> ReadFused(const JsonField& pose) {
   const auto field = pose.Find("fused");
   if (!field) return std::nullopt;
   const JsonField by_pairs = field->At("by_pairs");
-  return FusedPose{ReadPose(by_pairs.At("T_ref_sensor"), kUnitTolerance), ReadMatrix(by_pairs.At("covariance")),
-                   static_cast<int>(field->At("sessions").Integer(0, INT_MAX)), field->At("visit_sigma_m").Number(),
-                   field->At("visit_sigma_rad").Number()};
+  FusedPose fused{ReadPose(by_pairs.At("T_ref_sensor"), kUnitTolerance), ReadMatrix(by_pairs.At("covariance")),
+                  static_cast<int>(field->At("sessions").Integer(0, INT_MAX)), field->At("visit_sigma_m").Number(),
+                  field->At("visit_sigma_rad").Number()};
+  ReadScatter(*field, fused);
+  return fused;
+}
+
+// Only where there are any: revisions of robots whose trackers tell no path keep their bytes.
+void WriteClocks(JsonWriter& out, const FusedSessions& fused) {
+  if (fused.clocks.empty()) return;
+  out.List("clocks", [&] {
+    for (const FusedSessions::ClockOfSession& told : fused.clocks)
+      out.Object([&] {
+        const TrackerClock& clock = told.clock;
+        out.Integer("captures", clock.captures);
+        out.Number("given_sigma_s", clock.given_sigma_s);
+        out.Flag("known", clock.IsKnown());
+        out.Number("late_s", clock.late_s);
+        out.Text("session", told.session.str());
+        out.Number("sigma_s", clock.sigma_s);
+        out.Text("tracker", clock.tracker.str());
+      });
+  });
+}
+
+FusedSessions::ClockOfSession ReadClockOfSession(const JsonField& field) {
+  return {ReadId<SessionId>(field.At("session")),
+          {ReadId<SensorId>(field.At("tracker")), field.At("late_s").Number(), field.At("sigma_s").Number(),
+           field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, INT_MAX))}};
 }
 
 void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
   if (fused.sessions.empty()) return;
   out.Object("fused", [&] {
+    WriteClocks(out, fused);
     WriteLowerTriangle(out, "covariance", fused.covariance);
     out.List("held_back", [&] {
       for (const FusedSessions::HeldBack& look : fused.held_back)
@@ -62,6 +138,7 @@ void WriteFusedSessions(JsonWriter& out, const FusedSessions& fused) {
           out.Text("session", look.session.str());
         });
     });
+    if (!fused.lenses.empty()) WriteMisfits(out, "lenses", fused.lenses);
     out.List("sensors", [&] {
       for (const SensorId& sensor : fused.sensors) out.Text(sensor.str());
     });
@@ -83,6 +160,9 @@ FusedSessions ReadFusedSessions(const JsonField& root) {
   for (const JsonField& look : field->At("held_back").Items(limits::kEdgesPerBatchMax))
     fused.held_back.push_back({ReadId<SessionId>(look.At("session")), ReadId<SensorId>(look.At("sensor")),
                                ReadId<CaptureId>(look.At("capture")), ReadOptionalId<SensorId>(look, "against")});
+  if (const auto clocks = field->Find("clocks"))
+    for (const JsonField& clock : clocks->Items(limits::kSensorsPerRobotMax)) fused.clocks.push_back(ReadClockOfSession(clock));
+  if (const auto lenses = field->Find("lenses")) fused.lenses = ReadMisfits(*lenses);
   if (fused.covariance.rows() != 6 * static_cast<Eigen::Index>(fused.sensors.size()))
     field->At("covariance").Refuse("needs six rows per sensor");
   return fused;

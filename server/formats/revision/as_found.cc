@@ -99,6 +99,7 @@ void WriteTested(JsonWriter& out, const AsFound& found) {
   out.Number("alpha", found.alpha);
   out.Integer("tests", found.tests);
   out.Integer("visits", found.visits);
+  if (found.scatter_robots > 0) out.Integer("scatter_robots", found.scatter_robots);
   found.relative_to.empty() ? out.Null("relative_to") : out.Text("relative_to", found.relative_to.str());
   const bool tested = found.tests > 0;
   tested ? out.Number("smallest_m", SmallestSeen_m(found)) : out.Null("smallest_m");
@@ -112,6 +113,7 @@ void ReadTested(const JsonField& root, AsFound& found) {
   found.alpha = root.At("alpha").Number();
   found.tests = static_cast<int>(root.At("tests").Integer(0, INT_MAX));
   found.visits = static_cast<int>(root.At("visits").Integer(0, INT_MAX));
+  if (const auto robots = root.Find("scatter_robots")) found.scatter_robots = static_cast<int>(robots->Integer(0, INT_MAX));
   found.relative_to = ReadOptionalId<SensorId>(root, "relative_to");
   for (const JsonField& sensor : root.At("sensors").Items(limits::kSensorsPerRobotMax))
     found.sensors.push_back(ReadSensorFound(sensor));

@@ -1,6 +1,7 @@
 #include "server/formats/revision/session_estimate.h"
 
 #include "server/formats/json/json_values.h"
+#include "server/formats/revision/lens_misfit_fields.h"
 
 namespace rigcal::formats {
 namespace {
@@ -64,37 +65,6 @@ void WriteHeldBack(JsonWriter& out, const SessionEstimate& estimate) {
   });
 }
 
-void WriteMisfits(JsonWriter& out, const SessionEstimate& estimate) {
-  out.List("misfits", [&] {
-    for (const LensMisfit& misfit : estimate.misfits)
-      out.Object([&] {
-        out.Text("camera", misfit.camera.str());
-        out.Number("evidence", misfit.evidence);
-        out.Text("model", NameOf(misfit.model));
-        out.Number("pose_sigma_m", misfit.pose_sigma_m);
-        out.Number("pose_sigma_rad", misfit.pose_sigma_rad);
-        out.Number("rms_px", misfit.rms_px);
-        out.Number("sigma_ratio", misfit.sigma_ratio);
-      });
-  });
-}
-
-LensMisfit ReadMisfit(const JsonField& field) {
-  LensMisfit misfit;
-  misfit.camera = ReadId<SensorId>(field.At("camera"));
-  const JsonField model = field.At("model");
-  if (const auto known = CameraModelOf(model.Text()); known)
-    misfit.model = *known;
-  else
-    model.Refuse(known.error().what);
-  misfit.rms_px = field.At("rms_px").Number();
-  misfit.evidence = field.At("evidence").Number();
-  misfit.pose_sigma_m = field.At("pose_sigma_m").Number();
-  misfit.pose_sigma_rad = field.At("pose_sigma_rad").Number();
-  misfit.sigma_ratio = field.At("sigma_ratio").Number();
-  return misfit;
-}
-
 void WriteSlants(JsonWriter& out, const SessionEstimate& estimate) {
   out.List("slants", [&] {
     for (const SlantBias& slant : estimate.slants)
@@ -116,13 +86,42 @@ void WriteBends(JsonWriter& out, const SessionEstimate& estimate) {
       out.Object([&] {
         out.Text("board", bend.board.str());
         out.Number("height_m", bend.height_m);
+        out.Flag("is_the_board", bend.is_the_board);
+        out.List("seen_by", [&] {
+          for (const SensorId& camera : bend.seen_by) out.Text(camera.str());
+        });
         out.Number("sigma_m", bend.sigma_m);
       });
   });
 }
 
 BoardBend ReadBend(const JsonField& field) {
-  return {ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
+  BoardBend bend{ReadId<TargetId>(field.At("board")), field.At("height_m").Number(), field.At("sigma_m").Number()};
+  if (const auto is_the_board = field.Find("is_the_board")) bend.is_the_board = is_the_board->Flag();  // documents of before have
+  if (const auto seen_by = field.Find("seen_by"))                                                      // neither
+    for (const JsonField& camera : seen_by->Items(kSensorsMax)) bend.seen_by.push_back(ReadId<SensorId>(camera));
+  return bend;
+}
+
+// Only where there are any: what was made before trackers told their paths keeps its bytes.
+void WriteClocks(JsonWriter& out, const SessionEstimate& estimate) {
+  if (estimate.clocks.empty()) return;
+  out.List("clocks", [&] {
+    for (const TrackerClock& clock : estimate.clocks)
+      out.Object([&] {
+        out.Integer("captures", clock.captures);
+        out.Number("given_sigma_s", clock.given_sigma_s);
+        out.Flag("known", clock.IsKnown());
+        out.Number("late_s", clock.late_s);
+        out.Number("sigma_s", clock.sigma_s);
+        out.Text("tracker", clock.tracker.str());
+      });
+  });
+}
+
+TrackerClock ReadClock(const JsonField& field) {
+  return {ReadId<SensorId>(field.At("tracker")), field.At("late_s").Number(), field.At("sigma_s").Number(),
+          field.At("given_sigma_s").Number(), static_cast<int>(field.At("captures").Integer(0, kLooksMax))};
 }
 
 RefinedPose ReadRefinedPose(const JsonField& field) {
@@ -157,10 +156,11 @@ std::string WriteSessionEstimate(const SessionEstimate& estimate) {
   return WriteObject([&](JsonWriter& out) {
     WriteBends(out, estimate);
     WriteBoardsMoved(out, estimate);
+    WriteClocks(out, estimate);
     WriteLowerTriangle(out, "common", estimate.common);
     WriteLowerTriangle(out, "covariance", estimate.covariance);
     WriteHeldBack(out, estimate);
-    WriteMisfits(out, estimate);
+    WriteMisfits(out, "misfits", estimate.misfits);
     WriteMoved(out, estimate);
     WritePoses(out, estimate);
     out.Text("reference", estimate.reference.str());
@@ -192,8 +192,9 @@ Result<SessionEstimate> ReadSessionEstimate(std::string_view text) {
     for (const JsonField& item : slants->Items(kSensorsMax)) estimate.slants.push_back(ReadSlant(item));
   if (const auto bends = root.Find("bends"))  // nor these
     for (const JsonField& item : bends->Items(kSensorsMax)) estimate.bends.push_back(ReadBend(item));
-  if (const auto misfits = root.Find("misfits"))  // nor these
-    for (const JsonField& item : misfits->Items(kSensorsMax)) estimate.misfits.push_back(ReadMisfit(item));
+  if (const auto clocks = root.Find("clocks"))  // nor these
+    for (const JsonField& item : clocks->Items(kSensorsMax)) estimate.clocks.push_back(ReadClock(item));
+  if (const auto misfits = root.Find("misfits")) estimate.misfits = ReadMisfits(*misfits);  // nor these
   RIGCAL_TRY(document.status());
   return estimate;
 }

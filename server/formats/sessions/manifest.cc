@@ -52,6 +52,7 @@ int FormatOf(const SessionHeader& header) {
 void WriteSensor(JsonWriter& out, const Sensor& sensor) {
   out.Object([&] {
     sensor.T_ref_nominal ? WritePose(out, "T_ref_nominal", *sensor.T_ref_nominal) : out.Null("T_ref_nominal");
+    if (sensor.clock_sigma_s) out.Number("clock_sigma_s", *sensor.clock_sigma_s);
     if (sensor.layout) WriteLayout(out, *sensor.layout);
     if (!sensor.firmware.empty()) out.Text("firmware", sensor.firmware);
     out.Text("id", sensor.id.str());
@@ -173,6 +174,7 @@ Sensor ReadSensor(const JsonField& field) {
   if (const auto model = field.Find("model")) sensor.camera_model = ReadModel(*model);
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
+  if (const auto sigma = field.Find("clock_sigma_s")) sensor.clock_sigma_s = sigma->Number();
   if (const auto sees = field.Find("sees")) sensor.sees = ReadId<TargetId>(*sees);
   if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.At("point_type"));
   if (const auto serial = field.Find("serial")) sensor.serial = serial->Text();

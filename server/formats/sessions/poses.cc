@@ -92,8 +92,9 @@ Result<TimedPose> ReadRow(std::string_view line, SensorKind kind, const Place& p
                         std::to_string(ColumnCount(kind)) + " of " + std::string(PoseHeader(kind)));
   std::optional<std::string_view> row = line;
   TimedPose pose;
-  if (kind == SensorKind::kTracker) {
-    auto capture = CaptureId::Parse(*TakeField(row));
+  const std::string_view name = kind == SensorKind::kTracker ? *TakeField(row) : "";
+  if (!name.empty()) {
+    auto capture = CaptureId::Parse(name);
     if (!capture) return place.Refuse(capture.error().what, capture.error().cure);
     pose.capture = *std::move(capture);
   }
@@ -106,10 +107,12 @@ Result<TimedPose> ReadRow(std::string_view line, SensorKind kind, const Place& p
 // What a row says about those before it.
 class Order {
  public:
-  Status Check(const TimedPose& pose, SensorKind kind, const Place& place) {
-    if (kind == SensorKind::kTracker && !captures_.insert(pose.capture).second)
+  Status Check(const TimedPose& pose, const Place& place) {
+    if (!pose.capture.empty()) {
+      if (captures_.insert(pose.capture).second) return {};
       return place.Refuse("capture " + pose.capture.str() + " has a row already", "Keep one row per capture.");
-    if (kind == SensorKind::kPoseStream && last_ && pose.stamp.ns <= last_->ns)
+    }
+    if (last_ && pose.stamp.ns <= last_->ns)
       return place.Refuse("stamp_ns " + std::to_string(pose.stamp.ns) + " is not after that of the row before, " +
                               std::to_string(last_->ns),
                           "Sort the rows by time and keep one per stamp.");
@@ -119,7 +122,7 @@ class Order {
 
  private:
   std::set<CaptureId> captures_;
-  std::optional<Stamp> last_;
+  std::optional<Stamp> last_;  // of the rows without a capture
 };
 
 Status CheckHeader(TextLines& lines, SensorKind kind, const std::string& name) {
@@ -131,32 +134,44 @@ Status CheckHeader(TextLines& lines, SensorKind kind, const std::string& name) {
       "Begin the file with exactly this line; a tracker's has a capture in front, a pose stream's not.");
 }
 
-Result<PoseTable> Read(const std::set<CaptureId>* captures, std::string_view text, SensorKind kind,
-                       const std::string& name) {
+// Of a tracker its path apart; of a pose stream all rows are poses.
+struct Tables {
+  PoseTable poses, path;
+};
+
+Result<Tables> Read(const std::set<CaptureId>* captures, std::string_view text, SensorKind kind,
+                    const std::string& name) {
   if (text.size() > limits::kPoseTableBytesMax)
     return Fail(ErrorCode::kInvalidInput,
                 name + ": it is larger than " + std::to_string(limits::kPoseTableBytesMax) + " bytes",
                 "Record fewer poses per second, or a shorter time.");
   TextLines lines(text);
   RIGCAL_TRY(CheckHeader(lines, kind, name));
-  PoseTable table;
+  Tables tables;
   Order order;
   while (const auto line = lines.NextFilled()) {
     const Place place{name, lines.line()};
-    if (table.size() == limits::kPoseTableRowsMax)
+    if (tables.poses.size() + tables.path.size() == limits::kPoseTableRowsMax)
       return place.Refuse("it has more than " + std::to_string(limits::kPoseTableRowsMax) + " rows",
                           "Record fewer poses per second, or a shorter time.");
     RIGCAL_ASSIGN(TimedPose pose, ReadRow(*line, kind, place));
-    RIGCAL_TRY(order.Check(pose, kind, place));
-    if (captures && !captures->contains(pose.capture))
+    RIGCAL_TRY(order.Check(pose, place));
+    if (captures && !pose.capture.empty() && !captures->contains(pose.capture))
       return place.Refuse("no other sensor has a capture " + pose.capture.str(),
                           "Name the row after the files of its instant, or remove it.");
-    table.push_back(std::move(pose));
+    const bool is_of_path = kind == SensorKind::kTracker && pose.capture.empty();
+    (is_of_path ? tables.path : tables.poses).push_back(std::move(pose));
   }
-  if (table.empty()) return Fail(ErrorCode::kInvalidInput, name + ": it has no poses", "Add a row per pose.");
+  if (tables.poses.empty()) return Fail(ErrorCode::kInvalidInput, name + ": it has no poses", "Add a row per pose.");
   if (kind == SensorKind::kTracker)
-    std::sort(table.begin(), table.end(), [](const TimedPose& x, const TimedPose& y) { return x.capture < y.capture; });
-  return table;
+    std::sort(tables.poses.begin(), tables.poses.end(),
+              [](const TimedPose& x, const TimedPose& y) { return x.capture < y.capture; });
+  return tables;
+}
+
+Result<PoseTable> PosesIn(Result<Tables> tables) {
+  if (!tables) return Fail(tables.error());
+  return std::move(tables->poses);
 }
 
 }  // namespace
@@ -166,11 +181,16 @@ std::string_view PoseHeader(SensorKind kind) {
 }
 
 Result<PoseTable> ReadPoses(std::string_view text, SensorKind kind, const std::string& name) {
-  return Read(nullptr, text, kind, name);
+  return PosesIn(Read(nullptr, text, kind, name));
 }
 
 Result<PoseTable> ReadPosesOf(const std::set<CaptureId>& captures, std::string_view text, const std::string& name) {
-  return Read(&captures, text, SensorKind::kTracker, name);
+  return PosesIn(Read(&captures, text, SensorKind::kTracker, name));
+}
+
+Result<PoseTable> ReadTrackerPath(std::string_view text, const std::string& name) {
+  RIGCAL_ASSIGN(Tables tables, Read(nullptr, text, SensorKind::kTracker, name));
+  return std::move(tables.path);
 }
 
 }  // namespace rigcal::formats

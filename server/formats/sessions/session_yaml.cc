@@ -90,7 +90,7 @@ CloudLayout ReadLayout(const YamlField& fields, const std::optional<YamlField>& 
 
 Sensor ReadSensor(const YamlField& field) {
   field.AllowOnly(
-      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "fields", "point_type", "serial", "firmware",
+      {"type", "sees", "model", "intrinsics", "range_bias_sigma_m", "clock_sigma_s", "fields", "point_type", "serial", "firmware",
        "T_ref_nominal"});
   Sensor sensor;
   sensor.id = SensorId(field.Key());
@@ -105,6 +105,7 @@ Sensor ReadSensor(const YamlField& field) {
   if (model && sensor.kind != SensorKind::kCamera) model->Refuse("is for cameras only", "Leave it away.");
   if (const auto intrinsics = field.Find("intrinsics")) ReadIntrinsics(*intrinsics, sensor);
   if (const auto sigma = field.Find("range_bias_sigma_m")) sensor.range_bias_sigma_m = sigma->Number();
+  if (const auto sigma = field.Find("clock_sigma_s")) sensor.clock_sigma_s = sigma->Number();
   if (const auto fields = field.Find("fields")) sensor.layout = ReadLayout(*fields, field.Find("point_type"));
   if (const auto point_type = field.Find("point_type"); point_type && !sensor.layout)
     point_type->Refuse("is given without fields", "Name what a point holds, such as fields: [x, y, z, intensity].");

@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "server/graph/fusion/session_fusion.h"
@@ -15,9 +16,9 @@ using Eigen::VectorXd;
 
 constexpr int kScatterRoundsMax = 30;
 constexpr double kScatterSettled = 0.01;
-// A variance alike along three axes, from 3 (visits - 1) numbers, twice: as sure as a 6 x 6 covariance of so many degrees
-// of freedom per visit beyond the first (the same expected error in PooledDof's measure: 42 / 4).
-constexpr double kScatterDofPerVisit = 10.0;
+// A variance alike along three axes, from n numbers, twice: as sure as a 6 x 6 covariance of so many times n degrees of
+// freedom (the same expected error in PooledDof's measure: of 3 numbers 42 / 4).
+constexpr double kMatrixDofPerNumber = 10.0 / 3.0;
 
 std::vector<VisitVariance> ScatterOf(const SessionFusion& fusion) {
   std::vector<VisitVariance> scatter;
@@ -53,6 +54,34 @@ MatrixXd RootOf(const MatrixXd& C) {
          axes.eigenvectors().transpose();
 }
 
+// Per sensor: what its own visits scatter by, and what is taken for it.
+struct Scatters {
+  std::vector<VisitScatter> shown;
+  std::vector<std::optional<VisitScatter>> pooled;
+  std::vector<ScatterDof> dof;
+};
+
+std::optional<ScatterOfAxes> Part(const std::optional<VisitScatter>& scatter, ScatterOfAxes VisitScatter::*axes) {
+  return scatter ? std::optional((*scatter).*axes) : std::nullopt;
+}
+
+// What the robot's own visits show stays as it was without the pool, which others learn from in turn.
+Scatters TakeScatter(const PooledScatter& pooled, SessionFusion& fusion) {
+  Scatters scatters;
+  const auto visits = ResidualsOfVisits(fusion);
+  for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
+    const auto found = pooled.find(fusion.sensors[s]);
+    const VisitScatter shown = ScatterShown(visits[s]);
+    scatters.pooled.push_back(found == pooled.end() ? std::nullopt : std::optional(found->second));
+    const ScatterTaken translation = TakenScatter(shown.translation, Part(scatters.pooled[s], &VisitScatter::translation)),
+                       rotation = TakenScatter(shown.rotation, Part(scatters.pooled[s], &VisitScatter::rotation));
+    scatters.shown.push_back(shown);
+    scatters.dof.push_back({translation.dof, rotation.dof});
+    if (scatters.pooled[s]) fusion.scatter[s] = {translation.variance, rotation.variance};
+  }
+  return scatters;
+}
+
 struct Told {
   MatrixXd covariance;      // of a visit's poses, rows of the sensors
   std::vector<double> dof;  // per sensor
@@ -77,23 +106,23 @@ MatrixXd CommonPart(const SessionFusion& fusion, const MatrixXd& inverse) {
 }
 
 double DofOf(const SessionFusion& fusion, const MatrixXd& inverse, const std::vector<LinearFactor>& linear, const Matrix6d& all,
-             std::size_t sensor) {
+             const ScatterDof& of_scatter, std::size_t sensor) {
   const auto row = 6 * static_cast<Eigen::Index>(sensor);
   PooledDof pooled(all);
-  int visits = 0;
   for (std::size_t k = 0; k < fusion.factors.size(); ++k) {
     const SessionFactor& factor = fusion.factors[k];
     const MatrixXd G = MovedBy(inverse, linear[k]).middleRows<6>(row);
     double dof = *std::min_element(factor.dof.begin(), factor.dof.end());
     for (std::size_t i = 0; i < factor.variable.size(); ++i)
-      if (factor.variable[i] == static_cast<int>(sensor)) dof = factor.dof[i], ++visits;
+      if (factor.variable[i] == static_cast<int>(sensor)) dof = factor.dof[i];
     pooled.Add(G * factor.C * G.transpose(), static_cast<int>(std::lround(dof)));
   }
-  if (visits > 1) pooled.Add(fusion.scatter[sensor].Matrix(), static_cast<int>(kScatterDofPerVisit * (visits - 1)));
+  const double least = std::min(of_scatter.translation, of_scatter.rotation);
+  if (least > 0) pooled.Add(fusion.scatter[sensor].Matrix(), static_cast<int>(std::lround(kMatrixDofPerNumber * least)));
   return pooled.Of(all);
 }
 
-Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse) {
+Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse, const Scatters& scatters) {
   const auto rows = 6 * static_cast<Eigen::Index>(fusion.sensors.size());
   Told told{(inverse + CommonPart(fusion, inverse)).topLeftCorner(rows, rows), {}};
   std::vector<LinearFactor> linear;
@@ -101,7 +130,7 @@ Told ToldOf(const SessionFusion& fusion, const MatrixXd& inverse) {
   for (std::size_t s = 0; s < fusion.sensors.size(); ++s) {
     const auto row = 6 * static_cast<Eigen::Index>(s);
     told.covariance.block<6, 6>(row, row) += fusion.scatter[s].Matrix();
-    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), s));
+    told.dof.push_back(DofOf(fusion, inverse, linear, told.covariance.block<6, 6>(row, row), scatters.dof[s], s));
   }
   return told;
 }
@@ -112,14 +141,15 @@ int SessionsOf(const SessionFusion& fusion, int variable) {
   }));
 }
 
-void TakePoses(const SessionFusion& fusion, const Told& told, GraphSolution& solution) {
+void TakePoses(const SessionFusion& fusion, const Told& told, const Scatters& scatters, GraphSolution& solution) {
   for (SensorPose& pose : solution.poses) {
     const auto found = std::find(fusion.sensors.begin(), fusion.sensors.end(), pose.sensor);
     if (found == fusion.sensors.end()) continue;
     const auto s = static_cast<std::size_t>(found - fusion.sensors.begin());
     const VisitVariance& scatter = fusion.scatter[s];
     pose.fused = FusedPose{pose.T_ref_sensor, pose.covariance, SessionsOf(fusion, static_cast<int>(s)),
-                           std::sqrt(scatter.translation_m2), std::sqrt(scatter.rotation_rad2)};
+                           std::sqrt(scatter.translation_m2), std::sqrt(scatter.rotation_rad2),
+                           scatters.shown[s], scatters.pooled[s], scatters.dof[s]};
     const auto row = 6 * static_cast<Eigen::Index>(s);
     pose.T_ref_sensor = fusion.T_ref[s];
     pose.covariance = Symmetrized(told.covariance.block<6, 6>(row, row));
@@ -137,18 +167,44 @@ std::vector<FusedSessions::HeldBack> HeldBackIn(const std::vector<SessionEstimat
   return held_back;
 }
 
+// `estimates`: the newest first.
+std::vector<FusedSessions::ClockOfSession> ClocksIn(const std::vector<SessionEstimate>& estimates,
+                                                    const std::vector<SessionId>& sessions) {
+  std::map<SensorId, FusedSessions::ClockOfSession> newest;
+  for (const SessionEstimate& estimate : estimates)
+    if (std::find(sessions.begin(), sessions.end(), estimate.session) != sessions.end())
+      for (const TrackerClock& clock : estimate.clocks) newest.try_emplace(clock.tracker, FusedSessions::ClockOfSession{estimate.session, clock});
+  std::vector<FusedSessions::ClockOfSession> clocks;
+  for (const auto& [tracker, clock] : newest) clocks.push_back(clock);
+  return clocks;
+}
+
+std::vector<LensMisfit> LensesIn(std::vector<SessionEstimate> estimates, const std::vector<SessionId>& sessions) {
+  std::erase_if(estimates, [&](const SessionEstimate& estimate) {
+    return std::find(sessions.begin(), sessions.end(), estimate.session) == sessions.end();
+  });
+  std::vector<LensMisfit> lenses = NewestMisfits(estimates);
+  std::sort(lenses.begin(), lenses.end(), [](const LensMisfit& x, const LensMisfit& y) { return x.camera < y.camera; });
+  return lenses;
+}
+
 }  // namespace
 
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
-                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution) {
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution, const PooledScatter& pooled) {
   SessionFusion fusion = FusionOf({edges, within, reference, solution}, estimates, true);
   if (fusion.factors.empty() || fusion.sensors.size() > kFusedSensorsMax) return;
-  const auto inverse = SettleWithScatter(fusion);
+  auto inverse = SettleWithScatter(fusion);
+  if (!inverse) return;
+  const Scatters scatters = TakeScatter(pooled, fusion);
+  if (!pooled.empty()) inverse = Settle(fusion);
   if (!inverse) return;
   solution.fused.moved = FindMovesBetween({edges, within, reference, solution}, estimates);
-  const Told told = ToldOf(fusion, *inverse);
-  TakePoses(fusion, told, solution);
+  const Told told = ToldOf(fusion, *inverse, scatters);
+  TakePoses(fusion, told, scatters, solution);
   solution.fused.held_back = HeldBackIn(estimates, fusion.sessions);
+  solution.fused.clocks = ClocksIn(estimates, fusion.sessions);
+  solution.fused.lenses = LensesIn(estimates, fusion.sessions);
   solution.fused.sessions = fusion.sessions;
   solution.fused.sensors = fusion.sensors;
   solution.fused.covariance = told.covariance;

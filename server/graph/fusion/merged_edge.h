@@ -1,4 +1,4 @@
-// Merged edges (model/edges/merged_edge.h): what comes into one, whether it fits, and what it is in the graph; and which edges of
+// Merged edges (edges/merged_edge.h): what comes into one, whether it fits, and what it is in the graph; and which edges of
 // a robot are merged.
 #pragma once
 

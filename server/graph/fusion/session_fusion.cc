@@ -1,6 +1,5 @@
 #include "server/graph/fusion/session_fusion.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "server/math/covariance.h"
@@ -159,44 +158,6 @@ Normal NormalOf(const SessionFusion& fusion) {
   return normal;
 }
 
-constexpr int kHalvings = 60;
-
-// e^T (C + v I)^-1 e is the sum of square / (variance + v), along the axes of C.
-struct AlongAxis {
-  double square = 0.0, variance = 0.0;
-};
-
-std::vector<AlongAxis> AlongAxes(const std::vector<VisitResidual>& visits, int part) {
-  std::vector<AlongAxis> axes;
-  for (const VisitResidual& visit : visits) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(visit.own.block<3, 3>(part, part));
-    const Eigen::Vector3d e = eigen.eigenvectors().transpose() * visit.e.segment<3>(part);
-    for (int i = 0; i < 3; ++i) axes.push_back({e(i) * e(i), std::max(0.0, eigen.eigenvalues()(i))});
-  }
-  return axes;
-}
-
-double SquaresAt(const std::vector<AlongAxis>& axes, double variance) {
-  double squares = 0.0;
-  for (const AlongAxis& axis : axes)
-    if (axis.square > 0.0) squares += axis.square / (axis.variance + variance);
-  return squares;
-}
-
-double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means) {
-  const double expected = 3.0 * (static_cast<double>(visits.size()) - means);
-  if (expected <= 0) return 0.0;
-  const std::vector<AlongAxis> axes = AlongAxes(visits, part);
-  if (SquaresAt(axes, 0.0) <= expected) return 0.0;
-  double low = 0.0, high = 0.0;
-  for (const AlongAxis& axis : axes) high += axis.square;  // sum e^2 / high <= 1
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (SquaresAt(axes, middle) > expected ? low : high) = middle;
-  }
-  return high;
-}
-
 }  // namespace
 
 bool IsFused(const SessionEstimate& estimate, const FusionInput& input) {
@@ -247,12 +208,6 @@ std::vector<std::vector<VisitResidual>> ResidualsOfVisits(const SessionFusion& f
     }
   }
   return visits;
-}
-
-Matrix6d VisitVariance::Matrix() const { return EachAxis(translation_m2, rotation_rad2).asDiagonal(); }
-
-VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
-  return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};
 }
 
 }  // namespace rigcal::graph

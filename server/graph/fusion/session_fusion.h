@@ -7,8 +7,9 @@
 // Pushed edges are factors by their Omega. An edge of a session counts where one of its sensors is in no refinement.
 //
 // From visit to visit a sensor sits a little elsewhere: T_k,s = T_s Exp(b), b ~ N(0, diag(v_t^2 I, v_r^2 I)) per sensor
-// (BetweenVisits). The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between
-// visits. What errs alike on every visit (SessionEstimate::common) does not fall with their number.
+// (BetweenVisits), held against what visits of other robots of the rig model scatter by (visit_scatter.h) where that is
+// known. The covariance told is that of the place on a visit, the mean's and v^2: a robot is used between visits. What errs
+// alike on every visit (SessionEstimate::common) does not fall with their number.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "server/model/graph/graph.h"
+#include "server/model/graph/visit_scatter.h"
 #include "server/model/sessions/session_estimate.h"
 
 namespace rigcal::graph {
@@ -25,8 +27,10 @@ namespace rigcal::graph {
 // Puts fused poses, covariances and degrees of freedom into the known poses of `solution`, those of the graph beside them
 // (SensorPose::fused). `edges` as they stand, and `within` those of sessions that are in merged edges among them. Without a
 // session that was refined and of which no edge was retired, nothing changes. At most kFusedSensorsMax known sensors.
+// `pooled`: what other robots of the rig model scatter by; what the robot's own visits tell (FusedPose::scatter) is the same
+// with it and without.
 void FuseSessions(const std::vector<Edge>& edges, const std::vector<Edge>& within, const SensorId& reference,
-                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution);
+                  const std::vector<SessionEstimate>& estimates, GraphSolution& solution, const PooledScatter& pooled = {});
 constexpr std::size_t kFusedSensorsMax = 200;
 
 // The least-squares problem over poses that sessions' joint refinements and pushed edges make: as a value, and its
@@ -50,6 +54,9 @@ struct VisitResidual {
 // rotation apart (Paule & Mandel 1982); `means`: how many places the residuals are less of. Zero where the visits agree
 // within their own sigmas, and where there are not more of them than means.
 [[nodiscard]] VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means = 1);
+// The same not held at zero: where the visits agree better than they say it is below, down to what the surest of their axes
+// errs by. With what the visits err by on average and the degrees of freedom, 3 (visits - 1) for each group of axes.
+[[nodiscard]] VisitScatter ScatterShown(const std::vector<VisitResidual>& visits);
 
 constexpr int kFixed = -1;  // the robot's reference
 

@@ -15,6 +15,9 @@
 #include "server/model/graph/insight.h"
 #include "server/model/graph/measured_part.h"
 #include "server/model/graph/suspects.h"
+#include "server/model/graph/visit_scatter.h"
+#include "server/model/sensors/lens_misfit.h"
+#include "server/model/sensors/tracker_clock.h"
 
 namespace rigcal {
 
@@ -42,6 +45,11 @@ struct FusedPose {
   int sessions = 0;                                 // whose refinement tells this sensor
   // How the sensor's place scatters from visit to visit, 1 sigma per axis; it is in the pose's covariance. 0: it does not.
   double visit_sigma_m = 0.0, visit_sigma_rad = 0.0;
+  // What its own visits alone tell of that, whatever was pooled; what other robots of the rig model told, where they did; and
+  // what stands behind what was taken. Documents have the first two where there is the second.
+  VisitScatter scatter = {};
+  std::optional<VisitScatter> pooled_scatter = {};
+  ScatterDof scatter_dof = {};
 };
 
 struct SensorPose {
@@ -94,6 +102,13 @@ struct FusedSessions {
     SensorId against = {};  // the only other sensor that saw that place: either may be wrong; empty: several did
   };
   std::vector<HeldBack> held_back;
+  // Of each tracker whose clock a session was asked about, by the newest of them; by tracker.
+  struct ClockOfSession {
+    SessionId session;
+    TrackerClock clock;
+  };
+  std::vector<ClockOfSession> clocks;
+  std::vector<LensMisfit> lenses;           // of each camera what its newest session says, if it bends; by camera
   std::vector<SensorMovedBetween> moved;  // the most certain first; not part of documents, which have the verdict
 };
 

@@ -10,11 +10,11 @@
 namespace rigcal {
 
 struct TimedPose {
-  CaptureId capture;  // of a tracker; empty in a pose stream
+  CaptureId capture;  // of a tracker; empty in a pose stream and in a tracker's path
   Stamp stamp;        // of the clock that made the table
   Se3 T_world_body;
 };
-// A tracker's rows by capture, each once; a pose stream's by stamp, strictly increasing.
+// A tracker's rows by capture, each once; a pose stream's, and those of a tracker's path, by stamp, strictly increasing.
 using PoseTable = std::vector<TimedPose>;
 
 }  // namespace rigcal

@@ -59,6 +59,7 @@ struct AsFound {
   double alpha = kAsFoundAlpha;
   int tests = 0;                          // axes that were tested, in all
   int visits = 0;                         // the fewest, over its sensors, that stand behind what visits scatter by
+  int scatter_robots = 0;                 // likewise, other robots of its rig model that stand behind that besides
   SensorId relative_to = {};              // did not move: the others are told in its frame
   std::vector<SensorFound> sensors = {};  // the other ones, sorted
   std::string text = {};                  // all of it in a sentence

@@ -77,6 +77,16 @@ Status CheckRangeBias(const Sensor& sensor) {
                 "Give the standard deviation in metres, 0 to 1; the data sheet's range accuracy is a good value.");
 }
 
+Status CheckClock(const Sensor& sensor) {
+  constexpr double kSigmaMax_s = 1.0;
+  if (!sensor.clock_sigma_s) return {};
+  if (sensor.kind != SensorKind::kTracker)
+    return Refuse(sensor, "clock_sigma_s is for trackers only", "Leave it away.");
+  if (*sensor.clock_sigma_s >= 0 && *sensor.clock_sigma_s <= kSigmaMax_s) return {};
+  return Refuse(sensor, "clock_sigma_s " + std::to_string(*sensor.clock_sigma_s) + " is out of range",
+                "Give the standard deviation in seconds, 0 to 1; 0 where one signal releases all.");
+}
+
 Status CheckLayout(const Sensor& sensor) {
   if (!sensor.layout) return {};
   const Status valid = Validate(*sensor.layout);
@@ -112,6 +122,7 @@ Status Validate(const Sensor& sensor) {
   RIGCAL_TRY(CheckIntrinsics(sensor));
   RIGCAL_TRY(CheckIntrinsicsSigma(sensor));
   RIGCAL_TRY(CheckRangeBias(sensor));
+  RIGCAL_TRY(CheckClock(sensor));
   RIGCAL_TRY(CheckLayout(sensor));
   RIGCAL_TRY(CheckPart(sensor));
   return CheckNominalPose(sensor);

@@ -35,6 +35,7 @@ struct Sensor {
   std::optional<std::vector<double>> intrinsics_sigma;  // fx fy cx cy and the distortion's, in its order, if known
   std::optional<double>
       range_bias_sigma_m;             // of a lidar: how far all its ranges may be off together; absent: not known
+  std::optional<double> clock_sigma_s;  // of a tracker: how far its clock may be off; absent: not known
   std::optional<TargetId> sees;       // the one target this sensor looks at; absent: any
   std::optional<Se3> T_ref_nominal;   // CAD pose of the sensor in the reference sensor
   std::optional<CloudLayout> layout;  // of a lidar: of its .bin files; absent: KITTI's, where a file leaves no doubt

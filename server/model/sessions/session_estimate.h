@@ -10,7 +10,8 @@
 #include "server/math/ball_distance.h"
 #include "server/math/se3.h"
 #include "server/model/diagnosis.h"
-#include "server/model/sensors/camera.h"
+#include "server/model/sensors/lens_misfit.h"
+#include "server/model/sensors/tracker_clock.h"
 
 namespace rigcal {
 
@@ -48,18 +49,6 @@ struct HeldBackLook {
   SensorId against = {};  // the only other sensor that saw that place: either of the two may be wrong; empty: several did
 };
 
-// A camera whose pictures are bent in a way that its model cannot describe: a smooth field of shifts, the same in every
-// capture, beyond what chance makes.
-struct LensMisfit {
-  SensorId camera;
-  CameraModel model = CameraModel::kPinholeRadtan;
-  double rms_px = 0.0;          // of the field where the camera saw corners, of u and of v
-  double evidence = 0.0;        // twice the log of the likelihood's ratio with and without it
-  double pose_sigma_m = 0.0;    // the most that it adds to the sigma of an axis of any pose, the square root of the
-  double pose_sigma_rad = 0.0;  // variance
-  double sigma_ratio = 1.0;  // of that pose and axis that it makes less certain most: with it over without any misfit
-};
-
 // A lidar whose ranges are too long (negative: too short) by this where its beam meets a surface at 60 degrees of
 // incidence, surely; taken out of the poses.
 struct SlantBias {
@@ -67,10 +56,12 @@ struct SlantBias {
   double too_long_m = 0.0, sigma_m = 0.0;
 };
 
-// A board that is surely bent, by this from the lowest to the highest point of its plate; taken out of the poses.
+// A board that surely looks bent, by this from the lowest to the highest point of its plate; taken out of the poses.
 struct BoardBend {
   TargetId board;
   double height_m = 0.0, sigma_m = 0.0;
+  bool is_the_board = false;           // false: a lens may make it look so, nothing in the session tells which
+  std::vector<SensorId> seen_by = {};  // cameras, sorted; estimates of before name none
 };
 
 // The smallest move of a sensor, half-way through the session, that would be told with a probability of 95 %, in the
@@ -105,7 +96,12 @@ struct SessionEstimate {
   std::vector<LensMisfit> misfits;        // by camera; taken out of the poses as far as they are known
   std::vector<SlantBias> slants;          // by lidar
   std::vector<BoardBend> bends;           // by board
+  std::vector<TrackerClock> clocks;       // by tracker; those that told their path
 };
+
+// Of each camera what the first of `estimates` (the newest, of a list from the newest on) says in which it took part, if it
+// bends; those without an estimate say nothing.
+[[nodiscard]] std::vector<LensMisfit> NewestMisfits(const std::vector<SessionEstimate>& estimates);
 
 // First of the six rows of a pose; -1: the reference, which has none.
 [[nodiscard]] inline int RowOf(const SessionEstimate& estimate, std::size_t pose) {

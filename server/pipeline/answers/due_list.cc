@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/base/text.h"
 #include "server/formats/alerts/calendar.h"
 #include "server/formats/alerts/webhook_answers.h"
 #include "server/pipeline/robots/summaries.h"
@@ -32,6 +33,12 @@ formats::CalendarEntry EntryOf(const RobotSummary& robot, Stamp due, const std::
   return entry;
 }
 
+// An empty calendar would say for ever that nothing is due there.
+Error NobodyAt(const std::string& site) {
+  return {ErrorCode::kNotFound, "no robot is at the site " + Quoted(site),
+          "Write it as session.yaml does, under conditions; `rigcal due --json` has the site of each robot."};
+}
+
 }  // namespace
 
 Result<DueCalendar> MakeDueCalendar(const AnswerContext& context, const formats::Parameters& parameters) {
@@ -46,6 +53,7 @@ Result<DueCalendar> MakeDueCalendar(const AnswerContext& context, const formats:
     due ? entries.push_back(EntryOf(robot, *due, context.http_address)) : void(++calendar.without_date);
   };
   RIGCAL_TRY(context.store.Read([&] { return storage::ForEachRobot(context.store, asked, context.clock.Now(), add); }));
+  if (!asked.site.empty() && entries.empty() && calendar.without_date == 0) return Fail(NobodyAt(asked.site));
   const std::string name = asked.site.empty() ? "Calibrations due" : "Calibrations due: " + asked.site;
   calendar.text = formats::WriteCalendar(name, entries);
   return calendar;

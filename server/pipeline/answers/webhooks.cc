@@ -1,5 +1,7 @@
 #include "server/pipeline/answers/webhooks.h"
 
+#include <map>
+
 #include "server/formats/alerts/webhook_answers.h"
 #include "storage/alerts/outbox.h"
 
@@ -25,6 +27,15 @@ Result<std::vector<ReceiverState>> LoadStates(storage::Store& store) {
   return states;
 }
 
+// Addresses that differ in what is not shown are one, as no two samples may have one name.
+std::string MetricOf(const std::string& name, const std::vector<ReceiverState>& states, std::int64_t ReceiverState::*count) {
+  std::map<std::string, std::int64_t> by_url;
+  for (const ReceiverState& one : states) by_url[one.url] += one.*count;
+  std::string text;
+  for (const auto& [url, sum] : by_url) text += name + "{url=\"" + LabelOf(url) + "\"} " + std::to_string(sum) + "\n";
+  return text;
+}
+
 }  // namespace
 
 Result<std::string> ListWebhooks(const AnswerContext& context, const formats::Parameters&) {
@@ -37,12 +48,8 @@ Result<std::string> AlertMetrics(storage::Store& store, const FleetCounts& fleet
   std::string text;
   for (const auto& [word, robots] : fleet.statuses)
     text += "rigcal_robots_by_status{status=\"" + NameOf(word) + "\"} " + std::to_string(robots) + "\n";
-  for (const ReceiverState& one : states) {
-    const std::string label = "{url=\"" + LabelOf(one.url) + "\"} ";
-    text += "rigcal_webhook_waiting" + label + std::to_string(one.waiting) + "\nrigcal_webhook_delivered_total" + label +
-            std::to_string(one.delivered) + "\n";
-  }
-  return text;
+  return text + MetricOf("rigcal_webhook_waiting", states, &ReceiverState::waiting) +
+         MetricOf("rigcal_webhook_delivered_total", states, &ReceiverState::delivered);
 }
 
 }  // namespace rigcal::pipeline

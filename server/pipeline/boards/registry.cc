@@ -97,7 +97,7 @@ Result<BoardMeasure> MeasureAsked(const Clock& clock, const Parameters& paramete
   BoardMeasure measure;
   measure.word.at = clock.Now();
   RIGCAL_ASSIGN(measure.serial, RequiredText(parameters, "serial", "Say what is written on the board."));
-  RIGCAL_ASSIGN(measure.word.who, RequiredText(parameters, "who", "Say who measured it."));
+  RIGCAL_ASSIGN(measure.word.who, RequiredWho(parameters, "Say who measured it."));
   measure.word.reason = parameters.Text("reason").value_or("");
   RIGCAL_TRY(TakeLengths(parameters, measure));
   RIGCAL_TRY(TakeNextCheck(parameters, measure));

@@ -17,18 +17,32 @@ std::set<CaptureId> OtherCaptures(const Manifest& manifest, const SensorId& trac
   return captures;
 }
 
-}  // namespace
+struct PoseFile {
+  std::string text, path;
+};
 
-Result<PoseTable> LoadPoses(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
+Result<PoseFile> LoadPoseFile(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
   const auto payload = std::find_if(manifest.payloads.begin(), manifest.payloads.end(),
                                     [&](const Payload& p) { return p.sensor == sensor.id; });
   if (payload == manifest.payloads.end())
     return Fail(ErrorCode::kNotFound, "sensor " + sensor.id.str() + " has no poses.csv",
                 "Put its poses into " + sensor.id.str() + "/poses.csv and push the session again.");
-  RIGCAL_ASSIGN(const std::string text, LoadPayload(store.BlobFolder(), *payload, limits::kPoseTableBytesMax));
+  RIGCAL_ASSIGN(std::string text, LoadPayload(store.BlobFolder(), *payload, limits::kPoseTableBytesMax));
+  return PoseFile{std::move(text), payload->path};
+}
+
+}  // namespace
+
+Result<PoseTable> LoadPoses(storage::Store& store, const Manifest& manifest, const Sensor& sensor) {
+  RIGCAL_ASSIGN(const PoseFile file, LoadPoseFile(store, manifest, sensor));
   if (sensor.kind == SensorKind::kTracker)
-    return formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), text, payload->path);
-  return formats::ReadPoses(text, sensor.kind, payload->path);
+    return formats::ReadPosesOf(OtherCaptures(manifest, sensor.id), file.text, file.path);
+  return formats::ReadPoses(file.text, sensor.kind, file.path);
+}
+
+Result<PoseTable> LoadTrackerPath(storage::Store& store, const Manifest& manifest, const Sensor& tracker) {
+  RIGCAL_ASSIGN(const PoseFile file, LoadPoseFile(store, manifest, tracker));
+  return formats::ReadTrackerPath(file.text, file.path);
 }
 
 }  // namespace rigcal::pipeline

@@ -23,7 +23,7 @@ struct RobotGraph {
 // As the live state needs it: `edges` are storage::EdgeParts::kRow.
 [[nodiscard]] Result<RobotGraph> LoadRobotGraph(storage::Store& store, const RobotId& robot);
 
-// Merges the older edges of pairs that were pushed often (graph/fusion/merged_edge.h), solves, judges and commits. The same edges that
+// Merges the older edges of pairs that were pushed often (merged_edge.h), solves, judges and commits. The same edges that
 // count give the same document, byte for byte, whatever the order of arrival, but that of edges of one pair beyond
 // kEdgesKeptOfPair: the newest stay as they are.
 // With `pairs_waiting` pairs of the robot's sessions still to be calibrated it is not judged: unknown, and used by nobody.

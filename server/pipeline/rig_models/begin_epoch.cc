@@ -79,7 +79,7 @@ Status TakeBack(storage::Store& store, const std::vector<SensorId>& sensors, for
 Result<OrderDone> BeginEpochBy(storage::Store& store, const Clock& clock, const Parameters& parameters) {
   formats::EpochAnswer answer;
   answer.word = {clock.Now(), "", ""};
-  RIGCAL_ASSIGN(answer.word.who, RequiredText(parameters, "who", "Say who says so."));
+  RIGCAL_ASSIGN(answer.word.who, RequiredWho(parameters, "Say who says so."));
   RIGCAL_ASSIGN(answer.word.reason, RequiredText(parameters, "reason", "Say what was done to it."));
   RIGCAL_ASSIGN(const bool takes_back, parameters.Flag("take_back"));
   RIGCAL_ASSIGN(answer.robot, KnownRobot(store, parameters));

@@ -71,7 +71,7 @@ Result<Population> LoadPopulation(storage::Store& store, const std::string& rig_
   ExpectedRig expected;
   Loaded loaded;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_TRY(CheckRigModelKnown(store, rig_model));
+    RIGCAL_TRY(CheckRigModelKnown(store, rig_model, kListRigModels));
     RIGCAL_ASSIGN(expected, LoadExpectedRig(store, rig_model));
     RIGCAL_ASSIGN(auto robots, storage::LoadRobotsOfModel(store, rig_model, kPopulationRobotsMax + 1));
     CutToBound(robots, loaded);

@@ -55,18 +55,20 @@ Result<std::string> RequiredRigModel(const Parameters& parameters) {
   return Fail(ErrorCode::kInvalidInput, Quoted(model) + " is no rig model", "Give what session.yaml has as rig_model.");
 }
 
-Status CheckRigModelKnown(storage::Store& store, const std::string& model) {
+Status CheckRigModelKnown(storage::Store& store, const std::string& model, const char* cure) {
   RIGCAL_ASSIGN(const auto version, storage::LoadRigModelVersion(store, model));
   if (version) return {};
   RIGCAL_ASSIGN(const bool is_named, storage::HasRigModel(store, model));
-  return is_named ? Status() : Fail(UnknownModel(store, model));
+  if (is_named) return {};
+  const Error unknown = UnknownModel(store, model);
+  return Fail(unknown.code, unknown.what, cure == nullptr ? unknown.cure : cure);
 }
 
 Result<std::string> TellRigModel(storage::Store& store, const Parameters& parameters) {
   RIGCAL_ASSIGN(const std::string model, RequiredRigModel(parameters));
   formats::RigModelAnswer answer;
   RIGCAL_TRY(store.Read([&]() -> Status {
-    RIGCAL_TRY(CheckRigModelKnown(store, model));
+    RIGCAL_TRY(CheckRigModelKnown(store, model, kListRigModels));
     RIGCAL_ASSIGN(const auto version, storage::LoadRigModelVersion(store, model));
     if (!version)
       return Fail(ErrorCode::kNotFound, "nobody has set rig model " + Quoted(model) + ", though sessions name it",
@@ -103,7 +105,7 @@ Result<std::string> ListRigModels(storage::Store& store) {
 
 Result<OrderDone> SetRigModel(storage::Store& store, const Clock& clock, const Parameters& parameters) {
   Word word{clock.Now(), "", ""};
-  RIGCAL_ASSIGN(word.who, RequiredText(parameters, "who", "Say who sets it."));
+  RIGCAL_ASSIGN(word.who, RequiredWho(parameters, "Say who sets it."));
   RIGCAL_ASSIGN(word.reason, RequiredText(parameters, "reason", "Say why it is so."));
   const std::string text = parameters.Text("text").value_or("");
   RIGCAL_ASSIGN(const RigModel model, formats::ReadRigModel(text, "the rig model"));

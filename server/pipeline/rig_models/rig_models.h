@@ -36,7 +36,8 @@ inline constexpr int kRobotsOfModelMax = 100'000;
 
 // The parameter `model`: one line that a session may name.
 [[nodiscard]] Result<std::string> RequiredRigModel(const formats::Parameters& parameters);
-// kNotFound where nobody has set it and no session names it: what may be meant.
-[[nodiscard]] Status CheckRigModelKnown(storage::Store& store, const std::string& model);
+// kNotFound where nobody has set it and no session names it: what may be meant. `cure`: of who cannot say that it is a new one.
+inline constexpr const char* kListRigModels = "`rigcal model list` lists those that are known.";
+[[nodiscard]] Status CheckRigModelKnown(storage::Store& store, const std::string& model, const char* cure = nullptr);
 
 }  // namespace rigcal::pipeline

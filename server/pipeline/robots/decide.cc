@@ -119,8 +119,8 @@ Status FallBackByPolicy(storage::Store& store, const RobotId& robot, Stamp now) 
   if (!is_for_it) return {};
   const Word word{now, kPolicyWho,
                   "of revision " + std::to_string(in_use->revision) + ", which was in use, something was retired"};
-  RIGCAL_TRY(storage::AppendDecision(store, robot, fallback->number, Deciding::kApprove, word));
-  return {};
+  RIGCAL_ASSIGN(const bool is_new, storage::AppendDecision(store, robot, fallback->number, Deciding::kApprove, word));
+  return is_new ? TellDecided(store, robot, fallback->number) : Status{};
 }
 
 Result<OrderDone> Decide(storage::Store& store, const Clock& clock, const std::string& verb,

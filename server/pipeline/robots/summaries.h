@@ -1,4 +1,4 @@
-// The stored summaries of robots, which lists show: worked out anew where something changed (storage/fleet/robot_summary.h). Several
+// The stored summaries of robots, which lists show: worked out anew where something changed (robot_summary.h). Several
 // threads may do so at the same time: what is newer stays.
 #pragma once
 

@@ -6,6 +6,7 @@
 
 #include "server/fleet/as_found/as_found.h"
 #include "server/graph/fusion/session_fusion.h"
+#include "server/pipeline/rig_models/pooled_scatter.h"
 #include "storage/revisions/revision_poses.h"
 #include "storage/revisions/revisions.h"
 #include "storage/revisions/usable_revision.h"
@@ -131,6 +132,11 @@ class Counted {
   SessionSensors counting_;
 };
 
+// By which the revision in the making is fused; it is of robots with its reference.
+PooledScatter PooledFor(const InUse& in_use, const RevisionInTheMaking& revision) {
+  return in_use.told.reference == revision.made.reference ? PooledScatterOf(revision.made.solution) : PooledScatter();
+}
+
 std::string WhyNoEstimate(const SessionEstimate& newest) {
   if (newest.why_not.empty()) return "An edge of it was retired, so that nothing of it counts.";
   return "It could not be refined as a whole: " + newest.why_not.front().what + ".";
@@ -150,7 +156,8 @@ Result<AsFound> TestInUse(storage::Store& store, const RevisionInTheMaking& revi
     RIGCAL_ASSIGN(fleet::KnownPoses poses, LoadPosesOf(store, *in_use, revision.current));
     found = fleet::TestAsFound(
         {std::move(poses), counted.PosesOf(newest), left, MovedOnPurpose(revision, sessions, *in_use),
-         revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha), LimitsOf(revision.policy, SensorId()).moved_min});
+         revision.policy.drift_false_alarm_ratio.value_or(kAsFoundAlpha), LimitsOf(revision.policy, SensorId()).moved_min,
+         PooledFor(*in_use, revision)});
     fleet::AddDriftRates(counted.Visits(), left, found);
   }
   if (in_use) found.in_use = in_use->revision.number, found.made_at = in_use->revision.created_at;

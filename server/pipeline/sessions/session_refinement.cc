@@ -89,14 +89,20 @@ Status AddLidar(storage::Store& store, const Manifest& manifest, const Sensor& l
   return {};
 }
 
+Status AddTracker(storage::Store& store, const Manifest& manifest, const Sensor& tracker, SessionViews& views) {
+  auto poses = LoadPoses(store, manifest, tracker);
+  auto path = LoadTrackerPath(store, manifest, tracker);
+  for (const auto* table : {&poses, &path})
+    if (!*table && table->error().code == ErrorCode::kStorage) return Fail(table->error());
+  if (poses && path) views.trackers.push_back({tracker, std::move(*poses), std::move(*path)});
+  return {};
+}
+
 Status AddSensor(storage::Store& store, const Manifest& manifest, const Sensor& sensor, const Pairs& pairs,
                  calib::CameraMemory& cameras, SessionViews& views) {
   if (sensor.kind == SensorKind::kCamera) return AddCamera(store, manifest, sensor, cameras, views);
   if (sensor.kind == SensorKind::kLidar) return AddLidar(store, manifest, sensor, pairs, views);
-  if (sensor.kind != SensorKind::kTracker) return {};
-  auto poses = LoadPoses(store, manifest, sensor);
-  if (!poses && poses.error().code == ErrorCode::kStorage) return Fail(poses.error());
-  if (poses) views.trackers.push_back({sensor, std::move(*poses)});
+  if (sensor.kind == SensorKind::kTracker) return AddTracker(store, manifest, sensor, views);
   return {};
 }
 
@@ -211,6 +217,7 @@ Result<CurrentEstimates> LoadCurrentEstimates(storage::Store& store, const Robot
       return epochs.After(session, moved.sensor) != nullptr || !counting.contains({session, moved.sensor});
     });
     std::erase_if(estimate.misfits, [&](const LensMisfit& misfit) { return !counting.contains({session, misfit.camera}); });
+    std::erase_if(estimate.clocks, [&](const TrackerClock& clock) { return !counting.contains({session, clock.tracker}); });
     LeaveOutGone(current.counts.retired_sensors, estimate);
   }
   return result;

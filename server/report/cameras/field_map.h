@@ -1,4 +1,4 @@
-// A drawing of a picture with one number of pixels for each of its fields (model/sensors/coverage.h), in five classes of one
+// A drawing of a picture with one number of pixels for each of its fields (sensors/coverage.h), in five classes of one
 // scale: so the maps of all cameras compare. What a map says is in its text alternative, too.
 #pragma once
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "server/report/cameras/bent_lenses.h"
 #include "server/report/text/changes.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
@@ -39,9 +40,18 @@ double LargestSigma_m(const Matrix6d& covariance) {
 }
 
 std::string VisitsText(const FusedPose& fused) {
-  if (fused.sessions < 2) return "one visit";
+  if (fused.sessions < 2 && !fused.pooled_scatter) return "one visit";
   if (fused.visit_sigma_m <= 0 && fused.visit_sigma_rad <= 0) return "within \xCF\x83";
-  return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad);
+  return SigmaMm(fused.visit_sigma_m) + " / " + SigmaDeg(fused.visit_sigma_rad) +
+         (fused.pooled_scatter ? ", with " + Count(static_cast<std::size_t>(fused.pooled_scatter->robots), "robot", "robots") : "");
+}
+
+// Of one visit nothing is to be told of visits, unless other robots tell it.
+bool TellsVisits(const formats::RevisionInput& revision) {
+  const auto& poses = revision.solution.poses;
+  return revision.solution.fused.sessions.size() > 1 || std::any_of(poses.begin(), poses.end(), [](const SensorPose& pose) {
+           return pose.fused && pose.fused->pooled_scatter;
+         });
 }
 
 void FillRow(Dictionary& row, const Moved& moved, bool visits) {
@@ -79,6 +89,18 @@ void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
   }
 }
 
+std::string Ms(double seconds) { return Fixed(1e3 * seconds, 1) + " ms"; }
+
+// "The clock of body is 12.3 ms late (sigma 0.4 ms), which was taken out ..."; where the body did not move nothing is known.
+std::string ClockText(const TrackerClock& clock) {
+  if (!clock.IsKnown())
+    return "Of the clock of " + clock.tracker.str() + " the session says nothing: its body " +
+           (clock.captures == 0 ? "stood still at all captures." : "moved too little at captures.");
+  return "The clock of " + clock.tracker.str() + " is " + Ms(std::abs(clock.late_s)) + (clock.late_s < 0 ? " early" : " late") + " (\xCF\x83 " +
+         Ms(clock.sigma_s) + "), by " + Count(static_cast<std::size_t>(clock.captures), "capture", "captures") +
+         " at which its body moved; that was taken out of the poses.";
+}
+
 }  // namespace
 
 void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
@@ -89,10 +111,14 @@ void FillFused(Dictionary& page, const formats::RevisionInput& revision) {
   const std::size_t sessions = revision.solution.fused.sessions.size();
   section->SetValue("SUMMARY", "All that the sensors saw in " + Count(sessions, "session", "sessions") +
                                    ", as one estimate" + (sessions > 1 ? " per session." : "."));
-  if (sessions > 1) section->ShowSection("VISITS_HEAD");
-  if (sessions > 1) section->ShowSection("VISITS_NOTE");
+  const bool visits = TellsVisits(revision);
+  if (visits) section->ShowSection("VISITS_HEAD");
+  if (visits) section->ShowSection("VISITS_NOTE");
   FillHeldBack(*section, revision.solution.fused);
-  for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, sessions > 1);
+  for (const auto& [session, clock] : revision.solution.fused.clocks)
+    ShowValue(*section, "CLOCK", "TEXT", ClockText(clock));
+  FillBentLenses(*section, revision.solution.fused.lenses);
+  for (const Moved& moved : rows) FillRow(*section->AddSectionDictionary("SENSOR"), moved, visits);
 }
 
 }  // namespace rigcal::report

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "server/fleet/population/scatter_pool.h"
 #include "tests/bench/fleet/robot_history.h"
 
 namespace rigcal::drawn_fleet {
@@ -68,6 +69,8 @@ class DrawnRobot {
     happens_ = fate_ == Fate::kDrifts ? first : first + draws_.Below(std::max(1, last - first));
   }
 
+  void Know(const PooledScatter& pooled) { history_.Know(pooled); }
+  [[nodiscard]] const fleet::RobotScatter& OwnScatter() const { return history_.OwnScatter(); }
   void Visit(int week, FleetTally& tally) {
     if (week < joins_) return;
     const VisitDraw draw = draws_.Visit(places_, plan_.sizes);
@@ -192,14 +195,31 @@ class DrawnRobot {
   bool missed_ = false, repaired_ = false, rate_told_ = false;
 };
 
+// Of server/pipeline/rig_models/pooled_scatter.cc: so many others are read.
+constexpr std::size_t kPooledRobotsMax = 200;
+
+PooledScatter PoolFor(std::size_t robot, const std::vector<DrawnRobot>& robots) {
+  std::vector<fleet::RobotScatter> others;
+  for (std::size_t i = 0; i < robots.size() && others.size() < kPooledRobotsMax; ++i)
+    if (i != robot && !robots[i].OwnScatter().empty()) others.push_back(robots[i].OwnScatter());
+  return fleet::PoolScatter(others);
+}
+
+// As of the week before.
+void LetThemKnow(std::vector<DrawnRobot>& robots) {
+  for (std::size_t i = 0; i < robots.size(); ++i) robots[i].Know(PoolFor(i, robots));
+}
+
 }  // namespace
 
 FleetTally RunFleet(const FleetPlan& plan) {
   FleetTally tally;
   std::vector<DrawnRobot> robots;
   for (int number = 0; number < plan.robots; ++number) robots.emplace_back(plan, number);
-  for (int week = 0; week < plan.weeks; ++week)
+  for (int week = 0; week < plan.weeks; ++week) {
+    LetThemKnow(robots);
     for (DrawnRobot& robot : robots) robot.Visit(week, tally);
+  }
   return tally;
 }
 

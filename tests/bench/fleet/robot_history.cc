@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "server/graph/fusion/merged_edge.h"
-#include "server/graph/fusion/merged_edge.h"
 #include "server/graph/fusion/session_fusion.h"
 #include "server/graph/solve/solve.h"
 #include "server/model/approval/decision.h"
@@ -33,6 +32,7 @@ fleet::AsFoundInput RobotHistory::InputOf(const SessionEstimate& estimate, std::
   input.session = fleet::PosesOf(estimate);
   input.left = input.session;
   input.moved_on_purpose = std::move(moved_on_purpose);
+  input.pooled_scatter = pooled_;
   return input;
 }
 
@@ -84,11 +84,22 @@ void RobotHistory::Revise(const std::vector<Edge>& within) {
   for (const MergedEdge& merged : merged_) edges.push_back(graph::EdgeOf(merged, robot_, false));
   std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) { return x.id < y.id; });
   GraphSolution solution = graph::Solve(graph::GraphOf(edges, reference_));
-  graph::FuseSessions(edges, within, reference_, {newest_first_.begin(), newest_first_.end()}, solution);
+  graph::FuseSessions(edges, within, reference_, {newest_first_.begin(), newest_first_.end()}, solution, pooled_);
+  KeepOwnScatter(solution);
   newest_ = fleet::PosesOf(solution, reference_);
   Verdict verdict;
   verdict.level = solution.fused.moved.empty() ? VerdictLevel::kPass : VerdictLevel::kFail;
   if (Approves(Policy(), verdict) || !HasRevision()) in_use_ = newest_;
+}
+
+// Of server/pipeline/rig_models/pooled_scatter.cc.
+void RobotHistory::KeepOwnScatter(const GraphSolution& solution) {
+  std::set<SensorId> moved;
+  for (const SensorMovedBetween& one : solution.fused.moved) moved.insert(one.sensor);
+  own_scatter_.clear();
+  for (const SensorPose& pose : solution.poses)
+    if (pose.fused && !moved.contains(reference_) && !moved.contains(pose.sensor) && pose.fused->scatter.translation.dof > 0)
+      own_scatter_[pose.sensor] = pose.fused->scatter;
 }
 
 void RobotHistory::Take(SessionEstimate estimate, Stamp captured_at) {

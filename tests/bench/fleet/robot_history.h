@@ -1,4 +1,4 @@
-// One robot's visits through the server's own steps, as its pipeline takes them (server/pipeline/revisions/revise.cc, as_found.cc):
+// One robot's visits through the server's own steps, as its pipeline takes them (revisions/revise.cc, as_found.cc):
 // the calibration in use is tested, then a revision is made of the newest visits' estimates.
 #pragma once
 
@@ -17,6 +17,11 @@ class RobotHistory {
  public:
   RobotHistory(RobotId robot, SensorId reference) : robot_(std::move(robot)), reference_(std::move(reference)) {}
 
+  // What other robots scatter by, as of now: by it the next revision is fused.
+  void Know(PooledScatter pooled) { pooled_ = std::move(pooled); }
+  // What its own visits tell others, by the newest revision: not of sensors that moved between visits.
+  [[nodiscard]] const std::map<SensorId, VisitScatter>& OwnScatter() const { return own_scatter_; }
+
   [[nodiscard]] bool HasRevision() const { return !in_use_.poses.empty(); }
   // The session against what is in use. `moved_on_purpose`: its header says so.
   [[nodiscard]] fleet::AsFoundInput InputOf(const SessionEstimate& estimate, std::set<SensorId> moved_on_purpose = {}) const;
@@ -32,6 +37,7 @@ class RobotHistory {
   std::vector<Edge> EdgesOf(const SessionEstimate& estimate) const;
   std::vector<Edge> MergeOlder();
   void Revise(const std::vector<Edge>& within);
+  void KeepOwnScatter(const GraphSolution& solution);
 
   RobotId robot_;
   SensorId reference_;
@@ -42,6 +48,8 @@ class RobotHistory {
   std::vector<MergedEdge> merged_;
   std::map<EdgeId, Stamp> measured_at_;
   fleet::KnownPoses in_use_, newest_;
+  PooledScatter pooled_;
+  std::map<SensorId, VisitScatter> own_scatter_;
 };
 
 }  // namespace rigcal::drawn_fleet

@@ -71,7 +71,8 @@ calib::HandEyeSide SideOf(const FeatureSession& session, const Sensor& sensor) {
     for (const auto& [capture, view] : session.seen.views.at(sensor.id)) side.views.emplace_back(capture, view);
     return side;
   }
-  const std::string csv = sim::PosesCsv(session.experiment, session.seen.tracker.at(sensor.id));
+  const std::string csv =
+      sim::PosesCsv(session.experiment, session.experiment.rig.SensorOf(sensor.id), session.seen.tracker.at(sensor.id));
   side.poses = formats::ReadPoses(csv, sensor.kind, "poses.csv").value();
   return side;
 }

@@ -48,8 +48,10 @@ calib::joint::SessionViews ViewsOf(const FeatureSession& session, std::map<Senso
     if (sensor.kind == SensorKind::kCamera) views.cameras.push_back(CameraViewsOf(session, sensor));
     if (sensor.kind == SensorKind::kLidar) views.lidars.push_back(LidarViewsOf(session, sensor));
     if (sensor.kind != SensorKind::kTracker) continue;
-    const std::string csv = sim::PosesCsv(session.experiment, session.seen.tracker.at(sensor.id));
-    views.trackers.push_back({sensor, formats::ReadPoses(csv, sensor.kind, "poses.csv").value()});
+    const std::string csv = sim::PosesCsv(session.experiment, session.experiment.rig.SensorOf(sensor.id),
+                                          session.seen.tracker.at(sensor.id));
+    views.trackers.push_back({sensor, formats::ReadPoses(csv, sensor.kind, "poses.csv").value(),
+                              formats::ReadTrackerPath(csv, "poses.csv").value()});
   }
   return views;
 }

@@ -75,7 +75,8 @@ Told Judge(const std::vector<FeatureSession>& visits) {
   const SessionHeader& header = visits.front().header;
   GraphSolution solution = Solved(WholeGraph(edges, header), edges);
   graph::FuseSessions(edges, {}, header.reference, estimates, solution);
-  Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0};
+  Told told{header.reference, solution.poses, fleet::Assess(edges, solution, {}, {}, estimates, headers), {}, 0, {}};
+  told.clocks = estimates.front().clocks;
   told.said = SaidOf(told.verdict, edges);
   for (const FusedSessions::HeldBack& look : solution.fused.held_back)  // as the report has it
     told.said.push_back({"held_back", look.sensor.str() + " in capture " + look.capture.str() +

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/model/graph/graph.h"
+#include "server/model/sessions/session_estimate.h"
 #include "tests/bench/rig/feature_session.h"
 
 namespace rigcal {
@@ -23,6 +24,7 @@ struct Told {
   Verdict verdict;
   std::vector<Said> said;  // the verdict first, then every diagnosis of an edge
   int failed_edges = 0;
+  std::vector<TrackerClock> clocks;  // by the session that was captured last
 };
 
 // Visits of one robot, in their order, each as one session.

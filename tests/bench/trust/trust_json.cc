@@ -65,6 +65,18 @@ void WriteTruth(const JudgedVisit& judged, formats::JsonWriter& out) {
   if (truth.moved_board) out.Text("moved_board", truth.moved_board->board.str());
 }
 
+// What is true of trackers' clocks, and what is told.
+void WriteClocks(const JudgedVisit& judged, formats::JsonWriter& out) {
+  out.Number("clock_late_s", judged.experiment.options.disturb.pose_clock_late_s);
+  out.List("clocks", [&] {
+    for (const TrackerClock& clock : judged.told.clocks)
+      out.Object([&] {
+        out.Number("late_s", clock.late_s);
+        out.Number("sigma_s", clock.sigma_s);
+      });
+  });
+}
+
 void WriteSix(std::string_view key, const Vector6d& values, formats::JsonWriter& out) {
   out.List(key, [&] {
     for (const double value : values) out.Number(value);
@@ -98,6 +110,7 @@ void WriteJudged(const JudgedVisit& judged, formats::JsonWriter& out) {
     out.Number("judge_s", judged.judge_s);
     WriteTruth(judged, out);
     WriteAccused(judged, out);
+    WriteClocks(judged, out);
     out.Object("sensors", [&] {
       for (const auto& [id, pose] : judged.poses) out.Object(id.str(), [&] { WritePose(pose, out); });
     });

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "client/sim/rig/random.h"
+
 namespace rigcal {
 namespace {
 
@@ -63,6 +65,15 @@ HostileVisit Bursts(int idx, int captures, int burst) {
   return visit;
 }
 
+// The robot does not stop for its captures; the tracker's clock is off by up to 40 ms.
+HostileVisit Swaying(int idx, bool clock_is_off) {
+  HostileVisit visit = Plain(idx);
+  visit.options.disturb.sway_per_s = {0.2, 10 * kRadPerDeg};
+  sim::Random random(sim::KeyOf(visit.options.seed, "clock offset"));
+  visit.options.disturb.pose_clock_late_s = clock_is_off ? random.Uniform(-0.04, 0.04) : 0.0;
+  return visit;
+}
+
 HostileVisit WithBound(int idx) {
   HostileVisit visit = Plain(idx);
   visit.bound = true;
@@ -107,6 +118,8 @@ std::vector<TrustScenario> MakeScenarios() {
   all.push_back(Changed("board_moved", [](HostileVisit& v) {
     v.options.disturb.board_move = sim::BoardMove{{0.005, 0.5 * kRadPerDeg}, 0.5, {}};
   }));
+  for (const bool is_off : {false, true})
+    all.push_back({is_off ? "pose_clock_offset" : "pose_clock_right", [is_off](int idx) { return Swaying(idx, is_off); }});
   all.push_back(Changed("wrong_instant", [](HostileVisit& v) { v.options.disturb.wrong_instant.emplace(); }));
   all.push_back(Changed("bent_boards", [](HostileVisit& v) { v.options.disturb.board_bend_m = 5e-4; }));
   all.push_back(Changed("incidence_bias", [](HostileVisit& v) { v.options.disturb.incidence_bias_m = 0.01; }));

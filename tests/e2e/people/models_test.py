@@ -97,6 +97,7 @@ def an_epoch_by_hand(flow):
     check(past(shown(flow)) == [("front_left", EXCHANGED), (EXCHANGED, "front_top")], "it is as if it had not been said")
     refused = flow.rigcal("epoch", ROBOT, "--sensor", "front_top", "--take-back", "--reason", "once more", exit_code=REFUSED)
     check("nobody began an epoch" in refused.stderr, "there is none any more: " + refused.stderr)
+    check("The audit is as it was written" in flow.rigcal("audit", "verify").stdout, "each word about a sensor is held by the audit")
 
 
 def main():

@@ -193,6 +193,12 @@ def interrupted_goes_on(folder, rig):
     check(told["kept_files"] == 3 + (FRAMES - 1) + FRAMES // 2, "only what is missing is written: %r" % told)
     refused = rigcal("import", folder / "plain.bag", "--rig", rig, "--out", out, exit_code=REFUSED).stderr
     check("another bag" in refused, refused)
+    other = bytearray(bag.read_bytes())
+    other[len(other) // 2] ^= 1
+    (folder / "elsewhere").mkdir()
+    (folder / "elsewhere" / bag.name).write_bytes(other)
+    refused = rigcal("import", folder / "elsewhere" / bag.name, "--rig", rig, "--out", out, exit_code=REFUSED).stderr
+    check("another bag" in refused, "of the same name and size: " + refused)
 
 
 def what_had_no_partner_is_counted(folder, rig):

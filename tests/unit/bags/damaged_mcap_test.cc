@@ -1,10 +1,15 @@
 // A small MCAP file, built here, then damaged at each of its bytes.
 #include <gtest/gtest.h>
+#include <zstd.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 
 #include "client/bags/mcap/mcap_bag.h"
+#include "client/bags/open_bag.h"
 #include "client/bags/ros1_bag.h"
 
 namespace rigcal::bags {
@@ -94,6 +99,30 @@ TEST(DamagedMcap, EveryByteMayBeAnyOther) {
       damaged[at] = static_cast<char>(value);
       (void)Read(damaged);  // neither aborts nor hangs
     }
+}
+
+// It is unpacked into a file that has no name while it is read; what is wrong is told of the bag that was given.
+TEST(DamagedMcap, APackedBagLeavesNothingBehindAndIsCalledByItsName) {
+  namespace fs = std::filesystem;
+  std::string folder = (fs::temp_directory_path() / "bag-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const fs::path bag = fs::path(folder) / "drive.mcap.zstd";
+  const std::string file = File().substr(0, File().size() - 20);  // cut off
+  std::string packed(ZSTD_compressBound(file.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), file.data(), file.size(), 1));
+  std::ofstream(bag, std::ios::binary) << packed;
+  setenv("TMPDIR", folder.c_str(), 1);
+  auto opened = OpenBag(bag);
+  unsetenv("TMPDIR");
+  ASSERT_TRUE(opened) << opened.error().what;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "the bag alone";
+  int messages = 0;
+  for (Message message; (*opened)->Next(message);) ++messages;
+  EXPECT_EQ(messages, 4);
+  const std::vector<Error> told = (*opened)->Unread().All();
+  ASSERT_FALSE(told.empty());
+  EXPECT_EQ(told.front().what.rfind(bag.string(), 0), 0U) << told.front().what;
+  fs::remove_all(folder);
 }
 
 TEST(DamagedMcap, OtherFilesAreRefused) {

@@ -74,6 +74,47 @@ TEST(Messages, ACloudIsCheckedAgainstItsBytes) {
   EXPECT_FALSE(ReadPointCloud(CloudOf(5, 2, 8, 0, 0, 0).value));
 }
 
+// The message is read by the definition that stands in the bag, whatever it makes of the numbers.
+TEST(Messages, ACloudWhoseDefinitionHasLongerNumbersIsRefused) {
+  const auto refusal = [](std::int64_t offset, std::int64_t count, std::int64_t point_step) {
+    Topic topic;
+    topic.name = "/t", topic.type = "sensor_msgs/msg/PointCloud2", topic.encoding = "cdr", topic.schema_encoding = "ros2msg";
+    topic.schema =
+        "std_msgs/Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\nint64 "
+        "point_step\nint64 row_step\nuint8[] data\n===\nMSG: sensor_msgs/PointField\nstring name\nint64 offset\n"
+        "uint8 datatype\nint64 count\n";
+    CdrMessage message;
+    message.Header(0, 1, "lidar").Put(std::uint32_t{1}).Put(std::uint32_t{2}).Put(std::uint32_t{3});
+    for (const char* name : {"x", "y", "z"}) message.Text(name).Put(offset).Put(std::uint8_t{7}).Put(count);
+    message.Put(std::uint8_t{0}).Put(point_step).Put(std::int64_t{0}).Block(std::string(24, '\0'));
+    const std::vector<std::byte> bytes = message.Done();
+    const auto definition = DefinitionOf(topic);
+    EXPECT_TRUE(definition) << definition.error().what;
+    const auto value = Decode(topic, **definition, bytes);
+    EXPECT_TRUE(value) << value.error().what;
+    const auto cloud = ReadPointCloud(*value);
+    return cloud ? "" : cloud.error().what;
+  };
+  EXPECT_EQ(refusal(0, 1, 12), "");
+  EXPECT_THAT(refusal(-1'000'000'000'000, 1, 12), HasSubstr("beyond 32 bits"));
+  EXPECT_THAT(refusal(-4'000'000'000'000, 1'000'000'000'001, 12), HasSubstr("beyond 32 bits")) << "their sum fits";
+  EXPECT_THAT(refusal(1LL << 40, 1, 1LL << 62), HasSubstr("beyond 32 bits"));
+}
+
+TEST(Messages, AStampBeyondItsBitsIsNone) {
+  Topic topic;
+  topic.name = "/t", topic.type = "std_msgs/msg/Header", topic.encoding = "cdr", topic.schema_encoding = "ros2msg";
+  topic.schema = "Stamp stamp\nstring frame_id\n===\nMSG: std_msgs/Stamp\nint64 sec\nint64 nanosec\n";
+  const auto definition = DefinitionOf(topic).value();
+  const auto header_of = [&](std::int64_t sec, std::int64_t nanosec) {
+    const std::vector<std::byte> bytes = CdrMessage().Put(sec).Put(nanosec).Text("cam").Done();
+    return HeaderOf(Decode(topic, *definition, bytes).value());
+  };
+  EXPECT_EQ(header_of(12, 34)->stamp_ns, 12'000'000'034);
+  EXPECT_FALSE(header_of(INT64_MAX, 0));
+  EXPECT_FALSE(header_of(0, INT64_MIN));
+}
+
 TEST(Messages, PosesAreOfUnitLengthAndFinite) {
   const auto pose_of = [](double w, double x) {
     CdrMessage message;

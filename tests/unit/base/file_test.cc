@@ -93,6 +93,27 @@ TEST_F(Files, WriteReplaces) {
   EXPECT_EQ(ReadFile(folder_ / "file", 100).value(), "short");
 }
 
+// As root /dev/null would be gone for everybody.
+TEST_F(Files, WriteReplacesFilesAlone) {
+  const std::filesystem::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const Status written = WriteDurably(pipe, "bytes");
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().what, pipe.string() + " is not a regular file");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  std::filesystem::create_symlink(pipe, folder_ / "to a pipe");
+  EXPECT_FALSE(WriteDurably(folder_ / "to a pipe", "bytes"));
+}
+
+TEST_F(Files, WriteLeavesALinkInItsPlace) {
+  std::filesystem::create_directory(folder_ / "v1");
+  std::filesystem::create_symlink("v1/robot.urdf", folder_ / "current");  // where there is nothing yet
+  ASSERT_TRUE(WriteDurably(folder_ / "current", "first"));
+  ASSERT_TRUE(WriteDurably(folder_ / "current", "second"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "current"));
+  EXPECT_EQ(ReadFile(folder_ / "v1" / "robot.urdf", 100).value(), "second");
+}
+
 TEST_F(Files, FailedWriteLeavesNothingBehind) {
   ASSERT_TRUE(std::filesystem::create_directory(folder_ / "taken"));
   ASSERT_TRUE(WriteDurably(folder_ / "taken" / "inside", "x").has_value());

@@ -118,7 +118,8 @@ TEST(Program, SimulateSaysHowADisturbanceIsWritten) {
   const auto [reads, refuses] = std::pair{
       std::vector<std::string>{"--bump back --bump-by 0.02,2 --bump-at 0.25", "--board-moved 0.005,0.5@0.25:front",
                                "--wrong-instant drawn", "--wrong-instant 02:back", "--shift-capture 8@01:back",
-                               "--visit-scatter 0.3,0.01", "--lens-misfit 0.05 --bursts 2"},
+                               "--visit-scatter 0.3,0.01", "--lens-misfit 0.05 --bursts 2",
+                               "--pose-clock-offset -12.3", "--sway 0.1,5 --pose-clock-offset 20"},
       std::vector<std::pair<std::string, std::string>>{
           {"--bump-by 5", "Write it as M,DEG"},
           {"--board-moved 0.005,x", "Write it as M,DEG, M,DEG@RATIO"},
@@ -127,6 +128,8 @@ TEST(Program, SimulateSaysHowADisturbanceIsWritten) {
           {"--shift-capture 8@99:back", "capture 99 is none of this visit"},
           {"--shift-capture 8@01:body", "sensor body takes no pictures"},
           {"--visit-scatter 0.3", "Write it as MM,DEG"},
+          {"--sway 0.1", "Write it as M,DEG"},
+          {"--pose-clock-offset 2000", "pose-clock-offset is out of range"},
           {"--lens-misfit -1", "lens-misfit is out of range"},
           {"--bump back --bump-at 1", "bump-at is out of range"}}};
   for (const std::string& words : reads) {

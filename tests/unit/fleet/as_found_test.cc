@@ -71,6 +71,68 @@ TEST(AsFound, ABumpBeyondWhatVisitsMayScatterByIsSeenOnTheSecondVisit) {
   EXPECT_GT(SmallestSeen_m(found), 0.005);
 }
 
+// 0.5 mm and 0.2 mrad from visit to visit, as sure as 40 numbers are, of each sensor.
+PooledScatter PoolOfAll() {
+  PooledScatter pooled;
+  for (const SensorId& sensor : {kRear, kRight, kTop}) pooled[sensor] = {{25e-8, 1e-8, 40.0}, {4e-8, 1e-8, 40.0}, 9};
+  return pooled;
+}
+
+AsFoundInput FirstVisit(unsigned seed) {
+  Errors errors = SomeErrors();
+  errors.visits = 1;
+  errors.visit_sigma_m = 5e-4, errors.visit_sigma_rad = 2e-4;
+  Draws draws(seed);
+  return Visit(DrawnRig(), DrawnRig(), errors, draws);
+}
+
+TEST(AsFound, OfOneVisitOtherRobotsTellTheScatter) {
+  AsFoundInput input = FirstVisit(41);
+  const AsFound assumed = TestAsFound(input);
+  input.pooled_scatter = PoolOfAll();
+  const AsFound found = TestAsFound(input);
+  EXPECT_EQ(found.visits, 1);
+  EXPECT_EQ(found.scatter_robots, 9);
+  EXPECT_EQ(assumed.scatter_robots, 0);
+  EXPECT_LT(SmallestSeen_m(found), 0.8 * SmallestSeen_m(assumed));
+  const double both = input.in_use.covariance(0, 0) + input.session.covariance(0, 0);
+  EXPECT_NEAR(Of(kRear, found).sigma(0), std::sqrt(both + 2 * 25e-8), 1e-9);
+  EXPECT_THAT(AsFoundText(found, {}), ::testing::HasSubstr("held against that of 9 other robots of its rig model"));
+  EXPECT_THAT(AsFoundText(assumed, {}), ::testing::HasSubstr("the policy's moved_min is taken for it"));
+}
+
+TEST(AsFound, SensorsThatNoOtherRobotTellsKeepTheAssumedScatter) {
+  AsFoundInput input = FirstVisit(42);
+  const AsFound assumed = TestAsFound(input);
+  input.pooled_scatter = PoolOfAll();
+  input.pooled_scatter.erase(kTop);
+  const AsFound found = TestAsFound(input);
+  EXPECT_EQ(found.scatter_robots, 0) << "not of all of them";
+  EXPECT_EQ(Of(kTop, found).sigma, Of(kTop, assumed).sigma);
+  EXPECT_LT(Of(kRear, found).sigma(0), Of(kRear, assumed).sigma(0));
+}
+
+// What the calibration in use was fused by is in its covariance: it is not added once more.
+TEST(AsFound, ScatterThatIsInTheCalibrationInUseCountsOnce) {
+  AsFoundInput input = FirstVisit(43);
+  for (KnownPose& pose : input.in_use.poses) pose.scatter_dof = ScatterDof{30.0, 30.0}, pose.scatter_robots = 6;
+  const AsFound found = TestAsFound(input);
+  EXPECT_EQ(found.scatter_robots, 6);
+  const double both = input.in_use.covariance(0, 0) + input.session.covariance(0, 0);
+  EXPECT_NEAR(Of(kRear, found).sigma(0), std::sqrt(both), 1e-9);
+}
+
+TEST(AsFound, ItIsAsSureAsWhatVisitsScatterByIsKnown) {
+  AsFoundInput input = FirstVisit(44);
+  double before = std::numeric_limits<double>::infinity();
+  for (const double dof : {6.0, 20.0, 200.0}) {
+    for (KnownPose& pose : input.in_use.poses) pose.scatter_dof = ScatterDof{dof, dof}, pose.scatter_robots = 6;
+    const double smallest_m = SmallestSeen_m(TestAsFound(input));
+    EXPECT_LT(smallest_m, before) << dof;
+    before = smallest_m;
+  }
+}
+
 // Of 2000 sessions in which the right camera moved by so many times the smallest change: in how many it is seen, as a
 // share.
 double Seen(const Errors& errors, int axis, double times, unsigned seed) {
@@ -169,6 +231,23 @@ TEST(AsFound, AnAxisThatWasNotMeasuredHasNoNumber) {
     EXPECT_EQ(right.state, FoundState::kUnchanged);
     EXPECT_EQ(found.tests, 17);
     EXPECT_THAT(Drifted(found), ElementsAre(kTop));
+  }
+}
+
+// With one visit in use a scatter is assumed: it makes nothing known of an axis of which nothing was.
+TEST(AsFound, AnAxisThatOneVisitDidNotMeasureHasNoNumberEither) {
+  for (const int visits : {1, 1'000'000}) {
+    Draws draws(16);
+    Errors errors = SomeErrors();
+    errors.visits = visits;
+    AsFoundInput input = Visit(DrawnRig(), Bumped(DrawnRig(), kRight, Along(tangent::kZ, 0.05)), errors, draws);
+    const Eigen::Index open = 6 + tangent::kZ;  // of the right camera
+    input.in_use.covariance.row(open).setZero();
+    input.in_use.covariance.col(open).setZero();
+    const AsFound found = TestAsFound(input);
+    EXPECT_EQ(Of(kRight, found).axes[tangent::kZ], FoundState::kNotMeasured) << visits;
+    EXPECT_EQ(found.tests, 17) << visits;
+    EXPECT_THAT(Drifted(found), ::testing::IsEmpty()) << visits;
   }
 }
 

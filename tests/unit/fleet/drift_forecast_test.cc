@@ -141,6 +141,28 @@ TEST(DriftForecast, WithFewVisitsItIsEarlierAndStillHolds) {
   EXPECT_LT(beyond / double{kFleets}, 0.075);
 }
 
+// One visit each after 20 to 40 days tells a walk hardly from a rate that stays, and the tolerance is used up before that: by the
+// wrong law alone 14 % would be beyond.
+TEST(DriftForecast, WhereNothingTellsTheLawItHoldsByBoth) {
+  Draw draw(8);
+  int beyond = 0;
+  constexpr int kFleets = 300, kFutures = 20;
+  for (int fleet = 0; fleet < kFleets; ++fleet) {
+    const double m_per_root_day = 5e-4;
+    std::vector<DriftStep> steps;
+    for (int robot = 0; robot < 12; ++robot) {
+      const double days = draw.Days(20, 40);
+      const Vector6d change = draw.Shift(m_per_root_day * std::sqrt(days)) + draw.Shift(3e-4);
+      steps.push_back({Named(robot), days, change, Sigma(3e-4)});
+    }
+    const auto forecast = ForecastDrift(steps, kThis, kTolerance, 3000);
+    ASSERT_TRUE(forecast);
+    for (int future = 0; future < kFutures; ++future)
+      beyond += draw.Shift(m_per_root_day * std::sqrt(forecast->days)).head<3>().norm() > kTolerance.m ? 1 : 0;
+  }
+  EXPECT_LT(beyond / double{kFleets * kFutures}, 0.11);
+}
+
 TEST(DriftForecast, ARobotThatCreepsFasterThanItsFleetIsDueEarlier) {
   Draw draw(5);
   DrawnFleet fleet = Creeping(draw, 20, 4, 2e-5, 1e-4);

@@ -96,6 +96,17 @@ TEST(Spread, TheMedianPoseMovesWithThePoses) {
   for (const auto& axis : axes) EXPECT_NEAR(QuantileOf(axis, 0.5), 0.0, 1e-9);
 }
 
+// The first by name are upside down: logarithms about them are half turns of either sign.
+TEST(Spread, PosesThatAreUpsideDownAreNotTheMedian) {
+  Draw draw(41);
+  const Se3 T = Se3{{4.0, -2.0, 1.0}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5)};
+  for (int fleet = 0; fleet < 50; ++fleet) {
+    std::vector<Se3> poses(2, T * Se3{{0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 1)});
+    while (poses.size() < 5) poses.push_back(T * Se3::Exp(0.005 * Normal(draw)));
+    EXPECT_LT((T.Inverse() * MedianPose(poses)).Log().norm(), 0.03) << fleet;
+  }
+}
+
 // Each axis by itself, so that an axis that is taken for another is seen.
 TEST(PopulationTest, OffsetsAreTangentsAtTheDrawnPose) {
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
@@ -167,6 +178,18 @@ TEST(PopulationTest, RobotsThatStandOutAreNamed) {
   }
   EXPECT_THAT(OutlierTexts(population).front(), HasSubstr("from where the others have it."));
   EXPECT_TRUE(population.sensors.front().by_distance);
+}
+
+TEST(PopulationTest, ADrawingThatIsUpsideDownHidesNoRobot) {
+  Draw draw(43);
+  Fleet fleet;
+  for (int i = 0; i < 29; ++i) fleet.Add(1e-3 * Normal(draw));
+  fleet.Add(Vector6d::Unit(4) * 0.02 + 1e-3 * Normal(draw));
+  ASSERT_THAT(fleet.Describe().sensors.front().outliers, SizeIs(1));
+  Se3& drawn = *fleet.model.sensors[1].T_ref_sensor;
+  drawn = drawn * Se3{{0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 1)};
+  ASSERT_THAT(fleet.Describe().sensors.front().outliers, SizeIs(1));
+  EXPECT_EQ(fleet.Describe().sensors.front().outliers.front().robot, RobotId("r129"));
 }
 
 // No axis is far by itself: it is off where the others hang together.

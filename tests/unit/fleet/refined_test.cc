@@ -90,6 +90,72 @@ TEST(AssessLens, ALensWithoutARicherModelNeedsMoreOfItsPicture) {
   EXPECT_THAT(verdict.what_to_do, HasSubstr("for right; capture boards all over the pictures of left"));
 }
 
+Verdict VerdictOfClock(double late_s, double sigma_s) {
+  const Rig rig;
+  SessionEstimate session = BentSession('1', {});
+  session.clocks = {{SensorId("top"), late_s, sigma_s, 0.05, 40}};
+  return Assess(rig.edges, rig.solution, {}, {}, {session});
+}
+
+TEST(AssessClock, OneThatIsSurelyOffIsNewsAndNoWarning) {
+  const Verdict verdict = VerdictOfClock(0.0123, 0.0004);
+  EXPECT_EQ(verdict.level, VerdictLevel::kPass);
+  EXPECT_THAT(verdict.why, HasSubstr("lock of top is 12.3 ms late, which was taken out"));
+  EXPECT_THAT(VerdictOfClock(-0.0123, 0.0004).why, HasSubstr("12.3 ms early"));
+}
+
+TEST(AssessClock, OneThatMayBeRightOrIsOffByLittleIsNotTold) {
+  EXPECT_THAT(VerdictOfClock(0.0123, 0.005).why, Not(HasSubstr("lock of")));
+  EXPECT_THAT(VerdictOfClock(0.0009, 0.0001).why, Not(HasSubstr("lock of")));
+}
+
+LensMisfit TriedOn(const std::string& camera, bool given, std::optional<CameraModel> proposed) {
+  LensMisfit misfit = MisfitOf(camera, CameraModel::kPinholeRadtan, 2.0);
+  misfit.trial = {0.43, given, 24,
+                  {{CameraModel::kPinholeRadtan, given ? 0.25 : 0.43},
+                   {CameraModel::kPinholeRational, 0.21},
+                   {CameraModel::kFisheyeKb4, std::nullopt}},
+                  proposed};
+  return misfit;
+}
+
+Verdict VerdictOfLenses(std::vector<LensMisfit> misfits) {
+  const Rig rig;
+  return Assess(rig.edges, rig.solution, {}, {}, {BentSession('1', std::move(misfits))});
+}
+
+TEST(AssessLens, AModelThatForetellsBetterIsProposedWithWhatItGains) {
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, CameraModel::kPinholeRational)}).what_to_do,
+            "Set `model: pinhole_rational` for right (pinhole_rational fits pictures of right that were left out to 0.21 px, "
+            "pinhole_radtan to 0.43 px).");
+}
+
+TEST(AssessLens, OfGivenIntrinsicsACalibrationAnewIsProposed) {
+  const Verdict other = VerdictOfLenses({TriedOn("right", true, CameraModel::kPinholeRational)});
+  EXPECT_THAT(other.why, HasSubstr("in a way that pinhole_radtan cannot"));
+  EXPECT_EQ(other.what_to_do,
+            "Calibrate right anew: leave its intrinsics out of session.yaml and set `model: pinhole_rational` "
+            "(pinhole_rational fits pictures of right that were left out to 0.21 px, the given intrinsics to 0.43 px).");
+  const Verdict numbers = VerdictOfLenses({TriedOn("right", true, CameraModel::kPinholeRadtan)});
+  EXPECT_THAT(numbers.why, HasSubstr("in a way that the given pinhole_radtan cannot"));
+  EXPECT_THAT(numbers.what_to_do, HasSubstr("set `model: pinhole_radtan` (pinhole_radtan fits pictures of right that were left "
+                                            "out to 0.25 px, the given intrinsics to 0.43 px)"));
+}
+
+TEST(AssessLens, WhereNoModelIsBetterThatIsSaidWithWhatHelps) {
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt)}).what_to_do,
+            "None of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right that were left out better: "
+            "capture boards all over the pictures of right, as the bend is taken out where corners were seen.");
+  EXPECT_THAT(VerdictOfLenses({TriedOn("right", true, std::nullopt)}).what_to_do,
+              HasSubstr("all over the pictures of right, and leave out or give a sigma with their intrinsics"));
+  EXPECT_EQ(VerdictOfLenses({TriedOn("right", false, std::nullopt), TriedOn("top", false, CameraModel::kPinholeRational)})
+                .what_to_do,
+            "Set `model: pinhole_rational` for top (pinhole_rational fits pictures of top that were left out to 0.21 px, "
+            "pinhole_radtan to 0.43 px); none of pinhole_radtan, pinhole_rational and fisheye_kb4 fits the pictures of right "
+            "that were left out better: capture boards all over the pictures of right, as the bend is taken out where corners "
+            "were seen.");
+}
+
 SessionEstimate SessionOfMoves(std::vector<std::pair<const char*, SmallestMove>> moves) {
   SessionEstimate estimate;
   estimate.session = SessionId(std::string(64, '1'));
@@ -234,6 +300,23 @@ TEST(AssessRefined, PairsBeforeABoardThatMovedAccuseNoSensor) {
   EXPECT_THAT(verdict.why, HasSubstr("oard wall was moved"));
   moved.session = SessionId(std::string(64, '2'));
   EXPECT_EQ(Assess(rig.edges, rig.solution, {}, {}, {moved}).level, VerdictLevel::kFail);
+}
+
+std::string RemarkOnBend(bool is_the_board, std::vector<SensorId> seen_by) {
+  const Rig rig;
+  SessionEstimate estimate = BentSession('1', {});
+  estimate.bends = {{TargetId("wall"), 5.2e-4, 1e-5, is_the_board, std::move(seen_by)}};
+  return Assess(rig.edges, rig.solution, {}, {}, {estimate}).why;
+}
+
+TEST(AssessRefined, ABentBoardIsAFactOnlyWhereItCannotBeALens) {
+  const SensorId left("left"), right("right");
+  EXPECT_THAT(RemarkOnBend(true, {left, right}), HasSubstr("oard wall is bent by 0.52 mm, which was taken out: a stiffer plate is better"));
+  EXPECT_THAT(RemarkOnBend(false, {left, right}),
+              HasSubstr("oard wall is bent by 0.52 mm, or the lenses of left and right make it look so; it was taken out: "
+                        "lay a straight edge across the board"));
+  EXPECT_THAT(RemarkOnBend(false, {right}), HasSubstr("or the lens of right makes it look so"));
+  EXPECT_THAT(RemarkOnBend(false, {}), HasSubstr("or a lens makes it look so")) << "as estimates of before have it";
 }
 
 TEST(AssessRefined, AnEdgeOfAnotherSourceAccusesAllTheSame) {

@@ -21,6 +21,7 @@ AsFound SomeFound() {
   found.made_at = ParseIso("2026-10-03T10:00:00Z").value();
   found.tests = 11;
   found.visits = 4;
+  found.scatter_robots = 9;
   found.relative_to = SensorId("left");
   found.text = "As found: \"right\" moved,\"document\":null.";
   SensorFound right, top;
@@ -47,6 +48,7 @@ TEST(AsFoundDocument, ComesBack) {
   EXPECT_EQ(WriteAsFound(*read), WriteAsFound(given));
   EXPECT_EQ(read->made_at, given.made_at);
   EXPECT_EQ(read->relative_to, given.relative_to);
+  EXPECT_EQ(read->scatter_robots, 9);
   ASSERT_EQ(read->sensors.size(), 2u);
   const SensorFound &right = read->sensors[0], &of = given.sensors[0];
   EXPECT_EQ(right.axes, of.axes);

@@ -56,6 +56,26 @@ TEST_P(RevisionDocumentOfFormat, ComesBack) {
   EXPECT_EQ(WriteRevisionDocument(*read), WriteRevisionDocument(input));
 }
 
+// By what it was fused, so that the same can be made of it once more; of before there was any, by the number of visits.
+TEST_P(RevisionDocumentOfFormat, KeepsByWhichScatterItWasFused) {
+  RevisionInput input = SampleRevision();
+  SensorPose& pose = input.solution.poses[1];
+  pose.fused = FusedPose{{}, samples::SampleCovariance(), 3, 0.0004, 0.0003};
+  pose.fused->scatter_dof = {6.0, 6.0};
+  EXPECT_EQ(Written(input).find("scatter"), std::string::npos);
+  EXPECT_EQ(ReadRevisionDocument(Written(input))->solution.poses[1].fused->scatter_dof, (ScatterDof{6.0, 6.0}));
+  pose.fused->scatter = {{-1e-8, 2e-8, 6.0}, {3e-8, 4e-8, 6.0}};
+  pose.fused->pooled_scatter = VisitScatter{{5e-8, 6e-8, 20.0}, {7e-8, 8e-8, 21.0}, 19};
+  pose.fused->scatter_dof = {26.0, 27.0};
+  const Result<RevisionInput> read = ReadRevisionDocument(Written(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  const FusedPose& fused = *read->solution.poses[1].fused;
+  EXPECT_EQ(fused.scatter, pose.fused->scatter);
+  EXPECT_EQ(fused.pooled_scatter, pose.fused->pooled_scatter);
+  EXPECT_EQ(fused.scatter_dof, pose.fused->scatter_dof);
+  EXPECT_EQ(Written(*read), Written(input));
+}
+
 TEST(RevisionDocument, OfFormat1HasItsEdgesWhole) {
   const RevisionInput input = SampleRevision();
   const Result<RevisionInput> read = ReadRevisionDocument(WriteWholeRevisionDocument(input));
@@ -79,6 +99,26 @@ TEST(RevisionDocument, RefersToItsEdges) {
                             "dof", "source", "diagnoses", "figures", "residual", "influence"})
       EXPECT_TRUE(edge.contains(key)) << key;
   }
+}
+
+TEST(RevisionDocument, TellsOfClocksWhereASessionWasAskedAboutOne) {
+  RevisionInput input = SampleRevision();
+  const SessionId session(std::string(64, 'a'));
+  input.solution.fused.sessions = {session};
+  const auto fused = [&] { return json::parse(WriteRevisionDocument(input))["fused"]; };
+  EXPECT_FALSE(fused().contains("clocks"));
+  input.solution.fused.clocks = {{session, {SensorId("body"), 0.0123, 0.0004, 0.05, 30}},
+                                 {session, {SensorId("still"), 0.0, 0.05, 0.05, 0}}};
+  EXPECT_EQ(fused()["clocks"][0]["known"], true);
+  EXPECT_EQ(fused()["clocks"][1]["known"], false);
+  const Result<RevisionInput> read = ReadRevisionDocument(WriteRevisionDocument(input));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->solution.fused.clocks.size(), 2u);
+  EXPECT_EQ(read->solution.fused.clocks[0].session, session);
+  EXPECT_EQ(read->solution.fused.clocks[0].clock.tracker, SensorId("body"));
+  EXPECT_EQ(read->solution.fused.clocks[0].clock.late_s, 0.0123);
+  EXPECT_EQ(read->solution.fused.clocks[0].clock.sigma_s, 0.0004);
+  EXPECT_EQ(read->solution.fused.clocks[1].clock.captures, 0);
 }
 
 // What tables and pages tell of an edge.
@@ -111,6 +151,26 @@ TEST(RevisionDocument, TellsOfAnEdgeWhatItWas) {
     }
   }
   EXPECT_EQ(read->edges[1].figures, (std::map<std::string, double>{{"polished_ratio", 1.0}, {"merged_sessions", 22.0}}));
+}
+
+TEST(RevisionDocument, NamesLensesThatBendWithWhatWasTriedOnThem) {
+  RevisionInput input = SampleRevision();
+  input.solution.fused.sessions = {SessionId(std::string(64, 'a'))};
+  EXPECT_FALSE(json::parse(WriteRevisionDocument(input))["fused"].contains("lenses"));
+  LensMisfit lens;
+  lens.camera = SensorId("left");
+  lens.rms_px = 0.05;
+  lens.trial = {0.43, false, 24, {{CameraModel::kPinholeRational, 0.21}}, CameraModel::kPinholeRational};
+  input.solution.fused.lenses = {lens};
+  const json document = json::parse(WriteRevisionDocument(input));
+  const json& written = document["fused"]["lenses"][0];
+  EXPECT_EQ(written["model"], "pinhole_radtan");
+  EXPECT_EQ(written["trial"]["proposed"], "pinhole_rational");
+  EXPECT_EQ(written["trial"]["candidates"][0]["left_out_rms_px"], 0.21);
+  const Result<RevisionInput> read = ReadRevisionDocument(document.dump());
+  ASSERT_TRUE(read) << Sentence(read.error());
+  ASSERT_EQ(read->solution.fused.lenses.size(), 1U);
+  EXPECT_EQ(read->solution.fused.lenses[0].trial.own_left_out_rms_px, 0.43);
 }
 
 TEST(RevisionDocument, OfAnUnknownFormatIsRefused) {

@@ -31,9 +31,12 @@ SessionEstimate MakeEstimate() {
   misfit.model = CameraModel::kPinholeRational;
   misfit.rms_px = 0.05, misfit.evidence = 300, misfit.sigma_ratio = 2.5;
   misfit.pose_sigma_m = 1e-4, misfit.pose_sigma_rad = 2e-4;
+  misfit.trial = {0.43, true, 24, {{CameraModel::kPinholeRadtan, std::nullopt, true}, {CameraModel::kPinholeRational, 0.21}},
+                  CameraModel::kPinholeRational};
   estimate.misfits = {misfit};
   estimate.slants = {{SensorId("top"), 0.01, 0.002}};
-  estimate.bends = {{TargetId("board"), 0.0005, 0.00001}};
+  estimate.bends = {{TargetId("board"), 0.0005, 0.00001, true, {SensorId("left"), SensorId("right")}}};
+  estimate.clocks = {{SensorId("body"), 0.0123, 0.0004, 0.05, 30}};
   return estimate;
 }
 
@@ -67,15 +70,46 @@ TEST(SessionEstimateDocument, ComesBackAsItWas) {
   EXPECT_EQ(read->bends[0].board, TargetId("board"));
   EXPECT_EQ(read->bends[0].height_m, 0.0005);
   EXPECT_EQ(read->bends[0].sigma_m, 0.00001);
+  EXPECT_TRUE(read->bends[0].is_the_board);
+  ASSERT_EQ(read->bends[0].seen_by.size(), 2u);
+  EXPECT_EQ(read->bends[0].seen_by[1], SensorId("right"));
   ASSERT_EQ(read->slants.size(), 1u);
   EXPECT_EQ(read->slants[0].lidar, SensorId("top"));
   EXPECT_EQ(read->slants[0].too_long_m, 0.01);
   EXPECT_EQ(read->slants[0].sigma_m, 0.002);
+  ASSERT_EQ(read->clocks.size(), 1u);
+  EXPECT_EQ(read->clocks[0].tracker, SensorId("body"));
+  EXPECT_EQ(read->clocks[0].late_s, 0.0123);
+  EXPECT_EQ(read->clocks[0].sigma_s, 0.0004);
+  EXPECT_EQ(read->clocks[0].given_sigma_s, 0.05);
+  EXPECT_EQ(read->clocks[0].captures, 30);
+  EXPECT_NE(text.find("\"known\":true"), std::string::npos);
   ASSERT_EQ(read->misfits.size(), 1u);
   EXPECT_EQ(read->misfits[0].camera, SensorId("right"));
   EXPECT_EQ(read->misfits[0].model, CameraModel::kPinholeRational);
   EXPECT_EQ(read->misfits[0].sigma_ratio, 2.5);
   EXPECT_EQ(read->misfits[0].pose_sigma_rad, 2e-4);
+  const LensTrial& trial = read->misfits[0].trial;
+  EXPECT_EQ(trial.own_left_out_rms_px, 0.43);
+  EXPECT_TRUE(trial.given);
+  EXPECT_EQ(trial.captures, 24);
+  EXPECT_EQ(trial.proposed, CameraModel::kPinholeRational);
+  ASSERT_EQ(trial.candidates.size(), 2u);
+  EXPECT_FALSE(trial.candidates[0].left_out_rms_px);
+  EXPECT_TRUE(trial.candidates[0].absurd);
+  EXPECT_EQ(trial.candidates[1].left_out_rms_px, 0.21);
+  EXPECT_EQ(trial.candidates[1].model, CameraModel::kPinholeRational);
+}
+
+TEST(SessionEstimateDocument, AMisfitForWhichNothingWasTriedHasNoTrial) {
+  SessionEstimate estimate = MakeEstimate();
+  estimate.misfits[0].trial = {};
+  const std::string text = WriteSessionEstimate(estimate);
+  EXPECT_EQ(text.find("trial"), std::string::npos) << "as documents of before have it";
+  const auto read = ReadSessionEstimate(text);
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_TRUE(read->misfits[0].trial.candidates.empty());
+  EXPECT_FALSE(read->misfits[0].trial.proposed);
 }
 
 TEST(SessionEstimateDocument, OneOfBeforeMisfitsWereLookedForHasNone) {
@@ -86,6 +120,20 @@ TEST(SessionEstimateDocument, OneOfBeforeMisfitsWereLookedForHasNone) {
   const auto read = ReadSessionEstimate(text);
   ASSERT_TRUE(read) << Sentence(read.error());
   EXPECT_TRUE(read->misfits.empty());
+}
+
+TEST(SessionEstimateDocument, OneWithoutATrackersPathSaysNothingOfClocks) {
+  SessionEstimate estimate = MakeEstimate();
+  estimate.clocks.clear();
+  const std::string text = WriteSessionEstimate(estimate);
+  EXPECT_EQ(text.find("clocks"), std::string::npos);
+  EXPECT_TRUE(ReadSessionEstimate(text)->clocks.empty());
+}
+
+TEST(SessionEstimateDocument, AClockOfABodyThatStoodStillIsNotKnown) {
+  SessionEstimate estimate = MakeEstimate();
+  estimate.clocks = {{SensorId("body"), 0.0, 0.05, 0.05, 0}};
+  EXPECT_NE(WriteSessionEstimate(estimate).find("\"known\":false"), std::string::npos);
 }
 
 TEST(SessionEstimateDocument, RefusesALensThatIsNone) {

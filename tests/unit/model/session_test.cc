@@ -176,6 +176,7 @@ TEST(ValidateSensor, IntrinsicsAreInRange) {
               HasSubstr("fit the model pinhole_radtan"));
   EXPECT_THAT(refusal([](Sensor& s) { s.camera_model = CameraModel::kFisheyeKb4; }), HasSubstr("model fisheye_kb4"));
   EXPECT_THAT(refusal([](Sensor& s) { s.range_bias_sigma_m = 0.01; }), HasSubstr("for lidars only"));
+  EXPECT_THAT(refusal([](Sensor& s) { s.clock_sigma_s = 0.01; }), HasSubstr("for trackers only"));
   EXPECT_THAT(refusal([](Sensor& s) { s.kind = SensorKind::kLidar; }), HasSubstr("a lidar has no intrinsics"));
   EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(8, 0.1); }), HasSubstr("9 finite"));
   EXPECT_THAT(refusal([](Sensor& s) { s.intrinsics_sigma = std::vector<double>(9, -0.1); }), HasSubstr("9 finite"));

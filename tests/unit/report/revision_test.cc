@@ -259,6 +259,26 @@ TEST(ReportRevision, AnchorsOfDrawingAndTableExist) {
   EXPECT_EQ(links, 7);  // three edges with details: in the drawing and in the table; the way to the table
 }
 
+TEST(ReportRevision, LensesThatBendAreATableOfWhatWasTried) {
+  ReportInput input = SampleReport();
+  SensorPose& refined = input.revision.solution.poses.back();
+  refined.fused = FusedPose{refined.T_ref_sensor, Matrix6d::Identity(), 1, 0.0, 0.0};
+  EXPECT_THAT(PageOf(input), testing::Not(HasSubstr("Lenses that bend")));
+  LensMisfit lens;
+  lens.camera = SensorId("front_left");
+  lens.rms_px = 0.051;
+  lens.trial = {0.43, false, 24,
+                {{CameraModel::kPinholeRadtan, 0.43}, {CameraModel::kPinholeRational, 0.21}, {CameraModel::kFisheyeKb4, std::nullopt, true}},
+                CameraModel::kPinholeRational};
+  input.revision.solution.fused.lenses = {lens};
+  const std::string page = PageOf(input);
+  EXPECT_THAT(page, HasSubstr("Lenses that bend beyond their model"));
+  EXPECT_THAT(page, HasSubstr("<td>0.43</td><td>0.43</td><td>0.21</td><td>turns over</td>"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"badge warn\">set pinhole_rational</span>"));
+  input.revision.solution.fused.lenses[0].trial = {};
+  EXPECT_THAT(PageOf(input), HasSubstr("<td>not tried</td><td>not tried</td><td>not tried</td><td>not tried</td>"));
+}
+
 TEST(ReportRevision, SameInputSameBytes) { EXPECT_EQ(PageOf(SampleReport()), PageOf(SampleReport())); }
 
 ReportInput BigReport(int sensors, int edges) {

@@ -7,6 +7,7 @@
 
 #include "server/base/files/durable_file.h"
 #include "storage/revisions/decisions.h"
+#include "storage/sessions/epochs.h"
 #include "storage/sessions/retired.h"
 #include "storage/settings/policies.h"
 #include "tests/unit/storage/fixture.h"
@@ -140,7 +141,7 @@ class HeldRowsTest : public AuditTest {
   // As AuditTest::Tamper, of any table.
   void TamperWith(const std::string& sql) {
     SQLite::Database file((folder_.path() / "rigcal.db").string(), SQLite::OPEN_READWRITE);
-    for (const char* table : {"audit", "audit_chain", "audit_row", "decision", "standing", "policy"})
+    for (const char* table : {"audit", "audit_chain", "audit_row", "decision", "standing", "policy", "epoch"})
       for (const char* what : {"_no_update", "_no_delete"})
         file.exec(std::string("DROP TRIGGER IF EXISTS ") + table + what);
     file.exec("PRAGMA foreign_keys = OFF; " + sql);
@@ -178,6 +179,17 @@ TEST_F(HeldRowsTest, EachColumnOfADecisionIsHeld) {
     TamperWith("DELETE FROM decision; INSERT INTO decision SELECT * FROM kept; DROP TABLE kept");
     EXPECT_TRUE(RowFaults().empty()) << change;
   }
+}
+
+// One audit row for each sensor, also where they were named together; and the time from which it counts is held.
+TEST_F(HeldRowsTest, AnEpochThatAPersonBeganIsHeldWithItsTime) {
+  const std::vector<SensorId> sensors = {SensorId("left"), SensorId("right")};
+  ASSERT_TRUE(BeginEpoch(store_, kRobot, sensors, {kNoon.ns - 9}, {kNoon, "Ada", "new mast"}));
+  ASSERT_TRUE(TakeBackEpoch(store_, kRobot, {sensors[1]}, {kNoon, "Ada", "not the right one"}));
+  EXPECT_TRUE(Holds(VerifyAudit(store_).value()));
+  EXPECT_EQ(RowFaults(), std::vector<std::string>());
+  TamperWith("UPDATE epoch SET begins_ns = 5 WHERE standing_number = 2");
+  EXPECT_THAT(RowFaults(), testing::ElementsAre(testing::HasSubstr("standing 2 (epoch sensor left of robot mapper-01, by Ada) was changed")));
 }
 
 // Whoever puts in the row that holds it as well is found by the chain.

@@ -5,12 +5,15 @@
 
 #include <map>
 
+#include "server/formats/documents.h"
+#include "storage/alerts/outbox.h"
 #include "storage/audit.h"
 #include "storage/database/query.h"
 #include "storage/edges/edges.h"
 #include "storage/fleet/fleet_facts.h"
 #include "storage/fleet/fleet_list.h"
 #include "storage/fleet/robot_runs.h"
+#include "storage/fleet/robot_status.h"
 #include "storage/fleet/robot_summary.h"
 #include "storage/revisions/as_found.h"
 #include "storage/revisions/decisions.h"
@@ -177,6 +180,65 @@ TEST_F(QueryPlanTest, TheLifeOfACalibrationDoesNotScan) {
   for (const auto& [sql, steps] : Scanned()) ADD_FAILURE() << steps << " rows by: " << sql;
 }
 
+// It is asked several times with every look at a robot.
+TEST_F(QueryPlanTest, WhatIsInUseCostsTheSameHoweverOftenWasDecided) {
+  const RobotId robot("b");
+  const auto cost = [&](int in_use) {
+    (void)Steps();
+    EXPECT_EQ(LoadUsableRevision(store_, robot).value()->number, in_use);
+    return Steps();
+  };
+  const std::int64_t with_one = cost(1);
+  EXPECT_GT(with_one, 0);
+  for (int number = 2; number <= 100; ++number) {
+    ASSERT_TRUE(AppendRevision(store_, MakeRevision(LoadEdgeWatermark(store_, robot).value(), robot)));
+    ASSERT_TRUE(AppendDecision(store_, robot, number, Deciding::kApprove, {{number}, "policy", ""}));
+  }
+  EXPECT_LE(cost(100), with_one + with_one / 4);
+}
+
+TEST_F(QueryPlanTest, PartsAndModelsCostTheSameHoweverManyVisitsThereWere) {
+  const auto visit = [&](std::uint32_t pictures) {
+    Manifest manifest = MakeManifest(pictures);
+    manifest.header.sensors[0].serial = "A1";
+    manifest.header.sensors[0].firmware = "2.0";
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t idx = 0; idx < pictures; ++idx) all.push_back(idx);
+    ASSERT_TRUE(AppendSession(store_, IdOf(manifest), formats::WriteManifest(manifest), manifest, {1}));
+    ASSERT_TRUE(AppendHeld(store_, IdOf(manifest), all, {1}));
+    ASSERT_TRUE(CloseSession(store_, IdOf(manifest), {}, {1}));
+  };
+  const auto cost = [&] {
+    (void)Steps();
+    EXPECT_TRUE(LoadEpochs(store_, kRobot)->empty());
+    EXPECT_EQ(LoadRobotsOfModel(store_, "stereo-rig", 9)->size(), 1U);
+    return Steps();
+  };
+  visit(3);
+  const std::int64_t with_few = cost();
+  for (std::uint32_t pictures = 4; pictures < 40; ++pictures) visit(pictures);
+  EXPECT_LE(cost(), with_few + with_few / 4);
+}
+
+// Every scrape of the metrics asks it.
+TEST_F(QueryPlanTest, HowManyAlertsAReceiverHasIsNotCountedAnew) {
+  const std::string url = "http://localhost/a";
+  ASSERT_TRUE(SetReceivers(store_, {url}, {1}));
+  const auto deliver = [&](std::int64_t number) {
+    ASSERT_TRUE(AppendAlert(store_, formats::StatusAlert(kRobot, 1, StatusWord::kOk, {}, {1})));
+    ASSERT_TRUE(MarkDelivered(store_, url, number, 200, {2}));
+  };
+  const auto cost = [&](std::int64_t delivered) {
+    (void)Steps();
+    EXPECT_EQ(LoadReceivers(store_)->front().delivered, delivered);
+    return Steps();
+  };
+  deliver(1);
+  const std::int64_t with_one = cost(1);
+  for (std::int64_t number = 2; number <= 100; ++number) deliver(number);
+  EXPECT_LE(cost(100), with_one + with_one / 4);
+}
+
 // How many sessions and edges it has is asked with every summary.
 TEST_F(QueryPlanTest, TheNumbersOfARobotCostTheSameWhateverItsHistory) {
   const auto cost = [&](std::int64_t edges) {
@@ -215,6 +277,7 @@ TEST_F(QueryPlanTest, TheListOfAllRobotsIsSortedWithoutItsWords) {
     for (const bool descending : {false, true})
       EXPECT_EQ(LoadFleetPage(store_, {"", "", sort, descending, 1}, {1})->rows.size(), 4u);
   EXPECT_EQ(LoadFleetPage(store_, {"", "", "", false, 1, "short_session"}, {1})->rows.size(), 4u);
+  EXPECT_EQ(LoadChangedStatuses(store_, {1}, 9)->size(), 4u);
   const std::map<std::string, int> scanned = Scanned();
   EXPECT_FALSE(scanned.empty());
   for (const auto& [sql, steps] : scanned) {

@@ -12,7 +12,8 @@
 namespace rigcal::calib::joint {
 namespace {
 
-constexpr double kAnySlant_m = 0.1, kAnyBend_m = 0.05;  // as good as not held
+constexpr double kAnySlant_m = 0.1;  // as good as not held
+constexpr double kSureSlant = 9.0, kToldSlant = 16.0;
 constexpr int kVarianceSteps = 30;
 
 // Of a lidar, one number, or of a board, three.
@@ -65,8 +66,8 @@ struct Told {
 
   [[nodiscard]] double SquaredSigmas() const { return b_m.dot(C_m2.ldlt().solve(b_m)); }
   // Odds of three and of four sigmas of one number.
-  [[nodiscard]] bool IsSure() const { return SquaredSigmas() >= (b_m.size() == 1 ? 9.0 : 14.16); }
-  [[nodiscard]] bool IsTold() const { return SquaredSigmas() >= (b_m.size() == 1 ? 16.0 : 22.06); }
+  [[nodiscard]] bool IsSure() const { return SquaredSigmas() >= (b_m.size() == 1 ? kSureSlant : kSureBend); }
+  [[nodiscard]] bool IsTold() const { return SquaredSigmas() >= (b_m.size() == 1 ? kToldSlant : kToldBend); }
   // The likeliest sigma^2 of N(b; 0, sigma^2 I + C), by Fisher scoring; none of an effect of which the session tells
   // nothing: that moves no pose.
   [[nodiscard]] double Variance_m2(double any_m) const {
@@ -83,11 +84,21 @@ struct Told {
   }
 };
 
-// Absent: the layout does not have it.
-std::optional<Told> ToldOf(const Effect& effect, const Refined& refined) {
-  const int at = effect.At(refined.layout);
+// Absent: the layout does not have it. `by_fields` may be empty.
+std::optional<Told> ToldOf(const Effect& effect, const Refined& refined, const Eigen::MatrixXd& by_fields) {
+  const int at = effect.At(refined.layout), size = effect.size();
   if (at == kNone) return std::nullopt;
-  return Told{effect.ValueIn(refined.state), refined.covariance.block(at, at, effect.size(), effect.size())};
+  Told told{effect.ValueIn(refined.state), refined.covariance.block(at, at, size, size)};
+  if (by_fields.size() > 0) told.C_m2 += by_fields.block(at, at, size, size);
+  return told;
+}
+
+bool AnyIsSure(const SessionProblem& problem, const Refined& freely) {
+  const std::vector<Effect> effects = EffectsOf(problem);
+  return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) {
+    const auto told = ToldOf(effect, freely, {});
+    return told && told->IsSure();
+  });
 }
 
 // From the lowest to the highest of the plate's corners, middles of edges and centre.
@@ -110,13 +121,14 @@ BoardBend BendOf(const Target& target, const Told& told) {
 
 Explained WithInstrumentEffects(Explained now) {
   const auto freely = RefinedFreely(now.start.problem, now.refined);
-  if (!freely) return now;
+  if (!freely || !AnyIsSure(now.start.problem, *freely)) return now;
+  const Eigen::MatrixXd by_fields = CovarianceByFields(FindMisfits(now.start.problem, *freely));
   SessionStart start = now.start;
   start.state = freely->state;
   start.noise = freely->noise;
   bool any = false;
   for (const Effect& effect : EffectsOf(start.problem)) {
-    const auto told = ToldOf(effect, *freely);
+    const auto told = ToldOf(effect, *freely, by_fields);
     const double variance_m2 = told && told->IsSure() ? told->Variance_m2(effect.any_m()) : 0.0;
     effect.SigmaIn(start.problem) = std::sqrt(variance_m2);
     if (variance_m2 == 0.0) effect.ClearIn(start.state);
@@ -140,7 +152,7 @@ Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
   std::vector<int> rows;
   std::vector<double> variances_m2;
   for (const Effect& effect : effects) {
-    const auto told = ToldOf(effect, *freely);
+    const auto told = ToldOf(effect, *freely, {});
     if (!told || effect.At(last.refined.layout) != kNone) continue;
     const double variance_m2 = told->Variance_m2(effect.any_m());
     for (int i = 0; i < effect.size(); ++i)
@@ -156,10 +168,10 @@ Eigen::MatrixXd CovarianceByInstruments(const Explained& last) {
   return added;
 }
 
-std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& refined) {
+std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& refined, const Eigen::MatrixXd& by_fields) {
   std::map<SensorId, SlantBias> lidars;
   for (const Effect& effect : EffectsOf(problem)) {
-    const auto told = effect.is_bend ? std::nullopt : ToldOf(effect, refined);
+    const auto told = effect.is_bend ? std::nullopt : ToldOf(effect, refined, by_fields);
     if (!told || !told->IsTold()) continue;
     const SensorId& lidar = problem.sensors[effect.of];
     lidars.try_emplace(lidar, SlantBias{lidar, -told->b_m[0], std::sqrt(told->C_m2(0, 0))});
@@ -169,10 +181,10 @@ std::vector<SlantBias> SlantsTold(const SessionProblem& problem, const Refined& 
   return slants;
 }
 
-std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& refined) {
+std::vector<BoardBend> BendsTold(const SessionProblem& problem, const Refined& refined, const Eigen::MatrixXd& by_fields) {
   std::vector<BoardBend> bends;
   for (const Effect& effect : EffectsOf(problem)) {
-    const auto told = effect.is_bend ? ToldOf(effect, refined) : std::nullopt;
+    const auto told = effect.is_bend ? ToldOf(effect, refined, by_fields) : std::nullopt;
     if (told && told->IsTold()) bends.push_back(BendOf(problem.targets[effect.of], *told));
   }
   std::sort(bends.begin(), bends.end(), [](const BoardBend& x, const BoardBend& y) { return x.board < y.board; });

@@ -178,6 +178,11 @@ void AddFieldTerms(const FieldWeights& field, const std::vector<int>& seen_point
 
 }  // namespace
 
+Se3 T_world_body(const SessionState& state, const PoseTold& told) {
+  if (told.clock == kNone) return told.T_world_body;
+  return told.T_world_body * told.path.StepTo(state.clock_late_s[static_cast<std::size_t>(told.clock)]);
+}
+
 Se3 T_sensor_board(const SessionState& state, const Where& where) {
   return state.T_ref_sensor[static_cast<std::size_t>(where.sensor)].Inverse() * T_ref_board(state, where);
 }
@@ -241,7 +246,7 @@ Observation Observe(const SessionProblem&, const Layout& layout, const SessionSt
                     const SensorNoise& noise, double weight) {
   const auto sensor = static_cast<std::size_t>(told.sensor), place = static_cast<std::size_t>(told.place);
   const Se3& T_ref_body = state.T_ref_sensor[sensor];
-  const Vector6d e = (told.T_world_body.Inverse() * state.T_world_ref[place] * T_ref_body).Log();
+  const Vector6d e = (T_world_body(state, told).Inverse() * state.T_world_ref[place] * T_ref_body).Log();
   const Matrix6d J = RightJacobianInverse(e);
   const Vector6d information = EachAxis(std::pow(noise.sigma, -2), std::pow(noise.sigma_rad, -2));
   Observation look;
@@ -252,6 +257,11 @@ Observation Observe(const SessionProblem&, const Layout& layout, const SessionSt
   look.numbers = 6.0;
   look.norms = {e.head<3>().squaredNorm() * information[0], e.tail<3>().squaredNorm() * information[3]};
   look.columns.push_back({layout.pose[sensor], Matrix6d::Identity()});
+  if (const int at = told.clock == kNone ? kNone : layout.clock[static_cast<std::size_t>(told.clock)]; at != kNone) {
+    // Later by h the told pose is T_told Exp(h w): e follows as if the body went back by Ad(Exp(-e)) h w.
+    const double late_s = state.clock_late_s[static_cast<std::size_t>(told.clock)];
+    look.columns.push_back({at, -Adjoint(Se3::Exp(-e)) * told.path.TwistAt(late_s)});
+  }
   look.by_place = Adjoint(T_ref_body.Inverse());
   return look;
 }

@@ -1,5 +1,7 @@
 #include "server/calib/joint/problem/session_problem.h"
 
+#include <algorithm>
+
 namespace rigcal::calib::joint {
 namespace {
 
@@ -10,6 +12,11 @@ int Take(int count, Layout& layout) {
 
 Se3 MovedPose(const Se3& T, int at, const Eigen::VectorXd& step) {
   return at == kNone || at >= step.size() ? T : (T * Se3::Exp(step.segment<6>(at))).Normalized();
+}
+
+bool Matters(const SessionProblem& problem, int clock) {
+  return std::any_of(problem.poses.begin(), problem.poses.end(),
+                     [&](const PoseTold& told) { return told.clock == clock; });
 }
 
 }  // namespace
@@ -29,6 +36,8 @@ Layout LayoutOf(const SessionProblem& problem) {
   for (const Target& target : problem.targets)
     layout.scale.push_back(target.square_sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.range_bias_sigma_m) layout.bias.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
+  for (int c = 0; c < static_cast<int>(problem.clocks.size()); ++c)
+    layout.clock.push_back(Matters(problem, c) ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.slant_bias_sigma_m) layout.slant.push_back(sigma_m > 0 ? Take(1, layout) : kNone);
   for (const double sigma_m : problem.bend_sigma_m) layout.bend.push_back(sigma_m > 0 ? Take(3, layout) : kNone);
   layout.pose[static_cast<std::size_t>(problem.reference)] = layout.size;
@@ -51,6 +60,7 @@ SessionState Moved(const SessionProblem& problem, const Layout& layout, const Se
   };
   move(layout.scale, moved.board_scale_ratio);
   move(layout.bias, moved.range_bias_m);
+  move(layout.clock, moved.clock_late_s);
   move(layout.slant, moved.slant_bias_m);
   for (std::size_t t = 0; t < layout.bend.size(); ++t)
     if (layout.bend[t] != kNone) moved.board_bend_m[t] += step.segment<3>(layout.bend[t]);

@@ -7,13 +7,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "server/calib/camera/projection.h"
 #include "server/calib/camera/seen_corners.h"
 #include "server/calib/joint/problem/spline_field.h"
+#include "server/calib/motion/local_path.h"
 #include "server/calib/planes/plane_moments.h"
 #include "server/math/se3.h"
+#include "server/model/sensors/pose_table.h"
 #include "server/model/sessions/session.h"
 
 namespace rigcal::calib::joint {
@@ -34,7 +37,10 @@ struct PlateSeen : Where {
   PlaneMoments moments;  // of range_sigma_m of its lidar: a chi-square of `points` at sigma factor 1
 };
 struct PoseTold : Where {  // by a tracker; sensor is its body, the place's world is the tracker's
-  Se3 T_world_body;
+  Se3 T_world_body;    // for the capture's instant, as it is told
+  Stamp stamp;         // of that instant, by the tracker's clock
+  int clock = kNone;   // whose lateness moves the pose along `path`; kNone: the body stands still, or none knows how it moves
+  LocalPath path;
 };
 // Log(T_a_b^-1 T_ref_a^-1 T_ref_b) of covariance Omega^-1.
 struct RelativeKnown {
@@ -51,6 +57,13 @@ struct Lens {
   PictureSize picture = {};                           // empty: no field of shifts is looked for
 };
 
+// A tracker's clock: what it tells for an instant is where its body was some time before, none by N(0, sigma_s^2).
+struct PoseClock {
+  SensorId tracker;
+  double sigma_s = 0.0;
+  std::shared_ptr<const PoseTable> path;  // that the tracker told; never null
+};
+
 struct SessionProblem {
   std::vector<SensorId> sensors;
   int reference = 0;  // has the identity pose
@@ -63,6 +76,7 @@ struct SessionProblem {
   std::vector<std::vector<Eigen::Vector3d>> target_bend_shapes;  // BendShapes of each
   std::vector<Lens> cameras;
   std::vector<double> range_bias_sigma_m;  // per sensor; 0: no bias is estimated
+  std::vector<PoseClock> clocks;           // one that no pose depends on is not estimated
   std::vector<double> slant_bias_sigma_m;  // per sensor; likewise
   std::vector<double> bend_sigma_m;        // per target; likewise
   std::vector<CornersSeen> corners;
@@ -88,6 +102,7 @@ struct SessionState {
   std::vector<Se3> T_world_ref;              // per place
   std::vector<double> board_scale_ratio;     // per target: its points are larger than told by this part
   std::vector<double> range_bias_m;          // per sensor: its ranges are too short by this
+  std::vector<double> clock_late_s;          // per clock
   std::vector<double> slant_bias_m;          // per sensor: and by this more where rays meet a plate at 60 degrees
   std::vector<Eigen::Vector3d> board_bend_m;  // per target: its points are deeper by this along the shapes of bends
   std::vector<Eigen::VectorXd>
@@ -109,12 +124,13 @@ struct Layout {
   std::vector<int> board;  // per board that stands still, six
   std::vector<int> scale;  // per target, one
   std::vector<int> bias;   // per sensor, one
+  std::vector<int> clock;  // per clock, one
   std::vector<int> slant;  // per sensor, one
   std::vector<int> bend;   // per target, three
   int size = 0;            // without the reference's
 };
-// In the order of the members above; held: the reference, the held board, lenses without refined numbers, and scales,
-// biases and bends without a sigma.
+// In the order of the members above; held: the reference, the held board, lenses without refined numbers, clocks that no
+// pose depends on, and scales, biases and bends without a sigma.
 [[nodiscard]] Layout LayoutOf(const SessionProblem& problem);
 
 // The state moved by `step` of the layout (right tangents) and by six numbers per place.

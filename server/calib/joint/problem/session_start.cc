@@ -8,6 +8,7 @@
 #include "server/calib/core/capture_blocks.h"
 #include "server/calib/joint/problem/board_bend.h"
 #include "server/calib/joint/problem/observation.h"
+#include "server/calib/joint/misfit/pose_clock.h"
 
 namespace rigcal::calib::joint {
 namespace {
@@ -349,8 +350,10 @@ class Starter {
         told.sensor = sensor;
         told.place = place->second;
         told.T_world_body = row.T_world_body;
+        told.stamp = row.stamp;
         problem().poses.push_back(told);
       }
+      AddClock(tracker.tracker, tracker.path, problem(), state());
     }
   }
 

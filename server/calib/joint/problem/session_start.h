@@ -26,6 +26,7 @@ struct LidarViews {
 struct TrackerPoses {
   Sensor tracker;
   PoseTable poses;
+  PoseTable path = {};  // where its body was at other times, by stamp; empty: not told
 };
 
 struct SessionViews {

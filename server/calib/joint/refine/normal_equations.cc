@@ -131,6 +131,9 @@ void AddGiven(const SessionProblem& problem, const Layout& layout, const Session
     for (std::size_t s = 0; s < at.size(); ++s)
       if (at[s] != kNone) AddPull(at[s], away[s], sigma[s], linearized.given, linearized.cost);
   };
+  for (std::size_t c = 0; c < problem.clocks.size(); ++c)
+    if (layout.clock[c] != kNone)
+      AddPull(layout.clock[c], state.clock_late_s[c], problem.clocks[c].sigma_s, linearized.given, linearized.cost);
   pull(layout.bias, state.range_bias_m, problem.range_bias_sigma_m);
   pull(layout.slant, state.slant_bias_m, problem.slant_bias_sigma_m);
   for (std::size_t t = 0; t < problem.targets.size(); ++t)

@@ -6,6 +6,8 @@
 
 #include "client/sim/rig/lens.h"
 #include "client/sim/visit/observe.h"
+#include "client/sim/visit/sway.h"
+#include "server/formats/sessions/poses.h"
 #include "tests/unit/client/sim/sample.h"
 
 namespace rigcal::sim {
@@ -304,6 +306,59 @@ TEST(SimBursts, CapturesOfABurstAreNearEachOtherAndWrongAlike) {
   EXPECT_GT(across_m, 0.02);
   EXPECT_NEAR(CorrelationOfNeighbours(4, true), 0.8, 0.1);
   EXPECT_NEAR(CorrelationOfNeighbours(4, false), 0.0, 0.2);
+}
+
+Options Swaying(double late_s) {
+  Options options = Quiet();
+  options.disturb.sway_per_s = {0.2, 0.17};
+  options.disturb.pose_clock_late_s = late_s;
+  return options;
+}
+
+TEST(SimPoseClock, TellsWhereTheBodyWasBeforeAndMovesNothingElse) {
+  const Experiment plain = Prepared(SmallRig(), Quiet()), late = Prepared(SmallRig(), Swaying(0.02));
+  EXPECT_TRUE(MovedViews(plain, late).empty());
+  const RigSensor& body = late.rig.SensorOf(SensorId("body"));
+  const std::vector<TrackerRow> rows = TrackerRows(late, body);
+  ASSERT_EQ(rows.size(), late.captures.size());
+  for (const TrackerRow& row : rows) {
+    const Se3 was = late.T_world_body[row.capture_idx] * SwayOf(late, row.capture_idx, -0.02) * body.T_body_sensor;
+    EXPECT_LT((was.Inverse() * row.T_world_body).Log().norm(), 1e-12);
+    EXPECT_GT((late.T_world_sensor(body.id, row.capture_idx).Inverse() * row.T_world_body).Log().norm(), 1e-5);
+    EXPECT_EQ(SwayOf(late, row.capture_idx, 0.0), Se3{});
+  }
+}
+
+TEST(SimPoseClock, HasTheSpeedThatIsAskedFor) {
+  Options options = Swaying(0.0);
+  options.captures = 400;
+  const Experiment visit = Prepared(SmallRig(), options);
+  double squares_m2 = 0, squares_rad2 = 0;
+  for (std::size_t k = 0; k < visit.captures.size(); ++k) {
+    const Vector6d twist = (SwayOf(visit, k, -1e-4).Inverse() * SwayOf(visit, k, 1e-4)).Log() / 2e-4;
+    squares_m2 += twist.head<3>().squaredNorm() / 400;
+    squares_rad2 += twist.tail<3>().squaredNorm() / 400;
+  }
+  // An rms of 1,200 numbers is within 5 of its own sigmas of 2 %.
+  EXPECT_NEAR(std::sqrt(squares_m2), 0.2, 0.1 * 0.2);
+  EXPECT_NEAR(std::sqrt(squares_rad2), 0.17, 0.1 * 0.17);
+}
+
+TEST(SimPoseClock, APathIsToldOnlyWhereBodiesSway) {
+  const Experiment plain = Prepared(SmallRig(), Quiet()), swaying = Prepared(SmallRig(), Swaying(0.0));
+  const RigSensor& body = plain.rig.SensorOf(SensorId("body"));
+  const auto path_of = [&](const Experiment& visit) {
+    return formats::ReadTrackerPath(PosesCsv(visit, body, TrackerRows(visit, body)), "poses.csv").value();
+  };
+  EXPECT_TRUE(path_of(plain).empty());
+  const PoseTable path = path_of(swaying);
+  ASSERT_EQ(path.size(), swaying.captures.size() * 50);
+  const double since_s = 1e-9 * static_cast<double>(path[60].stamp.ns - swaying.stamps_ns[1]);
+  EXPECT_LT((ToldByTracker(swaying, body, 1, since_s).Inverse() * path[60].T_world_body).Log().norm(), 1e-9);
+}
+
+TEST(SimPoseClock, IsRefusedBeyondASecond) {
+  EXPECT_EQ(Prepare(SmallRig(), Swaying(1.5)).error().what, "pose-clock-offset is out of range");
 }
 
 }  // namespace

@@ -56,6 +56,20 @@ TEST(ManifestDocument, HoldsTablesOfPosesAndSkippedPairs) {
   EXPECT_EQ(Validate(manifest).error().what, "file \"vicon/01.csv\": the path is not <sensor>/poses.csv");
 }
 
+TEST(ManifestDocument, HoldsWhatIsKnownOfATrackersClockWhereItIsTold) {
+  Manifest manifest = SampleManifest();
+  EXPECT_EQ(WriteManifest(manifest).find("clock_sigma_s"), std::string::npos);
+  Sensor body;
+  body.id = SensorId("body");
+  body.kind = SensorKind::kTracker;
+  body.clock_sigma_s = 0.002;
+  manifest.header.sensors.push_back(body);
+  const Result<Manifest> read = ReadManifest(WriteManifest(manifest));
+  ASSERT_TRUE(read) << Sentence(read.error());
+  EXPECT_EQ(read->header.sensors.back().clock_sigma_s, 0.002);
+  EXPECT_EQ(WriteManifest(*read), WriteManifest(manifest));
+}
+
 TEST(ManifestDocument, HoldsThePolishOfLidarsWhereOneIsAskedFor) {
   Manifest manifest = SampleManifest();
   for (const char* name : {"top", "rear"}) {

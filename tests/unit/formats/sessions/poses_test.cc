@@ -34,6 +34,22 @@ TEST(ReadPoses, AStreamHasStampsOfItsOwnClock) {
   EXPECT_TRUE((*table)[0].capture.empty());
 }
 
+TEST(ReadPoses, RowsWithoutACaptureAreATrackersPath) {
+  const std::string text = kTracker + ",3,0,0,0,0,0,0,1\nb,5,1,0,0,0,0,0,1\n,4,2,0,0,0,0,0,1\na,2,3,0,0,0,0,0,1\n";
+  const auto poses = ReadPoses(text, SensorKind::kTracker, "p.csv");
+  ASSERT_TRUE(poses) << Sentence(poses.error());
+  ASSERT_EQ(poses->size(), 2u);
+  EXPECT_EQ((*poses)[0].capture, CaptureId("a"));
+  const auto path = ReadTrackerPath(text, "p.csv");
+  ASSERT_TRUE(path) << Sentence(path.error());
+  ASSERT_EQ(path->size(), 2u);
+  EXPECT_TRUE((*path)[0].capture.empty());
+  EXPECT_EQ((*path)[0].stamp.ns, 3);
+  EXPECT_EQ((*path)[1].T_world_body.p_m.x(), 2.0);
+  EXPECT_TRUE(ReadPosesOf({CaptureId("a"), CaptureId("b")}, text, "p.csv"));
+  EXPECT_TRUE(ReadTrackerPath(kTracker + "a,2,3,0,0,0,0,0,1\n", "p.csv")->empty());
+}
+
 struct BadPoses {
   SensorKind kind;
   std::string text, what;
@@ -71,6 +87,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "p.csv line 4: stamp_ns 2 is not after that of the row before, 2"},
         BadPoses{kT, kTracker + "a,2,0,0,0,0,0,0,1\nb,2,0,0,0,0,0,0,1\na,3,0,0,0,0,0,0,1\n",
                  "p.csv line 4: capture a has a row already"},
+        BadPoses{kT, kTracker + ",2,0,0,0,0,0,0,1\n,2,0,0,0,0,0,0,1\n",
+                 "p.csv line 3: stamp_ns 2 is not after that of the row before, 2"},
+        BadPoses{kT, kTracker + ",2,0,0,0,0,0,0,1\n", "p.csv: it has no poses"},
         BadPoses{kT, kTracker + "a b,2,0,0,0,0,0,0,1\n", "p.csv line 2: capture id \"a b\" is not a valid name"}));
 
 TEST(ReadPosesOf, RefusesCapturesThatNoOtherSensorHas) {

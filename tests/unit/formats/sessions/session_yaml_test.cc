@@ -50,6 +50,20 @@ TEST(SessionYaml, TheCompleteExampleIsReadWhole) {
   EXPECT_EQ(header->conditions.at("temperature"), "21 C");
 }
 
+TEST(SessionYaml, ATrackerMaySayHowFarItsClockMayBeOff) {
+  const auto with = [](const std::string& type) {
+    return ReadSessionYaml("format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets: {b: {type: checkerboard, "
+                           "inner_corners: [9, 6], square_size_m: 0.025}}\nsensors:\n  left: {type: camera}\n  body: {type: " +
+                               type + ", clock_sigma_s: 0.002}\n",
+                           "session.yaml");
+  };
+  const auto header = with("tracker");
+  ASSERT_TRUE(header) << Sentence(header.error());
+  EXPECT_EQ(header->sensors[1].clock_sigma_s, 0.002);
+  EXPECT_FALSE(header->sensors[0].clock_sigma_s);
+  EXPECT_FALSE(with("camera"));
+}
+
 TEST(SessionYaml, OrderOfSensorsIsTheFiles) {
   const auto header = ReadSessionYaml(
       "format: 1\nrobot: r\ncaptured_at: 2026-01-31\ntargets: {b: {type: checkerboard, inner_corners: [9, 6], "

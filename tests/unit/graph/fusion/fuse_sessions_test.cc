@@ -98,9 +98,9 @@ struct Robot {
     for (Edge& edge : PairsOf(estimate)) edges.push_back(std::move(edge));
     estimates.push_back(estimate);
   }
-  [[nodiscard]] GraphSolution Fused() const {
+  [[nodiscard]] GraphSolution Fused(const PooledScatter& pooled = {}) const {
     GraphSolution solution = Solve(GraphOf(edges, kBase));
-    FuseSessions(edges, {}, kBase, estimates, solution);
+    FuseSessions(edges, {}, kBase, estimates, solution, pooled);
     return solution;
   }
 };
@@ -125,6 +125,21 @@ TEST(FuseSessions, OneSessionIsTakenAsItIs) {
     EXPECT_NEAR(pose.dof, 200.0, 1.0);
   }
   EXPECT_LT((solution.fused.covariance - robot.estimates[0].covariance).norm(), 1e-6 * robot.estimates[0].covariance.norm());
+}
+
+// Estimates go from the newest on.
+TEST(FuseSessions, OfATrackersClockTheNewestSessionTells) {
+  Random random(11);
+  Robot robot = Visits(2, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  robot.estimates[0].clocks = {{SensorId("body"), 0.01, 0.001, 0.05, 20}};
+  robot.estimates[1].clocks = {{SensorId("body"), 0.02, 0.001, 0.05, 20}, {SensorId("arm"), 0.0, 0.05, 0.05, 0}};
+  const auto clocks = robot.Fused().fused.clocks;
+  ASSERT_EQ(clocks.size(), 2u);
+  EXPECT_EQ(clocks[0].clock.tracker, SensorId("arm"));
+  EXPECT_EQ(clocks[0].session, robot.estimates[1].session);
+  EXPECT_EQ(clocks[1].clock.tracker, SensorId("body"));
+  EXPECT_EQ(clocks[1].clock.late_s, 0.01);
+  EXPECT_EQ(clocks[1].session, robot.estimates[0].session);
 }
 
 TEST(FuseSessions, PushedEdgeCountsByItsInformationAndAnEdgeOfTheSessionDoesNotCountTwice) {
@@ -197,6 +212,62 @@ TEST(FuseSessions, TwoVisitsThatDisagreeAreNotAveragedIntoCertainty) {
   EXPECT_LT(std::sqrt(solution.poses[2].covariance(0, 0)), 2e-4);
 }
 
+// 2 mm and 1 mrad, as sure as 60 numbers are.
+const PooledScatter kPooledLeft = {{kLeft, {{4e-6, 9e-8, 60.0}, {1e-6, 4e-8, 60.0}, 7}}};
+
+// Of one visit nothing tells how it scatters: where the sensor is on the next visit, both visits' scatter is in it.
+TEST(FuseSessions, OneVisitScattersAsThoseOfOtherRobotsDo) {
+  Random random(21);
+  const GraphSolution solution = Visits(1, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random).Fused(kPooledLeft);
+  const SensorPose &left = solution.poses[1], &right = solution.poses[2];
+  EXPECT_NEAR(left.fused->visit_sigma_m, 2e-3, 1e-9);
+  EXPECT_NEAR(left.fused->visit_sigma_rad, 1e-3, 1e-9);
+  EXPECT_NEAR(left.fused->scatter_dof.translation, 60.0, 1e-9);
+  EXPECT_EQ(left.fused->pooled_scatter->robots, 7);
+  EXPECT_NEAR(left.covariance(0, 0), 9e-8 + 2 * 4e-6, 1e-8);
+  EXPECT_NEAR(left.covariance(3, 3), 4e-8 + 2 * 1e-6, 1e-8);
+  EXPECT_FALSE(right.fused->pooled_scatter);
+  EXPECT_NEAR(right.covariance(0, 0), 9e-8, 1e-10);
+}
+
+TEST(FuseSessions, FewVisitsAreHeldAgainstThoseOfOtherRobots) {
+  Random random(22);
+  const Robot robot = Visits(3, Truth(), 2e-3, 1e-3, CovarianceOf(3e-4, 2e-4), random);
+  const FusedPose alone = *robot.Fused().poses[1].fused, pooled = *robot.Fused(kPooledLeft).poses[1].fused;
+  EXPECT_EQ(alone.scatter.translation.dof, 6.0);
+  EXPECT_NEAR(alone.scatter.translation.own, 9e-8, 1e-10);
+  EXPECT_NEAR(alone.visit_sigma_m, std::sqrt(alone.scatter.translation.between), 0.02 * alone.visit_sigma_m);
+  EXPECT_EQ(alone.scatter_dof.translation, 6.0);
+  const double mean = (6 * alone.scatter.translation.between + 60 * 4e-6) / 66;
+  EXPECT_NEAR(pooled.visit_sigma_m, std::sqrt(mean), 1e-8);
+  EXPECT_NEAR(pooled.scatter_dof.translation, 66.0, 1e-9);
+}
+
+// What others learn from is what the robot's own visits tell, to the last bit.
+TEST(FuseSessions, WhatItsOwnVisitsTellIsTheSameWhateverOtherRobotsDo) {
+  Random random(23);
+  const Robot robot = Visits(5, Truth(), 5e-4, 3e-4, CovarianceOf(3e-4, 2e-4), random);
+  const GraphSolution alone = robot.Fused(), pooled = robot.Fused(kPooledLeft);
+  for (std::size_t s = 1; s < 3; ++s) EXPECT_EQ(alone.poses[s].fused->scatter, pooled.poses[s].fused->scatter);
+  EXPECT_GT(pooled.poses[1].fused->visit_sigma_m, 1.5 * alone.poses[1].fused->visit_sigma_m);
+}
+
+// Visits without any scatter: what they show beyond their own errors is as often below zero as above.
+TEST(FuseSessions, ScatterThatIsShownIsRightOnAverage) {
+  Random random(24);
+  double sum = 0.0;
+  int below = 0;
+  constexpr int kRobots = 150;
+  for (int robot = 0; robot < kRobots; ++robot) {
+    const FusedPose fused = *Visits(6, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random).Fused().poses[1].fused;
+    sum += fused.scatter.translation.between;
+    below += fused.scatter.translation.between < 0 ? 1 : 0;
+  }
+  EXPECT_NEAR(sum / kRobots, 0.0, 6 * 9e-8 * std::sqrt(2.0 / 15 / kRobots));
+  EXPECT_GT(below, kRobots / 3);
+  EXPECT_LT(below, kRobots * 4 / 5);
+}
+
 struct MoveBetween {
   const char* name;
   std::size_t sensor;
@@ -267,6 +338,25 @@ TEST(FuseSessions, SessionOfARemountedReferenceStillTellsTheRest) {
   EXPECT_LT(between(both).trace(), 0.8 * between(alone).trace());
   for (std::size_t s = 1; s < 3; ++s)
     EXPECT_LT((both.poses[s].T_ref_sensor.Inverse() * Truth()[s]).Log().norm(), 0.003);
+}
+
+LensMisfit BentBy(const SensorId& camera, double rms_px) {
+  LensMisfit misfit;
+  misfit.camera = camera;
+  misfit.rms_px = rms_px;
+  return misfit;
+}
+
+// The first estimate is the newest.
+TEST(FuseSessions, LensesThatBendAreThoseOfTheNewestSession) {
+  Random random(9);
+  Robot robot = Visits(2, Truth(), 0, 0, CovarianceOf(3e-4, 2e-4), random);
+  robot.estimates[0].misfits = {BentBy(kRight, 0.1)};
+  robot.estimates[1].misfits = {BentBy(kLeft, 0.2), BentBy(kRight, 0.3)};
+  const std::vector<LensMisfit> lenses = robot.Fused().fused.lenses;
+  ASSERT_EQ(lenses.size(), 1u) << "left took part in the newest and does not bend there";
+  EXPECT_EQ(lenses[0].camera, kRight);
+  EXPECT_EQ(lenses[0].rms_px, 0.1);
 }
 
 TEST(FuseSessions, SessionWithARetiredEdgeIsNotFused) {

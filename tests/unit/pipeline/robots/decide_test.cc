@@ -218,7 +218,9 @@ TEST_F(DecideTest, WhatIsMissingOrWrongIsToldByName) {
   EXPECT_THAT(refused("approve", {{"who", ""}}), HasSubstr("who"));
   for (const char* verb : {"approve", "reject", "rollback"})
     EXPECT_THAT(refused(verb, {{"who", "Policy"}, {"revision", 1}}), HasSubstr("the name by which the policy itself"));
-  EXPECT_THAT(refused("retire", {{"who", "policy"}, {"sensor", "a"}}), HasSubstr("the name by which the policy itself"));
+  for (const char* verb : {"retire", "epoch", "set_policy", "set_rig_model", "measure_board"})
+    EXPECT_THAT(refused(verb, {{"who", "policy"}, {"sensor", "a"}, {"serial", "B-7"}}), HasSubstr("the name by which the policy itself"))
+        << verb;
   EXPECT_THAT(refused("rollback", json::object()), HasSubstr("invalid_input: the parameter 'revision'"));
   EXPECT_EQ(refused("approve", {{"revision", 9}}), "not_found: robot 'r' has no revision 9");
   EXPECT_THAT(refused("reject", {{"robot", "nobody"}}), HasSubstr("not_found"));
@@ -310,6 +312,8 @@ TEST_F(HeldBackTest, WhatWasRetiredMakesWayByADecisionOfThePolicy) {
             "approved revision 1 of robot r: of revision 2, which was in use, something was retired");
   EXPECT_THAT(rows[1].what, HasSubstr("retired edge"));
   EXPECT_TRUE(Holds(storage::VerifyAudit(*store_).value()));
+  EXPECT_EQ(store_->database().execAndGet("SELECT count(*) FROM alert WHERE kind = 'approved' AND subject = '1'").getInt(), 2)
+      << "receivers are told that the robot is to use revision 1 again";
 }
 
 TEST_F(HeldBackTest, WherePeopleApproveWhatWasRetiredLeavesNothingInUse) {

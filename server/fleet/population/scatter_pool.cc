@@ -1,0 +1,97 @@
+#include "server/fleet/population/scatter_pool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/math/log_variance.h"
+#include "server/math/statistics.h"
+#include "server/model/robots/population.h"
+
+namespace rigcal::fleet {
+namespace {
+
+constexpr double kSpreadBound = 0.1;  // odds with which the spread of robots is taken as too small
+constexpr double kNoStranger = 0.3;   // expected number of robots that show as much as the one that shows most
+constexpr double kLeastShown = 1e-6;  // of what visits err by: less is zero by chance
+constexpr int kHalvings = 40;
+
+struct Shown {
+  double variance = 0.0, dof = 0.0, z = 0.0;  // z: log variance without its bias
+};
+
+std::vector<Shown> ShownBy(const std::vector<const ScatterOfAxes*>& robots) {
+  std::vector<Shown> all;
+  for (const ScatterOfAxes* one : robots) {
+    const double variance = std::max(one->Shown(), kLeastShown * one->own);
+    if (one->dof > 0 && variance > 0) all.push_back({variance, one->dof, std::log(variance) - LogVarianceBias(one->dof)});
+  }
+  return all;
+}
+
+struct LogMoments {
+  double mean = 0.0, spread = 0.0;      // of z
+  double by_chance = 0.0, dof = 0.0;    // mean trigamma; sum
+};
+LogMoments LogMomentsOf(const std::vector<Shown>& all) {
+  const auto count = static_cast<double>(all.size());
+  LogMoments moments;
+  for (const Shown& one : all) {
+    moments.mean += one.z / count;
+    moments.by_chance += LogVarianceSpread(one.dof) / count;
+    moments.dof += one.dof;
+  }
+  for (const Shown& one : all) moments.spread += std::pow(one.z - moments.mean, 2) / (count - 1);
+  return moments;
+}
+
+double CentreOf(const LogMoments& moments, double dof) { return std::exp(moments.mean + LogVarianceBias(dof)); }
+
+double NoStrangerDof(const std::vector<Shown>& all, const LogMoments& moments, double dof) {
+  const Shown& most = *std::max_element(all.begin(), all.end(), [](const Shown& x, const Shown& y) { return x.z < y.z; });
+  const auto is_stranger = [&](double at) {
+    return FisherTail(most.variance / CentreOf(moments, at), most.dof, at) < kNoStranger / static_cast<double>(all.size());
+  };
+  if (!is_stranger(dof)) return dof;
+  double low = 1.0, high = dof;  // below kPoolDofMin it does not matter
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_stranger(middle) ? high : low) = middle;
+  }
+  return low;
+}
+
+double DofOfPool(const std::vector<Shown>& all, const LogMoments& moments) {
+  const auto freedom = static_cast<double>(all.size()) - 1;
+  const double spread = moments.spread * freedom / ChiSquareQuantile(kSpreadBound, freedom) - moments.by_chance;
+  return NoStrangerDof(all, moments, std::min({DofOfLogVarianceSpread(spread), moments.dof, kPoolDofMax}));
+}
+
+std::optional<ScatterOfAxes> PoolOf(const std::vector<const ScatterOfAxes*>& robots) {
+  const std::vector<Shown> all = ShownBy(robots);
+  if (all.size() < kPopulationMin) return std::nullopt;
+  const LogMoments moments = LogMomentsOf(all);
+  ScatterOfAxes pool;
+  pool.dof = DofOfPool(all, moments);
+  if (pool.dof < kPoolDofMin) return std::nullopt;
+  for (const ScatterOfAxes* one : robots) pool.own += one->own / static_cast<double>(robots.size());
+  pool.between = std::max(0.0, CentreOf(moments, pool.dof) - pool.own);
+  return pool;
+}
+
+}  // namespace
+
+PooledScatter PoolScatter(const std::vector<RobotScatter>& robots) {
+  std::map<SensorId, std::vector<const VisitScatter*>> by_sensor;
+  for (const RobotScatter& robot : robots)
+    for (const auto& [sensor, scatter] : robot) by_sensor[sensor].push_back(&scatter);
+  PooledScatter pooled;
+  for (const auto& [sensor, tellers] : by_sensor) {
+    std::vector<const ScatterOfAxes*> translations, rotations;
+    for (const VisitScatter* one : tellers) translations.push_back(&one->translation), rotations.push_back(&one->rotation);
+    const auto translation = PoolOf(translations), rotation = PoolOf(rotations);
+    if (translation && rotation) pooled[sensor] = {*translation, *rotation, static_cast<int>(tellers.size())};
+  }
+  return pooled;
+}
+
+}  // namespace rigcal::fleet

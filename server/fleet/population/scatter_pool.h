@@ -1,0 +1,29 @@
+// What the robots of a rig model scatter by from visit to visit, as a prior for one more of them.
+//
+// Each robot's visits show a variance s^2 (visit_scatter.h) of nu degrees of freedom about that robot's own, and the
+// robots' own are taken as a scaled inverse chi-square of nu_0 about v_0, both by moments of log s^2 (Smyth, Stat. Appl. Genet.
+// Mol. Biol. 3(1), 2004): with z = log s^2 - LogVarianceBias(nu),
+//   trigamma(nu_0 / 2) = Var z - mean trigamma(nu / 2)  and  log v_0 = mean z + LogVarianceBias(nu_0).
+// Robots that scatter differently give a small nu_0, and a pool that says little. So that a few robots do not pass for alike by chance,
+//   - Var z is the bound that it exceeds in nine of ten samples only if it is that large: (R - 1) Var z / chi^2_.1(R - 1),
+//   - nu_0 is at most the degrees of freedom of all robots together, and at most kPoolDofMax,
+//   - nu_0 is so small that the robot that shows most beyond v_0 is no stranger in a sample of R.
+// Where nu_0 is then below kPoolDofMin, the pool tells nothing.
+#pragma once
+
+#include <vector>
+
+#include "server/model/graph/visit_scatter.h"
+
+namespace rigcal::fleet {
+
+inline constexpr double kPoolDofMax = 200.0, kPoolDofMin = 6.0;
+
+// Of one robot, by sensor, those of two visits or more: all of robots with the same reference.
+using RobotScatter = std::map<SensorId, VisitScatter>;
+
+// Of the sensors that at least kPopulationMin of `robots` tell, and whose pools tell something of shifts and of turns. The robot
+// for which it is meant must not be among them. Same robots in the same order, same numbers.
+[[nodiscard]] PooledScatter PoolScatter(const std::vector<RobotScatter>& robots);
+
+}  // namespace rigcal::fleet

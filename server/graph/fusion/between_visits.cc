@@ -1,0 +1,81 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+
+#include "server/graph/fusion/session_fusion.h"
+#include "server/math/covariance.h"
+
+namespace rigcal::graph {
+namespace {
+
+constexpr int kHalvings = 60;
+
+// e^T (C + v I)^-1 e is the sum of square / (variance + v), along the axes of C.
+struct AlongAxis {
+  double square = 0.0, variance = 0.0;
+};
+
+std::vector<AlongAxis> AlongAxes(const std::vector<VisitResidual>& visits, int part) {
+  std::vector<AlongAxis> axes;
+  for (const VisitResidual& visit : visits) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(visit.own.block<3, 3>(part, part));
+    const Eigen::Vector3d e = eigen.eigenvectors().transpose() * visit.e.segment<3>(part);
+    for (int i = 0; i < 3; ++i) axes.push_back({e(i) * e(i), std::max(0.0, eigen.eigenvalues()(i))});
+  }
+  return axes;
+}
+
+double SquaresAt(const std::vector<AlongAxis>& axes, double variance) {
+  double squares = 0.0;
+  for (const AlongAxis& axis : axes)
+    if (axis.square > 0.0) squares += axis.square / (axis.variance + variance);
+  return squares;
+}
+
+// The squares fall as the variance grows, from more than is expected at `low` to less at `high`.
+double VarianceBetween(const std::vector<AlongAxis>& axes, double expected, double low, double high) {
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (SquaresAt(axes, middle) > expected ? low : high) = middle;
+  }
+  return high;
+}
+
+double VarianceOf(const std::vector<VisitResidual>& visits, int part, int means) {
+  const double expected = 3.0 * (static_cast<double>(visits.size()) - means);
+  if (expected <= 0) return 0.0;
+  const std::vector<AlongAxis> axes = AlongAxes(visits, part);
+  if (SquaresAt(axes, 0.0) <= expected) return 0.0;
+  double high = 0.0;
+  for (const AlongAxis& axis : axes) high += axis.square;  // sum e^2 / high <= 1
+  return VarianceBetween(axes, expected, 0.0, high);
+}
+
+ScatterOfAxes ShownAlong(const std::vector<VisitResidual>& visits, int part) {
+  ScatterOfAxes shown;
+  if (visits.empty()) return shown;
+  const std::vector<AlongAxis> axes = AlongAxes(visits, part);
+  double surest = std::numeric_limits<double>::infinity();
+  for (const AlongAxis& axis : axes) {
+    shown.own += axis.variance / static_cast<double>(axes.size());
+    surest = std::min(surest, axis.variance);
+  }
+  shown.dof = 3.0 * (static_cast<double>(visits.size()) - 1);
+  shown.between = VarianceOf(visits, part, 1);
+  if (shown.dof > 0 && !(shown.between > 0)) shown.between = VarianceBetween(axes, shown.dof, -surest, 0.0);
+  return shown;
+}
+
+}  // namespace
+
+Matrix6d VisitVariance::Matrix() const { return EachAxis(translation_m2, rotation_rad2).asDiagonal(); }
+
+VisitVariance BetweenVisits(const std::vector<VisitResidual>& visits, int means) {
+  return {VarianceOf(visits, tangent::kTranslation, means), VarianceOf(visits, tangent::kRotation, means)};
+}
+
+VisitScatter ScatterShown(const std::vector<VisitResidual>& visits) {
+  return {ShownAlong(visits, tangent::kTranslation), ShownAlong(visits, tangent::kRotation)};
+}
+
+}  // namespace rigcal::graph

@@ -1,0 +1,194 @@
+// What robots of a rig model scatter by, drawn: false alarms of a test by it, and the smallest change it sees.
+#include "server/fleet/population/scatter_pool.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "server/math/statistics.h"
+#include "server/model/approval/policy.h"
+#include "server/model/sessions/as_found.h"
+
+namespace rigcal::fleet {
+namespace {
+
+const SensorId kLeft("left"), kTop("top");
+constexpr int kRobots = 20, kAxes = 24;  // of four sensors
+constexpr double kScatter_m2 = 0.25e-6, kOwn_m2 = 0.04e-6;  // 0.5 mm and 0.2 mm
+
+class Draw {
+ public:
+  explicit Draw(unsigned seed) : engine_(seed) {}
+  double Normal() { return normal_(engine_); }
+  // As so many visits show a variance.
+  ScatterOfAxes Shown(double between, double own, int visits) {
+    const double dof = 3.0 * (visits - 1);
+    if (dof <= 0) return {0.0, own, 0.0};
+    return {(between + own) * std::chi_squared_distribution<>(dof)(engine_) / dof - own, own, dof};
+  }
+
+ private:
+  std::mt19937 engine_;
+  std::normal_distribution<double> normal_;
+};
+
+RobotScatter Of(const ScatterOfAxes& scatter) { return {{kLeft, {scatter, scatter}}}; }
+
+std::optional<ScatterOfAxes> PoolWithout(std::size_t robot, const std::vector<ScatterOfAxes>& shown) {
+  std::vector<RobotScatter> others;
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    if (i != robot && shown[i].dof > 0) others.push_back(Of(shown[i]));
+  const PooledScatter pooled = PoolScatter(others);
+  return pooled.contains(kLeft) ? std::optional(pooled.at(kLeft).translation) : std::nullopt;
+}
+
+double LimitInSigmas(double dof) {
+  const double alpha = kAsFoundAlpha / kAxes;
+  return std::sqrt(dof > 0 ? FisherQuantile(alpha, 1, dof) : ChiSquareQuantile(1 - alpha, 1));
+}
+
+// Of a session against a calibration of so many visits: what is taken for its variance, by which degrees of freedom.
+ScatterTaken Told(const ScatterOfAxes& own, const std::optional<ScatterOfAxes>& pooled) {
+  const ScatterTaken taken = TakenScatter(own, pooled);
+  return taken.dof > 0 ? taken : ScatterTaken{std::pow(kDefaultMovedMin.m, 2), 0.0, false};
+}
+
+// By the normal tail given what is told, so that odds of one in a thousand need no million sessions.
+double FalseAlarmOdds(const ScatterTaken& told, double truth_m2) {
+  const double sigmas = std::sqrt((told.variance + kOwn_m2) / (truth_m2 + kOwn_m2));
+  return std::min(1.0, kAxes * ChiSquareTail(std::pow(LimitInSigmas(told.dof) * sigmas, 2), 1));
+}
+
+double SmallestChange_m(const ScatterTaken& told, int visits) {
+  const double sigma_m = std::sqrt((told.variance + kOwn_m2) * (1 + 1.0 / visits)), limit = LimitInSigmas(told.dof);
+  if (told.dof > 0) return sigma_m * std::sqrt(FisherNoncentrality(limit * limit, 1, told.dof, kAsFoundPower));
+  return sigma_m * (limit + std::sqrt(ChiSquareQuantile(2 * kAsFoundPower - 1, 1)));
+}
+
+// Means over robots of drawn fleets; `alone`: by the robot's own visits and the policy, as without a pool.
+struct Told20 {
+  double odds = 0.0, odds_alone = 0.0, smallest_m = 0.0, smallest_alone_m = 0.0;
+};
+Told20 DrawFleets(int fleets, int visits, int visits_of_others, unsigned seed, const std::function<double(Draw&, int)>& truth_of) {
+  Draw draw(seed);
+  Told20 mean;
+  const double share = 1.0 / (fleets * kRobots);
+  for (int fleet = 0; fleet < fleets; ++fleet) {
+    std::vector<double> truth;
+    std::vector<ScatterOfAxes> shown;
+    for (int robot = 0; robot < kRobots; ++robot) {
+      truth.push_back(truth_of(draw, robot));
+      shown.push_back(draw.Shown(truth.back(), kOwn_m2, visits_of_others));
+    }
+    for (std::size_t robot = 0; robot < kRobots; ++robot) {
+      const ScatterOfAxes own = draw.Shown(truth[robot], kOwn_m2, visits);
+      const ScatterTaken told = Told(own, PoolWithout(robot, shown)), alone = Told(own, std::nullopt);
+      mean.odds += share * FalseAlarmOdds(told, truth[robot]);
+      mean.odds_alone += share * FalseAlarmOdds(alone, truth[robot]);
+      if (fleet > 0) continue;
+      mean.smallest_m += SmallestChange_m(told, visits) / kRobots;
+      mean.smallest_alone_m += SmallestChange_m(alone, visits) / kRobots;
+    }
+  }
+  return mean;
+}
+
+double Alike(Draw&, int) { return kScatter_m2; }
+// Of 20 the most and the least differ by about seven times in variance.
+double Different(Draw& draw, int) { return kScatter_m2 * std::exp(0.5 * draw.Normal()); }
+// Half of them scatter three times as much as the others.
+double Halves(Draw&, int robot) { return robot % 2 == 0 ? 0.09e-6 : 0.81e-6; }
+
+TEST(ScatterPool, RobotsThatAreAlikeGiveNoMoreFalseAlarmsThanAlpha) {
+  for (int visits = 1; visits <= 10; ++visits) {
+    const Told20 told = DrawFleets(100, visits, 6, 10 + static_cast<unsigned>(visits), Alike);
+    EXPECT_LE(told.odds, kAsFoundAlpha) << visits << " visits";
+    EXPECT_GE(told.odds, 0.05 * kAsFoundAlpha) << visits << " visits";  // nor is it blind
+  }
+}
+
+// As many as alpha says, or as the robots' own visits and the policy's assumption give without any pool.
+TEST(ScatterPool, RobotsThatAreNotAlikeGiveNoMoreEither) {
+  for (int visits = 1; visits <= 10; ++visits)
+    for (const auto& truth_of : {std::function(Different), std::function(Halves)}) {
+      const Told20 told = DrawFleets(100, visits, 6, 30 + static_cast<unsigned>(visits), truth_of);
+      EXPECT_LE(told.odds, 1.2 * std::max(kAsFoundAlpha, told.odds_alone)) << visits << " visits";
+    }
+}
+
+// It is accused until its own visits show what it scatters by: README.md has how often.
+TEST(ScatterPool, ALoneRobotThatScattersMoreIsHeldByItsOwnVisits) {
+  const auto truth_of = [](Draw&, int robot) { return robot == 0 ? 9 * kScatter_m2 : kScatter_m2; };
+  for (int visits = 7; visits <= 10; ++visits)  // 0.94 of alpha over 1,000 fleets, up to 1.2 over 100
+    EXPECT_LE(DrawFleets(100, visits, 6, 60 + static_cast<unsigned>(visits), truth_of).odds, 1.5 * kAsFoundAlpha) << visits << " visits";
+  EXPECT_LT(DrawFleets(100, 3, 6, 71, truth_of).odds, 10 * kAsFoundAlpha);
+}
+
+TEST(ScatterPool, ItSeesSmallerChangesThanTheRobotAlone) {
+  const Told20 one = DrawFleets(1, 1, 6, 51, Alike), three = DrawFleets(1, 3, 6, 52, Alike), ten = DrawFleets(1, 10, 6, 53, Alike);
+  EXPECT_GT(one.smallest_alone_m, 8e-3);
+  EXPECT_LT(one.smallest_m, 6.5e-3);
+  EXPECT_GT(three.smallest_alone_m, 7e-3);
+  EXPECT_LT(three.smallest_m, 5e-3);
+  EXPECT_LT(ten.smallest_m, ten.smallest_alone_m);
+}
+
+TEST(ScatterPool, IsWhatItsRobotsShow) {
+  Draw draw(1);
+  std::vector<RobotScatter> robots;
+  for (int robot = 0; robot < 200; ++robot) robots.push_back(Of(draw.Shown(kScatter_m2, kOwn_m2, 11)));
+  const PooledScatter pooled = PoolScatter(robots);
+  ASSERT_TRUE(pooled.contains(kLeft));
+  EXPECT_EQ(pooled.at(kLeft).robots, 200);
+  EXPECT_NEAR(pooled.at(kLeft).translation.between, kScatter_m2, 0.1 * kScatter_m2);
+  EXPECT_NEAR(pooled.at(kLeft).translation.own, kOwn_m2, 1e-15);
+  EXPECT_GT(pooled.at(kLeft).translation.dof, 60);
+  EXPECT_LE(pooled.at(kLeft).translation.dof, kPoolDofMax);
+}
+
+// s^2 of a scaled inverse chi-square of 12 degrees of freedom: that is what it must not exceed by much.
+TEST(ScatterPool, KnowsHowUnlikeItsRobotsAre) {
+  Draw draw(2);
+  std::mt19937 engine(3);
+  std::vector<RobotScatter> robots;
+  for (int robot = 0; robot < 200; ++robot) {
+    const double truth = kScatter_m2 * 12 / std::chi_squared_distribution<>(12)(engine);
+    robots.push_back(Of(draw.Shown(truth, 0.0, 40)));
+  }
+  const PooledScatter pooled = PoolScatter(robots);
+  ASSERT_TRUE(pooled.contains(kLeft));
+  EXPECT_LT(pooled.at(kLeft).translation.dof, 16);
+  EXPECT_GE(pooled.at(kLeft).translation.dof, 7);
+}
+
+TEST(ScatterPool, OneStrangerTakesThePoolsWord) {
+  std::vector<RobotScatter> robots;
+  for (int robot = 0; robot < 19; ++robot) robots.push_back(Of({kScatter_m2, kOwn_m2, 60.0}));
+  ASSERT_TRUE(PoolScatter(robots).contains(kLeft));
+  robots.push_back(Of({100 * kScatter_m2, kOwn_m2, 60.0}));
+  EXPECT_FALSE(PoolScatter(robots).contains(kLeft));
+}
+
+TEST(ScatterPool, FewRobotsOrFewVisitsTellNothing) {
+  std::vector<RobotScatter> robots(4, Of({kScatter_m2, kOwn_m2, 60.0}));
+  EXPECT_TRUE(PoolScatter(robots).empty());
+  robots.push_back(Of({kScatter_m2, kOwn_m2, 0.0}));  // one visit
+  EXPECT_TRUE(PoolScatter(robots).empty());
+  robots.push_back({{kTop, {{kScatter_m2, kOwn_m2, 60.0}, {kScatter_m2, kOwn_m2, 60.0}}}});
+  EXPECT_TRUE(PoolScatter(robots).empty());
+  robots.push_back(Of({kScatter_m2, kOwn_m2, 60.0}));
+  EXPECT_TRUE(PoolScatter(robots).contains(kLeft));
+  EXPECT_FALSE(PoolScatter(robots).contains(kTop));
+}
+
+TEST(ScatterPool, VisitsThatAgreeBetterThanTheySayScatterByNothing) {
+  const std::vector<RobotScatter> robots(8, Of({-0.5 * kOwn_m2, kOwn_m2, 30.0}));
+  const PooledScatter pooled = PoolScatter(robots);
+  ASSERT_TRUE(pooled.contains(kLeft));
+  EXPECT_EQ(pooled.at(kLeft).translation.between, 0.0);
+}
+
+}  // namespace
+}  // namespace rigcal::fleet
