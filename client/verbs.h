@@ -34,6 +34,7 @@ void AddApprove(CLI::App& app, Context& context);
 void AddReject(CLI::App& app, Context& context);
 void AddRollback(CLI::App& app, Context& context);
 void AddAgent(CLI::App& app, Context& context);
+void AddTf(CLI::App& app, Context& context);
 void AddAudit(CLI::App& app, Context& context);
 void AddWebhooks(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);

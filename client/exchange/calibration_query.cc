@@ -9,8 +9,8 @@ namespace {
 
 class CalibrationAsker {
  public:
-  CalibrationAsker(Connection& connection, const Context& context, const CalibrationQuery& query)
-      : connection_(connection), timeout_(context.timeout), query_(query) {}
+  CalibrationAsker(Connection& connection, const CalibrationQuery& query, std::chrono::milliseconds timeout)
+      : connection_(connection), timeout_(timeout), query_(query) {}
 
   Result<AskedCalibration> Ask() {
     RIGCAL_ASSIGN(const Document shown, AskRevisionToTake());
@@ -89,7 +89,11 @@ class CalibrationAsker {
 Result<AskedCalibration> AskCalibration(const Context& context, const CalibrationQuery& query) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
-  return CalibrationAsker(connection, context, query).Ask();
+  return AskCalibration(connection, query, context.timeout);
+}
+
+Result<AskedCalibration> AskCalibration(Connection& connection, const CalibrationQuery& query, std::chrono::milliseconds timeout) {
+  return CalibrationAsker(connection, query, timeout).Ask();
 }
 
 Result<std::map<SensorId, std::string>> FramesOf(const std::vector<std::string>& options) {
