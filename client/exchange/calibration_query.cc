@@ -14,7 +14,7 @@ class CalibrationAsker {
 
   Result<AskedCalibration> Ask() {
     RIGCAL_ASSIGN(const Document shown, AskRevisionToTake());
-    RIGCAL_ASSIGN(const Leave leave, MayLeave(shown, query_.even_if_not_approved));
+    RIGCAL_ASSIGN(const Leave leave, MayLeave(shown, query_.even_if_not_approved, query_.may_be_overruled));
     RIGCAL_ASSIGN(const formats::RevisionInput revision, formats::ReadRevisionDocument(shown["document"].Dump()));
     const std::int64_t number = shown["revision"].Integer().value_or(0);
     RIGCAL_ASSIGN(const auto facts, AskSensorFacts(number));

@@ -16,6 +16,7 @@ struct CalibrationQuery {
   int revision = 0;                        // 0: the one that is in use
   std::optional<SensorId> root = {};       // absent: the revision's reference
   bool even_if_not_approved = false;       // then without one in use the newest
+  bool may_be_overruled = true;            // the verb has that option
   std::map<SensorId, std::string> frames = {};  // other names of frames in the file
 };
 struct AskedCalibration {

@@ -49,6 +49,7 @@ Result<int> RosDomainOf(const TfOptions& options) {
 // --root names a sensor, or the frame that --frame gives it.
 Result<CalibrationQuery> TfQueryOf(const TfOptions& options) {
   CalibrationQuery query{options.robot};
+  query.may_be_overruled = false;
   RIGCAL_ASSIGN(query.frames, FramesOf(options.frames));
   if (options.root.empty()) return query;
   for (const auto& [sensor, frame] : query.frames)
