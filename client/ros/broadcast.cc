@@ -13,7 +13,7 @@ using RosClock = std::chrono::steady_clock;
 
 constexpr milliseconds kNobodyNew(400);  // after so long without a new reader all that are there are met
 
-milliseconds Until(RosClock::time_point end) {
+milliseconds RosTimeLeft(RosClock::time_point end) {
   return std::max(milliseconds(0), std::chrono::duration_cast<milliseconds>(end - RosClock::now()));
 }
 
@@ -84,7 +84,7 @@ Status RosBroadcast::AwaitDiscovery(milliseconds timeout) {
   for (auto& [topic, writer] : cameras_) RIGCAL_TRY(waitset.Attach(writer.get()));
   bool any_new = true;
   while (any_new && RosClock::now() < end) {
-    RIGCAL_ASSIGN(any_new, waitset.Wait(std::min(kNobodyNew, Until(end))));
+    RIGCAL_ASSIGN(any_new, waitset.Wait(std::min(kNobodyNew, RosTimeLeft(end))));
   }
   return {};
 }
@@ -92,8 +92,8 @@ Status RosBroadcast::AwaitDiscovery(milliseconds timeout) {
 Status RosBroadcast::AwaitReaders(milliseconds timeout) {
   const auto end = RosClock::now() + timeout;
   RIGCAL_TRY(AwaitDiscovery(timeout));
-  bool all = transforms_->WaitForAcks(Until(end)).has_value();
-  for (const auto& [topic, writer] : cameras_) all = all && writer.WaitForAcks(Until(end)).has_value();
+  bool all = transforms_->WaitForAcks(RosTimeLeft(end)).has_value();
+  for (const auto& [topic, writer] : cameras_) all = all && writer.WaitForAcks(RosTimeLeft(end)).has_value();
   if (all) return {};
   return Fail(ErrorCode::kUnreachable,
               "a reader in ROS domain " + std::to_string(side_.domain) + " did not acknowledge within " + InSeconds(timeout),
