@@ -55,7 +55,7 @@ constexpr AddVerb kVerbs[] = {
     AddPush,   AddPushEdges, AddRestore,          AddRetire, AddRobots, AddSessions, AddEdges,
     AddShow,   AddHistory,   AddLookup,           AddStatus, AddWatch,  AddReport,   AddDue,
     AddCompare, AddExport,   AddDiff,             AddDoctor,           AddCheckElsewhere, AddSimulateElsewhere, AddImportElsewhere, AddCompletion,
-    AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddAudit,
+    AddPolicy,  AddApprove,  AddReject,           AddRollback,         AddAgent,          AddTf, AddAudit,
     AddModel,   AddFleet,    AddEpoch,            AddBoard,            AddWebhooks,       AddResolve};
 
 int Parse(CLI::App& app, int argc, const char* const* argv, const Context& context) {

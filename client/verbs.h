@@ -35,6 +35,7 @@ void AddReject(CLI::App& app, Context& context);
 void AddRollback(CLI::App& app, Context& context);
 void AddResolve(CLI::App& app, Context& context);  // computes stored sessions again
 void AddAgent(CLI::App& app, Context& context);
+void AddTf(CLI::App& app, Context& context);
 void AddAudit(CLI::App& app, Context& context);
 void AddWebhooks(CLI::App& app, Context& context);
 void AddRobots(CLI::App& app, Context& context);

@@ -46,6 +46,8 @@ struct ParticipantOptions {
   std::string tag;  // Discovery/Tag: isolates tests; empty: RIGCAL_DDS_TAG
   // Sockets and threads of DDS that no other participant of the process has, unless that is apart too.
   bool apart = false;
+  // Domain and tag are as they stand here, for traffic that is not Rigcal's own: RIGCAL_DOMAIN and RIGCAL_DDS_TAG do not count.
+  bool as_given = false;
   std::string user_data = {};  // what discovery tells all others of it (presence.h); empty: nothing
   // RIGCAL_DDS_LOCAL (not empty) keeps all traffic on the loopback interface.
   // CYCLONEDDS_URI in the environment replaces the built-in configuration (deploy/dds/default.xml, compiled in).
@@ -146,6 +148,13 @@ class Writer {
     RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, participant.get(), InfoOf<T>(), partitions));
     return Writer(std::move(entity));
   }
+  // In the default partition, under another topic than the type's own.
+  [[nodiscard]] static Result<Writer> OpenCalled(const Participant& participant, const std::string& topic) {
+    TopicInfo info = InfoOf<T>();
+    info.name = topic.c_str();
+    RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, participant.get(), info, {}));
+    return Writer(std::move(entity));
+  }
   // In the publisher's partition; the publisher outlives it.
   [[nodiscard]] static Result<Writer> Open(const Participant& participant, const Publisher& publisher) {
     RIGCAL_ASSIGN(Entity entity, internal::OpenWriter(participant, publisher.get(), InfoOf<T>(), {}));
@@ -199,6 +208,11 @@ class Reader {
     return internal::TakeSamples(entity_.get(), max, [&](const void* sample, const dds_sample_info_t& info) {
       body(*static_cast<const T*>(sample), origins_.Of(entity_.get(), info.publication_handle));
     });
+  }
+  // Takes up to `max` samples and drops them. Whether there was any: one that was written, or one that was withdrawn.
+  [[nodiscard]] Result<bool> TakeHint(int max) {
+    RIGCAL_ASSIGN(const int taken, internal::TakeNews(entity_.get(), max, [](const void*, const dds_sample_info_t&) {}));
+    return taken > 0;
   }
   // The writers that discovery knows to match.
   [[nodiscard]] std::vector<SampleOrigin> Matched() {

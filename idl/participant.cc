@@ -71,7 +71,7 @@ void KeepFreedSamples() {
 }
 
 Result<int> DomainNumber(const ParticipantOptions& options) {
-  const std::string text = Variable("RIGCAL_DOMAIN");
+  const std::string text = options.as_given ? "" : Variable("RIGCAL_DOMAIN");
   int number = options.domain;
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, number);
@@ -84,7 +84,7 @@ Result<int> DomainNumber(const ParticipantOptions& options) {
 }
 
 Result<std::string> DiscoveryTag(const ParticipantOptions& options) {
-  const std::string variable = Variable("RIGCAL_DDS_TAG");
+  const std::string variable = options.as_given ? "" : Variable("RIGCAL_DDS_TAG");
   std::string tag = options.tag.empty() ? variable : options.tag;
   if (!tag.empty()) RIGCAL_TRY(CheckName("DDS tag", tag));
   return tag;

@@ -9,12 +9,12 @@ namespace {
 
 class CalibrationAsker {
  public:
-  CalibrationAsker(Connection& connection, const Context& context, const CalibrationQuery& query)
-      : connection_(connection), timeout_(context.timeout), query_(query) {}
+  CalibrationAsker(Connection& connection, const CalibrationQuery& query, std::chrono::milliseconds timeout)
+      : connection_(connection), timeout_(timeout), query_(query) {}
 
   Result<AskedCalibration> Ask() {
     RIGCAL_ASSIGN(const Document shown, AskRevisionToTake());
-    RIGCAL_ASSIGN(const Leave leave, MayLeave(shown, query_.even_if_not_approved));
+    RIGCAL_ASSIGN(const Leave leave, MayLeave(shown, query_.even_if_not_approved, query_.may_be_overruled));
     RIGCAL_ASSIGN(const formats::RevisionInput revision, formats::ReadRevisionDocument(shown["document"].Dump()));
     const std::int64_t number = shown["revision"].Integer().value_or(0);
     RIGCAL_ASSIGN(const auto facts, AskSensorFacts(number));
@@ -89,7 +89,11 @@ class CalibrationAsker {
 Result<AskedCalibration> AskCalibration(const Context& context, const CalibrationQuery& query) {
   RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
   RIGCAL_ASSIGN(auto connection, Connection::Open(participant, context.dds));
-  return CalibrationAsker(connection, context, query).Ask();
+  return AskCalibration(connection, query, context.timeout);
+}
+
+Result<AskedCalibration> AskCalibration(Connection& connection, const CalibrationQuery& query, std::chrono::milliseconds timeout) {
+  return CalibrationAsker(connection, query, timeout).Ask();
 }
 
 Result<std::map<SensorId, std::string>> FramesOf(const std::vector<std::string>& options) {

@@ -28,10 +28,11 @@ std::string WhyItStays(const Document& shown, RevisionState state) {
   return RevisionText(shown) + " is not approved: it is " + WordFor(state);
 }
 
-std::string CureOf(const Document& shown, RevisionState state) {
+std::string CureOf(const Document& shown, RevisionState state, bool may_be_overruled) {
   const std::string command = "rigcal approve " + Plain(shown["robot"].Text("ROBOT")) + " " + CountOf(shown["revision"]) + " --reason TEXT";
   const std::string approve = state == RevisionState::kUnusable ? "" : "`" + command + "` approves it. ";
-  return approve + "--even-if-not-approved writes it all the same.";
+  if (may_be_overruled) return approve + "--even-if-not-approved writes it all the same.";
+  return approve.empty() ? "A session that passes replaces it." : "`" + command + "` approves it.";
 }
 
 std::string WithoutStop(std::string text) {
@@ -46,13 +47,13 @@ std::optional<std::int64_t> RevisionInUse(const Document& shown) {
   return shown["usable"]["revision"].Integer();
 }
 
-Result<Leave> MayLeave(const Document& shown, bool even_if_not_approved) {
+Result<Leave> MayLeave(const Document& shown, bool even_if_not_approved, bool may_be_overruled) {
   const RevisionState state = StateOf(shown);
   const std::string word = WordOfState(shown, state);
   const std::string overdue = shown["overdue"].Flag() ? DriveText(shown) : "";
   if (state == RevisionState::kApproved) return Leave{word, overdue};
   if (state == RevisionState::kSuperseded) return Leave{word, RevisionText(shown) + " is not the one that is in use."};
-  if (!even_if_not_approved) return Fail(ErrorCode::kConflict, WithoutStop(WhyItStays(shown, state)), CureOf(shown, state));
+  if (!even_if_not_approved) return Fail(ErrorCode::kConflict, WithoutStop(WhyItStays(shown, state)), CureOf(shown, state, may_be_overruled));
   return Leave{word + ", not approved", WithoutStop(WhyItStays(shown, state)) + "."};
 }
 

@@ -20,6 +20,7 @@ struct Leave {
 // Of the revision in `shown`. Good: in use, or superseded by a newer one and asked for by its number. kConflict of all others, with
 // why and the command that approves it, unless `even_if_not_approved`: then the doubt says it. Of a server that knows no
 // approvals a verdict of pass or warn is good.
-[[nodiscard]] Result<Leave> MayLeave(const Document& shown, bool even_if_not_approved);
+// `may_be_overruled`: the verb has that option, and the error offers it.
+[[nodiscard]] Result<Leave> MayLeave(const Document& shown, bool even_if_not_approved, bool may_be_overruled = true);
 
 }  // namespace rigcal::client

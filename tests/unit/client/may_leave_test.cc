@@ -30,6 +30,7 @@ TEST(MayLeave, WhatNobodyApprovedIsRefusedWithTheCommandThatDoes) {
   EXPECT_EQ(leave.error().code, ErrorCode::kConflict);
   EXPECT_THAT(leave.error().what, HasSubstr("revision 4 of rig is not approved: it is candidate"));
   EXPECT_THAT(leave.error().cure, HasSubstr("`rigcal approve rig 4 --reason TEXT` approves it. --even-if-not-approved"));
+  EXPECT_EQ(MayLeave(Shown("candidate", "pass"), false, false).error().cure, "`rigcal approve rig 4 --reason TEXT` approves it.");
   const auto forced = MayLeave(Shown("candidate", "pass"), true);
   EXPECT_EQ(forced->standing, "candidate, not approved");
   EXPECT_THAT(forced->doubt, HasSubstr("is not approved"));
