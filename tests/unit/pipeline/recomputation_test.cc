@@ -58,7 +58,7 @@ class RecomputationTest : public PipelineTest {
     const SessionId session = Session(day);
     const auto places = Places(x_m);
     std::vector<Edge> edges;
-    for (const auto& [a, b] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
+    for (const auto& [a, b] : std::vector<std::pair<std::size_t, std::size_t>>{{0, 1}, {0, 2}, {1, 2}}) {
       Edge edge = GivenEdge("r", kCameras[a].str(), kCameras[b].str(), 0.0);
       edge.method = "stereo", edge.session = session;
       edge.T_a_b = places.at(kCameras[a]).Inverse() * places.at(kCameras[b]);
