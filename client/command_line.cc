@@ -20,6 +20,7 @@ constexpr const char* kFooter =
     "  rigcal import drive.mcap --list          what is in a bag, and which topic may be which sensor\n"
     "  rigcal check visit-2026-01-31/           will the session do? before it is pushed\n"
     "  rigcal push visit-2026-01-31/            send a session, wait for its result\n"
+    "  rigcal push drive.mcap --rig rig.yaml    the same of a bag\n"
     "  rigcal lookup mapper-01 front_left lidar  the pose of the lidar in the front left camera\n"
     "  rigcal doctor                            what is in the way between here and the server\n";
 

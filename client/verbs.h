@@ -54,7 +54,8 @@ void AddDiff(CLI::App& app, Context& context);
 void AddDoctor(CLI::App& app, Context& context);
 inline constexpr std::array<const char*, 3> kShells = {"bash", "zsh", "fish"};  // that `completion` has a script for
 void AddCompletion(CLI::App& app, Context& context);                            // prints that script
-// In programs of their own (simulate_main.cc, check_main.cc, import_main.cc); `rigcal` has those that start them.
+// In programs of their own (simulate_main.cc, check_main.cc, import_main.cc, which pushes bags too); `rigcal` has those
+// that start them.
 inline constexpr const char* kSimulateDescription = "Write the session of a virtual robot, with its truth";
 inline constexpr const char* kCheckDescription = "Say whether a session folder will do, and what to take more of";
 inline constexpr const char* kImportDescription = "Make a session folder of a bag, or say what is in the bag";

@@ -5,8 +5,10 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "client/bags/limits.h"
+#include "client/bags/sqlite_size.h"
 #include "server/base/text.h"
 
 namespace rigcal::bags {
@@ -39,39 +41,28 @@ class SqliteBag : public Bag {
   SqliteBag(const fs::path& file, std::string name, std::int64_t bytes)
       : name_(std::move(name)),
         bytes_(bytes),
+        claimed_bytes_(static_cast<std::int64_t>(ClaimedSqliteBytes(file))),
         database_(UriOf(file), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kBusyTimeout_ms) {}
 
   // Throws what SQLiteCpp throws.
   void Begin() {
     sqlite3_limit(database_.getHandle(), SQLITE_LIMIT_LENGTH, static_cast<int>(limits::kRecordBytesMax));
     database_.exec("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
+    if (IsCut()) database_.exec("PRAGMA writable_schema = ON;");  // else SQLite refuses the whole of it
     const int tables =
         database_
             .execAndGet("SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')")
             .getInt();
     if (tables != 2) throw SQLite::Exception("it has no tables `topics` and `messages`");
     ReadTopics();
-    if (database_.tableExists("message_definitions")) ReadDefinitions();
+    ReadDefinitions();
     Count();
     for (auto& [id, topic] : reading_) topics_[id] = std::make_shared<const Topic>(std::move(topic));
     reading_.clear();
     query_.emplace(database_, "SELECT topic_id, timestamp, data FROM messages ORDER BY id");
   }
 
-  bool Next(Message& message) override {
-    if (!query_) return false;
-    try {
-      while (query_->executeStep())
-        if (Take(message)) return true;
-    } catch (const std::exception& failure) {
-      damage_.Add({ErrorCode::kInvalidInput,
-                   name_ + ": after " + std::to_string(given_) +
-                       " messages the database cannot be read: " + Quoted(failure.what()),
-                   kCure});
-    }
-    Finish();
-    return false;
-  }
+  bool Next(Message& message) override { return IsCut() ? NextOfCut(message) : Step(message); }
   [[nodiscard]] std::vector<std::shared_ptr<const Topic>> Topics() const override {
     std::vector<std::shared_ptr<const Topic>> topics;
     for (const auto& [id, topic] : topics_) topics.push_back(topic);
@@ -86,6 +77,40 @@ class SqliteBag : public Bag {
   [[nodiscard]] std::int64_t bytes_total() const override { return bytes_; }
 
  private:
+  [[nodiscard]] bool IsCut() const { return bytes_ < claimed_bytes_; }
+
+  bool Step(Message& message) {
+    if (!query_) return false;
+    std::string failed;
+    try {
+      while (query_->executeStep())
+        if (Take(message)) return true;
+    } catch (const std::exception& failure) {
+      failed = failure.what();
+    }
+    Finish(failed);
+    return false;
+  }
+
+  // SQLite fills the page where the file was cut with zeros. A message that ends there ends in zeros; it is the last
+  // one, as a recorder appends, and is left out. So each is held back until another one comes.
+  bool NextOfCut(Message& message) {
+    Message next;
+    if (!held_ && Step(next)) Hold(next);
+    if (!held_) return false;
+    const bool is_last = !Step(next);
+    given_bytes_ = std::move(held_bytes_);
+    message = *held_;
+    message.bytes = given_bytes_;
+    held_.reset();
+    if (!is_last) Hold(next);
+    return !is_last || (!given_bytes_.empty() && given_bytes_.back() != std::byte{0});
+  }
+  void Hold(const Message& message) {
+    held_ = message;
+    held_bytes_.assign(message.bytes.begin(), message.bytes.end());
+  }
+
   void ReadTopics() {
     SQLite::Statement rows(database_, "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
     while (rows.executeStep() && reading_.size() < limits::kTopicsMax) {
@@ -96,7 +121,15 @@ class SqliteBag : public Bag {
       reading_[rows.getColumn(0).getInt64()] = std::move(topic);
     }
   }
+  // In a file that was cut they may be what is lost; the types that are known do without.
   void ReadDefinitions() {
+    try {
+      if (database_.tableExists("message_definitions")) TakeDefinitions();
+    } catch (const std::exception&) {
+      if (!IsCut()) throw;
+    }
+  }
+  void TakeDefinitions() {
     SQLite::Statement rows(database_,
                            "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions");
     std::size_t bytes = 0;
@@ -133,9 +166,20 @@ class SqliteBag : public Bag {
     return true;
   }
 
-  void Finish() {
+  // `failed`: what SQLite said, if not all could be read.
+  void Finish(const std::string& failed) {
     query_.reset();
-    if (strays_ > 0)
+    if (IsCut())
+      damage_.Add({ErrorCode::kInvalidInput,
+                   name_ + " is cut off: " + std::to_string(bytes_) + " of " + std::to_string(claimed_bytes_) +
+                       " bytes are there",
+                   kCure});
+    else if (!failed.empty())
+      damage_.Add({ErrorCode::kInvalidInput,
+                   name_ + ": after " + std::to_string(given_) +
+                       " messages the database cannot be read: " + Quoted(failed),
+                   kCure});
+    if (strays_ > 0 && !IsCut())
       damage_.Add({ErrorCode::kInvalidInput,
                    name_ + ": " + std::to_string(strays_) + " messages are of no topic that is there, or beyond " +
                        std::to_string(limits::kRecordBytesMax) + " bytes",
@@ -143,11 +187,13 @@ class SqliteBag : public Bag {
   }
 
   std::string name_;
-  std::int64_t bytes_, given_ = 0, total_ = 0, strays_ = 0;
+  std::int64_t bytes_, claimed_bytes_, given_ = 0, total_ = 0, strays_ = 0;
   SQLite::Database database_;
   std::map<std::int64_t, Topic> reading_;
   std::map<std::int64_t, std::shared_ptr<const Topic>> topics_;
   std::optional<SQLite::Statement> query_;  // gone: the end
+  std::optional<Message> held_;                    // of a file that was cut: read, and not given yet
+  std::vector<std::byte> held_bytes_, given_bytes_;  // what it points into, and what the one that was given does
   Damage damage_;
 };
 

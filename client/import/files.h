@@ -20,6 +20,9 @@ struct Pixels {
 // names what of it cannot be done. Any thread.
 [[nodiscard]] Result<std::string> PngOf(const bags::Image& image);
 
+// Bytes of that picture's pixels to those of the message's: 3 of a Bayer pattern, 1 of grey. 1 of what is not read.
+[[nodiscard]] double PngBytesRatio(const std::string& encoding);
+
 // A binary PCD with every field that the cloud has, x y z and others by their names, in the machine's byte order;
 // padding is left out. Values as they were sent, NaN too.
 [[nodiscard]] std::string PcdOf(const bags::PointCloud& cloud);

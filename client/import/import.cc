@@ -37,6 +37,7 @@ class Importer {
     RIGCAL_ASSIGN(intake_, TakeIn(input_.bag, map_, progress));
     RIGCAL_TRY(CheckStamps());
     Plan();
+    RIGCAL_TRY(folder_.CheckRoom(MissingBytes()));
     RIGCAL_TRY(WriteFiles(progress));
     for (std::size_t s = 0; s < map_.sensors.size(); ++s) RIGCAL_TRY(WritePoses(s));
     RIGCAL_TRY(folder_.Finish(SessionYaml(map_, intake_.first)));
@@ -82,6 +83,21 @@ class Importer {
       std::sort(chosen_[s].begin(), chosen_[s].end(),
                 [](const Chosen& a, const Chosen& b) { return a.ordinal < b.ordinal; });
     }
+  }
+
+  // Of the files that are not there yet, as large as they can be.
+  std::uint64_t MissingBytes() const {
+    double bytes = 0;
+    for (std::size_t s = 0; s < map_.sensors.size(); ++s) {
+      const SensorIntake& taken = intake_.sensors[s];
+      for (const PlannedCapture& capture : plan_.captures) {
+        if (!MakesFiles(map_.sensors[s].kind) || !capture.message[s]) continue;
+        const std::string stem = map_.sensors[s].id.str() + "/" + capture.name;
+        const bool is_there = folder_.Has(stem + ".png") || folder_.Has(stem + ".jpg") || folder_.Has(stem + ".pcd");
+        if (!is_there) bytes += taken.file_ratio * taken.message_bytes[*capture.message[s]];
+      }
+    }
+    return static_cast<std::uint64_t>(bytes);
   }
 
   Status WriteFiles(const Progress& progress) {
@@ -197,6 +213,7 @@ Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress)
   map.every_ns = input.every_ns.value_or(map.every_ns);
   RIGCAL_TRY(bags::OpenBag(input.bag));  // before a folder is made for it
   RIGCAL_ASSIGN(const std::string identity, IdentityOf(input.bag, text, map.tolerance_ns, map.every_ns));
+  if (input.replaces_other_import) RIGCAL_TRY(SessionFolder::RemoveOther(input.out, identity));
   RIGCAL_ASSIGN(const SessionFolder folder, SessionFolder::Begin(input.out, identity));
   if (folder.complete()) {
     ImportOutcome outcome;

@@ -17,6 +17,7 @@ namespace rigcal::importing {
 struct ImportInput {
   std::filesystem::path bag, rig, out;
   std::optional<std::int64_t> tolerance_ns, every_ns;  // in place of what rig.yaml says
+  bool replaces_other_import = false;  // `out` is nobody else's: what another import began there is removed
 };
 
 // What became of one sensor's messages.
@@ -40,7 +41,8 @@ struct ImportOutcome {
 };
 
 // Reads the bag twice: for the stamps, and for the files of what is a capture. Cut off, it goes on where it was when it
-// is begun again. The same bag, rig.yaml and options give the same bytes. `progress` may be empty; it is called from 0
+// is begun again. Before the first file is written, the disk has to have room for all (kBusy; an estimate). The same
+// bag, rig.yaml and options give the same bytes. `progress` may be empty; it is called from 0
 // to the end twice.
 [[nodiscard]] Result<ImportOutcome> Import(const ImportInput& input, const Progress& progress);
 

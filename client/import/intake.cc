@@ -5,8 +5,10 @@
 #include <set>
 
 #include "client/bags/messages/header.h"
+#include "client/bags/messages/image.h"
 #include "client/bags/messages/motion.h"
 #include "client/bags/open_bag.h"
+#include "client/import/files.h"
 #include "client/import/frame_tree.h"
 #include "server/base/near_names.h"
 #include "server/base/text.h"
@@ -70,11 +72,21 @@ class Taker {
     const std::uint32_t ordinal = sensor.messages++;
     if (definition == nullptr) return Refuse(sensor, trouble_[message.topic->name]);
     if (HasPoses(map_.sensors[s].kind)) return TakePoses(s, message, *definition, ordinal);
-    if (map_.sensors[s].stamp == StampSource::kLog) return Keep(sensor, message.log_ns, ordinal);
+    if (sensor.stamps_ns.empty()) LearnEncoding(sensor, message, *definition);
+    const auto bytes = static_cast<std::uint32_t>(message.bytes.size());
+    if (map_.sensors[s].stamp == StampSource::kLog) return KeepFile(sensor, message.log_ns, ordinal, bytes);
     const auto header = bags::ReadHeader(*message.topic, *definition, message.bytes);
     if (!header) return Refuse(sensor, Sentence(header.error()));
     if (!*header) return Refuse(sensor, "its messages have no header. Set `stamp: log` in rig.yaml");
-    Keep(sensor, (*header)->stamp_ns, ordinal);
+    KeepFile(sensor, (*header)->stamp_ns, ordinal, bytes);
+  }
+
+  // Demosaiced, or with the colours that YUV shares, a picture is larger than its message.
+  static void LearnEncoding(SensorIntake& sensor, const bags::Message& message, const bags::Definition& definition) {
+    if (bags::KindOf(message.topic->type) != bags::MessageKind::kImage) return;
+    const auto value = bags::Decode(*message.topic, definition, message.bytes);
+    const auto image = value ? bags::ReadImage(*value) : Fail(value.error());
+    if (image) sensor.file_ratio = PngBytesRatio(image->encoding);
   }
 
   void TakePoses(std::size_t s, const bags::Message& message, const bags::Definition& definition,
@@ -119,6 +131,10 @@ class Taker {
   static void Keep(SensorIntake& sensor, std::int64_t stamp_ns, std::uint32_t ordinal) {
     sensor.stamps_ns.push_back(stamp_ns);
     sensor.ordinals.push_back(ordinal);
+  }
+  static void KeepFile(SensorIntake& sensor, std::int64_t stamp_ns, std::uint32_t ordinal, std::uint32_t bytes) {
+    Keep(sensor, stamp_ns, ordinal);
+    sensor.message_bytes.push_back(bytes);
   }
   static void Refuse(SensorIntake& sensor, const std::string& why) {
     if (sensor.refused++ == 0) sensor.first_refusal = why;

@@ -12,11 +12,13 @@
 
 namespace rigcal::importing {
 
-// Of one sensor. `stamps_ns`, `ordinals` and, of a tracker or pose stream, `poses` go together.
+// Of one sensor. `stamps_ns`, `ordinals` and, of a tracker or pose stream, `poses`, else `message_bytes`, go together.
 struct SensorIntake {
   std::vector<std::int64_t> stamps_ns;
   std::vector<std::uint32_t> ordinals;  // which message of its topic, from 0
   std::vector<Se3> poses;
+  std::vector<std::uint32_t> message_bytes;
+  double file_ratio = 1;       // bytes of a file without compression to those of a message, of a picture's encoding
   std::uint32_t messages = 0;  // of its topic
   std::int64_t refused = 0;    // that have no stamp, or no pose that can be read
   std::string first_refusal;

@@ -1,14 +1,12 @@
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <memory>
 
 #include "client/import/import.h"
 #include "client/import/report.h"
 #include "client/import/rig_map.h"
 #include "client/import/survey.h"
-#include "client/text/progress.h"
+#include "client/programs/bag_work.h"
 #include "client/verbs.h"
-#include "client/wire/transfer.h"
 #include "server/base/files/durable_file.h"
 #include "server/base/process/thread_rank.h"
 
@@ -22,20 +20,6 @@ struct ImportOptions {
   bool list = false;
   double every_s = -1, tolerance_s = -1;  // negative: as rig.yaml says
 };
-
-// What could not be read is said after what could, and decides the code.
-ExitCode TellDamage(const std::vector<Error>& damage, const Context& context) {
-  for (const Error& error : damage) Report(error, context.err);
-  return damage.empty() ? ExitCode::kGood : ExitCode::kVerdictWarn;
-}
-
-template <typename Work>
-auto WithBar(const Context& context, const Work& work) {
-  Progress bar(context.err, context.err_is_terminal, "Reading", SteadyNow_ns(), Progress::Unit::kBytes);
-  auto result = work([&](std::int64_t done, std::int64_t total) { bar.Show({done, total, ""}, SteadyNow_ns()); });
-  bar.Clear();
-  return result;
-}
 
 Result<ExitCode> List(const Context& context, const ImportOptions& options) {
   std::error_code failed;
@@ -53,28 +37,16 @@ Result<ExitCode> List(const Context& context, const ImportOptions& options) {
   return TellDamage(survey.damage, context);
 }
 
-std::optional<std::int64_t> Nanoseconds(double seconds) {
-  return seconds < 0 ? std::nullopt : std::optional<std::int64_t>(std::llround(seconds * 1e9));
-}
-
-// Whether every sensor of rig.yaml gave something.
-bool IsWhole(const importing::ImportOutcome& outcome) {
-  for (const importing::SensorOutcome& sensor : outcome.sensors)
-    if (sensor.written == 0 || sensor.refused > 0) return false;
-  return true;
-}
-
 Result<ExitCode> Import(const Context& context, const ImportOptions& options) {
-  const importing::ImportInput input{options.bag, options.rig, options.out, Nanoseconds(options.tolerance_s),
-                                     Nanoseconds(options.every_s)};
+  const importing::ImportInput input{options.bag, options.rig, options.out, NanosecondsIfGiven(options.tolerance_s),
+                                     NanosecondsIfGiven(options.every_s)};
   RIGCAL_ASSIGN(const importing::ImportOutcome outcome,
                 WithBar(context, [&](const auto& progress) { return importing::Import(input, progress); }));
   if (context.json)
     context.out << importing::OutcomeJson(outcome, options.out) << std::endl;
   else
     importing::PrintOutcome(outcome, options.out, context.out);
-  const ExitCode code = TellDamage(outcome.damage, context);
-  return code == ExitCode::kGood && !IsWhole(outcome) ? ExitCode::kVerdictWarn : code;
+  return TellMissing(outcome, context);
 }
 
 Result<ExitCode> RunImport(const Context& context, const ImportOptions& options) {
@@ -104,7 +76,8 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  rigcal import drive.mcap --list --write-rig rig.yaml\n"
     "  rigcal import drive.mcap --rig rig.yaml --out visit-2026-01-31/ --every 2\n"
-    "  rigcal check visit-2026-01-31/ && rigcal push visit-2026-01-31/\n";
+    "  rigcal check visit-2026-01-31/ && rigcal push visit-2026-01-31/\n"
+    "  rigcal push drive.mcap --rig rig.yaml                    both at once, without a folder that stays\n";
 
 }  // namespace
 

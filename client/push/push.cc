@@ -1,213 +1,103 @@
-#include <CLI/CLI.hpp>
-#include <cmath>
-#include <memory>
-#include <numeric>
-#include <optional>
-#include <random>
+#include "client/push/push.h"
 
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "client/elsewhere.h"
+#include "client/push/bag_path.h"
 #include "client/push/new_robot.h"
-#include "client/push/push_result.h"
-#include "client/text/edge_table.h"
-#include "client/text/progress.h"
-#include "client/text/standing_text.h"
-#include "client/text/table.h"
-#include "client/verbs.h"
-#include "client/wire/session_outlet.h"
-#include "server/base/process/thread_rank.h"
-#include "server/formats/sessions/session_contents.h"
-#include "server/formats/sessions/session_folder.h"
-#include "server/model/edges/past.h"
-#include "server/model/edges/unit_doubt.h"
 
 namespace rigcal::client {
 namespace {
 
-struct PushOptions {
-  std::string folder;
-  double give_up_s = 60.0;
-  std::optional<std::uint64_t> shuffle_seed;
-  bool no_wait = false, new_robot = false;
-  std::vector<std::string> remounted;
-};
+constexpr const char* kBagNeedsRig =
+    "rigcal: a bag is pushed with --rig FILE, which says which topic is which sensor.\n"
+    "`rigcal import BAG --list --write-rig FILE` writes a first one; see `rigcal push --help` with examples.\n";
+constexpr const char* kNoBag =
+    "rigcal: --rig, --work, --every and --tolerance are for bags, and this is none.\n"
+    "See `rigcal push --help` with examples.\n";
 
-struct Folder {
-  SessionToPush session;
-  FileMarks marks;
-};
-
-// As if session.yaml had named them.
-Status TakeRemounted(const std::vector<std::string>& names, SessionHeader& header) {
-  for (const std::string& name : names) {
-    RIGCAL_ASSIGN(SensorId sensor, SensorId::Parse(name));
-    rigcal::AddRemounted(std::move(sensor), header);
-  }
-  return Validate(header);
+bool IsThere(const std::string& path) {
+  std::error_code failed;
+  return std::filesystem::exists(path, failed);
 }
 
-Result<Folder> ReadFolder(const Context& context, const PushOptions& options) {
-  Folder folder;
-  folder.marks = MarkFiles(options.folder);
-  Progress progress(context.err, context.err_is_terminal, "Reading", SteadyNow_ns());
-  auto manifest = formats::ReadSessionFolder(options.folder, [&](std::int64_t done, std::int64_t total) {
-    progress.Show({done, total, ""}, SteadyNow_ns());
-  });
-  progress.Clear();
-  if (!manifest) return Fail(manifest.error());
-  RIGCAL_TRY(TakeRemounted(options.remounted, manifest->header));
-  const auto trackers = formats::ReadTrackers(options.folder, *manifest);
-  for (const auto& [file, doubt] : UnitDoubts(manifest->header, trackers)) SayUnitDoubt(file, doubt, context.err);
-  folder.session = SessionOf(*manifest);
-  return folder;
-}
-
-// A capture is there when its files of all sensors are.
-std::string CaptureText(const PushEngine& engine, const std::vector<Payload>& payloads) {
-  std::map<std::string, bool> captures;
-  for (std::uint32_t i = 0; i < payloads.size(); ++i) {
-    const auto [entry, is_new] = captures.emplace(payloads[i].capture.str(), engine.Held(i));
-    if (!is_new) entry->second = entry->second && engine.Held(i);
-  }
-  std::size_t held = 0;
-  for (const auto& [name, is_held] : captures) held += is_held ? 1 : 0;
-  return std::to_string(held) + "/" + std::to_string(captures.size()) + " captures";
-}
-
-// File by file, in a drawn order.
-std::vector<std::uint32_t> ShuffledChunks(const PushPlan& plan, std::uint64_t seed) {
-  std::vector<std::vector<std::uint32_t>> chunks_of_file;
-  std::uint32_t count = 0;
-  for (const std::int64_t size_bytes : plan.payload_bytes) {
-    chunks_of_file.emplace_back(static_cast<std::size_t>((size_bytes + plan.chunk_bytes - 1) / plan.chunk_bytes));
-    std::iota(chunks_of_file.back().begin(), chunks_of_file.back().end(), count);
-    count += static_cast<std::uint32_t>(chunks_of_file.back().size());
-  }
-  std::shuffle(chunks_of_file.begin(), chunks_of_file.end(), std::mt19937_64(seed));
-  std::vector<std::uint32_t> order;
-  for (const auto& chunks : chunks_of_file) order.insert(order.end(), chunks.begin(), chunks.end());
-  return order;
-}
-
-PushPlan PlanOf(const SessionToPush& session, const PushOptions& options) {
-  PushPlan plan;
-  for (const Payload& payload : session.payloads) plan.payload_bytes.push_back(payload.size_bytes);
-  if (options.shuffle_seed) plan.send_order = ShuffledChunks(plan, *options.shuffle_seed);
-  plan.give_up_ns = std::llround(options.give_up_s * 1e9);
-  return plan;
-}
-
-Result<PushSummary> Send(const Context& context, const PushOptions& options, const wire::Participant& participant,
-                         const Folder& folder) {
-  const SessionToPush& session = folder.session;
-  RIGCAL_ASSIGN(const auto outlet,
-                SessionOutlet::Open(participant, session, FilePieces(options.folder, session.payloads, folder.marks)));
-  PushEngine engine(PlanOf(session, options), SteadyNow_ns());
-  Progress progress(context.err, context.err_is_terminal, "Sending", SteadyNow_ns());
-  std::size_t counted = 0;
-  std::string detail = CaptureText(engine, session.payloads);
-  const TransferHooks hooks{[&](const PushEngine& state, std::int64_t now_ns) {
-                              if (state.PayloadsHeld() != counted && progress.IsDue(now_ns)) {
-                                counted = state.PayloadsHeld();
-                                detail = CaptureText(state, session.payloads);
-                              }
-                              progress.Skip(state.HeldAtFirst());
-                              progress.Show({state.ArrivedBytes(), state.TotalBytes(), detail}, now_ns);
-                            },
-                            [&](const std::string& line) { progress.Say(line); }};
-  const std::int64_t start_ns = SteadyNow_ns();
-  const Status done =
-      RunTransfer(participant, {session.robot, session.id.str(), WhereText(context.dds)}, engine, *outlet, hooks);
-  progress.Clear();
-  if (!done) return Fail(done.error());
-  PushSummary summary = SummaryOf(engine, "session", session.robot.str(), session.id.str(), session.payloads.size());
-  summary.transfer_ns = SteadyNow_ns() - start_ns;
-  return summary;
-}
-
-void SaySent(const Context& context, const PushSummary& summary) {
-  context.err << "Session " << summary.id.substr(0, 16) << " of " << summary.robot << " is stored: " << summary.items
-              << " files, " << ByteText(static_cast<double>(summary.total));
-  if (summary.held_before > 0)
-    context.err << " (" << ByteText(static_cast<double>(summary.held_before)) << " were there before)";
-  context.err << std::endl;
-}
-
-Result<Awaited> Await(const Context& context, const PushOptions& options, const SessionToPush& session,
-                      ResultWatch& watch) {
-  Progress progress(context.err, context.err_is_terminal, "Calibrating", SteadyNow_ns(), Progress::Unit::kPairs);
-  std::optional<std::int64_t> done_before;
-  const AwaitHooks hooks{[&](const Document& edge) {
-                           progress.Clear();
-                           (context.json ? context.err : context.out) << EdgeLine(edge) << std::endl;
-                         },
-                         [&](const std::string& line) { progress.Say(line); },
-                         [&](std::int64_t done, std::int64_t total) {
-                           if (!done_before) progress.Skip(*(done_before = done));
-                           progress.Show({done, total, ""}, SteadyNow_ns());
-                         }};
-  auto awaited = watch.Await(
-      {session.robot, session.id, {}, 0, WhereText(context.dds), std::llround(options.give_up_s * 1e9)}, hooks);
-  progress.Clear();
-  return awaited;
-}
-
-Status CheckMeant(const Context& context, const SessionToPush& session, Connection& connection) {
-  RIGCAL_TRY(CheckNewRobot(connection, session.robot, context.timeout));
-  return CheckWhoseFiles(connection, session.robot, session.payloads, context.timeout);
-}
-
-Status RunPush(Context& context, const PushOptions& options) {
-  SetThreadRank(ThreadRank::kWorks);  // the robot has more urgent work than this
-  RIGCAL_ASSIGN(const Folder folder, ReadFolder(context, options));
-  RIGCAL_ASSIGN(const auto participant, wire::Participant::Open(context.dds));
-  RIGCAL_ASSIGN(auto watch, ResultWatch::Open(participant, context.dds, folder.session.robot));
-  if (!options.new_robot) RIGCAL_TRY(CheckMeant(context, folder.session, watch.connection()));
-  RIGCAL_ASSIGN(const PushSummary summary, Send(context, options, participant, folder));
-  SaySent(context, summary);
-  if (options.no_wait) {
-    if (context.json) context.out << ResultJson(summary, nullptr) << std::endl;
+Status RunPush(Context& context, const PushOptions& options, const PushBag& push_bag) {
+  const bool is_bag = IsBagPath(options.folder);
+  const bool is_misfit = is_bag ? options.bag.rig.empty() : options.bag.IsGiven() && IsThere(options.folder);
+  if (is_misfit) {
+    context.err << (is_bag ? kBagNeedsRig : kNoBag);
+    context.exit_code = ExitCode::kUsage;
     return {};
   }
-  RIGCAL_ASSIGN(const Awaited awaited, Await(context, options, folder.session, watch));
-  if (context.json)
-    context.out << ResultJson(summary, &awaited) << std::endl;
-  else
-    PrintResult(awaited, context.out);
-  SayStanding(awaited.session, context.err);
-  SayRetiredSensors(folder.session.robot.str(), awaited.retired_sensors, [](const std::string&) { return true; }, context.err);
-  context.exit_code = JudgeResult(awaited);
-  return {};
+  return is_bag ? push_bag(context, options) : PushFolder(context, options);
+}
+
+void AddBagOptions(CLI::App& verb, BagChoice& bag) {
+  verb.add_option("--rig", bag.rig, "Of a bag: which topic is which sensor (docs/bags.md)")->type_name("FILE");
+  verb.add_option("--work", bag.work,
+                  "Of a bag: where its session folder is while it is pushed (default: beside the bag)")
+      ->type_name("DIR");
+  verb.add_option("--every", bag.every_s,
+                  "Of a bag: seconds from one capture to the next, at least (default: rig.yaml's, else 0)")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 86'400.0));
+  verb.add_option("--tolerance", bag.tolerance_s,
+                  "Of a bag: seconds that stamps of one capture may be apart (default: rig.yaml's, else 0.005)")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 1.0));
+}
+
+void AddPushOptions(CLI::App& verb, PushOptions& options) {
+  verb.add_option("PATH", options.folder, "The session folder (docs/session-format.md), or a bag (docs/bags.md)")
+      ->required();
+  AddBagOptions(verb, options.bag);
+  verb.add_option("--shuffle", options.shuffle_seed,
+                  "Send the files in an order drawn from this seed; the result is the same")
+      ->type_name("SEED");
+  verb.add_option("--remounted", options.remounted,
+                  "Sensors that were moved on purpose since the sessions before: what those say of them is past")
+      ->type_name("SENSOR[,SENSOR...]")
+      ->delimiter(',');
+  verb.add_flag("--new-robot", options.new_robot, kNewRobotHelp);
+  verb.add_flag("--no-wait", options.no_wait, "End when all is safe on the server's disk");
+  verb.add_option("--timeout-total", options.give_up_s,
+                  "Give up after so many seconds without any answer (default 60)")
+      ->check(CLI::Range(0.1, 1e7))
+      ->type_name("S");
+}
+
+std::string Footer() {
+  return "Break it off and run it again at any time: what is on the server's disk is not sent again.\n"
+         "A bag becomes a session folder first, as `rigcal import` makes it, and that folder goes when the push is "
+         "done. Broken\n"
+         "off, it stays, and the same command goes on there.\n" +
+         std::string(kVerdictCodes) +
+         "With --no-wait 0, once all is safe; without a result, as of a session without a pair of sensors, 6.\n"
+         "Where something of a bag could not be used, 5 in place of 0.\n"
+         "Examples:\n"
+         "  rigcal push visit-2026-01-31/\n"
+         "  rigcal push drive.mcap --rig rig.yaml --every 2\n"
+         "  rigcal push visit-2026-01-31/ --no-wait\n"
+         "  rigcal push visit-2026-01-31/ --remounted lidar   the lidar was moved since the visit before\n"
+         "  rigcal push visit-2026-01-31/ --json > result.json\n";
 }
 
 }  // namespace
 
-void AddPush(CLI::App& app, Context& context) {
-  CLI::App* verb = app.add_subcommand("push", "Send a session folder, wait for its edges and the new calibration");
+void AddPushWith(CLI::App& app, Context& context, PushBag push_bag) {
+  CLI::App* verb = app.add_subcommand("push", "Send a session folder or a bag, wait for its edges and the new calibration");
   auto options = std::make_shared<PushOptions>();
-  verb->add_option("DIR", options->folder, "The session folder (docs/session-format.md)")->required();
-  verb->add_option("--shuffle", options->shuffle_seed,
-                   "Send the files in an order drawn from this seed; the result is the same")
-      ->type_name("SEED");
-  verb->add_option("--remounted", options->remounted,
-                   "Sensors that were moved on purpose since the sessions before: what those say of them is past")
-      ->type_name("SENSOR[,SENSOR...]")
-      ->delimiter(',');
-  verb->add_flag("--new-robot", options->new_robot, kNewRobotHelp);
-  verb->add_flag("--no-wait", options->no_wait, "End when all is safe on the server's disk");
-  verb->add_option("--timeout-total", options->give_up_s,
-                   "Give up after so many seconds without any answer (default 60)")
-      ->check(CLI::Range(0.1, 1e7))
-      ->type_name("S");
-  verb->footer("Break it off and run it again at any time: what is on the server's disk is not sent again.\n" +
-               std::string(kVerdictCodes) +
-               "With --no-wait 0, once all is safe; without a result, as of a session without a pair of sensors, 6.\n"
-               "Examples:\n"
-               "  rigcal push visit-2026-01-31/\n"
-               "  rigcal push visit-2026-01-31/ --no-wait\n"
-               "  rigcal push visit-2026-01-31/ --remounted lidar   the lidar was moved since the visit before\n"
-               "  rigcal push visit-2026-01-31/ --json > result.json\n");
-  verb->callback([&context, options] {
-    if (const Status done = RunPush(context, *options); !done) context.exit_code = Report(done.error(), context);
+  AddPushOptions(*verb, *options);
+  verb->footer(Footer());
+  verb->callback([&context, options, push_bag = std::move(push_bag)] {
+    if (const Status done = RunPush(context, *options, push_bag); !done)
+      context.exit_code = Report(done.error(), context);
   });
+}
+
+void AddPush(CLI::App& app, Context& context) {
+  AddPushWith(app, context, [](Context& at, const PushOptions&) { return Status(Fail(StartElsewhere(at, "import"))); });
 }
 
 }  // namespace rigcal::client

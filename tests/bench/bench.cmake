@@ -1,5 +1,6 @@
 # Programs that deploy/measure runs; each prints JSON.
 rigcal_program(durable_write_bench SOURCES bench/service/durable_write_bench.cc DEPS rigcal_base)
+rigcal_program(png_bench SOURCES bench/service/png_bench.cc DEPS rigcal_import)
 rigcal_program(receipt_recorder SOURCES bench/service/receipt_recorder.cc DEPS rigcal_idl)
 rigcal_program(query_bench SOURCES bench/service/query_bench.cc DEPS rigcal_client)
 rigcal_program(fleet_measure

@@ -55,6 +55,11 @@ Pixels CopyOf(const bags::Image& image) {
   return pixels;
 }
 
+double PngBytesRatio(const std::string& encoding) {
+  if (Conversions().count(encoding) == 0) return 1;
+  return 3.0 * (HasWords(encoding) ? 2 : 1) / bags::PixelBytes(encoding);
+}
+
 Result<std::string> PngOf(const bags::Image& image) {
   try {
     cv::Mat mat = MatOf(image);

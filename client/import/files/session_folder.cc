@@ -5,6 +5,7 @@
 
 #include "client/bags/byte_source.h"
 #include "client/bags/parts.h"
+#include "client/text/table.h"
 #include "server/base/digests/sha256.h"
 #include "server/base/files/durable_file.h"
 #include "server/formats/json/json_writer.h"
@@ -69,6 +70,31 @@ Result<SessionFolder> SessionFolder::Begin(const fs::path& folder, const std::st
       ErrorCode::kConflict,
       folder.string() + " holds the import of another bag, or of this one with another rig.yaml or other options",
       "Give the path of a new folder, or remove that one.");
+}
+
+Status SessionFolder::RemoveOther(const fs::path& folder, const std::string& identity) {
+  std::error_code failed;
+  if (!fs::exists(folder / kRecord, failed)) return {};
+  RIGCAL_ASSIGN(const std::string before, ReadFile(folder / kRecord, kRecordBytesMax));
+  if (before == identity) return {};
+  fs::remove_all(folder, failed);
+  if (!failed) return {};
+  return Fail(ErrorCode::kStorage, folder.string() + ": cannot be removed (" + failed.message() + ")",
+              "It is left of another push; check its permissions.");
+}
+
+Status CheckRoomOf(const fs::path& folder, std::uint64_t needed_bytes, std::uint64_t free_bytes) {
+  if (needed_bytes <= free_bytes) return {};
+  const auto text = [](std::uint64_t bytes) { return client::ByteText(static_cast<double>(bytes)); };
+  return Fail(ErrorCode::kBusy,
+              folder.string() + " takes up to " + text(needed_bytes) + ", and its disk has " + text(free_bytes) + " free",
+              "Free the rest and give the same command again, take fewer captures by --every, or give a folder on another disk.");
+}
+
+Status SessionFolder::CheckRoom(std::uint64_t needed_bytes) const {
+  std::error_code failed;
+  const fs::space_info disk = fs::space(folder_, failed);
+  return failed ? Status() : CheckRoomOf(folder_, needed_bytes, disk.available);  // where none is told, writing will
 }
 
 bool SessionFolder::complete() const { return Has(kSession); }

@@ -15,6 +15,10 @@ class SessionFolder {
   // Makes the folder, or goes on with one that the same import (`identity`, a text of its input) began. kConflict: it
   // holds something else.
   [[nodiscard]] static Result<SessionFolder> Begin(const std::filesystem::path& folder, const std::string& identity);
+  // Removes the folder if it holds what another import than `identity` began; nothing else is touched.
+  [[nodiscard]] static Status RemoveOther(const std::filesystem::path& folder, const std::string& identity);
+  // kBusy: its disk has fewer bytes free than that.
+  [[nodiscard]] Status CheckRoom(std::uint64_t needed_bytes) const;
   // Whether the import came to its end before.
   [[nodiscard]] bool complete() const;
   // Of "left/1586406456-763032325.png": written already.
@@ -28,6 +32,10 @@ class SessionFolder {
   explicit SessionFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::filesystem::path folder_;
 };
+
+// The sentence for files of `needed_bytes` where `free_bytes` are free.
+[[nodiscard]] Status CheckRoomOf(const std::filesystem::path& folder, std::uint64_t needed_bytes,
+                                 std::uint64_t free_bytes);
 
 // What makes two imports the same: the names and sizes of the bag's files, the rig's text, the options.
 [[nodiscard]] Result<std::string> IdentityOf(const std::filesystem::path& bag, std::string_view rig_yaml,

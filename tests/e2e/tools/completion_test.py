@@ -47,7 +47,7 @@ def with_a_fake_program(folder):
     cases = [(["rigcal", "pu"], "push\tSend\npush-edges\tSend\n", ["reply push", "reply push-edges"]),
              (["rigcal", "show", ""], "mapper-01\nmapper-02\n", ["reply mapper-01", "reply mapper-02"]),
              (["rigcal", "push-edges", "--robot", "="], "mapper-01\n", ["reply mapper-01"]),
-             (["rigcal", "push", "vis"], ":folders\n", ["option -o dirnames"]),
+             (["rigcal", "push", "vis"], ":files\n", ["option -o default"]),
              (["rigcal", "push-edges", "e"], ":files\n", ["option -o default"]),
              (["rigcal", "show", "x"], "", [])]
     for line, answer, wanted in cases:

@@ -10,8 +10,8 @@ import tempfile
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-import bag_writer  # noqa: E402
 from flow import check  # noqa: E402
+from measures.bags import writer as bag_writer  # noqa: E402
 
 RIGCAL = pathlib.Path(os.environ["RIGCAL_BIN"]) / "rigcal"
 GOOD, USAGE, REFUSED, MORE = 0, 2, 4, 5
@@ -210,6 +210,23 @@ def what_had_no_partner_is_counted(folder, rig):
     check(told["captures"] == 3, "every 0.35 s of 1.1 s: %r" % told)
 
 
+def cut_database_gives_what_it_has(folder):
+    """SQLite itself refuses a file that was cut, or reads zeros for what is lost of a page."""
+    pixels = bytes(range(1, 256)) * 80  # several pages each
+    messages = [("/left/image_raw", START_NS + k, bag_writer.image("cdr", START_NS + k, 100, 204, "mono8", pixels, 100)) for k in range(20)]
+    bag_writer.database(folder / "large.db3", messages, {"/left/image_raw": topics(2)["/left/image_raw"]}, 4)
+    for name, count in (("schema_4.db3", len(drive("cdr"))), ("large.db3", len(messages))):
+        whole = (folder / name).read_bytes()
+        check(json.loads(rigcal("import", folder / name, "--list", "--json").stdout)["messages"] == count, "whole: " + name)
+        counts = []
+        for share in (0.3, 0.6, 0.9):
+            (folder / "cut.db3").write_bytes(whole[:int(len(whole) * share)])
+            done = rigcal("import", folder / "cut.db3", "--list", "--json", exit_code=MORE)
+            check("is cut off: " in done.stderr and done.stderr.count("\n") == 1, "one sentence: %r" % done.stderr)
+            counts.append(json.loads(done.stdout)["messages"])
+        check(counts == sorted(counts) and count // 2 < counts[-1] < count, "as far as it goes: %r of %d" % (counts, count))
+
+
 def cut_off_gives_what_it_has(folder, rig):
     whole = (folder / "plain.mcap").read_bytes()
     cut = folder / "cut.mcap"
@@ -219,6 +236,7 @@ def cut_off_gives_what_it_has(folder, rig):
     check(0 < told["messages"] < len(drive("cdr")) and len(told["damage"]) == 1, "what is there, and one sentence: %r" % told["damage"])
     check(done.stderr.count("\n") == 1 and done.stderr.startswith("rigcal: "), "one sentence: %r" % done.stderr)
     rigcal("import", cut, "--rig", rig, "--out", folder / "session of cut", exit_code=MORE)
+    cut_database_gives_what_it_has(folder)
     for name, data in (("empty", b""), ("no_bag", b"hello, this is no bag")):
         (folder / name).write_bytes(data)
         check(rigcal("import", folder / name, "--list", exit_code=REFUSED).stderr.count("\n") == 1, "one sentence")

@@ -60,20 +60,21 @@ TEST(Completion, OfOptionsOfTheVerbAndOfAll) {
               ElementsAre("--revision\tA numbered revision (default: the newest)"));
   EXPECT_THAT(WordsAfter({"compare", "--p"}), ElementsAre("--poses")) << "of a group";
   EXPECT_THAT(WordsAfter({"push", "visit/", "--"}),
-              testing::AllOf(Contains("--no-wait"), Contains("--new-robot"), Contains("--json"), Contains("--help")));
+              testing::AllOf(Contains("--no-wait"), Contains("--rig"), Contains("--new-robot"), Contains("--json"), Contains("--help")));
   EXPECT_THAT(WordsAfter({"--ve"}), ElementsAre("--version"));
   EXPECT_THAT(WordsAfter({"show", "--no-w"}), IsEmpty()) << "of another verb";
 }
 
 TEST(Completion, OfFilesAndFoldersIsTheShells) {
-  EXPECT_THAT(Completed({"push", "vis"}), ElementsAre(":folders"));
-  EXPECT_THAT(Completed({"push", "--no-wait", "vis"}), ElementsAre(":folders"));
+  EXPECT_THAT(Completed({"push", "vis"}), ElementsAre(":files"));
+  EXPECT_THAT(Completed({"push", "--no-wait", "vis"}), ElementsAre(":files"));
+  EXPECT_THAT(Completed({"push", "drive.mcap", "--work", ""}), ElementsAre(":folders"));
   EXPECT_THAT(Completed({"push-edges", ""}), ElementsAre(":files"));
   EXPECT_THAT(Completed({"compare", "mapper-01", "--poses", ""}), ElementsAre(":files"));
   EXPECT_THAT(Completed({"compare", "mapper-01", "--poses", "=", "vis"}), ElementsAre(":files")) << "--poses=vis";
   EXPECT_THAT(Completed({"compare", "mapper-01", "--poses", "="}), ElementsAre(":files"));
   EXPECT_THAT(Completed({"report", "mapper-01", "--out", ""}), ElementsAre(":files"));
-  EXPECT_THAT(Completed({"push", "--", "-"}), ElementsAre(":folders"));
+  EXPECT_THAT(Completed({"push", "--", "-"}), ElementsAre(":files"));
 }
 
 TEST(Completion, OfWhatNobodyKnowsIsNothing) {

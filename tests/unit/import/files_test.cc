@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "client/import/files/session_folder.h"
 #include "server/formats/clouds/cloud.h"
 
 namespace rigcal::importing {
@@ -106,6 +108,39 @@ TEST(Files, PosesAreTheShortestNumbers) {
   Se3 T;
   T.p_m = {0.1, -2, 1e-20};
   EXPECT_EQ(PoseColumns(5, T), "5,0.1,-2,1e-20,0,0,0,1\n");
+}
+
+TEST(Files, TellHowMuchLargerThanItsMessageAPictureIs) {
+  EXPECT_EQ(PngBytesRatio("mono8"), 1);
+  EXPECT_EQ(PngBytesRatio("bgr8"), 1);
+  EXPECT_EQ(PngBytesRatio("rgba8"), 0.75);
+  EXPECT_EQ(PngBytesRatio("bayer_rggb8"), 3);
+  EXPECT_EQ(PngBytesRatio("bayer_rggb16"), 3);
+  EXPECT_EQ(PngBytesRatio("yuv422"), 1.5);
+  EXPECT_EQ(PngBytesRatio("unheard_of"), 1);
+}
+
+TEST(Files, AnImportThatDoesNotFitIsRefusedBeforehand) {
+  EXPECT_TRUE(CheckRoomOf("visit", 1000, 1000));
+  const Status refused = CheckRoomOf("visit", 3'000'000'000, 1'000'000'000);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kBusy);
+  EXPECT_NE(refused.error().what.find("visit takes up to 3"), std::string::npos) << refused.error().what;
+}
+
+TEST(Files, OnlyWhatAnotherImportBeganIsRemoved) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "replaced_import";
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(SessionFolder::RemoveOther(folder, "one")) << "there is none";
+  ASSERT_TRUE(SessionFolder::Begin(folder, "one"));
+  ASSERT_TRUE(SessionFolder::RemoveOther(folder, "one"));
+  EXPECT_TRUE(std::filesystem::exists(folder)) << "it is the same import";
+  ASSERT_TRUE(SessionFolder::RemoveOther(folder, "two"));
+  EXPECT_FALSE(std::filesystem::exists(folder));
+  std::filesystem::create_directories(folder / "of a person");
+  ASSERT_TRUE(SessionFolder::RemoveOther(folder, "two"));
+  EXPECT_TRUE(std::filesystem::exists(folder)) << "no import began it";
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

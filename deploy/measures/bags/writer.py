@@ -19,6 +19,8 @@ PARTS = {
 }
 BODIES = {
     "sensor_msgs/Image": ("std_msgs/Header header\nuint32 height # rows\nuint32 width\nstring encoding\nuint8 is_bigendian\nuint32 step\nuint8[] data\n", []),
+    "sensor_msgs/CompressedImage": ("std_msgs/Header header\nstring format\nuint8[] data\n", []),
+    "geometry_msgs/PoseStamped": ("std_msgs/Header header\ngeometry_msgs/Pose pose\n", ["geometry_msgs/" + name for name in ("Pose", "Point", "Quaternion")]),
     "sensor_msgs/PointCloud2": ("std_msgs/Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\nuint32 point_step\n"
                                 "uint32 row_step\nuint8[] data\nbool is_dense\n", ["sensor_msgs/PointField"]),
     "nav_msgs/Odometry": ("std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n",
@@ -82,6 +84,21 @@ def image(form, stamp_ns, width, height, encoding, pixels, step):
     out.number("B", 0)
     out.number("I", step)
     out.block(pixels)
+    return out.done()
+
+
+def compressed(form, stamp_ns, kind, data):
+    out = Writer(form)
+    out.header(stamp_ns, "optical")
+    out.text(kind)
+    out.block(data)
+    return out.done()
+
+
+def pose(form, stamp_ns, p, q_xyzw):
+    out = Writer(form)
+    out.header(stamp_ns, "world")
+    out.numbers("d", [*p, *q_xyzw])
     return out.done()
 
 
