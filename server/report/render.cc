@@ -29,7 +29,7 @@ void FillCaptured(Dictionary& page, const ReportInput& input) {
   });
   if (newest == input.sessions.end()) return page.ShowSection("NO_CAPTURED");
   Dictionary* captured = page.AddSectionDictionary("CAPTURED");
-  captured->SetValue("DAY", TimeText(newest->captured_at));
+  captured->SetValue("DAY", DayText(newest->captured_at));
   if (!newest->operator_name.empty()) ShowValue(*captured, "OPERATOR", "NAME", newest->operator_name);
   if (!newest->rig_model.empty()) ShowValue(*captured, "RIG", "NAME", newest->rig_model);
   if (const std::size_t before = input.sessions.size() - 1; before > 0)

@@ -9,6 +9,7 @@
 <p class="meta">{{#CAPTURED}}Captured {{DAY}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}{{#BEFORE}}, and {{SESSIONS}}{{/BEFORE}}; solved {{/CAPTURED}}{{#NO_CAPTURED}}Solved {{/NO_CAPTURED}}{{TIME}} <a class="screen" href="certificate.html">Certificate to print</a></p>
 </header>
 {{>BANNER}}
+{{>FIGURES}}
 {{#CAUSES_SECTION}}
 {{>CAUSES}}
 {{/CAUSES_SECTION}}
@@ -18,7 +19,6 @@
 {{/NOTE}}
 </ul>
 {{/NOTES}}
-{{>FIGURES}}
 {{#CHANGES}}
 <section class="card changes" aria-labelledby="changes">
 <h2 id="changes">What changed since <a href="../{{PREVIOUS}}/">revision {{PREVIOUS}}</a></h2>
