@@ -163,7 +163,7 @@ TEST(FirstScreen, AComparisonDoesNotSayThatNothingMovedWhereTheMeasurementsDid) 
     return RenderCompare({RobotId("r"), {1, MeasuredOnce("may", 1.0)}, {2, MeasuredOnce("june", x_m)}, 2}).value();
   };
   EXPECT_THAT(page(1.0), HasSubstr("Nothing moved"));
-  EXPECT_THAT(page(1.006), AllOf(Not(HasSubstr("Nothing moved")), HasSubstr("role=\"status\">Measured anew, a"),
+  EXPECT_THAT(page(1.006), AllOf(Not(HasSubstr("Nothing moved")), HasSubstr("<p class=\"what\" dir=\"auto\">Measured anew, a"),
                                  HasSubstr("a mean of old and new measurements"), HasSubstr("card moved off")));
 }
 
