@@ -1,5 +1,7 @@
 #include "server/report/render.h"
 
+#include <algorithm>
+
 #include "report_embedded.h"
 #include "server/report/cameras/camera_section.h"
 #include "server/report/drawings/drawing.h"
@@ -20,6 +22,20 @@
 namespace rigcal::report {
 namespace {
 
+// When, by whom and of which kind of robot: of the newest visit that the revision holds. Of pushed edges, when they came.
+void FillCaptured(Dictionary& page, const ReportInput& input) {
+  const auto newest = std::max_element(input.sessions.begin(), input.sessions.end(), [](const auto& x, const auto& y) {
+    return x.captured_at != y.captured_at ? x.captured_at < y.captured_at : x.id < y.id;
+  });
+  if (newest == input.sessions.end()) return page.ShowSection("NO_CAPTURED");
+  Dictionary* captured = page.AddSectionDictionary("CAPTURED");
+  captured->SetValue("DAY", DayText(newest->captured_at));
+  if (!newest->operator_name.empty()) ShowValue(*captured, "OPERATOR", "NAME", newest->operator_name);
+  if (!newest->rig_model.empty()) ShowValue(*captured, "RIG", "NAME", newest->rig_model);
+  if (const std::size_t before = input.sessions.size() - 1; before > 0)
+    ShowValue(*captured, "BEFORE", "SESSIONS", Count(before, "visit before it", "visits before it"));
+}
+
 void FillTitle(Dictionary& page, const ReportInput& input) {
   const std::string robot = input.revision.robot.str();
   FillHead(page,
@@ -28,6 +44,7 @@ void FillTitle(Dictionary& page, const ReportInput& input) {
   page.SetValue("NUMBER", std::to_string(input.number));
   page.SetValue("TIME", TimeText(input.created_at));
   page.SetValue("REFERENCE", input.revision.reference.str());
+  FillCaptured(page, input);
   AddScript(page, "data.js");
   for (const char* bundle : {"tables.js", "charts.js", "rig.js"}) AddScript(page, AssetPath(bundle));
 }
@@ -48,7 +65,7 @@ Result<std::map<std::string, std::string>> RenderRevision(const ReportInput& inp
   FillBanner(page, input.revision.verdict, ValidityOf(input));
   FillCauses(page, input.revision.causes, edges);
   FillNotes(page, input.revision);
-  FillKeyFigures(page, input.revision, edges);
+  FillKeyFigures(page, input.revision, edges, ValidityOf(input));
   FillChanges(page, input);
   FillAsFound(page, input);
   FillDrawing(page, input.revision, edges);

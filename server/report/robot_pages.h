@@ -51,9 +51,18 @@ struct SolvedRevision {
   std::shared_ptr<const formats::RevisionInput> revision;
   Stamp calibrated_at = {};  // 0: it counts nothing
 };
-// "window.rigcal = {...};": the poses of each sensor over revisions, the oldest first, against the first known one, and
-// how far it moved from each to the next.
-[[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions);
+// What the joint refinement of one session says by itself; poses in its reference, covariances as of GraphSolution.
+struct Visit {
+  SessionId session;
+  Stamp captured_at;
+  SensorId reference;
+  std::vector<SensorPose> poses;
+};
+// "window.rigcal = {...};": the poses of each sensor over revisions ("rows") and over visits ("visits", from two on),
+// each the oldest first, against the first known one, and how far it moved from each to the next. Where an epoch of the
+// sensor or of the reference began in between, "remounted" instead.
+[[nodiscard]] std::string TrendData(const std::vector<SolvedRevision>& revisions, const std::vector<Visit>& visits = {},
+                                    const std::vector<Epoch>& epochs = {});
 
 struct ComparedLenses {
   std::vector<LensChange> changes;                             // of cameras whose intrinsics differ
@@ -81,6 +90,7 @@ struct SessionInput {
   std::vector<RetiredSensor> retired = {};                                // of the sensors that it lists
   std::string lacking = {};  // what its rig model has and it does not list, as a sentence; empty: nothing
   std::vector<BoardRemark> board_remarks = {};
+  std::optional<RobotSummary> robot_now = {};  // what its robot's newest revision says: the session may be part of it
 };
 // Pictures are "evidence/<digest>.<suffix>" below the page.
 [[nodiscard]] Result<std::string> RenderSession(const SessionInput& input);

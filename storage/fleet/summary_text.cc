@@ -57,6 +57,9 @@ std::string SearchTextOf(const RobotSummary& summary) {
   std::string text = summary.robot.str() + " " + WordOf(verdict.level) + " " + verdict.why + " " + verdict.what_to_do;
   if (summary.worst) text += " " + summary.worst->frame_a.str() + " " + summary.worst->frame_b.str();
   for (const std::string& cause : summary.causes) text += " " + cause;
+  text += " " + summary.site;
+  if (summary.found.word != StatusWord::kOk) text += " " + NameOf(summary.found.word) + " " + summary.found.why;
+  if (summary.runs) text += " " + summary.runs->trouble;
   AddDate(summary.validity.calibrated_at, text);
   AddDate(ValidUntil(summary.validity), text);
   AddDate(summary.last_session_at, text);

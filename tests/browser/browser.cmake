@@ -6,6 +6,8 @@ foreach(flow pages cloud)
     ENVIRONMENT "RIGCAL_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1;NODE_PATH=${RIGCAL_NODE_MODULES}")
 endforeach()
 set_tests_properties(browser.pages PROPERTIES COST 40)
-# Needs no browser, only node, which the build needs, too.
-add_test(NAME browser.sigma_scale COMMAND ${RIGCAL_NODE} ${PROJECT_SOURCE_DIR}/tests/browser/sigma_scale_test.cjs)
-set_tests_properties(browser.sigma_scale PROPERTIES LABELS browser TIMEOUT 60)
+# Need no browser, only node, which the build needs too.
+foreach(script sigma_scale trend_text)
+  add_test(NAME browser.${script} COMMAND ${RIGCAL_NODE} ${PROJECT_SOURCE_DIR}/tests/browser/${script}_test.cjs)
+  set_tests_properties(browser.${script} PROPERTIES LABELS browser TIMEOUT 60)
+endforeach()

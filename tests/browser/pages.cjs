@@ -101,6 +101,7 @@ async function overdue(browser) {
     await page.waitForSelector(".banner.overdue");
     assert.ok(await isLate(page));
     assert.ok((await page.title()).startsWith("Overdue: "));
+    assert.deepStrictEqual(await page.$$eval(".banner .word", (all) => all.filter((one) => one.getClientRects().length).map((one) => one.textContent)), ["Overdue"], "one word");
     assert.strictEqual(await page.$eval(".banner", (banner) => getComputedStyle(banner).backgroundColor), await page.evaluate(() => {
       const probe = document.body.appendChild(document.createElement("i"));
       probe.style.color = "var(--warn)";
@@ -126,8 +127,33 @@ async function overdue(browser) {
   await fleet.reload();
   await fleet.waitForSelector("tr.overdue");
   assert.match(await fleet.textContent("tr.overdue td.verdict"), /^overdue \S.* (Pass|Warn)/s, "the first word of its row");
+  assert.ok(!(await fleet.locator("tr.overdue .badge.then").first().isVisible()), "and the only one");
   await picture(fleet, "overdue-fleet");
   await close(fleet);
+}
+
+// Whether it may drive, what to do and three numbers, before one scrolls; robots before lists of work; words for fingers.
+async function firstScreenOfAPhone(browser) {
+  const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+  const seen = (page, selector) => page.$$eval(selector, (all) => all.filter((one) => {
+    const box = one.getBoundingClientRect();
+    return box.height > 0 && box.bottom <= innerHeight;
+  }).length);
+  const fleet = await open(browser, at("/"), phone);
+  assert.ok((await seen(fleet, "#live tbody .drive")) > 0 && (await seen(fleet, "#live tbody .do")) > 0, "a robot, its rule and what to do");
+  const top = (selector) => fleet.$eval(selector, (one) => one.getBoundingClientRect().top);
+  assert.ok((await top("#live")) < (await top("#work")), "robots before lists of work");
+  await picture(fleet, "phone-fleet");
+  await close(fleet);
+  for (const path of ["/robots/rover/", "/robots/broken/", "/robots/rover/revisions/2/", "/robots/broken/revisions/1/"]) {
+    const page = await open(browser, at(path), phone);
+    assert.strictEqual(await seen(page, ".banner .drive, .banner .late"), 1, "the rule: " + path);
+    assert.strictEqual(await seen(page, ".banner .do"), 1, "what to do: " + path);
+    assert.ok((await seen(page, ".figure .value")) >= 3, "three numbers: " + path);
+    await picture(page, "phone" + path.replace(/\W+/g, "-"));
+    if (path.includes("revisions")) assert.ok((await page.textContent(".readout")).startsWith("Touch an edge"), path);
+    await close(page);
+  }
 }
 
 async function errors(browser) {
@@ -469,7 +495,7 @@ async function live(browser) {
 }
 
 withBrowser(async (browser) => {
-  for (const work of [everyPage, fleet, moved, oldReport, overdue, errors, fleetColumns, fleetFits, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, paperOpensWhatFailed, certificate, rig, charts, withoutScript, fromDisk, live]) {
+  for (const work of [everyPage, fleet, moved, oldReport, overdue, firstScreenOfAPhone, errors, fleetColumns, fleetFits, experiments, cameras, edgeTable, edgeTableFits, contents, graph, names, paper, paperOpensWhatFailed, certificate, rig, charts, withoutScript, fromDisk, live]) {
     const start = Date.now();
     await work(browser);
     console.log(`${work.name}: ${((Date.now() - start) / 1000).toFixed(1)} s`);

@@ -1,12 +1,9 @@
 // The charts of one edge: residual of each capture, how far the answer moves without it, sigma of each direction.
 import { colorOf, draw } from "./theme.js";
+import { digits } from "./digits.js";
 
 const AXES = ["x", "y", "z", "rx", "ry", "rz"];
 const MM = 1000, DEG = 180 / Math.PI;
-
-export function digits(value, count = 3) {
-  return Number.isFinite(value) ? String(Number(value.toPrecision(count))) : "not known";
-}
 
 function figure(parent, title, hint, height) {
   const box = document.createElement("figure");

@@ -18,7 +18,8 @@ export function readGraph(graph) {
   line.className = "readout";
   line.setAttribute("role", "status");
   graph.after(line);
-  const rest = links.length ? "Point at an edge, or step through the edges with Tab, to read its numbers." : "";
+  const way = matchMedia("(hover: none)").matches ? "Touch an edge" : "Point at an edge, or step through the edges with Tab,";
+  const rest = links.length ? way + " to read its numbers." : "";
   line.textContent = rest;
   const titleOf = (target) => {
     const shape = target.closest("a") ?? target.closest(".link, .node, .trace");
@@ -26,5 +27,7 @@ export function readGraph(graph) {
   };
   const show = (event) => { line.textContent = titleOf(event.target) || rest; };
   for (const name of ["pointerover", "focusin"]) graph.addEventListener(name, show);
-  for (const name of ["pointerleave", "focusout"]) graph.addEventListener(name, () => { line.textContent = rest; });
+  // A finger that is lifted leaves: its numbers stay to be read.
+  const end = (event) => { if (event.pointerType !== "touch") line.textContent = rest; };
+  for (const name of ["pointerleave", "focusout"]) graph.addEventListener(name, end);
 }

@@ -1,5 +1,6 @@
 // The history of a robot's sensors: a sentence, and charts. When a revision came meanwhile it is drawn anew.
-import { byFarthestStep, drawTrend, heading, historyText } from "./trend.js";
+import { drawTrend, heading } from "./trend.js";
+import { byFarthestStep, historyText } from "./trend_text.js";
 import { erase } from "./theme.js";
 import { whenSeen } from "./when_seen.js";
 
@@ -12,23 +13,23 @@ function tell(section, trends) {
   told.textContent = historyText(trends);
   section.querySelector("h2").after(told);
   const places = new Map([...section.querySelectorAll("[data-trend]")].map((place) => [place.dataset.trend, place]));
-  for (const { sensor, rows } of byFarthestStep(trends)) {
-    const place = places.get(sensor);
+  for (const trend of byFarthestStep(trends)) {
+    const place = places.get(trend.sensor);
     if (!place) continue;
-    place.append(heading(sensor, rows));
+    place.append(heading(trend));
     section.append(place);
   }
 }
 
-let rowsOf = new Map();
+let trendOf = new Map();
 
 function drawPlace(place) {
-  const rows = rowsOf.get(place.dataset.trend);
-  if (rows?.length) drawTrend(place, place.dataset.trend, rows);
+  const trend = trendOf.get(place.dataset.trend);
+  if (trend?.rows.length) drawTrend(place, trend);
 }
 
 function take(section, trends) {
-  rowsOf = new Map(trends.map(({ sensor, rows }) => [sensor, rows]));
+  trendOf = new Map(trends.map((trend) => [trend.sensor, trend]));
   tell(section, trends);
 }
 

@@ -11,6 +11,7 @@
 #include "server/pipeline/boards/remarks.h"
 #include "server/pipeline/edges/unreadable.h"
 #include "server/pipeline/pages/compared_lenses.h"
+#include "server/pipeline/pages/trend_data.h"
 #include "server/pipeline/revisions/whole_revision.h"
 #include "server/pipeline/rig_models/rig_models.h"
 #include "server/pipeline/robots/asked.h"
@@ -33,8 +34,7 @@ namespace {
 
 constexpr const char* kHtmlType = "text/html; charset=utf-8";
 constexpr std::int64_t kListRows = 50;  // of revisions, and of sessions
-constexpr std::int64_t kTrendRevisionsMax = 24;
-constexpr std::size_t kTrendBytesMax = 64u << 20, kTrendSensorsMax = 60;
+constexpr std::size_t kTrendSensorsMax = 60;
 constexpr std::size_t kPictureBytesMax = 64u << 20;
 
 tl::unexpected<Error> NoPage(const std::string& rest) {
@@ -173,23 +173,6 @@ Result<PageText> RobotPage(const AnswerContext& context, const RobotId& robot, c
   return PageText{std::move(body), kHtmlType};
 }
 
-// The newest revisions, as many as stay within bounds.
-Result<PageText> Trend(const AnswerContext& context, const RobotId& robot) {
-  RIGCAL_ASSIGN(const auto revisions, storage::LoadRevisions(context.store, robot, 0, kTrendRevisionsMax));
-  std::vector<report::SolvedRevision> solved;
-  std::size_t bytes = 0;
-  for (const Revision& revision : revisions) {
-    if (bytes >= kTrendBytesMax) break;
-    RIGCAL_ASSIGN(const Revision whole, LoadRevisionOf(context.store, robot, revision.number));
-    RIGCAL_ASSIGN(auto document, formats::ReadRevisionDocument(whole.document));
-    bytes += whole.document.size();
-    solved.push_back({whole.number, std::make_shared<const formats::RevisionInput>(std::move(document)),
-                      whole.calibrated_at.value_or(Stamp{})});
-  }
-  std::reverse(solved.begin(), solved.end());
-  return PageText{report::TrendData(solved), "text/javascript; charset=utf-8"};
-}
-
 // What tells of its cameras: figures and evidence of its edges.
 Result<report::SolvedRevision> WithCameras(const AnswerContext& context, const ParsedRevision& parsed) {
   if (parsed.document->whole) return report::SolvedRevision{parsed.summary.number, parsed.document};
@@ -237,6 +220,7 @@ Result<PageText> SessionPage(const AnswerContext& context, const RobotId& robot,
   RIGCAL_ASSIGN(input.board_remarks, LoadBoardRemarks(context.store, {row.session}));
   RIGCAL_ASSIGN(input.edges, storage::LoadEdges(context.store, row.session));
   RIGCAL_ASSIGN(input.past, WhyPast(context, robot, input.edges));
+  RIGCAL_ASSIGN(input.robot_now, LoadRobotSummary(context.store, robot, context.clock.Now()));
   if (input.row.closed && input.row.pairs_waiting == 0) {
     Unreadable unreadable = FindUnreadable(context.store, input.manifest, input.edges);
     input.unreadable = std::move(unreadable.why);
@@ -285,7 +269,7 @@ Result<PageText> AnswerRobotPage(const AnswerContext& context, const std::string
   }
   RIGCAL_ASSIGN(const RobotId robot, RobotId::Parse(parts[0]));
   if (parts.size() == 2 && parts[1].empty()) return RobotPage(context, robot, query);
-  if (parts.size() == 2 && parts[1] == "trend.js") return Trend(context, robot);
+  if (parts.size() == 2 && parts[1] == "trend.js") return AnswerTrend(context, robot);
   if (parts.size() == 2 && parts[1] == "compare") return ComparePage(context, robot, query);
   if (parts.size() >= 4 && parts[1] == "revisions") return MissingFile(context, robot, parts);
   if (parts.size() < 4 || parts[1] != "sessions") return NoPage(rest);

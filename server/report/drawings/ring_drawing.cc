@@ -77,7 +77,10 @@ void DrawLink(Ring& ring, const ShownEdge& shown, const Curve& curve) {
 
 void DrawTag(Ring& ring, const ShownEdge& shown, const Curve& curve) {
   const bool suspect = ring.contradictions.suspects.contains(shown.edge->id);
-  const std::string text = suspect ? "\xE2\x9A\xA0 contradicts the rest" : TagText(*shown.edge);
+  const bool one_of_several = ring.contradictions.alternatives.contains(shown.edge->id);
+  const std::string text = suspect          ? "\xE2\x9A\xA0 contradicts the rest"
+                           : one_of_several ? "\xE2\x9A\xA0 may be wrong"
+                                            : TagText(*shown.edge);
   const auto place = ring.tags.Take(curve, {7.0 * static_cast<double>(text.size()), 18.0});
   if (!place) return;
   Dictionary* tag = ring.svg.AddSectionDictionary("TAG");
@@ -145,9 +148,9 @@ std::string FillRing(Dictionary& svg, const formats::RevisionInput& revision, co
     if (tagged || ring.contradictions.suspects.contains(shown->edge->id)) DrawTag(ring, *shown, curve);
   const Eigen::Vector2d centre(size.width_px / 2, size.height_px / 2);
   for (const SensorPose& pose : poses) DrawNode(ring, pose, pose.sensor == revision.reference, centre);
-  if (!ring.named) return "Too many sensors for names: point at a dot or a line to read what it is.";
+  if (!ring.named) return "Too many sensors for names: touch or point at a dot or a line to read what it is.";
   return tagged ? "Numbers are the largest \xCF\x83 of an edge's position. Select an edge to read about it."
-                : "Point at an edge to read its \xCF\x83; select it to read about it.";
+                : "Touch or point at an edge to read its \xCF\x83; select it to read about it.";
 }
 
 }  // namespace rigcal::report

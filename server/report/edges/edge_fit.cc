@@ -32,7 +32,7 @@ const char* FitClass(const ShownEdge& shown, bool checked) {
 Contradictions ContradictionsOf(const Suspects& suspects) {
   Contradictions found;
   for (const SuspectEdge& suspect : suspects.edges) {
-    found.suspects.insert(suspect.edge);
+    (suspect.alternatives.empty() ? found.suspects : found.alternatives).insert(suspect.edge);
     found.alternatives.insert(suspect.alternatives.begin(), suspect.alternatives.end());
   }
   for (const TwoPoses& two : suspects.two_poses) {

@@ -12,11 +12,11 @@ namespace rigcal::report {
 // SigmasClass() of its residual; "unchecked" if no other edge checks it; "failed".
 [[nodiscard]] const char* FitClass(const ShownEdge& shown, bool checked);
 
-// Edges that the others speak against, and those that may be wrong instead.
+// Edges that the others speak against, each alone; and those of which one is wrong and nobody can tell which.
 struct Contradictions {
   std::set<EdgeId> suspects, alternatives;
 };
-// An edge that is suspected is no alternative as well.
+// An edge that is suspected alone is no alternative as well.
 [[nodiscard]] Contradictions ContradictionsOf(const Suspects& suspects);
 
 // Stroke widths between the least and the most certain edge, by the logarithm of the largest sigma of the position.

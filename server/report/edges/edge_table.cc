@@ -104,11 +104,12 @@ std::string CapturesText(const Edge& edge) {
   return std::to_string(used) + (used == all ? "" : " of " + std::to_string(all));
 }
 
+// One word: what contradicts others is not called good as well.
 void FillState(Dictionary& row, const ShownEdge& shown, const Contradictions& contradictions) {
-  row.SetValue("LEVEL", StateLevel(*shown.edge));
-  row.SetValue("STATE", StateWord(*shown.edge));
-  if (contradictions.suspects.contains(shown.edge->id)) row.ShowSection("SUSPECT");
-  if (contradictions.alternatives.contains(shown.edge->id)) row.ShowSection("ALTERNATIVE");
+  const bool suspect = contradictions.suspects.contains(shown.edge->id);
+  const bool one_of_several = contradictions.alternatives.contains(shown.edge->id);
+  row.SetValue("LEVEL", suspect ? "fail" : one_of_several ? "warn" : StateLevel(*shown.edge));
+  row.SetValue("STATE", suspect ? "contradicts" : one_of_several ? "doubtful" : StateWord(*shown.edge));
 }
 
 struct Judged {

@@ -42,11 +42,11 @@ std::string LateText(const Verdict& verdict, Validity validity, const std::optio
 void FillOverdue(Dictionary& row, const Verdict& verdict, const Validity& validity,
                  const std::optional<Runs>& runs) {
   const auto valid_until = ValidUntil(validity);
-  if (validity.overdue) return ShowValue(row, "OVERDUE", "TEXT", LateText(verdict, validity, runs));
-  if (!valid_until) return;
-  Dictionary* later = row.AddSectionDictionary("LATER");
-  later->SetValue("UNTIL", ToIso(*valid_until));
-  later->SetValue("TEXT", LateText(verdict, validity, runs));
+  if (!validity.overdue && !valid_until) return;
+  Dictionary* late = row.AddSectionDictionary(validity.overdue ? "OVERDUE" : "LATER");
+  if (!validity.overdue) late->SetValue("UNTIL", ToIso(*valid_until));
+  late->SetValue("TEXT", LateText(verdict, validity, runs));
+  if (IsUsable(verdict)) late->ShowSection("WAS");
 }
 
 void FillDrive(Dictionary& row, const Verdict& verdict, const Validity& validity, const std::optional<Runs>& runs) {

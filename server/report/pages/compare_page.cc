@@ -20,6 +20,8 @@ namespace {
 
 constexpr double kFar_m = 10.0, kMradPerRad = 1000.0;
 constexpr std::size_t kRowsMax = 3000;
+constexpr const char* kAveraged =
+    "The poses below are a mean of old and new measurements: of these alone no sensor seems to have moved.";
 
 // The focal length that the newer revision's edges estimated for a camera.
 std::map<SensorId, double> FocalLengths(const formats::RevisionInput& revision) {
@@ -108,10 +110,11 @@ void FillEdges(Dictionary& page, const std::vector<EdgeMove>& moves) {
 void FillWhatMoved(Dictionary& page, const CompareInput& input, const Changes& changes,
                    const std::vector<EdgeMove>& edges) {
   const MovedText text = WhatMoved(changes, input.now.revision->reference);
-  page.SetValue("MOVED", text.sentence);
   const std::string measured = WhatMeasured(edges);
-  page.SetValue("MOVED_LEVEL", text.moved ? "off" : measured.empty() ? "still" : "warn");
-  if (!measured.empty()) ShowValue(page, "MEASURED", "TEXT", measured);
+  const bool averaged = !text.moved && !measured.empty();
+  page.SetValue("MOVED", averaged ? measured : text.sentence);
+  page.SetValue("MOVED_LEVEL", text.moved || averaged ? "off" : "still");
+  if (!measured.empty()) ShowValue(page, "MEASURED", "TEXT", averaged ? kAveraged : measured);
   if (text.moved || !measured.empty()) page.ShowSection("LOOK");
 }
 

@@ -14,13 +14,6 @@
 
 namespace rigcal::report {
 
-std::string AgeOf(Stamp then, Stamp now) {
-  return then.ns > now.ns ? "in the future: check the clock" : AgeText(now.ns - then.ns) + " ago";
-}
-
-// A revision may hold failed edges only.
-bool IsNever(const RobotSummary& robot) { return robot.revision == 0 || !robot.validity.calibrated_at; }
-
 namespace {
 
 std::string CountOfRobots(const FleetCounts& fleet) {
@@ -51,17 +44,18 @@ void FillWorst(Dictionary& row, const std::optional<WorstEdge>& worst) {
   one->SetValue("LEVEL", SigmasClass(worst->in_sigmas));
 }
 
-const char* LevelOfStatus(StatusWord word) {
+// Red is what must not drive: of a robot that may, the status asks for work.
+const char* LevelOfStatus(StatusWord word, const Verdict& verdict) {
   if (word == StatusWord::kOk) return "pass";
   if (word == StatusWord::kUnknown) return "unknown";
-  return word == StatusWord::kFailed || word == StatusWord::kOutOfTolerance ? "fail" : "warn";
+  return word == StatusWord::kFailed || !IsUsable(verdict) ? "fail" : "warn";
 }
 
 // Of what the verdict says by itself there is the word alone.
 void FillStatus(Dictionary& row, const RobotSummary& robot, Stamp now) {
   const CalibrationStatus status = StatusAt(robot, now);
   row.SetValue("STATUS", NameOf(status.word));
-  row.SetValue("STATUS_LEVEL", LevelOfStatus(status.word));
+  row.SetValue("STATUS_LEVEL", LevelOfStatus(status.word, robot.verdict));
   const bool found = status.word == StatusWord::kDrifted || status.word == StatusWord::kOutOfTolerance;
   if (found) ShowValue(row, "STATUS_WHY", "TEXT", status.why);
   if (found) ShowValue(row, "STATUS_DO", "TEXT", status.next_step);

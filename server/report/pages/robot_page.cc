@@ -6,6 +6,7 @@
 #include "server/report/frame/page.h"
 #include "server/report/frame/retired_section.h"
 #include "server/report/models/model_pages.h"
+#include "server/report/pages/robot_figures.h"
 #include "server/report/robot_pages.h"
 #include "server/report/text/age.h"
 #include "server/report/text/text.h"
@@ -185,6 +186,7 @@ Result<std::string> RenderRobot(const RobotInput& input, Stamp now) {
   Verdict verdict = row.verdict;
   verdict.what_to_do = WhatToDo(row.robot, row.revision, row.state, row.verdict);
   FillBanner(page, verdict, row.validity, row.revision > 0, row.runs);
+  FillRobotFigures(page, row, now);
   if ((row.validity.calculating || !row.validity.given_up.empty()) && row.revision > 0) {
     Dictionary* newer = page.AddSectionDictionary("NEWER");
     newer->SetValue("TEXT", row.validity.given_up.empty() ? kCalculatingText : row.validity.given_up);

@@ -41,11 +41,11 @@ void FillEdge(Dictionary& row, const Edge& edge, const std::map<EdgeId, Diagnosi
   row.SetValue("METHOD", MethodText(edge));
   if (const auto why = past.find(edge.id); why != past.end()) return FillPast(row, why->second);
   FillRetire(row, RetireCommand(edge.id));
-  row.SetValue("LEVEL", good ? "pass" : "fail");
-  row.SetValue("STATE", good ? "good" : "failed");
+  row.SetValue("LEVEL", !good ? "fail" : edge.diagnoses.empty() ? "pass" : "warn");
+  row.SetValue("STATE", !good ? "failed" : edge.diagnoses.empty() ? "good" : "good, but");
   if (edge.diagnoses.empty()) return;
   row.SetValue("WHY", edge.diagnoses.front().what);
-  if (!good && !edge.diagnoses.front().cure.empty()) ShowValue(row, "CURE", "TEXT", edge.diagnoses.front().cure);
+  if (!edge.diagnoses.front().cure.empty()) ShowValue(row, "CURE", "TEXT", edge.diagnoses.front().cure);
 }
 
 void FillEdges(Dictionary& page, const SessionInput& input) {
@@ -78,6 +78,22 @@ std::string UnreadableText(const SessionInput& input) {
   for (const SensorId& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.str();
   return (input.all_looked_at ? " " : " At least ") + Count(input.unreadable.size(), "picture", "pictures") + " of " +
          names + " cannot be read.";
+}
+
+// A visit whose pairs are all good may be what its robot fails by. Whether this is so of the newest revision, or whether
+// the visit counts in it at all, is for the robot's page to say: here is its rule and its cause.
+void FillRobotNow(Dictionary& page, const std::optional<RobotSummary>& robot) {
+  if (!robot || robot->revision == 0) return;
+  const DriveRule drive = DriveRuleOf(robot->verdict, robot->validity, robot->runs);
+  Dictionary* now = page.AddSectionDictionary("ROBOT_NOW");
+  now->SetValue("LEVEL", NameOf(drive.level));
+  now->SetValue("RULE", drive.rule + ".");
+  now->SetValue("NUMBER", std::to_string(robot->revision));
+  if (drive.level != VerdictLevel::kPass) ShowValue(*now, "WHY", "TEXT", robot->verdict.why);
+}
+
+bool IsRobotWell(const std::optional<RobotSummary>& robot) {
+  return !robot || DriveRuleOf(robot->verdict, robot->validity, robot->runs).level == VerdictLevel::kPass;
 }
 
 struct Outcome {
@@ -137,7 +153,8 @@ Outcome OutcomeOf(const SessionInput& input) {
 
 void FillOutcome(Dictionary& page, const SessionInput& input) {
   const Outcome outcome = OutcomeOf(input);
-  page.SetValue("OUTCOME_LEVEL", outcome.level);
+  // Green is for the whole of it.
+  page.SetValue("OUTCOME_LEVEL", outcome.level == "still" && !IsRobotWell(input.robot_now) ? "under-way" : outcome.level);
   page.SetValue("OUTCOME", outcome.sentence);
   if (!outcome.cure.empty()) ShowValue(page, "DO", "WHAT_TO_DO", outcome.cure);
   const SessionRow& row = input.row;
@@ -183,6 +200,7 @@ Result<std::string> RenderSession(const SessionInput& input) {
   page.SetValue("ID", input.row.id.str());
   FillFacts(page, input);
   FillOutcome(page, input);
+  FillRobotNow(page, input.robot_now);
   FillGone(page, input.robot, input.retired);
   if (!input.lacking.empty()) ShowValue(page, "LACKING", "TEXT", input.lacking);
   FillPartsOfSensors(page, input.manifest.header);

@@ -76,8 +76,10 @@ std::string CapturesText(const std::vector<std::string>& names) {
 // may be wrong.
 void FillHeldBack(Dictionary& section, const FusedSessions& fused) {
   std::map<std::pair<SensorId, SensorId>, std::vector<std::string>> captures;
-  for (const FusedSessions::HeldBack& look : fused.held_back)
-    captures[{look.sensor, look.against}].push_back(look.capture.str());
+  for (const FusedSessions::HeldBack& look : fused.held_back) {
+    std::vector<std::string>& names = captures[{look.sensor, look.against}];  // of one name once
+    if (std::find(names.begin(), names.end(), look.capture.str()) == names.end()) names.push_back(look.capture.str());
+  }
   for (const auto& [who, names] : captures) {
     const auto& [sensor, against] = who;
     const std::string contradicts = names.size() == 1 ? " contradicts " : " contradict ";

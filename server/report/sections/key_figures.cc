@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "server/model/edges/past.h"
+#include "server/report/frame/figure.h"
+#include "server/report/text/age.h"
 #include "server/report/text/edge_state.h"
 #include "server/report/text/sigmas.h"
 #include "server/report/text/text.h"
@@ -11,20 +13,7 @@
 namespace rigcal::report {
 namespace {
 
-struct Figure {
-  std::string name, value, tone;
-  std::vector<std::string> details;
-};
-
 const char* kArrow = " \xE2\x86\x92 ";
-
-void Add(Dictionary& page, const Figure& figure) {
-  Dictionary* card = page.AddSectionDictionary("FIGURE");
-  card->SetValue("NAME", figure.name);
-  card->SetValue("VALUE", figure.value);
-  card->SetValue("TONE", figure.tone);
-  for (const std::string& detail : figure.details) ShowValue(*card, "DETAIL", "TEXT", detail);
-}
 
 std::size_t CountIf(const std::vector<ShownEdge>& edges, bool (*is)(const Edge&)) {
   return static_cast<std::size_t>(
@@ -66,6 +55,12 @@ Figure CostFigure(const GraphSolution& solution) {
 }
 
 std::string PairText(const Edge& edge) { return edge.frame_a.str() + kArrow + edge.frame_b.str(); }
+
+// How long it may be relied on is for the verdict to say: this is when it was measured, beside the limit.
+Figure MeasuredFigure(const Validity& validity) {
+  if (!validity.calibrated_at) return {"Measured", "not known", "warn", {"nothing ties all sensors together"}};
+  return {"Measured", DayText(*validity.calibrated_at), "", {AgeLimitText(validity)}};
+}
 
 // The first in the page's order: a failed one, else the worst fit.
 Figure WorstEdgeFigure(const std::vector<ShownEdge>& edges, int dof) {
@@ -147,11 +142,14 @@ std::vector<Diagnosis> NotInVerdict(const formats::RevisionInput& revision) {
 
 }  // namespace
 
-void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges) {
-  Add(page, WorstSensorFigure(revision));
-  Add(page, WorstEdgeFigure(edges, revision.solution.dof));
-  Add(page, GlobalErrorFigure(revision.solution));
-  Add(page, CostFigure(revision.solution));
+void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges,
+                    const Validity& validity) {
+  Dictionary& figures = AddFigures(page);
+  AddFigure(figures, MeasuredFigure(validity));
+  AddFigure(figures, WorstSensorFigure(revision));
+  AddFigure(figures, WorstEdgeFigure(edges, revision.solution.dof));
+  AddFigure(figures, GlobalErrorFigure(revision.solution));
+  AddFigure(figures, CostFigure(revision.solution));
 }
 
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision) {

@@ -1,4 +1,4 @@
-// The cards below the verdict: E_global, chi-square, worst edge, worst sensor; and the notes of the solution.
+// The cards below the verdict: when measured, worst sensor, worst edge, E_global, chi-square; and the notes of the solution.
 #pragma once
 
 #include "server/report/edges/edge_order.h"
@@ -6,8 +6,9 @@
 
 namespace rigcal::report {
 
-// The figures on top: mean squared disagreement, cost, and the worst edge and sensor.
-void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges);
+// The figures on top, those that a technician needs first: a phone shows three before one scrolls.
+void FillKeyFigures(Dictionary& page, const formats::RevisionInput& revision, const std::vector<ShownEdge>& edges,
+                    const Validity& validity);
 // What the solution tells beside the verdict; beyond a limit only how many more there are.
 void FillNotes(Dictionary& page, const formats::RevisionInput& revision);
 

@@ -2,11 +2,11 @@
 <section class="banner {{LEVEL}}{{#OVERDUE}} overdue{{/OVERDUE}}" aria-label="Verdict">
 <svg class="icon" viewBox="0 0 24 24" aria-hidden="true"><path class="verdict" d="{{ICON}}"/><path class="late" d="M12 3.5L22 20.5H2ZM12 10v4.5M12 17.4v.1"/></svg>
 <div>
-{{#OVERDUE}}<p class="late">{{TEXT}}</p>{{/OVERDUE}}{{#LATER}}<template data-from="{{UNTIL}}"><p class="late">{{TEXT}}</p></template>{{/LATER}}
+{{#OVERDUE}}<p class="late">{{TEXT}}</p>{{#WAS}}<p class="word">Overdue</p>{{/WAS}}{{/OVERDUE}}{{#LATER}}<template data-from="{{UNTIL}}"><p class="late">{{TEXT}}</p>{{#WAS}}<p class="word">Overdue</p>{{/WAS}}</template>{{/LATER}}
 {{#DRIVE}}<p class="drive{{#ENDS}} until{{/ENDS}}" dir="auto">{{TEXT:x-typed}}</p>{{/DRIVE}}
-<p class="word">{{WORD}}</p>
+<p class="word then">{{WORD}}</p>
 <p class="why" dir="auto">{{WHY:x-typed}}</p>
-{{#DO}}<p class="do" dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
+{{#DO}}<p class="do" dir="auto"><strong class="now">After that:</strong><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}
 {{#KEEP}}<p class="keep">{{TEXT}}</p>{{/KEEP}}
 </div>
 </section>

@@ -14,7 +14,7 @@
 <table class="list">
 <thead><tr><th scope="col">Serial</th><th scope="col">Pattern</th><th scope="col">Measured square</th><th scope="col">Flatness</th><th scope="col">Last check</th><th scope="col">Next check</th><th scope="col">Used in</th></tr></thead>
 <tbody>
-{{#BOARD}}<tr><th scope="row"><bdi>{{SERIAL}}</bdi></th><td class="text">{{PATTERN}}</td><td class="text">{{SIZE}}{{#ASSUMED}} <span class="soft">sigma assumed</span>{{/ASSUMED}}</td><td class="text">{{FLATNESS}}</td><td class="text">{{CHECKED}} <span class="soft">by <bdi>{{WHO}}</bdi></span></td><td class="text">{{#NEXT}}{{DAY}}{{#DUE}} <span class="badge warn">due</span> <code class="typed">{{COMMAND}}</code>{{/DUE}}{{/NEXT}}{{#NO_NEXT}}<span class="soft">none was set</span>{{/NO_NEXT}}</td><td class="text">{{SESSIONS}}</td></tr>
+{{#BOARD}}<tr><th scope="row"><bdi>{{SERIAL}}</bdi></th><td class="text">{{PATTERN}}</td><td class="text">{{SIZE}}{{#ASSUMED}}<span class="soft">, assumed</span>{{/ASSUMED}}</td><td class="text">{{FLATNESS}}</td><td class="text">{{CHECKED}} <span class="soft">by <bdi>{{WHO}}</bdi></span></td><td class="text">{{#NEXT}}{{DAY}}{{#DUE}} <span class="badge warn">due</span> <code class="typed">{{COMMAND}}</code>{{/DUE}}{{/NEXT}}{{#NO_NEXT}}<span class="soft">none was set</span>{{/NO_NEXT}}</td><td class="text">{{SESSIONS}}</td></tr>
 {{/BOARD}}
 </tbody>
 </table>

@@ -6,9 +6,10 @@
 <nav class="crumbs" aria-label="Where you are"><a href="../../../../">Fleet</a> / <a href="../../">{{ROBOT}}</a> / <span>revision {{NUMBER}}</span></nav>
 <header>
 <h1>{{ROBOT}} <span class="soft">revision {{NUMBER}}</span></h1>
-<p class="meta">Solved {{TIME}} <a class="screen" href="certificate.html">Certificate to print</a></p>
+<p class="meta">{{#CAPTURED}}Captured {{DAY}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}{{#RIG}}, rig <bdi>{{NAME}}</bdi>{{/RIG}}{{#BEFORE}}, and {{SESSIONS}}{{/BEFORE}}; solved {{/CAPTURED}}{{#NO_CAPTURED}}Solved {{/NO_CAPTURED}}{{TIME}} <a class="screen" href="certificate.html">Certificate to print</a></p>
 </header>
 {{>BANNER}}
+{{>FIGURES}}
 {{#CAUSES_SECTION}}
 {{>CAUSES}}
 {{/CAUSES_SECTION}}
@@ -18,15 +19,6 @@
 {{/NOTE}}
 </ul>
 {{/NOTES}}
-<section class="figures" aria-label="Key figures">
-{{#FIGURE}}
-<div class="card figure {{TONE}}">
-<h2>{{NAME}}</h2>
-<p class="value">{{VALUE}}</p>
-{{#DETAIL}}<p class="hint">{{TEXT}}</p>{{/DETAIL}}
-</div>
-{{/FIGURE}}
-</section>
 {{#CHANGES}}
 <section class="card changes" aria-labelledby="changes">
 <h2 id="changes">What changed since <a href="../{{PREVIOUS}}/">revision {{PREVIOUS}}</a></h2>
@@ -123,7 +115,7 @@
 <tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{COUNT}}</a>{{/LINK}}{{#PLAIN}}{{COUNT}}{{/PLAIN}}</th><td class="text"><span class="badge fail">failed</span></td><td class="text" colspan="8" data-v=""><span dir="auto">{{WHY:x-typed}}</span><details class="words"><summary>Which pairs</summary>{{>PAIRS}}</details></td></tr>
 {{/EDGE_GROUP}}
 {{#EDGE}}
-<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#EARLIER}}<a href="../{{REVISION}}/#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a> <span class="soft">rev. {{REVISION}}</span>{{/EARLIER}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}{{#RETIRE}}<details class="words"><summary>If it is wrong</summary><code class="typed">{{COMMAND}}</code></details>{{/RETIRE}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span>{{#SUSPECT}} <span class="badge fail">contradicts</span>{{/SUSPECT}}{{#ALTERNATIVE}} <span class="badge warn">doubtful</span>{{/ALTERNATIVE}}</td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td><span class="badge {{CLASS}}">{{E_SIGMA}}</span></td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}{{#CURE}} <span class="cure">{{TEXT:x-typed}}</span>{{/CURE}}</td>{{/FAILED}}</tr>
+<tr><th scope="row">{{#LINK}}<a href="#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a>{{/LINK}}{{#EARLIER}}<a href="../{{REVISION}}/#{{ANCHOR}}">{{FROM}} &rarr; {{TO}}</a> <span class="soft">rev. {{REVISION}}</span>{{/EARLIER}}{{#PLAIN}}{{FROM}} &rarr; {{TO}}{{/PLAIN}}{{#RETIRE}}<details class="words"><summary>If it is wrong</summary><code class="typed">{{COMMAND}}</code></details>{{/RETIRE}}</th><td class="text"><span class="badge {{LEVEL}}">{{STATE}}</span></td><td class="text"><bdi>{{METHOD}}</bdi></td><td data-v="{{CAPTURES_KEY}}">{{CAPTURES}}</td>{{#GOOD}}{{#FIT}}<td data-v="{{E_MM_KEY}}">{{E_MM}}<br>{{E_DEG}}</td><td><span class="badge {{CLASS}}">{{E_SIGMA}}</span></td>{{/FIT}}{{#NO_FIT}}<td data-v="" class="soft">{{WHY}}</td><td data-v=""></td>{{/NO_FIT}}{{#TEST}}<td data-v="{{T2}}"><span{{#BEYOND}} class="beyond"{{/BEYOND}}>{{T2}} ({{LIMIT}})</span></td>{{/TEST}}{{#NO_TEST}}<td data-v="" class="soft">no test</td>{{/NO_TEST}}<td class="sigma" data-v="{{S_MM_KEY}}">{{S_MM}}<br>{{S_DEG}}{{#SOURCE}}<br>{{TEXT}}{{/SOURCE}}</td>{{#WITHOUT}}<td data-v="{{SIGMAS}}">{{MM}} / {{DEG}} / {{SIGMAS}}<br><span class="soft">{{SENSOR}}</span></td>{{/WITHOUT}}{{#NO_WITHOUT}}<td data-v="" class="soft">{{WHY}}</td>{{/NO_WITHOUT}}{{#INFLUENCE}}<td data-v="{{MM}}">{{MM}}<br><span class="soft">{{CAPTURE}}</span></td>{{/INFLUENCE}}{{#NO_INFLUENCE}}<td data-v=""></td>{{/NO_INFLUENCE}}{{/GOOD}}{{#FAILED}}<td class="text" colspan="6" data-v="" dir="auto">{{WHY}}{{#CURE}} <span class="cure">{{TEXT:x-typed}}</span>{{/CURE}}</td>{{/FAILED}}</tr>
 {{/EDGE}}
 </tbody>
 </table>

@@ -9,6 +9,7 @@
 <p class="meta">{{SUMMARY}}{{#MODEL}}, rig model <a href="../../models/{{PATH}}/"><bdi>{{NAME}}</bdi></a>{{/MODEL}}</p>
 </header>
 {{>BANNER}}
+{{>FIGURES}}
 {{#NEWER}}<p class="working" role="status">{{TEXT:x-typed}} This page still tells revision {{NUMBER}}.</p>{{/NEWER}}
 {{#APPROVAL}}<p class="working" dir="auto">{{TEXT:x-typed}}</p>{{/APPROVAL}}
 {{#RUNS}}<p class="working" dir="auto">{{TEXT}}</p>{{/RUNS}}

@@ -8,6 +8,7 @@
 <p class="meta">Captured {{TIME}}{{#OPERATOR}} by <bdi>{{NAME}}</bdi>{{/OPERATOR}}, {{FILES}}{{#CONDITION}}; <bdi>{{NAME}}</bdi>: <bdi>{{VALUE}}</bdi>{{/CONDITION}}</p>
 </header>
 <div id="live" data-fresh{{#LIVE}} data-live="../../../../api/v1/live?robot={{ROBOT}}"{{/LIVE}}>
+{{#ROBOT_NOW}}<p class="working" dir="auto"><a href="../../">{{ROBOT}}</a> now: <span class="badge {{LEVEL}}">{{RULE:x-typed}}</span>{{#WHY}} {{TEXT:x-typed}}{{/WHY}} <a href="../../revisions/{{NUMBER}}/">Report of revision {{NUMBER}}</a></p>{{/ROBOT_NOW}}
 <section class="card moved {{OUTCOME_LEVEL}}" aria-label="Outcome">
 <p class="what" role="status">{{OUTCOME}}{{#PROGRESS}} <progress value="{{DONE}}" max="{{ALL}}" aria-label="Progress"></progress>{{/PROGRESS}}</p>
 {{#DO}}<p dir="auto"><strong>What to do:</strong> {{WHAT_TO_DO:x-typed}}</p>{{/DO}}

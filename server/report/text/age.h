@@ -1,4 +1,4 @@
-// How long ago, in words.
+// How long ago, and how long it may be, in words.
 #pragma once
 
 #include <string>
@@ -11,5 +11,7 @@ namespace rigcal::report {
 [[nodiscard]] std::string AgeOf(Stamp then, Stamp now);
 // Not calibrated yet: no revision, or one of failed edges only.
 [[nodiscard]] bool IsNever(const RobotSummary& robot);
+// "limit 90 days: 21 Feb 2027"; the day is left out where nothing is calibrated.
+[[nodiscard]] std::string AgeLimitText(const Validity& validity);
 
 }  // namespace rigcal::report

@@ -58,7 +58,7 @@ TEST(ReportCauses, StandBelowTheBannerEachWithACommandAndItsEdges) {
   const ReportInput input = WithPanel();
   const std::string page = PageOf(input), list = Part(page, "id=\"causes\"", "</section>");
   EXPECT_LT(page.find("aria-label=\"Verdict\""), page.find("id=\"causes\""));
-  EXPECT_LT(page.find("id=\"causes\""), page.find("aria-label=\"Key figures\""));
+  EXPECT_LT(page.find("aria-label=\"Key figures\""), page.find("id=\"causes\""));  // the verdict has named the worst
   EXPECT_THAT(list, HasSubstr("The squares of board panel are probably 92.70 mm"));
   EXPECT_THAT(list, HasSubstr("Measure one with a caliper and correct session.yaml. Then:"));
   EXPECT_THAT(list, HasSubstr("<pre class=\"command\"><code>rigcal push FOLDER</code></pre>"));

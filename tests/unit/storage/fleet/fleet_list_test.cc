@@ -78,6 +78,18 @@ TEST_F(FleetListTest, SearchesFiltersSortsAndTurnsPages) {
   EXPECT_EQ(Page({"", "", "robot", false, 2}).rows.front().robot.str(), "more-1097");
 }
 
+// Whatever a row shows is found.
+TEST_F(FleetListTest, SearchesSiteStatusAndWhatARobotRuns) {
+  RobotSummary here = Robot("a", VerdictLevel::kWarn), there = Robot("b", VerdictLevel::kPass);
+  here.site = "Hall 3";
+  here.found = {StatusWord::kOutOfTolerance, "The pose of mast is known to 12 mm only.", ""};
+  there.runs = Runs{7, "it runs a revision of before", ""};
+  Append({here, there});
+  EXPECT_THAT(Names({"hall 3"}), ElementsAre("a"));
+  EXPECT_THAT(Names({"out-of-tolerance mast"}), ElementsAre("a"));
+  EXPECT_THAT(Names({"of before"}), ElementsAre("b"));
+}
+
 TEST_F(FleetListTest, NamesAreOrderedAsPeopleCount) {
   std::vector<RobotSummary> robots;
   for (const char* name : {"r10", "r9", "r010", "r9b", "r", "r9a10", "r9a9"})

@@ -1,0 +1,19 @@
+#include "server/report/frame/figure.h"
+
+namespace rigcal::report {
+
+Dictionary& AddFigures(Dictionary& page) {
+  Dictionary* figures = page.AddIncludeDictionary("FIGURES");
+  figures->SetFilename("figures.tpl");
+  return *figures;
+}
+
+void AddFigure(Dictionary& figures, const Figure& figure) {
+  Dictionary* card = figures.AddSectionDictionary("FIGURE");
+  card->SetValue("NAME", figure.name);
+  card->SetValue("VALUE", figure.value);
+  card->SetValue("TONE", figure.tone);
+  for (const std::string& detail : figure.details) ShowValue(*card, "DETAIL", "TEXT", detail);
+}
+
+}  // namespace rigcal::report
