@@ -85,9 +85,9 @@ TEST_F(FleetListTest, SearchesSiteStatusAndWhatARobotRuns) {
   here.found = {StatusWord::kOutOfTolerance, "The pose of mast is known to 12 mm only.", ""};
   there.runs = Runs{7, "it runs a revision of before", ""};
   Append({here, there});
-  EXPECT_THAT(Names({"hall 3"}), ElementsAre("a"));
-  EXPECT_THAT(Names({"out-of-tolerance mast"}), ElementsAre("a"));
-  EXPECT_THAT(Names({"of before"}), ElementsAre("b"));
+  EXPECT_THAT(Names({"hall 3", "", ""}), ElementsAre("a"));
+  EXPECT_THAT(Names({"out-of-tolerance mast", "", ""}), ElementsAre("a"));
+  EXPECT_THAT(Names({"of before", "", ""}), ElementsAre("b"));
 }
 
 TEST_F(FleetListTest, NamesAreOrderedAsPeopleCount) {
