@@ -6,7 +6,7 @@ import struct
 PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360f8cf500f00038301"
                       "80b5d7a5fc0000000049454e44ae426082")
 SECTION = """<section class="card"><h2>Coloured clouds</h2>
-<p class="hint"><a href="cloud/top/cloud.ply">The cloud as PLY</a></p>
+<p class="hint"><a href="cloud/top/cloud.ply">The cloud as PLY</a></p><p class="hint"><a href="cloud/base/cloud.ply">The cloud as PLY</a></p>
 <figure><a href="overlay/front.jpg"><img src="overlay/front.jpg" alt="top in the picture of front"></a>
 <figcaption>front (<a href="overlay/front_picture.jpg">picture alone</a>)</figcaption></figure></section>"""
 
@@ -20,11 +20,12 @@ def records(count, seed):
 
 
 def write_cloud(folder, count):
-    (folder / "cloud" / "top").mkdir(parents=True)
     (folder / "overlay").mkdir()
-    header = b"RCLD" + struct.pack("<II4f", 1, count, 1.0, 2.0, 3.0, 0.001)
-    (folder / "cloud" / "top" / "points.bin").write_bytes(header + records(count, 5))
-    (folder / "cloud" / "top" / "cloud.ply").write_bytes(b"ply\n")
+    for lidar, points in (("top", count), ("base", 1000)):
+        place = folder / "cloud" / lidar
+        place.mkdir(parents=True)
+        (place / "points.bin").write_bytes(b"RCLD" + struct.pack("<II4f", 1, points, 1.0, 2.0, 3.0, 0.001) + records(points, 5))
+        (place / "cloud.ply").write_bytes(b"ply\n")
     for name in ("front.jpg", "front_picture.jpg"):
         (folder / "overlay" / name).write_bytes(PIXEL)
     page = folder / "index.html"

@@ -7,7 +7,7 @@ const css = (rgb) => `rgb(${rgb.map((part) => Math.round(255 * Math.min(1, Math.
 export const RAMP_GLSL = "vec3[4](" + NEAR_TO_FAR.map((rgb) => `vec3(${rgb.map((part) => part.toFixed(2)).join(", ")})`).join(", ") + ")";
 
 // Turns of the golden angle: neighbours in the list look different.
-function wheel(index) {
+export function wheel(index) {
   return [0, 0.33, 0.67].map((phase) => 0.55 + 0.45 * Math.cos(2 * Math.PI * (index * 0.381966 + phase)));
 }
 
@@ -26,6 +26,7 @@ function scale(colors, from, to) {
 const MAKE = {
   color: () => ["Colours of the cameras' pictures.", swatch([0, 0.78, 0.25], "seen by no camera")],
   camera: ({ cameras }) => [...cameras.map((name, index) => swatch(wheel(index), name)), swatch([0.45, 0.45, 0.45], "none")],
+  lidar: ({ lidars }) => lidars.map((name, index) => swatch(wheel(index), name)),
   depth: ({ far }) => [scale(NEAR_TO_FAR, "0 m", `${number(far, 2)} m from the lidar`)],
   intensity: () => [scale([[0.1, 0.1, 0.1], [1, 1, 1]], "weak", "strong echo")],
   uncovered: () => [swatch([0.42, 0.42, 0.42], "seen by a camera"), swatch([1, 0.35, 0.2], "seen by none")],

@@ -38,6 +38,8 @@ std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const AxisL
 }
 
 std::string MedianText(double value, bool turns) {
+  constexpr double kLeftOver = 1e-12;  // of arithmetic, where zero is the median itself
+  if (std::abs(value) < kLeftOver) value = 0.0;
   return turns ? Significant(value * kDegPerRad, 3) + " deg" : Significant(value * kMmPerMetre, 3) + " mm";
 }
 

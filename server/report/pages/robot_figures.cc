@@ -18,16 +18,16 @@ Figure AgeFigure(const RobotSummary& robot, Stamp now) {
 }
 
 // A sensor that was found moved is known again.
-bool IsWithin(const SensorStatus& sensor) {
+bool IsWithinLimits(const SensorStatus& sensor) {
   return sensor.status.word == StatusWord::kOk || sensor.status.word == StatusWord::kDrifted;
 }
 
 Figure SensorsFigure(const std::vector<SensorStatus>& sensors) {
   const char* name = "Sensors known within limits";
   if (sensors.empty()) return {name, "not judged", "", {}};
-  const auto within = std::count_if(sensors.begin(), sensors.end(), IsWithin);
+  const auto within = std::count_if(sensors.begin(), sensors.end(), IsWithinLimits);
   Figure figure{name, std::to_string(within) + " of " + std::to_string(sensors.size()), "", {}};
-  const auto first = std::find_if_not(sensors.begin(), sensors.end(), IsWithin);
+  const auto first = std::find_if_not(sensors.begin(), sensors.end(), IsWithinLimits);
   if (first == sensors.end()) return figure;
   figure.tone = "warn";
   const auto others = static_cast<std::ptrdiff_t>(sensors.size()) - within - 1;

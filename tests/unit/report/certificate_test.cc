@@ -85,7 +85,7 @@ TEST(Certificate, BeginsWithTheDriveRule) {
   const std::string page = CertificateOf(input);
   EXPECT_THAT(page, HasSubstr("OK to drive; repeat the session for front_left and rear"));
   EXPECT_THAT(page, HasSubstr(" by 9 Feb 2026.</p>"));
-  EXPECT_LT(page.find("OK to drive"), page.find("class=\"word\""));
+  EXPECT_LT(page.find("OK to drive"), page.find("class=\"word then\""));
 }
 
 TEST(Certificate, EachSensorHasItsOwnLimit) {

@@ -160,6 +160,9 @@ TEST(HostileTextElsewhere, SessionPage) {
   input.edges[0].evidence[0] = {kHostile, sensor.id, CaptureId(kHostile), Sha256Of("x"), "jpg"};
   input.row.retired = Word{Stamp{1}, kHostile, kHostile};
   input.retired = {{sensor.id, *input.row.retired}};
+  input.robot_now = RobotSummary{};
+  input.robot_now->revision = 1;
+  input.robot_now->verdict = {VerdictLevel::kUnknown, kHostile, kHostile, kHostile};
   ExpectHarmless(RenderSession(input).value(), "session");
 }
 

@@ -7,6 +7,7 @@
 namespace rigcal::report {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -62,6 +63,13 @@ TEST(ModelPage, TheScaleHoldsEveryRobot) {
   const std::string page = RenderRigModel(Seven(), std::nullopt).value();
   EXPECT_THAT(page, HasSubstr("M326.0 "));  // r6, at the right end
   EXPECT_THAT(page, HasSubstr("M176.0 "));  // r0, where the drawing has it
+}
+
+// Where zero is the median itself, its own place is what arithmetic leaves over.
+TEST(ModelPage, ArithmeticIsNoPlace) {
+  Population seven = Seven();
+  seven.sensors[0].axes[0].median = 9.87e-18;
+  EXPECT_THAT(RenderRigModel(seven, std::nullopt).value(), AllOf(Not(HasSubstr("e-15")), HasSubstr(">0 mm<")));
 }
 
 TEST(ModelPage, FewRobotsAreTold) {

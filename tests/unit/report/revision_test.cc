@@ -48,7 +48,7 @@ TEST(ReportRevision, TheDriveRuleComesFirstAndLimitsStandBesideSigmas) {
   input.calibrated_at = *ParseIso("2026-11-22T08:00:00Z");
   input.revision.verdict = {VerdictLevel::kPass, "All is well.", "Nothing."};
   std::string banner = Between(PageOf(input), "<section class=\"banner pass\"", "</section>");
-  EXPECT_LT(banner.find("OK to drive until 20 Feb 2027."), banner.find("class=\"word\""));
+  EXPECT_LT(banner.find("OK to drive until 20 Feb 2027."), banner.find("class=\"word then\""));
   input.max_age_ns = 10LL * 86'400'000'000'000;
   EXPECT_THAT(PageOf(input), HasSubstr("OK to drive until 2 Dec 2026."));
   EXPECT_THAT(RowOf(PageOf(input), "front_right"), HasSubstr("<td class=\"text limit\"></td>")) << "nobody kept it";
