@@ -13,8 +13,6 @@ constexpr std::size_t kModelsListedMax = 1000;
 constexpr std::size_t kOutliersListedMax = 100, kLeftOutListedMax = 50;
 constexpr std::array<const char*, 6> kRowNames = {"x", "y", "z", "rx", "ry", "rz"};
 
-std::string ShownNumber(double value, bool turns) { return Significant(value * (turns ? kDegPerRad : kMmPerMetre), 3); }
-
 void FillAxisRows(Dictionary& card, const SensorPopulation& sensor) {
   for (std::size_t axis = 0; axis < sensor.axes.size(); ++axis) {
     const bool turns = axis >= 3;

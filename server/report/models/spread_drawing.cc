@@ -37,12 +37,6 @@ std::string DotsOf(const SensorPopulation& sensor, std::size_t axis, const AxisL
   return path;
 }
 
-std::string MedianText(double value, bool turns) {
-  constexpr double kLeftOver = 1e-12;  // of arithmetic, where zero is the median itself
-  if (std::abs(value) < kLeftOver) value = 0.0;
-  return turns ? Significant(value * kDegPerRad, 3) + " deg" : Significant(value * kMmPerMetre, 3) + " mm";
-}
-
 void FillLine(Dictionary& svg, const SensorPopulation& sensor, std::size_t axis, const std::set<RobotId>& outlying) {
   const bool turns = axis >= 3;
   const AxisLine line{kLineTop_px + kLineHeight_px * (static_cast<double>(axis) + 0.5), ReachOf(sensor, turns)};
@@ -61,7 +55,7 @@ void FillLine(Dictionary& svg, const SensorPopulation& sensor, std::size_t axis,
   row->SetValue("MEDIAN", line.X(spread.median));
   row->SetValue("DOTS", DotsOf(sensor, axis, line, outlying, false));
   row->SetValue("TEXT_X", Fixed(kLineLeft_px + kPlot_px + 8, 0));
-  row->SetValue("TEXT", MedianText(spread.median, turns));
+  row->SetValue("TEXT", ShownNumber(spread.median, turns) + (turns ? " deg" : " mm"));
   if (!outlying.empty()) ShowValue(*row, "OUT", "D", DotsOf(sensor, axis, line, outlying, true));
   const double limit = turns ? sensor.tolerance.rad : sensor.tolerance.m;
   if (!sensor.T_ref_nominal) return;
@@ -74,6 +68,12 @@ void FillLine(Dictionary& svg, const SensorPopulation& sensor, std::size_t axis,
 }
 
 }  // namespace
+
+std::string ShownNumber(double value, bool turns) {
+  constexpr double kLeftOver = 1e-12;
+  if (std::abs(value) < kLeftOver) value = 0.0;
+  return Significant(value * (turns ? kDegPerRad : kMmPerMetre), 3);
+}
 
 void FillSpread(Dictionary& parent, const SensorPopulation& sensor) {
   std::set<RobotId> outlying;

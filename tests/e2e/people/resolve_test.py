@@ -82,7 +82,7 @@ def held_until_approved(flow, told, before):
     check("this one is a candidate, re-computed with rigcal " in shown and "board B-7 with its measured size" in shown, "the cause stands on it: " + shown)
     policy = flow.folder / "policy.yaml"
     policy.write_text("tolerance_mm: 30\n")
-    flow.rigcal("policy", "set", policy, "--robot", ROBOTS[0], "--reason", "wide mounts")
+    flow.rigcal("policy", "set", policy, "--robot", ROBOTS[0], "--reason", "wide mounts", exit_code=6)  # the newest of it is a candidate: not verified
     check(in_use(flow, ROBOTS[0]) == before[ROBOTS[0]], "a policy that is set approves nothing of it")
     candidate = next(row["revision"] for row in told["robots"] if row["robot"] == ROBOTS[0])
     flow.rigcal("approve", ROBOTS[0], candidate, "--reason", "the rule was right", "--by", "Eve")

@@ -149,9 +149,9 @@ TEST_F(AppendOnlyTest, UnitsAreTheEndOfColumnNames) {
   ASSERT_FALSE(reals.empty());
   for (const std::string& name : reals) {
     const bool unitless =
-        name.find("_q") != std::string::npos || name == "edge_figure.value" || name == "edge_capture.rms";
-    const bool has_unit = name.ends_with("_m") || name.ends_with("_rad") || name.ends_with("_ratio");
-    EXPECT_TRUE(unitless || has_unit) << name;
+        name.find("_q") != std::string::npos || name == "edge_figure.value" || name == "edge_capture.rms" || name.ends_with("_dof");
+    const std::vector<std::string> units = {"_m", "_rad", "_m2", "_rad2", "_ratio"};
+    EXPECT_TRUE(unitless || std::any_of(units.begin(), units.end(), [&](const auto& unit) { return name.ends_with(unit); })) << name;
   }
 }
 
