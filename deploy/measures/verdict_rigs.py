@@ -7,7 +7,8 @@ import subprocess
 import sys
 import zlib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"))
+E2E = pathlib.Path(__file__).resolve().parents[2] / "tests" / "e2e"
+sys.path[:0] = [str(E2E / "hostile"), str(E2E)]
 from front_rig import THIRD  # noqa: E402  a third camera to the front
 
 FRONT = ("front_left", "front_right", "front_top")

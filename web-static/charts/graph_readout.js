@@ -18,8 +18,9 @@ export function readGraph(graph) {
   line.className = "readout";
   line.setAttribute("role", "status");
   graph.after(line);
-  const way = matchMedia("(hover: none)").matches ? "Touch an edge" : "Point at an edge, or step through the edges with Tab,";
-  const rest = links.length ? way + " to read its numbers." : "";
+  const point = links.length ? "Point at an edge, or step through the edges with Tab," : "Point at an edge";
+  const way = matchMedia("(hover: none)").matches ? "Touch an edge" : point;
+  const rest = graph.querySelector(".link") ? way + " to read its numbers." : "";
   line.textContent = rest;
   const titleOf = (target) => {
     const shape = target.closest("a") ?? target.closest(".link, .node, .trace");
