@@ -77,6 +77,7 @@ const char* rigcal_version(void) {
 
 rigcal_client* rigcal_open(const rigcal_options* options) {
   auto* client = new rigcal_client{};
+  client->dds.apart = true;  // the program may use Cyclone itself
   if (options != nullptr) {
     client->dds.domain = options->domain;
     client->dds.tag = TextOf(options->tag);

@@ -10,6 +10,7 @@
 // A Client and its Followers are used by one thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -109,7 +110,7 @@ struct PushResult {
   std::string id;                                // of the session or batch
   std::int64_t items = 0, total = 0, held_before = 0;  // files or edges; bytes or edges, and how many of them were there before
   Standing standing;                             // of the revision that holds them
-  std::string remarks;                           // for people: what looks odd in what was pushed
+  std::string remarks;                           // for people: what was stored, and what looks odd in it
 };
 
 struct SensorPose {

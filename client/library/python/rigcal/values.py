@@ -55,7 +55,8 @@ class MeasuredPose:
         """Nothing where a direction of it was not measured."""
         if T is None or covariance is None:
             return None
-        return MeasuredPose(Pose(tuple(T["p_m"]), tuple(T["q_xyzw"])), tuple(tuple(row) for row in covariance))
+        (x_m, y_m, z_m), (x, y, z, w) = T["p_m"], T["q_xyzw"]
+        return MeasuredPose(Pose((x_m, y_m, z_m), (x, y, z, w)), tuple(tuple(row) for row in covariance))
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,8 @@ class Edge:
 
 @dataclass(frozen=True)
 class PushResult:
-    """`id` of the session or batch; `items`: files or edges; `total` and `held_before`: bytes or edges. `remarks`: what looks odd, for people."""
+    """`id` of the session or batch; `items`: files or edges; `total` and `held_before`: bytes or edges. `remarks`, for people: what was stored,
+    and what looks odd in it."""
     id: str
     items: int
     total: int
