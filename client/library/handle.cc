@@ -81,7 +81,7 @@ rigcal_client* rigcal_open(const rigcal_options* options) {
   if (options != nullptr) {
     client->dds.domain = options->domain;
     client->dds.tag = TextOf(options->tag);
-    client->timeout = MillisecondsOf(options->timeout_s);
+    if (options->timeout_s > 0.0) client->timeout = MillisecondsOf(options->timeout_s);
   }
   (void)Guarded(*client, [&] { return client->opened = OpenClient(*client); });
   return client;

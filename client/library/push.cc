@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <future>
 #include <span>
 #include <sstream>
@@ -11,6 +12,8 @@
 
 namespace rigcal::client {
 namespace {
+
+constexpr double kGiveUpMax_s = 1e7;  // that of --timeout-total
 
 struct Wishes {
   bool no_wait = false, new_robot = false;
@@ -27,7 +30,10 @@ std::vector<std::string> NamesIn(const std::string& text) {
 
 Wishes WishesOf(const rigcal_push_options* options) {
   if (options == nullptr) return {};
-  return {options->no_wait != 0, options->new_robot != 0, options->give_up_s, NamesIn(TextOf(options->remounted))};
+  Wishes wishes{.no_wait = options->no_wait != 0, .new_robot = options->new_robot != 0};
+  if (options->give_up_s > 0.0) wishes.give_up_s = std::min(options->give_up_s, kGiveUpMax_s);
+  wishes.remounted = NamesIn(TextOf(options->remounted));
+  return wishes;
 }
 
 Status Tell(rigcal_client& client, rigcal_push_result& result) {

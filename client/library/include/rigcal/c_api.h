@@ -33,7 +33,7 @@ typedef struct rigcal_client rigcal_client;
 typedef struct rigcal_follower rigcal_follower;
 
 // Where the server is. `domain` and `tag`: of DDS; RIGCAL_DOMAIN overrules the first, RIGCAL_DDS_TAG stands for a tag that is NULL.
-// `timeout_s`: how long a question waits for its answer.
+// `timeout_s`: how long a question waits for its answer; 0: 5 s.
 typedef struct {
   int domain;
   const char* tag;
@@ -71,7 +71,7 @@ typedef struct {
 typedef struct {
   int no_wait;            // end when all is on the server's disk
   int new_robot;          // the name is right, though it is one slip away from a known robot's
-  double give_up_s;       // without any answer
+  double give_up_s;       // without any answer; 0: 60 s
   const char* remounted;  // of a session: sensors that were moved on purpose, with commas between; NULL: none
 } rigcal_push_options;
 
