@@ -1,4 +1,5 @@
-# rigcal_library(NAME SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])   PCH: beyond the headers that all share
+# rigcal_library(NAME [SHAREABLE] SOURCES a.cc ... DEPS rigcal_base ... [PCH <header> ...])   PCH: beyond the headers that all share
+#   SHAREABLE: may become part of a shared library (librigcal)
 # rigcal_program(NAME SOURCES ... DEPS ...)
 # rigcal_manpage(NAME SECTION)                          build/.../man/NAME.SECTION.gz, from its --help
 # rigcal_test(NAME [COMPUTES] [WHOLE] SOURCES ... DEPS ... [LABELS ...])   one GoogleTest program, one ctest per case
@@ -74,9 +75,15 @@ function(rigcal_precompile target)
   endif()
 endfunction()
 
+# Code that runs wherever it is loaded, and calls its own functions as directly as other code does.
+function(rigcal_shareable target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
+endfunction()
+
 # An owner of a precompiled header that many targets share: RIGCAL_PCH_HEADERS and those named.
 function(rigcal_precompiled name)
-  cmake_parse_arguments(arg "" "" "HEADERS;OPTIONS;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "SHAREABLE" "" "HEADERS;OPTIONS;DEPS" ${ARGN})
   if(RIGCAL_PCH)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cc CONTENT "" @ONLY)
     add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cc)
@@ -84,18 +91,27 @@ function(rigcal_precompiled name)
     rigcal_settings(${name})
     rigcal_precompile(${name} HEADERS ${RIGCAL_PCH_HEADERS} ${arg_HEADERS})
     target_compile_options(${name} PRIVATE ${arg_OPTIONS})
+    if(arg_SHAREABLE)
+      rigcal_shareable(${name})
+    endif()
   endif()
 endfunction()
 
 rigcal_precompiled(rigcal_pch)
+rigcal_precompiled(rigcal_shareable_pch SHAREABLE)
 
 function(rigcal_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS;PCH" ${ARGN})
+  cmake_parse_arguments(arg "SHAREABLE" "" "SOURCES;DEPS;PCH" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
   target_link_libraries(${name} PUBLIC ${arg_DEPS})
   rigcal_settings(${name})
+  if(arg_SHAREABLE)
+    rigcal_shareable(${name})
+  endif()
   if(arg_PCH)
     rigcal_precompile(${name} HEADERS ${RIGCAL_PCH_HEADERS} ${arg_PCH})
+  elseif(arg_SHAREABLE)
+    rigcal_precompile(${name} FROM rigcal_shareable_pch)
   else()
     rigcal_precompile(${name} FROM rigcal_pch)
   endif()

@@ -19,3 +19,4 @@ rigcal_test(client_ros_test
   DEPS rigcal_client rigcal_bags)
 target_compile_definitions(client_program_test PRIVATE RIGCAL_PROGRAM="$<TARGET_FILE:rigcal>")
 add_dependencies(client_program_test rigcal)
+rigcal_test(client_library_test SOURCES unit/client/library/values_test.cc DEPS rigcal_shared Eigen3::Eigen)

@@ -15,7 +15,8 @@ WANTED = ["bin/rigcal", "bin/rigcald", "libexec/rigcal/rigcal-simulate", "libexe
           "share/bash-completion/completions/rigcal", "share/zsh/vendor-completions/_rigcal", "share/fish/vendor_completions.d/rigcal.fish",
           "lib/systemd/system/rigcald.service", "etc/rigcal/limits.yaml", "etc/rigcal/rigcald.env",
           "share/doc/rigcal/README.md", "share/doc/rigcal/copyright", "share/doc/rigcal/LICENSE",
-          "share/doc/rigcal/changelog.gz", "share/doc/rigcal/docs/limits.md"]
+          "share/doc/rigcal/changelog.gz", "share/doc/rigcal/docs/limits.md",
+          "lib/librigcal.so.0", "include/rigcal/client.h", "lib/python3/dist-packages/rigcal/py.typed"]
 
 
 def output(*command, **more):
